@@ -1,0 +1,46 @@
+//! Force in a bond: micromodulus kernels and the springs they feed.
+
+crate::kinds! {
+    /// Constitutive laws of a bond.
+    pub enum BondLawKind for "model.bond_law" {
+        BondBased = "bond_based": "one normal spring a bond; fixes Poisson's ratio at 1/3 (plane stress) or 1/4 (plane strain)",
+        TwoParameter = "two_parameter": "normal and tangential spring a bond; Poisson's ratio up to 1/3 (plane stress) or 1/4 (plane strain)",
+    }
+}
+
+crate::kinds! {
+    /// How the micromodulus falls with bond length r.
+    pub enum Kernel for "model.kernel" {
+        Constant = "constant": "micromodulus independent of bond length",
+        Conical = "conical": "micromodulus times 1 - r/horizon",
+    }
+}
+
+crate::kinds! {
+    /// Whether the tangential spring resists rigid rotation.
+    pub enum Rotation for "model.rotation" {
+        Free = "free": "each point turns freely (third unknown): rigid rotation costs no energy",
+        Resisted = "resisted": "tangential spring as printed in the literature: rigid rotation is resisted",
+    }
+}
+
+crate::kinds! {
+    /// Correction for points whose horizon is cut off by the boundary.
+    pub enum SurfaceCorrection for "model.surface_correction" {
+        None = "none": "no correction",
+        VolumeAndSurface = "volume_and_surface": "partial volumes and energy factors of Madenci and Oterkus 2014",
+    }
+}
+
+/// What a case says about the bonds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BondLaw {
+    /// Constitutive law.
+    pub kind: BondLawKind,
+    /// Micromodulus kernel.
+    pub kernel: Kernel,
+    /// Tangential spring and rotation (two-parameter law).
+    pub rotation: Rotation,
+    /// Surface correction.
+    pub surface_correction: SurfaceCorrection,
+}

@@ -1,0 +1,3 @@
+//! From measured curves to the constants of the fatigue law.
+
+pub mod record;

@@ -1,0 +1,78 @@
+//! `fitted.toml`: the calibrated law with all it depends on. One record is one whole: constants are meaningless
+//! without horizon, law, kernel, corrections and zone they were fitted with.
+
+use serde::{Deserialize, Serialize};
+
+/// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FittedRecord {
+    /// A at `horizon_mm`, 1/cycle.
+    pub a: f64,
+    /// Exponent p.
+    pub p: f64,
+    /// Horizon that A belongs to.
+    pub horizon_mm: f64,
+    /// Lattice spacing of the calibration.
+    pub spacing_mm: f64,
+    /// Horizon over spacing.
+    pub horizon_ratio: f64,
+    /// How A moves to another horizon, in words.
+    pub scaling: String,
+    /// Paris constant of the same material: da/dN = C ΔK^m in mm/cycle and MPa√m.
+    pub paris_c_mm_per_cycle: f64,
+    /// Paris exponent m (not the same as p).
+    pub paris_m: f64,
+    /// ΔK at which the fit is best determined.
+    pub pivot_delta_k_mpa_sqrt_m: f64,
+    /// da/dN there.
+    pub rate_at_pivot_mm_per_cycle: f64,
+    /// Relative standard error of the rate at the pivot.
+    pub rate_at_pivot_relative_error: f64,
+    /// Standard error of p.
+    pub p_error: f64,
+    /// Smallest ΔK of the fit window.
+    pub delta_k_min_mpa_sqrt_m: f64,
+    /// Largest ΔK of the fit window.
+    pub delta_k_max_mpa_sqrt_m: f64,
+    /// Stress ratio of the tests.
+    pub stress_ratio: f64,
+    /// `model.bond_law`.
+    pub bond_law: String,
+    /// `model.kernel`.
+    pub kernel: String,
+    /// `model.rotation`.
+    pub rotation: String,
+    /// `model.surface_correction`.
+    pub surface_correction: String,
+    /// `fatigue.ageing`.
+    pub ageing: String,
+    /// `fatigue.zone_radius_horizons`.
+    pub zone_radius_horizons: f64,
+    /// `fatigue.precrack`.
+    pub precrack: String,
+    /// Young's modulus of the calibration.
+    pub youngs_modulus_gpa: f64,
+    /// Poisson's ratio of the calibration.
+    pub poisson_ratio: f64,
+    /// `material.plane`.
+    pub plane: String,
+    /// Thickness of the tested specimens.
+    pub thickness_mm: f64,
+    /// Material name.
+    pub material: String,
+    /// Program version.
+    pub version: String,
+    /// Measured files with their hashes.
+    pub sources: Vec<SourceFile>,
+}
+
+/// A measured file a record was fitted to.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SourceFile {
+    /// Path as given in the calibration file.
+    pub file: String,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+}

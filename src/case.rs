@@ -1,0 +1,69 @@
+//! One input file: one choice from each room, checked as a whole before anything runs.
+
+use crate::bond_law::BondLaw;
+use crate::calibration::record::FittedRecord;
+use crate::fatigue::{FatigueLaw, FatigueSettings};
+use crate::loading::Loading;
+use crate::material::Material;
+use crate::solver::SolverKind;
+use crate::specimen::Specimen;
+
+/// Peridynamic model of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// Bonds.
+    pub bond_law: BondLaw,
+    /// Spacing asked for, m; the body takes the nearest one that fits.
+    pub spacing: f64,
+    /// Horizon over spacing, m = δ/Δ.
+    pub horizon_ratio: f64,
+    /// Angle of the lattice rows against x, radians.
+    pub lattice_angle: f64,
+    /// Equilibrium solver.
+    pub solver: SolverKind,
+}
+
+/// When a run stops at the latest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// Crack length, m; infinite = none.
+    pub crack_length: f64,
+    /// Run-out.
+    pub cycles_max: f64,
+}
+
+/// Where the constants of the fatigue law come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LawSource {
+    /// Given in the case: `a`, `p`, `horizon_mm`.
+    Inline(FatigueLaw),
+    /// A record written by `perilife calibrate`.
+    Fitted(Box<FittedRecord>),
+    /// A record that does not exist yet (only `check` accepts this).
+    Missing(std::path::PathBuf),
+}
+
+/// A checked case, SI inside.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// File stem.
+    pub name: String,
+    /// Plate.
+    pub specimen: Specimen,
+    /// Elastic constants and strengths.
+    pub material: Material,
+    /// Cycles.
+    pub loading: Loading,
+    /// Peridynamic model.
+    pub model: Model,
+    /// Fatigue settings.
+    pub fatigue: FatigueSettings,
+    /// Constants of the fatigue law.
+    pub law: LawSource,
+    /// Stop conditions.
+    pub stop: Stop,
+    /// What the program chose for the case and what the user should know.
+    pub warnings: Vec<String>,
+    /// The input as given, overrides applied; echoed in `result.json`.
+    pub echo: serde_json::Value,
+}

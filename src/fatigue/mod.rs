@@ -1,0 +1,76 @@
+//! Life of a bond under cycles: dλ/dN = -A ε^p (Silling and Askari 2014, SAND2014-18590).
+
+crate::kinds! {
+    /// Which bonds age.
+    pub enum Ageing for "fatigue.ageing" {
+        CrackTip = "crack_tip": "bonds whose middle lies within zone_radius_horizons x horizon of a tracked crack tip",
+        Everywhere = "everywhere": "all bonds",
+    }
+}
+
+crate::kinds! {
+    /// What happened before N = 0.
+    pub enum Precrack for "fatigue.precrack" {
+        Grown = "grown": "the crack is grown from two horizons shorter; N = 0 where it reaches the given length",
+        SteadyProfile = "steady_profile": "bonds ahead of the tip start with the lives that steady growth would have left them",
+        None = "none": "every bond starts with its whole life, as at a machined notch",
+    }
+}
+
+crate::kinds! {
+    /// How long a cycle block is.
+    pub enum BlockKind for "fatigue.block" {
+        UntilNextBreak = "until_next_break": "cycles until the next bond, or the next bonds_per_block bonds, are spent",
+        Fixed = "fixed": "block_cycles cycles",
+    }
+}
+
+/// Constants of the law and the horizon they belong to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FatigueLaw {
+    /// A, 1/cycle (ε is dimensionless).
+    pub a: f64,
+    /// Exponent p.
+    pub p: f64,
+    /// Horizon δ that A belongs to, m.
+    pub horizon: f64,
+}
+
+impl FatigueLaw {
+    /// The same material's law at another horizon: `A₂ = A₁ (δ₂/δ₁)^((p-2)/2)`, so that the Paris constant stays
+    /// (steady growth: `C = β A δ^(1-p/2) / E^p`).
+    #[must_use]
+    pub fn at_horizon(&self, horizon: f64) -> FatigueLaw {
+        FatigueLaw { a: self.a * (horizon / self.horizon).powf((self.p - 2.0) / 2.0), p: self.p, horizon }
+    }
+}
+
+/// Cycle block: one quasi-static solve each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Block {
+    /// How its length is chosen.
+    pub kind: BlockKind,
+    /// Cycles of a `fixed` block.
+    pub cycles: f64,
+    /// Bonds (or groups that break together) after which an `until_next_break` block ends.
+    pub bonds: usize,
+}
+
+/// What a case says about fatigue, except the constants of the law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FatigueSettings {
+    /// Which bonds age.
+    pub ageing: Ageing,
+    /// Radius of the `crack_tip` zone in horizons.
+    pub zone_radius_horizons: f64,
+    /// What happened before N = 0.
+    pub precrack: Precrack,
+    /// Cycle block.
+    pub block: Block,
+    /// Bond stretch s_t above which a bond breaks at once; infinite = never.
+    pub critical_stretch: f64,
+    /// Walker exponent γ: ε = s_max (1-R)^γ; 1 = no mean-stress effect.
+    pub walker_gamma: f64,
+    /// Threshold of ΔK, Pa√m; 0 = none.
+    pub threshold: f64,
+}

@@ -1,0 +1,69 @@
+//! One macro for the choices an input file can make: a list of kinds gives the enum, its input names,
+//! the messages for unknown names and the lines of `perilife list`.
+
+/// One line of `perilife list`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct KindLine {
+    /// Key of the input file, for example `model.bond_law`.
+    pub key: &'static str,
+    /// Value to write there.
+    pub name: &'static str,
+    /// What it means, in one line.
+    pub meaning: &'static str,
+}
+
+/// Declares an enum of named choices for one input key.
+///
+/// Gives `ALL`, `KEY`, `name()`, `meaning()`, `lines()`, `Display`, `FromStr` and serde by name; an unknown name
+/// is answered with the known ones.
+#[macro_export]
+macro_rules! kinds {
+    ($(#[$outer:meta])* pub enum $Kind:ident for $key:literal { $($(#[$inner:meta])* $Variant:ident = $name:literal : $meaning:literal),+ $(,)? }) => {
+        $(#[$outer])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum $Kind { $($(#[$inner])* #[doc = $meaning] $Variant),+ }
+
+        impl $Kind {
+            /// Every kind, in the order of `perilife list`.
+            pub const ALL: &'static [$Kind] = &[$($Kind::$Variant),+];
+            /// Key of the input file that takes these names.
+            pub const KEY: &'static str = $key;
+            /// Name in input and result files.
+            #[must_use]
+            pub fn name(self) -> &'static str { match self { $($Kind::$Variant => $name),+ } }
+            /// Meaning in one line.
+            #[must_use]
+            pub fn meaning(self) -> &'static str { match self { $($Kind::$Variant => $meaning),+ } }
+            /// Lines of `perilife list`.
+            #[must_use]
+            pub fn lines() -> Vec<$crate::kinds::KindLine> {
+                Self::ALL.iter().map(|k| $crate::kinds::KindLine { key: Self::KEY, name: k.name(), meaning: k.meaning() }).collect()
+            }
+        }
+
+        impl std::fmt::Display for $Kind {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result { f.pad(self.name()) }
+        }
+
+        impl std::str::FromStr for $Kind {
+            type Err = $crate::error::Error;
+            fn from_str(text: &str) -> Result<Self, Self::Err> {
+                Self::ALL.iter().copied().find(|k| k.name() == text).ok_or_else(|| {
+                    let known: Vec<&str> = Self::ALL.iter().map(|k| k.name()).collect();
+                    $crate::error::input(Self::KEY, format!("\"{text}\""), "is not a known kind", format!("use one of {}", known.join(", ")))
+                })
+            }
+        }
+
+        impl serde::Serialize for $Kind {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> { serializer.serialize_str(self.name()) }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $Kind {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let text = String::deserialize(deserializer)?;
+                text.parse().map_err(|error: $crate::error::Error| serde::de::Error::custom(error))
+            }
+        }
+    };
+}

@@ -1,0 +1,39 @@
+//! What the plate is made of: elastic constants and strengths.
+
+crate::kinds! {
+    /// Plane state of the plate.
+    pub enum Plane for "material.plane" {
+        Stress = "stress": "thin plate, no stress across the thickness",
+        Strain = "strain": "thick plate, no strain across the thickness",
+    }
+}
+
+/// Elastic constants and strengths, SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name in `data/materials`, or "inline".
+    pub name: String,
+    /// Young's modulus E, Pa.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio ν.
+    pub poisson_ratio: f64,
+    /// Plane stress or plane strain.
+    pub plane: Plane,
+    /// Yield strength, Pa.
+    pub yield_strength: Option<f64>,
+    /// Fracture toughness, Pa√m.
+    pub toughness: Option<f64>,
+    /// Fracture energy G_c, J/m².
+    pub fracture_energy: Option<f64>,
+}
+
+impl Material {
+    /// E' of `K = √(E' G)`: E in plane stress, E/(1-ν²) in plane strain, Pa.
+    #[must_use]
+    pub fn plane_modulus(&self) -> f64 {
+        match self.plane {
+            Plane::Stress => self.youngs_modulus,
+            Plane::Strain => self.youngs_modulus / (1.0 - self.poisson_ratio * self.poisson_ratio),
+        }
+    }
+}

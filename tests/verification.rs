@@ -1,0 +1,1 @@
+//! Is the mathematics solved right?
