@@ -60,7 +60,13 @@ pub fn growth_rate(path: &Path, title: &str, series: &[Series]) -> Result<()> {
 }
 
 fn values(series: &[Series], pick: impl Fn(&(f64, f64)) -> f64) -> impl Iterator<Item = f64> {
-    series.iter().flat_map(|s| &s.points).filter(|(x, y)| x.is_finite() && y.is_finite()).map(pick).collect::<Vec<_>>().into_iter()
+    series
+        .iter()
+        .flat_map(|s| &s.points)
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .map(pick)
+        .collect::<Vec<_>>()
+        .into_iter()
 }
 
 /// Size of a chart, px.

@@ -31,7 +31,8 @@ impl OutputFolder {
     pub fn create(path: &Path) -> Result<OutputFolder> {
         let target = replaceable(path)?;
         let parent = parent_of(&target);
-        let new_parents: Vec<PathBuf> = parent.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists()).map(PathBuf::from).collect();
+        let new_parents: Vec<PathBuf> =
+            parent.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists()).map(PathBuf::from).collect();
         // From here on the value itself tidies up, whatever fails.
         let partial = temporary_beside(&target, "partial");
         let folder = OutputFolder { target, partial, new_parents, finished: false };

@@ -19,7 +19,9 @@ use crate::units::MM;
 /// [`crate::Error::File`] if a file cannot be written.
 pub fn write_series(folder: &Path, grid: &PointGrid, snapshots: &[Snapshot]) -> Result<()> {
     let extension = if grid.angle == 0.0 { "vti" } else { "vtu" };
-    let mut list = String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n");
+    let mut list = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
     for (number, snapshot) in snapshots.iter().enumerate() {
         let name = format!("plate_{number:04}.{extension}");
         let bytes = if grid.angle == 0.0 { image(grid, snapshot) } else { mesh(grid, snapshot) };
@@ -53,16 +55,25 @@ pub fn image(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
 /// A snapshot on a turned lattice as `.vtu`: points of the material, squares between four neighbours.
 #[must_use]
 pub fn mesh(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
-    let mut place_of: Vec<(u32, usize)> = grid.point_at.iter().enumerate().filter_map(|(place, p)| Some(((*p)?, place))).collect();
+    let mut place_of: Vec<(u32, usize)> =
+        grid.point_at.iter().enumerate().filter_map(|(place, p)| Some(((*p)?, place))).collect();
     place_of.sort_unstable();
     let squares = squares(grid, &place_of);
     let mut data = Appended::default();
-    let mut body =
-        format!("<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n", place_of.len(), squares.len());
-    data.reals(&mut body, "points", 3, place_of.iter().map(|(_, place)| {
-        let [x, y] = position_of(grid, *place);
-        [x / MM, y / MM, 0.0]
-    }));
+    let mut body = format!(
+        "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n",
+        place_of.len(),
+        squares.len()
+    );
+    data.reals(
+        &mut body,
+        "points",
+        3,
+        place_of.iter().map(|(_, place)| {
+            let [x, y] = position_of(grid, *place);
+            [x / MM, y / MM, 0.0]
+        }),
+    );
     body.push_str("</Points>\n<Cells>\n");
     data.integers(&mut body, "connectivity", squares.iter().flatten().copied());
     data.integers(&mut body, "offsets", (1..=squares.len() as i64).map(|i| 4 * i));

@@ -48,7 +48,14 @@ fn curve() -> Vec<CurvePoint> {
         }
         let y = y0 + 1.2e-3 * (1.0 - (-growth / 2e-3).exp());
         let tip = |sign: f64| TipRecord { position: [sign * (x0 + growth), sign * y], growth };
-        curve.push(CurvePoint { cycles, crack_length, delta_k, growth_rate, broken_bonds: 9 * step, tips: vec![tip(-1.0), tip(1.0)] });
+        curve.push(CurvePoint {
+            cycles,
+            crack_length,
+            delta_k,
+            growth_rate,
+            broken_bonds: 9 * step,
+            tips: vec![tip(-1.0), tip(1.0)],
+        });
     }
     curve
 }
@@ -79,7 +86,8 @@ fn position(grid: &PointGrid, place: usize) -> Point {
 
 fn snapshot(grid: &PointGrid, curve: &[CurvePoint], at: usize) -> Snapshot {
     let [left, right] = [curve[at].tips[0].position, curve[at].tips[1].position];
-    let path: Vec<Point> = curve[..=at].iter().rev().map(|p| p.tips[0].position).chain(curve[..=at].iter().map(|p| p.tips[1].position)).collect();
+    let path: Vec<Point> =
+        curve[..=at].iter().rev().map(|p| p.tips[0].position).chain(curve[..=at].iter().map(|p| p.tips[1].position)).collect();
     let (mut damage, mut displacement) = (Vec::new(), Vec::new());
     for (place, _) in grid.point_at.iter().enumerate().filter(|(_, point)| point.is_some()) {
         let [x, y] = position(grid, place);
