@@ -1,7 +1,15 @@
 //! Does each part do its job?
 
+#[path = "support/made_up_case.rs"]
+mod made_up_case;
 #[path = "support/made_up_run.rs"]
 mod made_up_run;
 
+#[path = "unit/layering.rs"]
+mod layering;
+#[path = "unit/output.rs"]
+mod output;
+#[path = "unit/pictures.rs"]
+mod pictures;
 #[path = "unit/report.rs"]
 mod report;

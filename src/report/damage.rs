@@ -77,7 +77,7 @@ impl DamagePicture<'_> {
     fn draw_column(&self, canvas: &mut Canvas, view: &View, full_scale: f64) {
         let left = 2 * MARGIN + view.width;
         let mut y = MARGIN;
-        let mut say = |canvas: &mut Canvas, text: &str, dx: i64, y: i64| canvas.text(text, [left + dx, y], LETTER, INK);
+        let say = |canvas: &mut Canvas, text: &str, dx: i64, y: i64| canvas.text(text, [left + dx, y], LETTER, INK);
         say(canvas, "damage", 0, y);
         say(canvas, "share of broken bonds", 0, y + 24);
         y += 60;

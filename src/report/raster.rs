@@ -93,11 +93,6 @@ impl Canvas {
         }
     }
 
-    /// Width of a text in pixels.
-    pub fn text_width(text: &str, scale: i64) -> i64 {
-        (text.chars().count() as i64 * glyphs::ADVANCE - 1).max(0) * scale
-    }
-
     /// The picture as a PNG file.
     ///
     /// # Errors
