@@ -105,7 +105,7 @@ fn tick_text(value: f64, largest: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    if size >= 0.999e7 || size < 1e-2 {
+    if !(1e-2..0.999e7).contains(&size) {
         let text = format!("{value:.6e}");
         let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
         let mantissa = trimmed(mantissa);
