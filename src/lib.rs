@@ -5,9 +5,9 @@
 #![warn(missing_docs)]
 
 pub mod error;
-pub mod input;
 pub mod kinds;
 pub mod units;
+pub mod input;
 
 pub mod specimen;
 pub mod loading;

@@ -5,6 +5,8 @@ mod made_up_case;
 #[path = "support/made_up_run.rs"]
 mod made_up_run;
 
+#[path = "unit/commands.rs"]
+mod commands;
 #[path = "unit/layering.rs"]
 mod layering;
 #[path = "unit/output.rs"]
