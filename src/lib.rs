@@ -5,14 +5,16 @@ pub mod error;
 pub mod kinds;
 pub mod units;
 
-pub mod bond_law;
-pub mod calibration;
-pub mod case;
-pub mod fatigue;
+pub mod specimen;
 pub mod loading;
 pub mod material;
-pub mod predict;
+pub mod bond_law;
+pub mod body;
+pub mod state;
 pub mod solver;
-pub mod specimen;
+pub mod fatigue;
+pub mod calibration;
+pub mod case;
+pub mod predict;
 
 pub use error::{Error, Result};
