@@ -1,157 +1,227 @@
 //! THE MAIN PAGE: from a case to its a-N curve.
+//!
+//! Build the body; until there is a reason to stop: find equilibrium at maximum load, take the cyclic strain of the bonds
+//! that age, choose the cycle block, spend bond life, break spent bonds, follow the crack tips. Command, service and
+//! calibration all come through here.
 
-use crate::specimen::Point;
+mod curve;
+mod memory;
+mod outcome;
+mod snapshot;
+mod stop;
 
-crate::kinds! {
-    /// Why a run ended.
-    pub enum StopReason for "stop_reason" {
-        CrackLengthReached = "crack_length_reached": "the crack reached stop.crack_length_mm",
-        Toughness = "toughness": "the stress intensity at maximum load reached the toughness",
-        NetSectionYield = "net_section_yield": "the mean stress on the remaining section reached the yield strength",
-        Severed = "severed": "the plate is in two pieces",
-        LeftPlate = "left_plate": "every crack tip has left the plate",
-        EnteredHole = "entered_hole": "the last crack tip ran into a hole",
-        NothingAges = "nothing_ages": "no bond is left that fatigue can spend",
-        RunOut = "run_out": "cycles_max was reached",
-        NoConvergence = "no_convergence": "the equilibrium solver did not converge",
+use std::time::Instant;
+
+pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
+
+use crate::body::{Body, Bond};
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, stretch, threshold_strain};
+use crate::fatigue::crack_tip::{CrackTip, share_out};
+use crate::fatigue::pieces::{Cut, set_aside};
+use crate::fatigue::precrack::{Passage, passages, steady_lives};
+use crate::fatigue::remaining_life::BondLife;
+use crate::fatigue::{FatigueLaw, Precrack};
+use crate::solver::Equilibrium;
+use crate::solver::field::Layout;
+use crate::specimen::Specimen;
+use crate::specimen::geometry::distance;
+use crate::state::Bonds;
+use curve::Track;
+use snapshot::Album;
+
+/// Predicts the a-N curve of a case.
+///
+/// # Errors
+/// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
+pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
+    run(case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer)
+}
+
+/// Takes down what a run does, block by block, so that it can be replayed.
+pub trait Recorder {
+    /// The passages behind the bond lives at the start.
+    fn start(&mut self, passages: &[Vec<Passage>]);
+    /// One block: the strains its bonds aged by, the bonds it spent, and the crack length after it, m.
+    fn block(&mut self, ageing: &[AgeingBond], spent: &[Bond], crack_length: f64);
+}
+
+/// Takes down nothing.
+struct Unrecorded;
+
+impl Recorder for Unrecorded {
+    fn start(&mut self, _: &[Vec<Passage>]) {}
+    fn block(&mut self, _: &[AgeingBond], _: &[Bond], _: f64) {}
+}
+
+/// [`predict`] with any fatigue law (given the body's horizon) and a recorder.
+///
+/// # Errors
+/// As [`predict`].
+pub fn run(
+    case: &Case,
+    law: impl FnOnce(f64) -> Result<FatigueLaw>,
+    recorder: &mut dyn Recorder,
+    observer: &dyn Observer,
+) -> Result<Prediction> {
+    let started = Instant::now();
+    let (settings, model) = (&case.fatigue, &case.model);
+
+    let specimen = starting_specimen(case)?;
+    let body = Body::build(&specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
+    let law = law(body.horizon())?;
+    let share = strain_share(&case.loading, settings);
+    let threshold = share * threshold_strain(settings, &case.material, body.horizon()) / case.loading.range_share();
+
+    let mut bonds = Bonds::new(&body);
+    let mut life = BondLife::whole(bonds.multiplier.len());
+    let mut tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, body.horizon())).collect();
+    let mut displacement = Vec::new();
+    if let Cut::Severed = set_aside(&body, &mut bonds, &body.pre_cut) {
+        return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
+    }
+    let mut equilibrium = Equilibrium::new(model.solver, &body, &bonds, case.loading.maximum);
+    let mut iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;
+    let mut solves = 1;
+
+    if settings.precrack == Precrack::SteadyProfile {
+        let near = candidates(&body, &bonds, &tips, settings);
+        let seeded: Vec<(CrackTip, bool)> = tips.iter().cloned().zip(specimen.tips.iter().map(|seed| seed.from_slot)).collect();
+        let passages = passages(&body, &near, &seeded, settings, &displacement);
+        for (bond, remaining) in steady_lives(&passages, law.p) {
+            life.set(bond, remaining);
+        }
+        recorder.start(&passages);
+    }
+
+    let mut track = Track::new(case, &specimen, &tips, equilibrium.work());
+    let mut album = Album::new(&body, &bonds, &displacement, track.last());
+    let mut broken_bonds = 0;
+    let stop = loop {
+        // Which bonds age, and by how much strain a cycle.
+        let ageing = ageing_bonds(&body, &candidates(&body, &bonds, &tips, settings), &displacement, share, threshold);
+        retire_tips(&mut tips, &body, &case.specimen, &ageing, settings.zone_radius_horizons);
+        if let Some(reason) = stop::before_block(case, &tips, &ageing) {
+            break reason;
+        }
+
+        // Spend life over the block; bonds at the end of theirs break.
+        let (cycles, mut spent) = life.next_block(&law, &settings.block, &ageing);
+        if track.cycles_since_start() + cycles > case.stop.cycles_max {
+            track.run_out(case.stop.cycles_max);
+            break StopReason::RunOut;
+        }
+        life.spend(&law, cycles, &ageing);
+        track.spend(cycles);
+
+        // Break, and find the new equilibrium, until no bond is stretched beyond the critical stretch.
+        let mut newly = spent.clone();
+        let outcome = loop {
+            newly.iter().for_each(|&bond| bonds.cut(&body, bond));
+            let aside = match set_aside(&body, &mut bonds, &newly) {
+                Cut::Severed => break Some(StopReason::Severed),
+                Cut::Whole(aside) => aside,
+            };
+            newly.extend(aside);
+            equilibrium.broke(&body, &bonds, &newly);
+            match equilibrium.solve(&body, &bonds, &mut displacement) {
+                Ok(more) => iterations += more,
+                Err(_) => break Some(StopReason::NoConvergence),
+            }
+            solves += 1;
+            newly = overstretched(&body, &bonds, &tips, case, &displacement);
+            spent.extend(&newly);
+            if newly.is_empty() {
+                break None;
+            }
+        };
+
+        // Follow the tips and record.
+        broken_bonds += spent.len();
+        let shares = share_out(&body, &tips, &spent);
+        tips.iter_mut().zip(&shares).for_each(|(tip, broken)| tip.advance(&body, &case.specimen, broken));
+        track.record(&specimen, &tips, broken_bonds, if outcome.is_none() { equilibrium.work() } else { f64::NAN });
+        recorder.block(&ageing, &spent, track.last().crack_length);
+        album.look(&body, &bonds, &displacement, track.last());
+        let going_on = observer.block_done(&track.progress(case));
+        if let Some(reason) = outcome.or_else(|| stop::after_block(case, &mut track)) {
+            break reason;
+        }
+        if !going_on {
+            return Err(Error::Mechanics(format!("{}: the run was cancelled", case.name)));
+        }
+    };
+
+    album.finish(&body, &bonds, &displacement, track.last());
+    let (blocks, warnings) = (track.blocks(), track.warnings(case, &body));
+    Ok(Prediction {
+        curve: track.into_curve(case, &body),
+        stop,
+        snapshots: album.snapshots,
+        grid: snapshot::grid(&body),
+        figures: RunFigures {
+            points: body.points.len(),
+            points_solved: body.points.len(),
+            bonds: body.bond_count,
+            blocks,
+            solves,
+            iterations,
+            spacing: body.lattice.spacing,
+            horizon: body.horizon(),
+            wall_s: started.elapsed().as_secs_f64(),
+            memory_mb: memory::peak_mb(),
+        },
+        warnings,
+    })
+}
+
+/// The specimen at the start of the run: with `precrack = grown`, every crack is two horizons shorter at each of its tips.
+fn starting_specimen(case: &Case) -> Result<Specimen> {
+    let mut specimen = case.specimen.clone();
+    if case.fatigue.precrack == Precrack::Grown {
+        let back = 2.0 * case.model.horizon_ratio * case.model.spacing;
+        if specimen.smallest_flaw() <= 2.5 * back {
+            return Err(crate::error::input(
+                "fatigue.precrack",
+                "\"grown\"",
+                format!("needs cracks longer than {:.2} mm, five horizons, to grow them from two horizons shorter", 2.5 * back / crate::units::MM),
+                "use \"steady_profile\", or a smaller model.spacing_mm",
+            ));
+        }
+        let growth = vec![-back; specimen.tips.len()];
+        specimen.crack_length = specimen.crack_length_after(&growth);
+        for tip in &mut specimen.tips {
+            let moved = [tip.position[0] - back * tip.direction[0], tip.position[1] - back * tip.direction[1]];
+            for crack in &mut specimen.cracks {
+                for end in [&mut crack.from, &mut crack.to] {
+                    if *end == tip.position {
+                        *end = moved;
+                    }
+                }
+            }
+            tip.position = moved;
+        }
+    }
+    Ok(specimen)
+}
+
+/// Ends the tips at an edge or hole around which no bond ages any more.
+fn retire_tips(tips: &mut [CrackTip], body: &Body, specimen: &Specimen, ageing: &[AgeingBond], zone_radius_horizons: f64) {
+    let radius = zone_radius_horizons * body.horizon();
+    for tip in tips.iter_mut().filter(|tip| tip.is_active()) {
+        if !ageing.iter().any(|b| distance(body.middle(b.bond), tip.position) <= radius) {
+            tip.retire(specimen, body.horizon());
+        }
     }
 }
 
-/// State of one tip at a recorded step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TipRecord {
-    /// Position, m.
-    pub position: Point,
-    /// Growth since N = 0, m.
-    pub growth: f64,
-}
-
-/// One cycle block of a finished run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CurvePoint {
-    /// Cycles since N = 0.
-    pub cycles: f64,
-    /// Crack length in the specimen's convention, m.
-    pub crack_length: f64,
-    /// Range of the stress intensity factor, Pa√m (handbook where there is one, else from the energy release rate); NaN where unknown.
-    pub delta_k: f64,
-    /// Growth rate da/dN, m/cycle.
-    pub growth_rate: f64,
-    /// Bonds broken since the start, initial cracks not counted.
-    pub broken_bonds: usize,
-    /// Tips, in the order of `Specimen::tips`.
-    pub tips: Vec<TipRecord>,
-}
-
-/// Picture of the damaged plate at one moment.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Snapshot {
-    /// Cycles since N = 0.
-    pub cycles: f64,
-    /// Crack length, m.
-    pub crack_length: f64,
-    /// Displacement (x, y) of every point at maximum load, m.
-    pub displacement: Vec<[f64; 2]>,
-    /// Damage φ of every point: share of its bonds that are broken, 0 to 1.
-    pub damage: Vec<f64>,
-}
-
-/// Points of the body as pictures need them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointGrid {
-    /// Lattice spacing, m.
-    pub spacing: f64,
-    /// Columns and rows of the lattice that holds the body.
-    pub columns: usize,
-    /// Rows of the lattice.
-    pub rows: usize,
-    /// Position of lattice place (0, 0), m.
-    pub origin: Point,
-    /// Angle of the lattice rows against x, radians.
-    pub angle: f64,
-    /// For every lattice place (row by row), the index of its point or `None` outside the material.
-    pub point_at: Vec<Option<u32>>,
-}
-
-/// Figures of a run that users ask for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunFigures {
-    /// Points of the whole body.
-    pub points: usize,
-    /// Points that were solved for.
-    pub points_solved: usize,
-    /// Bonds of the uncracked body.
-    pub bonds: usize,
-    /// Cycle blocks.
-    pub blocks: usize,
-    /// Equilibrium solves.
-    pub solves: usize,
-    /// Solver iterations in all (0 for a direct solver).
-    pub iterations: usize,
-    /// Actual lattice spacing, m.
-    pub spacing: f64,
-    /// Horizon, m.
-    pub horizon: f64,
-    /// Wall time, s.
-    pub wall_s: f64,
-    /// Peak memory of the process, MB.
-    pub memory_mb: f64,
-}
-
-/// What a run gives.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Prediction {
-    /// The a-N curve: first row N = 0 at the initial crack length; cycles and length never fall.
-    pub curve: Vec<CurvePoint>,
-    /// Why it ended.
-    pub stop: StopReason,
-    /// Snapshots: first, some between, last.
-    pub snapshots: Vec<Snapshot>,
-    /// Lattice of the snapshots.
-    pub grid: PointGrid,
-    /// Figures.
-    pub figures: RunFigures,
-    /// What the user should know: warnings in plain words.
-    pub warnings: Vec<String>,
-}
-
-impl Prediction {
-    /// Cycles from N = 0 to the end of the run.
-    #[must_use]
-    pub fn life_cycles(&self) -> f64 {
-        self.curve.last().map_or(0.0, |point| point.cycles)
+/// Bonds near the tips stretched beyond the critical stretch s_t.
+fn overstretched(body: &Body, bonds: &Bonds, tips: &[CrackTip], case: &Case, displacement: &[f64]) -> Vec<Bond> {
+    if case.fatigue.critical_stretch.is_infinite() {
+        return Vec::new();
     }
-
-    /// Crack length at the end, m.
-    #[must_use]
-    pub fn crack_length_final(&self) -> f64 {
-        self.curve.last().map_or(f64::NAN, |point| point.crack_length)
-    }
-}
-
-/// What a run reports while it goes on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Progress {
-    /// Cycles since N = 0.
-    pub cycles: f64,
-    /// Crack length, m.
-    pub crack_length: f64,
-    /// Share of the way from the initial to the final crack length (or of `cycles_max`), 0 to 1.
-    pub share: f64,
-}
-
-/// Receives progress; the engine itself never prints. Returning `false` asks the run to stop.
-pub trait Observer: Sync {
-    /// Called after every cycle block.
-    fn block_done(&self, progress: &Progress) -> bool;
-}
-
-/// An observer that watches nothing.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Silent;
-
-impl Observer for Silent {
-    fn block_done(&self, _progress: &Progress) -> bool {
-        true
-    }
+    let layout = Layout::of(&body.lattice, body.stencil.unknowns);
+    let near = candidates(body, bonds, tips, &case.fatigue);
+    near.into_iter().filter(|&bond| stretch(body, &layout, displacement, bond) > case.fatigue.critical_stretch).collect()
 }

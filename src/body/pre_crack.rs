@@ -25,8 +25,9 @@ pub fn bonds_across(body: &Body, a: Point, b: Point) -> Vec<Bond> {
         return Vec::new();
     }
     let shift = TIE_BREAK * lattice.spacing / length;
-    let side = [-(b[1] - a[1]) * shift, (b[0] - a[0]) * shift];
-    let (a, b) = ([a[0] + side[0], a[1] + side[1]], [b[0] + side[0], b[1] + side[1]]);
+    let (x, y) = ((b[0] - a[0]) * shift, (b[1] - a[1]) * shift);
+    // Longer by ten times the sideways shift, so that a bond through an end of the crack is cut at both ends alike.
+    let (a, b) = ([a[0] - y - 10.0 * x, a[1] + x - 10.0 * y], [b[0] - y + 10.0 * x, b[1] + x + 10.0 * y]);
     let mut cut = Vec::new();
     for place in places_near(body, a, b, body.horizon()) {
         let here = lattice.position(place);

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::console::Console;
 use crate::case::{Case, LawSource};
 use crate::error::{Error, Result, input};
-use crate::predict::{Observer, Prediction, StopReason};
+use crate::predict::{Prediction, StopReason};
 use crate::report::chart::{self, Mark, Series};
 use crate::report::csv::{self, Row};
 use crate::report::damage::DamagePicture;
@@ -63,7 +63,7 @@ pub fn run_case(case: &Case, out: &Path, console: &Console) -> Result<FinishedRu
     for warning in &case.warnings {
         console.warn(warning);
     }
-    let prediction = compute(case, &console.progress(&case.name))?;
+    let prediction = crate::predict::predict(case, &console.progress(&case.name))?;
     keep(case, prediction, folder, console)
 }
 
@@ -170,9 +170,4 @@ fn summary(case: &Case, prediction: &Prediction, out: &Path) -> Vec<String> {
         ),
         format!("  results        {}", out.display()),
     ]
-}
-
-/// The engine. Until it is there, this is the one place to change: `crate::predict::predict(case, observer)`.
-fn compute(_case: &Case, _observer: &dyn Observer) -> Result<Prediction> {
-    Err(Error::Mechanics("the engine is not wired yet".to_owned()))
 }

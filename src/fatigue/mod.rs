@@ -1,5 +1,12 @@
 //! Life of a bond under cycles: dλ/dN = -A ε^p (Silling and Askari 2014, SAND2014-18590).
 
+pub mod ageing;
+pub mod crack_tip;
+pub mod growth_rate;
+pub mod pieces;
+pub mod precrack;
+pub mod remaining_life;
+
 crate::kinds! {
     /// Which bonds age.
     pub enum Ageing for "fatigue.ageing" {

@@ -1,0 +1,184 @@
+//! Following a crack tip through the bonds that break around it.
+//!
+//! A straight crack of length Δa with unit normal n severs, of the bonds with vector ξ_k, `Δa |ξ_k·n| / Δ²`. Weighting a
+//! bond with its spring stiffness times length, g_k, a broken bond stands for the crack length `g_k / ρ(n)`,
+//! `ρ(n) = Σ_k g_k |ξ_k·n| / Δ²` over the half stencil.
+//!
+//! The bonds that broke last, half a horizon of crack of them, have their centre c a quarter horizon behind the tip;
+//! together with the horizon of crack before them they show the direction d. Growth is the way of that centre along the
+//! crack, `∫ d·dc`: a measure in broken bonds that is continuous, that does not depend on the spacing or on how the lattice
+//! lies, and that damage beside the crack does not lengthen.
+
+use std::collections::VecDeque;
+
+use crate::body::{Body, Bond};
+use crate::specimen::geometry::{direction, distance, distance_to_polygon, distance_to_segment};
+use crate::specimen::{Point, Specimen, TipSeed};
+
+/// Length of crack, in horizons, whose broken bonds show where the tip is.
+const FRONT_HORIZONS: f64 = 0.5;
+/// Length of crack before the front, in horizons, that shows where the tip is heading together with it.
+const TRAIL_HORIZONS: f64 = 1.0;
+/// Marks that stand for the crack behind a tip at the start.
+const SEED_MARKS: usize = 48;
+
+/// What has become of a tip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TipState {
+    /// Grows, or could.
+    Active,
+    /// Has crossed the outline.
+    LeftPlate,
+    /// Has run into a hole or a slot.
+    EnteredHole,
+}
+
+/// A broken bond near a tip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Mark {
+    at: Point,
+    length: f64,
+}
+
+/// A tip of a growing crack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CrackTip {
+    /// Position, m.
+    pub position: Point,
+    /// Unit vector of growth.
+    pub direction: Point,
+    /// Growth since the start, m; never falls.
+    pub growth: f64,
+    /// Whether it still grows.
+    pub state: TipState,
+    /// The bonds that broke last: front and trail.
+    marks: VecDeque<Mark>,
+    /// Way of the front's centre along the crack, m.
+    way: f64,
+    centre: Point,
+}
+
+impl CrackTip {
+    /// Tip at the end of an initial crack or at the middle of a slot's end face.
+    #[must_use]
+    pub fn at(seed: &TipSeed, horizon: f64) -> Self {
+        let length = (FRONT_HORIZONS + TRAIL_HORIZONS) * horizon;
+        let behind = |distance: f64| [seed.position[0] - distance * seed.direction[0], seed.position[1] - distance * seed.direction[1]];
+        let mark = |i: usize| Mark { at: behind(length * (1.0 - (i as f64 + 0.5) / SEED_MARKS as f64)), length: length / SEED_MARKS as f64 };
+        CrackTip {
+            position: seed.position,
+            direction: seed.direction,
+            growth: 0.0,
+            state: TipState::Active,
+            marks: (0..SEED_MARKS).map(mark).collect(),
+            way: 0.0,
+            centre: behind(0.5 * FRONT_HORIZONS * horizon),
+        }
+    }
+
+    /// Whether bonds around it can age.
+    #[must_use]
+    pub fn is_active(&self) -> bool {
+        self.state == TipState::Active
+    }
+
+    /// Takes in the bonds that broke near this tip, in the order they broke.
+    ///
+    /// A tip that has crossed the outline, or the rim of a hole, keeps its last place inside, where the last bonds before the
+    /// edge can still age; [`CrackTip::retire`] ends it when none is left.
+    pub fn advance(&mut self, body: &Body, specimen: &Specimen, broken: &[Bond]) {
+        if broken.is_empty() {
+            return;
+        }
+        let along = body.lattice.to_axes(self.direction);
+        let per_length = bonds_per_length(body, [-along[1], along[0]]);
+        self.marks.extend(broken.iter().map(|&bond| Mark { at: body.middle(bond), length: weight(body, body.ends(bond).0) / per_length }));
+        let horizon = body.horizon();
+        self.forget((FRONT_HORIZONS + TRAIL_HORIZONS) * horizon);
+        let (trail, front) = self.centres(FRONT_HORIZONS * horizon);
+        if distance(trail, front) > 0.05 * horizon {
+            self.direction = direction(trail, front);
+        }
+        self.way += self.direction[0] * (front[0] - self.centre[0]) + self.direction[1] * (front[1] - self.centre[1]);
+        self.growth = self.growth.max(self.way);
+        self.centre = front;
+        let ahead = 0.5 * FRONT_HORIZONS * horizon;
+        let position = [front[0] + ahead * self.direction[0], front[1] + ahead * self.direction[1]];
+        if specimen.contains(position) {
+            self.position = position;
+        }
+    }
+
+    /// Ends a tip around which nothing ages any more because it has come to the outline or to a hole (within a horizon).
+    pub fn retire(&mut self, specimen: &Specimen, horizon: f64) {
+        let into_hole = specimen.holes.iter().map(|hole| distance(hole.centre, self.position) - hole.radius);
+        let into_slot = specimen.slots.iter().map(|slot| distance_to_segment(self.position, slot.from, slot.to) - 0.5 * slot.width);
+        if into_hole.chain(into_slot).any(|gap| gap < horizon) {
+            self.state = TipState::EnteredHole;
+        } else if distance_to_polygon(self.position, &specimen.outline) < horizon {
+            self.state = TipState::LeftPlate;
+        }
+    }
+
+    /// Drops the oldest marks beyond a length of crack; the last of them is shortened, so that the rest is exactly that long.
+    fn forget(&mut self, length: f64) {
+        let mut excess = self.marks.iter().map(|mark| mark.length).sum::<f64>() - length;
+        while excess > 0.0 {
+            let Some(oldest) = self.marks.front_mut() else { return };
+            if oldest.length > excess {
+                oldest.length -= excess;
+                return;
+            }
+            excess -= oldest.length;
+            self.marks.pop_front();
+        }
+    }
+
+    /// Centres of the trail and of the front, the newest `front` metres of crack.
+    fn centres(&self, front: f64) -> (Point, Point) {
+        let mut left = front;
+        let (mut newer, mut older) = ([0.0; 3], [0.0; 3]);
+        for mark in self.marks.iter().rev() {
+            // A mark across the border counts to both in shares.
+            let share = mark.length.min(left);
+            left -= share;
+            for (part, share) in [(&mut newer, share), (&mut older, mark.length - share)] {
+                *part = [part[0] + share * mark.at[0], part[1] + share * mark.at[1], part[2] + share];
+            }
+        }
+        let centre = |part: [f64; 3]| [part[0] / part[2], part[1] / part[2]];
+        (centre(older), centre(newer))
+    }
+}
+
+/// Weight g_k of a stencil bond in the length measure: normal stiffness times length.
+fn weight(body: &Body, k: usize) -> f64 {
+    let bond = &body.stencil.bonds[k];
+    bond.k_n * bond.length
+}
+
+/// ρ(n): weight of the bonds severed by a unit length of crack with normal n (lattice axes).
+fn bonds_per_length(body: &Body, normal: Point) -> f64 {
+    let bonds = &body.stencil.bonds;
+    let severed = |k: usize| {
+        let bond = &bonds[k];
+        weight(body, k) * bond.length * (bond.normal[0] * normal[0] + bond.normal[1] * normal[1]).abs()
+    };
+    (0..bonds.len()).map(severed).sum::<f64>() / body.lattice.spacing.powi(2)
+}
+
+/// Gives every broken bond to the nearest active tip.
+#[must_use]
+pub fn share_out(body: &Body, tips: &[CrackTip], broken: &[Bond]) -> Vec<Vec<Bond>> {
+    let mut shares = vec![Vec::new(); tips.len()];
+    for &bond in broken {
+        let middle = body.middle(bond);
+        let nearest = (0..tips.len())
+            .filter(|&t| tips[t].is_active())
+            .min_by(|&a, &b| distance(tips[a].position, middle).total_cmp(&distance(tips[b].position, middle)));
+        if let Some(nearest) = nearest {
+            shares[nearest].push(bond);
+        }
+    }
+    shares
+}

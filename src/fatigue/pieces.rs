@@ -1,0 +1,105 @@
+//! Pieces that breaking has cut off: set aside when nothing loads them, `severed` when both sides are loaded.
+
+use std::collections::HashSet;
+
+use crate::body::{Body, Bond};
+use crate::state::Bonds;
+
+/// What breaking some bonds did to the plate.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Cut {
+    /// Still one loaded piece; these further bonds were set aside with pieces or points that carry nothing.
+    Whole(Vec<Bond>),
+    /// Two loaded pieces.
+    Severed,
+}
+
+/// Cuts the bonds of points and pieces that hang free after `broken` broke.
+///
+/// Whether the two ends of a broken bond are still connected is answered by growing a front from each end in turn: around a
+/// crack tip they meet after a few steps, and only a piece that is really cut off is ever walked whole.
+pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
+    let mut aside = Vec::new();
+    // A point on a single bond swings freely about it: it carries nothing and leaves the stiffness singular.
+    let least = if body.stencil.unknowns == 3 { 2 } else { 3 };
+    let mut suspects: Vec<usize> = broken.iter().flat_map(|&b| [body.ends(b).1, body.ends(b).2]).collect();
+    while let Some(place) = suspects.pop() {
+        if bonds.intact_at(body, place) < least {
+            for (bond, other) in intact_bonds(body, bonds, place) {
+                bonds.cut(body, bond);
+                aside.push(bond);
+                suspects.push(other);
+            }
+        }
+    }
+    for &bond in broken {
+        let (_, a, b) = body.ends(bond);
+        let Some(piece) = cut_off(body, bonds, a, b) else { continue };
+        let loaded = |p: &usize| is_loaded(body, *p);
+        let inside = piece.iter().any(loaded);
+        let outside = body.points.iter().map(|&p| p as usize).any(|p| !piece.contains(&p) && is_loaded(body, p) && bonds.intact_at(body, p) > 0);
+        if inside && outside {
+            return Cut::Severed;
+        }
+        if !inside {
+            let mut members: Vec<usize> = piece.into_iter().collect();
+            members.sort_unstable();
+            for place in members {
+                for (bond, _) in intact_bonds(body, bonds, place) {
+                    bonds.cut(body, bond);
+                    aside.push(bond);
+                }
+            }
+        }
+    }
+    Cut::Whole(aside)
+}
+
+fn is_loaded(body: &Body, place: usize) -> bool {
+    let place = place as u32;
+    let boundary = &body.boundary;
+    boundary.forces.binary_search_by_key(&place, |f| f.0).is_ok()
+        || boundary.fixed.iter().any(|f| f.0 == place)
+        || boundary.clamped.iter().any(|c| c.0 == place)
+}
+
+/// Intact bonds of a point with the other end.
+fn intact_bonds(body: &Body, bonds: &Bonds, place: usize) -> Vec<(Bond, usize)> {
+    let places = body.places();
+    let mut found = Vec::new();
+    for (k, &step) in body.steps.iter().enumerate() {
+        let (ahead, behind) = (place.wrapping_add_signed(step), place.wrapping_add_signed(-step));
+        for (owner, other) in [(place, ahead), (behind, behind)] {
+            let bond = (k * places + owner) as Bond;
+            if bonds.is_intact(bond) {
+                found.push((bond, other));
+            }
+        }
+    }
+    found
+}
+
+/// The piece around `a` or `b` that has lost contact with the other, if any; pieces without bonds do not count.
+fn cut_off(body: &Body, bonds: &Bonds, a: usize, b: usize) -> Option<HashSet<usize>> {
+    let mut seen = [HashSet::from([a]), HashSet::from([b])];
+    let mut front = [vec![a], vec![b]];
+    loop {
+        let side = usize::from(front[1].len() < front[0].len());
+        let mut next = Vec::new();
+        for place in std::mem::take(&mut front[side]) {
+            for (_, other) in intact_bonds(body, bonds, place) {
+                if seen[1 - side].contains(&other) {
+                    return None;
+                }
+                if seen[side].insert(other) {
+                    next.push(other);
+                }
+            }
+        }
+        if next.is_empty() {
+            let piece = std::mem::take(&mut seen[side]);
+            return (piece.len() > 1).then_some(piece);
+        }
+        front[side] = next;
+    }
+}

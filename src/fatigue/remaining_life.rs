@@ -1,0 +1,71 @@
+//! Spending bond life over a cycle block: `λ ← λ - ΔN A ε^p`; a bond with λ ≤ 0 breaks
+//! (Silling and Askari 2014, SAND2014-18590; block until the next break after Zhang et al. 2016, Eng. Fract. Mech. 162:76).
+
+use super::ageing::AgeingBond;
+use super::{Block, BlockKind, FatigueLaw};
+use crate::body::Bond;
+
+/// Relative difference of spending cycles below which bonds break together: mirror twins differ by round-off only.
+pub const TOGETHER: f64 = 1e-9;
+
+/// Remaining life λ of every bond.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BondLife {
+    life: Vec<f64>,
+}
+
+impl BondLife {
+    /// Whole lives for `bonds` bond numbers.
+    #[must_use]
+    pub fn whole(bonds: usize) -> Self {
+        BondLife { life: vec![1.0; bonds] }
+    }
+
+    /// Remaining life λ of a bond, 1 at first.
+    #[must_use]
+    pub fn of(&self, bond: Bond) -> f64 {
+        self.life[bond as usize]
+    }
+
+    /// Sets the life a bond starts with.
+    pub fn set(&mut self, bond: Bond, life: f64) {
+        self.life[bond as usize] = life;
+    }
+
+    /// Chooses the next cycle block: its cycles and the bonds it spends.
+    #[must_use]
+    pub fn next_block(&self, law: &FatigueLaw, block: &Block, ageing: &[AgeingBond]) -> (f64, Vec<Bond>) {
+        let cycles_to_spend: Vec<f64> = ageing.iter().map(|b| self.of(b.bond).max(0.0) / (law.a * b.strain.powf(law.p))).collect();
+        let cycles = match block.kind {
+            BlockKind::Fixed => block.cycles,
+            BlockKind::UntilNextBreak => nth_break(&cycles_to_spend, block.bonds),
+        };
+        let spent = cycles_to_spend.iter().zip(ageing).filter(|(n, _)| **n <= cycles * (1.0 + TOGETHER)).map(|(_, b)| b.bond).collect();
+        (cycles, spent)
+    }
+
+    /// Takes the block's spending off every ageing bond.
+    pub fn spend(&mut self, law: &FatigueLaw, cycles: f64, ageing: &[AgeingBond]) {
+        for bond in ageing {
+            self.life[bond.bond as usize] -= cycles * law.a * bond.strain.powf(law.p);
+        }
+    }
+}
+
+/// Cycles until the n-th of the distinct next breaks (twins count as one).
+fn nth_break(cycles: &[f64], n: usize) -> f64 {
+    let mut sorted: Vec<f64> = cycles.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let mut groups = 0;
+    let mut last = f64::NAN;
+    for value in sorted {
+        if !(value <= last * (1.0 + TOGETHER)) {
+            groups += 1;
+            last = value;
+            if groups == n.max(1) {
+                return value;
+            }
+        }
+    }
+    last
+}

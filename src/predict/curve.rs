@@ -1,0 +1,203 @@
+//! The growing a-N curve of a run.
+
+use super::outcome::{CurvePoint, Progress, TipRecord};
+use crate::body::Body;
+use crate::case::Case;
+use crate::fatigue::crack_tip::CrackTip;
+use crate::fatigue::growth_rate::{Sample, rates};
+use crate::specimen::Specimen;
+use crate::specimen::handbook::{HandbookFormula, handbook};
+
+/// Growth, in horizons, over which rates are taken.
+const RATE_SPAN_HORIZONS: f64 = 1.0;
+/// Initial crack length, in horizons, below which the finite horizon makes short cracks grow too fast by more than some percent.
+const SHORT_CRACK_HORIZONS: f64 = 5.0;
+
+/// The plate after a block.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Cycles since the start of the run (before N = 0 for a crack that is first grown).
+    pub cycles: f64,
+    /// Crack length, m.
+    pub crack_length: f64,
+    work: f64,
+    broken_bonds: usize,
+    tips: Vec<TipRecord>,
+}
+
+impl Row {
+    /// Growth of all tips together, m.
+    pub fn growth(&self) -> f64 {
+        self.tips.iter().map(|tip| tip.growth).sum()
+    }
+}
+
+/// All rows of a run so far.
+pub struct Track {
+    rows: Vec<Row>,
+    cycles: f64,
+    formula: Option<HandbookFormula>,
+    /// Crack length at which N = 0.
+    origin: f64,
+    /// Row with which N = 0 begins, once reached.
+    zero: Option<f64>,
+}
+
+impl Track {
+    pub(super) fn new(case: &Case, specimen: &Specimen, tips: &[CrackTip], work: f64) -> Self {
+        let mut track = Track {
+            rows: Vec::new(),
+            cycles: 0.0,
+            formula: handbook(&case.specimen),
+            origin: case.specimen.crack_length,
+            zero: None,
+        };
+        track.record(specimen, tips, 0, work);
+        track
+    }
+
+    /// The latest row.
+    pub(super) fn last(&self) -> &Row {
+        // `new` records the first row.
+        &self.rows[self.rows.len() - 1]
+    }
+
+    pub(super) fn blocks(&self) -> usize {
+        self.rows.len() - 1
+    }
+
+    /// Lets cycles pass.
+    pub(super) fn spend(&mut self, cycles: f64) {
+        self.cycles += cycles;
+    }
+
+    /// Cycles since N = 0; none before.
+    pub(super) fn cycles_since_start(&self) -> f64 {
+        self.zero.map_or(0.0, |zero| self.cycles - zero)
+    }
+
+    /// Records the plate after a block.
+    pub(super) fn record(&mut self, specimen: &Specimen, tips: &[CrackTip], broken_bonds: usize, work: f64) {
+        let growth: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
+        let crack_length = specimen.crack_length_after(&growth);
+        if self.zero.is_none() && crack_length >= self.origin * (1.0 - 1e-12) {
+            self.zero = Some(match self.rows.last() {
+                Some(before) if before.crack_length < self.origin => {
+                    let share = (self.origin - before.crack_length) / (crack_length - before.crack_length);
+                    before.cycles + share * (self.cycles - before.cycles)
+                }
+                _ => self.cycles,
+            });
+        }
+        let tips = tips.iter().map(|tip| TipRecord { position: tip.position, growth: tip.growth }).collect();
+        self.rows.push(Row { cycles: self.cycles, crack_length, work, broken_bonds, tips });
+    }
+
+    /// Ends the curve at a run-out: the crack stands where it is.
+    pub(super) fn run_out(&mut self, cycles_max: f64) {
+        let mut row = self.last().clone();
+        row.cycles = cycles_max + self.zero.unwrap_or(0.0);
+        self.rows.push(row);
+    }
+
+    /// Shortens the last row to the crack length at which the run stops.
+    pub(super) fn end_at(&mut self, crack_length: f64) {
+        let count = self.rows.len();
+        if count < 2 {
+            return;
+        }
+        let before = self.rows[count - 2].clone();
+        let row = &mut self.rows[count - 1];
+        let share = (crack_length - before.crack_length) / (row.crack_length - before.crack_length);
+        if !(0.0..1.0).contains(&share) {
+            return;
+        }
+        let between = |a: f64, b: f64| a + share * (b - a);
+        row.cycles = between(before.cycles, row.cycles);
+        row.crack_length = crack_length;
+        row.work = between(before.work, row.work);
+        for (tip, old) in row.tips.iter_mut().zip(&before.tips) {
+            tip.growth = between(old.growth, tip.growth);
+            tip.position = [0, 1].map(|i| between(old.position[i], tip.position[i]));
+        }
+    }
+
+    /// Largest K of the cycle at the last row, Pa√m: handbook, else from the energy release rate so far.
+    pub(super) fn k_max(&self, case: &Case, horizon: f64) -> f64 {
+        let length = self.last().crack_length;
+        match &self.formula {
+            Some(formula) => formula.k_i(length, case.loading.maximum),
+            None => {
+                let recent = self.rows.iter().rposition(|row| row.growth() < self.last().growth() - horizon).unwrap_or(0);
+                let released = rates(&self.samples(&self.rows[recent..]), 2.0 * horizon, case.specimen.thickness);
+                released.last().map_or(f64::NAN, |rate| (rate.energy_release_rate * case.material.plane_modulus()).sqrt())
+            }
+        }
+    }
+
+    pub(super) fn progress(&self, case: &Case) -> Progress {
+        let (start, now) = (self.origin, self.last().crack_length);
+        // Without a length to stop at, growth across the plate is the way.
+        let end = if case.stop.crack_length.is_finite() { case.stop.crack_length } else { start + case.specimen.gross_width };
+        let by_length = (now - start) / (end - start);
+        let by_cycles = self.cycles_since_start() / case.stop.cycles_max;
+        Progress { cycles: self.cycles_since_start(), crack_length: now, share: by_length.max(by_cycles).clamp(0.0, 1.0) }
+    }
+
+    pub(super) fn warnings(&self, case: &Case, body: &Body) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let flaw = case.specimen.smallest_flaw();
+        if flaw < SHORT_CRACK_HORIZONS * body.horizon() {
+            let bias = (1.0 + 0.3 * body.horizon() / flaw).powi(3) - 1.0;
+            warnings.push(format!(
+                "the initial crack is only {:.1} horizons long: the finite horizon makes it grow too fast at first, by up to about {:.0} % in rate (not a short-crack effect)",
+                flaw / body.horizon(),
+                100.0 * bias
+            ));
+        }
+        let stopped_in_grip = self.rows.last().is_some_and(|row| {
+            row.tips.iter().any(|tip| {
+                let [column, line] = body.lattice.locate(tip.position).map(f64::round);
+                (0.0..body.lattice.columns as f64).contains(&column)
+                    && (0.0..body.lattice.rows as f64).contains(&line)
+                    && body.no_fail[body.lattice.place(column as usize, line as usize)]
+            })
+        });
+        if stopped_in_grip {
+            warnings.push("a crack tip stands in the zone around a load or support, where bonds do not fail".to_owned());
+        }
+        warnings
+    }
+
+    fn samples(&self, rows: &[Row]) -> Vec<Sample> {
+        rows.iter().map(|row| Sample { cycles: row.cycles, crack_length: row.crack_length, growth: row.growth(), work: row.work }).collect()
+    }
+
+    /// The curve from N = 0.
+    pub(super) fn into_curve(self, case: &Case, body: &Body) -> Vec<CurvePoint> {
+        let rate = rates(&self.samples(&self.rows), RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
+        let share = case.loading.range_share();
+        let zero = self.zero.unwrap_or(0.0);
+        let start = self.rows.iter().position(|row| row.cycles >= zero && row.crack_length >= self.origin * (1.0 - 1e-12)).unwrap_or(0);
+        let offset: Vec<f64> = self.rows[start].tips.iter().map(|tip| if start == 0 { tip.growth } else { 0.0 }).collect();
+        let grown_before = self.origin - self.rows[0].crack_length;
+        let point = |row: &Row, rate_at: usize, cycles: f64, crack_length: f64| CurvePoint {
+            cycles,
+            crack_length,
+            delta_k: match &self.formula {
+                Some(formula) => formula.delta_k(crack_length, case.loading.maximum, share),
+                None => share * (rate[rate_at].energy_release_rate * case.material.plane_modulus()).sqrt(),
+            },
+            growth_rate: rate[rate_at].growth_rate,
+            broken_bonds: row.broken_bonds,
+            tips: row.tips.iter().zip(&offset).map(|(tip, o)| TipRecord { position: tip.position, growth: (tip.growth - grown_before).max(0.0) - o }).collect(),
+        };
+        let mut curve = vec![point(&self.rows[start], start, 0.0, self.origin)];
+        for (i, row) in self.rows.iter().enumerate().skip(start) {
+            if row.cycles > zero || row.crack_length > self.origin * (1.0 + 1e-12) {
+                curve.push(point(row, i, (row.cycles - zero).max(0.0), row.crack_length));
+            }
+        }
+        curve
+    }
+}

@@ -1,0 +1,157 @@
+//! What a run gives and how it reports while it goes on.
+
+use crate::specimen::Point;
+
+crate::kinds! {
+    /// Why a run ended.
+    pub enum StopReason for "stop_reason" {
+        CrackLengthReached = "crack_length_reached": "the crack reached stop.crack_length_mm",
+        Toughness = "toughness": "the stress intensity at maximum load reached the toughness",
+        NetSectionYield = "net_section_yield": "the mean stress on the remaining section reached the yield strength",
+        Severed = "severed": "the plate is in two pieces",
+        LeftPlate = "left_plate": "every crack tip has left the plate",
+        EnteredHole = "entered_hole": "the last crack tip ran into a hole",
+        NothingAges = "nothing_ages": "no bond is left that fatigue can spend",
+        RunOut = "run_out": "cycles_max was reached",
+        NoConvergence = "no_convergence": "the equilibrium solver did not converge",
+    }
+}
+
+/// State of one tip at a recorded step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TipRecord {
+    /// Position, m.
+    pub position: Point,
+    /// Growth since N = 0, m.
+    pub growth: f64,
+}
+
+/// One cycle block of a finished run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurvePoint {
+    /// Cycles since N = 0.
+    pub cycles: f64,
+    /// Crack length in the specimen's convention, m.
+    pub crack_length: f64,
+    /// Range of the stress intensity factor, Pa√m (handbook where there is one, else from the energy release rate); NaN where unknown.
+    pub delta_k: f64,
+    /// Growth rate da/dN, m/cycle.
+    pub growth_rate: f64,
+    /// Bonds broken since the start, initial cracks not counted.
+    pub broken_bonds: usize,
+    /// Tips, in the order of `Specimen::tips`.
+    pub tips: Vec<TipRecord>,
+}
+
+/// Picture of the damaged plate at one moment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapshot {
+    /// Cycles since N = 0.
+    pub cycles: f64,
+    /// Crack length, m.
+    pub crack_length: f64,
+    /// Displacement (x, y) of every point at maximum load, m.
+    pub displacement: Vec<[f64; 2]>,
+    /// Damage φ of every point: share of its bonds that are broken, 0 to 1.
+    pub damage: Vec<f64>,
+}
+
+/// Points of the body as pictures need them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointGrid {
+    /// Lattice spacing, m.
+    pub spacing: f64,
+    /// Columns and rows of the lattice that holds the body.
+    pub columns: usize,
+    /// Rows of the lattice.
+    pub rows: usize,
+    /// Position of lattice place (0, 0), m.
+    pub origin: Point,
+    /// Angle of the lattice rows against x, radians.
+    pub angle: f64,
+    /// For every lattice place (row by row), the index of its point or `None` outside the material.
+    pub point_at: Vec<Option<u32>>,
+}
+
+/// Figures of a run that users ask for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunFigures {
+    /// Points of the whole body.
+    pub points: usize,
+    /// Points that were solved for.
+    pub points_solved: usize,
+    /// Bonds of the uncracked body.
+    pub bonds: usize,
+    /// Cycle blocks.
+    pub blocks: usize,
+    /// Equilibrium solves.
+    pub solves: usize,
+    /// Solver iterations in all (0 for a direct solver).
+    pub iterations: usize,
+    /// Actual lattice spacing, m.
+    pub spacing: f64,
+    /// Horizon, m.
+    pub horizon: f64,
+    /// Wall time, s.
+    pub wall_s: f64,
+    /// Peak memory of the process, MB.
+    pub memory_mb: f64,
+}
+
+/// What a run gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// The a-N curve: first row N = 0 at the initial crack length; cycles and length never fall.
+    pub curve: Vec<CurvePoint>,
+    /// Why it ended.
+    pub stop: StopReason,
+    /// Snapshots: first, some between, last.
+    pub snapshots: Vec<Snapshot>,
+    /// Lattice of the snapshots.
+    pub grid: PointGrid,
+    /// Figures.
+    pub figures: RunFigures,
+    /// What the user should know: warnings in plain words.
+    pub warnings: Vec<String>,
+}
+
+impl Prediction {
+    /// Cycles from N = 0 to the end of the run.
+    #[must_use]
+    pub fn life_cycles(&self) -> f64 {
+        self.curve.last().map_or(0.0, |point| point.cycles)
+    }
+
+    /// Crack length at the end, m.
+    #[must_use]
+    pub fn crack_length_final(&self) -> f64 {
+        self.curve.last().map_or(f64::NAN, |point| point.crack_length)
+    }
+}
+
+/// What a run reports while it goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Cycles since N = 0.
+    pub cycles: f64,
+    /// Crack length, m.
+    pub crack_length: f64,
+    /// Share of the way from the initial to the final crack length (or of `cycles_max`), 0 to 1.
+    pub share: f64,
+}
+
+/// Receives progress; the engine itself never prints. Returning `false` asks the run to stop.
+pub trait Observer: Sync {
+    /// Called after every cycle block.
+    fn block_done(&self, progress: &Progress) -> bool;
+}
+
+/// An observer that watches nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn block_done(&self, _progress: &Progress) -> bool {
+        true
+    }
+}

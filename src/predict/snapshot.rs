@@ -1,0 +1,86 @@
+//! Pictures of the damaged plate along a run.
+
+use super::curve::Row;
+use super::{PointGrid, Snapshot};
+use crate::body::Body;
+use crate::solver::field::Layout;
+use crate::state::Bonds;
+
+/// Snapshots between the first and the last.
+const BETWEEN: f64 = 20.0;
+
+/// Collects snapshots at even steps of growth.
+pub struct Album {
+    /// What was taken so far.
+    pub snapshots: Vec<Snapshot>,
+    step: f64,
+    next: f64,
+}
+
+impl Album {
+    /// Starts with the plate before the first block.
+    pub fn new(body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) -> Self {
+        let lattice = &body.lattice;
+        let step = lattice.columns.min(lattice.rows) as f64 * lattice.spacing / BETWEEN;
+        Album { snapshots: vec![take(body, bonds, displacement, row)], step, next: row.growth() + step }
+    }
+
+    /// Takes a snapshot if the cracks have grown enough.
+    pub fn look(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) {
+        if row.growth() >= self.next {
+            self.next = row.growth() + self.step;
+            self.snapshots.push(take(body, bonds, displacement, row));
+        }
+    }
+
+    /// Takes the last snapshot.
+    pub fn finish(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) {
+        if self.snapshots.last().is_none_or(|last| last.crack_length < row.crack_length || last.cycles < row.cycles) {
+            self.snapshots.push(take(body, bonds, displacement, row));
+        }
+    }
+}
+
+fn take(body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) -> Snapshot {
+    let layout = Layout::of(&body.lattice, body.stencil.unknowns);
+    let places = body.places();
+    let damage = |place: usize| {
+        let [mut whole, mut intact] = [0_u32; 2];
+        for (k, &step) in body.steps.iter().enumerate() {
+            for owner in [place, place.wrapping_add_signed(-step)] {
+                let bond = k * places + owner;
+                whole += u32::from(body.multiplier[bond] > 0.0);
+                intact += u32::from(bonds.multiplier[bond] > 0.0);
+            }
+        }
+        if whole == 0 { 1.0 } else { 1.0 - f64::from(intact) / f64::from(whole) }
+    };
+    let motion = |place: usize| {
+        let at = layout.index(place);
+        body.lattice.from_axes([displacement[at], displacement[at + layout.stride]])
+    };
+    Snapshot {
+        cycles: row.cycles,
+        crack_length: row.crack_length,
+        displacement: body.points.iter().map(|&p| motion(p as usize)).collect(),
+        damage: body.points.iter().map(|&p| damage(p as usize)).collect(),
+    }
+}
+
+/// Lattice of the snapshots.
+pub fn grid(body: &Body) -> PointGrid {
+    let lattice = &body.lattice;
+    let mut point_at = vec![None; lattice.columns * lattice.rows];
+    for (i, &place) in body.points.iter().enumerate() {
+        let (column, row) = lattice.column_row(place as usize);
+        point_at[row * lattice.columns + column] = Some(i as u32);
+    }
+    PointGrid {
+        spacing: lattice.spacing,
+        columns: lattice.columns,
+        rows: lattice.rows,
+        origin: lattice.origin,
+        angle: lattice.axis[1].atan2(lattice.axis[0]),
+        point_at,
+    }
+}
