@@ -47,7 +47,8 @@ pub fn run(args: &Args) -> Result<()> {
     let lines = understood(&case);
     if args.json {
         let kind = if is_calibration { "calibration" } else { "case" };
-        let lines: serde_json::Map<String, serde_json::Value> = lines.into_iter().map(|line| (line.what.replace(' ', "_"), line.value.into())).collect();
+        let lines: serde_json::Map<String, serde_json::Value> =
+            lines.into_iter().map(|line| (line.what.replace(' ', "_"), line.value.into())).collect();
         let report = serde_json::json!({ "ok": true, "kind": kind, "name": case.name, "understood": lines, "warnings": case.warnings, "case": case.echo });
         println!("{report:#}");
     } else {
@@ -72,12 +73,17 @@ fn shared_part(document: &Document) -> Result<Case> {
 
 /// What the program understood, one line each.
 fn understood(case: &Case) -> Vec<Line> {
-    let (specimen, material, loading, model, fatigue) = (&case.specimen, &case.material, &case.loading, &case.model, &case.fatigue);
+    let (specimen, material, loading, model, fatigue) =
+        (&case.specimen, &case.material, &case.loading, &case.model, &case.fatigue);
     let mm = |metres: f64| short(metres / MM);
     let bond = model.bond_law;
     let load = match specimen.load_measure {
-        LoadMeasure::Stress => format!("stress {} to {} MPa", short(loading.maximum * loading.ratio / MPA), short(loading.maximum / MPA)),
-        LoadMeasure::Force => format!("force {} to {} kN", short(loading.maximum * loading.ratio / KN), short(loading.maximum / KN)),
+        LoadMeasure::Stress => {
+            format!("stress {} to {} MPa", short(loading.maximum * loading.ratio / MPA), short(loading.maximum / MPA))
+        }
+        LoadMeasure::Force => {
+            format!("force {} to {} kN", short(loading.maximum * loading.ratio / KN), short(loading.maximum / KN))
+        }
     };
     let held = match specimen.supports.first() {
         None => "nothing held, loads in equilibrium",
@@ -87,16 +93,32 @@ fn understood(case: &Case) -> Vec<Line> {
     };
     let law = match &case.law {
         LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
-        LawSource::Fitted(record) => format!("a = {:e} per cycle, p = {} at horizon {} mm, fitted to {}", record.a, record.p, record.horizon_mm, record.material),
+        LawSource::Fitted(record) => format!(
+            "a = {:e} per cycle, p = {} at horizon {} mm, fitted to {}",
+            record.a, record.p, record.horizon_mm, record.material
+        ),
         LawSource::Missing(path) if path.as_os_str().is_empty() => "to be fitted".to_owned(),
         LawSource::Missing(path) => format!("{} does not exist yet", path.display()),
     };
-    let formula = handbook(specimen).map_or_else(|| "none for this specimen".to_owned(), |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range));
-    let stop = if case.stop.crack_length.is_finite() { format!("crack length {} mm, or ", mm(case.stop.crack_length)) } else { String::new() };
+    let formula = handbook(specimen).map_or_else(
+        || "none for this specimen".to_owned(),
+        |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range),
+    );
+    let stop = if case.stop.crack_length.is_finite() {
+        format!("crack length {} mm, or ", mm(case.stop.crack_length))
+    } else {
+        String::new()
+    };
     let lines = [
         (
             "specimen",
-            format!("{}, {} x {} x {} mm (width, length, thickness)", specimen.kind, mm(specimen.gross_width), mm(specimen.length()), mm(specimen.thickness)),
+            format!(
+                "{}, {} x {} x {} mm (width, length, thickness)",
+                specimen.kind,
+                mm(specimen.gross_width),
+                mm(specimen.length()),
+                mm(specimen.thickness)
+            ),
         ),
         (
             "crack",
@@ -111,10 +133,22 @@ fn understood(case: &Case) -> Vec<Line> {
         ),
         (
             "material",
-            format!("{}: E {} GPa, nu {}, plane {}", material.name, short(material.youngs_modulus / GPA), material.poisson_ratio, material.plane),
+            format!(
+                "{}: E {} GPa, nu {}, plane {}",
+                material.name,
+                short(material.youngs_modulus / GPA),
+                material.poisson_ratio,
+                material.plane
+            ),
         ),
         ("loading", format!("{load}, R = {}; {held}", loading.ratio)),
-        ("bonds", format!("{}, kernel {}, rotation {}, surface correction {}", bond.kind, bond.kernel, bond.rotation, bond.surface_correction)),
+        (
+            "bonds",
+            format!(
+                "{}, kernel {}, rotation {}, surface correction {}",
+                bond.kind, bond.kernel, bond.rotation, bond.surface_correction
+            ),
+        ),
         (
             "points",
             format!(
@@ -129,7 +163,10 @@ fn understood(case: &Case) -> Vec<Line> {
         ("fatigue", law),
         (
             "ageing",
-            format!("{}, zone radius {} horizons, precrack {}, block {}", fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack, fatigue.block.kind),
+            format!(
+                "{}, zone radius {} horizons, precrack {}, block {}",
+                fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack, fatigue.block.kind
+            ),
         ),
         ("handbook K", formula),
         ("stop", format!("{stop}{} cycles", case.stop.cycles_max)),
