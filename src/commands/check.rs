@@ -189,3 +189,36 @@ fn write_whole(path: &Path, text: &str) -> Result<()> {
     file.persist(path).map_err(|error| trouble(error.error))?;
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every shipped case passes, with a picture; a picture that cannot be written leaves nothing behind.
+    #[test]
+    fn shipped_cases_pass() {
+        let folder = tempfile::tempdir().unwrap();
+        for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/data/cases")).unwrap() {
+            let picture = folder.path().join("picture.svg");
+            let args = Args { file: entry.unwrap().path(), picture: Some(picture.clone()), json: true, set: vec![] };
+            run(&args).unwrap();
+            assert!(std::fs::read_to_string(&picture).unwrap().ends_with("</svg>\n"));
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+            let nowhere = Args { picture: Some(folder.path().join("no/such/folder.svg")), ..args };
+            assert_eq!(run(&nowhere).unwrap_err().exit_code(), 4);
+        }
+    }
+
+    /// A calibration has no law yet and is right all the same.
+    #[test]
+    fn a_calibration_needs_no_law() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("calibration.toml");
+        let case = include_str!("../../data/cases/virkler_panel.toml");
+        let shared = case.split("[fatigue]").next().unwrap();
+        std::fs::write(&file, format!("{shared}\n[measured]\nfiles = []\n[fit]\nparameters = [\"a\", \"p\"]\n")).unwrap();
+        run(&Args { file: file.clone(), picture: None, json: false, set: vec![] }).unwrap();
+        std::fs::write(&file, shared).unwrap();
+        assert_eq!(run(&Args { file, picture: None, json: false, set: vec![] }).unwrap_err().exit_code(), 2);
+    }
+}
