@@ -1,5 +1,6 @@
 //! Do the doors work?
 
+<<<<<<< HEAD
 #[path = "support/made_up_run.rs"]
 mod made_up_run;
 
@@ -7,3 +8,7 @@ mod made_up_run;
 mod cli;
 #[path = "interface/export.rs"]
 mod export;
+=======
+#[path = "interface/bad_toml.rs"]
+mod bad_toml;
+>>>>>>> 4fb3fff3a70816874743efc0ef8d5539fdf8b594

@@ -15,3 +15,11 @@ mod output;
 mod pictures;
 #[path = "unit/report.rs"]
 mod report;
+#[path = "unit/case.rs"]
+mod case;
+#[path = "unit/handbook.rs"]
+mod handbook;
+#[path = "unit/loading.rs"]
+mod loading;
+#[path = "unit/specimen.rs"]
+mod specimen;

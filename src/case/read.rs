@@ -93,15 +93,12 @@ impl Case {
     pub fn with_law(mut self, record: FittedRecord) -> Result<Self> {
         let before = law_lines(&self)?;
         self.warnings.retain(|line| !before.contains(line));
-        if let Some(fatigue) =
-            self.echo.as_object_mut().map(|case| case.entry("fatigue").or_insert_with(|| serde_json::json!({})))
-        {
-            if let Some(keys) = fatigue.as_object_mut() {
-                for key in ["a", "p", "horizon_mm"] {
-                    keys.shift_remove(key);
-                }
-                keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
+        let fatigue = self.echo.as_object_mut().map(|case| case.entry("fatigue").or_insert_with(|| serde_json::json!({})));
+        if let Some(keys) = fatigue.and_then(|fatigue| fatigue.as_object_mut()) {
+            for key in ["a", "p", "horizon_mm"] {
+                keys.shift_remove(key);
             }
+            keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
         }
         law::adopt(&mut self, record)?;
         model::check_poisson_ratio(&self.material, self.model.bond_law.kind)?;

@@ -47,7 +47,8 @@ pub fn run(args: &Args) -> Result<()> {
     let lines = understood(&case);
     if args.json {
         let kind = if is_calibration { "calibration" } else { "case" };
-        let lines: serde_json::Map<String, serde_json::Value> = lines.into_iter().map(|line| (line.what.replace(' ', "_"), line.value.into())).collect();
+        let lines: serde_json::Map<String, serde_json::Value> =
+            lines.into_iter().map(|line| (line.what.replace(' ', "_"), line.value.into())).collect();
         let report = serde_json::json!({ "ok": true, "kind": kind, "name": case.name, "understood": lines, "warnings": case.warnings, "case": case.echo });
         println!("{report:#}");
     } else {
@@ -72,12 +73,17 @@ fn shared_part(document: &Document) -> Result<Case> {
 
 /// What the program understood, one line each.
 fn understood(case: &Case) -> Vec<Line> {
-    let (specimen, material, loading, model, fatigue) = (&case.specimen, &case.material, &case.loading, &case.model, &case.fatigue);
+    let (specimen, material, loading, model, fatigue) =
+        (&case.specimen, &case.material, &case.loading, &case.model, &case.fatigue);
     let mm = |metres: f64| short(metres / MM);
     let bond = model.bond_law;
     let load = match specimen.load_measure {
-        LoadMeasure::Stress => format!("stress {} to {} MPa", short(loading.maximum * loading.ratio / MPA), short(loading.maximum / MPA)),
-        LoadMeasure::Force => format!("force {} to {} kN", short(loading.maximum * loading.ratio / KN), short(loading.maximum / KN)),
+        LoadMeasure::Stress => {
+            format!("stress {} to {} MPa", short(loading.maximum * loading.ratio / MPA), short(loading.maximum / MPA))
+        }
+        LoadMeasure::Force => {
+            format!("force {} to {} kN", short(loading.maximum * loading.ratio / KN), short(loading.maximum / KN))
+        }
     };
     let held = match specimen.supports.first() {
         None => "nothing held, loads in equilibrium",
@@ -87,16 +93,32 @@ fn understood(case: &Case) -> Vec<Line> {
     };
     let law = match &case.law {
         LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
-        LawSource::Fitted(record) => format!("a = {:e} per cycle, p = {} at horizon {} mm, fitted to {}", record.a, record.p, record.horizon_mm, record.material),
+        LawSource::Fitted(record) => format!(
+            "a = {:e} per cycle, p = {} at horizon {} mm, fitted to {}",
+            record.a, record.p, record.horizon_mm, record.material
+        ),
         LawSource::Missing(path) if path.as_os_str().is_empty() => "to be fitted".to_owned(),
         LawSource::Missing(path) => format!("{} does not exist yet", path.display()),
     };
-    let formula = handbook(specimen).map_or_else(|| "none for this specimen".to_owned(), |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range));
-    let stop = if case.stop.crack_length.is_finite() { format!("crack length {} mm, or ", mm(case.stop.crack_length)) } else { String::new() };
+    let formula = handbook(specimen).map_or_else(
+        || "none for this specimen".to_owned(),
+        |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range),
+    );
+    let stop = if case.stop.crack_length.is_finite() {
+        format!("crack length {} mm, or ", mm(case.stop.crack_length))
+    } else {
+        String::new()
+    };
     let lines = [
         (
             "specimen",
-            format!("{}, {} x {} x {} mm (width, length, thickness)", specimen.kind, mm(specimen.gross_width), mm(specimen.length()), mm(specimen.thickness)),
+            format!(
+                "{}, {} x {} x {} mm (width, length, thickness)",
+                specimen.kind,
+                mm(specimen.gross_width),
+                mm(specimen.length()),
+                mm(specimen.thickness)
+            ),
         ),
         (
             "crack",
@@ -111,10 +133,22 @@ fn understood(case: &Case) -> Vec<Line> {
         ),
         (
             "material",
-            format!("{}: E {} GPa, nu {}, plane {}", material.name, short(material.youngs_modulus / GPA), material.poisson_ratio, material.plane),
+            format!(
+                "{}: E {} GPa, nu {}, plane {}",
+                material.name,
+                short(material.youngs_modulus / GPA),
+                material.poisson_ratio,
+                material.plane
+            ),
         ),
         ("loading", format!("{load}, R = {}; {held}", loading.ratio)),
-        ("bonds", format!("{}, kernel {}, rotation {}, surface correction {}", bond.kind, bond.kernel, bond.rotation, bond.surface_correction)),
+        (
+            "bonds",
+            format!(
+                "{}, kernel {}, rotation {}, surface correction {}",
+                bond.kind, bond.kernel, bond.rotation, bond.surface_correction
+            ),
+        ),
         (
             "points",
             format!(
@@ -129,7 +163,10 @@ fn understood(case: &Case) -> Vec<Line> {
         ("fatigue", law),
         (
             "ageing",
-            format!("{}, zone radius {} horizons, precrack {}, block {}", fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack, fatigue.block.kind),
+            format!(
+                "{}, zone radius {} horizons, precrack {}, block {}",
+                fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack, fatigue.block.kind
+            ),
         ),
         ("handbook K", formula),
         ("stop", format!("{stop}{} cycles", case.stop.cycles_max)),
@@ -151,4 +188,37 @@ fn write_whole(path: &Path, text: &str) -> Result<()> {
     std::io::Write::write_all(&mut file, text.as_bytes()).map_err(trouble)?;
     file.persist(path).map_err(|error| trouble(error.error))?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every shipped case passes, with a picture; a picture that cannot be written leaves nothing behind.
+    #[test]
+    fn shipped_cases_pass() {
+        let folder = tempfile::tempdir().unwrap();
+        for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/data/cases")).unwrap() {
+            let picture = folder.path().join("picture.svg");
+            let args = Args { file: entry.unwrap().path(), picture: Some(picture.clone()), json: true, set: vec![] };
+            run(&args).unwrap();
+            assert!(std::fs::read_to_string(&picture).unwrap().ends_with("</svg>\n"));
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+            let nowhere = Args { picture: Some(folder.path().join("no/such/folder.svg")), ..args };
+            assert_eq!(run(&nowhere).unwrap_err().exit_code(), 4);
+        }
+    }
+
+    /// A calibration has no law yet and is right all the same.
+    #[test]
+    fn a_calibration_needs_no_law() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("calibration.toml");
+        let case = include_str!("../../data/cases/virkler_panel.toml");
+        let shared = case.split("[fatigue]").next().unwrap();
+        std::fs::write(&file, format!("{shared}\n[measured]\nfiles = []\n[fit]\nparameters = [\"a\", \"p\"]\n")).unwrap();
+        run(&Args { file: file.clone(), picture: None, json: false, set: vec![] }).unwrap();
+        std::fs::write(&file, shared).unwrap();
+        assert_eq!(run(&Args { file, picture: None, json: false, set: vec![] }).unwrap_err().exit_code(), 2);
+    }
 }

@@ -63,14 +63,38 @@ pub fn lines() -> Vec<(String, String, String)> {
 pub fn run(args: &Args) -> Result<()> {
     let lines = lines();
     if args.json {
-        let kinds: Vec<_> = lines.iter().map(|(key, name, meaning)| serde_json::json!({ "key": key, "name": name, "meaning": meaning })).collect();
+        let kinds: Vec<_> = lines
+            .iter()
+            .map(|(key, name, meaning)| serde_json::json!({ "key": key, "name": name, "meaning": meaning }))
+            .collect();
         println!("{:#}", serde_json::json!({ "kinds": kinds }));
         return Ok(());
     }
-    let widest = |pick: fn(&(String, String, String)) -> &String| lines.iter().map(|line| pick(line).chars().count()).max().unwrap_or(0);
+    let widest =
+        |pick: fn(&(String, String, String)) -> &String| lines.iter().map(|line| pick(line).chars().count()).max().unwrap_or(0);
     let (key_width, name_width) = (widest(|line| &line.0), widest(|line| &line.1));
     for (key, name, meaning) in &lines {
         println!("{key:<key_width$}  {name:<name_width$}  {meaning}");
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_says_something_once() {
+        let lines = lines();
+        let mut names: Vec<_> = lines.iter().map(|(key, name, _)| (key, name)).collect();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), lines.len());
+        assert!(lines.iter().all(|(key, _, meaning)| !key.is_empty() && meaning.len() > 5));
+        assert!(
+            lines.iter().any(|(key, name, meaning)| key == "specimen.kind"
+                && name.contains("part-through")
+                && meaning.contains("refused"))
+        );
+    }
 }

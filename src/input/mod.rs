@@ -1,6 +1,6 @@
 //! Reading input files: TOML text to checked slices, every error with file, line, key, value and remedy.
 //!
-//! Each room declares its slice of the file as a serde struct and reads it with [`slice`]; numbers pass through a
+//! Each room declares its slice of the file as a serde struct and reads it with [`slice()`]; numbers pass through a
 //! [`Quantity`], which refuses what is not finite or beyond reason and converts to SI. [`Document`] holds the text, so
 //! that an error about a key finds its line.
 

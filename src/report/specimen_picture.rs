@@ -10,7 +10,7 @@ use crate::specimen::{Load, LoadMeasure, Point, Specimen, SpecimenKind, Support}
 use crate::units::{KN, MM, MPA};
 
 /// Room around the plate for arrows, sizes and words, pixels: left, right, top, bottom.
-const MARGIN: [f64; 4] = [110.0, 190.0, 150.0, 190.0];
+const MARGIN: [f64; 4] = [110.0, 190.0, 150.0, 122.0];
 /// Largest size of the plate itself, pixels.
 const PLATE_MAX: Point = [460.0, 520.0];
 /// Length of a load arrow of the nominal stress, pixels.
@@ -31,7 +31,9 @@ pub fn specimen_svg(case: &Case) -> String {
     let origin = [MARGIN[0] + side - low[0] * scale, MARGIN[2] + high[1] * scale];
     let mut sketch = Sketch::new(scale, origin);
     let width = MARGIN[0] + MARGIN[1] + 2.0 * side + size[0] * scale;
-    let height = MARGIN[2] + MARGIN[3] + size[1] * scale;
+    let rows = legend_rows(specimen);
+    let plate_height = MARGIN[2] + MARGIN[3] + size[1] * scale;
+    let height = plate_height + 21.0 * rows.len() as f64;
 
     sketch.text([width / 2.0, 30.0], &format!("{} ({})", case.name, specimen.kind), "middle", 18, EDGE);
     sketch.text([width / 2.0, 52.0], &load_words(case), "middle", 13, LOAD);
@@ -39,15 +41,17 @@ pub fn specimen_svg(case: &Case) -> String {
     for hole in &specimen.holes {
         sketch.circle(hole.centre, hole.radius, "white", EDGE);
     }
+    number_holes(&mut sketch, specimen);
+    sketch.clip(&specimen.outline);
     for slot in &specimen.slots {
-        sketch.polygon(&slot.corners(), "white", EDGE);
+        sketch.slot(&slot.corners());
     }
     draw_supports(&mut sketch, specimen);
     draw_cracks(&mut sketch, specimen);
     draw_loads(&mut sketch, specimen);
     draw_sizes(&mut sketch, specimen, [low, high]);
     draw_axes(&mut sketch);
-    draw_legend(&mut sketch, specimen, height);
+    draw_legend(&mut sketch, &rows, plate_height);
     sketch.finish(width, height)
 }
 
@@ -59,7 +63,8 @@ fn load_words(case: &Case) -> String {
         LoadMeasure::Force => ("force P", loading.maximum / KN, "kN"),
     };
     let minimum = maximum * loading.ratio;
-    let parallel = if loading.parallel_ratio == 0.0 { String::new() } else { format!(", on the sides {} σ", loading.parallel_ratio) };
+    let parallel =
+        if loading.parallel_ratio == 0.0 { String::new() } else { format!(", on the sides {} σ", loading.parallel_ratio) };
     format!("{symbol} cycles between {} and {} {unit} (R = {}){parallel}", short(minimum), short(maximum), loading.ratio)
 }
 
@@ -73,7 +78,19 @@ fn mm(metres: f64) -> String {
     format!("{} mm", short(metres / MM))
 }
 
-/// Middle of the plate: words about a flaw go to the side that points away from it.
+/// Numbers of the holes as in `specimen.holes` and `loading.pins`, where there is room and more than one.
+fn number_holes(sketch: &mut Sketch, specimen: &Specimen) {
+    if specimen.holes.len() < 2 {
+        return;
+    }
+    for (number, hole) in specimen.holes.iter().enumerate() {
+        let ([x, y], radius) = (sketch.place(hole.centre), hole.radius * sketch.scale);
+        // Inside a large hole off its centre, where a pin load starts; beside a small one.
+        let place = if radius > 20.0 { [x - 0.6 * radius, y + 4.0] } else { [x + radius + 8.0, y + radius + 8.0] };
+        sketch.text(place, &number.to_string(), "middle", 12, WORDS);
+    }
+}
+
 fn draw_cracks(sketch: &mut Sketch, specimen: &Specimen) {
     for crack in &specimen.cracks {
         let (from, to) = (sketch.place(crack.from), sketch.place(crack.to));
@@ -145,7 +162,8 @@ fn draw_supports(sketch: &mut Sketch, specimen: &Specimen) {
                 sketch.text([px + 12.0, py + 14.0], held, "start", 12, HELD);
             }
             Support::ClampedEnds | Support::RigidEnds => {
-                let words = if *support == Support::ClampedEnds { "rigid grip, cannot rotate" } else { "rigid grip, turns on a pin" };
+                let words =
+                    if *support == Support::ClampedEnds { "rigid grip, cannot rotate" } else { "rigid grip, turns on a pin" };
                 for (y, sign) in [(high[1], 1.0), (low[1], -1.0)] {
                     let band = 7.0 / sketch.scale * sign;
                     sketch.polygon(&[[low[0], y], [high[0], y], [high[0], y + band], [low[0], y + band]], HELD, HELD);
@@ -206,14 +224,6 @@ fn draw_sizes(sketch: &mut Sketch, specimen: &Specimen, [low, high]: [Point; 2])
         sketch.measure([left, below], [right, below], &mm(high[0] - low[0]));
     }
     sketch.measure([beside, top], [beside, bottom], &mm(high[1] - low[1]));
-    for hole in &specimen.holes {
-        let [x, y] = sketch.place([hole.centre[0] + 0.7071 * hole.radius, hole.centre[1] - 0.7071 * hole.radius]);
-        sketch.line([x, y], [x + 12.0, y + 12.0], WORDS, 0.8);
-        sketch.text([x + 15.0, y + 20.0], &format!("⌀ {}", mm(2.0 * hole.radius)), "start", 12, WORDS);
-    }
-    for slot in &specimen.slots {
-        flaw_words(sketch, along(slot.from, slot.to, 0.5), &format!("slot {} x {}", mm(distance(slot.from, slot.to)), mm(slot.width)), 24.0);
-    }
     match specimen.kind {
         SpecimenKind::MiddleTension => {
             let (a, b) = (sketch.place([0.0, 0.0]), sketch.place([specimen.crack_length, 0.0]));
@@ -224,22 +234,58 @@ fn draw_sizes(sketch: &mut Sketch, specimen: &Specimen, [low, high]: [Point; 2])
         }
         SpecimenKind::SingleEdgeTension | SpecimenKind::DoubleEdgeTension => {
             for crack in &specimen.cracks {
-                flaw_words(sketch, along(crack.from, crack.to, 0.5), &format!("a = {}", mm(specimen.crack_length)), 22.0);
+                let [x, y] = sketch.place(crack.from);
+                // Words start at the cracked edge and stay inside the plate.
+                let (x, anchor) = if crack.from[0] < crack.to[0] { (x + 5.0, "start") } else { (x - 5.0, "end") };
+                sketch.text([x, y + 20.0], &format!("a = {}", mm(specimen.crack_length)), anchor, 13, CRACK);
             }
         }
-        SpecimenKind::Plate => {
-            for crack in &specimen.cracks {
-                flaw_words(sketch, along(crack.from, crack.to, 0.5), &format!("crack {}", mm(distance(crack.from, crack.to))), 30.0);
-            }
-        }
-        SpecimenKind::CompactTension => {}
+        SpecimenKind::Plate | SpecimenKind::CompactTension => {}
     }
 }
 
-/// Words below the middle of a flaw.
-fn flaw_words(sketch: &mut Sketch, middle: Point, words: &str, drop: f64) {
-    let [x, y] = sketch.place(middle);
-    sketch.text([x, y + drop], words, "middle", 13, CRACK);
+/// Sizes of holes, slots and cracks of a plate in words: beside each other in the picture they would overlap.
+fn flaw_list(specimen: &Specimen) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (i, hole) in specimen.holes.iter().enumerate() {
+        let [x, y] = hole.centre;
+        lines.push(format!("hole {i}: diameter {} at ({}, {})", mm(2.0 * hole.radius), short(x / MM), mm(y)));
+    }
+    if specimen.kind != SpecimenKind::Plate {
+        return lines;
+    }
+    let angle = |from: Point, to: Point| {
+        let degrees = (to[1] - from[1]).atan2(to[0] - from[0]).to_degrees().rem_euclid(180.0);
+        if degrees > 90.0 { degrees - 180.0 } else { degrees }
+    };
+    for crack in &specimen.cracks {
+        let tips = tips_at(specimen, crack.from, crack.to);
+        lines.push(format!(
+            "crack with {tips}: {}, {}° against x",
+            mm(distance(crack.from, crack.to)),
+            short(angle(crack.from, crack.to))
+        ));
+    }
+    for slot in &specimen.slots {
+        let tips = tips_at(specimen, slot.from, slot.to);
+        lines.push(format!(
+            "slot with {tips}: {} x {}, {}° against x",
+            mm(specimen.length_inside(slot.from, slot.to)),
+            mm(slot.width),
+            short(angle(slot.from, slot.to))
+        ));
+    }
+    lines
+}
+
+fn tips_at(specimen: &Specimen, from: Point, to: Point) -> String {
+    let at = |(_, tip): &(usize, &crate::specimen::TipSeed)| tip.position == from || tip.position == to;
+    let numbers: Vec<String> = specimen.tips.iter().enumerate().filter(at).map(|(number, _)| number.to_string()).collect();
+    match numbers.len() {
+        0 => "no tip".to_owned(),
+        1 => format!("tip {}", numbers[0]),
+        _ => format!("tips {}", numbers.join(" and ")),
+    }
 }
 
 /// Directions of x and y, beside the plate.
@@ -251,12 +297,68 @@ fn draw_axes(sketch: &mut Sketch) {
     sketch.text([corner[0], corner[1] - 38.0], "y", "middle", 13, WORDS);
 }
 
-fn draw_legend(sketch: &mut Sketch, specimen: &Specimen, height: f64) {
-    let y = height - 44.0;
-    sketch.line([30.0, y], [56.0, y], CRACK, 2.6);
-    sketch.dot([56.0, y], 3.6, CRACK);
-    let thickness = mm(specimen.thickness);
+/// Lines of the flaw list that fit below the picture.
+const LIST_MAX: usize = 10;
+
+/// Rows below the picture: what the colours mean, thickness, then the list of flaws.
+fn legend_rows(specimen: &Specimen) -> Vec<String> {
     let slots = if specimen.tips.iter().any(|tip| tip.from_slot) { "; a slot's tip is the middle of its end face" } else { "" };
-    sketch.text([66.0, y + 4.0], &format!("crack through the thickness; dots: numbered tips that can grow{slots}"), "start", 12, WORDS);
-    sketch.text([30.0, y + 26.0], &format!("thickness {thickness}; drawn to scale"), "start", 12, WORDS);
+    let mut rows = vec![
+        format!("crack through the thickness; dots: numbered tips that can grow{slots}"),
+        format!("thickness {}; drawn to scale", mm(specimen.thickness)),
+    ];
+    let list = flaw_list(specimen);
+    let more = list.len().saturating_sub(LIST_MAX);
+    rows.extend(list.into_iter().take(LIST_MAX));
+    if more > 0 {
+        rows.push(format!("and {more} more holes, cracks and slots"));
+    }
+    rows
+}
+
+fn draw_legend(sketch: &mut Sketch, rows: &[String], top: f64) {
+    sketch.line([30.0, top], [54.0, top], CRACK, 2.6);
+    sketch.dot([54.0, top], 3.6, CRACK);
+    for (i, row) in rows.iter().enumerate() {
+        let x = if i == 0 { 66.0 } else { 30.0 };
+        sketch.text([x, top + 4.0 + 21.0 * i as f64], row, "start", 12, WORDS);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CASE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\n\
+        holes = [{ x_mm = 20, y_mm = 40, diameter_mm = 10 }]\nnotches = [{ from_mm = [-50, 0], to_mm = [-40, 0], width_mm = 2 }]\n\
+        cracks = [{ from_mm = [0, 0], to_mm = [10, 5] }]\n[material]\nname = \"q345\"\n[loading]\nstress_max_mpa = 70\nstress_ratio = 0.1\n\
+        [supports]\nbottom = { rows_mm = 3, fix = [\"x\", \"y\"] }\n[fatigue]\na = 1\np = 2\nhorizon_mm = 3";
+
+    #[test]
+    fn everything_of_the_specimen_is_drawn() {
+        let case = Case::from_toml(CASE, "a < b & c", std::path::Path::new(""), &[]).unwrap();
+        let svg = specimen_svg(&case);
+        assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.contains("a &lt; b &amp; c"));
+        // Three tips, one dot in the legend.
+        assert_eq!(svg.matches(&format!(r#"r="3.6" fill="{CRACK}""#)).count(), case.specimen.tips.len() + 1);
+        for words in [
+            "100 mm",
+            "200 mm",
+            "thickness 2 mm",
+            "between 7 and 70 MPa",
+            "held in x and y",
+            "diameter 10 mm",
+            "slot with tip 2",
+            "tips 0 and 1: 11.18 mm",
+        ] {
+            assert!(svg.contains(words), "{words}");
+        }
+        assert!(!svg.contains("NaN"));
+    }
+
+    #[test]
+    fn drawn_to_scale_with_y_up() {
+        let sketch = Sketch::new(1000.0, [100.0, 500.0]);
+        assert_eq!(sketch.place([0.01, 0.02]), [110.0, 480.0]);
+    }
 }

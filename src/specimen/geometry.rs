@@ -166,4 +166,22 @@ impl Specimen {
             || self.holes.iter().any(|hole| distance_to_segment(hole.centre, from, to) < hole.radius)
             || edges(&self.outline).any(|(a, b)| segments_touch(from, to, a, b))
     }
+
+    /// Length of the part of a segment that lies inside the outline, m, for a segment that crosses it at most once.
+    #[must_use]
+    pub fn length_inside(&self, from: Point, to: Point) -> f64 {
+        let crossing = edges(&self.outline)
+            .filter(|(a, b)| segments_touch(from, to, *a, *b))
+            .find_map(|(a, b)| meeting_share(from, to, a, b))
+            .map(|share| share.clamp(0.0, 1.0));
+        let (starts_inside, ends_inside) = (point_in_polygon(from, &self.outline), point_in_polygon(to, &self.outline));
+        let share = match (crossing, starts_inside) {
+            (None, _) => 1.0,
+            // One end lies on the edge and round-off calls it inside.
+            (Some(share), true) if ends_inside => share.max(1.0 - share),
+            (Some(share), true) => share,
+            (Some(share), false) => 1.0 - share,
+        };
+        share * distance(from, to)
+    }
 }

@@ -225,7 +225,7 @@ impl Specimen {
             self.tips.iter().filter(|tip| !tip.from_slot && (tip.position == crack.from || tip.position == crack.to)).count()
         };
         let cracks = self.cracks.iter().map(|crack| geometry::distance(crack.from, crack.to) / tips_of(crack).max(1) as f64);
-        let slots = self.slots.iter().map(|slot| geometry::distance(slot.from, slot.to));
+        let slots = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to));
         cracks.chain(slots).fold(f64::INFINITY, f64::min)
     }
 
@@ -233,7 +233,7 @@ impl Specimen {
     #[must_use]
     pub fn area(&self) -> f64 {
         let holes: f64 = self.holes.iter().map(|hole| std::f64::consts::PI * hole.radius * hole.radius).sum();
-        let slots: f64 = self.slots.iter().map(|slot| geometry::distance(slot.from, slot.to) * slot.width).sum();
+        let slots: f64 = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to) * slot.width).sum();
         geometry::polygon_area(&self.outline) - holes - slots
     }
 

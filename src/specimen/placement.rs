@@ -78,7 +78,7 @@ pub(super) fn place_slots(specimen: &mut Specimen, slots: Vec<Slot>) -> Result<V
                 seeds.push(TipSeed { position: end, direction: direction(other, end), from_slot: true });
             }
         }
-        specimen.crack_length += length_inside(specimen, slot.from, slot.to);
+        specimen.crack_length += specimen.length_inside(slot.from, slot.to);
         specimen.slots.push(slot);
     }
     Ok(seeds)
@@ -219,19 +219,4 @@ fn half_width_at(specimen: &Specimen, seed: &TipSeed) -> f64 {
         .iter()
         .find(|slot| slot.from == seed.position || slot.to == seed.position)
         .map_or(0.0, |slot| slot.width / 2.0 + TOUCH)
-}
-
-/// Length of the part of a segment inside the outline, m, for a segment that crosses it at most once.
-fn length_inside(specimen: &Specimen, from: Point, to: Point) -> f64 {
-    let crossing = edges(&specimen.outline)
-        .filter(|(a, b)| segments_touch(from, to, *a, *b))
-        .find_map(|(a, b)| meeting_share(from, to, a, b))
-        .map(|share| share.clamp(0.0, 1.0));
-    let share = match (crossing, point_in_polygon(from, &specimen.outline)) {
-        (None, _) => 1.0,
-        (Some(share), true) if point_in_polygon(to, &specimen.outline) => share.max(1.0 - share),
-        (Some(share), true) => share,
-        (Some(share), false) => 1.0 - share,
-    };
-    share * distance(from, to)
 }

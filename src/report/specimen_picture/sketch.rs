@@ -38,14 +38,37 @@ impl Sketch {
 
     /// Closed polygon, plate coordinates.
     pub fn polygon(&mut self, corners: &[Point], fill: &str, stroke: &str) {
-        let points: Vec<String> = corners.iter().map(|p| self.place(*p)).map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
-        self.push(format_args!(r#"<polygon points="{}" fill="{fill}" stroke="{stroke}" stroke-width="1.4"/>"#, points.join(" ")));
+        let points = self.points(corners);
+        self.push(format_args!(r#"<polygon points="{points}" fill="{fill}" stroke="{stroke}" stroke-width="1.4"/>"#));
     }
 
+    /// Declares the plate as the area that [`slot`](Self::slot) outlines are cut to.
+    pub fn clip(&mut self, outline: &[Point]) {
+        let points = self.points(outline);
+        self.push(format_args!(r#"<clipPath id="plate"><polygon points="{points}"/></clipPath>"#));
+    }
+
+    /// A slot: all white, so that its mouth in an edge is open, its walls drawn only inside the plate.
+    pub fn slot(&mut self, corners: &[Point]) {
+        let points = self.points(corners);
+        self.push(format_args!(r#"<polygon points="{points}" fill="white"/>"#));
+        self.push(format_args!(
+            r#"<polygon points="{points}" fill="none" stroke="{EDGE}" stroke-width="1.4" clip-path="url(#plate)"/>"#
+        ));
+    }
+
+    fn points(&self, corners: &[Point]) -> String {
+        let points: Vec<String> = corners.iter().map(|p| self.place(*p)).map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
+        points.join(" ")
+    }
+
+    /// Circle, plate coordinates.
     pub fn circle(&mut self, centre: Point, radius: f64, fill: &str, stroke: &str) {
         let [x, y] = self.place(centre);
         let r = radius * self.scale;
-        self.push(format_args!(r#"<circle cx="{x:.2}" cy="{y:.2}" r="{r:.2}" fill="{fill}" stroke="{stroke}" stroke-width="1.4"/>"#));
+        self.push(format_args!(
+            r#"<circle cx="{x:.2}" cy="{y:.2}" r="{r:.2}" fill="{fill}" stroke="{stroke}" stroke-width="1.4"/>"#
+        ));
     }
 
     /// Dot of fixed size in pixels.
@@ -69,7 +92,10 @@ impl Sketch {
         let wing = |side: f64| [to[0] - head * ux + side * 0.45 * head * uy, to[1] - head * uy - side * 0.45 * head * ux];
         let ([x1, y1], [x2, y2]) = (wing(1.0), wing(-1.0));
         self.line(from, [to[0] - 0.7 * head * ux, to[1] - 0.7 * head * uy], stroke, width);
-        self.push(format_args!(r#"<polygon points="{:.2},{:.2} {x1:.2},{y1:.2} {x2:.2},{y2:.2}" fill="{stroke}"/>"#, to[0], to[1]));
+        self.push(format_args!(
+            r#"<polygon points="{:.2},{:.2} {x1:.2},{y1:.2} {x2:.2},{y2:.2}" fill="{stroke}"/>"#,
+            to[0], to[1]
+        ));
     }
 
     /// Words at a pixel; `anchor` is start, middle or end.

@@ -1,0 +1,400 @@
+//! Broken case files: each is refused with file, key and what would be right; nothing panics.
+
+use std::path::Path;
+
+use perilife::Error;
+use perilife::case::Case;
+use proptest::prelude::*;
+
+const PANEL: &str = r#"[specimen]
+kind = "middle_tension"
+width_mm = 152.4
+length_mm = 300.0
+thickness_mm = 2.54
+crack_length_mm = 9.0
+[material]
+name = "al2024-t3"
+[loading]
+stress_range_mpa = 48.28
+stress_ratio = 0.2
+[model]
+spacing_mm = 1.0
+[fatigue]
+a = 6450.0
+p = 2.86
+horizon_mm = 3.015
+[stop]
+crack_length_mm = 49.8
+"#;
+
+const PLATE: &str = r#"[specimen]
+kind = "plate"
+width_mm = 100
+length_mm = 200
+thickness_mm = 2
+holes = [{ x_mm = 20, y_mm = 0, diameter_mm = 10 }, { x_mm = -20, y_mm = 0, diameter_mm = 10 }]
+cracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]
+notches = [{ from_mm = [-50, 40], to_mm = [-40, 40], width_mm = 2 }]
+[material]
+youngs_modulus_gpa = 72
+poisson_ratio = 0.3
+[loading]
+stress_max_mpa = 70
+stress_ratio = 0.1
+[fatigue]
+a = 6450
+p = 2.86
+horizon_mm = 3.015
+"#;
+
+/// One line of a good file replaced (or a whole section left out), and what the message must contain.
+struct Bad {
+    good: &'static str,
+    old: &'static str,
+    new: &'static str,
+    /// Key, line where it can be known, and words of problem and remedy.
+    words: &'static [&'static str],
+}
+
+const fn panel(old: &'static str, new: &'static str, words: &'static [&'static str]) -> Bad {
+    Bad { good: PANEL, old, new, words }
+}
+
+const fn plate(old: &'static str, new: &'static str, words: &'static [&'static str]) -> Bad {
+    Bad { good: PLATE, old, new, words }
+}
+
+const BAD: &[Bad] = &[
+    // Keys, sections, types
+    panel("width_mm = 152.4", "widht_mm = 152.4", &[":3:", "specimen.widht_mm", "not a known key", "width_mm"]),
+    panel("width_mm = 152.4\n", "", &[":1:", "specimen.width_mm", "missing"]),
+    panel("width_mm = 152.4", "width_mm = \"wide\"", &[":3:", "specimen.width_mm", "wide", "a number"]),
+    panel("width_mm = 152.4", "width_mm = [1, 2]", &[":3:", "specimen.width_mm", "a number"]),
+    panel("[material]\nname = \"al2024-t3\"\n", "", &["material", "missing", "[material]"]),
+    panel("[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n", "", &["loading", "missing"]),
+    panel("[specimen]", "[speciman]", &[":1:", "speciman", "not a known section", "specimen"]),
+    panel("[specimen]", "colour = 3\n[specimen]", &[":1:", "colour", "no section"]),
+    panel("[specimen]", "stop = 3\n[specimen]", &["not TOML", "duplicate"]),
+    panel("[stop]", "[measured]\nfiles = [\"a.csv\"]\n[stop]", &[":18:", "measured", "calibrate"]),
+    panel("[stop]", "[refinement]\nlevel = 2\n[stop]", &["refinement", "not built yet"]),
+    panel("width_mm = 152.4", "width_mm = 152.4 mm", &[":3:", "not TOML"]),
+    panel("width_mm = 152.4", "width_mm = 152.4\nwidth_mm = 3", &[":4:", "not TOML", "each key once"]),
+    panel("[material]", "[material", &[":7:", "not TOML"]),
+    // Numbers beyond reason
+    panel("thickness_mm = 2.54", "thickness_mm = -2.54", &[":5:", "specimen.thickness_mm", "-2.54", "above zero", "between"]),
+    panel("thickness_mm = 2.54", "thickness_mm = 0", &[":5:", "specimen.thickness_mm", "above zero"]),
+    panel("thickness_mm = 2.54", "thickness_mm = nan", &[":5:", "specimen.thickness_mm", "NaN", "finite"]),
+    panel("thickness_mm = 2.54", "thickness_mm = inf", &[":5:", "specimen.thickness_mm", "inf", "finite"]),
+    panel("width_mm = 152.4", "width_mm = 1e308", &[":3:", "specimen.width_mm", "beyond reason", "between"]),
+    panel("stress_range_mpa = 48.28", "stress_range_mpa = 1e308", &["loading.stress_range_mpa", "beyond reason"]),
+    panel("a = 6450.0", "a = 1e308", &["fatigue.a", "beyond reason"]),
+    panel("p = 2.86", "p = -3", &["fatigue.p", "above zero"]),
+    panel(
+        "name = \"al2024-t3\"",
+        "youngs_modulus_gpa = 1e308\npoisson_ratio = 0.3",
+        &["material.youngs_modulus_gpa", "beyond reason"],
+    ),
+    panel("crack_length_mm = 49.8", "cycles_max = -1", &["stop.cycles_max", "above zero"]),
+    // Specimens
+    panel(
+        "kind = \"middle_tension\"",
+        "kind = \"middle_tention\"",
+        &[":2:", "specimen.kind", "middle_tention", "middle_tension, single_edge_tension"],
+    ),
+    panel("kind = \"middle_tension\"", "kind = 7", &[":2:", "specimen.kind", "text in quotes"]),
+    panel("kind = \"middle_tension\"\n", "", &["specimen.kind", "missing", "compact_tension"]),
+    panel("kind = \"middle_tension\"", "kind = \"corner_crack\"", &[":2:", "corner_crack", "only through cracks"]),
+    panel("kind = \"middle_tension\"", "kind = \"surface_crack\"", &[":2:", "surface_crack", "only through cracks"]),
+    panel("crack_length_mm = 9.0", "crack_length_mm = 9.0\ndepth_mm = 2", &["specimen.depth_mm", "only through cracks"]),
+    panel(
+        "crack_length_mm = 9.0",
+        "crack_length_mm = 76.2",
+        &[":6:", "specimen.crack_length_mm", "76.2", "half width", "shorter crack"],
+    ),
+    panel(
+        "kind = \"middle_tension\"",
+        "kind = \"single_edge_tension\"",
+        &["specimen.ends", "missing", "pinned, clamped, uniform_stress"],
+    ),
+    panel(
+        "kind = \"middle_tension\"",
+        "kind = \"single_edge_tension\"\nends = \"loose\"",
+        &[":3:", "specimen.ends", "loose", "clamped"],
+    ),
+    panel("kind = \"middle_tension\"", "kind = \"compact_tension\"", &["specimen.length_mm", "not a known key", "width_mm"]),
+    plate("to_mm = [5, 0]", "to_mm = [55, 30]", &[":7:", "specimen.cracks[0]", "outside the plate at (55, 30) mm", "inside"]),
+    plate("to_mm = [5, 0]", "to_mm = [35, 0]", &["specimen.cracks[0]", "runs through", "holes[0]"]),
+    plate("to_mm = [5, 0]", "to_mm = [-5, 0]", &["specimen.cracks[0]", "no length"]),
+    plate("to_mm = [5, 0]", "to_mm = [5]", &["specimen.cracks[0].to_mm", "pair of numbers"]),
+    plate("to_mm = [5, 0]", "to_mm = [5, 0], depth = 1", &["specimen.cracks[0].depth", "not a known key", "from_mm"]),
+    plate("cracks = [", "cracks = [{ from_mm = [0, -5], to_mm = [0, 5] }, ", &["specimen.cracks[1]", "crosses cracks[0]"]),
+    plate(
+        "cracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]",
+        "cracks = [{ from_mm = [-50, 70], to_mm = [50, 70] }]",
+        &["cracks[0]", "no end inside"],
+    ),
+    plate("x_mm = 20,", "x_mm = -14,", &[":6:", "specimen.holes[1]", "overlaps holes[0]", "apart"]),
+    plate("x_mm = 20,", "x_mm = 48,", &["specimen.holes[0]", "beyond the outline"]),
+    plate("diameter_mm = 10 }]", "diameter_mm = 0 }]", &["specimen.holes[1].diameter_mm", "above zero"]),
+    plate("to_mm = [-40, 40], width_mm = 2", "to_mm = [60, 40], width_mm = 2", &["specimen.notches[0]", "cuts it in two"]),
+    plate("to_mm = [-40, 40], width_mm = 2", "to_mm = [-15, 0], width_mm = 2", &["specimen.notches[0]", "overlaps holes[1]"]),
+    plate(
+        "width_mm = 100\nlength_mm = 200",
+        "outline_mm = [[0, 0], [10, 10], [10, 0], [0, 10]]",
+        &["specimen.outline_mm", "crosses", "in order"],
+    ),
+    plate("width_mm = 100\nlength_mm = 200", "outline_mm = [[0, 0], [10, 10]]", &["specimen.outline_mm", "no outline"]),
+    plate("width_mm = 100\nlength_mm = 200", "outline_mm = [[0, 0], [10, 10], \"x\"]", &["specimen.outline_mm[2]", "[x, y]"]),
+    plate("width_mm = 100\n", "", &["specimen.width_mm", "missing", "outline_mm"]),
+    // Material
+    panel("name = \"al2024-t3\"", "name = \"unobtainium\"", &[":8:", "material.name", "unobtainium", "al2024-t3"]),
+    panel("name = \"al2024-t3\"", "youngs_modulus_gpa = 70", &["material.poisson_ratio", "missing"]),
+    panel(
+        "name = \"al2024-t3\"",
+        "name = \"al2024-t3\"\npoisson_ratio = 0.4",
+        &[":9:", "material.poisson_ratio", "0.4", "1/3 in plane stress", "0.3333"],
+    ),
+    panel("name = \"al2024-t3\"", "name = \"al2024-t3\"\nplane = \"strain\"", &["material.poisson_ratio", "1/4 in plane strain"]),
+    panel(
+        "name = \"al2024-t3\"",
+        "name = \"al2024-t3\"\nplane = \"membrane\"",
+        &[":9:", "material.plane", "membrane", "stress, strain"],
+    ),
+    // Loading
+    panel("stress_ratio = 0.2", "stress_ratio = 1.0", &[":11:", "loading.stress_ratio", "below 1"]),
+    panel("stress_ratio = 0.2\n", "", &["loading.stress_ratio", "missing", "R ="]),
+    panel("stress_ratio = 0.2", "stress_ratio = 0.2\nstress_max_mpa = 60", &["loading.stress_", "given twice", "exactly one"]),
+    panel("stress_range_mpa = 48.28\n", "", &["loading.stress_max_mpa", "missing", "force_range_n"]),
+    panel(
+        "stress_range_mpa = 48.28",
+        "stress = 48.28",
+        &[":10:", "loading.stress", "maximum or the range", "stress_max_mpa, stress_range_mpa"],
+    ),
+    panel(
+        "stress_ratio = 0.2",
+        "stress_ratio = 0.2\nsequence = [1, 2]",
+        &[":12:", "loading.sequence", "load sequence", "constant amplitude"],
+    ),
+    panel("stress_ratio = 0.2", "stress_ratio = 0.2\nkind = \"random\"", &["loading.kind", "random", "constant_amplitude"]),
+    panel("stress_ratio = 0.2", "stress_ratio = 0.2\nedges = [\"top\"]", &["loading.edges", "middle_tension", "plate"]),
+    plate("stress_ratio = 0.1", "stress_ratio = 0.1\nedges = [\"north\"]", &["loading.edges", "top, bottom, left, right"]),
+    plate("[fatigue]", "[supports]\nfloor = { fix = [\"x\"] }\n[fatigue]", &["supports.floor", "known sides", "bottom"]),
+    plate("[fatigue]", "[supports]\nbottom = { fix = [\"z\"] }\n[fatigue]", &["supports.bottom.fix"]),
+    plate(
+        "stress_max_mpa = 70",
+        "force_max_n = 70\npins = [{ hole = 7, direction = [0, 1] }]",
+        &["loading.pins[0].hole", "7", "which has 2"],
+    ),
+    plate(
+        "stress_max_mpa = 70",
+        "stress_max_mpa = 70\npins = [{ hole = 0, direction = [1, 0] }, { hole = 1, direction = [-1, 0] }]",
+        &["takes a force", "force_max_n"],
+    ),
+    // Model
+    panel("spacing_mm = 1.0", "spacing_mm = 9.5", &[":13:", "model.spacing_mm", "larger than the crack (9 mm)", "1 mm"]),
+    panel("spacing_mm = 1.0", "spacing_mm = 0.001", &["model.spacing_mm", "points", "or more"]),
+    panel("spacing_mm = 1.0", "horizon_ratio = 0.5", &["model.horizon_ratio", "between 1.5 and"]),
+    panel("spacing_mm = 1.0", "bond_law = \"springs\"", &["model.bond_law", "springs", "bond_based, two_parameter"]),
+    panel("spacing_mm = 1.0", "bond_law = \"state_based\"", &["model.bond_law", "not built yet"]),
+    plate(
+        "[fatigue]",
+        "[model]\nbond_law = \"bond_based\"\n[fatigue]",
+        &["material.poisson_ratio", "bond_based", "two_parameter"],
+    ),
+    // Fatigue and stop
+    panel("horizon_mm = 3.015\n", "", &["fatigue.horizon_mm", "missing", "meaningless"]),
+    panel("a = 6450.0", "fitted = \"fitted.toml\"", &["fatigue.p", "given twice"]),
+    panel("horizon_mm = 3.015", "horizon_mm = 3.015\nblock = \"fixed\"", &["fatigue.block_cycles", "missing"]),
+    panel("horizon_mm = 3.015", "horizon_mm = 3.015\nbonds_per_block = -1", &["fatigue.bonds_per_block", "whole number"]),
+    panel("horizon_mm = 3.015", "horizon_mm = 3.015\nageing = \"slowly\"", &["fatigue.ageing", "crack_tip, everywhere"]),
+    panel("a = 6450.0\np = 2.86\nhorizon_mm = 3.015", "", &["fatigue.fitted", "no fatigue law", "calibrate"]),
+    panel("crack_length_mm = 49.8", "crack_length_mm = 8", &[":19:", "stop.crack_length_mm", "not beyond the initial"]),
+    panel("crack_length_mm = 49.8", "crack_length_mm = 80", &[":19:", "stop.crack_length_mm", "ends at 76.2 mm"]),
+];
+
+/// Refused as wrong input with these words, the file named.
+fn assert_refused(result: Result<Case, Error>, file: &Path, words: &[&str], what: &str) {
+    let error = result.err().unwrap_or_else(|| panic!("accepted: {what}"));
+    assert!(matches!(error, Error::Input(_)), "{what}: {error}");
+    assert_eq!(error.exit_code(), 2);
+    let message = error.to_string();
+    assert!(message.starts_with(&file.display().to_string()), "{what}: names the file: {message}");
+    assert!(message.contains("; "), "{what}: has a remedy: {message}");
+    for word in words {
+        assert!(message.contains(word), "{what}\nlacks \"{word}\": {message}");
+    }
+}
+
+#[test]
+fn the_good_files_are_good() {
+    for text in [PANEL, PLATE] {
+        Case::from_toml(text, "good", Path::new(""), &[]).unwrap();
+    }
+}
+
+#[test]
+fn every_broken_file_is_refused_with_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("case.toml");
+    for bad in BAD {
+        let text = bad.good.replacen(bad.old, bad.new, 1);
+        assert_ne!(text, bad.good, "nothing was broken: {}", bad.old);
+        std::fs::write(&file, &text).unwrap();
+        assert_refused(Case::from_file(&file, &[]), &file, bad.words, bad.new);
+    }
+    assert!(BAD.len() >= 28);
+}
+
+#[test]
+fn broken_overrides_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("case.toml");
+    std::fs::write(&file, PANEL).unwrap();
+    let rows: [(&str, &[&str]); 8] = [
+        ("model.spacing_mm", &["--set", "model.spacing_mm", "has no =", "section.key=value"]),
+        ("spacing=1", &["--set", "section and key"]),
+        ("model..x=1", &["--set", "section and key"]),
+        ("model.spacing_mm=", &["--set", "has no value"]),
+        ("model.spacing_mm.fine=1", &["--set", "not a table"]),
+        ("model.spacing_mm=fine", &["model.spacing_mm", "fine", "a number", "--set"]),
+        ("model.spacing=1", &["model.spacing", "not a known key", "spacing_mm"]),
+        ("specimen.width_mm=nan", &["specimen.width_mm", "finite", "--set"]),
+    ];
+    for (set, words) in rows {
+        let result = Case::from_file(&file, &[set.to_owned()]);
+        if words[0] == "--set" {
+            let message = result.unwrap_err().to_string();
+            assert!(words.iter().all(|word| message.contains(word)), "{set}: {message}");
+        } else {
+            assert_refused(result, &file, words, set);
+        }
+    }
+}
+
+#[test]
+fn missing_and_unreadable_files_are_file_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    for path in [folder.path().join("nowhere.toml"), folder.path().to_path_buf()] {
+        let error = Case::from_file(&path, &[]).unwrap_err();
+        assert!(matches!(error, Error::File { .. }), "{error}");
+        assert_eq!(error.exit_code(), 4);
+        assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
+    }
+    // An own material file that does not exist.
+    let text = PANEL.replace("name = \"al2024-t3\"", "name = \"own.toml\"");
+    let error = Case::from_toml(&text, "case", folder.path(), &[]).unwrap_err();
+    assert!(error.exit_code() == 4 && error.to_string().contains("own.toml"), "{error}");
+    // Bytes that are not text are wrong input.
+    let file = folder.path().join("binary.toml");
+    std::fs::write(&file, [0x66, 0x6f, 0xff, 0xfe]).unwrap();
+    assert_refused(Case::from_file(&file, &[]), &file, &["UTF-8"], "binary");
+    // Nothing at all.
+    std::fs::write(&file, "").unwrap();
+    assert_refused(Case::from_file(&file, &[]), &file, &["specimen", "missing"], "empty");
+}
+
+/// Values a user could write, or not.
+fn any_value() -> impl Strategy<Value = String> {
+    let leaf = prop_oneof![
+        prop::num::f64::ANY.prop_map(|x| if x.is_nan() {
+            "nan".to_owned()
+        } else if x.is_infinite() {
+            "-inf".to_owned()
+        } else {
+            format!("{x:e}")
+        }),
+        (-1000.0..1000.0f64).prop_map(|x| format!("{x:.3}")),
+        any::<i64>().prop_map(|i| i.to_string()),
+        Just("true".to_owned()),
+        Just("1979-05-27".to_owned()),
+        "[a-z_]{0,12}".prop_map(|text| format!("\"{text}\"")),
+        Just("\"\\u00e9[].\"".to_owned()),
+    ];
+    leaf.prop_recursive(3, 12, 4, |inner| {
+        prop_oneof![
+            prop::collection::vec(inner.clone(), 0..4).prop_map(|items| format!("[{}]", items.join(", "))),
+            prop::collection::vec((prop::sample::select(KEYS), inner), 0..3).prop_map(|pairs| {
+                let items: Vec<String> = pairs.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+                format!("{{ {} }}", items.join(", "))
+            }),
+        ]
+    })
+}
+
+/// Keys of all sections.
+const KEYS: &[&str] = &[
+    "kind",
+    "width_mm",
+    "length_mm",
+    "thickness_mm",
+    "crack_length_mm",
+    "ends",
+    "outline_mm",
+    "holes",
+    "cracks",
+    "notches",
+    "x_mm",
+    "y_mm",
+    "diameter_mm",
+    "from_mm",
+    "to_mm",
+    "name",
+    "plane",
+    "youngs_modulus_gpa",
+    "poisson_ratio",
+    "stress_max_mpa",
+    "force_max_n",
+    "stress_ratio",
+    "edges",
+    "pins",
+    "hole",
+    "direction",
+    "bottom",
+    "fix",
+    "rows_mm",
+    "spacing_mm",
+    "horizon_ratio",
+    "bond_law",
+    "a",
+    "p",
+    "horizon_mm",
+    "fitted",
+    "block",
+    "cycles_max",
+    "\"\"",
+    "\"a.b\"",
+];
+
+proptest! {
+    /// One key of a good file set to anything: a case or words, never a panic.
+    #[test]
+    fn any_value_gives_a_case_or_words(section in prop::sample::select(&["specimen", "material", "loading", "supports", "model", "fatigue", "stop"][..]),
+                                       key in prop::sample::select(KEYS), value in any_value(), panel in any::<bool>()) {
+        let text = if panel { PANEL } else { PLATE };
+        let overrides = [format!("{section}.{}={value}", key.replace('"', ""))];
+        if let Err(error) = Case::from_toml(text, "any", Path::new("/nowhere"), &overrides) {
+            prop_assert!(!error.to_string().is_empty());
+        }
+    }
+
+    /// A plate with any hole, crack and notch.
+    #[test]
+    fn any_flaws_give_a_case_or_words(x in prop::collection::vec(-60.0..60.0f64, 12), width in 0.0..60.0f64) {
+        let flaws = format!(
+            "holes = [{{ x_mm = {}, y_mm = {}, diameter_mm = {width} }}]\ncracks = [{{ from_mm = [{}, {}], to_mm = [{}, {}] }}, {{ from_mm = [{}, {}], to_mm = [{}, {}] }}]\n\
+             notches = [{{ from_mm = [{}, {}], to_mm = [{}, {}], width_mm = {width} }}]\n[material]\nname = \"q345\"\n[loading]\nstress_max_mpa = 1\nstress_ratio = 0\n[fatigue]\na = 1\np = 2\nhorizon_mm = 3",
+            x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[9], x[10], x[11], x[0], x[2]
+        );
+        let text = format!("[specimen]\nkind = \"plate\"\nwidth_mm = 100\nlength_mm = 100\nthickness_mm = 1\n{flaws}");
+        if let Ok(case) = Case::from_toml(&text, "any", Path::new(""), &[]) {
+            prop_assert!(case.specimen.crack_length > 0.0 && !case.specimen.tips.is_empty());
+            prop_assert!(case.specimen.tips.iter().all(|tip| tip.position[0].abs() <= 0.05 && tip.position[1].abs() <= 0.05));
+        }
+    }
+
+    /// Any text at all.
+    #[test]
+    fn any_text_gives_a_case_or_words(text in "\\PC{0,200}") {
+        let _ = Case::from_toml(&text, "any", Path::new(""), &[]);
+    }
+}

@@ -1,0 +1,93 @@
+//! Handbook K against printed and independently checked numbers.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use perilife::case::Case;
+use perilife::specimen::Specimen;
+use perilife::specimen::handbook::{delta_k, handbook, handbook_tada};
+
+/// A specimen of this kind, width 100 mm, thickness 2 mm, relative length set by `crack_mm`.
+fn specimen(kind: &str, crack_mm: f64, extra: &str) -> Specimen {
+    let length = if kind == "compact_tension" { "" } else { "length_mm = 300.0" };
+    let load = if kind == "compact_tension" { "force_max_kn = 2" } else { "stress_max_mpa = 10" };
+    let text = format!(
+        "[specimen]\nkind = \"{kind}\"\nwidth_mm = 100.0\n{length}\nthickness_mm = 2.0\ncrack_length_mm = {crack_mm}\n{extra}\n\
+         [material]\nname = \"al2024-t3\"\n[loading]\n{load}\nstress_ratio = 0\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1"
+    );
+    Case::from_toml(&text, "test", Path::new(""), &[]).unwrap().specimen
+}
+
+const UNIFORM: &str = "ends = \"uniform_stress\"";
+
+#[test]
+fn factors_agree_with_references() {
+    // (kind, crack mm at W 100 mm, factor, relative tolerance, origin of the number)
+    let rows = [
+        ("middle_tension", 25.0, 1.186, 0.005, "Tada 1.186, FEM 1.184 at 2a/W 0.5"),
+        ("single_edge_tension", 20.0, 1.367, 0.005, "polynomial of Brown and Srawley 1.367, FEM 1.360 at a/W 0.2"),
+        ("single_edge_tension", 50.0, 2.827, 0.005, "Tada 2.827, FEM 2.811 at a/W 0.5"),
+        ("double_edge_tension", 20.0, 1.130, 0.005, "FEM 1.130 at 2a/W 0.4"),
+        ("double_edge_tension", 30.0, 1.234, 0.008, "FEM 1.234 at 2a/W 0.6"),
+        ("compact_tension", 50.0, 9.659, 2e-4, "ASTM E647 at a/W 0.5"),
+        ("compact_tension", 60.0, 13.654, 2e-4, "ASTM E647 at a/W 0.6"),
+    ];
+    for (kind, crack, expected, tolerance, origin) in rows {
+        let plate = specimen(kind, crack, if kind.starts_with("single") { UNIFORM } else { "" });
+        let factor = handbook(&plate).unwrap().factor(crack * 1e-3);
+        assert!((factor / expected - 1.0).abs() < tolerance, "{kind} at {crack} mm: {factor}, expected {expected} ({origin})");
+    }
+    // Feddersen and Tada are 2 % apart at 2a/W = 0.9, Feddersen low.
+    let plate = specimen("middle_tension", 45.0, "");
+    let ratio = handbook(&plate).unwrap().factor(0.045) / handbook_tada(&plate).unwrap().factor(0.045);
+    assert!((ratio - 0.98).abs() < 0.005, "{ratio}");
+}
+
+#[test]
+fn k_has_the_right_scale() {
+    // Short central crack in a wide plate: K = sigma sqrt(pi a) to 0.1 %.
+    let plate = specimen("middle_tension", 1.5, "");
+    let formula = handbook(&plate).unwrap();
+    let k = formula.k_i(1.5e-3, 100e6);
+    assert!((k / (100e6 * (PI * 1.5e-3).sqrt()) - 1.0).abs() < 1e-3);
+    // Compact: K = P f / (B sqrt W).
+    let compact = specimen("compact_tension", 50.0, "");
+    let k = handbook(&compact).unwrap().k_i(0.05, 2000.0);
+    let expected = 2000.0 / (0.002 * 0.1_f64.sqrt()) * 9.659;
+    assert!((k / expected - 1.0).abs() < 2e-4, "{k} {expected}");
+    assert!((delta_k(&compact, 0.05, 2000.0, 0.8).unwrap() / (0.8 * k) - 1.0).abs() < 1e-12);
+    assert!(formula.k_i(0.06, 1.0).is_nan(), "a crack beyond the half width has no K");
+}
+
+#[test]
+fn grows_with_crack_length() {
+    for kind in ["middle_tension", "single_edge_tension", "double_edge_tension", "compact_tension"] {
+        let plate = specimen(kind, 20.0, if kind.starts_with("single") { UNIFORM } else { "" });
+        let formula = handbook(&plate).unwrap();
+        let values: Vec<f64> = (4..9).map(|i| formula.k_i(f64::from(i) * 5e-3, 1e6)).collect();
+        assert!(values.windows(2).all(|pair| pair[1] > pair[0]), "{kind}: {values:?}");
+    }
+}
+
+#[test]
+fn no_formula_where_none_holds() {
+    assert!(handbook(&specimen("single_edge_tension", 20.0, "ends = \"clamped\"")).is_none());
+    assert!(handbook(&specimen("single_edge_tension", 20.0, "ends = \"pinned\"")).is_some());
+    let mut short = specimen("middle_tension", 20.0, "");
+    short.outline = vec![[-0.05, -0.05], [0.05, -0.05], [0.05, 0.05], [-0.05, 0.05]];
+    assert!(handbook(&short).is_none(), "a square plate is not a long strip");
+    assert!(!handbook(&specimen("compact_tension", 20.0, "")).unwrap().holds_at(0.01), "E647 starts at a/W 0.2");
+}
+
+#[test]
+fn net_section_carries_the_load() {
+    let stress = |kind: &str, extra| specimen(kind, 20.0, extra).net_section_stress(0.02, 60e6).unwrap() / 60e6;
+    assert!((stress("middle_tension", "") - 100.0 / 60.0).abs() < 1e-9);
+    assert!((stress("double_edge_tension", "") - 100.0 / 60.0).abs() < 1e-9);
+    assert!((stress("single_edge_tension", UNIFORM) - 100.0 / 80.0).abs() < 1e-9);
+    assert_eq!(specimen("middle_tension", 20.0, "").net_section_stress(0.05, 1.0), Some(f64::INFINITY));
+    // C(T): the requirement of E647, W - a = (4/pi) (K/yield)^2, is met exactly at the returned stress.
+    let compact = specimen("compact_tension", 50.0, "");
+    let (k, yielding) = (handbook(&compact).unwrap().k_i(0.05, 2000.0), compact.net_section_stress(0.05, 2000.0).unwrap());
+    assert!((4.0 / PI * (k / yielding).powi(2) - 0.05).abs() < 1e-12);
+}

@@ -1,0 +1,91 @@
+//! How large the cycles are and where they act.
+
+use std::path::Path;
+
+use perilife::case::Case;
+use perilife::loading::Loading;
+use perilife::specimen::{Load, Support};
+
+const PANEL: &str = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10";
+const PLATE: &str = "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]\n\
+                     holes = [{ x_mm = 0, y_mm = 80, diameter_mm = 10 }, { x_mm = 0, y_mm = -80, diameter_mm = 10 }, { x_mm = 30, y_mm = 0, diameter_mm = 10 }]";
+
+fn case(specimen: &str, loading: &str) -> Result<Case, perilife::Error> {
+    let text = format!(
+        "[specimen]\n{specimen}\n[material]\nname = \"al2024-t3\"\n[model]\nspacing_mm = 1\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1\n[loading]\n{loading}"
+    );
+    Case::from_toml(&text, "test", Path::new(""), &[])
+}
+
+#[test]
+fn every_way_to_say_the_same_load() {
+    // 50 MPa on 100 x 2 mm² = 10 kN; range = maximum (1 - R).
+    let ways = [
+        "stress_max_mpa = 50",
+        "stress_range_mpa = 40",
+        "force_max_n = 10000",
+        "force_range_n = 8000",
+        "force_max_kn = 10",
+        "force_range_kn = 8",
+    ];
+    for way in ways {
+        let loading = case(PANEL, &format!("{way}\nstress_ratio = 0.2")).unwrap().loading;
+        assert!((loading.maximum / 50e6 - 1.0).abs() < 1e-12, "{way}: {loading:?}");
+    }
+}
+
+#[test]
+fn range_of_a_reversed_cycle() {
+    // R = -1: range 80 is maximum 40; only the opening half counts.
+    let loading = case(PANEL, "stress_range_mpa = 80\nstress_ratio = -1").unwrap().loading;
+    assert!((loading.maximum - 40e6).abs() < 1e-3);
+    assert!((loading.range_share() - 1.0).abs() < 1e-12);
+    assert!((Loading { ratio: 0.2, ..loading }.range_share() - 0.8).abs() < 1e-12);
+}
+
+#[test]
+fn a_floating_plate_is_loaded_on_both_ends_and_a_held_one_on_one() {
+    let floating = case(PLATE, "stress_max_mpa = 10\nstress_ratio = 0").unwrap().specimen;
+    assert_eq!((floating.loads.len(), floating.supports.len()), (2, 0));
+    let held = case(PLATE, "stress_max_mpa = 10\nstress_ratio = 0\n[supports]\nbottom = { rows_mm = 3, fix = [\"x\", \"y\"] }")
+        .unwrap()
+        .specimen;
+    assert_eq!(held.loads, [Load::Edge { from: [0.05, 0.1], to: [-0.05, 0.1], traction: [0.0, 1.0] }]);
+    assert_eq!(held.supports, [Support::Fixed { from: [-0.05, -0.1], to: [0.05, -0.1], depth: 0.003, x: true, y: true }]);
+}
+
+#[test]
+fn stress_along_the_crack_loads_the_sides() {
+    let sides = case(PANEL, "stress_max_mpa = 10\nstress_ratio = 0\nstress_parallel_ratio = 0.5").unwrap().specimen.loads;
+    let tractions: Vec<[f64; 2]> =
+        sides.iter().map(|load| if let Load::Edge { traction, .. } = load { *traction } else { [9.0; 2] }).collect();
+    assert_eq!(tractions, [[0.0, 1.0], [0.0, -1.0], [-0.5, 0.0], [0.5, 0.0]]);
+}
+
+#[test]
+fn loads_must_balance() {
+    let good = [
+        "stress_max_mpa = 10\nedges = [\"left\", \"right\"]",
+        "force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }, { hole = 1, direction = [0, -2] }]",
+        "force_max_n = 10\npins = [{ hole = 2, direction = [0, 1] }]\n[supports]\nbottom = { fix = [\"x\", \"y\"] }",
+    ];
+    // Words of the answer: what is left over.
+    let bad = [
+        ("stress_max_mpa = 10\nedges = [\"top\"]", "a force along y"),
+        ("stress_max_mpa = 10\nedges = [\"top\", \"left\"]\n[supports]\nbottom = { fix = [\"y\"] }", "a force along x"),
+        ("force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }]", "a force along y"),
+        ("force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }, { hole = 2, direction = [0, -1] }]", "turn the plate"),
+        ("force_max_n = 10\npins = [{ hole = 0, direction = [1, 0] }, { hole = 1, direction = [-1, 0] }]", "turn the plate"),
+    ];
+    let with_ratio = |text: &str| match text.split_once("\n[") {
+        Some((loading, rest)) => format!("{loading}\nstress_ratio = 0\n[{rest}"),
+        None => format!("{text}\nstress_ratio = 0"),
+    };
+    for loading in good {
+        case(PLATE, &with_ratio(loading)).unwrap_or_else(|error| panic!("{loading}: {error}"));
+    }
+    for (loading, words) in bad {
+        let error = case(PLATE, &with_ratio(loading)).unwrap_err().to_string();
+        assert!(error.contains("not in equilibrium") && error.contains(words), "{loading}: {error}");
+    }
+}
