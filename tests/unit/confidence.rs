@@ -41,11 +41,13 @@ fn truth_lies_inside_the_95_percent_ellipse() {
 
 /// An ellipse so wide that it always holds the truth would be no better: over many seeds about one in twenty lies outside.
 #[test]
-fn the_ellipse_is_not_too_wide_either() {
+fn the_ellipse_is_not_too_wide_and_p_not_biased() {
     let fits = noisy_fits(400, 0.05);
     let inside = fits.iter().filter(|(_, distance)| *distance < ELLIPSE_95).count() as f64 / fits.len() as f64;
-    println!("inside {:.1} %", 100.0 * inside);
+    let mean_p = fits.iter().map(|(p, _)| p).sum::<f64>() / fits.len() as f64;
+    println!("inside {:.1} %, mean p {mean_p:.4} (given {P})", 100.0 * inside);
     assert!((0.90..=0.99).contains(&inside), "{inside}");
+    assert!((mean_p / P - 1.0).abs() < 0.01, "mean p = {mean_p}");
 }
 
 #[test]
