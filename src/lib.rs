@@ -2,6 +2,7 @@
 #![warn(missing_docs)]
 
 pub mod error;
+pub mod input;
 pub mod kinds;
 #[cfg(feature = "tables")]
 pub mod tables;
