@@ -1,5 +1,14 @@
 //! One input file: one choice from each room, checked as a whole before anything runs.
 
+mod choices;
+mod fatigue;
+mod law;
+mod model;
+mod read;
+
+pub use choices::{Choices, Discretisation, Failure, Method, Symmetry};
+pub use read::SECTIONS;
+
 use crate::bond_law::BondLaw;
 use crate::calibration::record::FittedRecord;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
@@ -7,6 +16,10 @@ use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::SolverKind;
 use crate::specimen::Specimen;
+
+/// Horizon over spacing where the case says nothing: the value of the literature, just above 3 so that the third
+/// neighbour along a row belongs to the family whatever the round-off.
+pub const HORIZON_RATIO: f64 = 3.015;
 
 /// Peridynamic model of a case.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +52,7 @@ pub enum LawSource {
     Inline(FatigueLaw),
     /// A record written by `perilife calibrate`.
     Fitted(Box<FittedRecord>),
-    /// A record that does not exist yet (only `check` accepts this).
+    /// A record that does not exist yet (only `check` accepts this), or, with an empty path, no law at all (a calibration).
     Missing(std::path::PathBuf),
 }
 
@@ -66,4 +79,8 @@ pub struct Case {
     pub warnings: Vec<String>,
     /// The input as given, overrides applied; echoed in `result.json`.
     pub echo: serde_json::Value,
+    /// Whether growth far outside the calibrated range of ΔK is accepted.
+    pub allow_extrapolation: bool,
+    /// What the file chose explicitly; a fitted record must agree with it.
+    pub choices: Choices,
 }

@@ -5,6 +5,7 @@
 #![warn(missing_docs)]
 
 pub mod error;
+pub mod input;
 pub mod kinds;
 pub mod units;
 

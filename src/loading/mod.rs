@@ -1,5 +1,10 @@
 //! Load history. Constant amplitude so far.
 
+mod boundary;
+mod read;
+
+pub use read::from_values;
+
 crate::kinds! {
     /// Load histories.
     pub enum LoadingKind for "loading.kind" {
@@ -14,7 +19,8 @@ pub struct Loading {
     pub maximum: f64,
     /// Stress ratio R = minimum / maximum, below 1.
     pub ratio: f64,
-    /// Stress along the crack over stress across it, applied to the side edges.
+    /// Stress along the crack over stress across it, applied to the side edges. `Specimen::loads` holds these loads
+    /// already; the number stands here for the reports.
     pub parallel_ratio: f64,
 }
 

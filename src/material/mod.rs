@@ -1,5 +1,10 @@
 //! What the plate is made of: elastic constants and strengths.
 
+pub mod library;
+mod read;
+
+pub use read::from_value;
+
 crate::kinds! {
     /// Plane state of the plate.
     pub enum Plane for "material.plane" {

@@ -3,6 +3,20 @@
 //! Lengths in metres, the load direction of the standard specimens is y. A [`Specimen`] is fixed once built:
 //! nothing in a run changes it. Cracks go through the thickness; part-through and corner cracks are refused by name.
 
+mod compact_tension;
+mod edge;
+mod edge_tension;
+pub mod geometry;
+pub mod handbook;
+mod middle_tension;
+mod net_section;
+mod placement;
+mod plate;
+mod read;
+
+pub use edge::{Component, Edge};
+pub use read::{PART_THROUGH, from_value};
+
 /// A point of the plate, metres.
 pub type Point = [f64; 2];
 
@@ -55,14 +69,15 @@ pub struct Crack {
     pub to: Point,
 }
 
-/// Where growth can start: a crack end inside the plate, or the middle of a slot's end face.
+/// Where growth can start: a crack end inside the plate, or the middle of a slot's end face that lies in the material
+/// (unless a crack starts from that face).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TipSeed {
     /// Position, m.
     pub position: Point,
     /// Unit vector in which the crack or slot points, out of itself into the material.
     pub direction: Point,
-    /// Length of crack or slot this tip stands for, m: growth is added to the sum over tips in the specimen's convention.
+    /// Whether this is the end face of a slot rather than the end of a sharp crack.
     pub from_slot: bool,
 }
 
@@ -71,17 +86,42 @@ pub struct TipSeed {
 pub enum Load {
     /// Uniform traction on a straight stretch of the outline.
     /// `traction` is in Pa per Pa of the case's nominal stress (so 1.0 normal to the edge for plain tension).
-    Edge { from: Point, to: Point, traction: Point },
+    Edge {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// Traction on the plate, Pa per Pa.
+        traction: Point,
+    },
     /// Bearing pressure of a pin on the side of a hole that faces `direction` (cosine distribution over the half circle).
     /// `force` is in N per N of the case's force, along the unit vector `direction`.
-    Pin { hole: usize, direction: Point, force: f64 },
+    Pin {
+        /// Index into `Specimen::holes`.
+        hole: usize,
+        /// Unit vector of the force on the plate.
+        direction: Point,
+        /// Force on the plate, N per N.
+        force: f64,
+    },
 }
 
 /// What is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Support {
     /// Points within `depth` of the straight outline stretch `from`-`to` (at least one row) keep the named components at zero.
-    Fixed { from: Point, to: Point, depth: f64, x: bool, y: bool },
+    Fixed {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// How deep into the plate the hold reaches, m.
+        depth: f64,
+        /// Whether the x component is held.
+        x: bool,
+        /// Whether the y component is held.
+        y: bool,
+    },
     /// Both ends move as rigid blocks that do not rotate (clamped grips); the relative displacement along y is what the load asks.
     ClampedEnds,
     /// Both ends move as rigid blocks that may rotate (pinned grips): end rows are made stiff, load is uniform over them.
@@ -142,6 +182,61 @@ pub struct Specimen {
 }
 
 impl Specimen {
+    /// A plate of a standard kind under uniform stress over its ends y = ±length/2, before cracks are put in.
+    pub(crate) fn strip(kind: SpecimenKind, width: f64, length: f64, thickness: f64) -> Self {
+        let (x, y) = (width / 2.0, length / 2.0);
+        Specimen {
+            kind,
+            outline: vec![[-x, -y], [x, -y], [x, y], [-x, y]],
+            holes: Vec::new(),
+            slots: Vec::new(),
+            cracks: Vec::new(),
+            tips: Vec::new(),
+            thickness,
+            width,
+            gross_width: width,
+            crack_plane_y: Some(0.0),
+            crack_length: 0.0,
+            convention: LengthConvention::MeanOfTips,
+            loads: vec![
+                Load::Edge { from: [-x, y], to: [x, y], traction: [0.0, 1.0] },
+                Load::Edge { from: [-x, -y], to: [x, -y], traction: [0.0, -1.0] },
+            ],
+            load_measure: LoadMeasure::Stress,
+            supports: Vec::new(),
+        }
+    }
+
+    /// Size of the plate along y, m.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        let [low, high] = geometry::bounding_box(&self.outline);
+        high[1] - low[1]
+    }
+
+    /// Smallest size of a flaw that the spacing and the horizon have to resolve, m: half length of a crack with two tips,
+    /// whole length of one with one tip, length of a slot; C(T) from the load line.
+    #[must_use]
+    pub fn smallest_flaw(&self) -> f64 {
+        if self.kind != SpecimenKind::Plate {
+            return self.crack_length;
+        }
+        let tips_of = |crack: &Crack| {
+            self.tips.iter().filter(|tip| !tip.from_slot && (tip.position == crack.from || tip.position == crack.to)).count()
+        };
+        let cracks = self.cracks.iter().map(|crack| geometry::distance(crack.from, crack.to) / tips_of(crack).max(1) as f64);
+        let slots = self.slots.iter().map(|slot| geometry::distance(slot.from, slot.to));
+        cracks.chain(slots).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Area of the material, m²: outline less holes and slots.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let holes: f64 = self.holes.iter().map(|hole| std::f64::consts::PI * hole.radius * hole.radius).sum();
+        let slots: f64 = self.slots.iter().map(|slot| geometry::distance(slot.from, slot.to) * slot.width).sum();
+        geometry::polygon_area(&self.outline) - holes - slots
+    }
+
     /// Crack length in the convention of the specimen for given growths of its tips, m.
     #[must_use]
     pub fn crack_length_after(&self, growth_of_tips: &[f64]) -> f64 {

@@ -1,0 +1,53 @@
+//! Choices of a case that have one built value so far, and what a case chose by itself.
+
+use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use crate::fatigue::Ageing;
+
+crate::kinds! {
+    /// Numerical methods.
+    pub enum Method for "model.method" {
+        Peridynamics = "peridynamics": "points and bonds",
+    }
+}
+
+crate::kinds! {
+    /// Arrangements of points.
+    pub enum Discretisation for "model.discretisation" {
+        Lattice = "lattice": "square lattice of one spacing",
+    }
+}
+
+crate::kinds! {
+    /// Use of mirror symmetry.
+    pub enum Symmetry for "model.symmetry" {
+        Off = "off": "the whole plate is solved",
+    }
+}
+
+crate::kinds! {
+    /// What spends the life of a bond.
+    pub enum Failure for "fatigue.failure" {
+        Stretch = "stretch": "bond stretch range",
+    }
+}
+
+/// What the input file chose explicitly. A fitted record supplies the rest and must agree with these.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Choices {
+    /// `model.bond_law`.
+    pub bond_law: Option<BondLawKind>,
+    /// `model.kernel`.
+    pub kernel: Option<Kernel>,
+    /// `model.rotation`.
+    pub rotation: Option<Rotation>,
+    /// `model.surface_correction`.
+    pub surface_correction: Option<SurfaceCorrection>,
+    /// `model.horizon_ratio`.
+    pub horizon_ratio: Option<f64>,
+    /// `fatigue.ageing`.
+    pub ageing: Option<Ageing>,
+    /// `fatigue.zone_radius_horizons`.
+    pub zone_radius_horizons: Option<f64>,
+    /// `fatigue.walker_gamma`.
+    pub walker_gamma: Option<f64>,
+}

@@ -1,0 +1,148 @@
+//! From a calibrated record to the law of this case: what must agree, what is rescaled, and the words about it.
+
+use std::str::FromStr;
+
+use super::{Case, LawSource};
+use crate::calibration::record::FittedRecord;
+use crate::error::{Error, Result, input, input_missing};
+use crate::fatigue::FatigueLaw;
+use crate::input::{LENGTH, MODULUS, number};
+use crate::material::{Material, Plane};
+use crate::units::{GPA, MM};
+
+/// Numbers and names of a record make sense.
+pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
+    number("a constant in 1/cycle", 1e-60, 1e100).read("a", record.a)?;
+    number("an exponent", 0.5, 20.0).read("p", record.p)?;
+    LENGTH.read("horizon_mm", record.horizon_mm)?;
+    MODULUS.read("youngs_modulus_gpa", record.youngs_modulus_gpa)?;
+    number("a Poisson's ratio", 0.0, 0.499).read("poisson_ratio", record.poisson_ratio)?;
+    number("a ratio", -100.0, 0.999).read("stress_ratio", record.stress_ratio)?;
+    number("a horizon ratio", 1.5, 12.0).read("horizon_ratio", record.horizon_ratio)?;
+    number("a radius in horizons", 0.05, 10.0).read("zone_radius_horizons", record.zone_radius_horizons)?;
+    Plane::from_str(&record.plane)?;
+    Ok(())
+}
+
+/// Takes the record as the law of the case. Where the case is silent the record decides; where both speak they must agree.
+pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
+    check_record(&record)?;
+    let choices = case.choices;
+    let law = &mut case.model.bond_law;
+    law.kind = agree("model.bond_law", choices.bond_law, &record.bond_law)?;
+    law.kernel = agree("model.kernel", choices.kernel, &record.kernel)?;
+    law.rotation = agree("model.rotation", choices.rotation, &record.rotation)?;
+    law.surface_correction = agree("model.surface_correction", choices.surface_correction, &record.surface_correction)?;
+    case.fatigue.ageing = agree("fatigue.ageing", choices.ageing, &record.ageing)?;
+    if let Some(given) = choices.zone_radius_horizons
+        && (given - record.zone_radius_horizons).abs() > 1e-9
+    {
+        return Err(disagree("fatigue.zone_radius_horizons", &given.to_string(), &record.zone_radius_horizons.to_string()));
+    }
+    case.fatigue.zone_radius_horizons = record.zone_radius_horizons;
+    case.model.horizon_ratio = choices.horizon_ratio.unwrap_or(record.horizon_ratio);
+    check_stress_ratio(case, &record)?;
+    case.law = LawSource::Fitted(Box::new(record));
+    Ok(())
+}
+
+/// The record's name as a kind, equal to the explicit choice if there is one.
+fn agree<K: FromStr<Err = Error> + PartialEq + std::fmt::Display + Copy>(
+    key: &str,
+    chosen: Option<K>,
+    recorded: &str,
+) -> Result<K> {
+    let recorded: K = recorded.parse()?;
+    match chosen {
+        Some(chosen) if chosen != recorded => Err(disagree(key, &format!("\"{chosen}\""), &format!("\"{recorded}\""))),
+        _ => Ok(recorded),
+    }
+}
+
+fn disagree(key: &str, chosen: &str, recorded: &str) -> Error {
+    let problem = format!("is not what the fatigue law was calibrated with, {recorded}");
+    input(key, chosen, problem, format!("leave the key out or set it to {recorded}; or calibrate again with {chosen}"))
+}
+
+fn check_stress_ratio(case: &Case, record: &FittedRecord) -> Result<()> {
+    let same = (case.loading.ratio - record.stress_ratio).abs() < 1e-9;
+    if same || case.choices.walker_gamma.is_some() {
+        return Ok(());
+    }
+    let problem = format!("is another stress ratio than the calibrated one, {}", record.stress_ratio);
+    let remedy =
+        "give fatigue.walker_gamma (strain range = s_max (1-R)^gamma; 1 = no mean-stress effect), or a record of this ratio";
+    Err(input("loading.stress_ratio", case.loading.ratio, problem, remedy))
+}
+
+/// E' = E (plane stress) or E/(1-ν²) (plane strain) of the calibration, Pa.
+fn recorded_modulus(record: &FittedRecord) -> Result<f64> {
+    let e = record.youngs_modulus_gpa * GPA;
+    Ok(match Plane::from_str(&record.plane)? {
+        Plane::Stress => e,
+        Plane::Strain => e / (1.0 - record.poisson_ratio.powi(2)),
+    })
+}
+
+/// What the user should know about a record used in this case.
+pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<String>> {
+    let mut lines = Vec::new();
+    if (case.model.horizon_ratio - record.horizon_ratio).abs() > 1e-9 {
+        let (given, recorded) = (case.model.horizon_ratio, record.horizon_ratio);
+        lines.push(format!(
+            "horizon_ratio {given} is used with a law calibrated at {recorded}: the transfer between ratios is not calibrated"
+        ));
+    }
+    if (case.loading.ratio - record.stress_ratio).abs() > 1e-9 {
+        let (given, recorded, gamma) = (case.loading.ratio, record.stress_ratio, case.fatigue.walker_gamma);
+        lines.push(format!("law calibrated at stress ratio {recorded} used at {given} with walker_gamma = {gamma}: an assumption, not a measurement"));
+    }
+    lines.extend(material_line(&case.material, record)?);
+    Ok(lines)
+}
+
+/// One line about a plate of other elastic constants than the calibrated one; `None` where they agree.
+fn material_line(material: &Material, record: &FittedRecord) -> Result<Option<String>> {
+    let (e, nu) = (material.youngs_modulus / GPA, material.poisson_ratio);
+    let same = (e - record.youngs_modulus_gpa).abs() < 1e-9 * e
+        && (nu - record.poisson_ratio).abs() < 1e-9
+        && material.plane.name() == record.plane;
+    if same {
+        return Ok(None);
+    }
+    let factor = (material.plane_modulus() / recorded_modulus(record)?).powf(record.p);
+    Ok(Some(format!(
+        "law of {} (E {} GPa, nu {}, plane {}) used at E {e} GPa, nu {nu}, plane {}: growth rate per ΔK is kept, A times (E'2/E'1)^p = {factor:.4}",
+        record.material, record.youngs_modulus_gpa, record.poisson_ratio, record.plane, material.plane
+    )))
+}
+
+impl Case {
+    /// A and p at the body's actual horizon (m).
+    ///
+    /// A moves over the horizon by [`FatigueLaw::at_horizon`]. A record keeps its measured growth rate (C and m) in a plate
+    /// of other constants, `A₂ = A₁ (E'₂/E'₁)^p`. It was fitted with ε = s_max (1-R₁); under a Walker exponent γ the same
+    /// rate at R₁ needs `A_γ = A₁ (1-R₁)^(p (1-γ))`, so that ε = s_max (1-R)^γ carries only the difference in R.
+    pub fn fatigue_law(&self, horizon: f64) -> Result<FatigueLaw> {
+        match &self.law {
+            LawSource::Inline(law) => Ok(law.at_horizon(horizon)),
+            LawSource::Fitted(record) => {
+                let modulus = (self.material.plane_modulus() / recorded_modulus(record)?).powf(record.p);
+                let range = 1.0 - record.stress_ratio.max(0.0);
+                let walker = range.powf(record.p * (1.0 - self.fatigue.walker_gamma));
+                let law = FatigueLaw { a: record.a * modulus * walker, p: record.p, horizon: record.horizon_mm * MM };
+                Ok(law.at_horizon(horizon))
+            }
+            LawSource::Missing(path) if path.as_os_str().is_empty() => Err(input_missing(
+                "fatigue.fitted",
+                "is missing: the case has no fatigue law",
+                "give fitted = \"fitted.toml\" from `perilife calibrate`, or a, p and horizon_mm",
+            )),
+            LawSource::Missing(path) => Err(Error::file(
+                path,
+                "cannot read the fatigue law (write it with `perilife calibrate`)",
+                std::io::ErrorKind::NotFound.into(),
+            )),
+        }
+    }
+}

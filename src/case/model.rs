@@ -1,0 +1,121 @@
+//! `[model]` of an input file: how the plate becomes points and bonds.
+
+use serde::Deserialize;
+use toml::Value;
+
+use super::choices::{Choices, Discretisation, Method, Symmetry};
+use super::{HORIZON_RATIO, Model};
+use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use crate::error::{Result, input};
+use crate::input::{LENGTH, number, slice};
+use crate::material::{Material, Plane};
+use crate::solver::SolverKind;
+use crate::specimen::Specimen;
+use crate::units::MM;
+
+/// More points than this do not fit into the memory of an ordinary machine.
+const POINTS_MAX: f64 = 4e6;
+/// Fewer spacings than this across the plate say nothing about a crack in it.
+const COLUMNS_MIN: f64 = 8.0;
+
+/// Keys of `[model]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    #[serde(rename = "method")]
+    _method: Option<Method>,
+    #[serde(rename = "discretisation")]
+    _discretisation: Option<Discretisation>,
+    #[serde(rename = "symmetry")]
+    _symmetry: Option<Symmetry>,
+    bond_law: Option<BondLawKind>,
+    kernel: Option<Kernel>,
+    rotation: Option<Rotation>,
+    surface_correction: Option<SurfaceCorrection>,
+    spacing_mm: Option<f64>,
+    horizon_ratio: Option<f64>,
+    lattice_angle_deg: Option<f64>,
+    solver: Option<SolverKind>,
+}
+
+/// Reads `[model]`; what is left out gets the program's choice. Explicit choices go into `choices`.
+pub(super) fn from_value(value: &Value, specimen: &Specimen, choices: &mut Choices) -> Result<Model> {
+    let input: Input = slice(value, "model")?;
+    choices.bond_law = input.bond_law;
+    choices.kernel = input.kernel;
+    choices.rotation = input.rotation;
+    choices.surface_correction = input.surface_correction;
+    choices.horizon_ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
+    let spacing = match LENGTH.read_optional("model.spacing_mm", input.spacing_mm)? {
+        Some(spacing) => spacing,
+        None => (specimen.smallest_flaw() / 9.0).min(specimen.width / 100.0),
+    };
+    check_spacing(spacing, specimen)?;
+    let angle =
+        number("an angle in degrees", -90.0, 90.0).read("model.lattice_angle_deg", input.lattice_angle_deg.unwrap_or(0.0))?;
+    Ok(Model {
+        bond_law: BondLaw {
+            kind: choices.bond_law.unwrap_or(BondLawKind::TwoParameter),
+            kernel: choices.kernel.unwrap_or(Kernel::Conical),
+            rotation: choices.rotation.unwrap_or(Rotation::Free),
+            surface_correction: choices.surface_correction.unwrap_or(SurfaceCorrection::VolumeAndSurface),
+        },
+        spacing,
+        horizon_ratio: choices.horizon_ratio.unwrap_or(HORIZON_RATIO),
+        lattice_angle: angle.to_radians(),
+        solver: input.solver.unwrap_or(SolverKind::Multigrid),
+    })
+}
+
+/// The spacing resolves crack and plate, and the number of points can be held.
+fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
+    const KEY: &str = "model.spacing_mm";
+    let (given, flaw) = (round_mm(spacing), specimen.smallest_flaw());
+    if spacing > flaw {
+        let problem = format!("is larger than the crack ({} mm): no bond would be cut as it should", round_mm(flaw));
+        return Err(input(KEY, given, problem, format!("give a ninth of the crack or less, {} mm", round_mm(flaw / 9.0))));
+    }
+    let thinnest = specimen.gross_width.min(specimen.length());
+    if thinnest < COLUMNS_MIN * spacing {
+        let problem = format!("leaves fewer than {COLUMNS_MIN} points across the plate ({} mm)", round_mm(thinnest));
+        return Err(input(KEY, given, problem, format!("give {} mm or less", round_mm(thinnest / 100.0))));
+    }
+    let points = specimen.area() / (spacing * spacing);
+    if points > POINTS_MAX {
+        let smallest = round_mm((specimen.area() / POINTS_MAX).sqrt());
+        let problem = format!("would make about {points:.1e} points, more than {POINTS_MAX:.0e}");
+        return Err(input(KEY, given, problem, format!("give {smallest} mm or more")));
+    }
+    Ok(())
+}
+
+/// Metres as mm, rounded to six digits for messages.
+pub(super) fn round_mm(metres: f64) -> f64 {
+    (metres / MM * 1e6).round() / 1e6
+}
+
+/// The bond law can represent the material's Poisson's ratio.
+///
+/// Two-parameter: tangential modulus proportional to 1-3ν (plane stress) or 1-4ν (plane strain) must not be negative.
+/// Bond-based: ν is 1/3 or 1/4 (Silling 2000; Gerstle, Sau and Silling 2005 for the plane).
+pub(super) fn check_poisson_ratio(material: &Material, kind: BondLawKind) -> Result<()> {
+    let (limit, words) = match material.plane {
+        Plane::Stress => (1.0 / 3.0, "1/3 in plane stress"),
+        Plane::Strain => (1.0 / 4.0, "1/4 in plane strain"),
+    };
+    let nu = material.poisson_ratio;
+    const KEY: &str = "material.poisson_ratio";
+    if nu > limit + 1e-9 && !(kind == BondLawKind::BondBased && nu <= limit + 0.01) {
+        let usable = (limit * 1e4).floor() / 1e4;
+        let problem = format!("is beyond what {kind} can represent, {words}");
+        let remedy = format!(
+            "no law built so far goes further (a state-based law will); the nearest usable value is poisson_ratio = {usable} with bond_law = \"two_parameter\""
+        );
+        return Err(input(KEY, nu, problem, remedy));
+    }
+    if kind == BondLawKind::BondBased && (nu - limit).abs() > 0.01 {
+        let problem = format!("is not what bond_based fixes, {words}");
+        return Err(input(KEY, nu, problem, "use model.bond_law = \"two_parameter\", which takes any smaller value"));
+    }
+    Ok(())
+}

@@ -1,0 +1,161 @@
+//! An input file as text and table, with overrides, and the line of every key.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::de::{DeTable, DeValue};
+use toml::{Table, Value};
+
+use super::slice::{path_steps, shorten};
+use crate::error::{Error, InputError, Result, input};
+
+/// A parsed input file that still knows where everything stands in the text.
+#[derive(Debug, Clone)]
+pub struct Document {
+    /// Name of the case: the file stem.
+    pub name: String,
+    /// Folder that relative paths in the file start from.
+    pub base_dir: PathBuf,
+    /// Content with overrides applied.
+    pub table: Table,
+    file: Option<PathBuf>,
+    text: String,
+    overridden: Vec<String>,
+}
+
+impl Document {
+    /// Reads a TOML file and applies `section.key=value` overrides.
+    pub fn read(path: &Path, overrides: &[String]) -> Result<Self> {
+        let text = super::read_text(path)?;
+        let name = path.file_stem().map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let base_dir = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        Self::build(text, name, base_dir, Some(path.to_path_buf()), overrides)
+    }
+
+    /// The same for text that is not in a file; relative paths start from `base_dir`.
+    pub fn parse(text: &str, name: &str, base_dir: &Path, overrides: &[String]) -> Result<Self> {
+        Self::build(text.to_owned(), name.to_owned(), base_dir.to_path_buf(), None, overrides)
+    }
+
+    fn build(text: String, name: String, base_dir: PathBuf, file: Option<PathBuf>, overrides: &[String]) -> Result<Self> {
+        let table = text.parse::<Table>().map_err(|error| syntax_error(&error, &text, file.as_deref()))?;
+        let mut document = Document { name, base_dir, table, file, text, overridden: Vec::new() };
+        for text in overrides {
+            document.set(text)?;
+        }
+        Ok(document)
+    }
+
+    /// Names file and line in an error about a key of this document.
+    #[must_use]
+    pub fn locate(&self, error: Error) -> Error {
+        let Error::Input(mut trouble) = error else { return error };
+        if trouble.file.is_some() {
+            return Error::Input(trouble);
+        }
+        trouble.file.clone_from(&self.file);
+        if let Some(key) = &trouble.key {
+            if self.overridden.iter().any(|set| key.starts_with(set.as_str())) {
+                trouble.remedy.push_str(" (value given by --set)");
+            } else if trouble.line.is_none() {
+                trouble.line = line_of_key(&self.text, key);
+            }
+        }
+        Error::Input(trouble)
+    }
+
+    /// Applies one override.
+    fn set(&mut self, text: &str) -> Result<()> {
+        let refuse = |problem: &str| {
+            input(
+                "--set",
+                format!("\"{text}\""),
+                problem,
+                "write --set section.key=value, for example --set model.spacing_mm=0.5",
+            )
+        };
+        let (key, value) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
+        let (key, value) = (key.trim(), value.trim());
+        let steps = path_steps(key);
+        if steps.len() < 2 || key.split('.').any(|step| step.trim().is_empty()) {
+            return Err(refuse("does not name section and key"));
+        }
+        if value.is_empty() {
+            return Err(refuse("has no value"));
+        }
+        let (last, parents) = (&steps[steps.len() - 1], &steps[..steps.len() - 1]);
+        let mut place = self.table.entry(parents[0].clone()).or_insert_with(|| Value::Table(Table::new()));
+        for step in &parents[1..] {
+            place = child(place, step).ok_or_else(|| refuse("names a key below something that is not a table"))?;
+        }
+        match place {
+            Value::Table(table) => {
+                table.insert(last.clone(), plain_value(value));
+            }
+            Value::Array(_) => {
+                let slot = child(place, last).ok_or_else(|| refuse("names an entry the list does not have"))?;
+                *slot = plain_value(value);
+            }
+            _ => return Err(refuse("names a key below something that is not a table")),
+        }
+        self.overridden.push(key.to_owned());
+        Ok(())
+    }
+}
+
+/// Child of a table (created where missing) or of a list (which must have it).
+fn child<'v>(value: &'v mut Value, step: &str) -> Option<&'v mut Value> {
+    match value {
+        Value::Table(table) => Some(table.entry(step.to_owned()).or_insert_with(|| Value::Table(Table::new()))),
+        Value::Array(items) => items.get_mut(step.parse::<usize>().ok()?),
+        _ => None,
+    }
+}
+
+/// The value of an override: TOML where it is TOML, else text, so that names need no quotes in a shell.
+fn plain_value(text: &str) -> Value {
+    let parsed = toml::de::ValueDeserializer::parse(text).and_then(Value::deserialize);
+    parsed.unwrap_or_else(|_| Value::String(text.to_owned()))
+}
+
+fn syntax_error(error: &toml::de::Error, text: &str, file: Option<&Path>) -> Error {
+    let span = error.span();
+    let line = span.as_ref().map(|span| line_at(text, span.start));
+    let value = line.and_then(|line| text.lines().nth(line - 1)).map(|line| shorten(&Value::String(line.trim().to_owned())));
+    Error::Input(Box::new(InputError {
+        file: file.map(Path::to_path_buf),
+        line,
+        key: None,
+        value,
+        problem: format!("is not TOML: {}", error.message().replace('\n', ", ")),
+        remedy: "write key = value lines under [section] headings, each key once, text in quotes".into(),
+    }))
+}
+
+fn line_at(text: &str, offset: usize) -> usize {
+    1 + text.as_bytes().iter().take(offset).filter(|byte| **byte == b'\n').count()
+}
+
+/// Line of a dotted key, or of the nearest table above it that exists.
+fn line_of_key(text: &str, key: &str) -> Option<usize> {
+    let root = DeTable::parse(text).ok()?;
+    let steps = path_steps(key);
+    let (first, inner) = steps.split_first()?;
+    let entry = root.get_ref().iter().find(|(name, _)| name.get_ref() == first.as_str())?;
+    let mut offset = entry.0.span().start;
+    let mut value = entry.1;
+    for step in inner {
+        match value.get_ref() {
+            DeValue::Table(table) => {
+                let Some((name, below)) = table.iter().find(|(name, _)| name.get_ref() == step.as_str()) else { break };
+                (offset, value) = (name.span().start, below);
+            }
+            DeValue::Array(items) => {
+                let Some(below) = step.parse::<usize>().ok().and_then(|index| items.get(index)) else { break };
+                (offset, value) = (below.span().start, below);
+            }
+            _ => break,
+        }
+    }
+    Some(line_at(text, offset))
+}

@@ -1,0 +1,23 @@
+//! Reading input files: TOML text to checked slices, every error with file, line, key, value and remedy.
+//!
+//! Each room declares its slice of the file as a serde struct and reads it with [`slice`]; numbers pass through a
+//! [`Quantity`], which refuses what is not finite or beyond reason and converts to SI. [`Document`] holds the text, so
+//! that an error about a key finds its line.
+
+mod document;
+mod quantity;
+mod slice;
+
+pub use document::Document;
+pub use quantity::*;
+pub(crate) use slice::shorten;
+pub use slice::{PLANNED, slice, table_of, value_at};
+
+/// Reads a whole text file; bytes that are not UTF-8 are wrong input, everything else is trouble with the file.
+pub fn read_text(path: &std::path::Path) -> crate::Result<String> {
+    let bytes = std::fs::read(path).map_err(|source| crate::Error::file(path, "cannot read", source))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let message = format!("is not UTF-8 text (byte {})", error.utf8_error().valid_up_to() + 1);
+        crate::error::input_missing("file", message, "save it as plain UTF-8 text").in_file(path)
+    })
+}

@@ -1,0 +1,268 @@
+//! Where the load acts on a `plate` and what holds it: `edges`, `pins`, `stress_parallel_ratio` and `[supports]`.
+//!
+//! Without supports the plate floats, so its loads must balance; with a support only the sides that are not held are
+//! loaded. The standard specimens bring their loads and grips along and take none of these keys but the parallel stress.
+
+use serde::Deserialize;
+use toml::Value;
+
+use super::read::Input;
+use crate::error::{Result, input, input_missing};
+use crate::input::{number, shorten, slice, table_of};
+use crate::specimen::geometry::distance;
+use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
+use crate::units::MM;
+
+/// One entry of `[supports]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SupportInput {
+    #[serde(default)]
+    rows_mm: f64,
+    fix: Vec<Component>,
+}
+
+/// One entry of `pins`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PinInput {
+    hole: usize,
+    direction: [f64; 2],
+    #[serde(default = "one")]
+    share: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Puts loads and supports on the specimen; returns the section that turns a force into the nominal stress, m².
+pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+    if specimen.kind == SpecimenKind::Plate {
+        return apply_to_plate(input, supports, specimen, parallel_ratio);
+    }
+    let kind = specimen.kind;
+    let given =
+        [("loading.edges", input.edges.is_some()), ("loading.pins", input.pins.is_some()), ("supports", supports.is_some())];
+    if let Some((key, _)) = given.iter().find(|(_, given)| *given) {
+        let problem = format!("does not go with {kind}, which brings its own loads and grips");
+        return Err(input_missing(key, problem, "leave it out, or describe the specimen as kind = \"plate\""));
+    }
+    if parallel_ratio != 0.0 {
+        if specimen.load_measure == LoadMeasure::Force {
+            return Err(crate::error::input(
+                "loading.stress_parallel_ratio",
+                parallel_ratio,
+                format!("does not go with {kind}"),
+                "leave it out",
+            ));
+        }
+        push_edge_loads(specimen, &[Edge::Left, Edge::Right], parallel_ratio);
+    }
+    Ok(specimen.width * specimen.thickness)
+}
+
+fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+    let held = read_supports(supports, specimen)?;
+    let area = match (&input_.pins, &input_.edges) {
+        (Some(_), Some(_)) => {
+            return Err(input_missing(
+                "loading.pins",
+                "stands beside edges: one nominal load cannot be both",
+                "give pins or edges",
+            ));
+        }
+        (Some(pins), None) => {
+            if parallel_ratio != 0.0 {
+                return Err(input("loading.stress_parallel_ratio", parallel_ratio, "does not go with pins", "leave it out"));
+            }
+            read_pins(pins, specimen)?;
+            1.0
+        }
+        (None, edges) => load_edges(edges.as_deref(), &held, specimen, parallel_ratio)?,
+    };
+    check_balance(specimen, input_.pins.is_some())?;
+    Ok(area)
+}
+
+/// Reads `[supports]` into the specimen; returns the sides held along their normal.
+fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -> Result<Vec<Edge>> {
+    let mut held = Vec::new();
+    let Some(supports) = supports else { return Ok(held) };
+    for (name, value) in table_of(supports, "supports")? {
+        let path = format!("supports.{name}");
+        let known = "known sides: top, bottom, left, right";
+        let edge: Edge = name.parse().map_err(|_| input(&path, shorten(value), "is not a side of the plate", known))?;
+        let entry: SupportInput = slice(value, &path)?;
+        if entry.fix.is_empty() {
+            return Err(input(&format!("{path}.fix"), "[]", "holds nothing", "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]"));
+        }
+        let depth = number("a depth in mm", 0.0, 1e5).read(&format!("{path}.rows_mm"), entry.rows_mm)? * MM;
+        let [low, high] = crate::specimen::geometry::bounding_box(&specimen.outline);
+        let (x, y) = (entry.fix.contains(&Component::X), entry.fix.contains(&Component::Y));
+        let along_normal = if edge.normal()[0] == 0.0 { (y, high[1] - low[1]) } else { (x, high[0] - low[0]) };
+        if depth >= along_normal.1 / 2.0 {
+            return Err(input(&format!("{path}.rows_mm"), entry.rows_mm, "holds half the plate or more", "give a smaller depth"));
+        }
+        let stretches = stretches(edge, specimen, &path)?;
+        specimen.supports.extend(stretches.into_iter().map(|(from, to)| Support::Fixed { from, to, depth, x, y }));
+        if along_normal.0 {
+            held.push(edge);
+        }
+    }
+    Ok(held)
+}
+
+fn stretches(edge: Edge, specimen: &Specimen, key: &str) -> Result<Vec<(Point, Point)>> {
+    let found = edge.stretches(specimen);
+    if found.is_empty() {
+        return Err(input(
+            key,
+            edge,
+            "is no straight side of this outline",
+            "an edge is what lies on the bounding box of the outline",
+        ));
+    }
+    Ok(found)
+}
+
+/// Uniform stress on the asked sides (default: top and bottom, less what is held); returns the section of the first.
+fn load_edges(asked: Option<&[Edge]>, held: &[Edge], specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+    const KEY: &str = "loading.edges";
+    let loaded: Vec<Edge> = match asked {
+        None => [Edge::Top, Edge::Bottom].into_iter().filter(|edge| !held.contains(edge)).collect(),
+        Some(asked) => {
+            if let Some(edge) = asked.iter().find(|edge| held.contains(edge)) {
+                return Err(input(
+                    KEY,
+                    edge,
+                    "is held by [supports], so it cannot be loaded",
+                    "load another side, or do not hold this one",
+                ));
+            }
+            if let Some((i, edge)) = asked.iter().enumerate().find(|(i, edge)| asked[..*i].contains(edge)) {
+                return Err(input(&format!("{KEY}[{i}]"), edge, "stands twice", "name each side once"));
+            }
+            asked.to_vec()
+        }
+    };
+    let Some(first) = loaded.first().copied() else {
+        return Err(input_missing(
+            KEY,
+            "is empty: nothing is loaded",
+            "name the loaded sides, for example [\"top\", \"bottom\"]",
+        ));
+    };
+    let mut areas = Vec::new();
+    for edge in &loaded {
+        let length: f64 = stretches(*edge, specimen, KEY)?.iter().map(|(from, to)| distance(*from, *to)).sum();
+        areas.push(length * specimen.thickness);
+    }
+    push_edge_loads(specimen, &loaded, 1.0);
+    if parallel_ratio != 0.0 {
+        let vertical = first.normal()[0] == 0.0;
+        let across = if vertical { [Edge::Left, Edge::Right] } else { [Edge::Bottom, Edge::Top] };
+        if loaded.iter().any(|edge| across.contains(edge)) {
+            return Err(input(
+                "loading.stress_parallel_ratio",
+                parallel_ratio,
+                "loads sides that edges loads already",
+                "leave one of them out",
+            ));
+        }
+        let free: Vec<Edge> = across.into_iter().filter(|edge| !held.contains(edge)).collect();
+        for edge in &free {
+            stretches(*edge, specimen, "loading.stress_parallel_ratio")?;
+        }
+        push_edge_loads(specimen, &free, parallel_ratio);
+    }
+    Ok(areas[0])
+}
+
+/// Traction `share` along the outward normal on all stretches of these sides.
+fn push_edge_loads(specimen: &mut Specimen, edges: &[Edge], share: f64) {
+    for edge in edges {
+        let [nx, ny] = edge.normal();
+        let loads =
+            edge.stretches(specimen).into_iter().map(|(from, to)| Load::Edge { from, to, traction: [share * nx, share * ny] });
+        specimen.loads.extend(loads.collect::<Vec<_>>());
+    }
+}
+
+fn read_pins(pins: &[Value], specimen: &mut Specimen) -> Result<()> {
+    if pins.is_empty() || pins.len() > 100 {
+        return Err(input(
+            "loading.pins",
+            format!("{} pins", pins.len()),
+            "is no pin load",
+            "give 1 to 100 pins { hole = 0, direction = [0, 1] }",
+        ));
+    }
+    specimen.load_measure = LoadMeasure::Force;
+    for (i, value) in pins.iter().enumerate() {
+        let path = format!("loading.pins[{i}]");
+        let pin: PinInput = slice(value, &path)?;
+        if pin.hole >= specimen.holes.len() {
+            let problem = format!("is not a hole of this plate, which has {}", specimen.holes.len());
+            return Err(input(&format!("{path}.hole"), pin.hole, problem, "count specimen.holes from 0"));
+        }
+        let share = number("a share of the force", 1e-6, 1e6).read(&format!("{path}.share"), pin.share)?;
+        let [x, y] = pin.direction;
+        let size = x.hypot(y);
+        if !(1e-9..1e9).contains(&size) {
+            return Err(input(
+                &format!("{path}.direction"),
+                format!("[{x}, {y}]"),
+                "has no direction",
+                "give [x, y] of the force on the plate, for example [0, 1]",
+            ));
+        }
+        specimen.loads.push(Load::Pin { hole: pin.hole, direction: [x / size, y / size], force: share });
+    }
+    Ok(())
+}
+
+/// Force and moment of the loads must be zero as far as no support can take them up.
+fn check_balance(specimen: &Specimen, by_pins: bool) -> Result<()> {
+    let (mut held, mut turned) = ([false; 2], false);
+    for support in &specimen.supports {
+        if let Support::Fixed { from, to, x, y, .. } = support {
+            held = [held[0] || *x, held[1] || *y];
+            // A side held along its normal cannot turn.
+            turned |= if (to[1] - from[1]).abs() < (to[0] - from[0]).abs() { *y } else { *x };
+        }
+    }
+    turned |= specimen.supports.len() > 1;
+    let (mut force, mut moment, mut scale) = ([0.0; 2], 0.0, 0.0_f64);
+    for load in &specimen.loads {
+        let (place, f) = resultant(load, specimen);
+        force = [force[0] + f[0], force[1] + f[1]];
+        moment += place[0] * f[1] - place[1] * f[0];
+        scale = scale.max(f[0].hypot(f[1]));
+    }
+    let reach = specimen.gross_width.max(specimen.length());
+    let key = if by_pins { "loading.pins" } else { "loading.edges" };
+    for (i, axis) in ["x", "y"].iter().enumerate() {
+        if !held[i] && force[i].abs() > 1e-6 * scale {
+            let problem = format!("is not in equilibrium: the loads leave a force along {axis} that no support takes up");
+            return Err(input_missing(key, problem, "load opposite sides or pins alike, or hold a side in [supports]"));
+        }
+    }
+    // A force held along one axis only is taken up on a line somewhere: its moment is then not asked for.
+    if !turned && !held[0] && !held[1] && moment.abs() > 1e-6 * scale * reach {
+        let problem = "is not in equilibrium: the loads turn the plate and no support takes that up";
+        return Err(input_missing(key, problem, "let opposite forces share one line, or hold a side in [supports]"));
+    }
+    Ok(())
+}
+
+/// Place and force of a load per unit of nominal load (tractions per metre of thickness, which all share).
+fn resultant(load: &Load, specimen: &Specimen) -> (Point, Point) {
+    match load {
+        Load::Edge { from, to, traction } => {
+            let length = distance(*from, *to);
+            ([(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0], [traction[0] * length, traction[1] * length])
+        }
+        Load::Pin { hole, direction, force } => (specimen.holes[*hole].centre, [direction[0] * force, direction[1] * force]),
+    }
+}

@@ -1,0 +1,169 @@
+//! Plane geometry: polygons, segments, and the questions the body asks of a specimen.
+
+use super::{Point, Slot, Specimen};
+
+/// Distance between two points, m.
+#[must_use]
+pub fn distance(a: Point, b: Point) -> f64 {
+    (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
+/// Point at share `t` of the way from `a` to `b`.
+#[must_use]
+pub fn along(a: Point, b: Point, t: f64) -> Point {
+    [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+}
+
+/// Unit vector from `a` to `b`; zero where they coincide.
+#[must_use]
+pub fn direction(a: Point, b: Point) -> Point {
+    let length = distance(a, b);
+    if length > 0.0 { [(b[0] - a[0]) / length, (b[1] - a[1]) / length] } else { [0.0, 0.0] }
+}
+
+/// Twice the signed area of the triangle abc: positive where a, b, c turn counter-clockwise.
+#[must_use]
+pub fn turn(a: Point, b: Point, c: Point) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Whether the closed segments ab and cd share a point; touching counts.
+#[must_use]
+pub fn segments_touch(a: Point, b: Point, c: Point, d: Point) -> bool {
+    // Most pairs are far apart: compare the boxes first.
+    if a[0].max(b[0]) < c[0].min(d[0])
+        || c[0].max(d[0]) < a[0].min(b[0])
+        || a[1].max(b[1]) < c[1].min(d[1])
+        || c[1].max(d[1]) < a[1].min(b[1])
+    {
+        return false;
+    }
+    // With overlapping boxes, collinear segments (all turns zero) do touch.
+    turn(a, b, c) * turn(a, b, d) <= 0.0 && turn(c, d, a) * turn(c, d, b) <= 0.0
+}
+
+/// Share of the way from `a` to `b` at which the line through them meets the line through c and d; `None` if parallel.
+#[must_use]
+pub fn meeting_share(a: Point, b: Point, c: Point, d: Point) -> Option<f64> {
+    let (from_a, from_b) = (turn(c, d, a), turn(c, d, b));
+    let share = from_a / (from_a - from_b);
+    share.is_finite().then_some(share)
+}
+
+/// Distance of `p` from the closed segment ab, m.
+#[must_use]
+pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+    let (ab, ap) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let squared = ab[0] * ab[0] + ab[1] * ab[1];
+    let t = if squared > 0.0 { ((ap[0] * ab[0] + ap[1] * ab[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    distance(p, along(a, b, t))
+}
+
+/// Edges of a closed polygon, last point to first included.
+pub fn edges(polygon: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
+    (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
+}
+
+/// Whether `p` lies inside the polygon (crossing count; a point exactly on the edge may fall either way).
+#[must_use]
+pub fn point_in_polygon(p: Point, polygon: &[Point]) -> bool {
+    let mut inside = false;
+    for (a, b) in edges(polygon) {
+        if (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+/// Distance of `p` from the polygon's boundary, m.
+#[must_use]
+pub fn distance_to_polygon(p: Point, polygon: &[Point]) -> f64 {
+    edges(polygon).map(|(a, b)| distance_to_segment(p, a, b)).fold(f64::INFINITY, f64::min)
+}
+
+/// Signed area, m²: positive if counter-clockwise.
+#[must_use]
+pub fn polygon_area(polygon: &[Point]) -> f64 {
+    edges(polygon).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0
+}
+
+/// Lower left and upper right corner of the box around the points.
+#[must_use]
+pub fn bounding_box(points: &[Point]) -> [Point; 2] {
+    points.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
+        [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
+    })
+}
+
+/// The first pair of edges of the polygon that touch without being neighbours, by index.
+#[must_use]
+pub fn self_intersection(polygon: &[Point]) -> Option<(usize, usize)> {
+    let n = polygon.len();
+    let edge = |i: usize| (polygon[i], polygon[(i + 1) % n]);
+    for i in 0..n {
+        let (a, b) = edge(i);
+        // Neighbours share a corner; they overlap only if the outline turns straight back.
+        let (_, c) = edge((i + 1) % n);
+        if turn(a, b, c) == 0.0 && (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0 {
+            return Some((i, (i + 1) % n));
+        }
+        for j in i + 2..n {
+            if i == 0 && j == n - 1 {
+                continue;
+            }
+            let (c, d) = edge(j);
+            if segments_touch(a, b, c, d) {
+                return Some((i, j));
+            }
+        }
+    }
+    None
+}
+
+impl Slot {
+    /// Corners of the slot, counter-clockwise: right of `from`, right of `to`, left of `to`, left of `from`.
+    #[must_use]
+    pub fn corners(&self) -> [Point; 4] {
+        let [dx, dy] = direction(self.from, self.to);
+        let half = self.width / 2.0;
+        let (nx, ny) = (-dy * half, dx * half);
+        let shift = |p: Point, sign: f64| [p[0] + sign * nx, p[1] + sign * ny];
+        [shift(self.from, -1.0), shift(self.to, -1.0), shift(self.to, 1.0), shift(self.from, 1.0)]
+    }
+
+    /// Whether `p` lies in the slot.
+    #[must_use]
+    pub fn contains(&self, p: Point) -> bool {
+        let [dx, dy] = direction(self.from, self.to);
+        let (x, y) = (p[0] - self.from[0], p[1] - self.from[1]);
+        let (ahead, across) = (x * dx + y * dy, y * dx - x * dy);
+        ahead >= 0.0 && ahead <= distance(self.from, self.to) && across.abs() <= self.width / 2.0
+    }
+}
+
+impl Specimen {
+    /// Whether `point` lies in the material: inside the outline, outside holes and slots. Cracks have no width.
+    #[must_use]
+    pub fn contains(&self, point: Point) -> bool {
+        point_in_polygon(point, &self.outline)
+            && self.holes.iter().all(|hole| distance(point, hole.centre) > hole.radius)
+            && !self.slots.iter().any(|slot| slot.contains(point))
+    }
+
+    /// Whether the straight line between two points touches a crack.
+    #[must_use]
+    pub fn crack_crosses(&self, from: Point, to: Point) -> bool {
+        self.cracks.iter().any(|crack| segments_touch(from, to, crack.from, crack.to))
+    }
+
+    /// Whether a bond between two points of the material is cut at the start: by a crack, or because it would have to
+    /// reach over a slot, a hole or a notch of the outline.
+    #[must_use]
+    pub fn bond_is_cut(&self, from: Point, to: Point) -> bool {
+        self.crack_crosses(from, to)
+            || self.slots.iter().any(|slot| edges(&slot.corners()).any(|(a, b)| segments_touch(from, to, a, b)))
+            || self.holes.iter().any(|hole| distance_to_segment(hole.centre, from, to) < hole.radius)
+            || edges(&self.outline).any(|(a, b)| segments_touch(from, to, a, b))
+    }
+}

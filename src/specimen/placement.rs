@@ -1,0 +1,237 @@
+//! Whether holes, slots and cracks of a plate fit into it and beside each other, and where cracks can grow.
+
+use super::geometry::{
+    along, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share, point_in_polygon, segments_touch,
+};
+use super::{Crack, Hole, Point, Slot, Specimen, TipSeed};
+use crate::error::{Error, Result, input_missing};
+use crate::units::MM;
+
+/// What lies closer than this counts as touching, m: far below any spacing, far above round-off.
+const TOUCH: f64 = 1e-7;
+
+fn refuse(key: String, problem: impl Into<String>, remedy: &str) -> Error {
+    input_missing(&key, problem, remedy)
+}
+
+/// A point in words, mm.
+fn words(p: Point) -> String {
+    format!("({}, {}) mm", round(p[0]), round(p[1]))
+}
+
+fn round(metres: f64) -> f64 {
+    (metres / MM * 1e6).round() / 1e6
+}
+
+/// Holes lie inside the outline and do not touch each other.
+pub(super) fn check_holes(specimen: &Specimen) -> Result<()> {
+    for (i, hole) in specimen.holes.iter().enumerate() {
+        let inside = point_in_polygon(hole.centre, &specimen.outline);
+        if !inside || distance_to_polygon(hole.centre, &specimen.outline) < hole.radius + TOUCH {
+            let problem = format!("reaches beyond the outline (centre {}, radius {} mm)", words(hole.centre), round(hole.radius));
+            return Err(refuse(format!("specimen.holes[{i}]"), problem, "move it inside, or draw the opening into outline_mm"));
+        }
+        for (j, other) in specimen.holes[..i].iter().enumerate() {
+            if distance(hole.centre, other.centre) < hole.radius + other.radius + TOUCH {
+                return Err(refuse(format!("specimen.holes[{i}]"), format!("overlaps holes[{j}]"), "move the holes apart"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Puts the slots in and returns the tip seeds of their end faces.
+pub(super) fn place_slots(specimen: &mut Specimen, slots: Vec<Slot>) -> Result<Vec<TipSeed>> {
+    let mut seeds = Vec::new();
+    for (i, slot) in slots.into_iter().enumerate() {
+        let key = format!("specimen.notches[{i}]");
+        let inner = |p: Point| point_in_polygon(p, &specimen.outline) && distance_to_polygon(p, &specimen.outline) > TOUCH;
+        let closed = [inner(slot.from), inner(slot.to)];
+        let corners = slot.corners();
+        // Corners in the order right of from, right of to, left of to, left of from.
+        let corners_fit = [(0, closed[0]), (3, closed[0]), (1, closed[1]), (2, closed[1])]
+            .iter()
+            .all(|&(c, wanted)| !wanted || inner(corners[c]));
+        let walls = edges(&corners).filter(|(a, b)| edges(&specimen.outline).any(|(c, d)| segments_touch(*a, *b, c, d))).count();
+        match closed {
+            [false, false] => {
+                return Err(refuse(
+                    key,
+                    "has no end inside the plate",
+                    "end it in the material: a slot across the whole plate cuts it in two",
+                ));
+            }
+            [true, true] if walls > 0 || !corners_fit => {
+                return Err(refuse(key, "touches the outline", "move it inside, or let it start on an edge"));
+            }
+            _ if !corners_fit => return Err(refuse(key, "has an end face that sticks out of the plate", "shorten or narrow it")),
+            _ => {}
+        }
+        if let Some(j) = specimen.holes.iter().position(|hole| slot_meets_hole(&slot, hole)) {
+            return Err(refuse(key, format!("overlaps holes[{j}]"), "move them apart"));
+        }
+        if let Some(j) = specimen.slots.iter().position(|other| slots_meet(&slot, other)) {
+            return Err(refuse(key, format!("overlaps notches[{j}]"), "move them apart"));
+        }
+        for (end, other, is_closed) in [(slot.from, slot.to, closed[0]), (slot.to, slot.from, closed[1])] {
+            if is_closed {
+                seeds.push(TipSeed { position: end, direction: direction(other, end), from_slot: true });
+            }
+        }
+        specimen.crack_length += length_inside(specimen, slot.from, slot.to);
+        specimen.slots.push(slot);
+    }
+    Ok(seeds)
+}
+
+/// Puts the cracks in, cut off where they leave the material, and then all tips: cracks first, slots after them.
+pub(super) fn place_cracks(specimen: &mut Specimen, cracks: Vec<Crack>, mut slot_seeds: Vec<TipSeed>) -> Result<()> {
+    for (i, asked) in cracks.into_iter().enumerate() {
+        let key = format!("specimen.cracks[{i}]");
+        let (from, from_open) = trimmed_end(specimen, asked.from, asked.to, &key)?;
+        let (to, to_open) = trimmed_end(specimen, asked.to, asked.from, &key)?;
+        let crack = Crack { from, to };
+        let ahead = direction(asked.from, asked.to);
+        let length = (to[0] - from[0]) * ahead[0] + (to[1] - from[1]) * ahead[1];
+        if length < 10.0 * TOUCH {
+            return Err(refuse(key, "does not reach into the material", "end it inside the plate, beyond hole and slot"));
+        }
+        if from_open && to_open {
+            return Err(refuse(key, "has no end inside the material that could grow", "end it inside the plate"));
+        }
+        check_path(specimen, crack, &key)?;
+        if let Some(j) = specimen.cracks.iter().position(|other| cracks_meet(crack, *other)) {
+            return Err(refuse(
+                key,
+                format!("touches or crosses cracks[{j}]"),
+                "leave at least a spacing between cracks; crossing cracks are not supported",
+            ));
+        }
+        // A crack that starts from the end face of a slot takes the place of that face's seed.
+        slot_seeds.retain(|seed| {
+            distance(seed.position, from) > half_width_at(specimen, seed)
+                && distance(seed.position, to) > half_width_at(specimen, seed)
+        });
+        for (end, other, open) in [(from, to, from_open), (to, from, to_open)] {
+            if !open {
+                specimen.tips.push(TipSeed { position: end, direction: direction(other, end), from_slot: false });
+            }
+        }
+        specimen.crack_length += length;
+        specimen.cracks.push(crack);
+    }
+    specimen.tips.append(&mut slot_seeds);
+    Ok(())
+}
+
+/// Where a crack really ends, and whether that end is open (on an edge, in a hole or in a slot) and so not a tip.
+fn trimmed_end(specimen: &Specimen, end: Point, other: Point, key: &str) -> Result<(Point, bool)> {
+    if let Some(hole) = specimen.holes.iter().find(|hole| distance(end, hole.centre) <= hole.radius + TOUCH) {
+        return Ok((leave_hole(hole, end, other), true));
+    }
+    if let Some(slot) =
+        specimen.slots.iter().find(|slot| slot.contains(end) || distance_to_polygon(end, &slot.corners()) <= TOUCH)
+    {
+        return Ok((leave_slot(slot, end, other), true));
+    }
+    if distance_to_polygon(end, &specimen.outline) <= TOUCH {
+        return Ok((end, true));
+    }
+    if !point_in_polygon(end, &specimen.outline) {
+        return Err(refuse(
+            key.to_owned(),
+            format!("ends outside the plate at {}", words(end)),
+            "end it inside the plate or exactly on its edge",
+        ));
+    }
+    Ok((end, false))
+}
+
+/// Point where the way from `end`, in the hole, to `other` leaves the circle.
+fn leave_hole(hole: &Hole, end: Point, other: Point) -> Point {
+    let [dx, dy] = direction(end, other);
+    let (x, y) = (end[0] - hole.centre[0], end[1] - hole.centre[1]);
+    // |end - centre + t d| = radius, larger root.
+    let along_way = x * dx + y * dy;
+    let inside = along_way * along_way - (x * x + y * y) + hole.radius * hole.radius;
+    let t = (inside.max(0.0).sqrt() - along_way).max(0.0);
+    [end[0] + t * dx, end[1] + t * dy]
+}
+
+/// Point where the way from `end`, in the slot, to `other` leaves the slot.
+fn leave_slot(slot: &Slot, end: Point, other: Point) -> Point {
+    let share = edges(&slot.corners())
+        .filter(|(a, b)| segments_touch(end, other, *a, *b))
+        .filter_map(|(a, b)| meeting_share(end, other, a, b))
+        .fold(0.0, f64::max);
+    along(end, other, share.min(1.0))
+}
+
+/// Between its ends a crack stays in the material.
+fn check_path(specimen: &Specimen, crack: Crack, key: &str) -> Result<()> {
+    // Ends may touch what they start from.
+    let shrink = (2.0 * TOUCH / distance(crack.from, crack.to)).max(1e-6);
+    let (from, to) = (along(crack.from, crack.to, shrink), along(crack.from, crack.to, 1.0 - shrink));
+    let middle = along(from, to, 0.5);
+    if edges(&specimen.outline).any(|(a, b)| segments_touch(from, to, a, b)) || !point_in_polygon(middle, &specimen.outline) {
+        return Err(refuse(
+            key.to_owned(),
+            "leaves the plate between its ends",
+            "give the parts inside the plate as cracks of their own",
+        ));
+    }
+    if let Some(i) = specimen.holes.iter().position(|hole| distance_to_segment(hole.centre, from, to) < hole.radius - TOUCH) {
+        return Err(refuse(
+            key.to_owned(),
+            format!("runs through holes[{i}]"),
+            "give one crack on each side that starts in the hole",
+        ));
+    }
+    if let Some(i) = specimen.slots.iter().position(|slot| edges(&slot.corners()).any(|(a, b)| segments_touch(from, to, a, b))) {
+        return Err(refuse(
+            key.to_owned(),
+            format!("runs through notches[{i}]"),
+            "give one crack on each side that starts in the notch",
+        ));
+    }
+    Ok(())
+}
+
+fn cracks_meet(a: Crack, b: Crack) -> bool {
+    segments_touch(a.from, a.to, b.from, b.to)
+        || [a.from, a.to].iter().any(|p| distance_to_segment(*p, b.from, b.to) < TOUCH)
+        || [b.from, b.to].iter().any(|p| distance_to_segment(*p, a.from, a.to) < TOUCH)
+}
+
+fn slot_meets_hole(slot: &Slot, hole: &Hole) -> bool {
+    slot.contains(hole.centre) || distance_to_polygon(hole.centre, &slot.corners()) < hole.radius + TOUCH
+}
+
+fn slots_meet(a: &Slot, b: &Slot) -> bool {
+    let (of_a, of_b) = (a.corners(), b.corners());
+    a.contains(b.from) || b.contains(a.from) || edges(&of_a).any(|(p, q)| edges(&of_b).any(|(r, s)| segments_touch(p, q, r, s)))
+}
+
+/// Half the width of the slot whose end face carries this seed, m.
+fn half_width_at(specimen: &Specimen, seed: &TipSeed) -> f64 {
+    specimen
+        .slots
+        .iter()
+        .find(|slot| slot.from == seed.position || slot.to == seed.position)
+        .map_or(0.0, |slot| slot.width / 2.0 + TOUCH)
+}
+
+/// Length of the part of a segment inside the outline, m, for a segment that crosses it at most once.
+fn length_inside(specimen: &Specimen, from: Point, to: Point) -> f64 {
+    let crossing = edges(&specimen.outline)
+        .filter(|(a, b)| segments_touch(from, to, *a, *b))
+        .find_map(|(a, b)| meeting_share(from, to, a, b))
+        .map(|share| share.clamp(0.0, 1.0));
+    let share = match (crossing, point_in_polygon(from, &specimen.outline)) {
+        (None, _) => 1.0,
+        (Some(share), true) if point_in_polygon(to, &specimen.outline) => share.max(1.0 - share),
+        (Some(share), true) => share,
+        (Some(share), false) => 1.0 - share,
+    };
+    share * distance(from, to)
+}

@@ -1,0 +1,199 @@
+//! A plate of any outline with round holes, slots and straight through cracks at any angle.
+//!
+//! ```toml
+//! [specimen]
+//! kind = "plate"
+//! width_mm = 100.0              # with length_mm: a rectangle centred on 0; or outline_mm = [[x, y], ...]
+//! length_mm = 300.0
+//! thickness_mm = 2.0
+//! holes = [{ x_mm = 20.0, y_mm = 0.0, diameter_mm = 8.0 }]
+//! cracks = [{ from_mm = [-5.0, 0.0], to_mm = [5.0, 0.0] }]
+//! notches = [{ from_mm = [-50.0, 20.0], to_mm = [-40.0, 20.0], width_mm = 2.0 }]
+//! ```
+//! A crack may start on an edge, in a hole or in a slot: what lies outside the material is cut off and only the inner end
+//! is a tip. The tip seed of a slot is the middle of each end face that lies in the material. Crack length is the sum of
+//! all cracks and slots inside the plate plus all growth. The load is chosen in `[loading]`.
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use toml::Value;
+
+use super::geometry::{bounding_box, distance, polygon_area, self_intersection};
+use super::placement::{check_holes, place_cracks, place_slots};
+use super::{Crack, Hole, LengthConvention, Point, Slot, Specimen, SpecimenKind};
+use crate::error::{Result, input, input_missing};
+use crate::input::{LENGTH, point, slice};
+
+/// More than this is a slip, and the checks compare every item with every other.
+const ITEMS_MAX: usize = 500;
+
+/// Keys of `[specimen]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    #[serde(rename = "kind")]
+    _kind: SpecimenKind,
+    outline_mm: Option<Vec<Value>>,
+    width_mm: Option<f64>,
+    length_mm: Option<f64>,
+    thickness_mm: f64,
+    #[serde(default)]
+    holes: Vec<Value>,
+    #[serde(default)]
+    cracks: Vec<Value>,
+    #[serde(default)]
+    notches: Vec<Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HoleInput {
+    x_mm: f64,
+    y_mm: f64,
+    diameter_mm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CrackInput {
+    from_mm: [f64; 2],
+    to_mm: [f64; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NotchInput {
+    from_mm: [f64; 2],
+    to_mm: [f64; 2],
+    width_mm: f64,
+}
+
+pub(super) fn from_value(value: &Value) -> Result<Specimen> {
+    let input: Input = slice(value, "specimen")?;
+    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
+    let outline = outline(&input)?;
+    let holes = items("specimen.holes", &input.holes, |item: HoleInput, path| {
+        let centre = point(path, [item.x_mm, item.y_mm])?;
+        Ok(Hole { centre, radius: LENGTH.read(&format!("{path}.diameter_mm"), item.diameter_mm)? / 2.0 })
+    })?;
+    let slots = items("specimen.notches", &input.notches, |item: NotchInput, path| {
+        let (from, to) = ends(path, item.from_mm, item.to_mm)?;
+        Ok(Slot { from, to, width: LENGTH.read(&format!("{path}.width_mm"), item.width_mm)? })
+    })?;
+    let cracks = items("specimen.cracks", &input.cracks, |item: CrackInput, path| {
+        let (from, to) = ends(path, item.from_mm, item.to_mm)?;
+        Ok(Crack { from, to })
+    })?;
+    if cracks.is_empty() && slots.is_empty() {
+        return Err(input_missing(
+            "specimen.cracks",
+            "is missing, and there is no notch either: nothing can grow",
+            "give cracks or notches",
+        ));
+    }
+
+    let [low, high] = bounding_box(&outline);
+    let (width, length) = (high[0] - low[0], high[1] - low[1]);
+    let mut specimen = Specimen {
+        outline,
+        holes,
+        loads: vec![],
+        crack_plane_y: None,
+        convention: LengthConvention::SumOfTips,
+        ..Specimen::strip(SpecimenKind::Plate, width, length, thickness)
+    };
+    check_holes(&specimen)?;
+    let slot_tips = place_slots(&mut specimen, slots)?;
+    place_cracks(&mut specimen, cracks, slot_tips)?;
+    specimen.crack_plane_y = common_height(&specimen.cracks);
+    Ok(specimen)
+}
+
+/// y of the cracks if all are horizontal on one line: that line must fall between two rows of points.
+fn common_height(cracks: &[Crack]) -> Option<f64> {
+    let first = cracks.first()?.from[1];
+    cracks.iter().all(|crack| crack.from[1] == first && crack.to[1] == first).then_some(first)
+}
+
+/// Outline, counter-clockwise and simple.
+fn outline(input: &Input) -> Result<Vec<Point>> {
+    let Some(corners) = &input.outline_mm else {
+        let need = |key: &str, value: Option<f64>| {
+            let value = value.ok_or_else(|| input_missing(key, "is missing", "give width_mm and length_mm, or outline_mm"))?;
+            LENGTH.read(key, value)
+        };
+        let (x, y) = (need("specimen.width_mm", input.width_mm)? / 2.0, need("specimen.length_mm", input.length_mm)? / 2.0);
+        return Ok(vec![[-x, -y], [x, -y], [x, y], [-x, y]]);
+    };
+    if input.width_mm.is_some() || input.length_mm.is_some() {
+        return Err(input_missing(
+            "specimen.outline_mm",
+            "stands beside width_mm or length_mm",
+            "give either the outline or the rectangle",
+        ));
+    }
+    polygon(corners)
+}
+
+fn polygon(corners: &[Value]) -> Result<Vec<Point>> {
+    const KEY: &str = "specimen.outline_mm";
+    let mut outline = Vec::with_capacity(corners.len());
+    for (i, corner) in corners.iter().enumerate().take(ITEMS_MAX + 1) {
+        let key = format!("{KEY}[{i}]");
+        let pair: [f64; 2] = corner.clone().try_into().map_err(|_| input(&key, corner, "is not a point", "give [x, y]"))?;
+        outline.push(point(&key, pair)?);
+    }
+    if outline.len() > 1 && outline.first() == outline.last() {
+        outline.pop();
+    }
+    if outline.len() < 3 || outline.len() > ITEMS_MAX {
+        return Err(input(
+            KEY,
+            format!("{} points", corners.len()),
+            "is no outline",
+            format!("give 3 to {ITEMS_MAX} corners in order"),
+        ));
+    }
+    if let Some(i) = (0..outline.len()).find(|&i| distance(outline[i], outline[(i + 1) % outline.len()]) < 1e-9) {
+        return Err(input(KEY, format!("corner {i}"), "stands twice in a row", "leave one of them out"));
+    }
+    if let Some((i, j)) = self_intersection(&outline) {
+        let problem = format!("crosses or touches itself: the edge after corner {i} meets the edge after corner {j}");
+        return Err(input(KEY, format!("{} points", outline.len()), problem, "give the corners in order around the plate"));
+    }
+    let area = polygon_area(&outline);
+    let [low, high] = bounding_box(&outline);
+    if area.abs() < 1e-6 * (high[0] - low[0]).max(high[1] - low[1]).powi(2) {
+        return Err(input(
+            KEY,
+            format!("{} points", outline.len()),
+            "encloses no area",
+            "give the corners in order around the plate",
+        ));
+    }
+    if area < 0.0 {
+        outline.reverse();
+    }
+    Ok(outline)
+}
+
+/// Reads a list of tables, each at its own path, so that messages name `specimen.holes[2].x_mm`.
+fn items<I: DeserializeOwned, T>(key: &str, list: &[Value], read: impl Fn(I, &str) -> Result<T>) -> Result<Vec<T>> {
+    if list.len() > ITEMS_MAX {
+        return Err(input(key, format!("{} entries", list.len()), "is too long", format!("give at most {ITEMS_MAX}")));
+    }
+    let one = |(i, item): (usize, &Value)| {
+        let path = format!("{key}[{i}]");
+        read(slice(item, &path)?, &path)
+    };
+    list.iter().enumerate().map(one).collect()
+}
+
+/// Two different end points.
+fn ends(path: &str, from: [f64; 2], to: [f64; 2]) -> Result<(Point, Point)> {
+    let (from, to) = (point(&format!("{path}.from_mm"), from)?, point(&format!("{path}.to_mm"), to)?);
+    if distance(from, to) < 1e-6 {
+        return Err(input_missing(path, "has no length: from_mm and to_mm coincide", "give two different points"));
+    }
+    Ok((from, to))
+}
