@@ -1,4 +1,7 @@
 //! Fatigue-life prediction of cracked plates by peridynamics.
+//!
+//! Rooms stand in the order in which data flows; a file uses only rooms listed above its own
+//! (kept by `tests/unit/layering.rs`).
 #![warn(missing_docs)]
 
 pub mod error;
@@ -8,14 +11,16 @@ pub mod kinds;
 pub mod tables;
 pub mod units;
 
-pub mod bond_law;
-pub mod calibration;
-pub mod case;
-pub mod fatigue;
+pub mod specimen;
 pub mod loading;
 pub mod material;
-pub mod predict;
+pub mod bond_law;
 pub mod solver;
-pub mod specimen;
+pub mod fatigue;
+pub mod case;
+pub mod predict;
+pub mod calibration;
+pub mod report;
+pub mod commands;
 
 pub use error::{Error, Result};

@@ -1,1 +1,20 @@
-fn main() {}
+//! Arguments to a command, error to words and an exit code; nothing else.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::Parser;
+use perilife::commands::{CommandLine, message};
+
+fn main() -> ExitCode {
+    let line = CommandLine::parse();
+    line.start_log();
+    match line.command.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // A closed stderr must not turn the exit code into a panic.
+            let _ = writeln!(std::io::stderr(), "{}", message::of(&error));
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

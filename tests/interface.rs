@@ -1,1 +1,9 @@
 //! Do the doors work?
+
+#[path = "support/made_up_run.rs"]
+mod made_up_run;
+
+#[path = "interface/cli.rs"]
+mod cli;
+#[path = "interface/export.rs"]
+mod export;

@@ -1,16 +1,28 @@
 //! Does each part do its job?
 
+#[path = "support/made_up_case.rs"]
+mod made_up_case;
+#[path = "support/made_up_run.rs"]
+mod made_up_run;
 #[path = "support/noise.rs"]
 mod noise;
 
 #[path = "unit/confidence.rs"]
 mod confidence;
+#[path = "unit/layering.rs"]
+mod layering;
 #[path = "unit/measured.rs"]
 mod measured;
 #[path = "unit/misfit.rs"]
 mod misfit;
+#[path = "unit/output.rs"]
+mod output;
+#[path = "unit/pictures.rs"]
+mod pictures;
 #[path = "unit/rates.rs"]
 mod rates;
+#[path = "unit/report.rs"]
+mod report;
 #[cfg(feature = "tables")]
 #[path = "unit/tables.rs"]
 mod tables;

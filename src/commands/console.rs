@@ -1,0 +1,89 @@
+//! What a command prints: results on stdout, warnings and progress on stderr.
+
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::Value;
+
+use crate::error::{Error, Result};
+use crate::predict::{Observer, Progress};
+use crate::units::MM;
+
+/// Options of every command that prints results.
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
+#[command(next_help_heading = "What is printed")]
+pub struct Console {
+    /// Print one JSON object on stdout and nothing else there
+    #[arg(long)]
+    pub json: bool,
+    /// Print no summary and no progress bar; warnings stay
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl Console {
+    /// A line of the summary on stdout.
+    pub fn say(&self, line: &str) {
+        if !self.quiet && !self.json {
+            // Nobody is left to read when stdout is closed (`| head`); the result files are what counts.
+            let _ = writeln!(io::stdout(), "{line}");
+        }
+    }
+
+    /// A warning on stderr.
+    pub fn warn(&self, text: &str) {
+        let _ = writeln!(io::stderr(), "warning: {text}");
+    }
+
+    /// The JSON object on stdout, if it was asked for.
+    ///
+    /// # Errors
+    /// [`Error::File`] if stdout cannot be written; a closed pipe is no trouble.
+    pub fn object(&self, object: &Value) -> Result<()> {
+        if !self.json {
+            return Ok(());
+        }
+        match writeln!(io::stdout(), "{object:#}") {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                Err(Error::file(Path::new("stdout"), "cannot write", error))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A progress bar on stderr, drawn only on a terminal.
+    #[must_use]
+    pub fn progress(&self, name: &str) -> RunProgress {
+        let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(STEPS) };
+        let style = ProgressStyle::with_template("{prefix} {bar:30} {percent:>3} %  {msg}  {eta} left");
+        // The template is fixed, so it either always parses or a look at the screen shows the plain bar.
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_prefix(name.to_owned());
+        RunProgress { bar }
+    }
+}
+
+/// Steps of a full bar.
+const STEPS: u64 = 1000;
+
+/// Shows a run's cycles, crack length, share and time left; the bar goes when the value is dropped.
+#[derive(Debug)]
+pub struct RunProgress {
+    bar: ProgressBar,
+}
+
+impl Observer for RunProgress {
+    fn block_done(&self, progress: &Progress) -> bool {
+        let share = if progress.share.is_finite() { progress.share.clamp(0.0, 1.0) } else { 0.0 };
+        self.bar.set_message(format!("N = {:.4e}, a = {:.2} mm", progress.cycles, progress.crack_length / MM));
+        self.bar.set_position((share * STEPS as f64) as u64);
+        true
+    }
+}
+
+impl Drop for RunProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,79 @@
+//! The command line: one file per subcommand, each with its `Args` and its `run`.
+//!
+//! A new subcommand is its file, its `mod` and its line in the list below.
+
+pub mod console;
+pub mod export;
+pub mod message;
+pub mod predict;
+
+use clap::{Parser, Subcommand};
+use tracing_subscriber::EnvFilter;
+
+/// Declares the subcommands: doc line, name and module; gives the enum that clap parses and the call of the right `run`.
+macro_rules! commands {
+    ($($(#[$doc:meta])+ $Name:ident: $module:ident),+ $(,)?) => {
+        /// A subcommand with its arguments.
+        #[derive(Debug, Subcommand)]
+        pub enum Command { $($(#[$doc])+ $Name($module::Args)),+ }
+
+        impl Command {
+            /// Runs it.
+            ///
+            /// # Errors
+            /// What the command reports; [`crate::Error::exit_code`] is the exit code of the process.
+            pub fn run(&self) -> crate::Result<()> {
+                match self { $(Command::$Name(args) => $module::run(args)),+ }
+            }
+        }
+    };
+}
+
+commands! {
+    /// Predict crack growth: run a case, write its a-N curve and pictures
+    Predict: predict,
+    // /// Fit the fatigue law to measured a-N curves
+    // Calibrate: calibrate,
+    /// Resample the a-N curve of a finished run
+    Export: export,
+    // /// Stress intensity factors of every crack tip, beside the handbook value
+    // Sif: sif,
+    // /// Growth rate da/dN against ΔK from measured a-N curves
+    // Rates: rates,
+    // /// Check an input file without running it
+    // Check: check,
+    // /// List every kind of every key of the input files
+    // List: list,
+}
+
+/// Fatigue-life prediction of cracked plates by peridynamics.
+///
+/// Through cracks in plates only: part-through and corner cracks are refused.
+#[derive(Debug, Parser)]
+#[command(
+    name = "perilife",
+    version,
+    subcommand_required = true,
+    arg_required_else_help = true,
+    after_help = "Units: mm, MPa, GPa, N, MPa√m, mm/cycle; every key and column carries its own.\n\
+                  Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble.\n\
+                  `perilife <COMMAND> --help` explains a command."
+)]
+pub struct CommandLine {
+    /// Say on stderr what the program does; twice for details (the variable RUST_LOG overrides)
+    #[arg(long, short, action = clap::ArgAction::Count, global = true, help_heading = "What is printed")]
+    pub verbose: u8,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+impl CommandLine {
+    /// Sends the log to stderr, filtered by RUST_LOG or else by `--verbose`.
+    pub fn start_log(&self) {
+        let level = ["warn", "perilife=info", "perilife=debug"][usize::from(self.verbose.min(2))];
+        let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
+        // A second start (several calls in one test process) leaves the first log in place.
+        let _ = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().try_init();
+    }
+}

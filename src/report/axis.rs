@@ -1,0 +1,149 @@
+//! An axis of a chart: range, ticks and how numbers are written along it. Linear or logarithmic.
+
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+
+/// Linear or logarithmic axis with ticks of its own choice.
+///
+/// The chart library's logarithmic axis labels whole decades only, which leaves a ΔK axis from 8 to 40 MPa√m with one number.
+#[derive(Debug, Clone)]
+pub struct Axis {
+    low: f64,
+    high: f64,
+    logarithmic: bool,
+    labelled: Vec<f64>,
+    faint: Vec<f64>,
+}
+
+impl Axis {
+    /// Linear axis that holds all `values`, from zero where that wastes little.
+    pub fn linear(values: impl Iterator<Item = f64>) -> Axis {
+        let (mut low, mut high) = bounds(values.filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
+        if low > 0.0 && low < 0.5 * high {
+            low = 0.0;
+        }
+        if high - low <= 1e-9 * high.abs().max(1e-300) {
+            (low, high) = (low - 0.05 * low.abs().max(1.0), high + 0.05 * high.abs().max(1.0));
+        }
+        let step = nice_step((high - low) / 6.0);
+        (low, high) = ((low / step + 1e-9).floor() * step, (high / step - 1e-9).ceil() * step);
+        let count = ((high - low) / step).round() as usize;
+        let labelled: Vec<f64> = (0..=count).map(|i| low + i as f64 * step).collect();
+        Axis { low, high, logarithmic: false, labelled, faint: Vec::new() }
+    }
+
+    /// Logarithmic axis that holds all positive `values`.
+    pub fn logarithmic(values: impl Iterator<Item = f64>) -> Axis {
+        let (low, high) = bounds(values.filter(|v| v.is_finite() && *v > 0.0)).unwrap_or((1.0, 10.0));
+        let (low, high) = (low / 1.12, high * 1.12); // keeps marks off the frame
+        let decades = (high / low).log10();
+        let multiples: &[f64] = match decades {
+            d if d > 3.0 => &[1.0],
+            d if d > 1.5 => &[1.0, 2.0, 5.0],
+            d if d > 0.7 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
+            _ => &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 9.0],
+        };
+        let whole: Vec<f64> = (1..10).map(f64::from).collect();
+        let ticks = |multiples: &[f64]| {
+            let exponents = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
+            let all = exponents.flat_map(|e| multiples.iter().map(move |m| m * 10f64.powi(e)).collect::<Vec<_>>());
+            all.filter(|v| (low..=high).contains(v)).collect::<Vec<f64>>()
+        };
+        Axis { low, high, logarithmic: true, labelled: ticks(multiples), faint: ticks(&whole) }
+    }
+
+    /// Number of labelled ticks.
+    pub fn labels(&self) -> usize {
+        self.labelled.len()
+    }
+}
+
+impl Ranged for Axis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        let share = if self.logarithmic {
+            (value.max(1e-300) / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        };
+        from + (share * f64::from(to - from)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() && self.logarithmic { self.faint.clone() } else { self.labelled.clone() }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.low..self.high
+    }
+}
+
+impl ValueFormatter<f64> for Axis {
+    fn format_ext(&self, value: &f64) -> String {
+        if self.logarithmic { tick_text(*value, 0.0) } else { tick_text(*value, self.high.abs().max(self.low.abs())) }
+    }
+}
+
+fn bounds(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values.fold(None, |range: Option<(f64, f64)>, v| Some(range.map_or((v, v), |(low, high)| (low.min(v), high.max(v)))))
+}
+
+/// 1, 2, 2.5 or 5 times a power of ten, not below `rough`.
+fn nice_step(rough: f64) -> f64 {
+    let power = 10f64.powf(rough.log10().floor());
+    [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= rough * (1.0 - 1e-9)).unwrap_or(rough)
+}
+
+/// A number as people write it beside an axis: `0.5`, `20`, `50 000`, `2·10⁷`, `10⁻⁴`. On an axis that reaches `largest`
+/// all numbers keep one style.
+fn tick_text(value: f64, largest: f64) -> String {
+    let value = if value.abs() < 1e-9 * largest { 0.0 } else { value };
+    let size = largest.max(value.abs());
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-2..0.999e7).contains(&size) {
+        let text = format!("{value:.6e}");
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        let mantissa = trimmed(mantissa);
+        let power = format!("10{}", superscript(exponent));
+        return if mantissa == "1" { power } else { format!("{mantissa}·{power}") };
+    }
+    grouped(&trimmed(&format!("{value:.6}")), "\u{2009}")
+}
+
+fn trimmed(text: &str) -> String {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text.to_owned() }
+}
+
+/// Puts a space between thousands, from 10 000 on.
+pub(super) fn grouped(text: &str, space: &str) -> String {
+    let (whole, rest) = text.split_once('.').map_or((text, String::new()), |(w, r)| (w, format!(".{r}")));
+    if whole.len() < 5 {
+        return text.to_owned();
+    }
+    let head = whole.len() % 3;
+    let mut groups: Vec<&str> = if head > 0 { vec![&whole[..head]] } else { Vec::new() };
+    groups.extend((head..whole.len()).step_by(3).map(|at| &whole[at..at + 3]));
+    groups.join(space) + &rest
+}
+
+fn superscript(exponent: &str) -> String {
+    let raised = |c: char| match c {
+        '-' => '⁻',
+        '0' => '⁰',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '4' => '⁴',
+        '5' => '⁵',
+        '6' => '⁶',
+        '7' => '⁷',
+        '8' => '⁸',
+        _ => '⁹',
+    };
+    exponent.chars().map(raised).collect()
+}

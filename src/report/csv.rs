@@ -1,0 +1,193 @@
+//! Tables of a run: `a_n.csv` and `crack_path.csv`, and reading `a_n.csv` back.
+//!
+//! Numbers carry at least ten significant digits; cycles are written so that they read back bit for bit.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::error::{Error, InputError, Result};
+use crate::predict::{CurvePoint, Prediction};
+use crate::specimen::{Crack, Point};
+use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+
+/// Name of the table of a run's a-N curve.
+pub const A_N_FILE: &str = "a_n.csv";
+/// The four columns every a-N table starts with.
+pub const A_N_COLUMNS: [&str; 4] = ["cycles", "crack_length_mm", "delta_k_mpa_sqrt_m", "da_dn_mm_per_cycle"];
+
+/// One row of an a-N table, in the units of its columns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Cycles since N = 0.
+    pub cycles: f64,
+    /// Crack length, mm.
+    pub crack_length_mm: f64,
+    /// ΔK, MPa√m; NaN where unknown (an empty field).
+    pub delta_k_mpa_sqrt_m: f64,
+    /// da/dN, mm/cycle; NaN where unknown (an empty field).
+    pub da_dn_mm_per_cycle: f64,
+}
+
+impl Row {
+    /// The row of a point of the curve.
+    #[must_use]
+    pub fn of(point: &CurvePoint) -> Row {
+        Row {
+            cycles: point.cycles,
+            crack_length_mm: point.crack_length / MM,
+            delta_k_mpa_sqrt_m: point.delta_k / MPA_SQRT_M,
+            da_dn_mm_per_cycle: point.growth_rate / MM_PER_CYCLE,
+        }
+    }
+
+    /// The four fields as text.
+    #[must_use]
+    pub fn fields(&self) -> String {
+        let rest = [self.crack_length_mm, self.delta_k_mpa_sqrt_m, self.da_dn_mm_per_cycle].map(number);
+        format!("{},{}", exact(self.cycles), rest.join(","))
+    }
+}
+
+/// `a_n.csv`: one row per cycle block; after the four columns broken bonds and, per tip, position and growth.
+#[must_use]
+pub fn a_n(prediction: &Prediction) -> String {
+    let mut text = A_N_COLUMNS.join(",");
+    text.push_str(",broken_bonds");
+    for tip in 0..prediction.curve.first().map_or(0, |point| point.tips.len()) {
+        let _ = write!(text, ",tip{tip}_x_mm,tip{tip}_y_mm,tip{tip}_growth_mm"); // writing to a String cannot fail
+    }
+    text.push('\n');
+    for point in &prediction.curve {
+        let _ = write!(text, "{},{}", Row::of(point).fields(), point.broken_bonds);
+        for tip in &point.tips {
+            for length in [tip.position[0], tip.position[1], tip.growth] {
+                let _ = write!(text, ",{}", number(length / MM));
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// `crack_path.csv`: `tip,cycles,x_mm,y_mm`, one row per tip and recorded step. Each tip's rows start with the initial crack
+/// it belongs to, from the far end to the tip, at N = 0; a tip at the end of a slot starts where it is.
+#[must_use]
+pub fn crack_path(prediction: &Prediction, cracks: &[Crack]) -> String {
+    let mut text = String::from("tip,cycles,x_mm,y_mm\n");
+    for (tip, path) in paths(prediction, cracks).iter().enumerate() {
+        for (cycles, [x, y]) in path {
+            let _ = writeln!(text, "{tip},{},{},{}", exact(*cycles), number(x / MM), number(y / MM));
+        }
+    }
+    text
+}
+
+/// Path of every tip: cycles and positions in metres, the initial crack's far end first.
+#[must_use]
+pub fn paths(prediction: &Prediction, cracks: &[Crack]) -> Vec<Vec<(f64, Point)>> {
+    let Some(first) = prediction.curve.first() else { return Vec::new() };
+    let path_of = |tip: usize| {
+        let grown = prediction.curve.iter().filter_map(|point| Some((point.cycles, point.tips.get(tip)?.position)));
+        let start = far_end(first.tips[tip].position, cracks).map(|end| (0.0, end));
+        start.into_iter().chain(grown).collect()
+    };
+    (0..first.tips.len()).map(path_of).collect()
+}
+
+/// Far end of the initial crack whose nearer end is this tip. The first recorded position may lie a fraction of a spacing
+/// away from the drawn one, so the nearest end within a tenth of the crack's length counts.
+fn far_end(tip: Point, cracks: &[Crack]) -> Option<Point> {
+    let distance = |p: Point, q: Point| (p[0] - q[0]).hypot(p[1] - q[1]);
+    let ends = cracks.iter().flat_map(|crack| {
+        let reach = 0.1 * distance(crack.from, crack.to);
+        [(crack.from, crack.to, reach), (crack.to, crack.from, reach)]
+    });
+    let near = ends.filter(|(near, _, reach)| distance(*near, tip) <= *reach);
+    near.min_by(|a, b| distance(a.0, tip).total_cmp(&distance(b.0, tip))).map(|(_, far, _)| far)
+}
+
+/// Reads the first four columns of an a-N table this program wrote.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be read; [`Error::Input`] naming line and column where it is not such a table.
+pub fn read_a_n(path: &Path) -> Result<Vec<Row>> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::file(path, "cannot read", e))?;
+    let mut lines = text.lines();
+    if !lines.next().is_some_and(|head| head.split(',').map(str::trim).take(4).eq(A_N_COLUMNS)) {
+        return Err(bad_table(path, 1, None, None, "is not the header of an a-N table of this program"));
+    }
+    let mut rows: Vec<Row> = Vec::new();
+    for (line, fields) in (2..).zip(lines) {
+        let values: Vec<&str> = fields.split(',').map(str::trim).collect();
+        let value = |column: usize, may_be_empty: bool| match values.get(column).copied().unwrap_or("") {
+            "" if may_be_empty => Ok(f64::NAN),
+            text => text
+                .parse::<f64>()
+                .ok()
+                .filter(|x| x.is_finite())
+                .ok_or_else(|| bad_table(path, line, Some(A_N_COLUMNS[column]), Some(text), "is not a number")),
+        };
+        let row = Row {
+            cycles: value(0, false)?,
+            crack_length_mm: value(1, false)?,
+            delta_k_mpa_sqrt_m: value(2, true)?,
+            da_dn_mm_per_cycle: value(3, true)?,
+        };
+        if rows.last().is_some_and(|last| row.cycles < last.cycles) {
+            return Err(bad_table(path, line, Some("cycles"), Some(values[0]), "falls"));
+        }
+        rows.push(row);
+    }
+    if rows.is_empty() {
+        return Err(bad_table(path, 1, None, None, "is followed by no row"));
+    }
+    Ok(rows)
+}
+
+fn bad_table(path: &Path, line: usize, column: Option<&str>, value: Option<&str>, problem: &str) -> Error {
+    Error::Input(Box::new(InputError {
+        file: Some(path.to_path_buf()),
+        line: Some(line),
+        key: column.map(str::to_owned),
+        value: value.map(|text| format!("\"{text}\"")),
+        problem: problem.to_owned(),
+        remedy: "run `perilife predict` again to write the table anew".to_owned(),
+    }))
+}
+
+/// A number so that it reads back bit for bit, with at least ten significant digits; empty for NaN.
+#[must_use]
+pub fn exact(value: f64) -> String {
+    if value.is_nan() {
+        return String::new();
+    }
+    let digits_wanted = 10;
+    if value == 0.0 || !value.is_finite() || (1e-4..1e15).contains(&value.abs()) {
+        pad(format!("{value}"), digits_wanted)
+    } else {
+        let text = format!("{value:e}");
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        format!("{}e{exponent}", pad(mantissa.to_owned(), digits_wanted))
+    }
+}
+
+/// A measured or computed quantity with 10 to 15 significant digits: unit conversion may disturb the last of the 17 that
+/// a double carries, and 15 hide that (9 mm stays 9.000000000).
+#[must_use]
+pub fn number(value: f64) -> String {
+    // A 15-digit decimal always parses; the fallback only spares a panic path.
+    exact(format!("{value:.14e}").parse().unwrap_or(value))
+}
+
+/// Appends zeros behind the decimal point until there are `wanted` significant digits.
+fn pad(mut text: String, wanted: usize) -> String {
+    let significant = text.trim_start_matches(['-', '0', '.']).bytes().filter(u8::is_ascii_digit).count();
+    if significant == 0 || significant >= wanted || !text.bytes().all(|b| b.is_ascii_digit() || b == b'.' || b == b'-') {
+        return text;
+    }
+    if !text.contains('.') {
+        text.push('.');
+    }
+    text.push_str(&"0".repeat(wanted - significant));
+    text
+}

@@ -1,0 +1,190 @@
+//! Picture of the damaged plate: one square a point, coloured by its share of broken bonds; crack path, colour bar, scale.
+
+use std::path::Path;
+
+use super::colour::{Rgb, of_share};
+use super::output::write_file;
+use super::raster::Canvas;
+use crate::error::{Error, Result};
+use crate::predict::{PointGrid, Snapshot};
+use crate::specimen::{Crack, Point};
+use crate::units::MM;
+
+/// The plate's longer side has at least so many pixels.
+const LONG_SIDE: f64 = 1000.0;
+/// Width of the column with colour bar and legend, px.
+const COLUMN: i64 = 330;
+/// Height that column needs, px.
+const COLUMN_HEIGHT: i64 = 470;
+const MARGIN: i64 = 30;
+const LETTER: i64 = 2;
+const INK: Rgb = [40, 40, 40];
+const INITIAL_CRACK: Rgb = [0, 0, 0];
+const PATH: Rgb = [0, 150, 255];
+
+/// What the picture shows.
+#[derive(Debug, Clone, Copy)]
+pub struct DamagePicture<'a> {
+    /// Lattice of the points.
+    pub grid: &'a PointGrid,
+    /// State of the plate.
+    pub snapshot: &'a Snapshot,
+    /// Cracks before N = 0.
+    pub cracks: &'a [Crack],
+    /// Path of every tip, m.
+    pub paths: &'a [Vec<Point>],
+}
+
+impl DamagePicture<'_> {
+    /// Writes the picture as PNG.
+    ///
+    /// # Errors
+    /// [`Error::File`] if the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let bytes = self.canvas().png().map_err(|e| Error::file(path, "cannot draw", std::io::Error::other(e)))?;
+        write_file(path, &bytes)
+    }
+
+    fn canvas(&self) -> Canvas {
+        let view = View::of(self.grid);
+        let height = view.height.max(COLUMN_HEIGHT) + 2 * MARGIN;
+        let mut canvas = Canvas::new((view.width + COLUMN + 3 * MARGIN) as usize, height as usize);
+        let full_scale = full_scale(&self.snapshot.damage);
+        self.draw_points(&mut canvas, &view, full_scale);
+        for path in self.paths {
+            let line: Vec<[f64; 2]> = path.iter().map(|point| view.pixel(*point)).collect();
+            canvas.line(&line, 2.5, PATH);
+        }
+        for crack in self.cracks {
+            canvas.line(&[view.pixel(crack.from), view.pixel(crack.to)], 5.0, INITIAL_CRACK);
+        }
+        self.draw_column(&mut canvas, &view, full_scale);
+        canvas
+    }
+
+    /// Every pixel asks which point it belongs to, so turned lattices need nothing special.
+    fn draw_points(&self, canvas: &mut Canvas, view: &View, full_scale: f64) {
+        for row in 0..view.height {
+            for column in 0..view.width {
+                let (x, y) = (MARGIN + column, MARGIN + row);
+                let Some(point) = place_at(self.grid, view.point([x as f64 + 0.5, y as f64 + 0.5])) else { continue };
+                let damage = self.snapshot.damage.get(point).copied().unwrap_or(0.0);
+                canvas.set(x, y, of_share(damage / full_scale));
+            }
+        }
+    }
+
+    fn draw_column(&self, canvas: &mut Canvas, view: &View, full_scale: f64) {
+        let left = 2 * MARGIN + view.width;
+        let mut y = MARGIN;
+        let say = |canvas: &mut Canvas, text: &str, dx: i64, y: i64| canvas.text(text, [left + dx, y], LETTER, INK);
+        say(canvas, "damage", 0, y);
+        say(canvas, "share of broken bonds", 0, y + 24);
+        y += 60;
+        let (bar, thick) = (200, 28);
+        canvas.fill([left - 1, y - 1], [thick + 2, bar + 2], INK);
+        for step in 0..bar {
+            canvas.fill([left, y + step], [thick, 1], of_share(1.0 - (step as f64 + 0.5) / bar as f64));
+        }
+        for tick in 0..=5 {
+            let at = y + bar - bar * tick / 5;
+            canvas.fill([left + thick, at - 1], [6, 2], INK);
+            say(canvas, &format!("{:.1$}", full_scale * tick as f64 / 5.0, 2), thick + 14, at - 7);
+        }
+        y += bar + 34;
+        for (name, colour, width) in [("initial crack", INITIAL_CRACK, 5.0), ("crack path", PATH, 2.5)] {
+            canvas.line(&[[(left + 2) as f64, y as f64], [(left + 42) as f64, y as f64]], width, colour);
+            say(canvas, name, 56, y - 7);
+            y += 28;
+        }
+        let (length, name) = scale_bar(view.pixels_per_metre);
+        y += 8;
+        canvas.fill([left, y], [length, 3], INK);
+        for end in [0, length - 3] {
+            canvas.fill([left + end, y - 6], [3, 15], INK);
+        }
+        say(canvas, &name, length + 12, y - 6);
+        y += 34;
+        let cycles = super::axis::grouped(&format!("{:.0}", self.snapshot.cycles), " ");
+        say(canvas, &format!("N = {cycles} cycles"), 0, y);
+        say(canvas, &format!("crack length {:.2} mm", self.snapshot.crack_length / MM), 0, y + 26);
+    }
+}
+
+/// From metres to pixels: y points up in the plate and down on the picture.
+struct View {
+    pixels_per_metre: f64,
+    left: f64,
+    top: f64,
+    width: i64,
+    height: i64,
+}
+
+impl View {
+    fn of(grid: &PointGrid) -> View {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for (place, _) in grid.point_at.iter().enumerate().filter(|(_, point)| point.is_some()) {
+            let position = position_of(grid, place);
+            for axis in 0..2 {
+                low[axis] = low[axis].min(position[axis]);
+                high[axis] = high[axis].max(position[axis]);
+            }
+        }
+        if low[0] > high[0] {
+            (low, high) = ([0.0; 2], [grid.spacing; 2]);
+        }
+        // Half a square around the outermost points; a turned square reaches up to √2 of that.
+        let half = 0.5 * grid.spacing * (grid.angle.cos().abs() + grid.angle.sin().abs());
+        let size = [0, 1].map(|axis| high[axis] - low[axis] + 2.0 * half);
+        // Whole pixels a point, so that all squares are equally large.
+        let pixels_per_point = (LONG_SIDE * grid.spacing / size[0].max(size[1])).ceil().max(1.0);
+        let pixels_per_metre = pixels_per_point / grid.spacing;
+        let [width, height] = size.map(|length| ((length * pixels_per_metre).round() as i64).max(1));
+        View { pixels_per_metre, left: low[0] - half, top: high[1] + half, width, height }
+    }
+
+    fn pixel(&self, point: Point) -> [f64; 2] {
+        let scale = self.pixels_per_metre;
+        [MARGIN as f64 + (point[0] - self.left) * scale, MARGIN as f64 + (self.top - point[1]) * scale]
+    }
+
+    fn point(&self, pixel: [f64; 2]) -> Point {
+        let scale = self.pixels_per_metre;
+        [self.left + (pixel[0] - MARGIN as f64) / scale, self.top - (pixel[1] - MARGIN as f64) / scale]
+    }
+}
+
+/// Position of a lattice place, m.
+pub(super) fn position_of(grid: &PointGrid, place: usize) -> Point {
+    let (column, row) = ((place % grid.columns) as f64 * grid.spacing, (place / grid.columns) as f64 * grid.spacing);
+    let (sin, cos) = grid.angle.sin_cos();
+    [grid.origin[0] + cos * column - sin * row, grid.origin[1] + sin * column + cos * row]
+}
+
+/// Index of the point whose square holds a position.
+fn place_at(grid: &PointGrid, position: Point) -> Option<usize> {
+    let (dx, dy) = (position[0] - grid.origin[0], position[1] - grid.origin[1]);
+    let (sin, cos) = grid.angle.sin_cos();
+    let column = ((cos * dx + sin * dy) / grid.spacing).round();
+    let row = ((cos * dy - sin * dx) / grid.spacing).round();
+    let inside = column >= 0.0 && row >= 0.0 && column < grid.columns as f64 && row < grid.rows as f64;
+    if !inside {
+        return None;
+    }
+    grid.point_at.get(row as usize * grid.columns + column as usize).copied().flatten().map(|index| index as usize)
+}
+
+/// Upper end of the colour bar: half of the bonds, or all where a point has lost more. A straight crack through full
+/// neighbourhoods cuts at most 11 of 28 bonds of a point at a horizon ratio of 3.015, so 0.5 shows it well.
+fn full_scale(damage: &[f64]) -> f64 {
+    if damage.iter().any(|d| *d > 0.5) { 1.0 } else { 0.5 }
+}
+
+/// A round length that is between 60 and 170 px long, with its name.
+fn scale_bar(pixels_per_metre: f64) -> (i64, String) {
+    let pixels_per_mm = pixels_per_metre * MM;
+    let power = 10f64.powf((60.0 / pixels_per_mm).log10().floor());
+    let length = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|mm| mm * pixels_per_mm >= 60.0).unwrap_or(power);
+    let name = if length >= 1.0 { format!("{length:.0} mm") } else { format!("{length} mm") };
+    ((length * pixels_per_mm).round() as i64, name)
+}

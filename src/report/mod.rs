@@ -1,0 +1,15 @@
+//! Results to files: tables, `result.json`, charts, the damage picture and ParaView files.
+//!
+//! A run writes into an [`output::OutputFolder`], which appears under its name only once it is whole.
+
+pub mod chart;
+pub mod csv;
+pub mod damage;
+pub mod json;
+pub mod output;
+pub mod vtk;
+
+mod axis;
+mod colour;
+mod glyphs;
+mod raster;

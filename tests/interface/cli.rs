@@ -1,0 +1,152 @@
+//! The program as a user calls it: help, exit codes, what goes to stdout and stderr.
+
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use clap::CommandFactory;
+use perilife::commands::CommandLine;
+use tempfile::tempdir;
+
+/// Runs the program in `folder`; stdout and stderr are no terminals.
+pub fn perilife(folder: &Path, arguments: &[&str]) -> Output {
+    cargo_bin_cmd!("perilife").current_dir(folder).env_remove("RUST_LOG").args(arguments).output().unwrap()
+}
+
+/// Standard output and standard error as text.
+pub fn texts(output: &Output) -> (String, String) {
+    (String::from_utf8(output.stdout.clone()).unwrap(), String::from_utf8(output.stderr.clone()).unwrap())
+}
+
+/// The process ended with `code` and one message on stderr that holds all `words`, without a trace of a panic.
+pub fn assert_refused(output: &Output, code: i32, words: &[&str]) {
+    let (stdout, stderr) = texts(output);
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    assert!(stdout.is_empty(), "{stdout}");
+    assert!(stderr.starts_with("error: ") && !stderr.contains("panicked"), "{stderr}");
+    words.iter().for_each(|word| assert!(stderr.contains(word), "{word} in {stderr}"));
+}
+
+fn subcommands() -> Vec<String> {
+    CommandLine::command().get_subcommands().map(|command| command.get_name().to_owned()).collect()
+}
+
+#[test]
+fn every_command_explains_itself() {
+    let here = Path::new(".");
+    let (help, _) = texts(&perilife(here, &["--help"]));
+    assert!(help.contains("Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble"), "{help}");
+    assert!(help.contains("Through cracks in plates only"), "{help}");
+    assert!(!subcommands().is_empty());
+    for name in subcommands() {
+        assert!(help.contains(&format!("\n  {name} ")), "{name} in {help}");
+        let output = perilife(here, &[&name, "--help"]);
+        assert_eq!(output.status.code(), Some(0));
+        assert!(texts(&output).0.contains(&format!("Usage: perilife {name}")));
+    }
+}
+
+#[test]
+fn clap_finds_no_clash_of_arguments() {
+    CommandLine::command().debug_assert();
+}
+
+#[test]
+fn wrong_calls_end_with_two() {
+    let dir = tempdir().unwrap();
+    let calls: [&[&str]; 6] =
+        [&[], &["bogus"], &["predict"], &["export", "x"], &["--bogus"], &["export", "x", "--out", "y.csv", "--points", "1"]];
+    for call in calls {
+        assert_eq!(perilife(dir.path(), call).status.code(), Some(2), "{call:?}");
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn missing_files_end_with_four_and_leave_nothing() {
+    let dir = tempdir().unwrap();
+    assert_refused(&perilife(dir.path(), &["predict", "no.toml", "--out", "a/b"]), 4, &["no.toml: cannot read"]);
+    assert_refused(&perilife(dir.path(), &["predict", ".", "--out", "a/b"]), 4, &[".: cannot read"]);
+    assert_refused(&perilife(dir.path(), &["export", "no", "--out", "a.csv"]), 4, &["no: cannot read"]);
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn list_names_every_key_when_it_is_there() {
+    if !subcommands().contains(&"list".to_owned()) {
+        println!("skipped: no list command yet");
+        return;
+    }
+    let (stdout, _) = texts(&perilife(Path::new("."), &["list"]));
+    for word in ["specimen.kind", "middle_tension", "model.bond_law", "two_parameter", "fatigue.precrack"] {
+        assert!(stdout.contains(word), "{word}");
+    }
+}
+
+/// A case coarse and short enough to run in a second.
+const SMALL_CASE: &str = r#"
+[specimen]
+kind = "middle_tension"
+width_mm = 60.0
+length_mm = 120.0
+thickness_mm = 2.0
+crack_length_mm = 12.0
+[material]
+youngs_modulus_gpa = 72.0
+poisson_ratio = 0.3
+plane = "stress"
+[loading]
+kind = "constant_amplitude"
+stress_max_mpa = 50.0
+stress_ratio = 0.1
+[model]
+spacing_mm = 2.0
+[fatigue]
+a = 1e5
+p = 3.0
+horizon_mm = 6.03
+[stop]
+crack_length_mm = 20.0
+cycles_max = 1e12
+"#;
+
+#[test]
+#[ignore = "waits for the case reader and the engine"]
+fn a_prediction_writes_what_it_promises() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let output = perilife(dir.path(), &["predict", "small.toml", "--out", "out/run", "--json"]);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let printed: serde_json::Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
+    let run = dir.path().join("out/run");
+    let written: serde_json::Value = serde_json::from_str(&fs::read_to_string(run.join("result.json")).unwrap()).unwrap();
+    assert_eq!(printed, written);
+    assert_eq!(written["stop_reason"], "crack_length_reached");
+    for file in ["a_n.csv", "crack_path.csv", "a_n.svg", "da_dn.svg", "damage.png", "paraview/run.pvd"] {
+        assert!(run.join(file).is_file(), "{file}");
+    }
+    let table = fs::read_to_string(run.join("a_n.csv")).unwrap();
+    assert_eq!(table.lines().count() as u64, 2 + written["blocks"].as_u64().unwrap(), "header, N = 0, one row a block");
+    // Its own folder is replaced; the words go to stdout this time.
+    let (stdout, _) = texts(&perilife(dir.path(), &["predict", "small.toml", "--out", "out/run"]));
+    assert!(stdout.contains("life") && stdout.contains("crack_length_reached") && stdout.contains("out/run"), "{stdout}");
+    let (stdout, _) = texts(&perilife(dir.path(), &["predict", "small.toml", "--out", "out/run", "--quiet"]));
+    assert!(stdout.is_empty(), "{stdout}");
+}
+
+#[test]
+#[ignore = "waits for the case reader and the engine"]
+fn a_folder_of_somebody_else_is_refused() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    fs::create_dir(dir.path().join("thesis")).unwrap();
+    fs::write(dir.path().join("thesis/chapter"), "years of work").unwrap();
+    let output = perilife(dir.path(), &["predict", "small.toml", "--out", "thesis"]);
+    assert_refused(&output, 2, &["--out = thesis", "did not make", "give a new or empty folder"]);
+    assert_eq!(fs::read_dir(dir.path().join("thesis")).unwrap().count(), 1);
+    let output = perilife(dir.path(), &["predict", "small.toml", "--out", "small.toml/run"]);
+    assert_refused(&output, 4, &["small.toml/run"]);
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2, "no temporary folder stays");
+}

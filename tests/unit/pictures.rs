@@ -1,0 +1,155 @@
+//! Charts, the damage picture and ParaView files of the made-up run.
+
+use std::fs;
+
+use perilife::report::chart::{self, Mark, Series};
+use perilife::report::damage::DamagePicture;
+use perilife::report::{csv, vtk};
+use perilife::specimen::Point;
+use tempfile::tempdir;
+
+use crate::made_up_run;
+
+/// Lattice angles that matter: the image and the mesh.
+const ANGLES: [f64; 2] = [0.0, 0.35];
+
+#[test]
+fn charts_name_axes_units_and_series() {
+    let dir = tempdir().unwrap();
+    let run = made_up_run::prediction(0.0);
+    let rows: Vec<csv::Row> = run.curve.iter().map(csv::Row::of).collect();
+    let series = |name: &str, mark, pick: fn(&csv::Row) -> (f64, f64)| Series {
+        name: name.into(),
+        mark,
+        points: rows.iter().map(pick).collect(),
+    };
+    for mark in [Mark::Line, Mark::Dashes, Mark::Circles, Mark::Dots] {
+        let path = dir.path().join("chart.svg");
+        let has = |words: &[&str]| {
+            let svg = fs::read_to_string(&path).unwrap();
+            words.iter().for_each(|word| assert!(svg.contains(word), "{mark:?}: {word}"));
+            assert!(svg.contains("width=\"900\"") && svg.contains("viewBox"), "shown at its size");
+        };
+        chart::crack_length(&path, "plate", &[series("predicted", mark, |r| (r.cycles, r.crack_length_mm))]).unwrap();
+        has(&["plate", "predicted", "Cycles N", "Crack length a, mm", "500\u{2009}000"]);
+        chart::growth_rate(&path, "plate", &[series("rates", mark, |r| (r.delta_k_mpa_sqrt_m, r.da_dn_mm_per_cycle))]).unwrap();
+        has(&["rates", "MPa√m", "mm/cycle", "10⁻⁵"]);
+    }
+}
+
+#[test]
+fn charts_survive_what_has_no_extent() {
+    let dir = tempdir().unwrap();
+    let points = [
+        vec![],
+        vec![(0.0, 9.0)],
+        vec![(f64::NAN, 9.0), (f64::INFINITY, -1.0)],
+        vec![(1e300, 1e-300), (1e301, 1e-300)],
+        vec![(5.0, 5.0); 3],
+    ];
+    for points in points {
+        for draw in [chart::crack_length, chart::growth_rate] {
+            for mark in [Mark::Line, Mark::Dashes, Mark::Circles] {
+                draw(&dir.path().join("chart.svg"), "", &[Series { name: "n".into(), points: points.clone(), mark }]).unwrap();
+            }
+        }
+    }
+}
+
+#[test]
+fn the_damage_picture_shows_plate_crack_and_scale() {
+    let dir = tempdir().unwrap();
+    for angle in ANGLES {
+        let (run, cracks) = (made_up_run::prediction(angle), made_up_run::cracks());
+        let paths: Vec<Vec<Point>> =
+            csv::paths(&run, &cracks).into_iter().map(|path| path.into_iter().map(|(_, p)| p).collect()).collect();
+        let file = dir.path().join("damage.png");
+        DamagePicture { grid: &run.grid, snapshot: &run.snapshots[2], cracks: &cracks, paths: &paths }.write(&file).unwrap();
+        let mut reader = png::Decoder::new(std::io::BufReader::new(fs::File::open(&file).unwrap())).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        assert!(info.width.max(info.height) >= 900);
+        let count = |colour: [u8; 3]| pixels.chunks_exact(3).filter(|pixel| **pixel == colour).count();
+        // Black is used for the initial crack alone, blue for its path alone; the plate is most of the picture's left part.
+        assert!(count([0, 0, 0]) > 100 && count([0, 150, 255]) > 300, "angle {angle}");
+        assert!(pixels.chunks_exact(3).filter(|pixel| **pixel != [255; 3]).count() > 400_000);
+        // Hole of 12 mm radius at (20, 60) mm: white, seen from the plate's centre (4 px a mm, margin 30 px).
+        let [plate_width, plate_height] = [info.width as i64 - 330 - 90, info.height as i64 - 60];
+        let at = |x_mm: i64, y_mm: i64| {
+            let (x, y) = (30 + plate_width / 2 + 4 * x_mm, 30 + plate_height / 2 - 4 * y_mm);
+            let start = 3 * (y * i64::from(info.width) + x) as usize;
+            pixels[start..start + 3].to_vec()
+        };
+        assert_eq!(at(20, 60), [255; 3], "angle {angle}");
+        assert_ne!(at(-20, 60), [255; 3]);
+        assert_ne!(at(20, -60), [255; 3], "y points up");
+    }
+}
+
+/// An array of a VTK XML file with appended raw data: bytes of the array called `name`.
+fn array<'f>(file: &'f [u8], name: &str) -> (String, &'f [u8]) {
+    let marker = b"<AppendedData encoding=\"raw\">\n_";
+    let start = file.windows(marker.len()).position(|w| w == marker).unwrap() + marker.len();
+    let head = std::str::from_utf8(&file[..start]).unwrap();
+    let element = head.split("<DataArray ").find(|e| e.contains(&format!("Name=\"{name}\""))).unwrap_or_else(|| panic!("{name}"));
+    let attribute = |key: &str| element.split(&format!("{key}=\"")).nth(1).unwrap().split('"').next().unwrap().to_owned();
+    let at = start + attribute("offset").parse::<usize>().unwrap();
+    let length = u64::from_le_bytes(file[at..at + 8].try_into().unwrap()) as usize;
+    (format!("{} {}", attribute("type"), attribute("NumberOfComponents")), &file[at + 8..at + 8 + length])
+}
+
+fn reals(bytes: &[u8]) -> Vec<f64> {
+    bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect()
+}
+
+#[test]
+fn paraview_files_read_back() {
+    let dir = tempdir().unwrap();
+    for (angle, extension) in ANGLES.into_iter().zip(["vti", "vtu"]) {
+        let run = made_up_run::prediction(angle);
+        vtk::write_series(dir.path(), &run.grid, &run.snapshots).unwrap();
+        let list = fs::read_to_string(dir.path().join("run.pvd")).unwrap();
+        for (number, snapshot) in run.snapshots.iter().enumerate() {
+            let name = format!("plate_{number:04}.{extension}");
+            assert!(list.contains(&format!("timestep=\"{}\" group=\"\" part=\"0\" file=\"{name}\"", snapshot.cycles)));
+            let file = fs::read(dir.path().join(name)).unwrap();
+            let (kind, damage) = array(&file, "damage");
+            assert_eq!(kind, "Float64 1");
+            let (kind, displacement) = array(&file, "displacement_mm");
+            assert_eq!(kind, "Float64 3");
+            let (damage, displacement) = (reals(damage), reals(displacement));
+            assert_eq!(displacement.len(), 3 * damage.len());
+            // Sums survive the change from points to lattice places, whatever the order.
+            assert!((damage.iter().sum::<f64>() - snapshot.damage.iter().sum::<f64>()).abs() < 1e-9);
+            let up: f64 = displacement.iter().skip(1).step_by(3).map(|v| v.abs()).sum();
+            let expected: f64 = snapshot.displacement.iter().map(|u| 1e3 * u[1].abs()).sum();
+            assert!((up / expected - 1.0).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_turned_lattice_is_squares_of_its_own_size() {
+    let run = made_up_run::prediction(0.35);
+    let file = vtk::mesh(&run.grid, &run.snapshots[0]);
+    let points = reals(array(&file, "points").1);
+    let corners: Vec<i64> =
+        array(&file, "connectivity").1.chunks_exact(8).map(|b| i64::from_le_bytes(b.try_into().unwrap())).collect();
+    assert_eq!(points.len(), 3 * run.figures.points);
+    assert_eq!(array(&file, "types").1.len(), corners.len() / 4);
+    for square in corners.chunks_exact(4) {
+        let [a, b, c] = [0, 1, 2].map(|i| &points[3 * square[i] as usize..][..2]);
+        let (first, second) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
+        let area = first[0] * second[1] - first[1] * second[0];
+        assert!((area - 1.0).abs() < 1e-9, "1 mm², counter-clockwise: {area}");
+    }
+}
+
+#[test]
+fn places_outside_the_material_are_hidden() {
+    let run = made_up_run::prediction(0.0);
+    let file = vtk::image(&run.grid, &run.snapshots[0]);
+    let ghosts = array(&file, "vtkGhostType").1;
+    assert_eq!(ghosts.len(), run.grid.point_at.len());
+    assert!(ghosts.iter().zip(&run.grid.point_at).all(|(ghost, point)| (*ghost == 2) == point.is_none()));
+}
