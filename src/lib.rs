@@ -5,11 +5,11 @@
 #![warn(missing_docs)]
 
 pub mod error;
-pub mod input;
 pub mod kinds;
 #[cfg(feature = "tables")]
 pub mod tables;
 pub mod units;
+pub mod input;
 
 pub mod specimen;
 pub mod loading;

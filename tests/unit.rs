@@ -6,7 +6,11 @@ mod made_up_case;
 mod made_up_run;
 #[path = "support/noise.rs"]
 mod noise;
+#[path = "support/shared.rs"]
+mod shared;
 
+#[path = "unit/commands.rs"]
+mod commands;
 #[path = "unit/confidence.rs"]
 mod confidence;
 #[path = "unit/layering.rs"]

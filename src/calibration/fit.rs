@@ -165,6 +165,14 @@ fn fitted_curve(curve: &MeasuredCurve, constants: Constants, model_cycles: &[f64
     }
 }
 
+impl Fit {
+    /// Standard error of p; 0 where it was given.
+    #[must_use]
+    pub fn p_error(&self) -> f64 {
+        self.confidence.covariance[1][1].max(0.0).sqrt()
+    }
+}
+
 impl FittedCurve {
     /// Measured cycles at the last reading.
     #[must_use]

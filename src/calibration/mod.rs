@@ -2,8 +2,9 @@
 //!
 //! In the order data flows: [`measured`] readings, their [`median`] and [`rates`]; the forward [`model`] that is
 //! fitted; [`misfit`], [`search`] and [`confidence`]; [`fit`], the page that calls them in turn; what it means as C and m
-//! ([`paris`]); the [`record`] that predictions read.
+//! ([`paris`]); [`results`] as they are written and the [`record`] that predictions read. [`case`] reads the input file.
 
+pub mod case;
 pub mod columns;
 pub mod confidence;
 pub mod fit;
@@ -18,6 +19,7 @@ pub mod paris;
 pub mod power_law;
 pub mod rates;
 pub mod record;
+pub mod results;
 pub mod search;
 pub mod surrogate;
 pub(crate) mod text_table;

@@ -9,7 +9,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::calibration::line::{Line, line};
 use crate::calibration::measured::MeasuredCurve;
-use crate::specimen::SpecimenKind;
+use crate::case::Case;
+use crate::specimen::{LoadMeasure, SpecimenKind};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Smallest increment of crack length between readings that E647 (8.6.2) asks for, m.
@@ -133,6 +134,27 @@ pub struct TestPiece<'a> {
     pub yield_strength: Option<f64>,
     /// ΔK at a crack length.
     pub delta_k: &'a dyn Fn(f64) -> f64,
+}
+
+impl<'a> TestPiece<'a> {
+    /// The specimen of a case, with ΔK from `delta_k`.
+    #[must_use]
+    pub fn of(case: &Case, delta_k: &'a dyn Fn(f64) -> f64) -> Self {
+        let specimen = &case.specimen;
+        let force_per_load = match specimen.load_measure {
+            LoadMeasure::Stress => specimen.width * specimen.thickness,
+            LoadMeasure::Force => 1.0,
+        };
+        TestPiece {
+            kind: specimen.kind,
+            width: specimen.width,
+            thickness: specimen.thickness,
+            force_max: case.loading.maximum * force_per_load,
+            k_max_over_range: 1.0 / case.loading.range_share(),
+            yield_strength: case.material.yield_strength,
+            delta_k,
+        }
+    }
 }
 
 /// Fills in ΔK and the flag of small-scale yielding.

@@ -26,8 +26,8 @@ pub fn with_source_line(input: &InputError) -> Option<String> {
     let (file, line) = (input.file.as_ref()?, input.line?);
     let text = std::fs::read_to_string(file).ok()?;
     let start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
-    let length = text.get(start..)?.lines().next().map_or(0, str::len);
-    // Where key and value stand is part of the message already; the shown line takes their place.
+    let length = text.lines().nth(line - 1)?.len();
+    // Where the trouble stands is part of the message already; the shown line takes their place.
     let message = InputError { file: None, line: None, remedy: String::new(), ..input.clone() }.to_string();
     let shown = Shown {
         message,

@@ -6,6 +6,7 @@ pub mod console;
 pub mod export;
 pub mod message;
 pub mod predict;
+pub mod rates;
 
 use clap::{Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
@@ -38,8 +39,8 @@ commands! {
     Export: export,
     // /// Stress intensity factors of every crack tip, beside the handbook value
     // Sif: sif,
-    // /// Growth rate da/dN against ΔK from measured a-N curves
-    // Rates: rates,
+    /// Growth rate da/dN against ΔK from measured a-N curves
+    Rates: rates,
     // /// Check an input file without running it
     // Check: check,
     // /// List every kind of every key of the input files

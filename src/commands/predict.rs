@@ -38,7 +38,7 @@ pub struct Args {
 /// # Errors
 /// Wrong input, a run without a result, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
-    let case = read_case(&args.case, &args.set)?;
+    let case = Case::from_file(&args.case, &args.set)?;
     let done = run_case(&case, &args.out, &args.console)?;
     args.console.object(&done.result)
 }
@@ -56,8 +56,7 @@ pub struct FinishedRun {
 /// `--json` asked for one object there (which the caller prints).
 ///
 /// # Errors
-/// As the engine reports; [`Error::Mechanics`] if the solver failed before the crack grew; [`Error::Input`] if more than
-/// a quarter of the life lies outside the fitted ΔK range and the case does not allow that. Nothing is written then.
+/// As the engine and [`keep`] report; nothing is written then.
 pub fn run_case(case: &Case, out: &Path, console: &Console) -> Result<FinishedRun> {
     // Claimed first: a folder that cannot be written should not cost a run.
     let folder = OutputFolder::create(out)?;
@@ -65,14 +64,24 @@ pub fn run_case(case: &Case, out: &Path, console: &Console) -> Result<FinishedRu
         console.warn(warning);
     }
     let prediction = compute(case, &console.progress(&case.name))?;
+    keep(case, prediction, folder, console)
+}
+
+/// Judges a run, writes its files and puts the folder in place.
+///
+/// # Errors
+/// [`Error::Mechanics`] if the solver failed before the crack grew; [`Error::Input`] if more than a quarter of the life
+/// lies outside the fitted ΔK range and the case does not allow that; [`Error::File`] if a file cannot be written.
+pub fn keep(case: &Case, prediction: Prediction, folder: OutputFolder, console: &Console) -> Result<FinishedRun> {
     for warning in &prediction.warnings {
         console.warn(warning);
     }
     judge(case, &prediction, console)?;
     let result = json::result(case, &prediction);
     write_run(folder.path(), case, &prediction, &result)?;
+    let lines = summary(case, &prediction, folder.name());
     folder.finish()?;
-    for line in summary(case, &prediction, out) {
+    for line in lines {
         console.say(&line);
     }
     Ok(FinishedRun { prediction, result })
@@ -86,7 +95,9 @@ const EXTRAPOLATION_REFUSED: f64 = 0.25;
 /// Whether a run counts as a result.
 fn judge(case: &Case, prediction: &Prediction, console: &Console) -> Result<()> {
     if prediction.stop == StopReason::NoConvergence {
-        if prediction.crack_length_final() <= case.specimen.crack_length {
+        let start = prediction.curve.first().map_or(f64::INFINITY, |point| point.crack_length);
+        // An empty curve compares as not grown.
+        if prediction.crack_length_final().max(0.0) <= start {
             return Err(Error::Mechanics(format!(
                 "{}: the equilibrium solver did not converge before the crack grew, so there is no curve; \
                  try model.solver = \"direct\" or another model.spacing_mm",
@@ -99,10 +110,9 @@ fn judge(case: &Case, prediction: &Prediction, console: &Console) -> Result<()> 
     let LawSource::Fitted(record) = &case.law else { return Ok(()) };
     let (low, high) = (record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m);
     let text = format!("{:.1} % of the life lies outside the fitted range of ΔK, {low:.2} to {high:.2} MPa√m", 100.0 * share);
-    let allowed = case.echo.pointer("/fatigue/allow_extrapolation").and_then(Value::as_bool).unwrap_or(false);
-    if share > EXTRAPOLATION_REFUSED && !allowed {
+    if share > EXTRAPOLATION_REFUSED && !case.allow_extrapolation {
         let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
-        return Err(input("fatigue.allow_extrapolation", allowed, format!("{}: {text}", case.name), remedy));
+        return Err(input("fatigue.allow_extrapolation", false, format!("{}: {text}", case.name), remedy));
     }
     if share > EXTRAPOLATION_WARNED {
         console.warn(&text);
@@ -111,10 +121,7 @@ fn judge(case: &Case, prediction: &Prediction, console: &Console) -> Result<()> 
 }
 
 /// Writes all files of a run into `folder`.
-///
-/// # Errors
-/// [`Error::File`] if a file cannot be written.
-pub fn write_run(folder: &Path, case: &Case, prediction: &Prediction, result: &Value) -> Result<()> {
+fn write_run(folder: &Path, case: &Case, prediction: &Prediction, result: &Value) -> Result<()> {
     write_file(&folder.join(csv::A_N_FILE), csv::a_n(prediction).as_bytes())?;
     write_file(&folder.join("crack_path.csv"), csv::crack_path(prediction, &case.specimen.cracks).as_bytes())?;
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
@@ -165,13 +172,7 @@ fn summary(case: &Case, prediction: &Prediction, out: &Path) -> Vec<String> {
     ]
 }
 
-// The two doors that other rooms still have to open:
-
-fn read_case(path: &Path, _overrides: &[String]) -> Result<Case> {
-    std::fs::read(path).map_err(|e| Error::file(path, "cannot read", e))?;
-    Err(Error::Mechanics("reading cases is not wired yet".to_owned()))
-}
-
+/// The engine. Until it is there, this is the one place to change: `crate::predict::predict(case, observer)`.
 fn compute(_case: &Case, _observer: &dyn Observer) -> Result<Prediction> {
     Err(Error::Mechanics("the engine is not wired yet".to_owned()))
 }

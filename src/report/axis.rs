@@ -83,7 +83,13 @@ impl Ranged for Axis {
 
 impl ValueFormatter<f64> for Axis {
     fn format_ext(&self, value: &f64) -> String {
-        if self.logarithmic { tick_text(*value, 0.0) } else { tick_text(*value, self.high.abs().max(self.low.abs())) }
+        if self.logarithmic {
+            return tick_text(*value, 0.0, 0);
+        }
+        // All labels of a linear axis carry as many decimals as the one that needs most: 10.00, 10.01.
+        let decimals_of = |v: &f64| trimmed(&format!("{v:.6}")).split_once('.').map_or(0, |(_, decimals)| decimals.len());
+        let decimals = self.labelled.iter().map(decimals_of).max().unwrap_or(0);
+        tick_text(*value, self.high.abs().max(self.low.abs()), decimals)
     }
 }
 
@@ -98,21 +104,23 @@ fn nice_step(rough: f64) -> f64 {
 }
 
 /// A number as people write it beside an axis: `0.5`, `20`, `50 000`, `2·10⁷`, `10⁻⁴`. On an axis that reaches `largest`
-/// all numbers keep one style.
-fn tick_text(value: f64, largest: f64) -> String {
+/// all numbers keep one style, with at least so many `decimals`.
+fn tick_text(value: f64, largest: f64, decimals: usize) -> String {
     let value = if value.abs() < 1e-9 * largest { 0.0 } else { value };
     let size = largest.max(value.abs());
     if value == 0.0 {
         return "0".to_owned();
     }
-    if !(1e-2..0.999e7).contains(&size) {
+    if !(2e-2..0.999e7).contains(&size) {
         let text = format!("{value:.6e}");
         let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
         let mantissa = trimmed(mantissa);
         let power = format!("10{}", superscript(exponent));
         return if mantissa == "1" { power } else { format!("{mantissa}·{power}") };
     }
-    grouped(&trimmed(&format!("{value:.6}")), "\u{2009}")
+    let text = trimmed(&format!("{value:.6}"));
+    let text = if decimals > 0 { format!("{value:.decimals$}") } else { text };
+    grouped(&text, "\u{2009}")
 }
 
 fn trimmed(text: &str) -> String {

@@ -76,7 +76,12 @@ const WHY_CHOSEN: [(&str, &str); 9] = [
 
 fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> String {
     let given = case.echo.get("model").and_then(|model| model.get(key)).is_some();
-    let source = if given { "given in the case" } else { reason };
+    let recorded = matches!(case.law, LawSource::Fitted(_)) && FIXED_BY_RECORD.contains(&key);
+    let source = match (given, recorded) {
+        (true, _) => "given in the case",
+        (false, true) => "as in the fitted record: the law holds for this choice only",
+        (false, false) => reason,
+    };
     let (asked, actual) = (case.model.spacing / MM, prediction.figures.spacing / MM);
     if key == "spacing_mm" && ((asked - actual) / actual).abs() > 1e-9 {
         return format!("{source}; moved from {asked:.6} to {actual:.6} so that it divides the width");
@@ -84,18 +89,18 @@ fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> St
     source.to_owned()
 }
 
-/// The constants the case gave, before any rescaling to this run's horizon, modulus or stress ratio.
+/// Choices that a fitted law is meaningless without.
+const FIXED_BY_RECORD: [&str; 5] = ["bond_law", "kernel", "rotation", "surface_correction", "horizon_ratio"];
+
+/// The constants as given, and A as it was used: at this run's horizon, modulus and stress ratio.
 fn law(case: &Case, prediction: &Prediction) -> Value {
+    let used = case.fatigue_law(prediction.figures.horizon).ok().map(|law| law.a);
     match &case.law {
         LawSource::Inline(law) => {
-            let used = law.at_horizon(prediction.figures.horizon);
-            json!({
-                "source": "inline", "a": law.a, "p": law.p, "horizon_mm": clean(law.horizon / MM),
-                "a_at_this_horizon": used.a,
-            })
+            json!({ "source": "inline", "a": law.a, "p": law.p, "horizon_mm": clean(law.horizon / MM), "a_used": used })
         }
         LawSource::Fitted(record) => json!({
-            "source": "fitted", "a": record.a, "p": record.p, "horizon_mm": record.horizon_mm,
+            "source": "fitted", "a": record.a, "p": record.p, "horizon_mm": record.horizon_mm, "a_used": used,
             "paris_c_mm_per_cycle": record.paris_c_mm_per_cycle, "paris_m": record.paris_m,
             "delta_k_min_mpa_sqrt_m": record.delta_k_min_mpa_sqrt_m, "delta_k_max_mpa_sqrt_m": record.delta_k_max_mpa_sqrt_m,
         }),

@@ -16,6 +16,8 @@ pub const MARKER: &str = ".perilife";
 /// dropped before that (an error, a panic) it leaves nothing behind.
 #[derive(Debug)]
 pub struct OutputFolder {
+    /// As given by the user.
+    name: PathBuf,
     target: PathBuf,
     partial: PathBuf,
     /// Folders above the target that did not exist before, deepest first; removed again if nothing comes of the run.
@@ -35,7 +37,7 @@ impl OutputFolder {
             parent.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists()).map(PathBuf::from).collect();
         // From here on the value itself tidies up, whatever fails.
         let partial = temporary_beside(&target, "partial");
-        let folder = OutputFolder { target, partial, new_parents, finished: false };
+        let folder = OutputFolder { name: path.to_path_buf(), target, partial, new_parents, finished: false };
         fs::create_dir_all(&parent).map_err(|e| Error::file(path, "cannot create the folder", e))?;
         fs::create_dir(&folder.partial).map_err(|e| Error::file(path, "cannot create the folder", e))?;
         let origin = format!("made by perilife {}; replaced by the next run that writes here\n", env!("CARGO_PKG_VERSION"));
@@ -49,10 +51,10 @@ impl OutputFolder {
         &self.partial
     }
 
-    /// Where the results will stand.
+    /// Where the results will stand, as the user named it.
     #[must_use]
-    pub fn target(&self) -> &Path {
-        &self.target
+    pub fn name(&self) -> &Path {
+        &self.name
     }
 
     /// Puts the folder in its place; the results of an earlier run go.
@@ -60,7 +62,7 @@ impl OutputFolder {
     /// # Errors
     /// [`Error::File`] if it cannot be renamed; an earlier result then stands as before.
     pub fn finish(mut self) -> Result<()> {
-        let cannot = |e| Error::file(&self.target, "cannot put the results in place", e);
+        let cannot = |e| Error::file(&self.name, "cannot put the results in place", e);
         if self.target.exists() {
             let old = temporary_beside(&self.target, "old");
             fs::rename(&self.target, &old).map_err(cannot)?;

@@ -112,7 +112,7 @@ cycles_max = 1e12
 "#;
 
 #[test]
-#[ignore = "waits for the case reader and the engine"]
+#[ignore = "waits for the engine"]
 fn a_prediction_writes_what_it_promises() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
@@ -137,7 +137,6 @@ fn a_prediction_writes_what_it_promises() {
 }
 
 #[test]
-#[ignore = "waits for the case reader and the engine"]
 fn a_folder_of_somebody_else_is_refused() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();

@@ -1,76 +1,43 @@
 //! A case to go with the run nobody computed.
 
-use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use std::path::Path;
+
 use perilife::calibration::record::FittedRecord;
-use perilife::case::{Case, LawSource, Model, Stop};
-use perilife::fatigue::{Ageing, Block, BlockKind, FatigueLaw, FatigueSettings, Precrack};
-use perilife::loading::Loading;
-use perilife::material::{Material, Plane};
-use perilife::solver::SolverKind;
-use perilife::specimen::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
-use serde_json::json;
+use perilife::case::{Case, LawSource};
 
-use crate::made_up_run;
+/// A plate of 100 x 300 mm with the slant crack of the made-up run and an inline law; the model names the bond law and a
+/// spacing that has to move.
+const TEXT: &str = r#"
+[specimen]
+kind = "plate"
+width_mm = 100.0
+length_mm = 300.0
+thickness_mm = 2.0
+cracks = [{ from_mm = [-4.330127, -2.5], to_mm = [4.330127, 2.5] }]
+[material]
+youngs_modulus_gpa = 72.0
+poisson_ratio = 0.3
+plane = "stress"
+[loading]
+kind = "constant_amplitude"
+stress_max_mpa = 70.0
+stress_ratio = 0.1
+[model]
+bond_law = "two_parameter"
+spacing_mm = 1.01
+[fatigue]
+a = 1e5
+p = 3.0
+horizon_mm = 3.015
+[stop]
+cycles_max = 1e7
+"#;
 
-/// A plate of 100 x 300 mm with the slant crack of the made-up run and an inline law; the echo names the bond law only.
+/// The case, with one warning of its own.
 pub fn case() -> Case {
-    Case {
-        name: "made_up".to_owned(),
-        specimen: Specimen {
-            kind: SpecimenKind::Plate,
-            outline: vec![[-0.05, -0.15], [0.05, -0.15], [0.05, 0.15], [-0.05, 0.15]],
-            holes: Vec::new(),
-            slots: Vec::new(),
-            cracks: made_up_run::cracks(),
-            tips: Vec::new(),
-            thickness: 2e-3,
-            width: 0.1,
-            gross_width: 0.1,
-            crack_plane_y: None,
-            crack_length: 10e-3,
-            convention: LengthConvention::SumOfTips,
-            loads: Vec::new(),
-            load_measure: LoadMeasure::Stress,
-            supports: Vec::new(),
-        },
-        material: Material {
-            name: "inline".to_owned(),
-            youngs_modulus: 72e9,
-            poisson_ratio: 0.3,
-            plane: Plane::Stress,
-            yield_strength: None,
-            toughness: None,
-            fracture_energy: None,
-        },
-        loading: Loading { maximum: 70e6, ratio: 0.1, parallel_ratio: 0.0 },
-        model: Model {
-            bond_law: BondLaw {
-                kind: BondLawKind::TwoParameter,
-                kernel: Kernel::Conical,
-                rotation: Rotation::Free,
-                surface_correction: SurfaceCorrection::VolumeAndSurface,
-            },
-            spacing: 1.01e-3,
-            horizon_ratio: 3.015,
-            lattice_angle: 0.0,
-            solver: SolverKind::Multigrid,
-        },
-        fatigue: FatigueSettings {
-            ageing: Ageing::CrackTip,
-            zone_radius_horizons: 0.5,
-            precrack: Precrack::SteadyProfile,
-            block: Block { kind: BlockKind::UntilNextBreak, cycles: f64::NAN, bonds: 1 },
-            critical_stretch: f64::INFINITY,
-            walker_gamma: 1.0,
-            threshold: 0.0,
-        },
-        law: LawSource::Inline(FatigueLaw { a: 1e5, p: 3.0, horizon: 3.015e-3 }),
-        stop: Stop { crack_length: f64::INFINITY, cycles_max: 1e7 },
-        warnings: vec!["spacing moved".to_owned()],
-        echo: json!({ "model": { "bond_law": "two_parameter" } }),
-        allow_extrapolation: false,
-        choices: Default::default(),
-    }
+    let mut case = Case::from_toml(TEXT, "made_up", Path::new("."), &[]).unwrap();
+    case.warnings = vec!["spacing moved".to_owned()];
+    case
 }
 
 /// A record fitted between two ΔK in MPa√m.

@@ -32,31 +32,36 @@ fn rooms_use_only_rooms_above_them() {
             .trim_end_matches(".rs")
             .to_owned();
         let Some(own) = place(&room) else { continue };
-        for (number, line) in fs::read_to_string(&file).unwrap().lines().enumerate() {
-            if line.trim_start().starts_with("//") {
-                continue;
-            }
-            assert!(
-                !line.contains("crate::{"),
-                "{}:{}: one `use crate::room` a line, so that this test can read it",
-                file.display(),
-                number + 1
-            );
-            for path in line.split("crate::").skip(1) {
-                let used = path.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap();
-                let Some(other) = place(used) else { continue };
-                let excepted = EXCEPTIONS.iter().any(|(from, to)| *from == room && path.starts_with(to));
-                assert!(
-                    other <= own || excepted,
-                    "{}:{}: {room} uses {used}, which stands below it in lib.rs",
-                    file.display(),
-                    number + 1
-                );
-                uses += 1;
-            }
+        let text = fs::read_to_string(&file).unwrap();
+        let code: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+        for path in crate_paths(&code.join("\n")) {
+            let Some(other) = place(path.split("::").next().unwrap()) else { continue };
+            let excepted = EXCEPTIONS.iter().any(|(from, to)| *from == room && path.starts_with(to));
+            assert!(other <= own || excepted, "{}: {room} uses {path}, which stands below it in lib.rs", file.display());
+            uses += 1;
         }
     }
     assert!(rooms.len() > 10 && uses > 50, "the test reads the sources: {} rooms, {uses} uses", rooms.len());
+}
+
+/// What stands behind every `crate::`, groups in braces taken apart: `crate::{a, b::c}` gives `a` and `b::c`.
+fn crate_paths(code: &str) -> Vec<String> {
+    let word = |text: &str| text.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_' || *c == ':').collect::<String>();
+    code.split("crate::")
+        .skip(1)
+        .flat_map(|rest| match rest.strip_prefix('{') {
+            Some(group) => group.split(';').next().unwrap().split([',', '{', '}']).map(word).collect(),
+            None => vec![word(rest)],
+        })
+        .collect()
+}
+
+#[test]
+fn paths_are_read_from_groups_too() {
+    assert_eq!(
+        crate_paths("use crate::{case, loading::read};\nlet x = crate::predict!(1);"),
+        ["case", "loading::read", "", "predict"]
+    );
 }
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {

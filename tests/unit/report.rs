@@ -101,8 +101,19 @@ fn the_result_has_every_promised_key() {
     assert!(result["life_share_extrapolated"].is_null(), "an inline law has no fitted range");
     let why = &result["model"]["why"];
     assert_eq!(why["bond_law"], "given in the case");
+    assert_eq!(result["law"]["a_used"], 1e5, "the same horizon, so the same A");
     assert!(why["kernel"].as_str().unwrap().starts_with("default"));
     assert!(why["spacing_mm"].as_str().unwrap().contains("moved from 1.010000 to 1.000000"));
+}
+
+#[test]
+fn a_fitted_record_is_the_reason_for_its_choices() {
+    let mut case = made_up_case::case();
+    case.law = made_up_case::fitted(8.0, 25.0);
+    let result = json::result(&case, &made_up_run::prediction(0.0));
+    assert_eq!(result["model"]["why"]["bond_law"], "given in the case");
+    assert!(result["model"]["why"]["kernel"].as_str().unwrap().starts_with("as in the fitted record"));
+    assert!(result["life_share_extrapolated"].as_f64().unwrap() < 0.1);
 }
 
 #[test]

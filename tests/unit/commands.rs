@@ -1,0 +1,85 @@
+//! What the commands do around the engine: which runs are kept, and how errors are told.
+
+use std::fs;
+use std::path::Path;
+
+use perilife::case::Case;
+use perilife::commands::console::Console;
+use perilife::commands::{message, predict};
+use perilife::error::InputError;
+use perilife::predict::{Prediction, StopReason};
+use perilife::report::output::OutputFolder;
+use tempfile::tempdir;
+
+use crate::{made_up_case, made_up_run};
+
+const QUIET: Console = Console { json: false, quiet: true };
+
+fn keep(case: &Case, run: Prediction, out: &Path) -> Result<(), perilife::Error> {
+    predict::keep(case, run, OutputFolder::create(out)?, &QUIET).map(|_| ())
+}
+
+#[test]
+fn a_run_leaves_all_its_files() {
+    let dir = tempdir().unwrap();
+    let out = dir.path().join("run");
+    keep(&made_up_case::case(), made_up_run::prediction(0.0), &out).unwrap();
+    let files = ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "damage.png", "paraview/run.pvd"];
+    for file in files.into_iter().chain(["paraview/plate_0002.vti", ".perilife"]) {
+        assert!(fs::metadata(out.join(file)).unwrap().len() > 0, "{file}");
+    }
+    let result: serde_json::Value = serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
+    assert_eq!(result["points"], made_up_run::prediction(0.0).figures.points);
+}
+
+#[test]
+fn no_convergence_is_refused_only_where_there_is_no_curve() {
+    let dir = tempdir().unwrap();
+    let case = made_up_case::case();
+    let mut run = made_up_run::prediction(0.0);
+    run.stop = StopReason::NoConvergence;
+    keep(&case, run.clone(), &dir.path().join("grown")).unwrap();
+    run.curve.truncate(1);
+    let error = keep(&case, run, &dir.path().join("not_grown")).unwrap_err();
+    assert_eq!(error.exit_code(), 3, "{error}");
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "nothing of the refused run stays");
+}
+
+#[test]
+fn far_extrapolation_is_refused_unless_allowed() {
+    let dir = tempdir().unwrap();
+    let mut case = made_up_case::case();
+    // Most of the life is spent below 12 MPa√m.
+    case.law = made_up_case::fitted(12.0, 30.0);
+    let error = keep(&case, made_up_run::prediction(0.0), &dir.path().join("run")).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(
+        error.to_string().contains("12.00 to 30.00 MPa√m") && error.to_string().contains("allow_extrapolation = true"),
+        "{error}"
+    );
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+    case.allow_extrapolation = true;
+    keep(&case, made_up_run::prediction(0.0), &dir.path().join("run")).unwrap();
+}
+
+#[test]
+fn an_error_shows_its_line_where_there_is_one() {
+    let dir = tempdir().unwrap();
+    let file = dir.path().join("case.toml");
+    fs::write(&file, "[specimen]\nwidth_mm = -1\n").unwrap();
+    let error = |line: usize| InputError {
+        file: Some(file.clone()),
+        line: Some(line),
+        key: Some("specimen.width_mm".to_owned()),
+        value: Some("-1".to_owned()),
+        problem: "must be above zero".to_owned(),
+        remedy: "give a width".to_owned(),
+    };
+    let shown = message::with_source_line(&error(2)).unwrap();
+    for words in ["case.toml", "width_mm = -1", "specimen.width_mm = -1: must be above zero", "give a width"] {
+        assert!(shown.contains(words), "{words} in {shown}");
+    }
+    // A line the file does not have (it was changed meanwhile) and a file that has gone give the plain words instead.
+    assert!(message::with_source_line(&error(0)).is_none() && message::with_source_line(&error(99)).is_none());
+    assert!(message::with_source_line(&InputError { file: Some("gone.toml".into()), ..error(2) }).is_none());
+}
