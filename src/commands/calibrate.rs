@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 use super::console::Console;
 use super::predict;
 use crate::calibration::case::{CalibrationCase, remove_law};
-use crate::calibration::fit::{Fit, FitTask, FittedCurve, fit};
+use crate::calibration::fit::{Fit, FitTask, fit};
 use crate::calibration::pd_model::PdModel;
 use crate::calibration::record::FittedRecord;
-use crate::calibration::results::{FitReport, curves_written, fit_curves_csv, record};
+use crate::calibration::results::{FitReport, fit_curves_csv, record};
 use crate::case::Case;
 use crate::error::{Error, Result, input};
 use crate::input::Document;
@@ -28,7 +28,7 @@ pub struct Args {
     /// Folder for the results; replaced if an earlier run made it
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: PathBuf,
-    /// Case to run with the fit, into DIR/<case name>/ (repeatable)
+    /// Case to run with the fit, into DIR/CASE/ (repeatable)
     #[arg(long, value_name = "CASE.toml", num_args = 1.., help_heading = "Input")]
     pub predict: Vec<PathBuf>,
     /// Override a key of the calibration file (repeatable), e.g. --set model.spacing_mm=2
@@ -121,7 +121,9 @@ fn write_fit(folder: &Path, calibration: &CalibrationCase, fit: &Fit, report: &F
 /// The same curves as Parquet beside their constants, and for several specimens quantiles of their cycles.
 #[cfg(feature = "tables")]
 fn write_tables(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
+    use crate::calibration::fit::FittedCurve;
     use crate::calibration::frames::{SHARES, cycle_quantiles, fit_curves, specimens};
+    use crate::calibration::results::curves_written;
     use crate::tables::{csv, join_by_specimen, parquet};
 
     let curves: Vec<FittedCurve> = curves_written(fit).cloned().collect();
