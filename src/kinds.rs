@@ -47,7 +47,7 @@ macro_rules! kinds {
 
         impl std::str::FromStr for $Kind {
             type Err = $crate::error::Error;
-            fn from_str(text: &str) -> Result<Self, Self::Err> {
+            fn from_str(text: &str) -> std::result::Result<Self, Self::Err> {
                 Self::ALL.iter().copied().find(|k| k.name() == text).ok_or_else(|| {
                     let known: Vec<&str> = Self::ALL.iter().map(|k| k.name()).collect();
                     $crate::error::input(Self::KEY, format!("\"{text}\""), "is not a known kind", format!("use one of {}", known.join(", ")))
@@ -56,11 +56,11 @@ macro_rules! kinds {
         }
 
         impl serde::Serialize for $Kind {
-            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> { serializer.serialize_str(self.name()) }
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> { serializer.serialize_str(self.name()) }
         }
 
         impl<'de> serde::Deserialize<'de> for $Kind {
-            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
                 let text = String::deserialize(deserializer)?;
                 text.parse().map_err(|error: $crate::error::Error| serde::de::Error::custom(error))
             }

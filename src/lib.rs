@@ -15,6 +15,8 @@ pub mod specimen;
 pub mod loading;
 pub mod material;
 pub mod bond_law;
+pub mod body;
+pub mod state;
 pub mod solver;
 pub mod fatigue;
 pub mod case;

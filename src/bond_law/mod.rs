@@ -1,5 +1,7 @@
 //! Force in a bond: micromodulus kernels and the springs they feed.
 
+pub mod stencil;
+
 crate::kinds! {
     /// Constitutive laws of a bond.
     pub enum BondLawKind for "model.bond_law" {

@@ -2,11 +2,14 @@
 //!
 //! A new subcommand is its file, its `mod` and its line in the list below.
 
-pub mod console;
+pub mod check;
 pub mod export;
-pub mod message;
+pub mod list;
 pub mod predict;
 pub mod rates;
+
+pub mod console;
+pub mod message;
 
 use clap::{Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
@@ -41,10 +44,10 @@ commands! {
     // Sif: sif,
     /// Growth rate da/dN against ΔK from measured a-N curves
     Rates: rates,
-    // /// Check an input file without running it
-    // Check: check,
-    // /// List every kind of every key of the input files
-    // List: list,
+    /// Check an input file without running it
+    Check: check,
+    /// List every kind of every key of the input files
+    List: list,
 }
 
 /// Fatigue-life prediction of cracked plates by peridynamics.

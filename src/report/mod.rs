@@ -7,6 +7,7 @@ pub mod csv;
 pub mod damage;
 pub mod json;
 pub mod output;
+pub mod specimen_picture;
 pub mod vtk;
 
 mod axis;

@@ -1,0 +1,153 @@
+//! The square lattice a body stands on: places in rows and columns, some of them holding a point.
+//!
+//! Arrays over places are padded on every side by the reach of the bonds, so that the neighbour of a place is always
+//! at a fixed distance in memory and an absent neighbour is a place without material.
+
+use crate::error::{Result, input};
+use crate::specimen::geometry::bounding_box;
+use crate::specimen::{Point, Specimen};
+
+/// Lattice places processed together; rows are padded to a multiple of it.
+pub const LANES: usize = 8;
+
+/// Geometry of the lattice and of the arrays over its places.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lattice {
+    /// Columns that can hold points.
+    pub columns: usize,
+    /// Rows that can hold points.
+    pub rows: usize,
+    /// Spacing Δ, m.
+    pub spacing: f64,
+    /// Position of column 0, row 0, m.
+    pub origin: Point,
+    /// Unit vector along the rows.
+    pub axis: Point,
+    /// Places of padding on each side.
+    pub padding: usize,
+    /// Distance in memory from one row to the next.
+    pub stride: usize,
+}
+
+impl Lattice {
+    /// Lattice over a specimen: the requested spacing is moved to the nearest one that divides the gross width, and rows
+    /// are laid so that a central horizontal crack falls between two of them.
+    ///
+    /// With an angle the lattice covers the bounding circle and keeps the requested spacing.
+    ///
+    /// # Errors
+    /// More places than memory can sensibly hold, or a spacing wider than the plate.
+    pub fn over(specimen: &Specimen, spacing: f64, angle: f64, padding: usize) -> Result<Self> {
+        let [low, high] = bounding_box(&specimen.outline);
+        let upright = angle == 0.0;
+        let across = (specimen.gross_width / spacing).round().max(1.0);
+        let spacing = if upright { specimen.gross_width / across } else { spacing };
+        if across < 4.0 {
+            return Err(input(
+                "model.spacing_mm",
+                spacing * 1e3,
+                "leaves fewer than 4 points across the plate",
+                "give a smaller spacing",
+            ));
+        }
+        let (columns, rows, origin) = if upright {
+            let columns = ((high[0] - low[0]) / spacing).round().max(1.0);
+            let x0 = 0.5 * (low[0] + high[0]) - 0.5 * (columns - 1.0) * spacing;
+            let (rows, y0) = match specimen.crack_plane_y {
+                // Half a spacing above and below the crack plane, as many rows as have their middle inside the plate.
+                Some(plane) => {
+                    let below = ((plane - low[1]) / spacing).round();
+                    let above = ((high[1] - plane) / spacing).round();
+                    (below + above, plane - (below - 0.5) * spacing)
+                }
+                None => {
+                    let rows = ((high[1] - low[1]) / spacing).round().max(1.0);
+                    (rows, 0.5 * (low[1] + high[1]) - 0.5 * (rows - 1.0) * spacing)
+                }
+            };
+            (columns, rows, [x0, y0])
+        } else {
+            let centre = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+            let (sin, cos) = angle.sin_cos();
+            let half = |a: f64, b: f64| 0.5 * ((high[0] - low[0]) * a.abs() + (high[1] - low[1]) * b.abs());
+            // Even counts: a crack through the centre runs between two rows of the turned lattice.
+            let count = |extent: f64| 2.0 * (extent / spacing).ceil();
+            let (columns, rows) = (count(half(cos, sin)), count(half(sin, cos)));
+            let (s, t) = (-0.5 * (columns - 1.0) * spacing, -0.5 * (rows - 1.0) * spacing);
+            (columns, rows, [centre[0] + s * cos - t * sin, centre[1] + s * sin + t * cos])
+        };
+        if columns * rows > 2e8 {
+            return Err(input(
+                "model.spacing_mm",
+                spacing * 1e3,
+                format!("asks for {:.0} million lattice places", columns * rows / 1e6),
+                "give a larger spacing (200 million places at the most)",
+            ));
+        }
+        let (columns, rows) = (columns as usize, rows as usize);
+        let stride = columns.next_multiple_of(LANES) + 2 * padding;
+        Ok(Lattice { columns, rows, spacing, origin, axis: [angle.cos(), angle.sin()], padding, stride })
+    }
+
+    /// Length of an array over all places, padding included.
+    #[must_use]
+    pub fn places(&self) -> usize {
+        // One chunk more than the last padded row, so that whole chunks can be read at its end.
+        self.stride * (self.rows + 2 * self.padding) + LANES
+    }
+
+    /// Memory index of a column and row.
+    #[must_use]
+    pub fn place(&self, column: usize, row: usize) -> usize {
+        (row + self.padding) * self.stride + column + self.padding
+    }
+
+    /// Column and row of a memory index that lies on the lattice.
+    #[must_use]
+    pub fn column_row(&self, place: usize) -> (usize, usize) {
+        (place % self.stride - self.padding, place / self.stride - self.padding)
+    }
+
+    /// Position of a place, m; `column` and `row` may be fractional or outside.
+    #[must_use]
+    pub fn position_of(&self, column: f64, row: f64) -> Point {
+        let [c, s] = self.axis;
+        let (x, y) = (column * self.spacing, row * self.spacing);
+        [self.origin[0] + x * c - y * s, self.origin[1] + x * s + y * c]
+    }
+
+    /// Position of a memory index, m.
+    #[must_use]
+    pub fn position(&self, place: usize) -> Point {
+        let (column, row) = self.column_row(place);
+        self.position_of(column as f64, row as f64)
+    }
+
+    /// Fractional (column, row) of a position.
+    #[must_use]
+    pub fn locate(&self, point: Point) -> [f64; 2] {
+        let [c, s] = self.axis;
+        let (x, y) = (point[0] - self.origin[0], point[1] - self.origin[1]);
+        [(x * c + y * s) / self.spacing, (y * c - x * s) / self.spacing]
+    }
+
+    /// A vector in lattice axes, from plate axes.
+    #[must_use]
+    pub fn to_axes(&self, vector: Point) -> Point {
+        let [c, s] = self.axis;
+        [vector[0] * c + vector[1] * s, vector[1] * c - vector[0] * s]
+    }
+
+    /// A vector in plate axes, from lattice axes.
+    #[must_use]
+    pub fn from_axes(&self, vector: Point) -> Point {
+        let [c, s] = self.axis;
+        [vector[0] * c - vector[1] * s, vector[0] * s + vector[1] * c]
+    }
+
+    /// Memory distance to the neighbour `dx` columns and `dy` rows away.
+    #[must_use]
+    pub fn step(&self, dx: i32, dy: i32) -> isize {
+        dy as isize * self.stride as isize + dx as isize
+    }
+}

@@ -1,0 +1,207 @@
+//! The specimen as points and bonds: everything about the discretised plate that a run does not change.
+//!
+//! A bond is owned by its lower point and named by `bond = k x places + place`, k counting the stencil.
+//! Its stiffness is the spring of the stencil times a multiplier: 0 absent, 1 inside the body, other values where a
+//! surface correction acts.
+
+pub mod boundary;
+pub mod lattice;
+pub mod pre_crack;
+pub mod surface_correction;
+
+use crate::bond_law::stencil::Stencil;
+use crate::bond_law::{BondLaw, SurfaceCorrection};
+use crate::error::{Error, Result};
+use crate::material::Material;
+use crate::specimen::geometry::{distance, distance_to_segment, segments_touch};
+use crate::specimen::{Hole, Point, Slot, Specimen};
+use boundary::Boundary;
+use lattice::Lattice;
+
+/// A bond: `k x places + place` of its owner.
+pub type Bond = u32;
+
+/// A discretised plate.
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// Lattice.
+    pub lattice: Lattice,
+    /// Bonds of a point and their springs.
+    pub stencil: Stencil,
+    /// Memory distance of every stencil bond.
+    pub steps: Vec<isize>,
+    /// Memory index of every point, row by row.
+    pub points: Vec<u32>,
+    /// Whether a place holds a point.
+    pub is_point: Vec<bool>,
+    /// Stiffness multiplier of every bond of the uncracked plate.
+    pub multiplier: Vec<f32>,
+    /// Bonds that the initial cracks cut.
+    pub pre_cut: Vec<Bond>,
+    /// Places whose bonds never fail: near loads and supports.
+    pub no_fail: Vec<bool>,
+    /// Loads and supports.
+    pub boundary: Boundary,
+    /// Number of bonds of the uncracked plate.
+    pub bond_count: usize,
+    /// Thickness, m.
+    pub thickness: f64,
+}
+
+impl Body {
+    /// Discretises a specimen.
+    ///
+    /// # Errors
+    /// Poisson's ratio outside the law's range, a spacing that does not suit the plate, more bonds than fit.
+    pub fn build(
+        specimen: &Specimen,
+        material: &Material,
+        law: &BondLaw,
+        spacing: f64,
+        horizon_ratio: f64,
+        angle: f64,
+    ) -> Result<Body> {
+        let padding = horizon_ratio.floor() as usize;
+        let lattice = Lattice::over(specimen, spacing, angle, padding)?;
+        let stencil = Stencil::new(law, material, lattice.spacing, horizon_ratio, specimen.thickness)?;
+        let places = lattice.places();
+        if places.saturating_mul(stencil.bonds.len()) > u32::MAX as usize {
+            return Err(Error::Mechanics(format!(
+                "{places} lattice places with {} bonds each are more than the program can number; give a larger spacing",
+                stencil.bonds.len()
+            )));
+        }
+        let mut is_point = vec![false; places];
+        let mut points = Vec::new();
+        for row in 0..lattice.rows {
+            for column in 0..lattice.columns {
+                if specimen.contains(lattice.position_of(column as f64, row as f64)) {
+                    let place = lattice.place(column, row);
+                    is_point[place] = true;
+                    points.push(place as u32);
+                }
+            }
+        }
+        let steps: Vec<isize> = stencil.bonds.iter().map(|bond| lattice.step(bond.dx, bond.dy)).collect();
+        let multiplier = uncut_bonds(specimen, &lattice, &stencil, &steps, &is_point, &points);
+        let bond_count = multiplier.iter().filter(|&&m| m > 0.0).count();
+        let boundary = Boundary::of(specimen, &lattice, &stencil, &is_point, &points)?;
+        let no_fail = boundary.no_fail(&lattice, stencil.horizon);
+        let mut body = Body {
+            lattice,
+            stencil,
+            steps,
+            points,
+            is_point,
+            multiplier,
+            pre_cut: Vec::new(),
+            no_fail,
+            boundary,
+            bond_count,
+            thickness: specimen.thickness,
+        };
+        match law.surface_correction {
+            SurfaceCorrection::None => {}
+            SurfaceCorrection::VolumeAndSurface => surface_correction::volume_and_surface(&mut body, material),
+        }
+        body.boundary.stiffen_grips(&body.lattice, &body.steps, &mut body.multiplier);
+        body.pre_cut = pre_crack::bonds_cut_by(&body, &specimen.cracks);
+        Ok(body)
+    }
+
+    /// Number of lattice places, padding included.
+    #[must_use]
+    pub fn places(&self) -> usize {
+        self.is_point.len()
+    }
+
+    /// Horizon δ, m.
+    #[must_use]
+    pub fn horizon(&self) -> f64 {
+        self.stencil.horizon
+    }
+
+    /// Stencil entry, owner and partner of a bond.
+    #[must_use]
+    pub fn ends(&self, bond: Bond) -> (usize, usize, usize) {
+        let (k, place) = (bond as usize / self.places(), bond as usize % self.places());
+        (k, place, place.wrapping_add_signed(self.steps[k]))
+    }
+
+    /// Middle of a bond, m.
+    #[must_use]
+    pub fn middle(&self, bond: Bond) -> Point {
+        let (_, from, to) = self.ends(bond);
+        let (a, b) = (self.lattice.position(from), self.lattice.position(to));
+        [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+    }
+
+    /// Whether no end of the bond lies in a no-fail zone.
+    #[must_use]
+    pub fn can_fail(&self, bond: Bond) -> bool {
+        let (_, from, to) = self.ends(bond);
+        !self.no_fail[from] && !self.no_fail[to]
+    }
+}
+
+/// Multipliers of the uncracked plate: 1 where both ends are points and the bond stays inside the material.
+fn uncut_bonds(
+    specimen: &Specimen,
+    lattice: &Lattice,
+    stencil: &Stencil,
+    steps: &[isize],
+    is_point: &[bool],
+    points: &[u32],
+) -> Vec<f32> {
+    let places = lattice.places();
+    let mut multiplier = vec![0.0_f32; places * stencil.bonds.len()];
+    let obstacles = Obstacles::of(specimen, lattice.spacing, stencil.horizon);
+    for &point in points {
+        let place = point as usize;
+        let here = lattice.position(place);
+        let near = obstacles.near(here);
+        for (k, &step) in steps.iter().enumerate() {
+            let other = place.wrapping_add_signed(step);
+            if is_point[other] && !(near && obstacles.block(here, lattice.position(other))) {
+                multiplier[k * places + place] = 1.0;
+            }
+        }
+    }
+    multiplier
+}
+
+/// Voids that a bond must not bridge: slots, holes, and the corners of an outline that is not convex.
+struct Obstacles<'a> {
+    holes: &'a [Hole],
+    slots: &'a [Slot],
+    edges: Vec<(Point, Point)>,
+    spacing: f64,
+    horizon: f64,
+}
+
+impl<'a> Obstacles<'a> {
+    fn of(specimen: &'a Specimen, spacing: f64, horizon: f64) -> Self {
+        let outline = &specimen.outline;
+        let count = outline.len();
+        let convex = (0..count).all(|i| {
+            let (a, b, c) = (outline[i], outline[(i + 1) % count], outline[(i + 2) % count]);
+            (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) >= 0.0
+        });
+        let edges = if convex { Vec::new() } else { (0..count).map(|i| (outline[i], outline[(i + 1) % count])).collect() };
+        Obstacles { holes: &specimen.holes, slots: &specimen.slots, edges, spacing, horizon }
+    }
+
+    /// Whether a bond that starts here can meet an obstacle at all.
+    fn near(&self, point: Point) -> bool {
+        self.holes.iter().any(|hole| distance(point, hole.centre) < hole.radius + self.horizon)
+            || self.slots.iter().any(|slot| distance_to_segment(point, slot.from, slot.to) < slot.width + self.horizon)
+            || self.edges.iter().any(|&(a, b)| distance_to_segment(point, a, b) < self.horizon)
+    }
+
+    fn block(&self, a: Point, b: Point) -> bool {
+        // A bond that grazes a round hole by less than a quarter spacing stays: the lattice knows the circle no better.
+        self.holes.iter().any(|hole| distance_to_segment(hole.centre, a, b) < hole.radius - 0.25 * self.spacing)
+            || self.slots.iter().any(|slot| segments_touch(a, b, slot.from, slot.to))
+            || self.edges.iter().any(|&(c, d)| segments_touch(a, b, c, d))
+    }
+}

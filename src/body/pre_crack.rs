@@ -1,0 +1,56 @@
+//! Initial cracks as cut bonds: no point is removed, every bond that crosses the crack line is.
+
+use super::{Body, Bond};
+use crate::specimen::geometry::{distance, distance_to_segment, segments_touch};
+use crate::specimen::{Crack, Point};
+
+/// Share of the spacing by which a crack is shifted sideways, so that a crack along a row of points has that row on one side.
+const TIE_BREAK: f64 = 1e-7;
+
+/// Bonds of the body that a list of cracks cuts, ascending.
+#[must_use]
+pub fn bonds_cut_by(body: &Body, cracks: &[Crack]) -> Vec<Bond> {
+    let mut cut: Vec<Bond> = cracks.iter().flat_map(|crack| bonds_across(body, crack.from, crack.to)).collect();
+    cut.sort_unstable();
+    cut.dedup();
+    cut
+}
+
+/// Bonds that cross the segment from `a` to `b`.
+#[must_use]
+pub fn bonds_across(body: &Body, a: Point, b: Point) -> Vec<Bond> {
+    let (lattice, places) = (&body.lattice, body.places());
+    let length = distance(a, b);
+    if length == 0.0 {
+        return Vec::new();
+    }
+    let shift = TIE_BREAK * lattice.spacing / length;
+    let side = [-(b[1] - a[1]) * shift, (b[0] - a[0]) * shift];
+    let (a, b) = ([a[0] + side[0], a[1] + side[1]], [b[0] + side[0], b[1] + side[1]]);
+    let mut cut = Vec::new();
+    for place in places_near(body, a, b, body.horizon()) {
+        let here = lattice.position(place);
+        for (k, &step) in body.steps.iter().enumerate() {
+            let bond = k * places + place;
+            if body.multiplier[bond] > 0.0 && segments_touch(here, lattice.position(place.wrapping_add_signed(step)), a, b) {
+                cut.push(bond as Bond);
+            }
+        }
+    }
+    cut
+}
+
+/// Points within a distance of a segment, in memory order.
+pub fn places_near(body: &Body, a: Point, b: Point, reach: f64) -> impl Iterator<Item = usize> + '_ {
+    let lattice = &body.lattice;
+    let (p, q) = (lattice.locate(a), lattice.locate(b));
+    let margin = reach / lattice.spacing + 1.0;
+    let range = |i: usize, count: usize| {
+        let low = (p[i].min(q[i]) - margin).floor().max(0.0) as usize;
+        let high = (p[i].max(q[i]) + margin).ceil().clamp(-1.0, count as f64 - 1.0);
+        low..(high + 1.0) as usize
+    };
+    let (columns, rows) = (range(0, lattice.columns), range(1, lattice.rows));
+    rows.flat_map(move |row| columns.clone().map(move |column| lattice.place(column, row)))
+        .filter(move |&place| body.is_point[place] && distance_to_segment(lattice.position(place), a, b) <= reach)
+}

@@ -1,0 +1,268 @@
+//! The bonds of one lattice point and the stiffness of their springs.
+//!
+//! On a square lattice every point has the same bonds, so a law is a short list: one entry per bond vector ξ
+//! of the half plane (the other half belongs to the neighbours). A spring stiffness is the force per relative
+//! displacement of the two points, N/m: `k_n = c_n(r) b V²`, `k_t = c_t(r) b V²` with micromodulus c, partial-volume
+//! weight b and point volume V = Δ² h.
+
+use super::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use crate::error::{Error, input};
+use crate::material::{Material, Plane};
+
+/// Allowed distance of ν from the one value a bond-based law has.
+pub const BOND_BASED_POISSON_TOLERANCE: f64 = 0.01;
+
+/// One bond of the half stencil.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StencilBond {
+    /// Lattice steps along the row.
+    pub dx: i32,
+    /// Lattice rows, never negative; dx > 0 where it is zero.
+    pub dy: i32,
+    /// Bond length |ξ|, m.
+    pub length: f64,
+    /// Unit vector along the bond, in lattice axes.
+    pub normal: [f64; 2],
+    /// Normal spring, N/m.
+    pub k_n: f64,
+    /// Tangential spring, N/m.
+    pub k_t: f64,
+    /// Half length over spacing |ξ|/(2Δ): lever of a point's rotation θ = φ Δ on the bond's shear.
+    pub lever: f64,
+}
+
+impl StencilBond {
+    /// Unit vector across the bond (normal turned by +90°).
+    #[must_use]
+    pub fn tangent(&self) -> [f64; 2] {
+        [-self.normal[1], self.normal[0]]
+    }
+}
+
+/// All bonds that a point owns, with the constants of the law behind them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stencil {
+    /// Half stencil, sorted by row and column.
+    pub bonds: Vec<StencilBond>,
+    /// Lattice spacing Δ, m.
+    pub spacing: f64,
+    /// Horizon δ, m.
+    pub horizon: f64,
+    /// Farthest lattice step.
+    pub reach: usize,
+    /// Unknowns of a point: 2 displacements, and its rotation where the law leaves that free.
+    pub unknowns: usize,
+}
+
+/// Elastic constants C11 and C12 of the plane state, Pa.
+#[must_use]
+pub fn plane_stiffness(material: &Material) -> [f64; 2] {
+    let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
+    match material.plane {
+        Plane::Stress => [e / (1.0 - nu * nu), nu * e / (1.0 - nu * nu)],
+        Plane::Strain => {
+            let scale = e / ((1.0 + nu) * (1.0 - 2.0 * nu));
+            [(1.0 - nu) * scale, nu * scale]
+        }
+    }
+}
+
+/// Largest Poisson's ratio of the two-parameter law: c_t ≥ 0 needs ν ≤ 1/3 (plane stress) or 1/4 (plane strain).
+#[must_use]
+pub fn poisson_limit(plane: Plane) -> f64 {
+    match plane {
+        Plane::Stress => 1.0 / 3.0,
+        Plane::Strain => 0.25,
+    }
+}
+
+/// Refuses a Poisson's ratio that the law cannot represent, naming the law to use.
+///
+/// # Errors
+/// `Error::Input` on `material.poisson_ratio`.
+pub fn check_poisson_ratio(law: &BondLaw, material: &Material) -> Result<(), Error> {
+    let (nu, limit) = (material.poisson_ratio, poisson_limit(material.plane));
+    let plane = material.plane;
+    match law.kind {
+        BondLawKind::BondBased if (nu - limit).abs() > BOND_BASED_POISSON_TOLERANCE => Err(input(
+            "material.poisson_ratio",
+            nu,
+            format!("bond_based fixes Poisson's ratio at {limit:.4} in plane {plane}"),
+            if nu < limit { "use model.bond_law = \"two_parameter\"".to_owned() } else { beyond(limit, plane) },
+        )),
+        BondLawKind::TwoParameter if nu > limit + 1e-9 => Err(input(
+            "material.poisson_ratio",
+            nu,
+            format!("two_parameter holds up to {limit:.4} in plane {plane} (the tangential spring would turn negative)"),
+            beyond(limit, plane),
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn beyond(limit: f64, plane: Plane) -> String {
+    let nearest = match plane {
+        Plane::Stress => format!("the nearest usable value is {limit:.4}"),
+        Plane::Strain => format!("the nearest usable value is {limit:.4}; plane = \"stress\" reaches 0.3333"),
+    };
+    format!("{nearest}; a state-based law for larger ratios is not built yet")
+}
+
+/// Partial-volume weight b(r): 1 inside δ - Δ/2, falling to 1/2 at δ, 0 beyond
+/// (Madenci and Oterkus 2014, Peridynamic Theory and Its Applications, ch. 7).
+#[must_use]
+pub fn partial_volume(length: f64, horizon: f64, spacing: f64) -> f64 {
+    if length <= horizon - 0.5 * spacing {
+        1.0
+    } else if length <= horizon {
+        (horizon + 0.5 * spacing - length) / spacing
+    } else {
+        0.0
+    }
+}
+
+impl Stencil {
+    /// Bonds and springs of a law at a spacing.
+    ///
+    /// Micromodulus profile over bond length r: `two_parameter` 1 or 1 - r/δ on the relative displacement η (Prakash and
+    /// Seidel 2015); `bond_based` the same divided by r (Silling 2000: force proportional to stretch).
+    ///
+    /// With `surface_correction = none` or better than the classical one, c_n and c_t follow from the lattice sums
+    /// `S₄ = Σ q r² n_x⁴`, `S₂₂ = Σ q r² n_x² n_y²`, so that uniform strain has exactly the energy of the continuum:
+    /// `c_n (S₄ + S₂₂) = V (C₁₁ + C₁₂)`, `(c_n - c_t) S₂₂ = V C₁₂`. The weights q are first moved as little as possible
+    /// (weighted least squares) to make the lattice isotropic, S₄ = 3 S₂₂, without which the stiffness would depend on
+    /// the direction of the rows by some percent.
+    ///
+    /// # Errors
+    /// Poisson's ratio outside the range of the law.
+    pub fn new(law: &BondLaw, material: &Material, spacing: f64, horizon_ratio: f64, thickness: f64) -> Result<Self, Error> {
+        check_poisson_ratio(law, material)?;
+        let horizon = horizon_ratio * spacing;
+        let mut shape = half_plane(horizon_ratio, spacing);
+        let mut weight: Vec<f64> =
+            shape.iter().map(|bond| profile(law, bond.length, horizon) * partial_volume(bond.length, horizon, spacing)).collect();
+        // A bond exactly at the horizon has no conical micromodulus: it would be an idle entry.
+        let keep: Vec<bool> = weight.iter().map(|&w| w > 0.0).collect();
+        let mut kept = keep.iter();
+        shape.retain(|_| *kept.next().unwrap_or(&false));
+        weight.retain(|&w| w > 0.0);
+        let volume = spacing * spacing * thickness;
+        let (c_n, c_t) = match law.surface_correction {
+            SurfaceCorrection::VolumeAndSurface => integral_moduli(law, material, horizon, volume, thickness),
+            SurfaceCorrection::None => {
+                make_isotropic(&shape, &mut weight);
+                lattice_moduli(law, material, &shape, &weight, volume)
+            }
+        };
+        let reach = shape.iter().map(|bond| bond.dx.unsigned_abs().max(bond.dy.unsigned_abs()) as usize).max().unwrap_or(1);
+        let unknowns = if law.kind == BondLawKind::TwoParameter && law.rotation == Rotation::Free { 3 } else { 2 };
+        for (bond, q) in shape.iter_mut().zip(&weight) {
+            bond.k_n = c_n * q;
+            bond.k_t = c_t * q;
+        }
+        Ok(Stencil { bonds: shape, spacing, horizon, reach, unknowns })
+    }
+}
+
+/// Bond vectors of the half plane within the horizon, springs still zero.
+fn half_plane(horizon_ratio: f64, spacing: f64) -> Vec<StencilBond> {
+    let reach = horizon_ratio.floor() as i32;
+    let mut bonds = Vec::new();
+    for dy in 0..=reach {
+        for dx in -reach..=reach {
+            let steps = f64::from(dx * dx + dy * dy).sqrt();
+            let owned = dy > 0 || dx > 0;
+            if owned && steps <= horizon_ratio {
+                bonds.push(StencilBond {
+                    dx,
+                    dy,
+                    length: steps * spacing,
+                    normal: [f64::from(dx) / steps, f64::from(dy) / steps],
+                    k_n: 0.0,
+                    k_t: 0.0,
+                    lever: 0.5 * steps,
+                });
+            }
+        }
+    }
+    bonds
+}
+
+fn profile(law: &BondLaw, length: f64, horizon: f64) -> f64 {
+    let kernel = match law.kernel {
+        Kernel::Constant => 1.0,
+        Kernel::Conical => 1.0 - length / horizon,
+    };
+    match law.kind {
+        BondLawKind::BondBased => kernel / length,
+        BondLawKind::TwoParameter => kernel,
+    }
+}
+
+/// Lattice sums S₄ and S₂₂ over the half stencil (each bond belongs to two points: the halves cancel).
+fn moments(shape: &[StencilBond], weight: &[f64]) -> [f64; 2] {
+    shape.iter().zip(weight).fold([0.0; 2], |[s4, s22], (bond, q)| {
+        let [nx, ny] = bond.normal;
+        let base = q * bond.length * bond.length;
+        [s4 + base * nx.powi(4), s22 + base * nx * nx * ny * ny]
+    })
+}
+
+/// Moves the weights by the smallest relative amounts that make S₄ = 3 S₂₂.
+fn make_isotropic(shape: &[StencilBond], weight: &mut [f64]) {
+    let excess = |bond: &StencilBond| {
+        let [nx, ny] = bond.normal;
+        // Averaged over x and y so that the moved weights keep the symmetry of the square.
+        bond.length * bond.length * (0.5 * (nx.powi(4) + ny.powi(4)) - 3.0 * nx * nx * ny * ny)
+    };
+    let total: f64 = shape.iter().zip(weight.iter()).map(|(bond, q)| q * excess(bond)).sum();
+    let square: f64 = shape.iter().zip(weight.iter()).map(|(bond, q)| q * excess(bond).powi(2)).sum();
+    if square > 0.0 {
+        for (bond, q) in shape.iter().zip(weight.iter_mut()) {
+            *q *= (1.0 - total / square * excess(bond)).max(0.0);
+        }
+    }
+}
+
+/// The material with the Poisson's ratio that the law has: a bond-based law keeps E and brings its own ν.
+fn representable(law: &BondLaw, material: &Material) -> Material {
+    let poisson_ratio = match law.kind {
+        BondLawKind::BondBased => poisson_limit(material.plane),
+        BondLawKind::TwoParameter => material.poisson_ratio,
+    };
+    Material { poisson_ratio, ..material.clone() }
+}
+
+/// (c_n, c_t) that give the lattice the elastic constants of the material; springs are c times weight.
+fn lattice_moduli(law: &BondLaw, material: &Material, shape: &[StencilBond], weight: &[f64], volume: f64) -> (f64, f64) {
+    let [s4, s22] = moments(shape, weight);
+    let [c11, c12] = plane_stiffness(&representable(law, material));
+    match law.kind {
+        BondLawKind::BondBased => (volume * (c11 + c12) / (s4 + s22), 0.0),
+        BondLawKind::TwoParameter => {
+            let c_n = volume * (c11 + c12) / (s4 + s22);
+            (c_n, (c_n - volume * c12 / s22).max(0.0))
+        }
+    }
+}
+
+/// (c_n, c_t) of the continuous kernel, times V² : the published moduli (Prakash and Seidel 2015 for the constant kernel,
+/// their conical counterpart, Silling and Askari 2005 for bond-based).
+fn integral_moduli(law: &BondLaw, material: &Material, horizon: f64, volume: f64, thickness: f64) -> (f64, f64) {
+    let [c11, c12] = plane_stiffness(&representable(law, material));
+    // ∫ c(r) r² (1, n_x⁴, n_x² n_y²) over the disc: angular means 3/8 and 1/8 of 2π; radial moments of the profiles.
+    let radial = match (law.kind, law.kernel) {
+        (BondLawKind::TwoParameter, Kernel::Constant) => horizon.powi(4) / 4.0,
+        (BondLawKind::TwoParameter, Kernel::Conical) => horizon.powi(4) / 20.0,
+        (BondLawKind::BondBased, Kernel::Constant) => horizon.powi(3) / 3.0,
+        (BondLawKind::BondBased, Kernel::Conical) => horizon.powi(3) / 12.0,
+    };
+    // C11 = h/2 ∫ (c_n n_x⁴ + c_t n_x² n_y²) r² dA = h π/8 (3 c_n + c_t) radial, C12 = h π/8 (c_n - c_t) radial.
+    let scale = thickness * std::f64::consts::PI / 8.0 * radial;
+    let c_n = (c11 + c12) / (4.0 * scale);
+    let c_t = match law.kind {
+        BondLawKind::BondBased => 0.0,
+        BondLawKind::TwoParameter => (c_n - c12 / scale).max(0.0),
+    };
+    (c_n * volume * volume, c_t * volume * volume)
+}

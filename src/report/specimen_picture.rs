@@ -1,0 +1,262 @@
+//! The specimen of a case as a drawing to scale: outline, holes, slots, cracks, loads, supports, sizes in mm.
+
+mod sketch;
+
+use sketch::{CRACK, EDGE, HELD, LOAD, PLATE, Sketch, WORDS};
+
+use crate::case::Case;
+use crate::specimen::geometry::{along, bounding_box, distance};
+use crate::specimen::{Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
+use crate::units::{KN, MM, MPA};
+
+/// Room around the plate for arrows, sizes and words, pixels: left, right, top, bottom.
+const MARGIN: [f64; 4] = [110.0, 190.0, 150.0, 190.0];
+/// Largest size of the plate itself, pixels.
+const PLATE_MAX: Point = [460.0, 520.0];
+/// Length of a load arrow of the nominal stress, pixels.
+const ARROW: f64 = 38.0;
+
+/// SVG text of the specimen of `case`.
+///
+/// Red: cracks, with a dot at each tip that can grow, numbered as in `crack_path.csv`. Blue: loads. Green hatching: what
+/// is held.
+#[must_use]
+pub fn specimen_svg(case: &Case) -> String {
+    let specimen = &case.specimen;
+    let [low, high] = bounding_box(&specimen.outline);
+    let size = [high[0] - low[0], high[1] - low[1]];
+    let scale = (PLATE_MAX[0] / size[0]).min(PLATE_MAX[1] / size[1]);
+    // Narrow plates still need room for the title and the words below.
+    let side = ((420.0 - size[0] * scale) / 2.0).max(0.0);
+    let origin = [MARGIN[0] + side - low[0] * scale, MARGIN[2] + high[1] * scale];
+    let mut sketch = Sketch::new(scale, origin);
+    let width = MARGIN[0] + MARGIN[1] + 2.0 * side + size[0] * scale;
+    let height = MARGIN[2] + MARGIN[3] + size[1] * scale;
+
+    sketch.text([width / 2.0, 30.0], &format!("{} ({})", case.name, specimen.kind), "middle", 18, EDGE);
+    sketch.text([width / 2.0, 52.0], &load_words(case), "middle", 13, LOAD);
+    sketch.polygon(&specimen.outline, PLATE, EDGE);
+    for hole in &specimen.holes {
+        sketch.circle(hole.centre, hole.radius, "white", EDGE);
+    }
+    for slot in &specimen.slots {
+        sketch.polygon(&slot.corners(), "white", EDGE);
+    }
+    draw_supports(&mut sketch, specimen);
+    draw_cracks(&mut sketch, specimen);
+    draw_loads(&mut sketch, specimen);
+    draw_sizes(&mut sketch, specimen, [low, high]);
+    draw_axes(&mut sketch);
+    draw_legend(&mut sketch, specimen, height);
+    sketch.finish(width, height)
+}
+
+/// The load in one line.
+fn load_words(case: &Case) -> String {
+    let loading = &case.loading;
+    let (symbol, maximum, unit) = match case.specimen.load_measure {
+        LoadMeasure::Stress => ("stress σ", loading.maximum / MPA, "MPa"),
+        LoadMeasure::Force => ("force P", loading.maximum / KN, "kN"),
+    };
+    let minimum = maximum * loading.ratio;
+    let parallel = if loading.parallel_ratio == 0.0 { String::new() } else { format!(", on the sides {} σ", loading.parallel_ratio) };
+    format!("{symbol} cycles between {} and {} {unit} (R = {}){parallel}", short(minimum), short(maximum), loading.ratio)
+}
+
+/// A number with at most two decimals.
+fn short(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn mm(metres: f64) -> String {
+    format!("{} mm", short(metres / MM))
+}
+
+/// Middle of the plate: words about a flaw go to the side that points away from it.
+fn draw_cracks(sketch: &mut Sketch, specimen: &Specimen) {
+    for crack in &specimen.cracks {
+        let (from, to) = (sketch.place(crack.from), sketch.place(crack.to));
+        sketch.line(from, to, CRACK, 2.6);
+    }
+    for (number, tip) in specimen.tips.iter().enumerate() {
+        let place = sketch.place(tip.position);
+        sketch.dot(place, 3.6, CRACK);
+        // Ahead of the tip and a little above the path, so that the number does not hide it.
+        let words = [place[0] + 13.0 * tip.direction[0], place[1] - 13.0 * tip.direction[1] - 4.0];
+        sketch.text(words, &number.to_string(), "middle", 12, CRACK);
+    }
+}
+
+fn draw_loads(sketch: &mut Sketch, specimen: &Specimen) {
+    let largest = specimen.loads.iter().fold(1e-12_f64, |largest, load| match load {
+        Load::Edge { traction, .. } => largest.max(traction[0].hypot(traction[1])),
+        Load::Pin { force, .. } => largest.max(force.abs()),
+    });
+    let mut named = false;
+    for load in &specimen.loads {
+        match load {
+            Load::Edge { from, to, traction } => {
+                let share = traction[0].hypot(traction[1]) / largest;
+                if share == 0.0 {
+                    continue;
+                }
+                let count = (distance(*from, *to) * sketch.scale / 34.0).round().clamp(1.0, 25.0) as usize;
+                let reach = ARROW * share.max(0.4) / traction[0].hypot(traction[1]);
+                let vector = [traction[0] * reach, -traction[1] * reach];
+                for i in 0..count {
+                    let foot = sketch.place(along(*from, *to, (i as f64 + 0.5) / count as f64));
+                    // Tension pulls out of the plate: the arrow starts 8 pixels off the edge so that grips stay visible.
+                    let start = [foot[0] + 0.2 * vector[0], foot[1] + 0.2 * vector[1]];
+                    sketch.arrow(start, [start[0] + vector[0], start[1] + vector[1]], LOAD, 1.6);
+                }
+                if !named {
+                    let middle = sketch.place(along(*from, *to, 0.5));
+                    sketch.text([middle[0] + 1.5 * vector[0], middle[1] + 1.5 * vector[1] + 4.0], "σ", "middle", 16, LOAD);
+                    named = true;
+                }
+            }
+            Load::Pin { hole, direction, force } => {
+                let Some(hole) = specimen.holes.get(*hole) else { continue };
+                let centre = sketch.place(hole.centre);
+                let reach = hole.radius * sketch.scale + ARROW * (force / largest).max(0.5);
+                let end = [centre[0] + reach * direction[0], centre[1] - reach * direction[1]];
+                sketch.dot(centre, 3.6, LOAD);
+                sketch.arrow(centre, end, LOAD, 2.4);
+                sketch.text([end[0] + 14.0, end[1] + 4.0], "P", "middle", 16, LOAD);
+            }
+        }
+    }
+}
+
+fn draw_supports(sketch: &mut Sketch, specimen: &Specimen) {
+    let [low, high] = bounding_box(&specimen.outline);
+    for support in &specimen.supports {
+        match support {
+            Support::Fixed { from, to, depth, x, y } => {
+                hold(sketch, *from, *to, *depth, middle_of(specimen));
+                let held = match (x, y) {
+                    (true, true) => "held in x and y",
+                    (true, false) => "held in x",
+                    _ => "held in y",
+                };
+                let right = if from[0] > to[0] { from } else { to };
+                let [px, py] = sketch.place(*right);
+                sketch.text([px + 12.0, py + 14.0], held, "start", 12, HELD);
+            }
+            Support::ClampedEnds | Support::RigidEnds => {
+                let words = if *support == Support::ClampedEnds { "rigid grip, cannot rotate" } else { "rigid grip, turns on a pin" };
+                for (y, sign) in [(high[1], 1.0), (low[1], -1.0)] {
+                    let band = 7.0 / sketch.scale * sign;
+                    sketch.polygon(&[[low[0], y], [high[0], y], [high[0], y + band], [low[0], y + band]], HELD, HELD);
+                    let [px, py] = sketch.place([high[0], y + band]);
+                    sketch.text([px + 12.0, py + 4.0], words, "start", 12, HELD);
+                    if *support == Support::RigidEnds {
+                        let [cx, cy] = sketch.place([(low[0] + high[0]) / 2.0, y + band / 2.0]);
+                        sketch.dot([cx, cy], 5.0, "white");
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn middle_of(specimen: &Specimen) -> Point {
+    let [low, high] = bounding_box(&specimen.outline);
+    along(low, high, 0.5)
+}
+
+/// Hatching outside a held stretch, and a tinted band as deep as the hold.
+fn hold(sketch: &mut Sketch, from: Point, to: Point, depth: f64, inside: Point) {
+    let length = distance(from, to);
+    let mut normal = [-(to[1] - from[1]) / length, (to[0] - from[0]) / length];
+    if normal[0] * (inside[0] - from[0]) + normal[1] * (inside[1] - from[1]) < 0.0 {
+        normal = [-normal[0], -normal[1]];
+    }
+    let inward = |p: Point| [p[0] + normal[0] * depth, p[1] + normal[1] * depth];
+    if depth > 0.0 {
+        sketch.polygon(&[from, to, inward(to), inward(from)], "#c9d19a", HELD);
+    }
+    let (a, b) = (sketch.place(from), sketch.place(to));
+    sketch.line(a, b, HELD, 3.0);
+    let count = ((length * sketch.scale) / 9.0).ceil().clamp(2.0, 200.0);
+    // Pixels run downwards: outward is minus the normal in x and plus in y.
+    let out = [-normal[0] * 9.0, normal[1] * 9.0];
+    let lean = [(b[0] - a[0]) / count, (b[1] - a[1]) / count];
+    for i in 0..count as usize {
+        let foot = [a[0] + lean[0] * (i as f64 + 1.0), a[1] + lean[1] * (i as f64 + 1.0)];
+        sketch.line(foot, [foot[0] + out[0] - lean[0], foot[1] + out[1] - lean[1]], HELD, 1.0);
+    }
+}
+
+fn draw_sizes(sketch: &mut Sketch, specimen: &Specimen, [low, high]: [Point; 2]) {
+    let below = sketch.place([0.0, low[1]])[1] + 78.0;
+    let beside = sketch.place([high[0], 0.0])[0] + 78.0;
+    let (left, right) = (sketch.place(low)[0], sketch.place(high)[0]);
+    let (top, bottom) = (sketch.place(high)[1], sketch.place(low)[1]);
+    if specimen.kind == SpecimenKind::CompactTension {
+        // The standard measures from the load line.
+        let line = sketch.place([0.0, 0.0])[0];
+        sketch.line([line, top - 10.0], [line, below + 6.0], "#9aa4ae", 0.8);
+        sketch.text([line, top - 16.0], "load line", "middle", 12, WORDS);
+        let tip = sketch.place([specimen.crack_length, 0.0])[0];
+        sketch.measure([line, below - 36.0], [tip, below - 36.0], &format!("a = {}", mm(specimen.crack_length)));
+        sketch.measure([line, below], [right, below], &format!("W = {}", mm(specimen.width)));
+    } else {
+        sketch.measure([left, below], [right, below], &mm(high[0] - low[0]));
+    }
+    sketch.measure([beside, top], [beside, bottom], &mm(high[1] - low[1]));
+    for hole in &specimen.holes {
+        let [x, y] = sketch.place([hole.centre[0] + 0.7071 * hole.radius, hole.centre[1] - 0.7071 * hole.radius]);
+        sketch.line([x, y], [x + 12.0, y + 12.0], WORDS, 0.8);
+        sketch.text([x + 15.0, y + 20.0], &format!("⌀ {}", mm(2.0 * hole.radius)), "start", 12, WORDS);
+    }
+    for slot in &specimen.slots {
+        flaw_words(sketch, along(slot.from, slot.to, 0.5), &format!("slot {} x {}", mm(distance(slot.from, slot.to)), mm(slot.width)), 24.0);
+    }
+    match specimen.kind {
+        SpecimenKind::MiddleTension => {
+            let (a, b) = (sketch.place([0.0, 0.0]), sketch.place([specimen.crack_length, 0.0]));
+            sketch.line([a[0], a[1] + 5.0], [a[0], a[1] + 24.0], WORDS, 0.8);
+            sketch.line([b[0], b[1] + 5.0], [b[0], b[1] + 24.0], WORDS, 0.8);
+            sketch.measure([a[0], a[1] + 20.0], [b[0], b[1] + 20.0], "");
+            sketch.text([b[0] + 6.0, b[1] + 24.0], &format!("a = {}", mm(specimen.crack_length)), "start", 13, CRACK);
+        }
+        SpecimenKind::SingleEdgeTension | SpecimenKind::DoubleEdgeTension => {
+            for crack in &specimen.cracks {
+                flaw_words(sketch, along(crack.from, crack.to, 0.5), &format!("a = {}", mm(specimen.crack_length)), 22.0);
+            }
+        }
+        SpecimenKind::Plate => {
+            for crack in &specimen.cracks {
+                flaw_words(sketch, along(crack.from, crack.to, 0.5), &format!("crack {}", mm(distance(crack.from, crack.to))), 30.0);
+            }
+        }
+        SpecimenKind::CompactTension => {}
+    }
+}
+
+/// Words below the middle of a flaw.
+fn flaw_words(sketch: &mut Sketch, middle: Point, words: &str, drop: f64) {
+    let [x, y] = sketch.place(middle);
+    sketch.text([x, y + drop], words, "middle", 13, CRACK);
+}
+
+/// Directions of x and y, beside the plate.
+fn draw_axes(sketch: &mut Sketch) {
+    let corner = [34.0, 112.0];
+    sketch.arrow(corner, [corner[0] + 32.0, corner[1]], WORDS, 1.2);
+    sketch.arrow(corner, [corner[0], corner[1] - 32.0], WORDS, 1.2);
+    sketch.text([corner[0] + 41.0, corner[1] + 4.0], "x", "middle", 13, WORDS);
+    sketch.text([corner[0], corner[1] - 38.0], "y", "middle", 13, WORDS);
+}
+
+fn draw_legend(sketch: &mut Sketch, specimen: &Specimen, height: f64) {
+    let y = height - 44.0;
+    sketch.line([30.0, y], [56.0, y], CRACK, 2.6);
+    sketch.dot([56.0, y], 3.6, CRACK);
+    let thickness = mm(specimen.thickness);
+    let slots = if specimen.tips.iter().any(|tip| tip.from_slot) { "; a slot's tip is the middle of its end face" } else { "" };
+    sketch.text([66.0, y + 4.0], &format!("crack through the thickness; dots: numbered tips that can grow{slots}"), "start", 12, WORDS);
+    sketch.text([30.0, y + 26.0], &format!("thickness {thickness}; drawn to scale"), "start", 12, WORDS);
+}

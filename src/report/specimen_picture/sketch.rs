@@ -1,0 +1,108 @@
+//! Lines, arrows and words in an SVG, placed by the plate's own coordinates.
+
+use std::fmt::Write;
+
+use crate::specimen::Point;
+
+/// Colours, one meaning each.
+pub const PLATE: &str = "#e4e7eb";
+pub const EDGE: &str = "#2f3b48";
+pub const CRACK: &str = "#d0021b";
+pub const LOAD: &str = "#1257a8";
+pub const HELD: &str = "#5f6b2d";
+pub const WORDS: &str = "#4a5560";
+
+/// A drawing to scale: metres of the plate (y up) to pixels (y down).
+pub struct Sketch {
+    body: String,
+    /// Pixels in a metre.
+    pub scale: f64,
+    /// Pixel of the plate's (0, 0).
+    pub origin: Point,
+}
+
+impl Sketch {
+    pub fn new(scale: f64, origin: Point) -> Self {
+        Sketch { body: String::new(), scale, origin }
+    }
+
+    /// Pixel of a point of the plate.
+    pub fn place(&self, p: Point) -> Point {
+        [self.origin[0] + p[0] * self.scale, self.origin[1] - p[1] * self.scale]
+    }
+
+    fn push(&mut self, element: std::fmt::Arguments<'_>) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.body, "  {element}");
+    }
+
+    /// Closed polygon, plate coordinates.
+    pub fn polygon(&mut self, corners: &[Point], fill: &str, stroke: &str) {
+        let points: Vec<String> = corners.iter().map(|p| self.place(*p)).map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
+        self.push(format_args!(r#"<polygon points="{}" fill="{fill}" stroke="{stroke}" stroke-width="1.4"/>"#, points.join(" ")));
+    }
+
+    pub fn circle(&mut self, centre: Point, radius: f64, fill: &str, stroke: &str) {
+        let [x, y] = self.place(centre);
+        let r = radius * self.scale;
+        self.push(format_args!(r#"<circle cx="{x:.2}" cy="{y:.2}" r="{r:.2}" fill="{fill}" stroke="{stroke}" stroke-width="1.4"/>"#));
+    }
+
+    /// Dot of fixed size in pixels.
+    pub fn dot(&mut self, [x, y]: Point, radius: f64, fill: &str) {
+        self.push(format_args!(r#"<circle cx="{x:.2}" cy="{y:.2}" r="{radius}" fill="{fill}"/>"#));
+    }
+
+    /// Line between two pixels.
+    pub fn line(&mut self, [x1, y1]: Point, [x2, y2]: Point, stroke: &str, width: f64) {
+        self.push(format_args!(
+            r#"<line x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}" stroke="{stroke}" stroke-width="{width}" stroke-linecap="round"/>"#
+        ));
+    }
+
+    /// Arrow between two pixels, its head at the second.
+    pub fn arrow(&mut self, from: Point, to: Point, stroke: &str, width: f64) {
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let length = dx.hypot(dy).max(1e-9);
+        let (ux, uy) = (dx / length, dy / length);
+        let head = 4.0 + 2.0 * width;
+        let wing = |side: f64| [to[0] - head * ux + side * 0.45 * head * uy, to[1] - head * uy - side * 0.45 * head * ux];
+        let ([x1, y1], [x2, y2]) = (wing(1.0), wing(-1.0));
+        self.line(from, [to[0] - 0.7 * head * ux, to[1] - 0.7 * head * uy], stroke, width);
+        self.push(format_args!(r#"<polygon points="{:.2},{:.2} {x1:.2},{y1:.2} {x2:.2},{y2:.2}" fill="{stroke}"/>"#, to[0], to[1]));
+    }
+
+    /// Words at a pixel; `anchor` is start, middle or end.
+    pub fn text(&mut self, [x, y]: Point, words: &str, anchor: &str, size: u32, fill: &str) {
+        let words = words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        self.push(format_args!(
+            r#"<text x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" font-size="{size}" fill="{fill}">{words}</text>"#
+        ));
+    }
+
+    /// Measure line with arrows at both ends between two pixels, and its words beside the middle.
+    pub fn measure(&mut self, from: Point, to: Point, words: &str) {
+        let middle = [(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0];
+        let reach = (to[0] - from[0]).hypot(to[1] - from[1]);
+        if reach > 24.0 {
+            self.arrow(middle, from, WORDS, 1.0);
+            self.arrow(middle, to, WORDS, 1.0);
+        } else {
+            self.line(from, to, WORDS, 1.0);
+        }
+        if (to[0] - from[0]).abs() > (to[1] - from[1]).abs() {
+            self.text([middle[0], middle[1] - 6.0], words, "middle", 13, WORDS);
+        } else {
+            self.text([middle[0] + 7.0, middle[1] + 4.0], words, "start", 13, WORDS);
+        }
+    }
+
+    /// The whole file.
+    pub fn finish(self, width: f64, height: f64) -> String {
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
+             font-family=\"Helvetica, Arial, sans-serif\">\n  <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
+            self.body
+        )
+    }
+}

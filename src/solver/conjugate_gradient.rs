@@ -1,0 +1,126 @@
+//! Conjugate gradients preconditioned by lattice multigrid.
+
+use rayon::prelude::*;
+
+use super::LinearSolver;
+use super::field::dot;
+use super::multigrid::Multigrid;
+use super::product::{Into, Product};
+use crate::body::{Body, Bond};
+use crate::error::{Error, Result};
+use crate::state::Bonds;
+
+/// Residual over load at which a solve ends. Bond strains at the tip are then right to about 1e-9, so that the order in
+/// which bonds break does not hang on the solver.
+pub const TOLERANCE: f64 = 1e-9;
+/// Iterations after which a solve has failed.
+const ITERATIONS_MAX: usize = 400;
+/// Iterations above those of a fresh hierarchy at which it is rebuilt.
+const ITERATIONS_SLACK: usize = 3;
+/// Broken bonds, in stencils, after which the hierarchy is rebuilt in any case.
+const STENCILS_PER_REBUILD: usize = 12;
+
+/// Multigrid-preconditioned conjugate gradients with the hierarchy kept between solves.
+pub struct MultigridSolver<const N: usize> {
+    multigrid: Multigrid<N>,
+    fresh_iterations: Option<usize>,
+    broken_since: usize,
+    stale: bool,
+    r: Vec<f64>,
+    z: Vec<f64>,
+    p: Vec<f64>,
+    q: Vec<f64>,
+}
+
+impl<const N: usize> MultigridSolver<N> {
+    /// Builds the hierarchy.
+    pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
+        let layout = product.layout();
+        MultigridSolver {
+            multigrid: Multigrid::new(body, bonds, product),
+            fresh_iterations: None,
+            broken_since: 0,
+            stale: false,
+            r: layout.zeros(),
+            z: layout.zeros(),
+            p: layout.zeros(),
+            q: layout.zeros(),
+        }
+    }
+
+    fn iterate(&mut self, bonds: &Bonds, product: &Product<N>, f: &[f64], u: &mut [f64]) -> Option<usize> {
+        let layout = *product.layout();
+        let target = TOLERANCE * dot(&layout, f, f).sqrt();
+        self.r.copy_from_slice(f);
+        product.apply(bonds, u, &mut self.r, Into::Subtract);
+        if dot(&layout, &self.r, &self.r).sqrt() <= target {
+            return Some(0);
+        }
+        let mut rz_last = 0.0;
+        for iteration in 1..=ITERATIONS_MAX {
+            self.multigrid.precondition(bonds, product, &self.r, &mut self.z);
+            let rz = dot(&layout, &self.r, &self.z);
+            let beta = if iteration == 1 { 0.0 } else { rz / rz_last };
+            rz_last = rz;
+            update(&mut self.p, |p, i| self.z[i] + beta * p);
+            product.apply(bonds, &self.p, &mut self.q, Into::Set);
+            let curvature = dot(&layout, &self.p, &self.q);
+            if !(curvature > 0.0 && curvature.is_finite()) {
+                return None;
+            }
+            let alpha = rz / curvature;
+            update(u, |u, i| u + alpha * self.p[i]);
+            update(&mut self.r, |r, i| r - alpha * self.q[i]);
+            if dot(&layout, &self.r, &self.r).sqrt() <= target {
+                return Some(iteration);
+            }
+        }
+        None
+    }
+}
+
+/// v[i] = new(v[i], i) for all i, shared out to threads.
+fn update(v: &mut [f64], new: impl Fn(f64, usize) -> f64 + Sync) {
+    const PART: usize = 1 << 14;
+    v.par_chunks_mut(PART).enumerate().for_each(|(part, values)| {
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = new(*value, part * PART + i);
+        }
+    });
+}
+
+impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
+    fn solve(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, f: &[f64], u: &mut [f64]) -> Result<usize> {
+        if self.stale {
+            self.multigrid = Multigrid::new(body, bonds, product);
+            self.stale = false;
+            self.broken_since = 0;
+            self.fresh_iterations = None;
+        }
+        let mut spent = self.iterate(bonds, product, f, u);
+        if spent.is_none() && self.broken_since > 0 {
+            // The hierarchy belongs to an older crack: try once more with a new one, from rest.
+            self.multigrid = Multigrid::new(body, bonds, product);
+            self.broken_since = 0;
+            u.fill(0.0);
+            spent = self.iterate(bonds, product, f, u);
+        }
+        let spent = spent.ok_or_else(|| {
+            Error::Mechanics(format!(
+                "the equilibrium solver did not converge to {TOLERANCE:e} within {ITERATIONS_MAX} iterations"
+            ))
+        })?;
+        let fresh = *self.fresh_iterations.get_or_insert(spent);
+        self.stale = self.broken_since > STENCILS_PER_REBUILD * body.steps.len()
+            || (self.broken_since > 0 && spent > fresh + ITERATIONS_SLACK);
+        Ok(spent)
+    }
+
+    fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
+        let mut places: Vec<usize> = broken.iter().flat_map(|&bond| [body.ends(bond).1, body.ends(bond).2]).collect();
+        places.sort_unstable();
+        places.dedup();
+        self.multigrid.refresh_points(body, bonds, product, &places);
+        self.broken_since += broken.len();
+    }
+}

@@ -1,0 +1,94 @@
+//! Vectors over the unknowns of a body.
+//!
+//! Memory: row by row of the padded lattice, and within a row one component after the other, so that a row with all
+//! its components is one slice (rows are what threads share out) and a component along a row is contiguous (what
+//! vector units read).
+
+use crate::body::lattice::{LANES, Lattice};
+
+/// Layout of a vector with `unknowns` components a place over a padded lattice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Layout {
+    /// Components of a place.
+    pub unknowns: usize,
+    /// Places of a padded row.
+    pub stride: usize,
+    /// Padded rows.
+    pub rows: usize,
+    /// Padding.
+    pub padding: usize,
+    /// Columns that hold points.
+    pub columns: usize,
+}
+
+impl Layout {
+    /// Layout over the lattice of a body.
+    #[must_use]
+    pub fn of(lattice: &Lattice, unknowns: usize) -> Self {
+        Layout {
+            unknowns,
+            stride: lattice.stride,
+            rows: lattice.rows + 2 * lattice.padding,
+            padding: lattice.padding,
+            columns: lattice.columns,
+        }
+    }
+
+    /// Length of a vector.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.rows * self.row_len() + LANES
+    }
+
+    /// Whether there is nothing in it.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rows == 0
+    }
+
+    /// Length of a padded row with all components.
+    #[must_use]
+    pub fn row_len(&self) -> usize {
+        self.unknowns * self.stride
+    }
+
+    /// Index of the first component of a memory place of the lattice.
+    #[must_use]
+    pub fn index(&self, place: usize) -> usize {
+        place / self.stride * self.row_len() + place % self.stride
+    }
+
+    /// Distance in the vector to the neighbour `dx`, `dy` away.
+    #[must_use]
+    pub fn step(&self, dx: i32, dy: i32) -> isize {
+        dy as isize * self.row_len() as isize + dx as isize
+    }
+
+    /// A zero vector.
+    #[must_use]
+    pub fn zeros(&self) -> Vec<f64> {
+        vec![0.0; self.len()]
+    }
+}
+
+/// Scalar product, summed row by row in a fixed order: the same digits whatever the number of threads.
+#[must_use]
+pub fn dot(layout: &Layout, a: &[f64], b: &[f64]) -> f64 {
+    use rayon::prelude::*;
+    let row_len = layout.row_len();
+    let rows: Vec<f64> = a.par_chunks(row_len * 16).zip(b.par_chunks(row_len * 16)).map(|(a, b)| lane_sum(a, b)).collect();
+    rows.iter().sum()
+}
+
+/// Sum of products with eight running sums, which the compiler turns into vector instructions.
+fn lane_sum(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; LANES];
+    let (a_lanes, a_rest) = a.as_chunks::<LANES>();
+    let (b_lanes, b_rest) = b.as_chunks::<LANES>();
+    for (a, b) in a_lanes.iter().zip(b_lanes) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f64>()
+}

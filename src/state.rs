@@ -1,0 +1,85 @@
+//! All that changes in a run. Each part has one writer: displacement the solver, bonds and their life `fatigue`,
+//! cycles `predict`.
+
+use crate::body::lattice::LANES;
+use crate::body::{Body, Bond};
+
+/// Which bonds still carry, in the form the stiffness product needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bonds {
+    /// Current stiffness multiplier of every bond; 0 = absent or broken.
+    pub multiplier: Vec<f32>,
+    /// Whether all bonds of all points of a chunk of [`LANES`] places are interior and intact (row by row).
+    pub regular: Vec<bool>,
+    chunks: usize,
+}
+
+impl Bonds {
+    /// Bonds of the plate with its initial cracks cut.
+    #[must_use]
+    pub fn new(body: &Body) -> Self {
+        let chunks = body.lattice.columns.div_ceil(LANES);
+        let mut bonds = Bonds { multiplier: body.multiplier.clone(), regular: vec![false; chunks * body.lattice.rows], chunks };
+        for row in 0..body.lattice.rows {
+            for chunk in 0..chunks {
+                bonds.regular[row * chunks + chunk] = bonds.is_regular(body, body.lattice.place(chunk * LANES, row));
+            }
+        }
+        for &bond in &body.pre_cut {
+            bonds.cut(body, bond);
+        }
+        bonds
+    }
+
+    fn is_regular(&self, body: &Body, first: usize) -> bool {
+        let places = body.places();
+        (first..first + LANES).all(|place| {
+            body.steps.iter().enumerate().all(|(k, &step)| {
+                self.multiplier[k * places + place] == 1.0
+                    && self.multiplier[k * places + place.wrapping_add_signed(-step)] == 1.0
+            })
+        })
+    }
+
+    /// Whether the chunk that starts at column `chunk x LANES` of a row is regular.
+    #[must_use]
+    pub fn chunk_is_regular(&self, row: usize, chunk: usize) -> bool {
+        self.regular[row * self.chunks + chunk]
+    }
+
+    /// Chunks of a row.
+    #[must_use]
+    pub fn chunks(&self) -> usize {
+        self.chunks
+    }
+
+    /// Whether a bond carries.
+    #[must_use]
+    pub fn is_intact(&self, bond: Bond) -> bool {
+        self.multiplier[bond as usize] > 0.0
+    }
+
+    /// Breaks a bond for good.
+    pub fn cut(&mut self, body: &Body, bond: Bond) {
+        self.multiplier[bond as usize] = 0.0;
+        let (_, from, to) = body.ends(bond);
+        for place in [from, to] {
+            let (column, row) = body.lattice.column_row(place);
+            self.regular[row * self.chunks + column / LANES] = false;
+        }
+    }
+
+    /// Intact bonds of a point.
+    #[must_use]
+    pub fn intact_at(&self, body: &Body, place: usize) -> usize {
+        let places = body.places();
+        let own = body.steps.iter().enumerate().filter(|(k, _)| self.multiplier[k * places + place] > 0.0).count();
+        let of_others = body
+            .steps
+            .iter()
+            .enumerate()
+            .filter(|&(k, &step)| self.multiplier[k * places + place.wrapping_add_signed(-step)] > 0.0)
+            .count();
+        own + of_others
+    }
+}
