@@ -6,6 +6,8 @@
 
 pub mod error;
 pub mod kinds;
+#[cfg(feature = "tables")]
+pub mod tables;
 pub mod units;
 pub mod input;
 

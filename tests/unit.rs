@@ -4,15 +4,29 @@
 mod made_up_case;
 #[path = "support/made_up_run.rs"]
 mod made_up_run;
+#[path = "support/noise.rs"]
+mod noise;
+#[path = "support/shared.rs"]
+mod shared;
 
+#[path = "unit/calibration_case.rs"]
+mod calibration_case;
 #[path = "unit/commands.rs"]
 mod commands;
+#[path = "unit/confidence.rs"]
+mod confidence;
 #[path = "unit/layering.rs"]
 mod layering;
+#[path = "unit/measured.rs"]
+mod measured;
+#[path = "unit/misfit.rs"]
+mod misfit;
 #[path = "unit/output.rs"]
 mod output;
 #[path = "unit/pictures.rs"]
 mod pictures;
+#[path = "unit/rates.rs"]
+mod rates;
 #[path = "unit/report.rs"]
 mod report;
 #[path = "unit/case.rs"]
@@ -23,3 +37,6 @@ mod handbook;
 mod loading;
 #[path = "unit/specimen.rs"]
 mod specimen;
+#[cfg(feature = "tables")]
+#[path = "unit/tables.rs"]
+mod tables;

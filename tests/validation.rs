@@ -1,1 +1,11 @@
 //! Does it match the world?
+
+#[path = "support/shared.rs"]
+mod shared;
+
+#[path = "validation/fit_virkler.rs"]
+mod fit_virkler;
+#[path = "validation/median_virkler.rs"]
+mod median_virkler;
+#[path = "validation/rates_virkler.rs"]
+mod rates_virkler;

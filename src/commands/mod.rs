@@ -2,10 +2,12 @@
 //!
 //! A new subcommand is its file, its `mod` and its line in the list below.
 
+pub mod calibrate;
 pub mod check;
 pub mod export;
 pub mod list;
 pub mod predict;
+pub mod rates;
 
 pub mod console;
 pub mod message;
@@ -35,14 +37,14 @@ macro_rules! commands {
 commands! {
     /// Predict crack growth: run a case, write its a-N curve and pictures
     Predict: predict,
-    // /// Fit the fatigue law to measured a-N curves
-    // Calibrate: calibrate,
+    /// Fit the fatigue law to measured a-N curves
+    Calibrate: calibrate,
     /// Resample the a-N curve of a finished run
     Export: export,
     // /// Stress intensity factors of every crack tip, beside the handbook value
     // Sif: sif,
-    // /// Growth rate da/dN against ΔK from measured a-N curves
-    // Rates: rates,
+    /// Growth rate da/dN against ΔK from measured a-N curves
+    Rates: rates,
     /// Check an input file without running it
     Check: check,
     /// List every kind of every key of the input files

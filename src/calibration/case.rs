@@ -1,0 +1,202 @@
+//! A calibration file: `[measured]` and `[fit]` beside the sections of a case.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use toml::{Table, Value};
+
+use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurve, Units, read};
+use crate::calibration::record::SourceFile;
+use crate::case::{Case, LawSource};
+use crate::error::{Error, input, input_missing};
+use crate::input::{Document, LENGTH, slice};
+use crate::specimen::handbook::{HandbookFormula, handbook};
+use crate::specimen::{Specimen, SpecimenKind};
+use crate::units::MM;
+
+crate::kinds! {
+    /// Constants a calibration can fit.
+    pub enum Parameter for "fit.parameters" {
+        A = "a": "the constant A",
+        P = "p": "the exponent p",
+    }
+}
+
+/// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
+const LENGTH_SLACK: f64 = 1e-9;
+
+/// A checked calibration, SI inside.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationCase {
+    /// The test as a case without fatigue law. It runs to the longest reading and stops for nothing else on the way:
+    /// toughness and yield strength are taken out, since the measured specimens are known to have got there.
+    pub case: Case,
+    /// Measured curves inside the fit window, cycles counted from its first reading.
+    pub curves: Vec<MeasuredCurve>,
+    /// p given by the user; `None` fits it.
+    pub fixed_p: Option<f64>,
+    /// Measured files with their hashes.
+    pub sources: Vec<SourceFile>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    formula: HandbookFormula,
+}
+
+/// `[measured]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeasuredSlice {
+    files: Vec<String>,
+    from_crack_length_mm: Option<f64>,
+    to_crack_length_mm: Option<f64>,
+    length_unit: Option<LengthUnit>,
+    cycle_unit: Option<CycleUnit>,
+}
+
+/// `[fit]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FitSlice {
+    parameters: Option<Vec<Parameter>>,
+    p: Option<f64>,
+}
+
+impl CalibrationCase {
+    /// Reads a calibration file and the measured files it names; `overrides` are `section.key=value`.
+    pub fn from_file(path: &Path, overrides: &[String]) -> crate::Result<Self> {
+        let mut document = Document::read(path, overrides)?;
+        // Taken out of the table, but not of the text: errors still find their line.
+        let measured = document.table.remove("measured");
+        let fit = document.table.remove("fit").unwrap_or_else(|| Value::Table(Table::new()));
+        let build = || {
+            let measured = measured
+                .as_ref()
+                .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
+            let case = Case::from_table(document.table.clone(), &document.name, &document.base_dir)?;
+            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.base_dir)
+        };
+        build().map_err(|error| document.locate(error))
+    }
+
+    fn build(mut case: Case, keys: MeasuredSlice, fit: FitSlice, base_dir: &Path) -> crate::Result<Self> {
+        if !matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
+            let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
+            return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
+        }
+        let fixed_p = fixed_p(&fit)?;
+        let formula = handbook(&case.specimen).ok_or_else(|| {
+            input(
+                "specimen.kind",
+                format!("\"{}\"", case.specimen.kind),
+                "has no handbook K(a) in this shape, and a calibration gives its growth rates against ΔK",
+                "calibrate on a standard specimen (length at least 1.5 widths), then predict the plate with the fit",
+            )
+        })?;
+        let (files, sources) = sources(&keys.files, base_dir)?;
+        let measured = read(&files, Units { length: keys.length_unit, cycles: keys.cycle_unit })?;
+        let (limit, limit_name) = length_limit(&case.specimen);
+        measured.check_lengths(limit, limit_name)?;
+        let Measured { curves, mut warnings } = window(&measured, &keys)?;
+        check_start(&case.specimen, &curves)?;
+        let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
+        if !formula.holds_at(case.specimen.crack_length) || !formula.holds_at(longest) {
+            warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
+        }
+        case.stop.crack_length = longest;
+        // A run for A = 1 counts A x cycles, which no limit in cycles is meant for.
+        case.stop.cycles_max = f64::INFINITY;
+        case.material.toughness = None;
+        case.material.yield_strength = None;
+        warnings.extend(case.warnings.iter().cloned());
+        Ok(CalibrationCase { case, curves, fixed_p, sources, warnings, formula })
+    }
+
+    /// ΔK of the handbook (Pa√m) at a crack length (m).
+    #[must_use]
+    pub fn delta_k(&self, crack_length: f64) -> f64 {
+        self.formula.delta_k(crack_length, self.case.loading.maximum, self.case.loading.range_share())
+    }
+}
+
+/// Largest crack length the specimen has room for, m, and its name.
+#[must_use]
+pub fn length_limit(specimen: &Specimen) -> (f64, &'static str) {
+    match specimen.kind {
+        SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => (0.5 * specimen.width, "half width"),
+        SpecimenKind::SingleEdgeTension => (specimen.width, "width"),
+        SpecimenKind::CompactTension => (specimen.width, "width from the load line"),
+        SpecimenKind::Plate => (specimen.gross_width.max(specimen.length()), "size"),
+    }
+}
+
+/// Takes the law out of the sections of a case that is to get another one, or needs none.
+pub fn remove_law(sections: &mut Table) {
+    if let Some(fatigue) = sections.get_mut("fatigue").and_then(Value::as_table_mut) {
+        for key in ["fitted", "a", "p", "horizon_mm"] {
+            fatigue.remove(key);
+        }
+    }
+}
+
+/// p of `[fit]` where it is not fitted.
+fn fixed_p(fit: &FitSlice) -> crate::Result<Option<f64>> {
+    let parameters = fit.parameters.clone().unwrap_or_else(|| vec![Parameter::A, Parameter::P]);
+    let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
+    if !parameters.contains(&Parameter::A) {
+        let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
+        return Err(input("fit.parameters", format!("[{}]", names.join(", ")), "leaves a out, which is always fitted", remedy));
+    }
+    match (parameters.contains(&Parameter::P), fit.p) {
+        (true, None) => Ok(None),
+        (true, Some(p)) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
+        (false, Some(p)) => Ok(Some(p)),
+        (false, None) => {
+            Err(input_missing("fit.p", "is missing", "give the exponent p, or fit it too: parameters = [\"a\", \"p\"]"))
+        }
+    }
+}
+
+/// Paths of the measured files, and what the record says about them.
+fn sources(files: &[String], base_dir: &Path) -> crate::Result<(Vec<PathBuf>, Vec<SourceFile>)> {
+    if files.is_empty() {
+        return Err(input("measured.files", "[]", "names no file", "name at least one measured a-N curve"));
+    }
+    let paths: Vec<PathBuf> = files.iter().map(|file| base_dir.join(file)).collect();
+    let mut sources = Vec::with_capacity(files.len());
+    for (file, path) in files.iter().zip(&paths) {
+        let bytes = std::fs::read(path).map_err(|error| Error::file(path, "cannot read", error))?;
+        let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        sources.push(SourceFile { file: file.clone(), sha256 });
+    }
+    Ok((paths, sources))
+}
+
+fn window(measured: &Measured, keys: &MeasuredSlice) -> crate::Result<Measured> {
+    let from = LENGTH.read_optional("measured.from_crack_length_mm", keys.from_crack_length_mm)?;
+    let to = LENGTH.read_optional("measured.to_crack_length_mm", keys.to_crack_length_mm)?;
+    if let (Some(from), Some(to)) = (from, to)
+        && from >= to
+    {
+        let problem = format!("is not above from_crack_length_mm = {}", from / MM);
+        return Err(input("measured.to_crack_length_mm", to / MM, problem, "give a window that holds at least 5 readings"));
+    }
+    measured.window(from, to)
+}
+
+/// The model starts at the specimen's crack length, so no reading may come before it.
+fn check_start(specimen: &Specimen, curves: &[MeasuredCurve]) -> crate::Result<()> {
+    for curve in curves {
+        let first = curve.crack_length[0]; // a window keeps at least five readings
+        if specimen.crack_length > first + LENGTH_SLACK {
+            let mm = |length: f64| format!("{:.4}", length / MM).trim_end_matches('0').trim_end_matches('.').to_owned();
+            return Err(input(
+                "specimen.crack_length_mm",
+                mm(specimen.crack_length),
+                format!("is longer than the first reading of specimen {}, {} mm", curve.specimen, mm(first)),
+                "start the model at the first reading, or the window (measured.from_crack_length_mm) at the model",
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,70 @@
+//! How well the curve determines ln A and p.
+//!
+//! A crack that runs slowly between two readings shifts all later cycles: errors of cumulated cycles are sums of errors
+//! of the increments and strongly correlated. The usual `s² (JᵀJ)⁻¹` takes them as independent and is far too sure of itself.
+//! So the least squares estimate on cumulated cycles (best for life, see `misfit`) gets a sandwich covariance
+//!
+//! ```text
+//! Cov = (JᵀJ)⁻¹ Jᵀ Σ J (JᵀJ)⁻¹,   Σ = L diag(σ² ΔN_i²) Lᵀ
+//! ```
+//!
+//! (White 1980; L sums increments up) with increments `ΔN_i` of the fit that scatter independently by the same relative
+//! σ, which is the rms of the relative residual increments.
+
+use nalgebra::{Matrix2, Vector2};
+
+/// Covariance of (ln A, p) and the scatter it rests on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Confidence {
+    /// Covariance of (ln A, p); with p fixed only the first entry is not 0.
+    pub covariance: [[f64; 2]; 2],
+    /// Relative scatter σ of the cycles between readings.
+    pub increment_scatter: f64,
+}
+
+/// Covariance at a fit, from A x cycles `model` and their derivative `model_per_p` at the measured lengths.
+///
+/// All three slices count from the first reading. `None` for `model_per_p` means that p was fixed.
+#[must_use]
+pub fn confidence(model: &[f64], model_per_p: Option<&[f64]>, measured: &[f64], inverse_a: f64) -> Confidence {
+    let increments: Vec<(f64, f64)> = model
+        .windows(2)
+        .zip(measured.windows(2))
+        .map(|(n, measured)| ((n[1] - n[0]) * inverse_a, measured[1] - measured[0]))
+        .collect();
+    // Readings that noise puts in the wrong order have no fitted increment to compare with.
+    let usable = || increments.iter().filter(|(fitted, _)| *fitted > 0.0);
+    let parameters = if model_per_p.is_some() { 2 } else { 1 };
+    let freedom = usable().count().saturating_sub(parameters).max(1) as f64;
+    let variance = usable().map(|(fitted, measured)| (measured / fitted - 1.0).powi(2)).sum::<f64>() / freedom;
+
+    // N = n / A: ∂N/∂ln A = -N, ∂N/∂p = (∂n/∂p) / A.
+    let jacobian: Vec<Vector2<f64>> = (1..model.len())
+        .map(|i| Vector2::new(-model[i] * inverse_a, model_per_p.map_or(0.0, |slope| slope[i] * inverse_a)))
+        .collect();
+    let normal: Matrix2<f64> = jacobian.iter().map(|row| row * row.transpose()).sum();
+    let inverse = match model_per_p {
+        Some(_) => normal.try_inverse().unwrap_or_else(|| Matrix2::repeat(f64::NAN)),
+        None => Matrix2::new(1.0 / normal[(0, 0)], 0.0, 0.0, 0.0),
+    };
+    // Column i of Jᵀ L is the sum of all later rows of J: an increment moves every cycle count after it.
+    let mut meat = Matrix2::zeros();
+    let mut later = Vector2::zeros();
+    for (row, (fitted, _)) in jacobian.iter().zip(&increments).rev() {
+        later += row;
+        meat += later * later.transpose() * (variance * fitted * fitted);
+    }
+    let covariance = inverse * meat * inverse;
+    Confidence {
+        covariance: [[covariance[(0, 0)], covariance[(0, 1)]], [covariance[(1, 0)], covariance[(1, 1)]]],
+        increment_scatter: variance.sqrt(),
+    }
+}
+
+/// Squared Mahalanobis distance of (ln A, p) from the fit; below 5.991 inside the 95 % ellipse (χ², 2 degrees of freedom).
+#[must_use]
+pub fn distance_squared(covariance: [[f64; 2]; 2], difference: [f64; 2]) -> f64 {
+    let matrix = Matrix2::new(covariance[0][0], covariance[0][1], covariance[1][0], covariance[1][1]);
+    let difference = Vector2::from(difference);
+    matrix.try_inverse().map_or(f64::NAN, |inverse| difference.dot(&(inverse * difference)))
+}

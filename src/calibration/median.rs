@@ -1,0 +1,112 @@
+//! Several specimens as one curve: pointwise median of cycles at equal crack length.
+
+use crate::calibration::measured::{MeasuredCurve, READINGS_MIN, Source};
+use crate::error::{Result, input_missing};
+
+/// Two lengths that differ by less are the same grid point, m.
+const SAME_LENGTH: f64 = 1e-9;
+
+/// Cycles at which a measured curve first reaches a crack length (linear between readings), or `None` outside its range.
+///
+/// Readings that fall back below an earlier one do not count: noise in a reading does not heal a crack.
+#[must_use]
+pub fn cycles_at(curve: &MeasuredCurve, crack_length: f64) -> Option<f64> {
+    let (&first_length, &first_cycles) = (curve.crack_length.first()?, curve.cycles.first()?);
+    if (crack_length - first_length).abs() <= SAME_LENGTH {
+        return Some(first_cycles);
+    }
+    if crack_length < first_length {
+        return None;
+    }
+    let (mut longest, mut at) = (first_length, first_cycles);
+    for (&a, &n) in curve.crack_length.iter().zip(&curve.cycles) {
+        if a <= longest {
+            continue;
+        }
+        if (crack_length - a).abs() <= SAME_LENGTH {
+            return Some(n);
+        }
+        if crack_length < a {
+            return Some(at + (n - at) * (crack_length - longest) / (a - longest));
+        }
+        (longest, at) = (a, n);
+    }
+    None
+}
+
+/// Median of a non-empty set of numbers: the middle one, or the mean of the two in the middle.
+#[must_use]
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    match sorted.len() {
+        0 => f64::NAN,
+        n if n % 2 == 1 => sorted[middle],
+        _ => 0.5 * (sorted[middle - 1] + sorted[middle]),
+    }
+}
+
+/// Lengths at which several curves can be compared: their own readings where all were read at the same lengths, else as
+/// many equally spaced ones as the curves have readings (median), over the range that all of them cover.
+pub fn common_lengths(curves: &[MeasuredCurve]) -> Result<Vec<f64>> {
+    let Some(first) = curves.first() else {
+        return Err(input_missing("measured.files", "hold no curve", "give at least one specimen"));
+    };
+    let same = |curve: &MeasuredCurve| {
+        curve.crack_length.len() == first.crack_length.len()
+            && curve.crack_length.iter().zip(&first.crack_length).all(|(a, b)| (a - b).abs() <= SAME_LENGTH)
+    };
+    if rises(&first.crack_length) && curves.iter().all(same) {
+        return Ok(first.crack_length.clone());
+    }
+    let start = curves.iter().filter_map(|curve| curve.crack_length.first().copied()).fold(0.0, f64::max);
+    let longest = |curve: &MeasuredCurve| curve.crack_length.iter().copied().fold(0.0, f64::max);
+    let end = curves.iter().map(longest).fold(f64::INFINITY, f64::min);
+    if end - start <= SAME_LENGTH {
+        return Err(input_missing(
+            "measured.files",
+            "hold specimens whose crack lengths do not overlap, so they have no common median",
+            "calibrate them one by one, or give curves over the same range",
+        ));
+    }
+    let counts: Vec<f64> = curves.iter().map(|curve| curve.cycles.len() as f64).collect();
+    let points = (median(&counts) as usize).max(READINGS_MIN);
+    let step = (end - start) / (points - 1) as f64;
+    Ok((0..points).map(|point| if point + 1 == points { end } else { start + step * point as f64 }).collect())
+}
+
+/// Pointwise median of several curves at given lengths: at each one the median over specimens of the cycles since the
+/// first of these lengths. Counting from there matters: specimens start their counters at different lengths.
+pub fn pointwise_median_at(curves: &[MeasuredCurve], lengths: &[f64]) -> Result<MeasuredCurve> {
+    let mut cycles = Vec::with_capacity(lengths.len());
+    for &length in lengths {
+        let mut since_start = Vec::with_capacity(curves.len());
+        for curve in curves {
+            match (cycles_at(curve, length), cycles_at(curve, lengths[0])) {
+                (Some(n), Some(start)) => since_start.push(n - start),
+                _ => {
+                    return Err(input_missing(
+                        "measured.files",
+                        format!("do not reach {:.4} mm in specimen {}", length / crate::units::MM, curve.specimen),
+                        "choose lengths that every specimen covers",
+                    ));
+                }
+            }
+        }
+        cycles.push(median(&since_start));
+    }
+    Ok(MeasuredCurve { specimen: "median".to_owned(), cycles, crack_length: lengths.to_vec(), source: Source::default() })
+}
+
+/// Pointwise median at the common lengths; of one curve, the curve itself.
+pub fn pointwise_median(curves: &[MeasuredCurve]) -> Result<MeasuredCurve> {
+    match curves {
+        [only] => Ok(only.clone()),
+        _ => pointwise_median_at(curves, &common_lengths(curves)?),
+    }
+}
+
+fn rises(lengths: &[f64]) -> bool {
+    lengths.windows(2).all(|pair| pair[1] > pair[0])
+}

@@ -1,0 +1,221 @@
+//! `perilife calibrate`: measured a-N curves to A and p, and on to the cases that use them.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::console::Console;
+use super::predict;
+use crate::calibration::case::{CalibrationCase, remove_law};
+use crate::calibration::fit::{Fit, FitTask, fit};
+use crate::calibration::pd_model::PdModel;
+use crate::calibration::record::FittedRecord;
+use crate::calibration::results::{FitReport, fit_curves_csv, record};
+use crate::case::Case;
+use crate::error::{Error, Result, input};
+use crate::input::Document;
+use crate::report::chart::{self, Mark, Series};
+use crate::report::output::{OutputFolder, write_file};
+use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+
+/// Arguments of `perilife calibrate`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Calibration file
+    #[arg(value_name = "CALIBRATION.toml")]
+    pub calibration: PathBuf,
+    /// Folder for the results; replaced if an earlier run made it
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: PathBuf,
+    /// Case to run with the fit, into DIR/CASE/ (repeatable)
+    #[arg(long, value_name = "CASE.toml", num_args = 1.., help_heading = "Input")]
+    pub predict: Vec<PathBuf>,
+    /// Override a key of the calibration file (repeatable), e.g. --set model.spacing_mm=2
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
+    pub set: Vec<String>,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// Runs `perilife calibrate`.
+///
+/// # Errors
+/// Wrong input, mechanics without a result, or files that cannot be read or written.
+pub fn run(args: &Args) -> Result<()> {
+    let console = &args.console;
+    let calibration = CalibrationCase::from_file(&args.calibration, &args.set)?;
+    // Read before the fit: a slip in the last case should not cost a calibration.
+    let cases = cases_to_predict(&args.predict)?;
+    let folder = OutputFolder::create(&args.out)?;
+    for warning in &calibration.warnings {
+        console.warn(warning);
+    }
+    let started = Instant::now();
+    let fitted = {
+        let progress = console.progress(&calibration.case.name);
+        let model = PdModel::new(&calibration.case, &progress)?;
+        let delta_k = |length: f64| calibration.delta_k(length);
+        fit(&FitTask { curves: &calibration.curves, fixed_p: calibration.fixed_p, delta_k: &delta_k }, &model)?
+    };
+    let report = FitReport::new(&calibration, &fitted, started.elapsed().as_secs_f64());
+    for warning in &fitted.warnings {
+        console.warn(warning);
+    }
+    let law = record(&calibration, &fitted);
+    write_fit(folder.path(), &calibration, &fitted, &report, &law)?;
+    folder.finish()?;
+    for line in summary(&report, &args.out) {
+        console.say(&line);
+    }
+
+    // The predictions: each case with the fit, by the command `predict`, into its own folder below `--out`.
+    let mut predictions = serde_json::Map::new();
+    for document in cases {
+        let case = case_of(&document)?.with_law(law.clone()).map_err(|error| document.locate(error))?;
+        let done = predict::run_case(&case, &args.out.join(&case.name), console)?;
+        predictions.insert(case.name.clone(), done.result);
+    }
+    let mut object = json!(report);
+    if let Some(fields) = object.as_object_mut()
+        && !predictions.is_empty()
+    {
+        fields.insert("predictions".to_owned(), Value::Object(predictions));
+    }
+    console.object(&object)
+}
+
+/// Cases for `--predict`, read and checked but for their fatigue law, which the fit will be.
+fn cases_to_predict(paths: &[PathBuf]) -> Result<Vec<Document>> {
+    let mut documents: Vec<Document> = Vec::with_capacity(paths.len());
+    for path in paths {
+        let mut document = Document::read(path, &[])?;
+        remove_law(&mut document.table);
+        if documents.iter().any(|earlier| earlier.name == document.name) {
+            let problem = format!("has the same case name as another one, {}", document.name);
+            return Err(input("--predict", path.display(), problem, "give the files different names"));
+        }
+        case_of(&document)?;
+        documents.push(document);
+    }
+    Ok(documents)
+}
+
+fn case_of(document: &Document) -> Result<Case> {
+    Case::from_table(document.table.clone(), &document.name, &document.base_dir).map_err(|error| document.locate(error))
+}
+
+/// Writes all files of a fit into `folder`.
+fn write_fit(folder: &Path, calibration: &CalibrationCase, fit: &Fit, report: &FitReport, law: &FittedRecord) -> Result<()> {
+    let unwritable = |file: &str, error: String| Error::file(&folder.join(file), "cannot write", std::io::Error::other(error));
+    let json = serde_json::to_string_pretty(report).map_err(|error| unwritable("fit.json", error.to_string()))?;
+    let toml = toml::to_string(law).map_err(|error| unwritable("fitted.toml", error.to_string()))?;
+    write_file(&folder.join("fit.json"), format!("{json}\n").as_bytes())?;
+    write_file(&folder.join("fitted.toml"), toml.as_bytes())?;
+    write_file(&folder.join("fit_curves.csv"), fit_curves_csv(fit).as_bytes())?;
+    write_tables(folder, calibration, fit)?;
+    draw(folder, calibration, fit)
+}
+
+/// The same curves as Parquet beside their constants, and for several specimens quantiles of their cycles.
+#[cfg(feature = "tables")]
+fn write_tables(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
+    use crate::calibration::fit::FittedCurve;
+    use crate::calibration::frames::{SHARES, cycle_quantiles, fit_curves, specimens};
+    use crate::calibration::results::curves_written;
+    use crate::tables::{csv, join_by_specimen, parquet};
+
+    let curves: Vec<FittedCurve> = curves_written(fit).cloned().collect();
+    let constants = specimens(&curves)?;
+    let joined = join_by_specimen(&fit_curves(&curves)?, &constants)?;
+    write_file(&folder.join("fit_curves.parquet"), &parquet(&joined)?)?;
+    write_file(&folder.join("specimens.csv"), &csv(&constants)?)?;
+    if calibration.curves.len() > 1 {
+        let quantiles = cycle_quantiles(&calibration.curves, &fit.record.crack_length, &SHARES)?;
+        write_file(&folder.join("quantiles.csv"), &csv(&quantiles)?)?;
+    }
+    Ok(())
+}
+
+#[cfg(not(feature = "tables"))]
+fn write_tables(_folder: &Path, _calibration: &CalibrationCase, _fit: &Fit) -> Result<()> {
+    Ok(())
+}
+
+/// `fit.svg`: measured points with the fitted curve.
+fn draw(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
+    let points = |cycles: &[f64], lengths: &[f64]| cycles.iter().zip(lengths).map(|(n, a)| (*n, a / MM)).collect();
+    let series = |name: &str, cycles: &[f64], lengths: &[f64], mark| Series {
+        name: name.to_owned(),
+        points: points(cycles, lengths),
+        mark,
+    };
+    let record = &fit.record;
+    let name = if fit.specimens.len() > 1 { "measured, median of all specimens" } else { "measured" };
+    let mut all = vec![
+        series(name, &record.cycles_measured, &record.crack_length, Mark::Circles),
+        series("fitted", &record.cycles_fitted, &record.crack_length, Mark::Line),
+    ];
+    if fit.specimens.len() > 1 {
+        let every = fit.specimens.iter().flat_map(|curve| curve.cycles_measured.iter().copied()).collect::<Vec<f64>>();
+        let lengths = fit.specimens.iter().flat_map(|curve| curve.crack_length.iter().copied()).collect::<Vec<f64>>();
+        all.insert(0, series("measured, every specimen", &every, &lengths, Mark::Dots));
+    }
+    chart::crack_length(&folder.join("fit.svg"), &format!("{}: fit", calibration.case.name), &all)?;
+    draw_rates(folder, calibration, fit)
+}
+
+/// `fit_rates.svg`: the fitted curve's rates against ΔK with the straight line through them.
+fn draw_rates(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
+    let record = &fit.record;
+    let delta_k = |length: f64| calibration.delta_k(length) / MPA_SQRT_M;
+    let rates = |cycles: &[f64]| -> Vec<(f64, f64)> {
+        (1..cycles.len())
+            .map(|i| {
+                let (a, before) = (record.crack_length[i], record.crack_length[i - 1]);
+                (delta_k(0.5 * (a + before)), (a - before) / (cycles[i] - cycles[i - 1]) / MM_PER_CYCLE)
+            })
+            .collect()
+    };
+    let line = [fit.paris.delta_k_min, fit.paris.delta_k_max].map(|k| (k, fit.paris.c * k.powf(fit.paris.m))).to_vec();
+    let all = [
+        Series { name: "measured (secant)".to_owned(), points: rates(&record.cycles_measured), mark: Mark::Circles },
+        Series { name: "fitted model".to_owned(), points: rates(&record.cycles_fitted), mark: Mark::Dots },
+        Series { name: format!("da/dN = {:.3e} ΔK^{:.3}", fit.paris.c, fit.paris.m), points: line, mark: Mark::Dashes },
+    ];
+    chart::growth_rate(&folder.join("fit_rates.svg"), &format!("{}: growth rate", calibration.case.name), &all)
+}
+
+/// The fit in words: rate at the pivot and exponent with their errors, never A alone.
+fn summary(report: &FitReport, out: &Path) -> Vec<String> {
+    let life = 100.0 * (report.life_fitted / report.life_measured - 1.0);
+    let exponent =
+        if report.p_error > 0.0 { format!("{:.4} ± {:.4}", report.p, report.p_error) } else { format!("{} (given)", report.p) };
+    vec![
+        format!("fit to {}, {} to {} mm", report.fitted_to, report.from_crack_length_mm, report.to_crack_length_mm),
+        format!("  A              {:.6e} at horizon {} mm", report.a, report.horizon_mm),
+        format!("  p              {exponent}"),
+        format!(
+            "  rate           {:.4e} mm/cycle ± {:.2} % at the pivot ΔK = {:.3} MPa√m",
+            report.rate_at_pivot_mm_per_cycle,
+            100.0 * report.rate_at_pivot_relative_error,
+            report.pivot_delta_k_mpa_sqrt_m
+        ),
+        format!("  Paris          da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m)", report.paris_c_mm_per_cycle, report.paris_m),
+        format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", report.delta_k_min_mpa_sqrt_m, report.delta_k_max_mpa_sqrt_m),
+        format!(
+            "  life           measured {:.0}, fitted {:.0} cycles ({life:+.2} %), rms life error {:.2} %",
+            report.life_measured,
+            report.life_fitted,
+            100.0 * report.rms_life_error
+        ),
+        format!(
+            "  specimens      {}, with {} runs of the model in {:.1} s",
+            report.specimens.len(),
+            report.evaluations,
+            report.wall_s
+        ),
+        format!("  results        {}", out.display()),
+    ]
+}

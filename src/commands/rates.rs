@@ -1,0 +1,177 @@
+//! `perilife rates`: da/dN against ΔK from measured a-N curves.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::console::Console;
+use crate::calibration::case::{length_limit, remove_law};
+use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, Units, read};
+use crate::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
+use crate::calibration::results::quoted;
+use crate::case::Case;
+use crate::error::{Result, input};
+use crate::input::Document;
+use crate::report::output::write_file;
+use crate::specimen::handbook::handbook;
+use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+
+/// Arguments of `perilife rates`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Measured a-N curves
+    #[arg(value_name = "MEASURED.csv", required = true)]
+    pub measured: Vec<PathBuf>,
+    /// Case or calibration file that says specimen, load and yield strength; without it there is no ΔK
+    #[arg(long, value_name = "CASE.toml", help_heading = "Input")]
+    pub specimen: Option<PathBuf>,
+    /// Override a key of that file (repeatable)
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input", requires = "specimen")]
+    pub set: Vec<String>,
+    /// Unit of crack length where the header does not name it: mm, inch or m
+    #[arg(long, value_name = "UNIT", help_heading = "Input")]
+    pub length_unit: Option<String>,
+    /// Unit of cycles where the header does not name it: cycles, kilocycles or megacycles
+    #[arg(long, value_name = "UNIT", help_heading = "Input")]
+    pub cycle_unit: Option<String>,
+    /// How rates are taken: secant, or polynomial7 (seven-point incremental polynomial of ASTM E647)
+    #[arg(long, value_name = "METHOD", default_value = "polynomial7", help_heading = "Method")]
+    pub method: String,
+    /// Table of the rates; without it (and without --json) the table goes to stdout
+    #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
+    pub out: Option<PathBuf>,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// Rates of one specimen.
+struct SpecimenRates {
+    name: String,
+    points: Vec<RatePoint>,
+}
+
+/// Runs `perilife rates`.
+///
+/// # Errors
+/// Wrong input, or files that cannot be read or written.
+pub fn run(args: &Args) -> Result<()> {
+    let method: RateMethod = args.method.parse()?;
+    let units = Units {
+        length: args.length_unit.as_deref().map(str::parse::<LengthUnit>).transpose()?,
+        cycles: args.cycle_unit.as_deref().map(str::parse::<CycleUnit>).transpose()?,
+    };
+    let measured = read(&args.measured, units)?;
+    let case = args.specimen.as_deref().map(|path| test_of(path, &args.set)).transpose()?;
+    for warning in &measured.warnings {
+        args.console.warn(warning);
+    }
+    let specimens = specimen_rates(&measured, method, case.as_ref())?;
+    let table = table(&specimens);
+    match &args.out {
+        Some(path) => write_file(path, table.as_bytes())?,
+        None => table.lines().for_each(|line| args.console.say(line)),
+    }
+    if args.out.is_some() {
+        specimens.iter().for_each(|specimen| args.console.say(&specimen.summary()));
+    }
+    args.console.object(&object(&specimens, method))
+}
+
+/// The test that a case or a calibration file describes.
+fn test_of(path: &Path, overrides: &[String]) -> Result<Case> {
+    let mut document = Document::read(path, overrides)?;
+    document.table.remove("measured");
+    document.table.remove("fit");
+    // Rates need no fatigue law, and a record that does not exist yet is no obstacle.
+    remove_law(&mut document.table);
+    Case::from_table(document.table.clone(), &document.name, &document.base_dir).map_err(|error| document.locate(error))
+}
+
+fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) -> Result<Vec<SpecimenRates>> {
+    let mut specimens: Vec<SpecimenRates> = Vec::with_capacity(measured.curves.len());
+    for curve in &measured.curves {
+        specimens.push(SpecimenRates { name: curve.specimen.clone(), points: rates(curve, method) });
+    }
+    let Some(case) = case else { return Ok(specimens) };
+    let (limit, limit_name) = length_limit(&case.specimen);
+    measured.check_lengths(limit, limit_name)?;
+    let Some(formula) = handbook(&case.specimen) else {
+        let remedy = "give a standard specimen whose length is at least 1.5 widths, or leave --specimen out";
+        return Err(input("specimen.kind", case.specimen.kind, "has no handbook K(a) in this shape", remedy));
+    };
+    let delta_k = |length: f64| formula.delta_k(length, case.loading.maximum, case.loading.range_share());
+    let piece = TestPiece::of(case, &delta_k);
+    specimens.iter_mut().for_each(|specimen| add_delta_k(&mut specimen.points, &piece));
+    Ok(specimens)
+}
+
+/// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags`; ΔK is empty where it is not known.
+fn table(specimens: &[SpecimenRates]) -> String {
+    let mut text = String::from("specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags\n");
+    for specimen in specimens {
+        for point in &specimen.points {
+            let delta_k = known(point.delta_k / MPA_SQRT_M).map_or_else(String::new, |k| format!("{k:.10}"));
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "{},{},{:.10},{delta_k},{:.10e},{}",
+                quoted(&specimen.name),
+                point.cycles,
+                point.crack_length / MM,
+                point.rate / MM_PER_CYCLE,
+                point.flags.words()
+            );
+        }
+    }
+    text
+}
+
+fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {
+    let points = |specimen: &SpecimenRates| -> Vec<Value> {
+        let point = |point: &RatePoint| {
+            json!({
+                "cycles": point.cycles,
+                "crack_length_mm": point.crack_length / MM,
+                "delta_k_mpa_sqrt_m": known(point.delta_k / MPA_SQRT_M),
+                "da_dn_mm_per_cycle": point.rate / MM_PER_CYCLE,
+                "flags": point.flags.words().split_whitespace().collect::<Vec<_>>(),
+            })
+        };
+        specimen.points.iter().map(point).collect()
+    };
+    let specimen = |specimen: &SpecimenRates| {
+        let law = paris_line(&specimen.points);
+        json!({
+            "name": specimen.name,
+            "paris_c_mm_per_cycle": law.map(|law| 10_f64.powf(law.intercept)),
+            "paris_m": law.map(|law| law.slope),
+            "scatter_decades": law.map(|law| law.scatter),
+            "flagged": specimen.flagged(),
+            "points": points(specimen),
+        })
+    };
+    json!({ "method": method.name(), "specimens": specimens.iter().map(specimen).collect::<Vec<_>>() })
+}
+
+impl SpecimenRates {
+    fn flagged(&self) -> usize {
+        self.points.iter().filter(|point| !point.flags.words().is_empty()).count()
+    }
+
+    fn summary(&self) -> String {
+        let start = format!("{}: {} rates, {} of them flagged", self.name, self.points.len(), self.flagged());
+        match paris_line(&self.points) {
+            None => start,
+            Some(law) => {
+                let c = 10_f64.powf(law.intercept);
+                format!("{start}; da/dN = {c:.4e} ΔK^{:.4} (mm/cycle, MPa√m), scatter {:.4} decades", law.slope, law.scatter)
+            }
+        }
+    }
+}
+
+fn known(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

@@ -1,0 +1,161 @@
+//! Data frames by polars: wide and long form, pointwise quantiles of many specimens, joins, Parquet and CSV.
+//!
+//! The only module that names polars (feature `tables`, on by default), below all rooms that have something to put in
+//! a frame. Nothing a fit or a prediction needs goes through here; it serves many specimens at once and whoever goes on with
+//! the results elsewhere. Columns carry their units, as in all result files.
+
+use std::path::Path;
+
+use polars::prelude::*;
+
+use crate::error::{Error, InputError, Result};
+
+pub use polars::prelude::DataFrame;
+
+/// Name of the column of crack length, mm.
+pub const LENGTH: &str = "crack_length_mm";
+/// Name of the column of specimens.
+pub const SPECIMEN: &str = "specimen";
+/// Name of the column of cycles.
+pub const CYCLES: &str = "cycles";
+
+/// Values of one column.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Text.
+    Text(Vec<String>),
+    /// Numbers.
+    Numbers(Vec<f64>),
+    /// Numbers with gaps.
+    Gaps(Vec<Option<f64>>),
+}
+
+/// Cells of a stored table as text, which is what a checking reader wants to see.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cells {
+    /// Column names.
+    pub header: Vec<String>,
+    /// Rows.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// A frame of named columns of equal length.
+pub fn frame(columns: Vec<(&str, Values)>) -> Result<DataFrame> {
+    let columns = columns.into_iter().map(|(name, values)| match values {
+        Values::Text(values) => Column::new(name.into(), values),
+        Values::Numbers(values) => Column::new(name.into(), values),
+        Values::Gaps(values) => Column::new(name.into(), values),
+    });
+    assemble(columns.collect())
+}
+
+/// Wide to long: the first column stays, every other becomes rows of `specimen` (its name), `cycles` and the first column;
+/// empty cells are left out.
+pub fn wide_to_long(wide: &DataFrame) -> Result<DataFrame> {
+    let Some((length, specimens)) = wide.columns().split_first() else { return assemble(Vec::new()) };
+    let mut long: Option<DataFrame> = None;
+    for specimen in specimens {
+        let mut cycles = specimen.clone();
+        cycles.rename(CYCLES.into());
+        let name = Column::new_scalar(SPECIMEN.into(), Scalar::from(specimen.name().clone()), wide.height());
+        let present = cycles.as_materialized_series().is_not_null();
+        let part = assemble(vec![name, cycles, length.clone()])?.filter(&present).map_err(trouble)?;
+        long = Some(match long {
+            None => part,
+            Some(all) => all.vstack(&part).map_err(trouble)?,
+        });
+    }
+    long.map_or_else(|| assemble(Vec::new()), Ok)
+}
+
+/// Quantiles of `cycles` at equal `crack_length_mm` of a long table: `crack_length_mm,cycles_p05,cycles_p50,...` for shares
+/// such as 0.05 and 0.5, linear between specimens (definition 7 of Hyndman and Fan 1996, The American Statistician 50:361).
+pub fn quantiles(long: &DataFrame, shares: &[f64]) -> Result<DataFrame> {
+    let groups = long.partition_by_stable([LENGTH], true).map_err(trouble)?;
+    let mut lengths = Vec::with_capacity(groups.len());
+    let mut columns: Vec<Vec<Option<f64>>> = vec![Vec::with_capacity(groups.len()); shares.len()];
+    for group in &groups {
+        let length = group.column(LENGTH).and_then(|column| column.get(0)).map_err(trouble)?;
+        lengths.push(length.try_extract::<f64>().map_err(trouble)?);
+        let cycles = group.column(CYCLES).map_err(trouble)?;
+        for (&share, column) in shares.iter().zip(&mut columns) {
+            let quantile = cycles.quantile_reduce(share, QuantileMethod::Linear).map_err(trouble)?;
+            column.push(quantile.value().try_extract::<f64>().ok());
+        }
+    }
+    let mut all = vec![Column::new(LENGTH.into(), lengths)];
+    for (share, column) in shares.iter().zip(columns) {
+        all.push(Column::new(format!("cycles_p{:02.0}", 100.0 * share).into(), column));
+    }
+    assemble(all)
+}
+
+/// Rows of `left` with the columns of `right` for the same `specimen` (left join).
+pub fn join_by_specimen(left: &DataFrame, right: &DataFrame) -> Result<DataFrame> {
+    left.left_join(right, [SPECIMEN], [SPECIMEN]).map_err(trouble)
+}
+
+/// Numbers of a column, gaps as NaN.
+pub fn numbers(table: &DataFrame, name: &str) -> Result<Vec<f64>> {
+    let column = table.column(name).map_err(trouble)?;
+    let values = column.f64().map_err(trouble)?;
+    Ok(values.iter().map(|value| value.unwrap_or(f64::NAN)).collect())
+}
+
+/// The table as the bytes of a Parquet file.
+pub fn parquet(table: &DataFrame) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    // Uncompressed: the tables are small, and every reader understands it without a compression library.
+    let writer = ParquetWriter::new(&mut bytes).with_compression(ParquetCompression::Uncompressed);
+    writer.finish(&mut table.clone()).map_err(trouble)?;
+    Ok(bytes)
+}
+
+/// The table as the bytes of a CSV file, numbers with all their digits.
+pub fn csv(table: &DataFrame) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    CsvWriter::new(&mut bytes).finish(&mut table.clone()).map_err(trouble)?;
+    Ok(bytes)
+}
+
+/// Reads a Parquet file.
+pub fn read_parquet(path: &Path) -> Result<Cells> {
+    let file = std::fs::File::open(path).map_err(|error| Error::file(path, "cannot read", error))?;
+    let broken = |error: PolarsError| {
+        Error::Input(Box::new(InputError {
+            file: Some(path.to_path_buf()),
+            problem: format!("is not a Parquet table ({error})"),
+            remedy: "give a Parquet or a CSV file".to_owned(),
+            ..InputError::default()
+        }))
+    };
+    let table = ParquetReader::new(file).finish().map_err(broken)?;
+    let mut rows = vec![Vec::with_capacity(table.width()); table.height()];
+    for column in table.columns() {
+        for (index, row) in rows.iter_mut().enumerate() {
+            row.push(cell(&column.get(index).map_err(broken)?));
+        }
+    }
+    Ok(Cells { header: table.get_column_names().iter().map(|name| name.to_string()).collect(), rows })
+}
+
+/// A value as it would stand in a CSV file: all digits of a number, text without quotes.
+fn cell(value: &AnyValue<'_>) -> String {
+    match value {
+        AnyValue::Null => String::new(),
+        AnyValue::String(text) => (*text).to_owned(),
+        AnyValue::StringOwned(text) => text.to_string(),
+        AnyValue::Float64(number) => number.to_string(),
+        AnyValue::Float32(number) => number.to_string(),
+        other => other.to_string(),
+    }
+}
+
+fn assemble(columns: Vec<Column>) -> Result<DataFrame> {
+    DataFrame::new_infer_height(columns).map_err(trouble)
+}
+
+/// What polars refuses here is a table that does not fit together, never a user's file (that is read elsewhere).
+fn trouble(error: PolarsError) -> Error {
+    Error::file(Path::new("table of specimens"), "cannot be made", std::io::Error::other(error.to_string()))
+}

@@ -1,0 +1,187 @@
+//! Calibration files: what they give, and what is wrong with broken ones.
+
+use std::fs;
+use std::path::Path;
+
+use perilife::calibration::case::CalibrationCase;
+use perilife::calibration::fit::{Fit, FitTask, fit};
+use perilife::calibration::power_law::PowerLaw;
+use perilife::calibration::record::FittedRecord;
+use perilife::calibration::results::{FitReport, fit_curves_csv, record};
+use perilife::units::{MM, MPA_SQRT_M};
+use tempfile::tempdir;
+
+const GOOD: &str = r#"[measured]
+files = ["curves.csv"]
+from_crack_length_mm = 9.0
+to_crack_length_mm = 13.0
+[specimen]
+kind = "middle_tension"
+width_mm = 152.4
+length_mm = 300.0
+thickness_mm = 2.54
+crack_length_mm = 9.0
+[material]
+name = "al2024-t3"
+[loading]
+kind = "constant_amplitude"
+stress_range_mpa = 48.28
+stress_ratio = 0.2
+[fit]
+parameters = ["a", "p"]
+"#;
+
+const CURVES: &str = "specimen,cycles,crack_length_mm\nA,100,8\nA,1000,9\nA,2000,10\nA,2900,11\nA,3700,12\nA,4400,13\nA,5000,14\n\
+                      B,0,8.5\nB,500,9\nB,1600,10\nB,2600,11\nB,3450,12\nB,4200,13\n";
+
+fn read(text: &str, overrides: &[&str]) -> perilife::Result<CalibrationCase> {
+    let folder = tempdir().unwrap();
+    fs::write(folder.path().join("curves.csv"), CURVES).unwrap();
+    fs::write(folder.path().join("alloy.toml"), text).unwrap();
+    let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
+    CalibrationCase::from_file(&folder.path().join("alloy.toml"), &overrides)
+}
+
+fn fitted(calibration: &CalibrationCase) -> Fit {
+    let delta_k = |length: f64| calibration.delta_k(length);
+    let model = PowerLaw::new(9.0 * MM, calibration.case.stop.crack_length, &delta_k).unwrap();
+    fit(&FitTask { curves: &calibration.curves, fixed_p: calibration.fixed_p, delta_k: &delta_k }, &model).unwrap()
+}
+
+#[test]
+fn a_calibration_is_a_case_that_runs_through_the_window() {
+    let calibration = read(GOOD, &[]).unwrap();
+    assert_eq!(calibration.case.name, "alloy");
+    assert_eq!(calibration.curves.len(), 2);
+    assert!(calibration.curves.iter().all(|curve| curve.cycles[0] == 0.0 && curve.cycles.len() == 5));
+    assert!((calibration.case.stop.crack_length - 13.0 * MM).abs() < 1e-12);
+    assert!(calibration.case.stop.cycles_max.is_infinite(), "a run for A = 1 counts A x cycles");
+    assert_eq!((calibration.case.material.toughness, calibration.case.material.yield_strength), (None, None));
+    // Secant formula: 48.28 √(π 0.009 / cos(π 9 / 152.4)) = 8.1888 MPa√m.
+    assert!((calibration.delta_k(9.0 * MM) / MPA_SQRT_M - 8.1888).abs() < 1e-4);
+    assert_eq!(read(GOOD, &["fit.parameters=[\"a\"]", "fit.p=2.9"]).unwrap().fixed_p, Some(2.9));
+}
+
+#[test]
+fn hash_of_a_source_is_that_of_its_bytes() {
+    // printf '%s' "$CURVES" | sha256sum, of the text above.
+    let calibration = read(GOOD, &[]).unwrap();
+    assert_eq!(calibration.sources[0].file, "curves.csv");
+    assert_eq!(calibration.sources[0].sha256, "fe841a4743045b27329f850db2b06e08d6bf228b843027c4de43c2025c37c75f");
+}
+
+#[test]
+fn results_have_every_promised_key_and_read_back() {
+    let calibration = read(GOOD, &[]).unwrap();
+    let fit = fitted(&calibration);
+    let report = serde_json::to_value(FitReport::new(&calibration, &fit, 1.5)).unwrap();
+    let keys = "a p horizon_mm paris_c_mm_per_cycle paris_m pivot_delta_k_mpa_sqrt_m rate_at_pivot_mm_per_cycle covariance \
+                rms_life_error specimens evaluations wall_s";
+    keys.split_whitespace().for_each(|key| assert!(report.get(key).is_some(), "{key} in {report:#}"));
+    for key in "name a p life_measured life_fitted rms_life_error".split(' ') {
+        assert!(report["specimens"][1].get(key).is_some(), "{key} in {report:#}");
+    }
+    let toml = toml::to_string(&record(&calibration, &fit)).unwrap();
+    let back: FittedRecord = toml::from_str(&toml.replace("nan", "3.015")).unwrap();
+    assert_eq!((back.a, back.p, back.stress_ratio), (fit.record.constants.a, fit.record.constants.p, 0.2));
+    assert!((back.delta_k_min_mpa_sqrt_m - 8.1888).abs() < 1e-4);
+
+    let csv = fit_curves_csv(&fit);
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(lines[0], "specimen,crack_length_mm,cycles_measured,cycles_fitted");
+    assert_eq!(lines.len(), 1 + 3 * 5, "two specimens and their median:\n{csv}");
+    assert!(lines[1].starts_with("A,9,0,0") && lines[6].starts_with("B,9,0,0") && lines[11].starts_with("median,9,0,0"), "{csv}");
+}
+
+#[test]
+fn broken_calibration_files_say_what_would_be_right() {
+    let swap = |from: &str, to: &str| {
+        assert!(GOOD.contains(from), "{from}");
+        GOOD.replace(from, to)
+    };
+    let broken = [
+        (
+            "no section",
+            GOOD.split_once("[specimen]").map(|(_, rest)| format!("[specimen]{rest}")).unwrap(),
+            "measured: is missing",
+        ),
+        (
+            "unknown key",
+            swap("from_crack", "from_crak"),
+            "measured.from_crak_length_mm = 9.0: is not a known key; known here: files",
+        ),
+        ("no files", swap("[\"curves.csv\"]", "[]"), "measured.files = []: names no file"),
+        ("files of a wrong kind", swap("[\"curves.csv\"]", "\"curves.csv\""), "measured.files"),
+        (
+            "window the wrong way",
+            swap("to_crack_length_mm = 13.0", "to_crack_length_mm = 8.0"),
+            "to_crack_length_mm = 8: is not above from_crack_length_mm = 9",
+        ),
+        (
+            "window too narrow",
+            swap("to_crack_length_mm = 13.0", "to_crack_length_mm = 11.0"),
+            "leaves 3 of 7 readings of specimen A",
+        ),
+        (
+            "window not a number",
+            swap("to_crack_length_mm = 13.0", "to_crack_length_mm = nan"),
+            "to_crack_length_mm = NaN: is not a finite number",
+        ),
+        (
+            "model after the first reading",
+            swap("crack_length_mm = 9.0\n[material]", "crack_length_mm = 9.5\n[material]"),
+            "specimen.crack_length_mm = 9.5: is longer than the first reading of specimen A, 9 mm",
+        ),
+        (
+            "panel too narrow",
+            swap("width_mm = 152.4", "width_mm = 26.0"),
+            "curves.csv:7: crack_length_mm = 13: is not inside the specimen, whose half width is 13 mm",
+        ),
+        ("unknown parameter", swap("[\"a\", \"p\"]", "[\"a\", \"q\"]"), "use one of a, p"),
+        ("p alone", swap("[\"a\", \"p\"]", "[\"p\"]"), "fit.parameters = [\"p\"]: leaves a out"),
+        ("p missing", swap("[\"a\", \"p\"]", "[\"a\"]"), "fit.p: is missing"),
+        ("p twice", swap("[\"a\", \"p\"]", "[\"a\", \"p\"]\np = 3.0"), "fit.p = 3: is given and fitted at once"),
+        (
+            "law given",
+            format!("{GOOD}[fatigue]\na = 1.0\np = 3.0\nhorizon_mm = 3.0\n"),
+            "fatigue: gives the law that the calibration is to find",
+        ),
+        (
+            "short panel",
+            swap("length_mm = 300.0", "length_mm = 152.4"),
+            "specimen.kind = \"middle_tension\": has no handbook K(a) in this shape",
+        ),
+        ("unknown unit", swap("[specimen]", "length_unit = \"furlong\"\n[specimen]"), "use one of mm, inch, m"),
+        (
+            "unit against the header",
+            swap("[specimen]", "length_unit = \"inch\"\n[specimen]"),
+            "curves.csv:1: header = crack_length_mm: is in mm, but measured.length_unit says inch",
+        ),
+    ];
+    for (name, text, words) in broken {
+        let error = read(&text, &[]).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{name}: {error}");
+        assert!(error.to_string().contains(words), "{name}: {words} in {error}");
+        assert!(error.to_string().contains("alloy.toml") || error.to_string().contains("curves.csv"), "{name}: {error}");
+    }
+    let error = read(&swap_file("elsewhere.csv"), &[]).unwrap_err();
+    assert_eq!(error.exit_code(), 4);
+    assert!(error.to_string().contains("elsewhere.csv: cannot read"), "{error}");
+}
+
+fn swap_file(file: &str) -> String {
+    GOOD.replace("curves.csv", file)
+}
+
+#[test]
+fn every_committed_calibration_can_be_read() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration");
+    let mut count = 0;
+    for folder in fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+        let calibration = CalibrationCase::from_file(&folder.join("case.toml"), &[]).unwrap();
+        assert!(!calibration.curves.is_empty());
+        assert!(folder.join("README.md").is_file(), "{} says where its curves come from", folder.display());
+        count += 1;
+    }
+    assert!(count >= 1);
+}

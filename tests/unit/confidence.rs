@@ -1,0 +1,68 @@
+//! Calibration finds what it was given: noisy curves of a known law, and whether the stated confidence is honest.
+
+use perilife::calibration::confidence::distance_squared;
+
+use super::misfit::{exact_curve, fit_to, paris_model};
+use crate::noise::Noise;
+
+/// Truth: m/cycle and MPa√m.
+const A: f64 = 8.95e-11;
+const P: f64 = 2.87;
+/// 95 % quantile of χ² with two degrees of freedom.
+const ELLIPSE_95: f64 = 5.991;
+
+/// Fits to `seeds` curves with relative noise on the cycles between readings: (p, squared distance of the truth) of each.
+fn noisy_fits(seeds: u64, scatter: f64) -> Vec<(f64, f64)> {
+    (1..=seeds)
+        .map(|seed| {
+            let mut curve = exact_curve("noisy", A, P);
+            let mut noise = Noise::new(seed);
+            let exact = curve.cycles.clone();
+            for i in 1..exact.len() {
+                curve.cycles[i] = curve.cycles[i - 1] + (exact[i] - exact[i - 1]) * (1.0 + scatter * noise.normal());
+            }
+            let fit = fit_to(&[curve], None, &paris_model()).unwrap();
+            let found = fit.record.constants;
+            let difference = [(A / found.a).ln(), P - found.p];
+            (found.p, distance_squared(fit.confidence.covariance, difference))
+        })
+        .collect()
+}
+
+#[test]
+fn truth_lies_inside_the_95_percent_ellipse() {
+    let fits = noisy_fits(20, 0.05);
+    let inside = fits.iter().filter(|(_, distance)| *distance < ELLIPSE_95).count();
+    let mean_p = fits.iter().map(|(p, _)| p).sum::<f64>() / fits.len() as f64;
+    println!("inside {inside} of 20, mean p {mean_p:.4} (given {P})");
+    assert!(inside >= 17, "{inside} of 20 inside");
+    assert!((mean_p / P - 1.0).abs() < 0.03, "mean p = {mean_p}");
+}
+
+/// An ellipse so wide that it always holds the truth would be no better: over many seeds about one in twenty lies outside.
+#[test]
+fn the_ellipse_is_not_too_wide_and_p_not_biased() {
+    let fits = noisy_fits(400, 0.05);
+    let inside = fits.iter().filter(|(_, distance)| *distance < ELLIPSE_95).count() as f64 / fits.len() as f64;
+    let mean_p = fits.iter().map(|(p, _)| p).sum::<f64>() / fits.len() as f64;
+    println!("inside {:.1} %, mean p {mean_p:.4} (given {P})", 100.0 * inside);
+    assert!((0.90..=0.99).contains(&inside), "{inside}");
+    assert!((mean_p / P - 1.0).abs() < 0.01, "mean p = {mean_p}");
+}
+
+#[test]
+fn the_pivot_is_where_the_rate_is_known_best() {
+    let mut curve = exact_curve("noisy", A, P);
+    let mut noise = Noise::new(7);
+    let exact = curve.cycles.clone();
+    for i in 1..exact.len() {
+        curve.cycles[i] = curve.cycles[i - 1] + (exact[i] - exact[i - 1]) * (1.0 + 0.05 * noise.normal());
+    }
+    let fit = fit_to(&[curve], None, &paris_model()).unwrap();
+    let rate = 1e3 * A * fit.paris.pivot.powf(P);
+    assert!((fit.paris.delta_k_min..fit.paris.delta_k_max).contains(&fit.paris.pivot), "pivot {}", fit.paris.pivot);
+    assert!(fit.paris.rate_at_pivot_error < 0.02, "{}", fit.paris.rate_at_pivot_error);
+    assert!((fit.paris.rate_at_pivot / rate - 1.0).abs() < 4.0 * fit.paris.rate_at_pivot_error);
+    // Away from the pivot the same law is known less well: the error of A itself (ΔK = 1) is many times larger.
+    assert!(fit.confidence.covariance[0][0].sqrt() > 5.0 * fit.paris.rate_at_pivot_error);
+}

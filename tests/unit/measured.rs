@@ -1,0 +1,205 @@
+//! The importer: units, layouts, windows and medians, on text and on real files.
+
+use std::path::Path;
+
+use perilife::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurve, Source, Units, parse, read};
+use perilife::calibration::median::{common_lengths, cycles_at, median, pointwise_median, pointwise_median_at};
+use perilife::units::MM;
+use proptest::prelude::*;
+
+use crate::shared::shared;
+
+fn parsed(text: &str) -> Measured {
+    parse(text.as_bytes(), Path::new("curve.csv"), Units::default()).unwrap()
+}
+
+fn refused(text: &str, units: Units) -> String {
+    parse(text.as_bytes(), Path::new("curve.csv"), units).unwrap_err().to_string()
+}
+
+/// Every way to write this one curve gives the same readings.
+const PLAIN: &str = "cycles,crack_length_mm\n0,10.0\n1000,10.5\n2500,11.25\n4000,12.5\n5000,14.0\n";
+
+#[test]
+fn the_same_curve_in_other_clothes_is_the_same_curve() {
+    let plain = parsed(PLAIN).curves.remove(0);
+    assert_eq!(plain.specimen, "curve");
+    assert_eq!(plain.cycles, [0.0, 1000.0, 2500.0, 4000.0, 5000.0]);
+    let crlf = PLAIN.replace('\n', "\r\n");
+    let cr = PLAIN.replace('\n', "\r");
+    let bom = format!("\u{feff}{PLAIN}");
+    let clothes = [
+        ("CRLF", crlf.as_str()),
+        ("CR", cr.as_str()),
+        ("byte order mark", bom.as_str()),
+        ("decimal comma", "cycles;crack_length_mm\n0;10,0\n1000;10,5\n2500;11,25\n4000;12,5\n5000;14,0\n"),
+        ("tabs", "cycles\tcrack_length_mm\n0\t10\n1000\t10,5\n2500\t11.25\n4000\t12.5\n5000\t14\n"),
+        ("metres", "crack_length_m,cycles\n0.010,0\n0.0105,1000\n0.01125,2500\n0.0125,4000\n0.014,5000\n"),
+        ("kilocycles", "Kilocycles,a (mm)\n0,10\n1,10.5\n2.5,11.25\n4,12.5\n5,14\n"),
+        ("megacycles", "N [megacycles],crack length [mm]\n0,10\n0.001,10.5\n0.0025,11.25\n0.004,12.5\n0.005,14\n"),
+        (
+            "comments and blank lines",
+            "# read by eye\n\ncycles,crack_length_mm\n0,10\n1000,10.5\n\n2500,11.25\n4000,12.5\n# end\n5000,14\n",
+        ),
+        ("empty last column", "cycles,crack_length_mm,\n0,10,\n1000,10.5,\n2500,11.25\n4000,12.5,,\n5000,14,\n"),
+        ("quotes", "\"cycles\",\"crack_length_mm\"\n\"0\",\"10\"\n1000,10.5\n2500,11.25\n4000,12.5\n5e3,14\n"),
+        ("no last line end", PLAIN.trim_end()),
+    ];
+    for (name, text) in clothes {
+        let curve = parsed(text).curves.remove(0);
+        assert_eq!(curve.cycles.len(), 5, "{name}");
+        for i in 0..5 {
+            assert!((curve.cycles[i] - plain.cycles[i]).abs() < 1e-9, "{name}: {:?}", curve.cycles);
+            assert!((curve.crack_length[i] - plain.crack_length[i]).abs() < 1e-12, "{name}: {:?}", curve.crack_length);
+        }
+    }
+}
+
+#[test]
+fn units_may_stand_in_the_calibration_file() {
+    let text = PLAIN.replace("crack_length_mm", "crack_length");
+    assert!(
+        refused(&text, Units::default()).contains("crack_length: does not say its unit"),
+        "{}",
+        refused(&text, Units::default())
+    );
+    let units = Units { length: Some(LengthUnit::Inch), cycles: Some(CycleUnit::Kilocycles) };
+    let curve = parse(text.as_bytes(), Path::new("x.csv"), units).unwrap().curves.remove(0);
+    assert!((curve.crack_length[0] - 0.254).abs() < 1e-12);
+    assert!((curve.cycles[4] - 5e6).abs() < 1e-6);
+    let contradiction = refused(PLAIN, units);
+    assert!(contradiction.contains("is in mm, but measured.length_unit says inch"), "{contradiction}");
+}
+
+#[test]
+fn wide_tables_hold_one_specimen_a_column() {
+    let by_length = "crack_length_mm,V01,V02\n10,0,0\n11,100,110\n12,200,\n13,300,310\n14,400,410\n15,500,510\n";
+    let curves = parsed(by_length).curves;
+    assert_eq!([curves[0].specimen.as_str(), curves[1].specimen.as_str()], ["V01", "V02"]);
+    assert_eq!([curves[0].cycles.len(), curves[1].cycles.len()], [6, 5], "an empty cell is a reading that was not taken");
+    let by_cycles = "cycles;V01;V02\n0;10;10,5\n100;11;11\n200;12;12\n300;13;13\n400;14;14\n";
+    let units = Units { length: Some(LengthUnit::Millimetre), cycles: None };
+    let curves = parse(by_cycles.as_bytes(), Path::new("wide.csv"), units).unwrap().curves;
+    assert!((curves[1].crack_length[0] - 10.5 * MM).abs() < 1e-12);
+    assert!(refused(by_cycles, Units::default()).contains("set measured.length_unit"));
+    // Two columns are no wide table: the second could be anything.
+    assert!(refused("crack_length_mm,time_s\n1,2\n", Units::default()).contains("header = time_s: is not a known column"));
+}
+
+#[test]
+fn falling_readings_are_noise_and_counted() {
+    let measured = parsed("cycles,crack_length_mm\n0,10\n10,10.5\n20,10.4\n30,11\n40,10.9\n50,12\n");
+    assert_eq!(measured.warnings.len(), 1);
+    assert!(measured.warnings[0].contains("falls at 2 of 6 readings"), "{:?}", measured.warnings);
+    // Between 10.5 and 11 mm the reading of 10.4 does not count: 10.5 at 10 cycles, 11 at 30.
+    assert_eq!(cycles_at(&measured.curves[0], 10.75 * MM).map(f64::round), Some(20.0));
+}
+
+#[test]
+fn lengths_are_checked_before_a_window_is_cut() {
+    let measured = parsed("cycles,crack_length_mm\n0,10\n10,11\n20,12\n30,13\n40,14\n50,80\n");
+    let error = measured.check_lengths(76.2 * MM, "half width").unwrap_err().to_string();
+    for word in ["curve.csv:7", "crack_length_mm = 80", "half width is 76.2 mm"] {
+        assert!(error.contains(word), "{word} in {error}");
+    }
+    assert!(measured.check_lengths(100.0 * MM, "half width").is_ok());
+}
+
+#[test]
+fn a_window_counts_cycles_from_its_first_reading() {
+    let measured = parsed("cycles,crack_length_mm\n100,9\n200,10\n300,11\n400,12\n500,13\n600,14\n700,15\n");
+    let kept = measured.window(Some(10.0 * MM), Some(14.0 * MM)).unwrap();
+    assert_eq!(kept.curves[0].cycles, [0.0, 100.0, 200.0, 300.0, 400.0]);
+    assert_eq!(kept.curves[0].source.lines, [3, 4, 5, 6, 7]);
+    let error = measured.window(Some(12.0 * MM), None).unwrap_err().to_string();
+    assert!(error.contains("leaves 4 of 7 readings of specimen curve"), "{error}");
+}
+
+fn curve(name: &str, cycles: &[f64], lengths_mm: &[f64]) -> MeasuredCurve {
+    let crack_length = lengths_mm.iter().map(|a| a * MM).collect();
+    MeasuredCurve { specimen: name.to_owned(), cycles: cycles.to_vec(), crack_length, source: Source::default() }
+}
+
+#[test]
+fn the_median_is_taken_at_equal_length_and_from_a_common_start() {
+    assert_eq!([median(&[3.0, 1.0, 2.0]), median(&[4.0, 1.0, 2.0, 3.0])], [2.0, 2.5]);
+    // Straight lines of 100, 200 and 400 cycles per mm whose counters start at different lengths and numbers.
+    let curves = [
+        curve("a", &[0.0, 100.0, 200.0, 300.0, 400.0], &[9.0, 10.0, 11.0, 12.0, 13.0]),
+        curve("b", &[50.0, 250.0, 450.0, 650.0, 850.0], &[9.5, 10.5, 11.5, 12.5, 13.5]),
+        curve("c", &[1000.0, 1400.0, 1800.0, 2200.0, 2600.0], &[8.5, 9.5, 10.5, 11.5, 12.5]),
+    ];
+    let grid = common_lengths(&curves).unwrap();
+    assert!((grid[0] - 9.5 * MM).abs() < 1e-12 && (grid[grid.len() - 1] - 12.5 * MM).abs() < 1e-12, "{grid:?}");
+    let middle = pointwise_median(&curves).unwrap();
+    for (length, cycles) in middle.crack_length.iter().zip(&middle.cycles) {
+        assert!((cycles - 200.0 * (length / MM - 9.5)).abs() < 1e-6, "{cycles} at {length}");
+    }
+    assert!(pointwise_median_at(&curves, &[8.6 * MM, 9.0 * MM]).is_err());
+    let apart = [curves[0].clone(), curve("d", &[0.0, 1.0, 2.0, 3.0, 4.0], &[20.0, 21.0, 22.0, 23.0, 24.0])];
+    assert!(pointwise_median(&apart).unwrap_err().to_string().contains("do not overlap"));
+}
+
+/// The table as printed (inch, million cycles) and its conversion are the same 21 curves; specimens stop at 1.6 in or at
+/// 120 000 cycles.
+#[test]
+fn inch_and_megacycles_give_the_curves_of_mm_and_cycles() {
+    let (Some(metric), Some(printed)) = (shared("alloy_a/alloy_a.csv"), shared("alloy_a/alloy_a_inch_megacycles.csv")) else {
+        return;
+    };
+    let metric = read(&[metric], Units::default()).unwrap().curves;
+    let printed = read(&[printed], Units::default()).unwrap().curves;
+    assert_eq!([metric.len(), printed.len()], [21, 21]);
+    assert_eq!(metric.iter().map(|curve| curve.cycles.len()).sum::<usize>(), 262);
+    for (metric, printed) in metric.iter().zip(&printed) {
+        assert_eq!(metric.specimen, printed.specimen);
+        assert_eq!(metric.cycles.len(), printed.cycles.len());
+        for i in 0..metric.cycles.len() {
+            assert!((metric.cycles[i] - printed.cycles[i]).abs() < 1e-6, "{}", metric.specimen);
+            assert!((metric.crack_length[i] - printed.crack_length[i]).abs() < 1e-9, "{}", metric.specimen);
+        }
+    }
+    // Different lengths and ends: the median goes as far as all specimens do.
+    let middle = pointwise_median(&metric).unwrap();
+    assert!((middle.crack_length[0] - 22.86 * MM).abs() < 1e-9);
+    assert!(middle.cycles.windows(2).all(|pair| pair[1] > pair[0]), "{:?}", middle.cycles);
+}
+
+#[test]
+fn one_specimen_that_does_not_start_at_zero_is_read() {
+    let Some(path) = shared("ct_porous/ct_porous.csv") else { return };
+    let measured = read(&[path], Units::default()).unwrap();
+    let curve = &measured.curves[0];
+    assert_eq!((curve.specimen.as_str(), curve.cycles.len(), curve.cycles[0]), ("CT1", 61, 36_000.0));
+    measured.check_lengths(50.0 * MM, "width from the load line").unwrap();
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(400) })]
+
+    #[test]
+    fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        let _ = parse(&bytes, Path::new("noise.csv"), Units::default());
+    }
+
+    /// Text made of what such files are made of, after a good header: gets further than bytes do.
+    #[test]
+    fn random_tables_never_panic(
+        header in prop::sample::select(vec!["cycles,crack_length_mm", "crack_length_mm;a;b", "specimen\tkilocycles\tcrack_length_in", "cycles,V1,V2"]),
+        body in "[0-9eE.,;\t\"# \r\n+-]{0,200}|([0-9]{1,3},[0-9]{1,3}\n){0,12}|([0-9]{1,3};[0-9],[0-9];[0-9]{0,2}\n){0,12}",
+    ) {
+        let units = Units { length: Some(LengthUnit::Millimetre), cycles: None };
+        for units in [units, Units::default()] {
+            if let Ok(measured) = parse(format!("{header}\n{body}").as_bytes(), Path::new("noise.csv"), units) {
+                for curve in &measured.curves {
+                    prop_assert!(curve.cycles.len() >= 5);
+                    prop_assert!(curve.cycles.windows(2).all(|pair| pair[1] > pair[0]));
+                    prop_assert!(curve.crack_length.iter().all(|a| *a > 0.0 && a.is_finite()));
+                }
+                let _ = measured.check_lengths(50.0 * MM, "half width");
+                let _ = measured.window(Some(1.0 * MM), Some(20.0 * MM));
+                let _ = pointwise_median(&measured.curves);
+            }
+        }
+    }
+}

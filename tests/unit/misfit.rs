@@ -1,0 +1,160 @@
+//! Search, misfit and Paris equivalents against models with a known answer.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use perilife::Result;
+use perilife::calibration::fit::{Fit, FitTask, fit};
+use perilife::calibration::measured::{MeasuredCurve, Source};
+use perilife::calibration::misfit::{inverse_a, misfit, rms_life_error};
+use perilife::calibration::model::{ForwardModel, RecordedRun, cycles_since_first};
+use perilife::calibration::power_law::PowerLaw;
+use perilife::units::{MM, MPA, MPA_SQRT_M};
+
+/// ΔK of the Virkler panel, Pa√m.
+pub fn delta_k(a: f64) -> f64 {
+    let width = 152.4 * MM;
+    48.28 * MPA * (std::f64::consts::PI * a / (std::f64::consts::PI * a / width).cos()).sqrt()
+}
+
+/// Lengths from 9.0 to 49.8 mm every 0.8 mm.
+pub fn lengths() -> Vec<f64> {
+    (0..=51).map(|i| (9.0 + 0.8 * f64::from(i)) * MM).collect()
+}
+
+pub fn paris_model() -> PowerLaw {
+    PowerLaw::new(9.0 * MM, 49.8 * MM, &delta_k).unwrap()
+}
+
+/// The exact curve of da/dN = A ΔK^p (m/cycle, MPa√m).
+pub fn exact_curve(name: &str, a: f64, p: f64) -> MeasuredCurve {
+    let crack_length = lengths();
+    let model = cycles_since_first(&paris_model().run(p).unwrap().curve, &crack_length).unwrap();
+    let cycles = model.iter().map(|n| n / a).collect();
+    MeasuredCurve { specimen: name.to_owned(), cycles, crack_length, source: Source::default() }
+}
+
+pub fn fit_to(curves: &[MeasuredCurve], fixed_p: Option<f64>, model: &dyn ForwardModel) -> Result<Fit> {
+    fit(&FitTask { curves, fixed_p, delta_k: &delta_k }, model)
+}
+
+/// A model as the peridynamic one behaves: the first guess from hand calculation is off by `shift` in p, replays drift away
+/// from true runs by 5 % per third of p (as measured on a recorded run), and every run carries its own small noise.
+struct Crooked {
+    law: PowerLaw,
+    shift: f64,
+    runs: AtomicUsize,
+}
+
+impl Crooked {
+    fn new(shift: f64) -> Self {
+        Crooked { law: paris_model(), shift, runs: AtomicUsize::new(0) }
+    }
+}
+
+impl ForwardModel for Crooked {
+    fn run(&self, p: f64) -> Result<RecordedRun> {
+        self.runs.fetch_add(1, Ordering::Relaxed);
+        let curve = self.law.run(p + self.shift)?.curve;
+        let (law, shift) = (self.law.clone(), self.shift);
+        Ok(RecordedRun::new(curve, 3.015 * MM, MM, move |other| {
+            let drift = 0.45 * (other - p).powi(2);
+            let curve = law.run(other + shift).unwrap().curve;
+            // The drift grows along the curve, so that the replay prefers a wrong p.
+            curve.into_iter().map(|(n, a)| (n * (1.0 + drift * a / (50.0 * MM)), a)).collect()
+        }))
+    }
+}
+
+#[test]
+fn least_squares_in_cycles_gives_a_of_a_scaled_curve() {
+    let model = [0.0, 1.0, 3.0, 7.0];
+    let measured = [0.0, 20.0, 60.0, 140.0];
+    assert!((inverse_a(&model, &measured) - 20.0).abs() < 1e-12);
+    assert!(misfit(&model, &measured) < 1e-15);
+}
+
+#[test]
+fn rms_life_error_follows_its_definition() {
+    // Errors +2 and -4 of a life of 100, over the two readings after the first: √((0.02² + 0.04²) / 2).
+    let error = rms_life_error(&[0.0, 52.0, 96.0], &[0.0, 50.0, 100.0]);
+    assert!((error - (0.001_f64).sqrt()).abs() < 1e-12, "{error}");
+}
+
+#[test]
+fn exact_curves_give_back_their_constants() {
+    for p in [1.6, 2.0, 2.87, 4.0, 6.0] {
+        let a = 1e-10;
+        let fit = fit_to(&[exact_curve("exact", a, p)], None, &paris_model()).unwrap();
+        assert!((fit.record.constants.p - p).abs() < 0.003, "p = {p}: {:?}", fit.record.constants);
+        assert!(fit.record.rms_life_error() < 1e-3, "p = {p}: rms {}", fit.record.rms_life_error());
+        // A Paris model is its own equivalent, C in mm/cycle.
+        assert!((fit.paris.m - fit.record.constants.p).abs() < 0.01, "m = {}, p = {p}", fit.paris.m);
+        assert!((fit.paris.c / (1e3 * fit.record.constants.a) - 1.0).abs() < 0.02, "C = {}", fit.paris.c);
+        assert!((fit.paris.delta_k_min - delta_k(9.0 * MM) / MPA_SQRT_M).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn true_runs_correct_what_replays_get_wrong() {
+    for shift in [-0.25, 0.1, 0.3] {
+        let model = Crooked::new(shift);
+        let fit = fit_to(&[exact_curve("exact", 1e-10, 3.0)], None, &model).unwrap();
+        assert!((fit.record.constants.p - (3.0 - shift)).abs() < 0.01, "shift {shift}: p = {}", fit.record.constants.p);
+        assert!(fit.evaluations <= 4, "shift {shift}: {} runs", fit.evaluations);
+        assert_eq!(fit.evaluations, model.runs.load(Ordering::Relaxed));
+        assert!(fit.warnings.is_empty(), "{:?}", fit.warnings);
+    }
+}
+
+#[test]
+fn specimens_share_runs_and_each_gets_its_own_constants() {
+    let exponents = [2.4, 2.6, 2.75, 2.9, 3.0, 3.05, 3.1, 3.2, 3.4, 3.7];
+    let curves: Vec<MeasuredCurve> =
+        exponents.iter().enumerate().map(|(i, &p)| exact_curve(&format!("S{i}"), 2.2e-10 * 11.4_f64.powf(2.9 - p), p)).collect();
+    let model = Crooked::new(0.1);
+    let fit = fit_to(&curves, None, &model).unwrap();
+    assert!(fit.evaluations <= 6, "{} runs for {} specimens", fit.evaluations, curves.len());
+    for (specimen, p) in fit.specimens.iter().zip(exponents) {
+        assert!((specimen.constants.p - (p - 0.1)).abs() < 0.02, "{}: p = {}, given {p}", specimen.name, specimen.constants.p);
+        assert!(specimen.rms_life_error() < 2e-3, "{}: rms {}", specimen.name, specimen.rms_life_error());
+    }
+}
+
+#[test]
+fn a_fixed_p_costs_one_run_and_leaves_a() {
+    let model = Crooked::new(0.0);
+    let fit = fit_to(&[exact_curve("exact", 1e-10, 2.87)], Some(2.87), &model).unwrap();
+    assert_eq!(fit.evaluations, 1);
+    assert!((fit.record.constants.a / 1e-10 - 1.0).abs() < 1e-6);
+    assert_eq!(fit.confidence.covariance[1][1], 0.0);
+    assert!((fit.paris.m - 2.87).abs() < 0.01);
+    assert!(fit_to(&[exact_curve("exact", 1e-10, 2.87)], Some(12.0), &model).unwrap_err().to_string().contains("fit.p = 12"));
+}
+
+#[test]
+fn a_narrow_window_says_that_p_is_not_identified() {
+    let mut curve = exact_curve("short", 1e-10, 2.87);
+    curve.cycles.truncate(12);
+    curve.crack_length.truncate(12);
+    let fit = fit_to(&[curve], None, &paris_model()).unwrap();
+    assert!(fit.warnings.iter().any(|warning| warning.contains("p is not identified")), "{:?}", fit.warnings);
+}
+
+#[test]
+fn a_run_that_ends_too_early_is_named() {
+    let short = PowerLaw::new(9.0 * MM, 30.0 * MM, &delta_k).unwrap();
+    let error = fit_to(&[exact_curve("long", 1e-10, 2.87)], None, &short).unwrap_err();
+    assert_eq!(error.exit_code(), 3);
+    assert!(error.to_string().contains("the run ends at 30.0000 mm"), "{error}");
+}
+
+#[test]
+fn cycles_are_interpolated_between_points_of_a_run() {
+    let curve = [(0.0, 9.0 * MM), (10.0, 9.5 * MM), (12.0, 9.5 * MM), (22.0, 10.0 * MM)];
+    let at = [9.0 * MM, 9.25 * MM, 9.5 * MM, 9.75 * MM, 10.0 * MM];
+    let cycles = cycles_since_first(&curve, &at).unwrap();
+    for (cycles, expected) in cycles.iter().zip([0.0, 5.0, 10.0, 17.0, 22.0]) {
+        assert!((cycles - expected).abs() < 1e-9, "{cycles} against {expected}");
+    }
+    assert!(cycles_since_first(&curve, &[8.9 * MM]).is_err());
+}

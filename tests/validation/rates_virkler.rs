@@ -1,0 +1,76 @@
+//! Growth rates of the Virkler panels against figures that another program computed from the same readings.
+
+use std::collections::HashMap;
+
+use perilife::calibration::measured::{MeasuredCurve, Units, read};
+use perilife::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
+use perilife::specimen::SpecimenKind;
+use perilife::units::{MM, MM_PER_CYCLE, MPA};
+
+use crate::shared::shared;
+
+/// ΔK of the panel: secant width correction, stress range 48.28 MPa, width 152.4 mm.
+fn delta_k(a: f64) -> f64 {
+    let pi = std::f64::consts::PI;
+    48.28 * MPA * (pi * a / (pi * a / (152.4 * MM)).cos()).sqrt()
+}
+
+fn rates_with_delta_k(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {
+    let mut points = rates(curve, method);
+    let piece = TestPiece {
+        kind: SpecimenKind::MiddleTension,
+        width: 152.4 * MM,
+        thickness: 2.54 * MM,
+        force_max: 60.35 * MPA * 152.4 * MM * 2.54 * MM,
+        k_max_over_range: 1.25,
+        yield_strength: Some(345.0 * MPA),
+        delta_k: &delta_k,
+    };
+    add_delta_k(&mut points, &piece);
+    points
+}
+
+/// Reference rates on `median.csv`: seven-point 1.64009e-4 mm/cycle at 19.997 mm, secant 1.67574e-4 at 20.1 mm, computed
+/// from that file by an independent script.
+#[test]
+fn rates_of_the_median_curve_match_the_reference() {
+    let Some(path) = shared("virkler/median.csv") else { return };
+    let curve = &read(&[path], Units::default()).unwrap().curves[0];
+    for (method, length, rate) in [(RateMethod::Polynomial7, 19.997, 1.64009e-4), (RateMethod::Secant, 20.1, 1.67574e-4)] {
+        let points = rates_with_delta_k(curve, method);
+        let near = points.iter().find(|point| (point.crack_length / MM - length).abs() < 5e-4).unwrap();
+        assert!((near.rate / MM_PER_CYCLE / rate - 1.0).abs() < 4e-6, "{method}: {}", near.rate / MM_PER_CYCLE);
+        // Read every 0.2 mm up to 36.2 mm: too short a step by E647, and flagged as such.
+        let short = |point: &&RatePoint| point.flags.short_step;
+        assert!(points.iter().filter(|point| point.crack_length < 36.0 * MM).all(|point| point.flags.short_step), "{method}");
+        assert!(points.iter().rev().take(10).filter(short).count() == 0, "{method}");
+        assert!(points.iter().all(|point| !point.flags.yielding && !point.flags.not_growing), "{method}");
+    }
+}
+
+/// `paris_fits.csv`: m and log10 C of each specimen, four decimals.
+#[test]
+fn paris_lines_of_every_specimen_match_the_reference() {
+    let (Some(curves), Some(fits)) = (shared("virkler/virkler.csv"), shared("virkler/paris_fits.csv")) else { return };
+    let mut reader = csv::Reader::from_path(fits).unwrap();
+    let fits: HashMap<String, HashMap<String, String>> = reader
+        .deserialize::<HashMap<String, String>>()
+        .map(|row| row.unwrap())
+        .map(|row| (row["specimen"].clone(), row))
+        .collect();
+    let curves = read(&[curves], Units::default()).unwrap().curves;
+    assert_eq!(curves.len(), fits.len());
+    for curve in &curves {
+        let reference = |column: &str| fits[&curve.specimen][column].parse::<f64>().unwrap();
+        for (method, name) in [(RateMethod::Polynomial7, "poly7"), (RateMethod::Secant, "secant")] {
+            let law = paris_line(&rates_with_delta_k(curve, method)).unwrap();
+            let figures = [("m", law.slope), ("log10C", law.intercept), ("resid", law.scatter)];
+            for (quantity, computed) in figures {
+                let given = reference(&format!("{quantity}_{name}"));
+                // Half of the last decimal; the reference's scatter may divide by n instead of n - 2 (1.3 % of 0.1).
+                let bound = if quantity == "resid" { 1.4e-3 } else { 0.51e-4 };
+                assert!((computed - given).abs() < bound, "{} {name}: {quantity} {computed} against {given}", curve.specimen);
+            }
+        }
+    }
+}
