@@ -185,7 +185,10 @@ fn starting_specimen(case: &Case) -> Result<Specimen> {
             return Err(crate::error::input(
                 "fatigue.precrack",
                 "\"grown\"",
-                format!("needs cracks longer than {:.2} mm, five horizons, to grow them from two horizons shorter", 2.5 * back / crate::units::MM),
+                format!(
+                    "needs cracks longer than {:.2} mm, five horizons, to grow them from two horizons shorter",
+                    2.5 * back / crate::units::MM
+                ),
                 "use \"steady_profile\", or a smaller model.spacing_mm",
             ));
         }

@@ -39,7 +39,8 @@ impl ForwardModel for PdModel<'_> {
                 done.crack_length_final() / crate::units::MM
             )));
         }
-        let curve: UnitCurve = done.curve.iter().map(|CurvePoint { cycles, crack_length, .. }| (*cycles, *crack_length)).collect();
+        let curve: UnitCurve =
+            done.curve.iter().map(|CurvePoint { cycles, crack_length, .. }| (*cycles, *crack_length)).collect();
         let (start, end) = (self.case.specimen.crack_length, done.crack_length_final());
         let figures = done.figures;
         Ok(RecordedRun::new(curve, figures.horizon, figures.spacing, move |p| recording.replay(p, start, end)))
@@ -80,7 +81,8 @@ impl Recording {
         for block in &self.blocks {
             let spending: Vec<(Bond, f64)> = block.ageing.iter().map(|b| (b.bond, b.strain.powf(p))).collect();
             let to_spend = |(bond, rate): &(Bond, f64)| life.get(bond).copied().unwrap_or(1.0).max(0.0) / rate;
-            let lasts = spending.iter().filter(|(bond, _)| block.spent.contains(bond)).map(to_spend).fold(f64::INFINITY, f64::min);
+            let lasts =
+                spending.iter().filter(|(bond, _)| block.spent.contains(bond)).map(to_spend).fold(f64::INFINITY, f64::min);
             // A block that spent no bond (fixed cycles) has no length of its own at another p.
             let lasts = if lasts.is_finite() { lasts } else { 0.0 };
             for (bond, rate) in spending {

@@ -52,7 +52,9 @@ pub fn threshold_strain(settings: &FatigueSettings, material: &Material, horizon
 pub fn candidates(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &FatigueSettings) -> Vec<Bond> {
     let places = body.places();
     let mut found: Vec<Bond> = match settings.ageing {
-        Ageing::Everywhere => (0..body.multiplier.len()).map(|bond| bond as Bond).filter(|&b| bonds.is_intact(b) && body.can_fail(b)).collect(),
+        Ageing::Everywhere => {
+            (0..body.multiplier.len()).map(|bond| bond as Bond).filter(|&b| bonds.is_intact(b) && body.can_fail(b)).collect()
+        }
         Ageing::CrackTip => {
             let radius = settings.zone_radius_horizons * body.horizon();
             let reach = radius + 0.5 * body.horizon();

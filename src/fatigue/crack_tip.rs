@@ -33,7 +33,7 @@ pub enum TipState {
     EnteredHole,
 }
 
-/// A broken bond near a tip.
+/// Centre of bonds that broke together near a tip, and the length of crack they stand for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Mark {
     at: Point,
@@ -63,8 +63,12 @@ impl CrackTip {
     #[must_use]
     pub fn at(seed: &TipSeed, horizon: f64) -> Self {
         let length = (FRONT_HORIZONS + TRAIL_HORIZONS) * horizon;
-        let behind = |distance: f64| [seed.position[0] - distance * seed.direction[0], seed.position[1] - distance * seed.direction[1]];
-        let mark = |i: usize| Mark { at: behind(length * (1.0 - (i as f64 + 0.5) / SEED_MARKS as f64)), length: length / SEED_MARKS as f64 };
+        let behind =
+            |distance: f64| [seed.position[0] - distance * seed.direction[0], seed.position[1] - distance * seed.direction[1]];
+        let mark = |i: usize| Mark {
+            at: behind(length * (1.0 - (i as f64 + 0.5) / SEED_MARKS as f64)),
+            length: length / SEED_MARKS as f64,
+        };
         CrackTip {
             position: seed.position,
             direction: seed.direction,
@@ -82,7 +86,7 @@ impl CrackTip {
         self.state == TipState::Active
     }
 
-    /// Takes in the bonds that broke near this tip, in the order they broke.
+    /// Takes in the bonds that broke together near this tip.
     ///
     /// A tip that has crossed the outline, or the rim of a hole, keeps its last place inside, where the last bonds before the
     /// edge can still age; [`CrackTip::retire`] ends it when none is left.
@@ -92,7 +96,15 @@ impl CrackTip {
         }
         let along = body.lattice.to_axes(self.direction);
         let per_length = bonds_per_length(body, [-along[1], along[0]]);
-        self.marks.extend(broken.iter().map(|&bond| Mark { at: body.middle(bond), length: weight(body, body.ends(bond).0) / per_length }));
+        // One mark for all that broke together: the order of twins must not tell the tips of a symmetric crack apart.
+        let mut mark = Mark { at: [0.0; 2], length: 0.0 };
+        for &bond in broken {
+            let (middle, length) = (body.middle(bond), weight(body, body.ends(bond).0) / per_length);
+            mark.at = [mark.at[0] + length * middle[0], mark.at[1] + length * middle[1]];
+            mark.length += length;
+        }
+        mark.at = mark.at.map(|sum| sum / mark.length);
+        self.marks.push_back(mark);
         let horizon = body.horizon();
         self.forget((FRONT_HORIZONS + TRAIL_HORIZONS) * horizon);
         let (trail, front) = self.centres(FRONT_HORIZONS * horizon);
@@ -112,7 +124,8 @@ impl CrackTip {
     /// Ends a tip around which nothing ages any more because it has come to the outline or to a hole (within a horizon).
     pub fn retire(&mut self, specimen: &Specimen, horizon: f64) {
         let into_hole = specimen.holes.iter().map(|hole| distance(hole.centre, self.position) - hole.radius);
-        let into_slot = specimen.slots.iter().map(|slot| distance_to_segment(self.position, slot.from, slot.to) - 0.5 * slot.width);
+        let into_slot =
+            specimen.slots.iter().map(|slot| distance_to_segment(self.position, slot.from, slot.to) - 0.5 * slot.width);
         if into_hole.chain(into_slot).any(|gap| gap < horizon) {
             self.state = TipState::EnteredHole;
         } else if distance_to_polygon(self.position, &specimen.outline) < horizon {

@@ -37,7 +37,11 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
         let Some(piece) = cut_off(body, bonds, a, b) else { continue };
         let loaded = |p: &usize| is_loaded(body, *p);
         let inside = piece.iter().any(loaded);
-        let outside = body.points.iter().map(|&p| p as usize).any(|p| !piece.contains(&p) && is_loaded(body, p) && bonds.intact_at(body, p) > 0);
+        let outside = body
+            .points
+            .iter()
+            .map(|&p| p as usize)
+            .any(|p| !piece.contains(&p) && is_loaded(body, p) && bonds.intact_at(body, p) > 0);
         if inside && outside {
             return Cut::Severed;
         }

@@ -5,7 +5,7 @@ use super::ageing::AgeingBond;
 use super::{Block, BlockKind, FatigueLaw};
 use crate::body::Bond;
 
-/// Relative difference of spending cycles below which bonds break together: mirror twins differ by round-off only.
+/// Share of a bond's whole life within which bonds break together: mirror twins differ by round-off only.
 pub const TOGETHER: f64 = 1e-9;
 
 /// Remaining life λ of every bond.
@@ -35,13 +35,33 @@ impl BondLife {
     /// Chooses the next cycle block: its cycles and the bonds it spends.
     #[must_use]
     pub fn next_block(&self, law: &FatigueLaw, block: &Block, ageing: &[AgeingBond]) -> (f64, Vec<Bond>) {
-        let cycles_to_spend: Vec<f64> = ageing.iter().map(|b| self.of(b.bond).max(0.0) / (law.a * b.strain.powf(law.p))).collect();
+        let rates: Vec<f64> = ageing.iter().map(|b| law.a * b.strain.powf(law.p)).collect();
         let cycles = match block.kind {
             BlockKind::Fixed => block.cycles,
-            BlockKind::UntilNextBreak => nth_break(&cycles_to_spend, block.bonds),
+            BlockKind::UntilNextBreak => self.nth_break(ageing, &rates, block.bonds),
         };
-        let spent = cycles_to_spend.iter().zip(ageing).filter(|(n, _)| **n <= cycles * (1.0 + TOGETHER)).map(|(_, b)| b.bond).collect();
-        (cycles, spent)
+        let spent =
+            ageing.iter().zip(&rates).filter(|(b, rate)| self.of(b.bond) - cycles * *rate <= TOGETHER).map(|(b, _)| b.bond);
+        (cycles, spent.collect())
+    }
+
+    /// Cycles until the n-th of the distinct next breaks; bonds that break together count as one.
+    fn nth_break(&self, ageing: &[AgeingBond], rates: &[f64], n: usize) -> f64 {
+        let mut next: Vec<(f64, f64)> =
+            ageing.iter().zip(rates).map(|(b, &rate)| (self.of(b.bond).max(0.0) / rate, rate)).collect();
+        next.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let mut groups = 0;
+        let mut last = f64::NEG_INFINITY;
+        for (cycles, rate) in next {
+            if (cycles - last) * rate > TOGETHER {
+                groups += 1;
+                last = cycles;
+                if groups == n.max(1) {
+                    break;
+                }
+            }
+        }
+        last.max(0.0)
     }
 
     /// Takes the block's spending off every ageing bond.
@@ -50,22 +70,4 @@ impl BondLife {
             self.life[bond.bond as usize] -= cycles * law.a * bond.strain.powf(law.p);
         }
     }
-}
-
-/// Cycles until the n-th of the distinct next breaks (twins count as one).
-fn nth_break(cycles: &[f64], n: usize) -> f64 {
-    let mut sorted: Vec<f64> = cycles.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let mut groups = 0;
-    let mut last = f64::NAN;
-    for value in sorted {
-        if !(value <= last * (1.0 + TOGETHER)) {
-            groups += 1;
-            last = value;
-            if groups == n.max(1) {
-                return value;
-            }
-        }
-    }
-    last
 }

@@ -170,7 +170,9 @@ impl Track {
     }
 
     fn samples(&self, rows: &[Row]) -> Vec<Sample> {
-        rows.iter().map(|row| Sample { cycles: row.cycles, crack_length: row.crack_length, growth: row.growth(), work: row.work }).collect()
+        rows.iter()
+            .map(|row| Sample { cycles: row.cycles, crack_length: row.crack_length, growth: row.growth(), work: row.work })
+            .collect()
     }
 
     /// The curve from N = 0.
@@ -178,7 +180,8 @@ impl Track {
         let rate = rates(&self.samples(&self.rows), RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
         let share = case.loading.range_share();
         let zero = self.zero.unwrap_or(0.0);
-        let start = self.rows.iter().position(|row| row.cycles >= zero && row.crack_length >= self.origin * (1.0 - 1e-12)).unwrap_or(0);
+        let start =
+            self.rows.iter().position(|row| row.cycles >= zero && row.crack_length >= self.origin * (1.0 - 1e-12)).unwrap_or(0);
         let offset: Vec<f64> = self.rows[start].tips.iter().map(|tip| if start == 0 { tip.growth } else { 0.0 }).collect();
         let grown_before = self.origin - self.rows[0].crack_length;
         let point = |row: &Row, rate_at: usize, cycles: f64, crack_length: f64| CurvePoint {
@@ -190,7 +193,12 @@ impl Track {
             },
             growth_rate: rate[rate_at].growth_rate,
             broken_bonds: row.broken_bonds,
-            tips: row.tips.iter().zip(&offset).map(|(tip, o)| TipRecord { position: tip.position, growth: (tip.growth - grown_before).max(0.0) - o }).collect(),
+            tips: row
+                .tips
+                .iter()
+                .zip(&offset)
+                .map(|(tip, o)| TipRecord { position: tip.position, growth: (tip.growth - grown_before).max(0.0) - o })
+                .collect(),
         };
         let mut curve = vec![point(&self.rows[start], start, 0.0, self.origin)];
         for (i, row) in self.rows.iter().enumerate().skip(start) {

@@ -110,6 +110,7 @@ impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
                 "the equilibrium solver did not converge to {TOLERANCE:e} within {ITERATIONS_MAX} iterations"
             ))
         })?;
+        tracing::debug!(iterations = spent, broken_since_setup = self.broken_since, "equilibrium");
         let fresh = *self.fresh_iterations.get_or_insert(spent);
         self.stale = self.broken_since > STENCILS_PER_REBUILD * body.steps.len()
             || (self.broken_since > 0 && spent > fresh + ITERATIONS_SLACK);

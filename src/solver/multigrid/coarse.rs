@@ -143,7 +143,8 @@ impl<const N: usize> pulp::WithSimd for RowProduct<'_, N> {
             for dy in -REACH..=REACH {
                 for dx in -REACH..=REACH {
                     let block = block_of(dx, dy);
-                    let from = (row + padding).wrapping_add_signed(dy) * row_len + (padding + chunk * LANES).wrapping_add_signed(dx);
+                    let from =
+                        (row + padding).wrapping_add_signed(dy) * row_len + (padding + chunk * LANES).wrapping_add_signed(dx);
                     for component in 0..N {
                         let x = &d[from + component * stride..from + component * stride + LANES];
                         for (c, sum) in sums.iter_mut().enumerate() {

@@ -23,6 +23,9 @@ const COARSEST: usize = 420;
 /// Stiffness between two coarse places below which, relative to the diagonal, they count as severed.
 const SEVERED: f64 = 1e-7;
 
+/// Common neighbours that join two points whose own bond is broken: around a tip fewer reach across the crack.
+const SHARED_NEIGHBOURS: usize = 3;
+
 /// One coarse level.
 struct Level<const N: usize> {
     transfer: Transfer<N>,
@@ -285,19 +288,33 @@ impl<'a, const N: usize> Fine<'a, N> {
         self.body.is_point[self.body.lattice.place(column, row)]
     }
 
-    /// Multiplier of the bond between two places, which must differ by a stencil step or less.
+    /// Whether a fine point may use a coarse one within bond reach: their bond carries, or, since a single bond beside a
+    /// crack may be spent too, several points are bonded to both.
     fn link(&self, a: [usize; 2], b: [usize; 2]) -> Link {
         let (dx, dy) = (b[0] as i32 - a[0] as i32, b[1] as i32 - a[1] as i32);
-        if (dx, dy) == (0, 0) {
+        let place = self.body.lattice.place(a[0], a[1]);
+        if (dx, dy) == (0, 0) || self.carries(place, dx, dy) {
             return Link::Joined;
         }
+        let both = |sign: i32, k: usize| {
+            let bond = &self.body.stencil.bonds[k];
+            let (x, y) = (sign * bond.dx, sign * bond.dy);
+            self.carries(place, x, y) && self.carries(place.wrapping_add_signed(self.body.lattice.step(x, y)), dx - x, dy - y)
+        };
+        let shared = [1, -1]
+            .into_iter()
+            .flat_map(|sign| (0..self.body.steps.len()).map(move |k| (sign, k)))
+            .filter(|&(sign, k)| both(sign, k));
+        if shared.take(SHARED_NEIGHBOURS).count() == SHARED_NEIGHBOURS { Link::Joined } else { Link::Severed }
+    }
+
+    /// Whether the bond from a place to its neighbour `dx`, `dy` away carries.
+    fn carries(&self, place: usize, dx: i32, dy: i32) -> bool {
         let forward = dy > 0 || (dy == 0 && dx > 0);
-        let (owner, dx, dy) = if forward { (a, dx, dy) } else { (b, -dx, -dy) };
-        let place = self.body.lattice.place(owner[0], owner[1]);
-        match self.body.stencil.bonds.iter().position(|bond| (bond.dx, bond.dy) == (dx, dy)) {
-            Some(k) if self.bonds.multiplier[k * self.body.places() + place] > 0.0 => Link::Joined,
-            _ => Link::Severed,
-        }
+        let (dx, dy, owner) =
+            if forward { (dx, dy, place) } else { (-dx, -dy, place.wrapping_add_signed(self.body.lattice.step(dx, dy))) };
+        let k = self.body.stencil.bonds.iter().position(|bond| (bond.dx, bond.dy) == (dx, dy));
+        k.is_some_and(|k| self.bonds.multiplier[k * self.body.places() + owner] > 0.0)
     }
 
     fn held_at(&self, column: usize, row: usize) -> u8 {
