@@ -7,7 +7,6 @@ use crate::body::{Body, Bond};
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::field::Layout;
-use crate::specimen::Point;
 use crate::specimen::geometry::distance;
 use crate::state::Bonds;
 
@@ -47,24 +46,20 @@ pub fn threshold_strain(settings: &FatigueSettings, material: &Material, horizon
     CORE_STRAIN * settings.threshold / (material.plane_modulus() * horizon.sqrt())
 }
 
-/// Intact bonds that may age at all, in ascending order: those whose middle lies within the zone of an active tip, or all.
+/// Intact bonds that may age at all, in ascending order: those in the zone of an active tip, or all.
+///
+/// The zone of a tip holds the bonds whose middle lies within its radius, and those that still bridge the crack just behind
+/// it. Without the bridges a crack that runs along a row of points, where the middles of the longest bonds across it lie at
+/// the rim of a zone of half a horizon, would leave some unspent and stay pinned by them.
 #[must_use]
 pub fn candidates(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &FatigueSettings) -> Vec<Bond> {
-    let places = body.places();
+    let may_fail = |bond: Bond| bonds.is_intact(bond) && body.can_fail(bond);
     let mut found: Vec<Bond> = match settings.ageing {
-        Ageing::Everywhere => {
-            (0..body.multiplier.len()).map(|bond| bond as Bond).filter(|&b| bonds.is_intact(b) && body.can_fail(b)).collect()
-        }
+        Ageing::Everywhere => (0..body.multiplier.len()).map(|bond| bond as Bond).filter(|&bond| may_fail(bond)).collect(),
         Ageing::CrackTip => {
             let radius = settings.zone_radius_horizons * body.horizon();
-            let reach = radius + 0.5 * body.horizon();
             let active = tips.iter().filter(|tip| tip.is_active());
-            active
-                .flat_map(|tip| places_near(body, tip.position, tip.position, reach).map(move |place| (tip.position, place)))
-                .flat_map(|(tip, place)| (0..body.steps.len()).map(move |k| (tip, (k * places + place) as Bond)))
-                .filter(|&(tip, bond)| bonds.is_intact(bond) && within(body, bond, tip, radius) && body.can_fail(bond))
-                .map(|(_, bond)| bond)
-                .collect()
+            active.flat_map(|tip| in_zone(body, tip, radius)).filter(|&bond| may_fail(bond)).collect()
         }
     };
     found.sort_unstable();
@@ -72,8 +67,23 @@ pub fn candidates(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &Fati
     found
 }
 
-fn within(body: &Body, bond: Bond, tip: Point, radius: f64) -> bool {
-    distance(body.middle(bond), tip) <= radius
+/// Bonds of the zone of a tip.
+fn in_zone(body: &Body, tip: &CrackTip, radius: f64) -> Vec<Bond> {
+    let (lattice, places) = (&body.lattice, body.places());
+    let reach = radius + 0.5 * body.horizon();
+    let behind = tip.wake.first().copied().unwrap_or(tip.position);
+    let mut found = Vec::new();
+    for place in places_near(body, behind, tip.position, reach) {
+        let from = lattice.position(place);
+        for (k, &step) in body.steps.iter().enumerate() {
+            let to = lattice.position(place.wrapping_add_signed(step));
+            let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
+            if distance(middle, tip.position) <= radius || tip.is_bridge(from, to) {
+                found.push((k * places + place) as Bond);
+            }
+        }
+    }
+    found
 }
 
 /// Of the candidates those in tension, with their cyclic strain. Bonds in compression are not spent.

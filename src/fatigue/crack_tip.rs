@@ -12,13 +12,17 @@
 use std::collections::VecDeque;
 
 use crate::body::{Body, Bond};
-use crate::specimen::geometry::{direction, distance, distance_to_polygon, distance_to_segment};
+use crate::specimen::geometry::{direction, distance, distance_to_polygon, distance_to_segment, segments_touch};
 use crate::specimen::{Point, Specimen, TipSeed};
 
 /// Length of crack, in horizons, whose broken bonds show where the tip is.
 const FRONT_HORIZONS: f64 = 0.5;
 /// Length of crack before the front, in horizons, that shows where the tip is heading together with it.
 const TRAIL_HORIZONS: f64 = 1.0;
+/// Length of wake behind a tip, in horizons, whose remaining bridges age with the tip.
+const WAKE_HORIZONS: f64 = 2.0;
+/// Distance of a bond from every tip, in horizons, beyond which its break moves no tip.
+const REACH_HORIZONS: f64 = 1.5;
 /// Marks that stand for the crack behind a tip at the start.
 const SEED_MARKS: usize = 48;
 
@@ -51,6 +55,8 @@ pub struct CrackTip {
     pub growth: f64,
     /// Whether it still grows.
     pub state: TipState,
+    /// Where the tip has been, oldest first, the present place last.
+    pub wake: Vec<Point>,
     /// The bonds that broke last: front and trail.
     marks: VecDeque<Mark>,
     /// Way of the front's centre along the crack, m.
@@ -74,6 +80,7 @@ impl CrackTip {
             direction: seed.direction,
             growth: 0.0,
             state: TipState::Active,
+            wake: vec![seed.position],
             marks: (0..SEED_MARKS).map(mark).collect(),
             way: 0.0,
             centre: behind(0.5 * FRONT_HORIZONS * horizon),
@@ -119,6 +126,7 @@ impl CrackTip {
         if specimen.contains(position) {
             self.position = position;
         }
+        self.lengthen_wake(horizon);
     }
 
     /// Ends a tip around which nothing ages any more because it has come to the outline or to a hole (within a horizon).
@@ -131,6 +139,25 @@ impl CrackTip {
         } else if distance_to_polygon(self.position, &specimen.outline) < horizon {
             self.state = TipState::LeftPlate;
         }
+    }
+
+    /// Takes the present place into the wake, at steps of a quarter horizon, and drops what lies too far behind.
+    fn lengthen_wake(&mut self, horizon: f64) {
+        let settled = self.wake.len() - 1;
+        if settled > 0 && distance(self.wake[settled - 1], self.position) < 0.25 * horizon {
+            self.wake[settled] = self.position;
+        } else {
+            self.wake.push(self.position);
+        }
+        let keep = (WAKE_HORIZONS / 0.25) as usize + 1;
+        let excess = self.wake.len().saturating_sub(keep);
+        self.wake.drain(..excess);
+    }
+
+    /// Whether the line between two points crosses the wake: a bond there bridges the crack.
+    #[must_use]
+    pub fn is_bridge(&self, from: Point, to: Point) -> bool {
+        self.wake.windows(2).any(|step| segments_touch(from, to, step[0], step[1]))
     }
 
     /// Drops the oldest marks beyond a length of crack; the last of them is shortened, so that the rest is exactly that long.
@@ -180,14 +207,14 @@ fn bonds_per_length(body: &Body, normal: Point) -> f64 {
     (0..bonds.len()).map(severed).sum::<f64>() / body.lattice.spacing.powi(2)
 }
 
-/// Gives every broken bond to the nearest active tip.
+/// Gives every broken bond near a tip to the nearest active one.
 #[must_use]
 pub fn share_out(body: &Body, tips: &[CrackTip], broken: &[Bond]) -> Vec<Vec<Bond>> {
     let mut shares = vec![Vec::new(); tips.len()];
     for &bond in broken {
         let middle = body.middle(bond);
         let nearest = (0..tips.len())
-            .filter(|&t| tips[t].is_active())
+            .filter(|&t| tips[t].is_active() && distance(tips[t].position, middle) <= REACH_HORIZONS * body.horizon())
             .min_by(|&a, &b| distance(tips[a].position, middle).total_cmp(&distance(tips[b].position, middle)));
         if let Some(nearest) = nearest {
             shares[nearest].push(bond);
