@@ -76,7 +76,7 @@ pub fn run(
 
     let mut bonds = Bonds::new(&body);
     let mut life = BondLife::whole(bonds.multiplier.len());
-    let mut tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, body.horizon())).collect();
+    let mut tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, &body)).collect();
     let mut displacement = Vec::new();
     if let Cut::Severed = set_aside(&body, &mut bonds, &body.pre_cut) {
         return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));

@@ -15,7 +15,8 @@ use crate::body::{Body, Bond};
 use crate::specimen::geometry::{direction, distance, distance_to_polygon, distance_to_segment, segments_touch};
 use crate::specimen::{Point, Specimen, TipSeed};
 
-/// Length of crack, in horizons, whose broken bonds show where the tip is.
+/// Least length of crack, in horizons, whose broken bonds show where the tip is; rounded up to whole spacings, since bonds
+/// along a row of points break in a pattern that repeats with the spacing.
 const FRONT_HORIZONS: f64 = 0.5;
 /// Length of crack before the front, in horizons, that shows where the tip is heading together with it.
 const TRAIL_HORIZONS: f64 = 1.0;
@@ -67,8 +68,8 @@ pub struct CrackTip {
 impl CrackTip {
     /// Tip at the end of an initial crack or at the middle of a slot's end face.
     #[must_use]
-    pub fn at(seed: &TipSeed, horizon: f64) -> Self {
-        let length = (FRONT_HORIZONS + TRAIL_HORIZONS) * horizon;
+    pub fn at(seed: &TipSeed, body: &Body) -> Self {
+        let length = front(body) + TRAIL_HORIZONS * body.horizon();
         let behind =
             |distance: f64| [seed.position[0] - distance * seed.direction[0], seed.position[1] - distance * seed.direction[1]];
         let mark = |i: usize| Mark {
@@ -83,7 +84,7 @@ impl CrackTip {
             wake: vec![seed.position],
             marks: (0..SEED_MARKS).map(mark).collect(),
             way: 0.0,
-            centre: behind(0.5 * FRONT_HORIZONS * horizon),
+            centre: behind(0.5 * front(body)),
         }
     }
 
@@ -113,15 +114,16 @@ impl CrackTip {
         mark.at = mark.at.map(|sum| sum / mark.length);
         self.marks.push_back(mark);
         let horizon = body.horizon();
-        self.forget((FRONT_HORIZONS + TRAIL_HORIZONS) * horizon);
-        let (trail, front) = self.centres(FRONT_HORIZONS * horizon);
+        let length_of_front = front(body);
+        self.forget(length_of_front + TRAIL_HORIZONS * horizon);
+        let (trail, front) = self.centres(length_of_front);
         if distance(trail, front) > 0.05 * horizon {
             self.direction = direction(trail, front);
         }
         self.way += self.direction[0] * (front[0] - self.centre[0]) + self.direction[1] * (front[1] - self.centre[1]);
         self.growth = self.growth.max(self.way);
         self.centre = front;
-        let ahead = 0.5 * FRONT_HORIZONS * horizon;
+        let ahead = 0.5 * length_of_front;
         let position = [front[0] + ahead * self.direction[0], front[1] + ahead * self.direction[1]];
         if specimen.contains(position) {
             self.position = position;
@@ -189,6 +191,12 @@ impl CrackTip {
         let centre = |part: [f64; 3]| [part[0] / part[2], part[1] / part[2]];
         (centre(older), centre(newer))
     }
+}
+
+/// Length of the front, m.
+fn front(body: &Body) -> f64 {
+    let spacing = body.lattice.spacing;
+    (FRONT_HORIZONS * body.horizon() / spacing).ceil() * spacing
 }
 
 /// Weight g_k of a stencil bond in the length measure: normal stiffness times length.
