@@ -13,3 +13,5 @@ mod elasticity;
 mod product;
 #[path = "verification/solvers.rs"]
 mod solvers;
+#[path = "verification/stress_intensity.rs"]
+mod stress_intensity;
