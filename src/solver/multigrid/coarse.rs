@@ -26,6 +26,9 @@ pub struct CoarseOperator<const N: usize> {
     width: usize,
     /// For each row, block, component pair: the values along the row.
     values: Vec<f64>,
+    /// The same in single precision: what products read. They are bound by memory, and only smoothing uses them; rigid
+    /// motion, which must stay free of force, is judged from `values` alone.
+    single: Vec<f32>,
 }
 
 /// A row of blocks of the fine operator: neighbour offsets with their blocks.
@@ -35,7 +38,7 @@ impl<const N: usize> CoarseOperator<N> {
     fn zeros(layout: Layout) -> Self {
         let rows = layout.rows - 2 * layout.padding;
         let width = layout.columns.next_multiple_of(LANES);
-        CoarseOperator { layout, rows, width, values: vec![0.0; rows * BLOCKS * N * N * width] }
+        CoarseOperator { layout, rows, width, values: vec![0.0; rows * BLOCKS * N * N * width], single: Vec::new() }
     }
 
     /// Layout of its vectors.
@@ -104,7 +107,13 @@ impl<const N: usize> CoarseOperator<N> {
                 }
             }
         });
+        operator.single = operator.values.iter().map(|&v| v as f32).collect();
         operator
+    }
+
+    /// Keeps single precision only, once the next coarser operator has been built.
+    pub fn compact(&mut self) {
+        self.values = Vec::new();
     }
 
     /// r -= A d (or r = A d).
@@ -149,9 +158,9 @@ impl<const N: usize> pulp::WithSimd for RowProduct<'_, N> {
                         let x = &d[from + component * stride..from + component * stride + LANES];
                         for (c, sum) in sums.iter_mut().enumerate() {
                             let start = operator.at(chunk * LANES, row, block, c, component);
-                            let a = &operator.values[start..start + LANES];
+                            let a = &operator.single[start..start + LANES];
                             for lane in 0..LANES {
-                                sum[lane] = a[lane].mul_add(x[lane], sum[lane]);
+                                sum[lane] = f64::from(a[lane]).mul_add(x[lane], sum[lane]);
                             }
                         }
                     }

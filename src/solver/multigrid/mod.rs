@@ -122,6 +122,7 @@ impl<const N: usize> Multigrid<N> {
             levels.push(Level::new(transfer, next));
         }
         let coarsest = Coarsest::new(&levels[levels.len() - 1]);
+        levels.iter_mut().for_each(|level| level.operator.compact());
         Multigrid { smoother, levels, coarsest, work: Work::new(&layout) }
     }
 

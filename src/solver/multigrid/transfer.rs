@@ -6,7 +6,12 @@
 //! and, where points turn freely, the coarse place then moves the fine one as a rigid body, `u = u_J + θ_J × (x - x_J)`,
 //! so that rigid motion stays exact where the linear field no longer is.
 
+use rayon::prelude::*;
+
 use super::super::field::Layout;
+
+/// Rows that one task takes.
+const ROWS_PER_TASK: usize = 16;
 
 /// How a fine place may use a coarse one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -172,21 +177,13 @@ impl<const N: usize> Transfer<N> {
     /// Coarse places (column, row) of a fine place with their interpolation blocks; empty entries have weight 0.
     #[must_use]
     pub fn parents(&self, column: usize, row: usize) -> [([usize; 2], f64, [f64; 2]); 4] {
-        let (corner, _) = self.corners([column, row]);
-        let weights = self.weights[row * self.fine.columns + column];
-        let rigid = self.rigid[row * self.fine.columns + column];
-        let mut parents = [([0; 2], 0.0, [0.0; 2]); 4];
-        for (i, parent) in parents.iter_mut().enumerate() {
-            let coarse = [corner[0] + (i & 1), corner[1] + (i >> 1)];
-            let seat = self.seat(coarse);
-            let arm = if rigid {
-                [column as f64 - seat[0] as f64, row as f64 - seat[1] as f64].map(|a| a * self.unit)
-            } else {
-                [0.0; 2]
-            };
-            *parent = (coarse, f64::from(weights[i]), arm);
-        }
-        parents
+        let (lower, _) = self.corners([column, row]);
+        let index = row * self.fine.columns + column;
+        let arm = self.arm(index, column, row);
+        std::array::from_fn(|corner| {
+            let place = [lower[0] + (corner & 1), lower[1] + (corner >> 1)];
+            (place, f64::from(self.weights[index][corner]), arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)))
+        })
     }
 
     /// Whether a fine place uses plain bilinear weights.
@@ -201,50 +198,109 @@ impl<const N: usize> Transfer<N> {
         !self.rigid[index] && (0..4).all(|i| (self.weights[index][i] - plain(i)).abs() < 1e-6)
     }
 
-    fn coarse_index(&self, place: [usize; 2]) -> usize {
-        (place[1] + self.coarse.padding) * self.coarse.row_len() + place[0] + self.coarse.padding
-    }
-
     /// fine += P coarse.
     pub fn prolong(&self, coarse: &[f64], fine: &mut [f64]) {
-        for row in 0..self.fine_rows {
-            let start = (row + self.fine.padding) * self.fine.row_len() + self.fine.padding;
-            for column in 0..self.fine.columns {
-                for (place, weight, arm) in self.parents(column, row) {
-                    if weight != 0.0 {
-                        let at = self.coarse_index(place);
-                        let turn = if N == 3 { coarse[at + 2 * self.coarse.stride] } else { 0.0 };
-                        fine[start + column] += weight * (coarse[at] - turn * arm[1]);
-                        fine[start + column + self.fine.stride] += weight * (coarse[at + self.coarse.stride] + turn * arm[0]);
-                        if N == 3 {
-                            fine[start + column + 2 * self.fine.stride] += weight * turn;
-                        }
+        let (fine_len, padding) = (self.fine.row_len(), self.fine.padding);
+        let body = &mut fine[padding * fine_len..(padding + self.fine_rows) * fine_len];
+        body.par_chunks_mut(fine_len * ROWS_PER_TASK).enumerate().for_each(|(task, rows)| {
+            for (i, out) in rows.chunks_mut(fine_len).enumerate() {
+                self.prolong_row(task * ROWS_PER_TASK + i, coarse, out);
+            }
+        });
+    }
+
+    fn prolong_row(&self, row: usize, coarse: &[f64], out: &mut [f64]) {
+        let (fine_stride, stride) = (self.fine.stride, self.coarse.stride);
+        for column in 0..self.fine.columns {
+            let index = row * self.fine.columns + column;
+            let first = self.coarse_index(column, row);
+            let arm = self.arm(index, column, row);
+            for (corner, &weight) in self.weights[index].iter().enumerate() {
+                if weight == 0.0 {
+                    continue;
+                }
+                let weight = f64::from(weight);
+                let at = first + (corner & 1) + (corner >> 1) * self.coarse.row_len();
+                let (mut u, mut v) = (coarse[at], coarse[at + stride]);
+                if N == 3 {
+                    let turn = coarse[at + 2 * stride];
+                    if let Some(arm) = arm {
+                        let arm = self.arm_of_corner(arm, corner);
+                        u -= turn * arm[1];
+                        v += turn * arm[0];
                     }
+                    out[self.fine.padding + column + 2 * fine_stride] += weight * turn;
+                }
+                out[self.fine.padding + column] += weight * u;
+                out[self.fine.padding + column + fine_stride] += weight * v;
+            }
+        }
+    }
+
+    /// coarse = Pᵀ fine, each coarse row gathered from the fine rows around it.
+    pub fn restrict(&self, fine: &[f64], coarse: &mut [f64]) {
+        let (row_len, padding) = (self.coarse.row_len(), self.coarse.padding);
+        let rows = self.coarse.rows - 2 * padding;
+        let body = &mut coarse[padding * row_len..(padding + rows) * row_len];
+        body.par_chunks_mut(row_len).enumerate().for_each(|(coarse_row, out)| {
+            out.fill(0.0);
+            // Fine rows whose lower coarse row is this one, or the one below it.
+            for upper in [1, 0] {
+                let Some(lower) = coarse_row.checked_sub(upper) else { continue };
+                for shift in 0..self.factor {
+                    match (lower * self.factor + shift).checked_sub(self.offset[1]) {
+                        Some(row) if row < self.fine_rows => self.restrict_row(row, upper, fine, out),
+                        _ => {}
+                    }
+                }
+            }
+        });
+    }
+
+    fn restrict_row(&self, row: usize, upper: usize, fine: &[f64], out: &mut [f64]) {
+        let (fine_stride, stride) = (self.fine.stride, self.coarse.stride);
+        let start = (row + self.fine.padding) * self.fine.row_len() + self.fine.padding;
+        for column in 0..self.fine.columns {
+            let index = row * self.fine.columns + column;
+            let first = (column + self.offset[0]) / self.factor + self.coarse.padding;
+            let arm = self.arm(index, column, row);
+            let (u, v) = (fine[start + column], fine[start + column + fine_stride]);
+            let w = if N == 3 { fine[start + column + 2 * fine_stride] } else { 0.0 };
+            for right in 0..2 {
+                let corner = right + 2 * upper;
+                let weight = f64::from(self.weights[index][corner]);
+                if weight == 0.0 {
+                    continue;
+                }
+                let at = first + right;
+                out[at] += weight * u;
+                out[at + stride] += weight * v;
+                if N == 3 {
+                    let lever = arm.map_or(0.0, |arm| {
+                        let arm = self.arm_of_corner(arm, corner);
+                        arm[0] * v - arm[1] * u
+                    });
+                    out[at + 2 * stride] += weight * (w + lever);
                 }
             }
         }
     }
 
-    /// coarse = Pᵀ fine.
-    pub fn restrict(&self, fine: &[f64], coarse: &mut [f64]) {
-        coarse.fill(0.0);
-        for row in 0..self.fine_rows {
-            let start = (row + self.fine.padding) * self.fine.row_len() + self.fine.padding;
-            for column in 0..self.fine.columns {
-                let (u, v) = (fine[start + column], fine[start + column + self.fine.stride]);
-                let w = if N == 3 { fine[start + column + 2 * self.fine.stride] } else { 0.0 };
-                for (place, weight, arm) in self.parents(column, row) {
-                    if weight != 0.0 {
-                        let at = self.coarse_index(place);
-                        coarse[at] += weight * u;
-                        coarse[at + self.coarse.stride] += weight * v;
-                        if N == 3 {
-                            coarse[at + 2 * self.coarse.stride] += weight * (w - arm[1] * u + arm[0] * v);
-                        }
-                    }
-                }
-            }
-        }
+    /// Vector index of the lower left coarse place of a fine place.
+    fn coarse_index(&self, column: usize, row: usize) -> usize {
+        let (corner, _) = self.corners([column, row]);
+        (corner[1] + self.coarse.padding) * self.coarse.row_len() + corner[0] + self.coarse.padding
+    }
+
+    /// Arm from the lower left coarse place to a fine place that moves rigidly, in lattice spacings.
+    fn arm(&self, index: usize, column: usize, row: usize) -> Option<[f64; 2]> {
+        self.rigid[index].then(|| [column + self.offset[0], row + self.offset[1]].map(|at| (at % self.factor) as f64 * self.unit))
+    }
+
+    /// The same arm from another of the four coarse places.
+    fn arm_of_corner(&self, arm: [f64; 2], corner: usize) -> [f64; 2] {
+        let step = self.factor as f64 * self.unit;
+        [arm[0] - (corner & 1) as f64 * step, arm[1] - (corner >> 1) as f64 * step]
     }
 }
 
