@@ -1,1 +1,17 @@
 //! Is the mathematics solved right?
+
+#[path = "support/plates.rs"]
+mod plates;
+#[path = "support/noise.rs"]
+mod noise;
+#[path = "support/statics.rs"]
+mod statics;
+
+#[path = "verification/elasticity.rs"]
+mod elasticity;
+#[path = "verification/product.rs"]
+mod product;
+#[path = "verification/solvers.rs"]
+mod solvers;
+#[path = "verification/stress_intensity.rs"]
+mod stress_intensity;

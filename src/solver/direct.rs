@@ -82,7 +82,8 @@ impl<const N: usize> LinearSolver<N> for DirectSolver {
     fn broke(&mut self, _: &Body, _: &Bonds, _: &Product<N>, _: &[Bond]) {}
 }
 
-/// Components that hold a floating plate without carrying load: both of one point and the one across of a far point.
+/// Components that hold a floating plate without carrying load: both of one point and, where the law lets the plate turn
+/// freely, the one across of a far point. A law that resists rotation has an equilibrium position to turn to.
 fn pins<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<N>) -> Vec<usize> {
     if !product.fixed().is_empty() {
         return Vec::new();
@@ -93,5 +94,8 @@ fn pins<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<N>) -> Vec
     let (a, b) = (body.lattice.column_row(first as usize), body.lattice.column_row(last as usize));
     let across = if b.1.abs_diff(a.1) > b.0.abs_diff(a.0) { 0 } else { 1 };
     let (first, last) = (layout.index(first as usize), layout.index(last as usize));
-    vec![first, first + layout.stride, last + across * layout.stride]
+    let turns = N == 3 || body.stencil.bonds.iter().all(|bond| bond.k_t <= 1e-9 * bond.k_n);
+    let mut held = vec![first, first + layout.stride];
+    held.extend(turns.then_some(last + across * layout.stride));
+    held
 }

@@ -1,0 +1,79 @@
+//! Bodies without cycles: all laws, a plate in equilibrium, stretches of its bonds.
+
+use perilife::Result;
+use perilife::body::{Body, Bond};
+use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife::case::Case;
+use perilife::fatigue::ageing::stretch;
+use perilife::material::{Material, Plane};
+use perilife::solver::field::Layout;
+use perilife::solver::{Equilibrium, SolverKind};
+use perilife::state::Bonds;
+
+/// Every bond law with every kernel and rotation.
+pub fn laws() -> impl Iterator<Item = (BondLawKind, Kernel, Rotation)> {
+    let kernels = Kernel::ALL.iter().flat_map(|&kernel| Rotation::ALL.iter().map(move |&rotation| (kernel, rotation)));
+    BondLawKind::ALL.iter().flat_map(move |&kind| kernels.clone().map(move |(kernel, rotation)| (kind, kernel, rotation)))
+}
+
+/// The same with every surface correction.
+pub fn corrected_laws() -> impl Iterator<Item = BondLaw> {
+    laws().flat_map(|(kind, kernel, rotation)| {
+        SurfaceCorrection::ALL.iter().map(move |&surface_correction| BondLaw { kind, kernel, rotation, surface_correction })
+    })
+}
+
+/// A material that the law can represent: bond-based has one Poisson's ratio.
+pub fn material(kind: BondLawKind, plane: Plane) -> Material {
+    let limit = perilife::bond_law::stencil::poisson_limit(plane);
+    Material {
+        name: "test".to_owned(),
+        youngs_modulus: 200e9,
+        poisson_ratio: if kind == BondLawKind::BondBased { limit } else { 0.7 * limit },
+        plane,
+        yield_strength: None,
+        toughness: None,
+        fracture_energy: None,
+    }
+}
+
+/// The body of a case.
+pub fn body(case: &Case) -> Body {
+    let model = &case.model;
+    Body::build(&case.specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle).unwrap()
+}
+
+/// A plate in equilibrium.
+pub struct Loaded {
+    pub body: Body,
+    pub bonds: Bonds,
+    pub displacement: Vec<f64>,
+    pub work: f64,
+    pub iterations: usize,
+}
+
+/// The plate of a case at maximum load.
+pub fn loaded(case: &Case, solver: SolverKind) -> Result<Loaded> {
+    let body = body(case);
+    let bonds = Bonds::new(&body);
+    loaded_with(body, bonds, case.loading.maximum, solver)
+}
+
+/// A plate with these bonds under a load.
+pub fn loaded_with(body: Body, bonds: Bonds, load: f64, solver: SolverKind) -> Result<Loaded> {
+    let mut displacement = Vec::new();
+    let mut equilibrium = Equilibrium::new(solver, &body, &bonds, load);
+    let iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;
+    Ok(Loaded { work: equilibrium.work(), body, bonds, displacement, iterations })
+}
+
+impl Loaded {
+    /// Stretch of every intact bond.
+    pub fn stretches(&self) -> Vec<f64> {
+        let layout = Layout::of(&self.body.lattice, self.body.stencil.unknowns);
+        (0..self.body.multiplier.len() as Bond)
+            .filter(|&bond| self.bonds.is_intact(bond))
+            .map(|bond| stretch(&self.body, &layout, &self.displacement, bond))
+            .collect()
+    }
+}
