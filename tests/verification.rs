@@ -15,3 +15,5 @@ mod product;
 mod solvers;
 #[path = "verification/stress_intensity.rs"]
 mod stress_intensity;
+#[path = "verification/readme_accuracy.rs"]
+mod readme_accuracy;

@@ -28,7 +28,7 @@ fn k_released(specimen: &str, set: &[String], crack_length_mm: f64, spacing_mm: 
 }
 
 /// The same over the handbook's K.
-fn k_over_handbook(specimen: &str, set: &[String], crack_length_mm: f64, spacing_mm: f64) -> f64 {
+pub fn k_over_handbook(specimen: &str, set: &[String], crack_length_mm: f64, spacing_mm: f64) -> f64 {
     let (k, case) = k_released(specimen, set, crack_length_mm, spacing_mm);
     k / handbook(&case.specimen).unwrap().k_i(case.specimen.crack_length, case.loading.maximum)
 }
@@ -77,7 +77,7 @@ fn the_resisted_law_loses_k_at_low_poissons_ratio() {
     assert!(ratios.iter().all(|&ratio| ratio < 0.95));
 }
 
-const SINGLE: &str = "kind=\"single_edge_tension\"\nwidth_mm=100\nlength_mm=300\nthickness_mm=2\ncrack_length_mm=30\n";
+pub const SINGLE: &str = "kind=\"single_edge_tension\"\nwidth_mm=100\nlength_mm=300\nthickness_mm=2\ncrack_length_mm=30\n";
 
 #[test]
 fn the_other_specimens_have_the_handbook_k() {
