@@ -21,6 +21,8 @@ mod layering;
 mod measured;
 #[path = "unit/misfit.rs"]
 mod misfit;
+#[path = "unit/obstacles.rs"]
+mod obstacles;
 #[path = "unit/output.rs"]
 mod output;
 #[path = "unit/pictures.rs"]

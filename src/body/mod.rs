@@ -6,6 +6,7 @@
 
 pub mod boundary;
 pub mod lattice;
+pub mod obstacles;
 pub mod pre_crack;
 pub mod surface_correction;
 
@@ -13,10 +14,10 @@ use crate::bond_law::stencil::Stencil;
 use crate::bond_law::{BondLaw, SurfaceCorrection};
 use crate::error::{Error, Result};
 use crate::material::Material;
-use crate::specimen::geometry::{distance, distance_to_segment, segments_touch};
-use crate::specimen::{Hole, Point, Slot, Specimen};
+use crate::specimen::{Point, Specimen};
 use boundary::Boundary;
 use lattice::Lattice;
+use obstacles::Obstacles;
 
 /// A bond: `k x places + place` of its owner.
 pub type Bond = u32;
@@ -168,40 +169,4 @@ fn uncut_bonds(
         }
     }
     multiplier
-}
-
-/// Voids that a bond must not bridge: slots, holes, and the corners of an outline that is not convex.
-struct Obstacles<'a> {
-    holes: &'a [Hole],
-    slots: &'a [Slot],
-    edges: Vec<(Point, Point)>,
-    spacing: f64,
-    horizon: f64,
-}
-
-impl<'a> Obstacles<'a> {
-    fn of(specimen: &'a Specimen, spacing: f64, horizon: f64) -> Self {
-        let outline = &specimen.outline;
-        let count = outline.len();
-        let convex = (0..count).all(|i| {
-            let (a, b, c) = (outline[i], outline[(i + 1) % count], outline[(i + 2) % count]);
-            (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) >= 0.0
-        });
-        let edges = if convex { Vec::new() } else { (0..count).map(|i| (outline[i], outline[(i + 1) % count])).collect() };
-        Obstacles { holes: &specimen.holes, slots: &specimen.slots, edges, spacing, horizon }
-    }
-
-    /// Whether a bond that starts here can meet an obstacle at all.
-    fn near(&self, point: Point) -> bool {
-        self.holes.iter().any(|hole| distance(point, hole.centre) < hole.radius + self.horizon)
-            || self.slots.iter().any(|slot| distance_to_segment(point, slot.from, slot.to) < slot.width + self.horizon)
-            || self.edges.iter().any(|&(a, b)| distance_to_segment(point, a, b) < self.horizon)
-    }
-
-    fn block(&self, a: Point, b: Point) -> bool {
-        // A bond that grazes a round hole by less than a quarter spacing stays: the lattice knows the circle no better.
-        self.holes.iter().any(|hole| distance_to_segment(hole.centre, a, b) < hole.radius - 0.25 * self.spacing)
-            || self.slots.iter().any(|slot| segments_touch(a, b, slot.from, slot.to))
-            || self.edges.iter().any(|&(c, d)| segments_touch(a, b, c, d))
-    }
 }

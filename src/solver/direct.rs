@@ -90,7 +90,7 @@ fn pins<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<N>) -> Vec
     }
     let layout = product.layout();
     let carrying = || body.points.iter().copied().filter(|&p| bonds.intact_at(body, p as usize) > 3);
-    let (Some(first), Some(last)) = (carrying().next(), carrying().last()) else { return Vec::new() };
+    let (Some(first), Some(last)) = (carrying().next(), carrying().next_back()) else { return Vec::new() };
     let (a, b) = (body.lattice.column_row(first as usize), body.lattice.column_row(last as usize));
     let across = if b.1.abs_diff(a.1) > b.0.abs_diff(a.0) { 0 } else { 1 };
     let (first, last) = (layout.index(first as usize), layout.index(last as usize));

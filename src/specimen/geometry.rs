@@ -151,22 +151,6 @@ impl Specimen {
             && !self.slots.iter().any(|slot| slot.contains(point))
     }
 
-    /// Whether the straight line between two points touches a crack.
-    #[must_use]
-    pub fn crack_crosses(&self, from: Point, to: Point) -> bool {
-        self.cracks.iter().any(|crack| segments_touch(from, to, crack.from, crack.to))
-    }
-
-    /// Whether a bond between two points of the material is cut at the start: by a crack, or because it would have to
-    /// reach over a slot, a hole or a notch of the outline.
-    #[must_use]
-    pub fn bond_is_cut(&self, from: Point, to: Point) -> bool {
-        self.crack_crosses(from, to)
-            || self.slots.iter().any(|slot| edges(&slot.corners()).any(|(a, b)| segments_touch(from, to, a, b)))
-            || self.holes.iter().any(|hole| distance_to_segment(hole.centre, from, to) < hole.radius)
-            || edges(&self.outline).any(|(a, b)| segments_touch(from, to, a, b))
-    }
-
     /// Length of the part of a segment that lies inside the outline, m, for a segment that crosses it at most once.
     #[must_use]
     pub fn length_inside(&self, from: Point, to: Point) -> f64 {

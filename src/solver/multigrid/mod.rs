@@ -389,10 +389,10 @@ impl<'a, const N: usize> Fine<'a, N> {
 }
 
 fn clear<const N: usize>(block: &mut [[f64; N]; N], rows: u8, columns: u8) {
-    for c in 0..N {
-        for d in 0..N {
+    for (c, row) in block.iter_mut().enumerate() {
+        for (d, value) in row.iter_mut().enumerate() {
             if rows >> c & 1 == 1 || columns >> d & 1 == 1 {
-                block[c][d] = 0.0;
+                *value = 0.0;
             }
         }
     }

@@ -39,9 +39,9 @@ impl<const N: usize> Smoother<N> {
         let place = (row + self.layout.padding) * self.layout.stride + column + self.layout.padding;
         let places = self.layout.rows * self.layout.stride;
         let mut pair = 0;
-        for c in 0..N {
-            for d in c..N {
-                self.inverse[pair * places + place] = inverse[c][d];
+        for (c, row) in inverse.iter().enumerate() {
+            for value in &row[c..] {
+                self.inverse[pair * places + place] = *value;
                 pair += 1;
             }
         }
