@@ -12,6 +12,8 @@ mod stop;
 
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 
 use crate::body::{Body, Bond};
@@ -100,8 +102,9 @@ pub fn run(
     let mut broken_bonds = 0;
     let stop = loop {
         // Which bonds age, and by how much strain a cycle.
-        let ageing = ageing_bonds(&body, &candidates(&body, &bonds, &tips, settings), &displacement, share, threshold);
-        retire_tips(&mut tips, &body, &case.specimen, &ageing, settings.zone_radius_horizons);
+        let near = candidates(&body, &bonds, &tips, settings);
+        retire_tips(&mut tips, &body, &case.specimen, &near, settings.zone_radius_horizons);
+        let ageing = ageing_bonds(&body, &near, &displacement, share, threshold);
         if let Some(reason) = stop::before_block(case, &tips, &ageing) {
             break reason;
         }
@@ -130,7 +133,7 @@ pub fn run(
                 Err(_) => break Some(StopReason::NoConvergence),
             }
             solves += 1;
-            newly = overstretched(&body, &bonds, &tips, case, &displacement);
+            newly = overstretched(&body, &bonds, case, &displacement);
             spent.extend(&newly);
             if newly.is_empty() {
                 break None;
@@ -209,22 +212,26 @@ fn starting_specimen(case: &Case) -> Result<Specimen> {
     Ok(specimen)
 }
 
-/// Ends the tips at an edge or hole around which no bond ages any more.
-fn retire_tips(tips: &mut [CrackTip], body: &Body, specimen: &Specimen, ageing: &[AgeingBond], zone_radius_horizons: f64) {
+/// Ends the tips at an edge or hole around which no bond is left.
+fn retire_tips(tips: &mut [CrackTip], body: &Body, specimen: &Specimen, candidates: &[Bond], zone_radius_horizons: f64) {
     let radius = zone_radius_horizons * body.horizon();
     for tip in tips.iter_mut().filter(|tip| tip.is_active()) {
-        if !ageing.iter().any(|b| distance(body.middle(b.bond), tip.position) <= radius) {
+        if !candidates.iter().any(|&bond| distance(body.middle(bond), tip.position) <= radius) {
             tip.retire(specimen, body.horizon());
         }
     }
 }
 
-/// Bonds near the tips stretched beyond the critical stretch s_t.
-fn overstretched(body: &Body, bonds: &Bonds, tips: &[CrackTip], case: &Case, displacement: &[f64]) -> Vec<Bond> {
-    if case.fatigue.critical_stretch.is_infinite() {
+/// Bonds anywhere stretched beyond the critical stretch s_t: the last ligament of a plate breaks by overload, not by fatigue.
+fn overstretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &[f64]) -> Vec<Bond> {
+    let limit = case.fatigue.critical_stretch;
+    if limit.is_infinite() {
         return Vec::new();
     }
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
-    let near = candidates(body, bonds, tips, &case.fatigue);
-    near.into_iter().filter(|&bond| stretch(body, &layout, displacement, bond) > case.fatigue.critical_stretch).collect()
+    let places = body.places();
+    let of_stencil = |k: usize| body.points.iter().map(move |&place| (k * places + place as usize) as Bond);
+    let beyond =
+        |bond: &Bond| bonds.is_intact(*bond) && stretch(body, &layout, displacement, *bond) > limit && body.can_fail(*bond);
+    (0..body.steps.len()).into_par_iter().flat_map_iter(|k| of_stencil(k).filter(beyond)).collect()
 }

@@ -9,7 +9,7 @@ use super::choices::{Choices, Failure};
 use super::{LawSource, Stop};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
-use crate::fatigue::{Ageing, Block, BlockKind, FatigueLaw, FatigueSettings, Precrack};
+use crate::fatigue::{Ageing, Block, BlockKind, FatigueLaw, FatigueSettings, OVERLOAD_STRETCH, Precrack};
 use crate::input::{Document, INTENSITY, LENGTH, number, slice};
 use crate::specimen::{LengthConvention, Specimen, SpecimenKind};
 
@@ -64,7 +64,7 @@ pub(super) fn from_value(value: &Value, base_dir: &Path, choices: &mut Choices) 
         zone_radius_horizons: choices.zone_radius_horizons.unwrap_or(ZONE_RADIUS),
         precrack: input.precrack.unwrap_or(Precrack::SteadyProfile),
         block: read_block(&input)?,
-        critical_stretch: stretch.unwrap_or(f64::INFINITY),
+        critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
     };

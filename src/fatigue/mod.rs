@@ -7,6 +7,10 @@ pub mod pieces;
 pub mod precrack;
 pub mod remaining_life;
 
+/// Critical stretch s_t where a case gives none: 5 %, which no plate bears within linear elasticity. It lets the last
+/// ligament of a plate break by overload instead of hanging on bonds that no tip spends.
+pub const OVERLOAD_STRETCH: f64 = 0.05;
+
 crate::kinds! {
     /// Which bonds age.
     pub enum Ageing for "fatigue.ageing" {
@@ -74,7 +78,7 @@ pub struct FatigueSettings {
     pub precrack: Precrack,
     /// Cycle block.
     pub block: Block,
-    /// Bond stretch s_t above which a bond breaks at once; infinite = never.
+    /// Bond stretch s_t above which a bond breaks at once.
     pub critical_stretch: f64,
     /// Walker exponent γ: ε = s_max (1-R)^γ; 1 = no mean-stress effect.
     pub walker_gamma: f64,

@@ -63,7 +63,11 @@ fn defaults_are_those_of_the_contract() {
     assert_eq!((law.kind, law.kernel, law.rotation), (BondLawKind::TwoParameter, Kernel::Conical, Rotation::Free));
     assert_eq!((case.model.horizon_ratio, case.fatigue.zone_radius_horizons, case.stop.cycles_max), (3.015, 0.5, 1e9));
     assert_eq!((case.fatigue.precrack.name(), case.fatigue.ageing.name()), ("steady_profile", "crack_tip"));
-    assert!(case.stop.crack_length.is_infinite() && case.fatigue.critical_stretch.is_infinite() && !case.allow_extrapolation);
+    assert!(
+        case.stop.crack_length.is_infinite()
+            && case.fatigue.critical_stretch == perilife::fatigue::OVERLOAD_STRETCH
+            && !case.allow_extrapolation
+    );
     assert!(case.warnings.is_empty(), "{:?}", case.warnings);
 }
 
