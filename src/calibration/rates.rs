@@ -21,7 +21,7 @@ const HALF_SPAN: usize = 3;
 
 crate::kinds! {
     /// How rates are taken from readings.
-    pub enum RateMethod for "rates.method" {
+    pub enum RateMethod for "rates --method" {
         Secant = "secant": "slope between neighbouring readings",
         Polynomial7 = "polynomial7": "seven-point incremental polynomial of ASTM E647, appendix X1",
     }

@@ -36,20 +36,20 @@ impl Console {
         let _ = writeln!(io::stderr(), "warning: {text}");
     }
 
+    /// A result that was asked for on stdout and stands in no file, unless `--json` replaces it.
+    ///
+    /// # Errors
+    /// [`Error::File`] if stdout cannot be written; a closed pipe is no trouble.
+    pub fn result(&self, text: &str) -> Result<()> {
+        if self.json { Ok(()) } else { to_stdout(text) }
+    }
+
     /// The JSON object on stdout, if it was asked for.
     ///
     /// # Errors
     /// [`Error::File`] if stdout cannot be written; a closed pipe is no trouble.
     pub fn object(&self, object: &Value) -> Result<()> {
-        if !self.json {
-            return Ok(());
-        }
-        match writeln!(io::stdout(), "{object:#}") {
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                Err(Error::file(Path::new("stdout"), "cannot write", error))
-            }
-            _ => Ok(()),
-        }
+        if self.json { to_stdout(&format!("{object:#}\n")) } else { Ok(()) }
     }
 
     /// A progress bar on stderr, drawn only on a terminal.
@@ -61,6 +61,14 @@ impl Console {
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(name.to_owned());
         RunProgress { bar }
+    }
+}
+
+fn to_stdout(text: &str) -> Result<()> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::file(Path::new("stdout"), "cannot write", error)),
+        _ => Ok(()),
     }
 }
 

@@ -1,6 +1,12 @@
 //! `perilife list`: every kind of every key.
 
+use serde_json::json;
+
+use super::console::Console;
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use crate::calibration::case::Parameter;
+use crate::calibration::columns::{CycleUnit, LengthUnit};
+use crate::calibration::rates::RateMethod;
 use crate::case::{Discretisation, Failure, Method, Symmetry};
 use crate::error::Result;
 use crate::fatigue::{Ageing, BlockKind, Precrack};
@@ -11,18 +17,18 @@ use crate::predict::StopReason;
 use crate::solver::SolverKind;
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
 
-/// List every kind that an input file can name
+/// Arguments of `perilife list`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// Print one JSON object on stdout
-    #[arg(long)]
-    pub json: bool,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
 }
 
-/// Every line, in the order of an input file.
+/// Every line, in the order of an input file: key, name, meaning.
 #[must_use]
 pub fn lines() -> Vec<(String, String, String)> {
-    let groups: [Vec<KindLine>; 7] = [
+    let of_the_test = [
         SpecimenKind::lines(),
         vec![SpecimenKind::not_covered()],
         Ends::lines(),
@@ -31,7 +37,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         Edge::lines(),
         Component::lines(),
     ];
-    let later: [Vec<KindLine>; 13] = [
+    let of_the_model = [
         Method::lines(),
         BondLawKind::lines(),
         Kernel::lines(),
@@ -44,10 +50,10 @@ pub fn lines() -> Vec<(String, String, String)> {
         Precrack::lines(),
         BlockKind::lines(),
         Failure::lines(),
-        StopReason::lines(),
     ];
+    let of_calibration = [Parameter::lines(), LengthUnit::lines(), CycleUnit::lines(), RateMethod::lines(), StopReason::lines()];
     let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
-    let mut all: Vec<_> = groups.into_iter().flatten().map(words).collect();
+    let mut all: Vec<_> = of_the_test.into_iter().flatten().map(words).collect();
     all.extend(library::names().into_iter().map(|name| {
         let meaning = library::find(&name, std::path::Path::new("")).map_or_else(
             |error| error.to_string(),
@@ -55,28 +61,25 @@ pub fn lines() -> Vec<(String, String, String)> {
         );
         ("material.name".to_owned(), name, meaning)
     }));
-    all.extend(later.into_iter().flatten().map(words));
+    all.extend(of_the_model.into_iter().flatten().map(words));
+    all.extend(of_calibration.into_iter().flatten().map(words));
     all
 }
 
 /// Prints the list in aligned columns, or as JSON.
+///
+/// # Errors
+/// Only if stdout cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let lines = lines();
-    if args.json {
-        let kinds: Vec<_> = lines
-            .iter()
-            .map(|(key, name, meaning)| serde_json::json!({ "key": key, "name": name, "meaning": meaning }))
-            .collect();
-        println!("{:#}", serde_json::json!({ "kinds": kinds }));
-        return Ok(());
-    }
     let widest =
         |pick: fn(&(String, String, String)) -> &String| lines.iter().map(|line| pick(line).chars().count()).max().unwrap_or(0);
     let (key_width, name_width) = (widest(|line| &line.0), widest(|line| &line.1));
-    for (key, name, meaning) in &lines {
-        println!("{key:<key_width$}  {name:<name_width$}  {meaning}");
-    }
-    Ok(())
+    let line = |(key, name, meaning): &(String, String, String)| format!("{key:<key_width$}  {name:<name_width$}  {meaning}\n");
+    args.console.result(&lines.iter().map(line).collect::<String>())?;
+    let kinds: Vec<_> =
+        lines.iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning })).collect();
+    args.console.object(&json!({ "kinds": kinds }))
 }
 
 #[cfg(test)]

@@ -71,7 +71,7 @@ pub fn run(args: &Args) -> Result<()> {
     let table = table(&specimens);
     match &args.out {
         Some(path) => write_file(path, table.as_bytes())?,
-        None => table.lines().for_each(|line| args.console.say(line)),
+        None => args.console.result(&table)?,
     }
     if args.out.is_some() {
         specimens.iter().for_each(|specimen| args.console.say(&specimen.summary()));

@@ -5,13 +5,13 @@ use std::path::Path;
 
 use perilife::case::Case;
 use perilife::commands::console::Console;
-use perilife::commands::{message, predict};
+use perilife::commands::{list, message, predict};
 use perilife::error::InputError;
 use perilife::predict::{Prediction, StopReason};
 use perilife::report::output::OutputFolder;
 use tempfile::tempdir;
 
-use crate::{made_up_case, made_up_run};
+use crate::{layering, made_up_case, made_up_run};
 
 const QUIET: Console = Console { json: false, quiet: true };
 
@@ -82,4 +82,21 @@ fn an_error_shows_its_line_where_there_is_one() {
     // A line the file does not have (it was changed meanwhile) and a file that has gone give the plain words instead.
     assert!(message::with_source_line(&error(0)).is_none() && message::with_source_line(&error(99)).is_none());
     assert!(message::with_source_line(&InputError { file: Some("gone.toml".into()), ..error(2) }).is_none());
+}
+
+#[test]
+fn the_list_misses_no_kind() {
+    let lines = list::lines();
+    let mut keys = 0;
+    for file in layering::rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
+        for line in fs::read_to_string(&file).unwrap().lines() {
+            let declared = line.trim().strip_prefix("pub enum ").and_then(|rest| rest.split_once(" for \""));
+            if let Some((_, rest)) = declared {
+                let key = rest.split('"').next().unwrap();
+                assert!(lines.iter().any(|(listed, ..)| listed == key), "{key} of {} is not listed", file.display());
+                keys += 1;
+            }
+        }
+    }
+    assert!(keys > 20, "the test reads the sources: {keys} keys");
 }

@@ -64,7 +64,8 @@ fn paths_are_read_from_groups_too() {
     );
 }
 
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
+/// Every source file below a folder.
+pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     entries
         .flat_map(|path| if path.is_dir() { rust_files(&path) } else { vec![path] })

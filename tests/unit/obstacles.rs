@@ -13,7 +13,7 @@ const HORIZON: f64 = 3.015;
 fn plate(keys: &str) -> Specimen {
     let text = format!(
         "[specimen]\nkind = \"plate\"\nthickness_mm = 2\n{keys}\n[material]\nname = \"al2024-t3\"\n\
-         [loading]\nstress_max_mpa = 10\nstress_ratio = 0\n[model]\nspacing_mm = 1\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1"
+         [loading]\nstress_max_mpa = 10\nstress_ratio = 0\n[supports]\nbottom = {{ fix = [\"x\", \"y\"] }}\n[model]\nspacing_mm = 1\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1"
     );
     Case::from_toml(&text, "test", Path::new(""), &[]).unwrap().specimen
 }

@@ -1,0 +1,127 @@
+//! What `perilife check` has understood of a file, in words.
+
+use crate::calibration::measured::MeasuredCurve;
+use crate::case::{Case, LawSource};
+use crate::specimen::handbook::handbook;
+use crate::specimen::{LoadMeasure, Support};
+use crate::units::{GPA, KN, MM, MPA};
+
+/// One line of what was understood.
+#[derive(Debug)]
+pub(super) struct Line {
+    pub what: &'static str,
+    pub value: String,
+}
+
+/// The measured curves of a calibration, inside its window.
+pub(super) fn curves_line(curves: &[MeasuredCurve]) -> Line {
+    let readings: usize = curves.iter().map(|curve| curve.cycles.len()).sum();
+    let lengths = || curves.iter().flat_map(|curve| &curve.crack_length).map(|length| length / MM);
+    let (shortest, longest) = (lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max));
+    let lives = || curves.iter().filter_map(|curve| Some(curve.cycles.last()? - curve.cycles.first()?));
+    let (least, most) = (lives().fold(f64::INFINITY, f64::min), lives().fold(0.0, f64::max));
+    let lives = if curves.len() == 1 { format!("{most:.0}") } else { format!("{least:.0} to {most:.0}") };
+    let specimens =
+        if curves.len() == 1 { format!("specimen {}", curves[0].specimen) } else { format!("{} specimens", curves.len()) };
+    let value = format!("{specimens}: {readings} readings from {} to {} mm in {lives} cycles", short(shortest), short(longest));
+    Line { what: "measured", value }
+}
+
+/// What the program understood of a case, one line each; `points` says how it is divided.
+pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
+    let (specimen, material, loading, model, fatigue) =
+        (&case.specimen, &case.material, &case.loading, &case.model, &case.fatigue);
+    let mm = |metres: f64| short(metres / MM);
+    let bond = model.bond_law;
+    let load = match specimen.load_measure {
+        LoadMeasure::Stress => {
+            format!("stress {} to {} MPa", short(loading.maximum * loading.ratio / MPA), short(loading.maximum / MPA))
+        }
+        LoadMeasure::Force => {
+            format!("force {} to {} kN", short(loading.maximum * loading.ratio / KN), short(loading.maximum / KN))
+        }
+    };
+    let held = match specimen.supports.first() {
+        None => "nothing held, loads in equilibrium",
+        Some(Support::Fixed { .. }) => "held as [supports] says",
+        Some(Support::ClampedEnds) => "rigid ends that cannot rotate",
+        Some(Support::RigidEnds) => "rigid ends that rotate about pins",
+    };
+    let law = match &case.law {
+        LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
+        LawSource::Fitted(record) => format!(
+            "a = {:e} per cycle, p = {} at horizon {} mm, fitted to {}",
+            record.a, record.p, record.horizon_mm, record.material
+        ),
+        LawSource::Missing(path) if path.as_os_str().is_empty() => "to be fitted".to_owned(),
+        LawSource::Missing(path) => format!("{} does not exist yet", path.display()),
+    };
+    let formula = handbook(specimen).map_or_else(
+        || "none for this specimen".to_owned(),
+        |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range),
+    );
+    let stop = if case.stop.crack_length.is_finite() {
+        format!("crack length {} mm, or ", mm(case.stop.crack_length))
+    } else {
+        String::new()
+    };
+    let lines = [
+        (
+            "specimen",
+            format!(
+                "{}, {} x {} x {} mm (width, length, thickness)",
+                specimen.kind,
+                mm(specimen.gross_width),
+                mm(specimen.length()),
+                mm(specimen.thickness)
+            ),
+        ),
+        (
+            "crack",
+            format!(
+                "length {} mm; {} cracks, {} slots, {} holes, {} tips",
+                mm(specimen.crack_length),
+                specimen.cracks.len(),
+                specimen.slots.len(),
+                specimen.holes.len(),
+                specimen.tips.len()
+            ),
+        ),
+        (
+            "material",
+            format!(
+                "{}: E {} GPa, nu {}, plane {}",
+                material.name,
+                short(material.youngs_modulus / GPA),
+                material.poisson_ratio,
+                material.plane
+            ),
+        ),
+        ("loading", format!("{load}, R = {}; {held}", loading.ratio)),
+        (
+            "bonds",
+            format!(
+                "{}, kernel {}, rotation {}, surface correction {}",
+                bond.kind, bond.kernel, bond.rotation, bond.surface_correction
+            ),
+        ),
+        ("points", points),
+        ("fatigue", law),
+        (
+            "ageing",
+            format!(
+                "{}, zone radius {} horizons, precrack {}, block {}",
+                fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack, fatigue.block.kind
+            ),
+        ),
+        ("handbook K", formula),
+        ("stop", format!("{stop}{} cycles", case.stop.cycles_max)),
+    ];
+    lines.into_iter().map(|(what, value)| Line { what, value }).collect()
+}
+
+/// A number with at most four decimals.
+pub(super) fn short(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
