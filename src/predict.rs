@@ -120,6 +120,7 @@ pub fn run(
 
         // Break, and find the new equilibrium, until no bond is stretched beyond the critical stretch.
         let mut newly = spent.clone();
+        let mut overloaded = false;
         let outcome = loop {
             newly.iter().for_each(|&bond| bonds.cut(&body, bond));
             let aside = match set_aside(&body, &mut bonds, &newly) {
@@ -130,10 +131,13 @@ pub fn run(
             equilibrium.broke(&body, &bonds, &newly);
             match equilibrium.solve(&body, &bonds, &mut displacement) {
                 Ok(more) => iterations += more,
+                // What is left after bonds broke by overload cannot carry the load: the plate is as good as in two.
+                Err(_) if overloaded => break Some(StopReason::Severed),
                 Err(_) => break Some(StopReason::NoConvergence),
             }
             solves += 1;
             newly = overstretched(&body, &bonds, case, &displacement);
+            overloaded |= !newly.is_empty();
             spent.extend(&newly);
             if newly.is_empty() {
                 break None;
@@ -231,7 +235,12 @@ fn overstretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &[f64]) 
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let places = body.places();
     let of_stencil = |k: usize| body.points.iter().map(move |&place| (k * places + place as usize) as Bond);
-    let beyond =
-        |bond: &Bond| bonds.is_intact(*bond) && stretch(body, &layout, displacement, *bond) > limit && body.can_fail(*bond);
-    (0..body.steps.len()).into_par_iter().flat_map_iter(|k| of_stencil(k).filter(beyond)).collect()
+    let stretched = |bond: Bond| (bond, if bonds.is_intact(bond) { stretch(body, &layout, displacement, bond) } else { 0.0 });
+    let beyond: Vec<(Bond, f64)> = (0..body.steps.len())
+        .into_par_iter()
+        .flat_map_iter(|k| of_stencil(k).map(stretched).filter(|&(bond, s)| s > limit && body.can_fail(bond)))
+        .collect();
+    // The worst first: where they break, others are relieved.
+    let worst = beyond.iter().map(|b| b.1).fold(0.0, f64::max);
+    beyond.into_iter().filter(|&(_, s)| s >= 0.5 * worst).map(|(bond, _)| bond).collect()
 }
