@@ -40,7 +40,7 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
     }
     let count =
         format!("{} and {} bonds, {} of them cut by the initial cracks", body.points.len(), body.bond_count, body.pre_cut.len());
-    let tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, body.horizon())).collect();
+    let tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, &body)).collect();
     let held = stuck(&body, &bonds, &tips, &case.fatigue).into_iter().map(|tip| {
         let [x, y] = tips[tip].position.map(|metres| short(metres / MM));
         format!(
