@@ -5,16 +5,16 @@ use crate::stress_intensity::{SINGLE, k_over_handbook};
 
 /// One line of the table: what, where, spacing, relative error in percent, reference.
 fn rows() -> Vec<(f64, String)> {
-    let uniform = format!("{SINGLE}ends=\"uniform_stress\"\n");
+    let uniform: String = format!("{SINGLE}ends=\"uniform_stress\"\n");
     let double = "kind=\"double_edge_tension\"\nwidth_mm=150\nlength_mm=300\nthickness_mm=2\ncrack_length_mm=30\n";
     let compact = "kind=\"compact_tension\"\nwidth_mm=100\nthickness_mm=5\ncrack_length_mm=40\n";
     let panel = |nu: f64| vec![format!("material.poisson_ratio={nu}")];
-    let scenes: [(&str, &str, Vec<String>, f64, f64, &str); 8] = [
+    let scenes = [
         ("middle tension, W 152.4 mm, ν 0.1", PANEL, panel(0.1), 1.5, 30.0, "Feddersen secant"),
         ("middle tension, W 152.4 mm, ν 0.2", PANEL, panel(0.2), 1.5, 30.0, "Feddersen secant"),
         ("middle tension, W 152.4 mm, ν 0.3", PANEL, panel(0.3), 1.5, 30.0, "Feddersen secant"),
         ("middle tension, W 152.4 mm, ν 0.3", PANEL, panel(0.3), 1.5, 45.0, "Feddersen secant"),
-        ("single edge, uniform stress, W 100 mm", &uniform, Vec::new(), 1.25, 40.0, "Tada"),
+        ("single edge, uniform stress, W 100 mm", uniform.as_str(), Vec::new(), 1.25, 40.0, "Tada"),
         ("double edge, W 150 mm", double, Vec::new(), 1.5, 40.0, "Tada"),
         ("compact tension, W 100 mm", compact, Vec::new(), 1.25, 40.0, "ASTM E647"),
         ("compact tension, W 100 mm", compact, Vec::new(), 1.25, 60.0, "ASTM E647"),
