@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 
+use crate::body::pre_crack::bonds_across;
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::{Error, Result};
@@ -110,7 +111,10 @@ pub fn run(
         }
 
         // Spend life over the block; bonds at the end of theirs break.
-        let (cycles, mut spent) = life.next_block(&law, &settings.block, &ageing);
+        // A tip within a spacing of an edge or hole breaks through at once: the lattice cannot resolve what is left.
+        let through = break_through(&mut tips, &body, &bonds, &case.specimen);
+        let (cycles, mut spent) =
+            if through.is_empty() { life.next_block(&law, &settings.block, &ageing) } else { (0.0, through) };
         if track.cycles_since_start() + cycles > case.stop.cycles_max {
             track.run_out(case.stop.cycles_max);
             break StopReason::RunOut;
@@ -214,6 +218,21 @@ fn starting_specimen(case: &Case) -> Result<Specimen> {
         }
     }
     Ok(specimen)
+}
+
+/// Bonds between tips and an edge or hole less than one spacing ahead; those tips end.
+fn break_through(tips: &mut [CrackTip], body: &Body, bonds: &Bonds, specimen: &Specimen) -> Vec<Bond> {
+    let mut through = Vec::new();
+    for tip in tips.iter_mut().filter(|tip| tip.is_active()) {
+        if tip.retire(specimen, body.lattice.spacing) {
+            let along = |way: f64| [0, 1].map(|i| tip.position[i] + way * tip.direction[i]);
+            let across = bonds_across(body, along(-body.horizon()), along(body.horizon()));
+            through.extend(across.into_iter().filter(|&bond| bonds.is_intact(bond) && body.can_fail(bond)));
+        }
+    }
+    through.sort_unstable();
+    through.dedup();
+    through
 }
 
 /// Ends the tips at an edge or hole around which no bond is left.

@@ -17,3 +17,5 @@ mod solvers;
 mod stress_intensity;
 #[path = "verification/readme_accuracy.rs"]
 mod readme_accuracy;
+#[path = "verification/fatigue.rs"]
+mod fatigue;

@@ -12,7 +12,7 @@
 use std::collections::VecDeque;
 
 use crate::body::{Body, Bond};
-use crate::specimen::geometry::{direction, distance, distance_to_polygon, distance_to_segment, segments_touch};
+use crate::specimen::geometry::{direction, distance, segments_touch};
 use crate::specimen::{Point, Specimen, TipSeed};
 
 /// Least length of crack, in horizons, whose broken bonds show where the tip is; rounded up to whole spacings, since bonds
@@ -131,16 +131,15 @@ impl CrackTip {
         self.lengthen_wake(horizon);
     }
 
-    /// Ends a tip around which nothing ages any more because it has come to the outline or to a hole (within a horizon).
-    pub fn retire(&mut self, specimen: &Specimen, horizon: f64) {
-        let into_hole = specimen.holes.iter().map(|hole| distance(hole.centre, self.position) - hole.radius);
-        let into_slot =
-            specimen.slots.iter().map(|slot| distance_to_segment(self.position, slot.from, slot.to) - 0.5 * slot.width);
-        if into_hole.chain(into_slot).any(|gap| gap < horizon) {
-            self.state = TipState::EnteredHole;
-        } else if distance_to_polygon(self.position, &specimen.outline) < horizon {
-            self.state = TipState::LeftPlate;
+    /// Ends a tip with the outline, a hole or a slot less than `reach` ahead; returns whether it did.
+    pub fn retire(&mut self, specimen: &Specimen, reach: f64) -> bool {
+        let ahead = |share: f64| [0, 1].map(|i| self.position[i] + share * reach * self.direction[i]);
+        if let Some(outside) = [0.25, 0.5, 0.75, 1.0].map(ahead).into_iter().find(|&point| !specimen.contains(point)) {
+            let in_hole = specimen.holes.iter().any(|hole| distance(hole.centre, outside) <= hole.radius);
+            let in_void = in_hole || specimen.slots.iter().any(|slot| slot.contains(outside));
+            self.state = if in_void { TipState::EnteredHole } else { TipState::LeftPlate };
         }
+        !self.is_active()
     }
 
     /// Takes the present place into the wake, at steps of a quarter horizon, and drops what lies too far behind.

@@ -1,0 +1,209 @@
+//! What a run must obey whatever its numbers: scaling with A and with load, symmetry, order, named ends, straight paths.
+
+use perilife::predict::{Prediction, Silent, StopReason, predict};
+use perilife::units::MM;
+
+use crate::plates::case;
+
+const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=12\n";
+const SLANT: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncracks=[{from_mm=[-8,-5],to_mm=[8,5]}]\n";
+const EDGE: &str =
+    "kind=\"single_edge_tension\"\nends=\"uniform_stress\"\nwidth_mm=40\nlength_mm=100\nthickness_mm=2\ncrack_length_mm=12\n";
+const DOUBLE: &str = "kind=\"double_edge_tension\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=12\n";
+const COMPACT: &str = "kind=\"compact_tension\"\nwidth_mm=50\nthickness_mm=5\ncrack_length_mm=20\n";
+const HOLE: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncracks=[{from_mm=[-30,0],to_mm=[-16,0]}]\nholes=[{x_mm=4,y_mm=0,diameter_mm=16}]\n";
+const TWO: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncracks=[{from_mm=[-22,-4],to_mm=[-8,-4]},{from_mm=[8,4],to_mm=[22,4]}]\n";
+const SLOT: &str =
+    "kind=\"plate\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\nnotches=[{from_mm=[-30,0],to_mm=[-14,0],width_mm=4}]\n";
+
+/// Grows a crack with run-out at 10⁷ cycles unless the case says otherwise.
+fn grow(specimen: &str, set: &[&str]) -> Prediction {
+    let mut all = vec!["stop.cycles_max=1e7"];
+    all.extend(set);
+    predict(&case(specimen, &all), &Silent).unwrap()
+}
+
+#[test]
+fn doubling_a_halves_every_n() {
+    let stop = "stop.crack_length_mm=24";
+    let (once, twice) = (grow(SLANT, &[stop]), grow(SLANT, &[stop, "fatigue.a=12900"]));
+    assert_eq!(once.curve.len(), twice.curve.len());
+    assert!(once.curve.len() > 10, "{}", once.curve.len());
+    for (a, b) in once.curve.iter().zip(&twice.curve) {
+        assert!((a.cycles - 2.0 * b.cycles).abs() <= 1e-9 * a.cycles, "{} against twice {}", a.cycles, b.cycles);
+        assert_eq!(a.crack_length, b.crack_length);
+    }
+}
+
+/// ε is proportional to load, so N goes with load^-p, exactly for a linear plate.
+#[test]
+fn life_falls_with_the_p_th_power_of_load() {
+    let stop = "stop.crack_length_mm=16";
+    let (low, high) = (grow(PANEL, &[stop]), grow(PANEL, &[stop, "loading.stress_max_mpa=84"]));
+    let ratio = low.life_cycles() / high.life_cycles();
+    // 1.2^2.86; the solver leaves about 1e-9 in the strains.
+    assert!((ratio / 1.2_f64.powf(2.86) - 1.0).abs() < 1e-6, "{ratio}");
+}
+
+#[test]
+fn a_symmetric_plate_stays_symmetric() {
+    let run = grow(PANEL, &["stop.crack_length_mm=24"]);
+    for point in &run.curve {
+        let [left, right] = [point.tips[0], point.tips[1]];
+        assert!((left.growth - right.growth).abs() < 1e-12, "{} and {}", left.growth, right.growth);
+        assert!((left.position[0] + right.position[0]).abs() < 1e-12);
+        assert!(left.position[1].abs() < 1e-12 && right.position[1].abs() < 1e-12);
+    }
+    // Two tips and two halves: mirror twins break in one block.
+    assert!(run.figures.blocks * 3 < run.curve.last().unwrap().broken_bonds * 2, "{} blocks", run.figures.blocks);
+}
+
+#[test]
+fn every_scene_ends_with_a_named_stop_and_an_orderly_curve() {
+    for (name, specimen, set, ends) in [
+        ("length", PANEL, vec!["stop.crack_length_mm=16.4"], vec![StopReason::CrackLengthReached]),
+        ("run-out", PANEL, vec!["stop.cycles_max=100"], vec![StopReason::RunOut]),
+        ("toughness", PANEL, vec!["material.toughness_mpa_sqrt_m=18"], vec![StopReason::Toughness]),
+        ("yield", PANEL, vec!["material.yield_strength_mpa=200"], vec![StopReason::NetSectionYield]),
+        ("nothing ages", PANEL, vec!["fatigue.delta_k_threshold_mpa_sqrt_m=500"], vec![StopReason::NothingAges]),
+        ("panel", PANEL, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
+        ("edge", EDGE, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
+        ("double edge", DOUBLE, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
+        ("compact", COMPACT, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
+        ("hole", HOLE, vec![], vec![StopReason::EnteredHole]),
+        ("slot", SLOT, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
+        ("slant", SLANT, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
+    ] {
+        let run = grow(specimen, &set);
+        let figures = &run.figures;
+        println!(
+            "{name}: {} at {:.4e} cycles, {:.2} mm, {} blocks",
+            run.stop,
+            run.life_cycles(),
+            run.crack_length_final() / MM,
+            figures.blocks
+        );
+        assert!(ends.contains(&run.stop), "{name} ended as {}", run.stop);
+        let first = &run.curve[0];
+        assert_eq!(first.cycles, 0.0, "{name}");
+        assert_eq!(first.crack_length, case(specimen, &[]).specimen.crack_length, "{name}");
+        for pair in run.curve.windows(2) {
+            assert!(pair[1].cycles >= pair[0].cycles && pair[1].crack_length >= pair[0].crack_length, "{name}");
+            assert!(pair[1].cycles.is_finite() && pair[1].crack_length.is_finite(), "{name}");
+        }
+        if run.stop == StopReason::CrackLengthReached {
+            assert!((run.crack_length_final() - 16.4 * MM).abs() < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn two_cracks_and_ageing_everywhere_end_without_trouble() {
+    for (name, specimen, set) in [
+        ("two cracks", TWO, vec![]),
+        ("everywhere", PANEL, vec!["fatigue.ageing=everywhere", "stop.crack_length_mm=20"]),
+        ("resisted", PANEL, vec!["model.rotation=resisted", "stop.crack_length_mm=20"]),
+        ("bond-based", PANEL, vec!["model.bond_law=bond_based", "material.poisson_ratio=0.333", "stop.crack_length_mm=20"]),
+    ] {
+        let run = grow(specimen, &set);
+        println!("{name}: {} at {:.4e} cycles, {:.2} mm", run.stop, run.life_cycles(), run.crack_length_final() / MM);
+        assert!(run.stop != StopReason::NoConvergence, "{name}");
+        assert!(run.curve.iter().all(|point| point.cycles.is_finite() && point.crack_length.is_finite()), "{name}");
+        assert!(run.snapshots.iter().flat_map(|s| &s.displacement).flatten().all(|u| u.is_finite()), "{name}");
+    }
+}
+
+/// Cycles from 16 to 24 mm of half crack, where the start no longer counts.
+fn cycles_later(run: &Prediction) -> f64 {
+    let at = |length: f64| {
+        let pair = run.curve.windows(2).find(|pair| pair[1].crack_length >= length * MM).unwrap();
+        let share = (length * MM - pair[0].crack_length) / (pair[1].crack_length - pair[0].crack_length);
+        pair[0].cycles + share * (pair[1].cycles - pair[0].cycles)
+    };
+    at(24.0) - at(16.0)
+}
+
+#[test]
+fn growth_hardly_depends_on_block_or_start() {
+    let stop = "stop.crack_length_mm=24.5";
+    let reference = grow(PANEL, &[stop]);
+    for (name, set, bound) in [
+        ("grown", vec!["fatigue.precrack=grown", "model.spacing_mm=1"], f64::INFINITY),
+        ("none", vec!["fatigue.precrack=none"], 0.02),
+        // Reached: 10 % at this spacing; theory.md gives up to 16 % for larger blocks. Not the default for that reason.
+        ("two groups a block", vec!["fatigue.bonds_per_block=2"], 0.12),
+        ("fixed blocks", vec!["fatigue.block=fixed", "fatigue.block_cycles=20"], 0.02),
+    ] {
+        let mut all = vec![stop];
+        all.extend(set);
+        if name == "grown" {
+            // Needs cracks longer than five horizons: checked at a spacing that gives them, against the same spacing.
+            let long = PANEL.replace("crack_length_mm=12", "crack_length_mm=20").replace("width_mm=60", "width_mm=90");
+            let [grown, profile] = ["grown", "steady_profile"].map(|precrack| {
+                grow(&long, &["stop.crack_length_mm=26", "model.spacing_mm=1", &format!("fatigue.precrack={precrack}")])
+                    .life_cycles()
+            });
+            println!("life from a0, grown over steady profile: {:.4}", grown / profile);
+            // Reached: see the printed figure; both mean the same physical start.
+            assert!((grown / profile - 1.0).abs() < 0.05, "{}", grown / profile);
+            continue;
+        }
+        let ratio = cycles_later(&grow(PANEL, &all)) / cycles_later(&reference);
+        println!("{name}: cycles over reference {ratio:.4}");
+        assert!((ratio - 1.0).abs() < bound, "{name}: {ratio}");
+    }
+    assert!(grow(PANEL, &[stop, "fatigue.precrack=none"]).life_cycles() > reference.life_cycles());
+}
+
+/// However the lattice lies, a crack across the load runs straight, and its growth is the way of its tip.
+#[test]
+fn a_crack_runs_straight_on_a_turned_lattice() {
+    for angle in [0, 15, 30, 45] {
+        let run = grow(PANEL, &["stop.crack_length_mm=20", &format!("model.lattice_angle_deg={angle}")]);
+        let last = run.curve.last().unwrap();
+        for tip in &last.tips {
+            let way = tip.position[0].abs() - 12.0 * MM;
+            println!(
+                "{angle} degrees: growth {:.3} mm, way {:.3} mm, y {:.3} mm, life {:.4e}",
+                tip.growth / MM,
+                way / MM,
+                tip.position[1] / MM,
+                run.life_cycles()
+            );
+            assert!(tip.position[1].abs() < 2.0 * run.figures.horizon, "{angle}");
+            // Half a spacing (2 mm): the tip is placed from the last breaks, growth from their sum.
+            assert!((tip.growth - way).abs() < 0.1 * way + 0.5 * run.figures.spacing, "{angle}: {} and {way}", tip.growth);
+        }
+    }
+}
+
+/// Cyclic growth follows handbook ΔK with the exponent p: rate over ΔK^p per interval of a, 4 spacings each.
+#[test]
+fn a_centre_crack_grows_by_the_power_law() {
+    let panel = "kind=\"middle_tension\"\nwidth_mm=152\nlength_mm=300\nthickness_mm=2.54\ncrack_length_mm=18\n";
+    for p in [2.0, 2.87, 4.0] {
+        let run = grow(panel, &["stop.crack_length_mm=51", "stop.cycles_max=1e12", &format!("fatigue.p={p}")]);
+        let formula = perilife::specimen::handbook::handbook(&case(panel, &[]).specimen).unwrap();
+        let cycles_at = |length: f64| {
+            let pair = run.curve.windows(2).find(|pair| pair[1].crack_length >= length).unwrap();
+            let share = (length - pair[0].crack_length) / (pair[1].crack_length - pair[0].crack_length);
+            pair[0].cycles + share * (pair[1].cycles - pair[0].cycles)
+        };
+        // ∫ da/K^p over the interval (midpoints), over the cycles it took.
+        let constants: Vec<f64> = (0..4)
+            .map(|i| {
+                let (low, step) = (18.0 * MM + i as f64 * 8.0 * MM, 0.08 * MM);
+                let integral: f64 = (0..100).map(|j| step / formula.k_i(low + (j as f64 + 0.5) * step, 1.0).powf(p)).sum();
+                integral / (cycles_at(low + 8.0 * MM) - cycles_at(low))
+            })
+            .collect();
+        let mean = constants.iter().sum::<f64>() / 4.0;
+        let relative: Vec<f64> = constants.iter().map(|c| c / mean).collect();
+        println!("p {p}: rate over the power law {relative:.3?}");
+        for (i, r) in relative.iter().enumerate() {
+            // The first interval starts at three horizons, where the finite horizon makes the crack too fast: 7 % at p = 2.87.
+            let bound = if i == 0 { 0.12 } else { 0.05 };
+            assert!((r - 1.0).abs() < bound, "p {p}: {relative:?}");
+        }
+    }
+}
