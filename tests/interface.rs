@@ -5,9 +5,13 @@ mod made_up_run;
 
 #[path = "interface/bad_csv.rs"]
 mod bad_csv;
+#[path = "interface/bad_toml.rs"]
+mod bad_toml;
+#[path = "interface/calibrate.rs"]
+mod calibrate;
+#[path = "interface/check.rs"]
+mod check;
 #[path = "interface/cli.rs"]
 mod cli;
 #[path = "interface/export.rs"]
 mod export;
-#[path = "interface/bad_toml.rs"]
-mod bad_toml;

@@ -9,6 +9,8 @@ mod noise;
 #[path = "support/shared.rs"]
 mod shared;
 
+#[path = "unit/boundary.rs"]
+mod boundary;
 #[path = "unit/calibration_case.rs"]
 mod calibration_case;
 #[path = "unit/commands.rs"]

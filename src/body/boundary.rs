@@ -40,8 +40,11 @@ impl Boundary {
             match *support {
                 Support::Fixed { from, to, depth, x, y } => {
                     boundary.floating = false;
-                    let depth = depth.max(0.75 * lattice.spacing);
-                    let near = points.iter().filter(|&&p| distance_to_segment(lattice.position(p as usize), from, to) < depth);
+                    let away = |p: u32| distance_to_segment(lattice.position(p as usize), from, to);
+                    // At least the nearest row: it lies up to a whole spacing inside where a crack fixes the rows.
+                    let nearest = points.iter().map(|&p| away(p)).fold(f64::INFINITY, f64::min);
+                    let depth = depth.max(0.75 * lattice.spacing).max(nearest + 0.25 * lattice.spacing);
+                    let near = points.iter().filter(|&&p| away(p) < depth);
                     boundary.fixed.extend(near.map(|&p| (p, held(lattice, x, y))));
                 }
                 Support::ClampedEnds => {

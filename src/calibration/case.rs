@@ -84,6 +84,7 @@ impl CalibrationCase {
             let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
         }
+        check_walker(&case)?;
         let fixed_p = fixed_p(&fit)?;
         let formula = handbook(&case.specimen).ok_or_else(|| {
             input(
@@ -108,6 +109,7 @@ impl CalibrationCase {
         case.stop.cycles_max = f64::INFINITY;
         case.material.toughness = None;
         case.material.yield_strength = None;
+        warnings.extend(unrecorded(&case));
         warnings.extend(case.warnings.iter().cloned());
         Ok(CalibrationCase { case, curves, fixed_p, sources, warnings, formula })
     }
@@ -137,6 +139,28 @@ pub fn remove_law(sections: &mut Table) {
             fatigue.remove(key);
         }
     }
+}
+
+/// Curves of one stress ratio say nothing about its influence, and a record means ε = s_max (1-R): another Walker exponent
+/// belongs to the case that uses the record at another ratio.
+fn check_walker(case: &Case) -> crate::Result<()> {
+    let gamma = case.fatigue.walker_gamma;
+    if gamma == 1.0 {
+        return Ok(());
+    }
+    let problem = "cannot be given to a calibration, whose curves have one stress ratio and tell nothing about its influence";
+    Err(input(
+        "fatigue.walker_gamma",
+        gamma,
+        problem,
+        "remove it here and give it in the case that uses the fit at another stress ratio",
+    ))
+}
+
+/// What shapes the fit and stands in no record, so that cases have to repeat it.
+fn unrecorded(case: &Case) -> Option<String> {
+    let line = "fatigue.delta_k_threshold_mpa_sqrt_m shapes the fit but stands in no record: give the same in cases that use it";
+    (case.fatigue.threshold > 0.0).then(|| line.to_owned())
 }
 
 /// p of `[fit]` where it is not fitted.

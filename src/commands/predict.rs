@@ -94,17 +94,34 @@ const EXTRAPOLATION_REFUSED: f64 = 0.25;
 
 /// Whether a run counts as a result.
 fn judge(case: &Case, prediction: &Prediction, console: &Console) -> Result<()> {
-    if prediction.stop == StopReason::NoConvergence {
-        let start = prediction.curve.first().map_or(f64::INFINITY, |point| point.crack_length);
-        // An empty curve compares as not grown.
-        if prediction.crack_length_final().max(0.0) <= start {
-            return Err(Error::Mechanics(format!(
-                "{}: the equilibrium solver did not converge before the crack grew, so there is no curve; \
-                 try model.solver = \"direct\" or another model.spacing_mm",
-                case.name
-            )));
+    let start = prediction.curve.first().map_or(f64::INFINITY, |point| point.crack_length);
+    // An empty curve compares as not grown.
+    let grown = prediction.crack_length_final().max(0.0) > start;
+    let no_curve = |why: &str, remedy: &str| {
+        Err(Error::Mechanics(format!("{}: {why} before the crack grew, so there is no curve; {remedy}", case.name)))
+    };
+    match prediction.stop {
+        StopReason::NoConvergence if grown => {
+            console.warn("the equilibrium solver did not converge; the curve ends where it last did")
         }
-        console.warn("the equilibrium solver did not converge; the curve ends where it last did");
+        StopReason::NoConvergence => {
+            return no_curve(
+                "the equilibrium solver did not converge",
+                "try model.solver = \"direct\" or another model.spacing_mm",
+            );
+        }
+        // Under the threshold nothing ages either, which is an answer.
+        StopReason::NothingAges if !grown && case.fatigue.threshold > 0.0 => {
+            console.warn("no bond ages: the crack stays below fatigue.delta_k_threshold_mpa_sqrt_m and does not grow");
+        }
+        StopReason::NothingAges | StopReason::LeftPlate | StopReason::EnteredHole if !grown => {
+            let why = format!("no bond that can fail is strained at a crack tip (stopped: {})", prediction.stop);
+            return no_curve(
+                &why,
+                "move crack and hole or support apart, or give a smaller model.spacing_mm; `perilife check` names the tips",
+            );
+        }
+        _ => {}
     }
     let share = json::life_share_extrapolated(case, prediction).unwrap_or(0.0);
     let LawSource::Fitted(record) = &case.law else { return Ok(()) };

@@ -6,6 +6,8 @@ use perilife::Error;
 use perilife::case::Case;
 use proptest::prelude::*;
 
+use crate::cli::{self, perilife, texts};
+
 const PANEL: &str = r#"[specimen]
 kind = "middle_tension"
 width_mm = 152.4
@@ -241,8 +243,13 @@ fn every_broken_file_is_refused_with_words() {
         assert_ne!(text, bad.good, "nothing was broken: {}", bad.old);
         std::fs::write(&file, &text).unwrap();
         assert_refused(Case::from_file(&file, &[]), &file, bad.words, bad.new);
+        // The program says the same in one line, and leaves nothing.
+        let output = perilife(folder.path(), &["predict", "case.toml", "--out", "run"]);
+        cli::assert_refused(&output, 2, &["case.toml"]);
+        assert_eq!(texts(&output).1.trim_end().lines().count(), 1, "{}: one message", bad.new);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "{}: nothing but the case stands there", bad.new);
     }
-    assert!(BAD.len() >= 28);
+    assert!(BAD.len() >= 40);
 }
 
 #[test]

@@ -73,11 +73,7 @@ fn missing_files_end_with_four_and_leave_nothing() {
 }
 
 #[test]
-fn list_names_every_key_when_it_is_there() {
-    if !subcommands().contains(&"list".to_owned()) {
-        println!("skipped: no list command yet");
-        return;
-    }
+fn list_names_every_key() {
     let (stdout, _) = texts(&perilife(Path::new("."), &["list"]));
     for word in ["specimen.kind", "middle_tension", "model.bond_law", "two_parameter", "fatigue.precrack"] {
         assert!(stdout.contains(word), "{word}");
@@ -85,7 +81,7 @@ fn list_names_every_key_when_it_is_there() {
 }
 
 /// A case coarse and short enough to run in a second.
-const SMALL_CASE: &str = r#"
+pub const SMALL_CASE: &str = r#"
 [specimen]
 kind = "middle_tension"
 width_mm = 60.0
@@ -112,7 +108,6 @@ cycles_max = 1e12
 "#;
 
 #[test]
-#[ignore = "waits for the engine"]
 fn a_prediction_writes_what_it_promises() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
@@ -148,4 +143,38 @@ fn a_folder_of_somebody_else_is_refused() {
     let output = perilife(dir.path(), &["predict", "small.toml", "--out", "small.toml/run"]);
     assert_refused(&output, 4, &["small.toml/run"]);
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2, "no temporary folder stays");
+}
+
+/// Files and folders that cannot be read or written are file trouble, said before anything is computed.
+#[test]
+#[cfg(target_os = "linux")]
+fn unreadable_and_unwritable_places() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    fs::write(dir.path().join("m.csv"), "cycles,crack_length_mm\n0,9\n1,10\n2,11\n3,12\n4,13\n").unwrap();
+    let calls: [(&[&str], i32, &[&str]); 5] = [
+        (&["predict", "small.toml", "--out", "/proc/run"], 4, &["/proc/run"]),
+        (&["predict", "small.toml", "--out", "/dev/full"], 2, &["--out = /dev/full", "is a file", "name of a folder"]),
+        (&["predict", "small.toml", "--out", "."], 2, &["--out = .", "current folder", "below it"]),
+        (&["rates", "m.csv", "--method", "secant", "--out", "/dev/full"], 4, &["/dev/full", "cannot write"]),
+        (&["check", "small.toml", "--picture", "/dev/full"], 4, &["/dev/full", "cannot write"]),
+    ];
+    for (arguments, code, words) in calls {
+        assert_refused(&perilife(dir.path(), arguments), code, words);
+    }
+
+    use std::os::unix::fs::PermissionsExt;
+    let locked = dir.path().join("locked");
+    fs::create_dir(&locked).unwrap();
+    fs::write(locked.join("small.toml"), SMALL_CASE).unwrap();
+    fs::set_permissions(&locked, fs::Permissions::from_mode(0o000)).unwrap();
+    if fs::read_dir(&locked).is_ok() {
+        println!("skipped: this user may read everything");
+    } else {
+        assert_refused(&perilife(dir.path(), &["predict", "locked/small.toml", "--out", "run"]), 4, &["locked/small.toml"]);
+        assert_refused(&perilife(dir.path(), &["predict", "small.toml", "--out", "locked/run"]), 4, &["locked/run"]);
+        assert_refused(&perilife(dir.path(), &["export", "locked", "--out", "e.csv"]), 4, &["locked", "cannot read"]);
+    }
+    fs::set_permissions(&locked, fs::Permissions::from_mode(0o755)).unwrap();
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3, "nothing new stands there");
 }

@@ -147,6 +147,11 @@ fn broken_calibration_files_say_what_would_be_right() {
             "fatigue: gives the law that the calibration is to find",
         ),
         (
+            "another mean-stress law",
+            format!("{GOOD}[fatigue]\nwalker_gamma = 0.6\n"),
+            "fatigue.walker_gamma = 0.6: cannot be given to a calibration",
+        ),
+        (
             "short panel",
             swap("length_mm = 300.0", "length_mm = 152.4"),
             "specimen.kind = \"middle_tension\": has no handbook K(a) in this shape",
@@ -164,6 +169,9 @@ fn broken_calibration_files_say_what_would_be_right() {
         assert!(error.to_string().contains(words), "{name}: {words} in {error}");
         assert!(error.to_string().contains("alloy.toml") || error.to_string().contains("curves.csv"), "{name}: {error}");
     }
+    // A threshold is allowed, and said to belong to the cases as well; gamma = 1 is what a record means anyway.
+    let warned = read(&format!("{GOOD}[fatigue]\nwalker_gamma = 1.0\ndelta_k_threshold_mpa_sqrt_m = 2.0\n"), &[]).unwrap();
+    assert!(warned.warnings.iter().any(|line| line.contains("stands in no record")), "{:?}", warned.warnings);
     let error = read(&swap_file("elsewhere.csv"), &[]).unwrap_err();
     assert_eq!(error.exit_code(), 4);
     assert!(error.to_string().contains("elsewhere.csv: cannot read"), "{error}");

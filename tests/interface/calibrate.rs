@@ -1,0 +1,125 @@
+//! `perilife calibrate ... --predict ...`, `export` and `rates` on the committed calibration, coarse enough for every check.
+
+use std::fs;
+use std::path::Path;
+
+use perilife::calibration::record::FittedRecord;
+use perilife::report::csv::read_a_n;
+use serde_json::Value;
+use tempfile::{TempDir, tempdir};
+
+use crate::cli::{assert_refused, perilife, texts};
+
+/// Makes the calibration coarse: a longer first crack keeps six points in front of the load line of a 3 mm lattice.
+const COARSE: [&str; 6] =
+    ["--set", "model.spacing_mm=3", "--set", "specimen.crack_length_mm=18", "--set", "measured.from_crack_length_mm=18"];
+
+/// The same panel from 20 to 40 mm, which the fit covers.
+const PANEL: &str = r#"
+[specimen]
+kind = "middle_tension"
+width_mm = 152.4
+length_mm = 300.0
+thickness_mm = 2.54
+crack_length_mm = 20.0
+[material]
+name = "al2024-t3"
+[loading]
+stress_range_mpa = 48.28
+stress_ratio = 0.2
+[model]
+spacing_mm = 3.0
+[stop]
+crack_length_mm = 40.0
+"#;
+
+/// A copy of the committed calibration, its measured table and a case to predict.
+fn copy_of_the_calibration() -> TempDir {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3");
+    let dir = tempdir().unwrap();
+    fs::create_dir(dir.path().join("measured")).unwrap();
+    for file in ["case.toml", "measured/virkler_median.csv"] {
+        fs::copy(from.join(file), dir.path().join(file)).unwrap();
+    }
+    fs::write(dir.path().join("panel.toml"), PANEL).unwrap();
+    dir
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn a_calibration_with_a_prediction_and_its_export() {
+    let dir = copy_of_the_calibration();
+    let fit = dir.path().join("out/fit");
+    let arguments = [&["calibrate", "case.toml", "--out", "out/fit", "--predict", "panel.toml"][..], &COARSE].concat();
+    let output = perilife(dir.path(), &arguments);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    for words in ["fit to median", "  p  ", "Paris", "panel: life", "crack_length_reached"] {
+        assert!(stdout.contains(words), "{words} in {stdout}");
+    }
+
+    // The files that are promised, and no temporary ones.
+    for file in ["fitted.toml", "fit.json", "fit_curves.csv", "fit.svg", "fit_rates.svg", ".perilife"] {
+        assert!(fs::metadata(fit.join(file)).unwrap().len() > 0, "{file}");
+    }
+    for file in ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "damage.png", "paraview/run.pvd"] {
+        assert!(fs::metadata(fit.join("panel").join(file)).unwrap().len() > 0, "{file}");
+    }
+    assert_eq!(fs::read_dir(dir.path().join("out")).unwrap().count(), 1, "nothing but the fit stands there");
+
+    // The record reads back and says what fit.json says; a case that names it reads it.
+    let record: FittedRecord = toml::from_str(&fs::read_to_string(fit.join("fitted.toml")).unwrap()).unwrap();
+    let report = json(&fit.join("fit.json"));
+    assert_eq!((report["a"].as_f64(), report["p"].as_f64()), (Some(record.a), Some(record.p)));
+    assert!((1.5..8.0).contains(&record.p) && (1.0..5.0).contains(&record.paris_m), "{record:?}");
+    assert!(report["rms_life_error"].as_f64().unwrap() < 0.2, "{report}");
+    let with_record = format!("{PANEL}[fatigue]\nfitted = \"out/fit/fitted.toml\"\n");
+    fs::write(dir.path().join("again.toml"), with_record).unwrap();
+    assert_eq!(perilife(dir.path(), &["check", "again.toml"]).status.code(), Some(0));
+
+    // The predicted curve, resampled: as many rows as asked for, ending at the life, neither column ever falls.
+    let arguments = ["export", "out/fit/panel", "--points", "200", "--out", "a_n.csv"];
+    assert_eq!(perilife(dir.path(), &arguments).status.code(), Some(0));
+    let rows = read_a_n(&dir.path().join("a_n.csv")).unwrap();
+    assert_eq!(rows.len(), 200);
+    assert_eq!(Some(rows[199].cycles), json(&fit.join("panel/result.json"))["life_cycles"].as_f64());
+    assert!(rows.windows(2).all(|w| w[0].cycles < w[1].cycles && w[0].crack_length_mm <= w[1].crack_length_mm));
+    assert!((rows[0].crack_length_mm - 20.0).abs() < 1e-9 && (rows[199].crack_length_mm - 40.0).abs() < 1e-9);
+
+    // A file inside the folder of the fit is not an export's to replace; the fit itself is no run.
+    assert_refused(&perilife(dir.path(), &["export", "out/fit", "--out", "b.csv"]), 2, &["this is a calibration"]);
+}
+
+#[test]
+fn a_slip_in_a_case_to_predict_costs_no_calibration() {
+    let dir = copy_of_the_calibration();
+    fs::write(dir.path().join("slip.toml"), PANEL.replace("width_mm", "widht_mm")).unwrap();
+    let arguments = ["calibrate", "case.toml", "--out", "out", "--predict", "panel.toml", "slip.toml"];
+    assert_refused(&perilife(dir.path(), &arguments), 2, &["slip.toml:4", "specimen.widht_mm"]);
+    let arguments = ["calibrate", "case.toml", "--out", "out", "--predict", "panel.toml", "panel.toml"];
+    assert_refused(&perilife(dir.path(), &arguments), 2, &["--predict", "panel.toml", "same case name"]);
+    assert!(!dir.path().join("out").exists());
+}
+
+#[test]
+fn rates_of_the_committed_table() {
+    let dir = copy_of_the_calibration();
+    let csv = "measured/virkler_median.csv";
+    for method in ["secant", "polynomial7"] {
+        let output = perilife(dir.path(), &["rates", csv, "--method", method, "--specimen", "case.toml"]);
+        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        let (stdout, _) = texts(&output);
+        let readings = fs::read_to_string(dir.path().join(csv)).unwrap().lines().filter(|line| line.contains(',')).count() - 1;
+        let lost = if method == "secant" { 1 } else { 6 };
+        assert_eq!(stdout.lines().count(), 1 + readings - lost, "{method}");
+        assert!(!stdout.contains("NaN") && !stdout.contains("inf"));
+    }
+    let output = perilife(dir.path(), &["rates", csv, "--specimen", "case.toml", "--json"]);
+    let object: Value = serde_json::from_str(&texts(&output).0).unwrap();
+    // Paris exponent of this alloy over this range: about 2.9 (Virkler, Hillberry and Goel 1979).
+    let m = object["specimens"][0]["paris_m"].as_f64().unwrap();
+    assert!((2.6..3.2).contains(&m), "{m}");
+}

@@ -1,0 +1,104 @@
+//! `perilife check` and `perilife list`.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use tempfile::tempdir;
+
+use crate::cli::{SMALL_CASE, assert_refused, perilife, texts};
+
+#[test]
+fn a_case_is_told_in_words_and_in_json() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let output = perilife(dir.path(), &["check", "small.toml", "--set", "model.spacing_mm=1.9", "--picture", "p.svg"]);
+    assert_eq!(output.status.code(), Some(0));
+    let (stdout, _) = texts(&output);
+    // 60 mm / 1.9 mm = 31.6: 32 columns of 1.875 mm, 64 rows.
+    for words in ["2048 and", "spacing 1.875 mm (1.9 asked for)", "crack length 20 mm", "no errors"] {
+        assert!(stdout.contains(words), "{words} in {stdout}");
+    }
+    assert!(fs::read_to_string(dir.path().join("p.svg")).unwrap().starts_with("<svg"));
+    let (stdout, _) = texts(&perilife(dir.path(), &["check", "small.toml", "--json"]));
+    let object: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!((&object["ok"], &object["kind"]), (&true.into(), &"case".into()));
+    assert_refused(&perilife(dir.path(), &["check", "small.toml", "--picture", "no/p.svg"]), 4, &["no/p.svg", "cannot write"]);
+}
+
+#[test]
+fn a_tip_held_by_a_no_fail_zone_is_told() {
+    let dir = tempdir().unwrap();
+    // A crack 3 mm above the held edge of a plate: bonds within a horizon (6 mm) of it do not fail.
+    let text = SMALL_CASE.replace("kind = \"middle_tension\"", "kind = \"plate\"").replace(
+        "crack_length_mm = 12.0\n",
+        "cracks = [{ from_mm = [-15, -57], to_mm = [5, -57] }, { from_mm = [-10, 0], to_mm = [10, 0] }]\n",
+    );
+    let text =
+        text.replace("crack_length_mm = 20.0", "crack_length_mm = 60.0") + "[supports]\nbottom = { fix = [\"x\", \"y\"] }\n";
+    fs::write(dir.path().join("held.toml"), text).unwrap();
+    let output = perilife(dir.path(), &["check", "held.toml"]);
+    let (_, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    for tip in ["(-15, -57)", "(5, -57)"] {
+        assert!(stderr.contains(&format!("the crack tip at {tip} mm stands in the zone around a load or support")), "{stderr}");
+    }
+    assert_eq!(stderr.matches("crack tip at").count(), 2, "the other crack is free: {stderr}");
+    // Where no tip can grow there is no result.
+    let only = "specimen.cracks=[{ from_mm = [-15, -57], to_mm = [5, -57] }]";
+    let output = perilife(dir.path(), &["predict", "held.toml", "--set", only, "--out", "run"]);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(3), "{stdout}{stderr}");
+    assert!(stderr.contains("load or support") && stderr.contains("held: "), "{stderr}");
+    assert!(!dir.path().join("run").exists());
+}
+
+#[test]
+fn mechanics_that_show_before_a_run_are_wrong_input() {
+    let dir = tempdir().unwrap();
+    let plate = SMALL_CASE.replace("kind = \"middle_tension\"", "kind = \"plate\"").replace("crack_length_mm = 20.0\n", "");
+    let whole_width = "cracks = [{ from_mm = [-30, 0], to_mm = [0, 0] }, { from_mm = [30, 2], to_mm = [-1, 2] }, \
+                       { from_mm = [-0.5, -6], to_mm = [-0.5, 8] }]\n";
+    let crossing = plate.replace("crack_length_mm = 12.0\n", whole_width);
+    fs::write(dir.path().join("cut.toml"), crossing).unwrap();
+    let output = perilife(dir.path(), &["check", "cut.toml"]);
+    let (_, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("cut.toml"), "{stderr}");
+}
+
+#[test]
+fn a_calibration_is_checked_with_its_measured_files() {
+    let dir = tempdir().unwrap();
+    let calibration = SMALL_CASE.split("[fatigue]").next().unwrap().to_owned() + "[measured]\nfiles = [\"m.csv\"]\n";
+    fs::write(dir.path().join("calibration.toml"), calibration).unwrap();
+    let check = || perilife(dir.path(), &["check", "calibration.toml"]);
+    assert_refused(&check(), 4, &["m.csv", "cannot read"]);
+    let rows = "cycles,crack_length_mm\n0,12\n1000,12.5\n2000,13.1\n3000,13.8\n4000,14.6\n";
+    fs::write(dir.path().join("m.csv"), rows.replace("3000,13.8", "1500,13.8")).unwrap();
+    assert_refused(&check(), 2, &["m.csv:5", "1500"]);
+    fs::write(dir.path().join("m.csv"), rows).unwrap();
+    let output = check();
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    assert!(stdout.contains("5 readings from 12 to 14.6 mm in 4000 cycles"), "{stdout}");
+}
+
+/// A reader that goes away (`| head -1`) is no trouble, a full disk is.
+#[test]
+#[cfg(unix)]
+fn stdout_that_closes_or_is_full() {
+    let program = env!("CARGO_BIN_EXE_perilife");
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases/compact_tension.toml");
+    let case = case.to_str().unwrap();
+    for arguments in [&["list"][..], &["list", "--json"], &["check", case], &["check", case, "--json"]] {
+        let mut child = Command::new(program).args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let (code, stderr) = (child.wait().unwrap().code(), child.wait_with_output().unwrap().stderr);
+        assert_eq!(code, Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&stderr));
+    }
+    if let Ok(full) = fs::OpenOptions::new().write(true).open("/dev/full") {
+        let output = Command::new(program).args(["list"]).stdout(full).output().unwrap();
+        assert_eq!(output.status.code(), Some(4), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
