@@ -22,6 +22,7 @@ pub mod fatigue;
 pub mod case;
 pub mod predict;
 pub mod calibration;
+pub mod verify;
 pub mod report;
 pub mod commands;
 

@@ -44,3 +44,5 @@ mod specimen;
 #[cfg(feature = "tables")]
 #[path = "unit/tables.rs"]
 mod tables;
+#[path = "unit/length_average.rs"]
+mod length_average;

@@ -3,6 +3,8 @@
 #[path = "support/shared.rs"]
 mod shared;
 
+#[path = "validation/fit_engine.rs"]
+mod fit_engine;
 #[path = "validation/fit_virkler.rs"]
 mod fit_virkler;
 #[path = "validation/median_virkler.rs"]

@@ -19,3 +19,5 @@ mod stress_intensity;
 mod readme_accuracy;
 #[path = "verification/fatigue.rs"]
 mod fatigue;
+#[path = "verification/round_trip.rs"]
+mod round_trip;

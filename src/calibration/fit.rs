@@ -87,7 +87,10 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
             None => Some(Surrogate::new(&runs, lengths)?.cycles_per_p(constants.p)),
         })
     };
-    let confidence = confidence(&model_cycles, slopes(target.lengths)?.as_deref(), target.cycles, 1.0 / constants.a);
+    let apart = readings_apart(target.lengths, spacing);
+    let pick = |values: &[f64]| apart.iter().map(|&i| values[i]).collect::<Vec<f64>>();
+    let slopes_apart = slopes(target.lengths)?.map(|slopes| pick(&slopes));
+    let confidence = confidence(&pick(&model_cycles), slopes_apart.as_deref(), &pick(target.cycles), 1.0 / constants.a);
     let paris = paris::equivalents(
         &rate_lengths,
         &rate_cycles,
@@ -141,6 +144,18 @@ fn checked_p(p: f64) -> Result<f64> {
         return Ok(p);
     }
     Err(input("fit.p", p, format!("is outside {P_MIN} to {P_MAX}"), "give the exponent of the growth law, usually 2 to 4"))
+}
+
+/// Readings at least a lattice spacing apart, the first among them. Increments shorter than what a row of bonds stands for
+/// say nothing about the scatter of growth: in them the model's own steps and the reading error of the laboratory show.
+fn readings_apart(lengths: &[f64], spacing: f64) -> Vec<usize> {
+    let mut apart: Vec<usize> = Vec::new();
+    for (i, &length) in lengths.iter().enumerate() {
+        if apart.last().is_none_or(|&last| length >= lengths[last] + spacing * (1.0 - 1e-9)) {
+            apart.push(i);
+        }
+    }
+    apart
 }
 
 fn since_first(curve: &MeasuredCurve) -> Vec<f64> {

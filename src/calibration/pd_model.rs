@@ -6,6 +6,7 @@ use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fatigue::FatigueLaw;
 use crate::fatigue::ageing::AgeingBond;
+use crate::fatigue::length_average::LengthAverage;
 use crate::fatigue::precrack::{Passage, steady_lives};
 use crate::predict::{CurvePoint, Observer, Recorder, StopReason, run};
 
@@ -43,7 +44,8 @@ impl ForwardModel for PdModel<'_> {
             done.curve.iter().map(|CurvePoint { cycles, crack_length, .. }| (*cycles, *crack_length)).collect();
         let (start, end) = (self.case.specimen.crack_length, done.crack_length_final());
         let figures = done.figures;
-        Ok(RecordedRun::new(curve, figures.horizon, figures.spacing, move |p| recording.replay(p, start, end)))
+        let replay = move |p: f64| recording.replay(p, start, end, figures.spacing);
+        Ok(RecordedRun::new(curve, figures.horizon, figures.spacing, replay))
     }
 }
 
@@ -74,10 +76,10 @@ impl Recorder for Recording {
 impl Recording {
     /// The same sequence of breaks at another exponent, with the strains as recorded: each block lasts until its bonds are
     /// spent. Good to about 1 % of life for a change of p by 0.3, since the order of breaks hardly depends on p.
-    fn replay(&self, p: f64, start: f64, end: f64) -> UnitCurve {
+    fn replay(&self, p: f64, start: f64, end: f64, spacing: f64) -> UnitCurve {
         let mut life: std::collections::HashMap<Bond, f64> = steady_lives(&self.passages, p).into_iter().collect();
         let mut cycles = 0.0;
-        let mut curve = vec![(0.0, start)];
+        let (mut all_cycles, mut lengths) = (vec![0.0], vec![start]);
         for block in &self.blocks {
             let spending: Vec<(Bond, f64)> = block.ageing.iter().map(|b| (b.bond, b.strain.powf(p))).collect();
             let to_spend = |(bond, rate): &(Bond, f64)| life.get(bond).copied().unwrap_or(1.0).max(0.0) / rate;
@@ -91,9 +93,11 @@ impl Recording {
             cycles += lasts;
             let length = block.crack_length.min(end);
             if length >= start {
-                curve.push((cycles, length));
+                all_cycles.push(cycles);
+                lengths.push(length);
             }
         }
-        curve
+        let averaged = LengthAverage::new(&all_cycles, &lengths, spacing).of_rising(&lengths);
+        all_cycles.into_iter().zip(averaged).collect()
     }
 }

@@ -16,6 +16,7 @@ use crate::material::{Plane, library};
 use crate::predict::StopReason;
 use crate::solver::SolverKind;
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
+use crate::verify::TOPICS;
 
 /// Arguments of `perilife list`.
 #[derive(clap::Args, Debug)]
@@ -63,6 +64,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     }));
     all.extend(of_the_model.into_iter().flatten().map(words));
     all.extend(of_calibration.into_iter().flatten().map(words));
+    all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
     all
 }
 

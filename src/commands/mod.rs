@@ -8,6 +8,7 @@ pub mod export;
 pub mod list;
 pub mod predict;
 pub mod rates;
+pub mod verify;
 
 pub mod console;
 pub mod message;
@@ -45,6 +46,8 @@ commands! {
     // Sif: sif,
     /// Growth rate da/dN against ΔK from measured a-N curves
     Rates: rates,
+    /// Run the built-in verification: computed, reference, error and bound of every row
+    Verify: verify,
     /// Check an input file without running it
     Check: check,
     /// List every kind of every key of the input files

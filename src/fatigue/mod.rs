@@ -3,6 +3,7 @@
 pub mod ageing;
 pub mod crack_tip;
 pub mod growth_rate;
+pub mod length_average;
 pub mod no_fail;
 pub mod pieces;
 pub mod precrack;

@@ -5,6 +5,7 @@ use crate::body::Body;
 use crate::case::Case;
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::growth_rate::{Sample, rates};
+use crate::fatigue::length_average::LengthAverage;
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 
@@ -39,8 +40,10 @@ pub struct Track {
     formula: Option<HandbookFormula>,
     /// Crack length at which N = 0.
     origin: f64,
-    /// Row with which N = 0 begins, once reached.
+    /// Cycles of the run at N = 0, once the crack has reached that length.
     zero: Option<f64>,
+    /// Cycles since N = 0 at which the run was ended without a break.
+    run_out: Option<f64>,
 }
 
 impl Track {
@@ -51,6 +54,7 @@ impl Track {
             formula: handbook(&case.specimen),
             origin: case.specimen.crack_length,
             zero: None,
+            run_out: None,
         };
         track.record(specimen, tips, 0, work);
         track
@@ -81,13 +85,7 @@ impl Track {
         let growth: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
         let crack_length = specimen.crack_length_after(&growth);
         if self.zero.is_none() && crack_length >= self.origin * (1.0 - 1e-12) {
-            self.zero = Some(match self.rows.last() {
-                Some(before) if before.crack_length < self.origin => {
-                    let share = (self.origin - before.crack_length) / (crack_length - before.crack_length);
-                    before.cycles + share * (self.cycles - before.cycles)
-                }
-                _ => self.cycles,
-            });
+            self.zero = Some(self.cycles);
         }
         let tips = tips.iter().map(|tip| TipRecord { position: tip.position, growth: tip.growth }).collect();
         self.rows.push(Row { cycles: self.cycles, crack_length, work, broken_bonds, tips });
@@ -95,9 +93,7 @@ impl Track {
 
     /// Ends the curve at a run-out: the crack stands where it is.
     pub(super) fn run_out(&mut self, cycles_max: f64) {
-        let mut row = self.last().clone();
-        row.cycles = cycles_max + self.zero.unwrap_or(0.0);
-        self.rows.push(row);
+        self.run_out = Some(cycles_max);
     }
 
     /// Shortens the last row to the crack length at which the run stops.
@@ -175,15 +171,46 @@ impl Track {
             .collect()
     }
 
+    /// The rows with lengths averaged over one spacing of growth.
+    fn averaged(&self, spacing: f64) -> Vec<Row> {
+        let cycles: Vec<f64> = self.rows.iter().map(|row| row.cycles).collect();
+        let lengths: Vec<f64> = self.rows.iter().map(|row| row.crack_length).collect();
+        let average = LengthAverage::new(&cycles, &lengths, spacing);
+        let mut rows = self.rows.clone();
+        rows.iter_mut().zip(average.of_rising(&lengths)).for_each(|(row, length)| row.crack_length = length);
+        for tip in 0..self.rows[0].tips.len() {
+            let growth: Vec<f64> = self.rows.iter().map(|row| row.tips[tip].growth).collect();
+            rows.iter_mut().zip(average.of_rising(&growth)).for_each(|(row, growth)| row.tips[tip].growth = growth);
+        }
+        rows
+    }
+
+    /// Cycles of the run at which the crack has its initial length, between two rows.
+    fn zero_of(&self, rows: &[Row]) -> f64 {
+        match rows.iter().position(|row| row.crack_length >= self.origin * (1.0 - 1e-12)) {
+            Some(at) if at > 0 => {
+                let (before, after) = (&rows[at - 1], &rows[at]);
+                let share = (self.origin - before.crack_length) / (after.crack_length - before.crack_length);
+                before.cycles + share.clamp(0.0, 1.0) * (after.cycles - before.cycles)
+            }
+            _ => rows[0].cycles,
+        }
+    }
+
     /// The curve from N = 0.
     pub(super) fn into_curve(self, case: &Case, body: &Body) -> Vec<CurvePoint> {
-        let rate = rates(&self.samples(&self.rows), RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
+        let mut rows = self.averaged(body.lattice.spacing);
+        let zero = self.zero_of(&rows);
+        if let Some(cycles_max) = self.run_out {
+            // The crack stands where it is until then.
+            rows.extend(rows.last().cloned().map(|row| Row { cycles: zero + cycles_max, ..row }));
+        }
+        let rate = rates(&self.samples(&rows), RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
         let share = case.loading.range_share();
-        let zero = self.zero.unwrap_or(0.0);
         let start =
-            self.rows.iter().position(|row| row.cycles >= zero && row.crack_length >= self.origin * (1.0 - 1e-12)).unwrap_or(0);
-        let offset: Vec<f64> = self.rows[start].tips.iter().map(|tip| if start == 0 { tip.growth } else { 0.0 }).collect();
-        let grown_before = self.origin - self.rows[0].crack_length;
+            rows.iter().position(|row| row.cycles >= zero && row.crack_length >= self.origin * (1.0 - 1e-12)).unwrap_or(0);
+        let offset: Vec<f64> = rows[start].tips.iter().map(|tip| if start == 0 { tip.growth } else { 0.0 }).collect();
+        let grown_before = self.origin - rows[0].crack_length;
         let point = |row: &Row, rate_at: usize, cycles: f64, crack_length: f64| CurvePoint {
             cycles,
             crack_length,
@@ -200,8 +227,8 @@ impl Track {
                 .map(|(tip, o)| TipRecord { position: tip.position, growth: (tip.growth - grown_before).max(0.0) - o })
                 .collect(),
         };
-        let mut curve = vec![point(&self.rows[start], start, 0.0, self.origin)];
-        for (i, row) in self.rows.iter().enumerate().skip(start) {
+        let mut curve = vec![point(&rows[start], start, 0.0, self.origin)];
+        for (i, row) in rows.iter().enumerate().skip(start) {
             if row.cycles > zero || row.crack_length > self.origin * (1.0 + 1e-12) {
                 curve.push(point(row, i, (row.cycles - zero).max(0.0), row.crack_length));
             }

@@ -8,6 +8,7 @@ pub mod damage;
 pub mod json;
 pub mod output;
 pub mod specimen_picture;
+pub mod verification;
 pub mod vtk;
 
 mod axis;

@@ -31,7 +31,7 @@ fn doubling_a_halves_every_n() {
     assert!(once.curve.len() > 10, "{}", once.curve.len());
     for (a, b) in once.curve.iter().zip(&twice.curve) {
         assert!((a.cycles - 2.0 * b.cycles).abs() <= 1e-9 * a.cycles, "{} against twice {}", a.cycles, b.cycles);
-        assert_eq!(a.crack_length, b.crack_length);
+        assert!((a.crack_length - b.crack_length).abs() <= 1e-12, "{} and {}", a.crack_length, b.crack_length);
     }
 }
 
@@ -124,35 +124,36 @@ fn cycles_later(run: &Prediction) -> f64 {
 }
 
 #[test]
-fn growth_hardly_depends_on_block_or_start() {
+fn growth_hardly_depends_on_the_block() {
     let stop = "stop.crack_length_mm=24.5";
     let reference = grow(PANEL, &[stop]);
     for (name, set, bound) in [
-        ("grown", vec!["fatigue.precrack=grown", "model.spacing_mm=1"], f64::INFINITY),
-        ("none", vec!["fatigue.precrack=none"], 0.02),
+        ("no pre-crack", vec!["fatigue.precrack=none"], 0.02),
         // Reached: 10 % at this spacing; theory.md gives up to 16 % for larger blocks. Not the default for that reason.
         ("two groups a block", vec!["fatigue.bonds_per_block=2"], 0.12),
         ("fixed blocks", vec!["fatigue.block=fixed", "fatigue.block_cycles=20"], 0.02),
     ] {
         let mut all = vec![stop];
         all.extend(set);
-        if name == "grown" {
-            // Needs cracks longer than five horizons: checked at a spacing that gives them, against the same spacing.
-            let long = PANEL.replace("crack_length_mm=12", "crack_length_mm=20").replace("width_mm=60", "width_mm=90");
-            let [grown, profile] = ["grown", "steady_profile"].map(|precrack| {
-                grow(&long, &["stop.crack_length_mm=26", "model.spacing_mm=1", &format!("fatigue.precrack={precrack}")])
-                    .life_cycles()
-            });
-            println!("life from a0, grown over steady profile: {:.4}", grown / profile);
-            // Reached: see the printed figure; both mean the same physical start.
-            assert!((grown / profile - 1.0).abs() < 0.05, "{}", grown / profile);
-            continue;
-        }
         let ratio = cycles_later(&grow(PANEL, &all)) / cycles_later(&reference);
         println!("{name}: cycles over reference {ratio:.4}");
         assert!((ratio - 1.0).abs() < bound, "{name}: {ratio}");
     }
-    assert!(grow(PANEL, &[stop, "fatigue.precrack=none"]).life_cycles() > reference.life_cycles());
+}
+
+/// A machined notch has to form its crack first; a crack that was grown to a0 and one with the steady profile have theirs.
+#[test]
+fn the_start_decides_only_the_first_cycles() {
+    let panel = "kind=\"middle_tension\"\nwidth_mm=90\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=20\n";
+    let life = |precrack: &str| {
+        let set = ["stop.crack_length_mm=26", "model.spacing_mm=1", &format!("fatigue.precrack={precrack}")];
+        grow(panel, &set).life_cycles()
+    };
+    let (profile, grown, none) = (life("steady_profile"), life("grown"), life("none"));
+    println!("life from a0 over that with the steady profile: grown {:.4}, none {:.4}", grown / profile, none / profile);
+    // Six spacings of growth: a bond more or less at the start is worth 2 %.
+    assert!((grown / profile - 1.0).abs() < 0.05, "{}", grown / profile);
+    assert!(none > 1.05 * profile, "{}", none / profile);
 }
 
 /// However the lattice lies, a crack across the load runs straight, and its growth is the way of its tip.

@@ -1,0 +1,58 @@
+//! `perilife verify`: the built-in verification as a table.
+
+use std::path::PathBuf;
+
+use serde_json::json;
+
+use super::console::Console;
+use crate::error::{Error, Result};
+use crate::report::output::{OutputFolder, write_file};
+use crate::report::verification;
+use crate::verify::{Row, Table, topics};
+
+/// Arguments of `perilife verify`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Topics to verify; all where none is given (`perilife list` names them)
+    #[arg(value_name = "NAME")]
+    pub names: Vec<String>,
+    /// Folder for verify.csv, verify.json and verify.md
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: Option<PathBuf>,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// Runs `perilife verify`.
+///
+/// # Errors
+/// A name that is no topic; a row that misses its bound for no known reason; files that cannot be written.
+pub fn run(args: &Args) -> Result<()> {
+    let topics = topics(&args.names)?;
+    let folder = args.out.as_deref().map(OutputFolder::create).transpose()?;
+    let mut rows: Vec<Row> = Vec::new();
+    for topic in topics {
+        args.console.say(&format!("{}: {}", topic.name, topic.about));
+        let mut table = Table::new(topic.name);
+        (topic.fill)(&mut table)?;
+        for row in table.into_rows() {
+            args.console.say(&verification::line(&row));
+            rows.push(row);
+        }
+    }
+    let object = verification::object(&rows);
+    if let Some(folder) = folder {
+        write_file(&folder.path().join("verify.csv"), verification::csv(&rows).as_bytes())?;
+        write_file(&folder.path().join("verify.json"), format!("{object:#}\n").as_bytes())?;
+        write_file(&folder.path().join("verify.md"), verification::markdown(&rows).as_bytes())?;
+        folder.finish()?;
+    }
+    let (failed, missed) = (rows.iter().filter(|row| row.fails()).count(), rows.iter().filter(|row| !row.ok()).count());
+    args.console.say(&format!("{} rows, {} within their bounds, {} known misses", rows.len(), rows.len() - missed, missed - failed));
+    args.console.object(&json!({ "rows": object["rows"], "known_misses": missed - failed, "failed": failed }))?;
+    if failed > 0 {
+        return Err(Error::Mechanics(format!("{failed} of {} rows miss their bounds", rows.len())));
+    }
+    Ok(())
+}

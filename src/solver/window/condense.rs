@@ -1,0 +1,302 @@
+//! Static condensation of a plate onto the points of a window: `S = K_ww - K_we K_ee⁻¹ K_ew` for window points w and all
+//! others e.
+//!
+//! Substructuring by recursive bisection (George 1973, nested dissection): a rectangle of the lattice is cut by a separator
+//! as wide as the bonds reach, both halves are condensed onto their surroundings, and the separator is eliminated from
+//! their sum. Only the dense matrices of the branch at hand are in memory; window points are never eliminated.
+
+use std::collections::HashMap;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat, MatMut, Par};
+
+use crate::body::Body;
+use crate::solver::product::Product;
+use crate::state::Bonds;
+
+/// Lattice places of a rectangle that is eliminated at once.
+const LEAF: usize = 64;
+/// Lattice places of a rectangle whose halves are worth two threads.
+const FORK: usize = 1024;
+
+/// The inverse of the condensed stiffness: displacement of the window's points under forces on them.
+#[derive(Debug)]
+pub struct Condensed {
+    /// Window points, ascending.
+    pub places: Vec<u32>,
+    /// (S⁻¹)_ij, N components a point, both triangles.
+    pub inverse: Mat<f64>,
+}
+
+/// Condenses the plate with its present bonds onto `window` (ascending places, each with a bond). `None` where the
+/// stiffness is not positive definite in these digits.
+///
+/// `held` tells for every vector index whether its component is held; enough of them to hold the plate.
+#[must_use]
+pub fn condense<const N: usize>(
+    body: &Body,
+    bonds: &Bonds,
+    product: &Product<N>,
+    held: &[bool],
+    window: &[u32],
+) -> Option<Condensed> {
+    let mut kept = vec![false; body.places()];
+    window.iter().for_each(|&place| kept[place as usize] = true);
+    let condenser = Condenser { body, bonds, product, held, kept };
+    let whole = Rectangle { columns: (0, body.lattice.columns), rows: (0, body.lattice.rows) };
+    let rest = condenser.eliminate(whole)?;
+
+    // What is left couples window points only; bonds among them come in now.
+    let mut sum = Front::<N>::zeros(window.to_vec());
+    sum.add(&rest);
+    condenser.assemble(&mut sum, window, &|other| condenser.kept[other]);
+    for (at, &place) in window.iter().enumerate() {
+        condenser.hold(&mut sum.matrix, at, place);
+    }
+    let order = sum.matrix.nrows();
+    factorise(sum.matrix.as_mut())?;
+    let mut inverse = Mat::zeros(order, order);
+    let mut memory = MemBuffer::new(llt::inverse::inverse_scratch::<f64>(order, Par::Seq));
+    llt::inverse::inverse(inverse.as_mut(), sum.matrix.as_ref(), Par::Seq, MemStack::new(&mut memory));
+    for column in 0..order {
+        for row in 0..column {
+            inverse[(row, column)] = inverse[(column, row)];
+        }
+    }
+    Some(Condensed { places: window.to_vec(), inverse })
+}
+
+/// Columns and rows of the lattice, each from..to.
+#[derive(Debug, Clone, Copy)]
+struct Rectangle {
+    columns: (usize, usize),
+    rows: (usize, usize),
+}
+
+impl Rectangle {
+    fn contains(&self, (column, row): (usize, usize)) -> bool {
+        (self.columns.0..self.columns.1).contains(&column) && (self.rows.0..self.rows.1).contains(&row)
+    }
+
+    fn places(&self) -> usize {
+        (self.columns.1 - self.columns.0) * (self.rows.1 - self.rows.0)
+    }
+
+    /// Halves on both sides of a separator `reach` wide across the longer side; `None` for a leaf.
+    fn split(&self, reach: usize) -> Option<[Rectangle; 3]> {
+        let (width, height) = (self.columns.1 - self.columns.0, self.rows.1 - self.rows.0);
+        if self.places() <= LEAF || width.max(height) < 2 * reach + 2 {
+            return None;
+        }
+        let cut = |(from, to): (usize, usize)| {
+            let first = from + (to - from - reach) / 2;
+            [(from, first), (first + reach, to), (first, first + reach)]
+        };
+        Some(if width >= height {
+            cut(self.columns).map(|columns| Rectangle { columns, ..*self })
+        } else {
+            cut(self.rows).map(|rows| Rectangle { rows, ..*self })
+        })
+    }
+}
+
+/// A dense symmetric matrix over some points; the lower triangle counts.
+struct Front<const N: usize> {
+    points: Vec<u32>,
+    at: HashMap<u32, usize>,
+    matrix: Mat<f64>,
+}
+
+impl<const N: usize> Front<N> {
+    fn zeros(points: Vec<u32>) -> Self {
+        let at = points.iter().enumerate().map(|(i, &place)| (place, i)).collect();
+        let order = N * points.len();
+        Front { points, at, matrix: Mat::zeros(order, order) }
+    }
+
+    /// Adds a matrix over some of the same points.
+    fn add(&mut self, other: &Front<N>) {
+        let to: Vec<usize> = other.points.iter().map(|place| self.at[place]).collect();
+        for j in 0..other.matrix.ncols() {
+            let column = N * to[j / N] + j % N;
+            for i in j..other.matrix.nrows() {
+                let row = N * to[i / N] + i % N;
+                self.matrix[(row.max(column), row.min(column))] += other.matrix[(i, j)];
+            }
+        }
+    }
+}
+
+struct Condenser<'a, const N: usize> {
+    body: &'a Body,
+    bonds: &'a Bonds,
+    product: &'a Product<N>,
+    held: &'a [bool],
+    kept: Vec<bool>,
+}
+
+impl<const N: usize> Condenser<'_, N> {
+    /// Condenses all points of a rectangle but the window's onto their surroundings and the window.
+    fn eliminate(&self, region: Rectangle) -> Option<Front<N>> {
+        let reach = self.body.lattice.padding;
+        let (below, own) = match region.split(reach) {
+            None => (Vec::new(), region),
+            Some([a, b, separator]) => {
+                let (a, b) = if region.places() >= FORK {
+                    rayon::join(|| self.eliminate(a), || self.eliminate(b))
+                } else {
+                    (self.eliminate(a), self.eliminate(b))
+                };
+                (vec![a?, b?], separator)
+            }
+        };
+        let inner = self.carrying(own);
+        // Done are the points of both halves; bonds to them were taken in there.
+        let done = |place: usize| {
+            let at = self.body.lattice.column_row(place);
+            region.contains(at) && !own.contains(at) && !self.kept[place]
+        };
+        let is_inner: std::collections::HashSet<u32> = inner.iter().copied().collect();
+        let mut outer: Vec<u32> = below.iter().flat_map(|front| &front.points).copied().collect();
+        for &place in &inner {
+            self.for_bonds(place as usize, |_, _, other| {
+                if !done(other) {
+                    outer.push(other as u32);
+                }
+            });
+        }
+        outer.sort_unstable();
+        outer.dedup();
+        outer.retain(|place| !is_inner.contains(place));
+
+        let mut front = Front::<N>::zeros(inner.iter().chain(&outer).copied().collect());
+        for child in &below {
+            front.add(child);
+        }
+        drop(below);
+        self.assemble(&mut front, &inner, &|other| !done(other));
+        for (at, &place) in inner.iter().enumerate() {
+            self.hold(&mut front.matrix, at, place);
+        }
+        let matrix = schur_complement(front.matrix, N * inner.len())?;
+        let mut rest = Front::<N> { at: HashMap::new(), points: outer, matrix };
+        rest.at = rest.points.iter().enumerate().map(|(i, &place)| (place, i)).collect();
+        Some(rest)
+    }
+
+    /// Points of a rectangle outside the window that have a bond.
+    fn carrying(&self, region: Rectangle) -> Vec<u32> {
+        let lattice = &self.body.lattice;
+        let places = (region.rows.0..region.rows.1)
+            .flat_map(|row| (region.columns.0..region.columns.1).map(move |column| lattice.place(column, row)));
+        places
+            .filter(|&p| self.body.is_point[p] && !self.kept[p] && self.bonds.intact_at(self.body, p) > 0)
+            .map(|place| place as u32)
+            .collect()
+    }
+
+    /// Calls `take(k, owned, other)` for every intact bond of a point.
+    fn for_bonds(&self, place: usize, mut take: impl FnMut(usize, bool, usize)) {
+        let places = self.body.places();
+        for (k, &step) in self.body.steps.iter().enumerate() {
+            let (ahead, behind) = (place.wrapping_add_signed(step), place.wrapping_add_signed(-step));
+            if self.bonds.multiplier[k * places + place] > 0.0 {
+                take(k, true, ahead);
+            }
+            if self.bonds.multiplier[k * places + behind] > 0.0 {
+                take(k, false, behind);
+            }
+        }
+    }
+
+    /// Adds the stiffness of the bonds of `points` to those points that `counts`; bonds among `points` once.
+    fn assemble(&self, front: &mut Front<N>, points: &[u32], counts: &dyn Fn(usize) -> bool) {
+        let among: std::collections::HashSet<u32> = points.iter().copied().collect();
+        let places = self.body.places();
+        let Front { at, matrix, .. } = front;
+        for &place in points {
+            self.for_bonds(place as usize, |k, owned, other| {
+                if !counts(other) || (!owned && among.contains(&(other as u32))) {
+                    return;
+                }
+                let owner = if owned { place as usize } else { other };
+                let share = f64::from(self.bonds.multiplier[k * places + owner]);
+                let (a, b) = (at[&place], at[&(other as u32)]);
+                let sign = if owned { 1.0 } else { -1.0 };
+                let (own_a, off_ab) = self.product.bond_blocks(k, sign, share);
+                let (own_b, off_ba) = self.product.bond_blocks(k, -sign, share);
+                add_block::<N>(matrix, a, a, &own_a);
+                add_block::<N>(matrix, b, b, &own_b);
+                if a > b {
+                    add_block::<N>(matrix, a, b, &off_ab);
+                } else {
+                    add_block::<N>(matrix, b, a, &off_ba);
+                }
+            });
+        }
+    }
+
+    /// Takes held components of a point out of the system: a unit diagonal alone in its row and column.
+    fn hold(&self, matrix: &mut Mat<f64>, at: usize, place: u32) {
+        let layout = self.product.layout();
+        let first = layout.index(place as usize);
+        for c in 0..N {
+            if self.held[first + c * layout.stride] {
+                let index = N * at + c;
+                for i in 0..matrix.nrows() {
+                    matrix[(index.max(i), index.min(i))] = if i == index { 1.0 } else { 0.0 };
+                }
+            }
+        }
+    }
+}
+
+/// Adds a block at point row `a` and column `b` <= `a`.
+fn add_block<const N: usize>(matrix: &mut Mat<f64>, a: usize, b: usize, block: &[[f64; N]; N]) {
+    for i in 0..N {
+        for j in 0..N {
+            if a > b || i >= j {
+                matrix[(N * a + i, N * b + j)] += block[i][j];
+            }
+        }
+    }
+}
+
+/// Cholesky factor in the lower triangle.
+fn factorise(matrix: MatMut<'_, f64>) -> Option<()> {
+    let scratch = llt::factor::cholesky_in_place_scratch::<f64>(matrix.nrows(), Par::Seq, faer::Spec::default());
+    let mut memory = MemBuffer::new(scratch);
+    llt::factor::cholesky_in_place(
+        matrix,
+        llt::factor::LltRegularization::default(),
+        Par::Seq,
+        MemStack::new(&mut memory),
+        faer::Spec::default(),
+    )
+    .ok()
+    .map(|_| ())
+}
+
+/// Eliminates the first `count` unknowns; what is left, lower triangle.
+fn schur_complement(mut matrix: Mat<f64>, count: usize) -> Option<Mat<f64>> {
+    let rest = matrix.nrows() - count;
+    let (mut first, _, mut coupling, mut left) = matrix.as_mut().split_at_mut(count, count);
+    factorise(first.rb_mut())?;
+    solve_lower_triangular_in_place(first.rb(), coupling.rb_mut().transpose_mut(), Par::Seq);
+    triangular::matmul(
+        left.rb_mut(),
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        coupling.rb(),
+        BlockStructure::Rectangular,
+        coupling.rb().transpose(),
+        BlockStructure::Rectangular,
+        -1.0,
+        Par::Seq,
+    );
+    let left = left.rb();
+    Some(Mat::from_fn(rest, rest, |i, j| if i >= j { left[(i, j)] } else { 0.0 }))
+}

@@ -1,0 +1,47 @@
+//! Built-in verification: figures of the program beside those of theory, handbooks and measurements.
+//!
+//! A topic is a function that fills a [`Table`] with rows: computed, reference, error, bound, source. Bounds are demands on
+//! the program, not records of what it reaches: a row that misses its bound either fails the command or carries the reason
+//! of a known miss.
+
+pub mod growth;
+pub mod scene;
+pub mod table;
+
+use crate::error::{Result, input};
+pub use table::{Row, Table};
+
+/// A group of rows that are computed together.
+pub struct Topic {
+    /// Name, as `perilife verify NAME` takes it.
+    pub name: &'static str,
+    /// What its rows show.
+    pub about: &'static str,
+    /// Computes the rows.
+    pub fill: fn(&mut Table) -> Result<()>,
+}
+
+/// All topics, in the order in which a life is computed.
+pub const TOPICS: &[Topic] = &[Topic {
+    name: "growth_law",
+    about: "da/dN of a middle-tension panel against the power law of ΔK",
+    fill: growth::middle_tension,
+}];
+
+/// The topics of these names, all where no name is given.
+///
+/// # Errors
+/// A name that no topic bears.
+pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
+    if names.is_empty() {
+        return Ok(TOPICS.iter().collect());
+    }
+    let known = || TOPICS.iter().map(|topic| topic.name).collect::<Vec<_>>().join(", ");
+    let find = |name: &String| {
+        TOPICS
+            .iter()
+            .find(|topic| topic.name == name)
+            .ok_or_else(|| input("NAME", name, "is not a verification topic", format!("known are {}", known())))
+    };
+    names.iter().map(find).collect()
+}
