@@ -25,8 +25,8 @@ use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::fatigue::precrack::{Passage, passages, steady_lives};
 use crate::fatigue::remaining_life::BondLife;
-use crate::fatigue::{FatigueLaw, Precrack};
-use crate::solver::Equilibrium;
+use crate::fatigue::{FatigueLaw, FatigueSettings, Precrack};
+use crate::solver::{Equilibrium, Focus};
 use crate::solver::field::Layout;
 use crate::specimen::Specimen;
 use crate::specimen::geometry::distance;
@@ -101,10 +101,13 @@ pub fn run(
     let mut track = Track::new(case, &specimen, &tips, equilibrium.work());
     let mut album = Album::new(&body, &bonds, &displacement, track.last());
     let mut broken_bonds = 0;
+    // Whether bonds away from the tips come near the critical stretch, so that all have to be watched.
+    let mut watch_all = false;
     let stop = loop {
         // Which bonds age, and by how much strain a cycle.
         let near = candidates(&body, &bonds, &tips, settings);
         retire_tips(&mut tips, &body, &case.specimen, &near, settings.zone_radius_horizons);
+        iterations += equilibrium.reach(&body, &bonds, &near, &focus(&tips, &body, settings), &mut displacement)?;
         let ageing = ageing_bonds(&body, &near, &displacement, share, threshold);
         if let Some(reason) = stop::before_block(case, &tips, &ageing) {
             break reason;
@@ -123,6 +126,7 @@ pub fn run(
         track.spend(cycles);
 
         // Break, and find the new equilibrium, until no bond is stretched beyond the critical stretch.
+        let work_before = equilibrium.work();
         let mut newly = spent.clone();
         let mut overloaded = false;
         let outcome = loop {
@@ -140,8 +144,17 @@ pub fn run(
                 Err(_) => break Some(StopReason::NoConvergence),
             }
             solves += 1;
-            newly = overstretched(&body, &bonds, case, &displacement);
+            if watch_all {
+                iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
+            }
+            newly = overstretched(&body, &bonds, case, &displacement, &equilibrium);
+            if equilibrium.is_whole() {
+                watch_all = away_is_stretched(&body, &bonds, case, &displacement, equilibrium.window());
+            }
             overloaded |= !newly.is_empty();
+            if overloaded && equilibrium.work() > GIVEN_WAY * work_before {
+                break Some(StopReason::Severed);
+            }
             spent.extend(&newly);
             if newly.is_empty() {
                 break None;
@@ -151,10 +164,13 @@ pub fn run(
         // Follow the tips and record.
         broken_bonds += spent.len();
         let shares = share_out(&body, &tips, &spent);
-        tips.iter_mut().zip(&shares).for_each(|(tip, broken)| tip.advance(&body, &case.specimen, broken));
+        tips.iter_mut().zip(&shares).for_each(|(tip, broken)| tip.advance(&body, &bonds, &case.specimen, broken));
         track.record(&specimen, &tips, broken_bonds, if outcome.is_none() { equilibrium.work() } else { f64::NAN });
         recorder.block(&ageing, &spent, track.last().crack_length);
-        album.look(&body, &bonds, &displacement, track.last());
+        if album.is_due(track.last()) && outcome.is_none() {
+            iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
+            album.look(&body, &bonds, &displacement, track.last());
+        }
         let going_on = observer.block_done(&track.progress(case));
         if let Some(reason) = outcome.or_else(|| stop::after_block(case, &mut track)) {
             break reason;
@@ -164,6 +180,9 @@ pub fn run(
         }
     };
 
+    if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
+        iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
+    }
     album.finish(&body, &bonds, &displacement, track.last());
     let (blocks, warnings) = (track.blocks(), track.warnings(case, &body));
     Ok(Prediction {
@@ -245,21 +264,71 @@ fn retire_tips(tips: &mut [CrackTip], body: &Body, specimen: &Specimen, candidat
     }
 }
 
-/// Bonds anywhere stretched beyond the critical stretch s_t: the last ligament of a plate breaks by overload, not by fatigue.
-fn overstretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &[f64]) -> Vec<Bond> {
+/// Where the solver has to expect the next breaks.
+fn focus(tips: &[CrackTip], body: &Body, settings: &FatigueSettings) -> Vec<Focus> {
+    // Bonds of the zone, bridges of the wake, and a spacing in which the crack may turn.
+    let reach = (settings.zone_radius_horizons + 0.5).max(1.0) * body.horizon() + body.lattice.spacing;
+    let active = tips.iter().filter(|tip| tip.is_active());
+    active
+        .map(|tip| Focus { position: tip.position, direction: tip.direction, wake: tip.wake.clone(), reach })
+        .collect()
+}
+
+/// Growth of the load's work by overload within one block, at constant load, from which the plate counts as severed: it has
+/// lost half of its stiffness without a cycle, and what is left only gets softer.
+const GIVEN_WAY: f64 = 2.0;
+
+/// Share of the critical stretch at which bonds away from the tips are watched after every break.
+const WATCHED_SHARE: f64 = 0.5;
+
+/// Bonds stretched beyond the critical stretch s_t: the last ligament of a plate breaks by overload, not by fatigue.
+/// Looked at are the bonds whose displacement is known: all after a whole solve, else those around the tips.
+fn overstretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &[f64], equilibrium: &Equilibrium) -> Vec<Bond> {
     let limit = case.fatigue.critical_stretch;
     if limit.is_infinite() {
         return Vec::new();
     }
-    let layout = Layout::of(&body.lattice, body.stencil.unknowns);
-    let places = body.places();
-    let of_stencil = |k: usize| body.points.iter().map(move |&place| (k * places + place as usize) as Bond);
-    let stretched = |bond: Bond| (bond, if bonds.is_intact(bond) { stretch(body, &layout, displacement, bond) } else { 0.0 });
-    let beyond: Vec<(Bond, f64)> = (0..body.steps.len())
-        .into_par_iter()
-        .flat_map_iter(|k| of_stencil(k).map(stretched).filter(|&(bond, s)| s > limit && body.can_fail(bond)))
-        .collect();
+    let window = equilibrium.window().filter(|_| !equilibrium.is_whole());
+    let beyond = stretched_beyond(limit, body, bonds, displacement, window.unwrap_or(&body.points), |other| {
+        window.is_none_or(|window| window.binary_search(&(other as u32)).is_ok())
+    });
     // The worst first: where they break, others are relieved.
     let worst = beyond.iter().map(|b| b.1).fold(0.0, f64::max);
     beyond.into_iter().filter(|&(_, s)| s >= 0.5 * worst).map(|(bond, _)| bond).collect()
+}
+
+/// Whether a bond outside the window is stretched so far that it may go beyond the critical stretch before the next whole
+/// solve.
+fn away_is_stretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &[f64], window: Option<&[u32]>) -> bool {
+    let limit = WATCHED_SHARE * case.fatigue.critical_stretch;
+    let Some(window) = window.filter(|_| limit.is_finite()) else { return false };
+    let inside = |place: usize| window.binary_search(&(place as u32)).is_ok();
+    let beyond = stretched_beyond(limit, body, bonds, displacement, &body.points, |_| true);
+    beyond.into_iter().any(|(bond, _)| {
+        let (_, from, to) = body.ends(bond);
+        !inside(from) || !inside(to)
+    })
+}
+
+/// Bonds that can fail, from one of `owners` to a place that `counts`, stretched beyond a limit.
+fn stretched_beyond(
+    limit: f64,
+    body: &Body,
+    bonds: &Bonds,
+    displacement: &[f64],
+    owners: &[u32],
+    counts: impl Fn(usize) -> bool + Sync,
+) -> Vec<(Bond, f64)> {
+    let layout = Layout::of(&body.lattice, body.stencil.unknowns);
+    let places = body.places();
+    let of_stencil = |k: usize| {
+        let counts = &counts;
+        let owned = owners.iter().map(move |&place| (k * places + place as usize) as Bond);
+        owned.filter(move |&bond| bonds.is_intact(bond) && counts(body.ends(bond).2))
+    };
+    let stretched = |bond: Bond| (bond, stretch(body, &layout, displacement, bond));
+    (0..body.steps.len())
+        .into_par_iter()
+        .flat_map_iter(|k| of_stencil(k).map(stretched).filter(|&(bond, s)| s > limit && body.can_fail(bond)))
+        .collect()
 }

@@ -21,3 +21,5 @@ mod readme_accuracy;
 mod fatigue;
 #[path = "verification/round_trip.rs"]
 mod round_trip;
+#[path = "verification/crack_length.rs"]
+mod crack_length;

@@ -148,10 +148,12 @@ fn checked_p(p: f64) -> Result<f64> {
 
 /// Readings at least a lattice spacing apart, the first among them. Increments shorter than what a row of bonds stands for
 /// say nothing about the scatter of growth: in them the model's own steps and the reading error of the laboratory show.
+/// A model without a lattice (spacing NaN) keeps all.
 fn readings_apart(lengths: &[f64], spacing: f64) -> Vec<usize> {
+    let least = if spacing.is_nan() { 0.0 } else { spacing * (1.0 - 1e-9) };
     let mut apart: Vec<usize> = Vec::new();
     for (i, &length) in lengths.iter().enumerate() {
-        if apart.last().is_none_or(|&last| length >= lengths[last] + spacing * (1.0 - 1e-9)) {
+        if apart.last().is_none_or(|&last| length >= lengths[last] + least) {
             apart.push(i);
         }
     }

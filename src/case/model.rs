@@ -63,7 +63,7 @@ pub(super) fn from_value(value: &Value, specimen: &Specimen, choices: &mut Choic
         spacing,
         horizon_ratio: choices.horizon_ratio.unwrap_or(HORIZON_RATIO),
         lattice_angle: angle.to_radians(),
-        solver: input.solver.unwrap_or(SolverKind::Multigrid),
+        solver: input.solver.unwrap_or(SolverKind::Window),
     })
 }
 

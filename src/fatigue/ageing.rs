@@ -48,7 +48,7 @@ pub fn threshold_strain(settings: &FatigueSettings, material: &Material, horizon
 
 /// Intact bonds that may age at all, in ascending order: those in the zone of an active tip, or all.
 ///
-/// The zone of a tip holds the bonds whose middle lies within its radius, and those that still bridge the crack just behind
+/// The zone of a tip holds the bonds whose middle lies within its radius, and those that still bridge the crack behind
 /// it. Without the bridges a crack that runs along a row of points, where the middles of the longest bonds across it lie at
 /// the rim of a zone of half a horizon, would leave some unspent and stay pinned by them.
 #[must_use]
@@ -59,7 +59,7 @@ pub fn candidates(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &Fati
         Ageing::CrackTip => {
             let radius = settings.zone_radius_horizons * body.horizon();
             let active = tips.iter().filter(|tip| tip.is_active());
-            active.flat_map(|tip| in_zone(body, tip, radius)).filter(|&bond| may_fail(bond)).collect()
+            active.flat_map(|tip| in_zone(body, tip, radius).into_iter().chain(tip.bridges.iter().copied())).filter(|&bond| may_fail(bond)).collect()
         }
     };
     found.sort_unstable();

@@ -11,16 +11,18 @@
 
 use std::collections::VecDeque;
 
+use crate::body::pre_crack::bonds_across;
 use crate::body::{Body, Bond};
 use crate::specimen::geometry::{direction, distance, segments_touch};
 use crate::specimen::{Point, Specimen, TipSeed};
+use crate::state::Bonds;
 
 /// Least length of crack, in horizons, whose broken bonds show where the tip is; rounded up to whole spacings, since bonds
 /// along a row of points break in a pattern that repeats with the spacing.
 const FRONT_HORIZONS: f64 = 0.5;
 /// Length of crack before the front, in horizons, that shows where the tip is heading together with it.
 const TRAIL_HORIZONS: f64 = 1.0;
-/// Length of wake behind a tip, in horizons, whose remaining bridges age with the tip.
+/// Length of wake behind a tip, in horizons, that is searched for bridges at every block; older ones stand in a list.
 const WAKE_HORIZONS: f64 = 2.0;
 /// Distance of a bond from every tip, in horizons, beyond which its break moves no tip.
 const REACH_HORIZONS: f64 = 1.5;
@@ -56,8 +58,10 @@ pub struct CrackTip {
     pub growth: f64,
     /// Whether it still grows.
     pub state: TipState,
-    /// Where the tip has been, oldest first, the present place last.
+    /// Where the tip has been last, oldest first, the present place last.
     pub wake: Vec<Point>,
+    /// Bonds that still bridge the crack farther behind; some may be broken by now.
+    pub bridges: Vec<Bond>,
     /// The bonds that broke last: front and trail.
     marks: VecDeque<Mark>,
     /// Way of the front's centre along the crack, m.
@@ -82,6 +86,7 @@ impl CrackTip {
             growth: 0.0,
             state: TipState::Active,
             wake: vec![seed.position],
+            bridges: Vec::new(),
             marks: (0..SEED_MARKS).map(mark).collect(),
             way: 0.0,
             centre: behind(0.5 * front(body)),
@@ -98,7 +103,7 @@ impl CrackTip {
     ///
     /// A tip that has crossed the outline, or the rim of a hole, keeps its last place inside, where the last bonds before the
     /// edge can still age; [`CrackTip::retire`] ends it when none is left.
-    pub fn advance(&mut self, body: &Body, specimen: &Specimen, broken: &[Bond]) {
+    pub fn advance(&mut self, body: &Body, bonds: &Bonds, specimen: &Specimen, broken: &[Bond]) {
         if broken.is_empty() {
             return;
         }
@@ -128,7 +133,7 @@ impl CrackTip {
         if specimen.contains(position) {
             self.position = position;
         }
-        self.lengthen_wake(horizon);
+        self.lengthen_wake(body, bonds);
     }
 
     /// Ends a tip with the outline, a hole or a slot less than `reach` ahead; returns whether it did.
@@ -142,17 +147,26 @@ impl CrackTip {
         !self.is_active()
     }
 
-    /// Takes the present place into the wake, at steps of a quarter horizon, and drops what lies too far behind.
-    fn lengthen_wake(&mut self, horizon: f64) {
+    /// Takes the present place into the wake, at steps of a quarter horizon; of what then lies too far behind, only the
+    /// bonds that bridge it are kept.
+    fn lengthen_wake(&mut self, body: &Body, bonds: &Bonds) {
         let settled = self.wake.len() - 1;
-        if settled > 0 && distance(self.wake[settled - 1], self.position) < 0.25 * horizon {
+        if settled > 0 && distance(self.wake[settled - 1], self.position) < 0.25 * body.horizon() {
             self.wake[settled] = self.position;
         } else {
             self.wake.push(self.position);
         }
         let keep = (WAKE_HORIZONS / 0.25) as usize + 1;
         let excess = self.wake.len().saturating_sub(keep);
+        for step in self.wake.windows(2).take(excess) {
+            self.bridges.extend(bonds_across(body, step[0], step[1]));
+        }
         self.wake.drain(..excess);
+        if excess > 0 {
+            self.bridges.retain(|&bond| bonds.is_intact(bond));
+            self.bridges.sort_unstable();
+            self.bridges.dedup();
+        }
     }
 
     /// Whether the line between two points crosses the wake: a bond there bridges the crack.

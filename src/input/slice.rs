@@ -14,7 +14,7 @@ pub const PLANNED: &[(&str, &[&str])] = &[
     ("model.surface_correction", &["balanced"]),
     ("model.discretisation", &["dual_horizon"]),
     ("model.symmetry", &["auto"]),
-    ("model.solver", &["window", "adaptive_dynamic_relaxation", "velocity_verlet"]),
+    ("model.solver", &["adaptive_dynamic_relaxation", "velocity_verlet"]),
     ("fatigue.block", &["controlled"]),
     ("fatigue.failure", &["energy", "stress"]),
     ("loading.kind", &["traction", "displacement", "velocity", "platens"]),

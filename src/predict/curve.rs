@@ -177,6 +177,8 @@ impl Track {
         let lengths: Vec<f64> = self.rows.iter().map(|row| row.crack_length).collect();
         let average = LengthAverage::new(&cycles, &lengths, spacing);
         let mut rows = self.rows.clone();
+        let work: Vec<f64> = self.rows.iter().map(|row| row.work).collect();
+        rows.iter_mut().zip(average.of(&work)).for_each(|(row, work)| row.work = work);
         rows.iter_mut().zip(average.of_rising(&lengths)).for_each(|(row, length)| row.crack_length = length);
         for tip in 0..self.rows[0].tips.len() {
             let growth: Vec<f64> = self.rows.iter().map(|row| row.tips[tip].growth).collect();
@@ -219,6 +221,7 @@ impl Track {
                 None => share * (rate[rate_at].energy_release_rate * case.material.plane_modulus()).sqrt(),
             },
             growth_rate: rate[rate_at].growth_rate,
+            work: row.work,
             broken_bonds: row.broken_bonds,
             tips: row
                 .tips

@@ -37,6 +37,9 @@ pub struct CurvePoint {
     pub delta_k: f64,
     /// Growth rate da/dN, m/cycle.
     pub growth_rate: f64,
+    /// Work of the loads over the displacement at maximum load, f·u, J: twice the strain energy, the load squared times the
+    /// compliance; NaN where the plate is severed.
+    pub work: f64,
     /// Bonds broken since the start, initial cracks not counted.
     pub broken_bonds: usize,
     /// Tips, in the order of `Specimen::tips`.

@@ -25,12 +25,15 @@ impl Album {
         Album { snapshots: vec![take(body, bonds, displacement, row)], step, next: row.growth() + step }
     }
 
-    /// Takes a snapshot if the cracks have grown enough.
+    /// Whether the cracks have grown enough for the next snapshot.
+    pub fn is_due(&self, row: &Row) -> bool {
+        row.growth() >= self.next
+    }
+
+    /// Takes a snapshot.
     pub fn look(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) {
-        if row.growth() >= self.next {
-            self.next = row.growth() + self.step;
-            self.snapshots.push(take(body, bonds, displacement, row));
-        }
+        self.next = row.growth() + self.step;
+        self.snapshots.push(take(body, bonds, displacement, row));
     }
 
     /// Takes the last snapshot.

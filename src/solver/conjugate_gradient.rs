@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::LinearSolver;
 use super::field::dot;
 use super::multigrid::Multigrid;
 use super::product::{Into, Product};
+use super::{LinearSolver, Solved, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
@@ -22,6 +22,7 @@ const STENCILS_PER_REBUILD: usize = 12;
 
 /// Multigrid-preconditioned conjugate gradients with the hierarchy kept between solves.
 pub struct MultigridSolver<const N: usize> {
+    tolerance: f64,
     multigrid: Multigrid<N>,
     fresh_iterations: Option<usize>,
     broken_since: usize,
@@ -33,10 +34,11 @@ pub struct MultigridSolver<const N: usize> {
 }
 
 impl<const N: usize> MultigridSolver<N> {
-    /// Builds the hierarchy.
-    pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
+    /// Builds the hierarchy; solves end at a residual of `tolerance` times the load.
+    pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>, tolerance: f64) -> Self {
         let layout = product.layout();
         MultigridSolver {
+            tolerance,
             multigrid: Multigrid::new(body, bonds, product),
             fresh_iterations: None,
             broken_since: 0,
@@ -50,7 +52,7 @@ impl<const N: usize> MultigridSolver<N> {
 
     fn iterate(&mut self, bonds: &Bonds, product: &Product<N>, f: &[f64], u: &mut [f64]) -> Option<usize> {
         let layout = *product.layout();
-        let target = TOLERANCE * dot(&layout, f, f).sqrt();
+        let target = self.tolerance * dot(&layout, f, f).sqrt();
         self.r.copy_from_slice(f);
         product.apply(bonds, u, &mut self.r, Into::Subtract);
         if dot(&layout, &self.r, &self.r).sqrt() <= target {
@@ -90,7 +92,8 @@ fn update(v: &mut [f64], new: impl Fn(f64, usize) -> f64 + Sync) {
 }
 
 impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
-    fn solve(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, f: &[f64], u: &mut [f64]) -> Result<usize> {
+    fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        let System { body, bonds, product, f } = system;
         if self.stale {
             self.multigrid = Multigrid::new(body, bonds, product);
             self.stale = false;
@@ -107,14 +110,15 @@ impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
         }
         let spent = spent.ok_or_else(|| {
             Error::Mechanics(format!(
-                "the equilibrium solver did not converge to {TOLERANCE:e} within {ITERATIONS_MAX} iterations"
+                "the equilibrium solver did not converge to {:e} within {ITERATIONS_MAX} iterations",
+                self.tolerance
             ))
         })?;
         tracing::debug!(iterations = spent, broken_since_setup = self.broken_since, "equilibrium");
         let fresh = *self.fresh_iterations.get_or_insert(spent);
         self.stale = self.broken_since > STENCILS_PER_REBUILD * body.steps.len()
             || (self.broken_since > 0 && spent > fresh + ITERATIONS_SLACK);
-        Ok(spent)
+        Ok(Solved { iterations: spent, work: dot(product.layout(), f, u) })
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {

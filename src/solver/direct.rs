@@ -3,8 +3,9 @@
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 
-use super::LinearSolver;
+use super::field::dot;
 use super::product::Product;
+use super::{LinearSolver, Solved, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
@@ -14,7 +15,8 @@ use crate::state::Bonds;
 pub struct DirectSolver {}
 
 impl<const N: usize> LinearSolver<N> for DirectSolver {
-    fn solve(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, f: &[f64], u: &mut [f64]) -> Result<usize> {
+    fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        let System { body, bonds, product, f } = system;
         let layout = product.layout();
         let mut number = vec![usize::MAX; layout.len()];
         let mut indices = Vec::new();
@@ -76,26 +78,31 @@ impl<const N: usize> LinearSolver<N> for DirectSolver {
         for (i, &index) in indices.iter().enumerate() {
             u[index] = solution[(i, 0)];
         }
-        Ok(0)
+        Ok(Solved { iterations: 0, work: dot(layout, f, u) })
     }
 
     fn broke(&mut self, _: &Body, _: &Bonds, _: &Product<N>, _: &[Bond]) {}
 }
 
-/// Components that hold a floating plate without carrying load: both of one point and, where the law lets the plate turn
-/// freely, the one across of a far point. A law that resists rotation has an equilibrium position to turn to.
+/// Components that hold a floating plate without carrying load.
 fn pins<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<N>) -> Vec<usize> {
     if !product.fixed().is_empty() {
         return Vec::new();
     }
     let layout = product.layout();
-    let carrying = || body.points.iter().copied().filter(|&p| bonds.intact_at(body, p as usize) > 3);
+    let carrying = || body.points.iter().map(|&p| p as usize).filter(|&p| bonds.intact_at(body, p) > 3);
     let (Some(first), Some(last)) = (carrying().next(), carrying().next_back()) else { return Vec::new() };
-    let (a, b) = (body.lattice.column_row(first as usize), body.lattice.column_row(last as usize));
-    let across = if b.1.abs_diff(a.1) > b.0.abs_diff(a.0) { 0 } else { 1 };
-    let (first, last) = (layout.index(first as usize), layout.index(last as usize));
+    let pinned = pinned_components::<N>(body, first, last);
+    pinned.into_iter().map(|(place, component)| layout.index(place) + component * layout.stride).collect()
+}
+
+/// Of two distant points the components that hold a floating plate: both of one and, where the law lets the plate turn
+/// freely, the one across of the other. A law that resists rotation has an equilibrium position to turn to.
+pub(super) fn pinned_components<const N: usize>(body: &Body, first: usize, last: usize) -> Vec<(usize, usize)> {
+    let (a, b) = (body.lattice.column_row(first), body.lattice.column_row(last));
+    let across = usize::from(b.1.abs_diff(a.1) <= b.0.abs_diff(a.0));
     let turns = N == 3 || body.stencil.bonds.iter().all(|bond| bond.k_t <= 1e-9 * bond.k_n);
-    let mut held = vec![first, first + layout.stride];
-    held.extend(turns.then_some(last + across * layout.stride));
+    let mut held = vec![(first, 0), (first, 1)];
+    held.extend(turns.then_some((last, across)));
     held
 }

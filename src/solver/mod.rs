@@ -5,29 +5,81 @@ pub mod direct;
 pub mod field;
 pub mod multigrid;
 pub mod product;
+pub mod window;
 
 use crate::body::{Body, Bond};
 use crate::error::Result;
+use crate::specimen::Point;
 use crate::state::Bonds;
-use conjugate_gradient::MultigridSolver;
+use conjugate_gradient::{MultigridSolver, TOLERANCE};
 use direct::DirectSolver;
 use field::Layout;
 use product::{Into, Product};
+use window::WindowSolver;
 
 crate::kinds! {
     /// Equilibrium solvers.
     pub enum SolverKind for "model.solver" {
+        Window = "window": "exact updates of the plate condensed onto the points around the crack tips; multigrid for whole solves",
         Multigrid = "multigrid": "conjugate gradients on a matrix-free stencil, preconditioned by crack-aware lattice multigrid",
         Direct = "direct": "sparse Cholesky factorisation, the reference",
     }
 }
 
-/// Solves `K u = f` on the free components of a body; what a new solver has to supply.
+/// A crack tip around which bonds may break next.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Focus {
+    /// Position, m.
+    pub position: Point,
+    /// Unit vector of growth.
+    pub direction: Point,
+    /// Way behind it on which bonds may still break, oldest place first.
+    pub wake: Vec<Point>,
+    /// Distance from that way and its continuation within which the ends of ageing bonds lie, m.
+    pub reach: f64,
+}
+
+/// What a solve took and gave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solved {
+    /// Iterations; 0 for a direct solver.
+    pub iterations: usize,
+    /// Work of the load f·u, J.
+    pub work: f64,
+}
+
+/// System of a linear solve: the plate with its bonds and the load on free components (zero on held ones).
+#[derive(Clone, Copy)]
+struct System<'a, const N: usize> {
+    body: &'a Body,
+    bonds: &'a Bonds,
+    product: &'a Product<N>,
+    f: &'a [f64],
+}
+
+/// Solves `K u = f` on the free components of a body; what a new solver has to supply. A solver may leave u right on some
+/// points only, if it says so.
 trait LinearSolver<const N: usize>: Send {
-    /// Improves `u` until K u = f; returns the iterations spent (0 for a direct solver). Held components of f and u are zero.
-    fn solve(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, f: &[f64], u: &mut [f64]) -> Result<usize>;
+    /// Improves `u` until K u = f, at least on the window's points.
+    fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
     /// Told which bonds broke since the last solve.
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
+    /// Makes `u` right at the ends of `watched` bonds, and gets ready for breaks around the tips; returns the iterations.
+    fn reach(&mut self, _: System<'_, N>, _u: &mut [f64], _watched: &[Bond], _tips: &[Focus]) -> Result<usize> {
+        Ok(0)
+    }
+    /// Makes `u` right everywhere; returns the iterations.
+    fn complete(&mut self, _: System<'_, N>, _u: &mut [f64]) -> Result<usize> {
+        Ok(0)
+    }
+    /// Whether `u` is right everywhere.
+    fn is_whole(&self) -> bool {
+        true
+    }
+    /// Points, ascending, on which `u` is always right; `None` if that is all of them.
+    fn window(&self) -> Option<&[u32]> {
+        None
+    }
 }
 
 /// Keeps a body in equilibrium with its load while bonds break.
@@ -40,6 +92,17 @@ trait Balance: Send {
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]);
     fn work(&self) -> f64;
+    fn reach(
+        &mut self,
+        body: &Body,
+        bonds: &Bonds,
+        watched: &[Bond],
+        tips: &[Focus],
+        displacement: &mut Vec<f64>,
+    ) -> Result<usize>;
+    fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
+    fn is_whole(&self) -> bool;
+    fn window(&self) -> Option<&[u32]>;
 }
 
 impl Equilibrium {
@@ -54,7 +117,7 @@ impl Equilibrium {
     }
 
     /// Solves for the present bonds, starting from the last solution; returns the iterations.
-    /// `displacement` receives the whole field in the layout of [`Layout::of`].
+    /// `displacement` receives the field in the layout of [`Layout::of`], right on the [`Equilibrium::window`].
     ///
     /// # Errors
     /// `Error::Mechanics` if the iteration does not converge.
@@ -65,6 +128,42 @@ impl Equilibrium {
     /// Tells the solver which bonds were cut since the last solve.
     pub fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
         self.inner.broke(body, bonds, broken);
+    }
+
+    /// Makes the displacement right at the ends of `watched` bonds, and gets ready for breaks around the tips; returns the
+    /// iterations.
+    ///
+    /// # Errors
+    /// As [`Equilibrium::solve`].
+    pub fn reach(
+        &mut self,
+        body: &Body,
+        bonds: &Bonds,
+        watched: &[Bond],
+        tips: &[Focus],
+        displacement: &mut Vec<f64>,
+    ) -> Result<usize> {
+        self.inner.reach(body, bonds, watched, tips, displacement)
+    }
+
+    /// Makes the displacement right everywhere; returns the iterations.
+    ///
+    /// # Errors
+    /// As [`Equilibrium::solve`].
+    pub fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
+        self.inner.complete(body, bonds, displacement)
+    }
+
+    /// Whether the displacement is right everywhere.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.inner.is_whole()
+    }
+
+    /// Points, ascending, on which the displacement is right after every solve; `None` if that is all of them.
+    #[must_use]
+    pub fn window(&self) -> Option<&[u32]> {
+        self.inner.window()
     }
 
     /// Work of the loads over the last displacement, f·u, J: twice the strain energy.
@@ -86,9 +185,14 @@ struct Sides<const N: usize> {
 }
 
 struct Grips {
+    /// Relative motion of the grips, held components only.
     field: Vec<f64>,
     /// Force that the grips must transmit, N.
     force: f64,
+    /// Force on the free components that this motion brings, -K g.
+    drag: Vec<f64>,
+    /// Energy of the field with its free components, plus the work of the drag, J x 2: no break away from the grips changes it.
+    constant: f64,
 }
 
 impl<const N: usize> Sides<N> {
@@ -114,7 +218,7 @@ impl<const N: usize> Sides<N> {
                 field[at] = side * up[0] * body.lattice.spacing;
                 field[at + layout.stride] = side * up[1] * body.lattice.spacing;
             }
-            Grips { field, force: load * body.boundary.force_through() }
+            Grips { field, force: load * body.boundary.force_through(), drag: Vec::new(), constant: f64::NAN }
         });
         if grips.is_none() {
             for &(place, force) in &body.boundary.forces {
@@ -128,38 +232,64 @@ impl<const N: usize> Sides<N> {
         }
         let product = Product::<N>::new(body, fixed);
         let solver: Box<dyn LinearSolver<N>> = match kind {
-            SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product)),
+            SolverKind::Window => Box::new(WindowSolver::new(body, bonds, &product)),
+            SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product, TOLERANCE)),
             SolverKind::Direct => Box::new(DirectSolver::default()),
         };
         Sides { product, solver, f, grips, u: layout.zeros(), work: 0.0 }
     }
 }
 
-impl<const N: usize> Balance for Sides<N> {
-    fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
-        let Some(grips) = &self.grips else {
-            let iterations = self.solver.solve(body, bonds, &self.product, &self.f, &mut self.u)?;
+impl<const N: usize> Sides<N> {
+    /// The solver and the system it works on, with its unknown.
+    fn parts<'a>(
+        &'a mut self,
+        body: &'a Body,
+        bonds: &'a Bonds,
+    ) -> (&'a mut Box<dyn LinearSolver<N>>, System<'a, N>, &'a mut [f64]) {
+        let f = self.grips.as_ref().map_or(&self.f, |grips| &grips.drag);
+        (&mut self.solver, System { body, bonds, product: &self.product, f }, &mut self.u)
+    }
+
+    /// Free components follow the grips: K u = -K g. The stiffness at the grips never changes, so -K g does not either.
+    fn drag_grips(&mut self, bonds: &Bonds) {
+        let Some(grips) = self.grips.as_mut().filter(|grips| grips.drag.is_empty()) else { return };
+        grips.drag = self.product.layout().zeros();
+        self.product.apply(bonds, &grips.field, &mut grips.drag, Into::Subtract);
+    }
+
+    /// The displacement under the load, from the solver's.
+    fn give(&mut self, body: &Body, bonds: &Bonds, work: f64, displacement: &mut Vec<f64>) {
+        let Some(grips) = &mut self.grips else {
             displacement.clone_from(&self.u);
-            self.work = field::dot(self.product.layout(), &self.f, &self.u);
-            return Ok(iterations);
+            self.work = work;
+            return;
         };
-        // Free components follow the grips: K u = -K g; then the whole field is scaled to the force asked for.
-        let mut f = self.product.layout().zeros();
-        self.product.apply(bonds, &grips.field, &mut f, Into::Subtract);
-        let iterations = self.solver.solve(body, bonds, &self.product, &f, &mut self.u)?;
         displacement.clone_from(&grips.field);
         displacement.iter_mut().zip(&self.u).for_each(|(d, u)| *d += u);
-        // Energy of the field = ½ force x relative displacement of the grips (2 spacings in this scaling).
-        let free = Product::<N>::new(body, Vec::new());
-        let mut forces = self.product.layout().zeros();
-        free.apply(bonds, displacement, &mut forces, Into::Set);
-        let energy = field::dot(self.product.layout(), displacement, &forces);
-        let opening = 2.0 * body.lattice.spacing;
-        let reaction = energy / opening;
+        // (g + u)ᵀK(g + u) = gᵀKg - f·u with f = -Kg.
+        if grips.constant.is_nan() {
+            let free = Product::<N>::new(body, Vec::new());
+            let mut forces = self.product.layout().zeros();
+            free.apply(bonds, displacement, &mut forces, Into::Set);
+            grips.constant = field::dot(self.product.layout(), displacement, &forces) + work;
+        }
+        let energy = grips.constant - work;
+        // Energy = force x relative displacement of the grips (2 spacings in this scaling); the field is scaled to the load.
+        let reaction = energy / (2.0 * body.lattice.spacing);
         let scale = if reaction > 0.0 { grips.force / reaction } else { 0.0 };
         displacement.iter_mut().for_each(|d| *d *= scale);
         self.work = energy * scale * scale;
-        Ok(iterations)
+    }
+}
+
+impl<const N: usize> Balance for Sides<N> {
+    fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
+        self.drag_grips(bonds);
+        let (solver, system, u) = self.parts(body, bonds);
+        let solved = solver.solve(system, u)?;
+        self.give(body, bonds, solved.work, displacement);
+        Ok(solved.iterations)
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
@@ -168,5 +298,42 @@ impl<const N: usize> Balance for Sides<N> {
 
     fn work(&self) -> f64 {
         self.work
+    }
+
+    fn reach(
+        &mut self,
+        body: &Body,
+        bonds: &Bonds,
+        watched: &[Bond],
+        tips: &[Focus],
+        displacement: &mut Vec<f64>,
+    ) -> Result<usize> {
+        let (solver, system, u) = self.parts(body, bonds);
+        let was_whole = solver.is_whole();
+        let iterations = solver.reach(system, u, watched, tips)?;
+        if solver.is_whole() && !was_whole {
+            let work = field::dot(system.product.layout(), system.f, u);
+            self.give(body, bonds, work, displacement);
+        }
+        Ok(iterations)
+    }
+
+    fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
+        let (solver, system, u) = self.parts(body, bonds);
+        if solver.is_whole() {
+            return Ok(0);
+        }
+        let iterations = solver.complete(system, u)?;
+        let work = field::dot(system.product.layout(), system.f, u);
+        self.give(body, bonds, work, displacement);
+        Ok(iterations)
+    }
+
+    fn is_whole(&self) -> bool {
+        self.solver.is_whole()
+    }
+
+    fn window(&self) -> Option<&[u32]> {
+        self.solver.window()
     }
 }

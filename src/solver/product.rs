@@ -237,6 +237,25 @@ impl<const N: usize> Product<N> {
         y
     }
 
+    /// The springs of a stencil bond between two points whose unknowns start at `a` (owner) and `b`, as vectors w of their
+    /// stiffness w wᵀ: normal and tangential, each empty where its stiffness is zero.
+    pub(super) fn springs_of(&self, k: usize, share: f64, a: usize, b: usize) -> [Vec<(usize, f64)>; 2] {
+        let spring = &self.springs[k];
+        let across = |stiffness: f64, along: [f64; 2], lever: f64| {
+            if share * stiffness <= 0.0 {
+                return Vec::new();
+            }
+            let root = (share * stiffness).sqrt();
+            let mut w: Vec<(usize, f64)> =
+                (0..2).flat_map(|c| [(a + c, -root * along[c]), (b + c, root * along[c])]).collect();
+            if lever != 0.0 {
+                w.extend([(a + 2, -root * lever), (b + 2, -root * lever)]);
+            }
+            w
+        };
+        [across(spring.k_n, spring.n, 0.0), across(spring.k_t, spring.t, if N == 3 { spring.lever } else { 0.0 })]
+    }
+
     /// Block K_ij of a point with itself (`None`) or with the other end of its stencil bond k in direction ±1, zero rows and
     /// columns for held components not applied.
     pub(super) fn bond_blocks(&self, k: usize, sign: f64, share: f64) -> ([[f64; N]; N], [[f64; N]; N]) {

@@ -53,6 +53,7 @@ fn curve() -> Vec<CurvePoint> {
             crack_length,
             delta_k,
             growth_rate,
+            work: 1.0 + crack_length,
             broken_bonds: 9 * step,
             tips: vec![tip(-1.0), tip(1.0)],
         });

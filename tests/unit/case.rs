@@ -186,7 +186,7 @@ fn what_is_planned_is_said_to_be_planned() {
     let planned = [
         ("model.method", "auto"),
         ("model.bond_law", "state_based"),
-        ("model.solver", "window"),
+        ("model.solver", "adaptive_dynamic_relaxation"),
         ("fatigue.failure", "energy"),
         ("loading.kind", "velocity"),
     ];

@@ -1,6 +1,7 @@
 //! What a run must obey whatever its numbers: scaling with A and with load, symmetry, order, named ends, straight paths.
 
 use perilife::predict::{Prediction, Silent, StopReason, predict};
+use perilife::solver::SolverKind;
 use perilife::units::MM;
 
 use crate::plates::case;
@@ -121,6 +122,39 @@ fn cycles_later(run: &Prediction) -> f64 {
         pair[0].cycles + share * (pair[1].cycles - pair[0].cycles)
     };
     at(24.0) - at(16.0)
+}
+
+/// The window is exact: the same bonds break at the same cycles as with a solve of the whole plate per block, by any solver.
+#[test]
+fn every_solver_grows_the_same_crack() {
+    let clamped = EDGE.replace("uniform_stress", "clamped");
+    for (name, specimen, set) in [
+        ("panel", PANEL, vec!["stop.crack_length_mm=20"]),
+        ("slant", SLANT, vec!["stop.crack_length_mm=26"]),
+        ("slant, held", SLANT, vec!["stop.crack_length_mm=26", "supports.bottom={rows_mm=4,fix=[\"x\",\"y\"]}"]),
+        ("clamped", &clamped, vec!["stop.crack_length_mm=18"]),
+        ("compact", COMPACT, vec!["stop.crack_length_mm=28"]),
+        ("slot", SLOT, vec![]),
+        ("two cracks", TWO, vec!["stop.crack_length_mm=60"]),
+        ("resisted", SLANT, vec!["model.rotation=resisted", "stop.crack_length_mm=26"]),
+        ("turned", PANEL, vec!["model.lattice_angle_deg=30", "stop.crack_length_mm=18"]),
+    ] {
+        let grown_by = |solver: &SolverKind| {
+            let solver = format!("model.solver={solver}");
+            let mut all = set.clone();
+            all.push(&solver);
+            let run = grow(specimen, &all);
+            let last = run.curve.last().unwrap();
+            (run.life_cycles(), last.broken_bonds, last.crack_length, run.stop)
+        };
+        let lives: Vec<_> = SolverKind::ALL.iter().map(grown_by).collect();
+        println!("{name}: {lives:?}");
+        for (life, broken, length, stop) in &lives[1..] {
+            assert!((life / lives[0].0 - 1.0).abs() < 1e-6, "{name}: {lives:?}");
+            assert!((length / lives[0].2 - 1.0).abs() < 1e-6, "{name}: {lives:?}");
+            assert_eq!((broken, stop), (&lives[0].1, &lives[0].3), "{name}");
+        }
+    }
 }
 
 #[test]

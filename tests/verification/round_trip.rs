@@ -41,8 +41,9 @@ fn curve(spacing: f64, exact: &[(f64, f64)], scatter: f64, seed: u64) -> Measure
 
 /// Fits to curves of several seeds, all from one run with the known constants.
 fn fits(spacing: f64, scatter: f64, seeds: u64) -> Vec<Fit> {
-    let set = [&format!("model.spacing_mm={spacing}"), "stop.crack_length_mm=44", &format!("fatigue.a={A}"), &format!("fatigue.p={P}")];
-    let panel = case(PANEL, &set.map(|key| &**key));
+    let set = [format!("model.spacing_mm={spacing}"), format!("fatigue.a={A}"), format!("fatigue.p={P}")];
+    let set: Vec<&str> = set.iter().map(String::as_str).chain(["stop.crack_length_mm=44"]).collect();
+    let panel = case(PANEL, &set);
     let exact: Vec<(f64, f64)> = predict(&panel, &Silent).unwrap().curve.iter().map(|p| (p.cycles, p.crack_length)).collect();
     let formula = handbook(&panel.specimen).unwrap();
     let delta_k = |length: f64| formula.delta_k(length, panel.loading.maximum, panel.loading.range_share());

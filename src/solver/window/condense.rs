@@ -11,6 +11,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, Par};
 
 use crate::body::Body;
@@ -34,7 +35,8 @@ pub struct Condensed {
 /// Condenses the plate with its present bonds onto `window` (ascending places, each with a bond). `None` where the
 /// stiffness is not positive definite in these digits.
 ///
-/// `held` tells for every vector index whether its component is held; enough of them to hold the plate.
+/// `held` tells for every vector index whether its component is held. A plate that floats is held at its window, at
+/// `pins` (indices of the window's vector): displacement is then relative to these, which strains do not feel.
 #[must_use]
 pub fn condense<const N: usize>(
     body: &Body,
@@ -42,6 +44,7 @@ pub fn condense<const N: usize>(
     product: &Product<N>,
     held: &[bool],
     window: &[u32],
+    pins: &[usize],
 ) -> Option<Condensed> {
     let mut kept = vec![false; body.places()];
     window.iter().for_each(|&place| kept[place as usize] = true);
@@ -56,6 +59,7 @@ pub fn condense<const N: usize>(
     for (at, &place) in window.iter().enumerate() {
         condenser.hold(&mut sum.matrix, at, place);
     }
+    pins.iter().for_each(|&index| hold(&mut sum.matrix, index));
     let order = sum.matrix.nrows();
     factorise(sum.matrix.as_mut())?;
     let mut inverse = Mat::zeros(order, order);
@@ -239,18 +243,22 @@ impl<const N: usize> Condenser<'_, N> {
         }
     }
 
-    /// Takes held components of a point out of the system: a unit diagonal alone in its row and column.
+    /// Takes held components of a point out of the system.
     fn hold(&self, matrix: &mut Mat<f64>, at: usize, place: u32) {
         let layout = self.product.layout();
         let first = layout.index(place as usize);
         for c in 0..N {
             if self.held[first + c * layout.stride] {
-                let index = N * at + c;
-                for i in 0..matrix.nrows() {
-                    matrix[(index.max(i), index.min(i))] = if i == index { 1.0 } else { 0.0 };
-                }
+                hold(matrix, N * at + c);
             }
         }
+    }
+}
+
+/// Takes an unknown out of the system: a unit diagonal alone in its row and column.
+fn hold(matrix: &mut Mat<f64>, index: usize) {
+    for i in 0..matrix.nrows() {
+        matrix[(index.max(i), index.min(i))] = if i == index { 1.0 } else { 0.0 };
     }
 }
 

@@ -1,0 +1,209 @@
+//! Equilibrium through a condensed window around the crack tips.
+//!
+//! Between two blocks only some bonds near the tips change. The plate is condensed onto the points around the tips
+//! ([`condense`]), and broken bonds are low-rank changes of the small dense inverse ([`update`]): exact, at a cost that does
+//! not grow with the plate. Now and then, after a fixed number of breaks, the whole plate is solved, which refreshes the
+//! displacement outside the window and keeps round-off from adding up. The window moves when a tip nears its end.
+
+pub mod condense;
+pub mod update;
+
+use super::conjugate_gradient::MultigridSolver;
+use super::direct::pinned_components;
+use super::product::Product;
+use super::{Focus, LinearSolver, Solved, System};
+use crate::body::pre_crack::places_near;
+use crate::body::{Body, Bond};
+use crate::error::Result;
+use crate::state::Bonds;
+use condense::{Condensed, condense};
+use update::{Spring, Update};
+
+/// Length of the window ahead of a tip, in horizons.
+const AHEAD_HORIZONS: f64 = 8.0;
+/// Largest window, unknowns: its inverse then takes 72 MB.
+const UNKNOWNS_MAX: usize = 3000;
+/// Residual over load of a whole solve. Its error stays in the base of many blocks, and starting values from the window are
+/// not symmetric to the last digit: mirror twins have to agree better than the tolerance within which bonds break together.
+const TOLERANCE: f64 = 1e-11;
+/// Springs after which the whole plate is solved and the inverse renewed.
+const RANK_MAX: usize = 128;
+
+/// Multigrid for whole solves, a condensed window between them.
+pub struct WindowSolver<const N: usize> {
+    whole: MultigridSolver<N>,
+    window: Option<Window>,
+    broken: Vec<Bond>,
+    /// Whether the displacement is right everywhere, not in the window only.
+    is_whole: bool,
+    /// Whether condensing failed: then every solve is a whole one.
+    is_off: bool,
+    /// Work f·u at the last solve.
+    work: f64,
+}
+
+/// A window with what broke since it was condensed.
+struct Window {
+    condensed: Condensed,
+    /// Displacement of its points at the last whole solve.
+    base: Vec<f64>,
+    /// Work f·u then.
+    base_work: f64,
+    update: Update,
+}
+
+impl<const N: usize> WindowSolver<N> {
+    /// Starts without a window.
+    pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
+        let whole = MultigridSolver::new(body, bonds, product, TOLERANCE);
+        WindowSolver { whole, window: None, broken: Vec::new(), is_whole: false, is_off: false, work: 0.0 }
+    }
+
+    /// Solves the whole plate; a window that is up to date takes its new base from it.
+    fn solve_whole(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        let solved = self.whole.solve(system, u)?;
+        self.is_whole = true;
+        self.work = solved.work;
+        if let Some(window) = &mut self.window {
+            window.update.fold(&mut window.condensed.inverse);
+            window.base = indices(system.product, &window.condensed.places).map(|index| u[index]).collect();
+            window.base_work = solved.work;
+        }
+        Ok(solved)
+    }
+
+    /// Condenses the plate onto the points around the tips, if these are few enough and hold all watched bonds.
+    fn condense(&mut self, system: System<'_, N>, u: &[f64], watched: &[Bond], tips: &[Focus]) -> Option<Window> {
+        let System { body, bonds, product, .. } = system;
+        if self.is_off || watched.len() * N > UNKNOWNS_MAX {
+            return None;
+        }
+        let places = points_around(body, bonds, tips, watched);
+        if places.is_empty() || N * places.len() > UNKNOWNS_MAX {
+            return None;
+        }
+        let mut held = vec![false; product.layout().len()];
+        product.fixed().iter().for_each(|&index| held[index] = true);
+        let pins = if product.fixed().is_empty() { pins::<N>(body, bonds, &places) } else { Vec::new() };
+        let Some(condensed) = condense(body, bonds, product, &held, &places, &pins) else {
+            self.is_off = true;
+            return None;
+        };
+        let base = indices(product, &places).map(|index| u[index]).collect();
+        tracing::debug!(points = places.len(), "window condensed");
+        Some(Window { condensed, base, base_work: self.work, update: Update::default() })
+    }
+}
+
+impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
+    fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        let broken = std::mem::take(&mut self.broken);
+        if let Some(window) = &mut self.window {
+            if !window.take_in(system.body, system.product, &broken) {
+                // A bond outside, or a part of the window on the point of coming loose.
+                self.window = None;
+            } else if window.update.rank() <= RANK_MAX {
+                let (displacement, gain) = window.update.displacement(&window.condensed.inverse, &window.base);
+                for (index, value) in indices(system.product, &window.condensed.places).zip(displacement) {
+                    u[index] = value;
+                }
+                self.is_whole = false;
+                self.work = window.base_work + gain;
+                return Ok(Solved { iterations: 0, work: self.work });
+            }
+        }
+        self.solve_whole(system, u)
+    }
+
+    fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
+        self.whole.broke(body, bonds, product, broken);
+        self.broken.extend(broken);
+    }
+
+    fn reach(&mut self, system: System<'_, N>, u: &mut [f64], watched: &[Bond], tips: &[Focus]) -> Result<usize> {
+        if self.window.as_ref().is_some_and(|window| hold(system.body, &window.condensed.places, watched)) {
+            return Ok(0);
+        }
+        let iterations = self.complete(system, u)?;
+        self.window = self.condense(system, u, watched, tips);
+        Ok(iterations)
+    }
+
+    fn complete(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<usize> {
+        if self.is_whole { Ok(0) } else { Ok(self.solve_whole(system, u)?.iterations) }
+    }
+
+    fn is_whole(&self) -> bool {
+        self.is_whole
+    }
+
+    fn window(&self) -> Option<&[u32]> {
+        self.window.as_ref().map(|window| &*window.condensed.places)
+    }
+}
+
+impl Window {
+    /// Takes in broken bonds; `false` if that cannot be done.
+    fn take_in<const N: usize>(&mut self, body: &Body, product: &Product<N>, broken: &[Bond]) -> bool {
+        broken.iter().all(|&bond| {
+            let (k, from, to) = body.ends(bond);
+            let (Some(a), Some(b)) = (self.at(from), self.at(to)) else { return false };
+            let springs: [Spring; 2] = product.springs_of(k, f64::from(body.multiplier[bond as usize]), N * a, N * b);
+            springs
+                .into_iter()
+                .filter(|spring| !spring.is_empty())
+                .all(|spring| self.update.add(&self.condensed.inverse, &self.base, spring))
+        })
+    }
+
+    fn at(&self, place: usize) -> Option<usize> {
+        self.condensed.places.binary_search(&(place as u32)).ok()
+    }
+}
+
+/// Whether both ends of all these bonds are among some points (ascending).
+fn hold(body: &Body, places: &[u32], bonds: &[Bond]) -> bool {
+    let has = |place: usize| places.binary_search(&(place as u32)).is_ok();
+    bonds.iter().all(|&bond| {
+        let (_, from, to) = body.ends(bond);
+        has(from) && has(to)
+    })
+}
+
+/// Vector indices of all components of some places, in the order of the window's vector.
+fn indices<const N: usize>(product: &Product<N>, places: &[u32]) -> impl Iterator<Item = usize> {
+    let layout = *product.layout();
+    places.iter().flat_map(move |&place| {
+        let first = layout.index(place as usize);
+        (0..N).map(move |c| first + c * layout.stride)
+    })
+}
+
+/// Indices in the window's vector of the components that hold a floating plate at two distant window points.
+fn pins<const N: usize>(body: &Body, bonds: &Bonds, places: &[u32]) -> Vec<usize> {
+    let carrying = || (0..places.len()).filter(|&i| bonds.intact_at(body, places[i] as usize) > 3);
+    let (Some(first), Some(last)) = (carrying().next(), carrying().next_back()) else { return Vec::new() };
+    let pinned = pinned_components::<N>(body, places[first] as usize, places[last] as usize);
+    let at = |place: usize| if place == places[first] as usize { first } else { last };
+    pinned.into_iter().map(|(place, component)| N * at(place) + component).collect()
+}
+
+/// Points within reach of the way of a tip, a little behind it and straight ahead, and the ends of the watched bonds.
+fn points_around(body: &Body, bonds: &Bonds, tips: &[Focus], watched: &[Bond]) -> Vec<u32> {
+    let mut found: Vec<u32> = Vec::new();
+    for tip in tips {
+        let ahead = AHEAD_HORIZONS * body.horizon();
+        let end = [0, 1].map(|i| tip.position[i] + ahead * tip.direction[i]);
+        let way = tip.wake.windows(2).map(|step| (step[0], step[1])).chain(std::iter::once((tip.position, end)));
+        for (from, to) in way {
+            let near = places_near(body, from, to, tip.reach);
+            found.extend(near.filter(|&p| bonds.intact_at(body, p) > 0).map(|place| place as u32));
+        }
+    }
+    if !found.is_empty() {
+        found.extend(watched.iter().flat_map(|&bond| [body.ends(bond).1 as u32, body.ends(bond).2 as u32]));
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
