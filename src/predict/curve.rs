@@ -102,28 +102,6 @@ impl Track {
         self.run_out = Some(cycles_max);
     }
 
-    /// Shortens the last row to the crack length at which the run stops.
-    pub(super) fn end_at(&mut self, crack_length: f64) {
-        let count = self.rows.len();
-        if count < 2 {
-            return;
-        }
-        let before = self.rows[count - 2].clone();
-        let row = &mut self.rows[count - 1];
-        let share = (crack_length - before.crack_length) / (row.crack_length - before.crack_length);
-        if !(0.0..1.0).contains(&share) {
-            return;
-        }
-        let between = |a: f64, b: f64| a + share * (b - a);
-        row.cycles = between(before.cycles, row.cycles);
-        row.crack_length = crack_length;
-        row.work = between(before.work, row.work);
-        for (tip, old) in row.tips.iter_mut().zip(&before.tips) {
-            tip.growth = between(old.growth, tip.growth);
-            tip.position = [0, 1].map(|i| between(old.position[i], tip.position[i]));
-        }
-    }
-
     /// Largest K of the cycle at the last row, Pa√m: handbook, else from the energy release rate so far.
     pub(super) fn k_max(&self, case: &Case, horizon: f64) -> f64 {
         let length = self.last().crack_length;
@@ -213,6 +191,7 @@ impl Track {
             // The crack stands where it is until then.
             rows.extend(rows.last().cloned().map(|row| Row { cycles: zero + cycles_max, ..row }));
         }
+        end_at(&mut rows, case.stop.crack_length);
         let rate = rates(&self.samples(&rows), RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
         let share = case.loading.range_share();
         // The first row is the plate at N = 0 exactly, with what the row there or just after it says.
@@ -241,5 +220,22 @@ impl Track {
             }
         }
         curve
+    }
+}
+
+/// Ends the rows at a crack length that they pass.
+fn end_at(rows: &mut Vec<Row>, crack_length: f64) {
+    let Some(past) = rows.iter().position(|row| row.crack_length >= crack_length).filter(|&past| past > 0) else { return };
+    rows.truncate(past + 1);
+    let before = rows[past - 1].clone();
+    let row = &mut rows[past];
+    let share = (crack_length - before.crack_length) / (row.crack_length - before.crack_length);
+    let between = |a: f64, b: f64| a + share * (b - a);
+    row.cycles = between(before.cycles, row.cycles);
+    row.crack_length = crack_length;
+    row.work = between(before.work, row.work);
+    for (tip, old) in row.tips.iter_mut().zip(&before.tips) {
+        tip.growth = between(old.growth, tip.growth);
+        tip.position = [0, 1].map(|i| between(old.position[i], tip.position[i]));
     }
 }

@@ -17,13 +17,13 @@ pub(super) fn before_block(case: &Case, tips: &[CrackTip], ageing: &[AgeingBond]
 }
 
 /// Reasons that show after a block: length reached, toughness, net-section yield.
-pub(super) fn after_block(case: &Case, track: &mut Track) -> Option<StopReason> {
+pub(super) fn after_block(case: &Case, track: &Track) -> Option<StopReason> {
     let length = track.last().crack_length;
-    if length >= case.stop.crack_length {
-        track.end_at(case.stop.crack_length);
+    let horizon = case.model.horizon_ratio * case.model.spacing;
+    // A spacing more, so that the length averaged over a spacing of growth is known up to there; the curve ends at the length.
+    if length >= case.stop.crack_length + case.model.spacing {
         return Some(StopReason::CrackLengthReached);
     }
-    let horizon = case.model.horizon_ratio * case.model.spacing;
     if let Some(toughness) = case.material.toughness
         && track.k_max(case, horizon) >= toughness
     {
@@ -36,4 +36,9 @@ pub(super) fn after_block(case: &Case, track: &mut Track) -> Option<StopReason> 
         return Some(StopReason::NetSectionYield);
     }
     None
+}
+
+/// The reason that counts where a run had passed the length to stop at before it ended for another one.
+pub(super) fn settled(case: &Case, track: &Track, stop: StopReason) -> StopReason {
+    if track.last().crack_length >= case.stop.crack_length { StopReason::CrackLengthReached } else { stop }
 }
