@@ -5,8 +5,12 @@
 //! calibration all come through here.
 
 mod curve;
+mod end_of_life;
+mod handbook;
 mod memory;
 mod outcome;
+pub mod plastic_zone;
+pub mod residual_strength;
 mod snapshot;
 mod stop;
 
@@ -18,7 +22,7 @@ pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigu
 
 use crate::body::pre_crack::bonds_across;
 use crate::body::{Body, Bond};
-use crate::case::Case;
+use crate::case::{Case, Method};
 use crate::error::{Error, Result};
 use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, stretch, threshold_strain};
 use crate::fatigue::crack_tip::{CrackTip, share_out};
@@ -32,6 +36,7 @@ use crate::specimen::Specimen;
 use crate::specimen::geometry::distance;
 use crate::state::Bonds;
 use curve::Track;
+use end_of_life::first_end;
 use snapshot::Album;
 
 /// Predicts the a-N curve of a case.
@@ -39,7 +44,10 @@ use snapshot::Album;
 /// # Errors
 /// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
-    run(case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer)
+    match case.model.method {
+        Method::Peridynamics => run(case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer),
+        Method::Handbook => handbook::run(case, observer),
+    }
 }
 
 /// Takes down what a run does, block by block, so that it can be replayed.
@@ -99,6 +107,7 @@ pub fn run(
     }
 
     let mut track = Track::new(case, &specimen, &tips, equilibrium.work());
+    let end = first_end(case);
     let mut album = Album::new(&body, &bonds, &displacement, track.last());
     let mut broken_bonds = 0;
     // Whether bonds away from the tips come near the critical stretch, so that all have to be watched.
@@ -109,7 +118,7 @@ pub fn run(
         retire_tips(&mut tips, &body, &case.specimen, &near, settings.zone_radius_horizons);
         iterations += equilibrium.reach(&body, &bonds, &near, &focus(&tips, &body, settings), &mut displacement)?;
         let ageing = ageing_bonds(&body, &near, &displacement, share, threshold);
-        if let Some(reason) = stop::before_block(case, &tips, &ageing) {
+        if let Some(reason) = stop::before_block(case, end, &track, &tips, &ageing) {
             break reason;
         }
 
@@ -172,7 +181,7 @@ pub fn run(
             album.look(&body, &bonds, &displacement, track.last());
         }
         let going_on = observer.block_done(&track.progress(case));
-        if let Some(reason) = outcome.or_else(|| stop::after_block(case, &mut track)) {
+        if let Some(reason) = outcome.or_else(|| stop::after_block(case, end, &mut track)) {
             break reason;
         }
         if !going_on {
@@ -184,9 +193,11 @@ pub fn run(
         iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
     }
     album.finish(&body, &bonds, &displacement, track.last());
-    let (blocks, warnings) = (track.blocks(), track.warnings(case, &body));
+    let (blocks, mut warnings) = (track.blocks(), track.warnings(case, &body));
+    let curve = track.into_curve(case, &body);
+    warnings.extend(plastic_zone::warnings(case, &curve));
     Ok(Prediction {
-        curve: track.into_curve(case, &body),
+        curve,
         stop,
         snapshots: album.snapshots,
         grid: snapshot::grid(&body),

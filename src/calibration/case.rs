@@ -8,11 +8,11 @@ use toml::{Table, Value};
 
 use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurve, Units, read};
 use crate::calibration::record::SourceFile;
-use crate::case::{Case, LawSource};
+use crate::case::{Case, LAW_KEYS, LawSource};
 use crate::error::{Error, input, input_missing};
 use crate::input::{Document, LENGTH, slice};
 use crate::specimen::handbook::{HandbookFormula, handbook};
-use crate::specimen::{Specimen, SpecimenKind};
+use crate::specimen::Specimen;
 use crate::units::MM;
 
 crate::kinds! {
@@ -96,7 +96,7 @@ impl CalibrationCase {
         })?;
         let (files, sources) = sources(&keys.files, base_dir)?;
         let measured = read(&files, Units { length: keys.length_unit, cycles: keys.cycle_unit })?;
-        let (limit, limit_name) = length_limit(&case.specimen);
+        let (limit, limit_name) = case.specimen.length_limit();
         measured.check_lengths(limit, limit_name)?;
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;
@@ -121,21 +121,10 @@ impl CalibrationCase {
     }
 }
 
-/// Largest crack length the specimen has room for, m, and its name.
-#[must_use]
-pub fn length_limit(specimen: &Specimen) -> (f64, &'static str) {
-    match specimen.kind {
-        SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => (0.5 * specimen.width, "half width"),
-        SpecimenKind::SingleEdgeTension => (specimen.width, "width"),
-        SpecimenKind::CompactTension => (specimen.width, "width from the load line"),
-        SpecimenKind::Plate => (specimen.gross_width.max(specimen.length()), "size"),
-    }
-}
-
 /// Takes the law out of the sections of a case that is to get another one, or needs none.
 pub fn remove_law(sections: &mut Table) {
     if let Some(fatigue) = sections.get_mut("fatigue").and_then(Value::as_table_mut) {
-        for key in ["fitted", "a", "p", "horizon_mm"] {
+        for key in LAW_KEYS {
             fatigue.remove(key);
         }
     }

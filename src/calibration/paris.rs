@@ -18,6 +18,8 @@ pub struct Paris {
     pub c: f64,
     /// Exponent m.
     pub m: f64,
+    /// Its standard error; 0 where p was given.
+    pub m_error: f64,
     /// Pivot ΔK, MPa√m.
     pub pivot: f64,
     /// Rate at the pivot, mm/cycle.
@@ -65,11 +67,14 @@ pub fn equivalents(
     let Some(law) = line(&log_k, &log_rate) else {
         return Err(Error::Mechanics("the fitted run has no growth rates to draw a Paris line through".to_owned()));
     };
+    // m follows p: its slope over p is that of the sensitivities over ln ΔK.
+    let m_per_p = line(&log_k, &sensitivity).map_or(0.0, |law| law.slope);
     let (log_pivot, error) = pivot(&log_k, &sensitivity, &weight, covariance);
     let ends = [at(lengths[0]), at(lengths[lengths.len() - 1])];
     Ok(Paris {
         c: law.intercept.exp(),
         m: law.slope,
+        m_error: m_per_p.abs() * covariance[1][1].max(0.0).sqrt(),
         pivot: log_pivot.exp(),
         rate_at_pivot: law.at(log_pivot).exp(),
         rate_at_pivot_error: error,

@@ -23,6 +23,9 @@ pub struct FittedRecord {
     pub paris_c_mm_per_cycle: f64,
     /// Paris exponent m (not the same as p).
     pub paris_m: f64,
+    /// Standard error of m; absent in records of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub paris_m_error: Option<f64>,
     /// ΔK at which the fit is best determined.
     pub pivot_delta_k_mpa_sqrt_m: f64,
     /// da/dN there.

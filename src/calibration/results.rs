@@ -24,6 +24,8 @@ pub struct FitReport {
     pub paris_c_mm_per_cycle: f64,
     /// m of the same (not p).
     pub paris_m: f64,
+    /// Standard error of m; 0 where p was given.
+    pub paris_m_error: f64,
     /// ΔK at which the rate is best determined.
     pub pivot_delta_k_mpa_sqrt_m: f64,
     /// da/dN there.
@@ -95,6 +97,7 @@ impl FitReport {
             spacing_mm: tidy(fit.spacing / MM),
             paris_c_mm_per_cycle: fit.paris.c,
             paris_m: fit.paris.m,
+            paris_m_error: fit.paris.m_error,
             pivot_delta_k_mpa_sqrt_m: fit.paris.pivot,
             rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
             rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
@@ -145,6 +148,7 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         scaling: "a at another horizon = a * (horizon / horizon_mm)^((p - 2) / 2)".to_owned(),
         paris_c_mm_per_cycle: fit.paris.c,
         paris_m: fit.paris.m,
+        paris_m_error: Some(fit.paris.m_error),
         pivot_delta_k_mpa_sqrt_m: fit.paris.pivot,
         rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
         rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,

@@ -74,7 +74,7 @@ pub fn run(args: &Args) -> Result<()> {
     let mut predictions = serde_json::Map::new();
     for document in cases {
         let case = case_of(&document)?.with_law(law.clone()).map_err(|error| document.locate(error))?;
-        let done = predict::run_case(&case, &args.out.join(&case.name), console)?;
+        let done = predict::run_case(&case, &args.out.join(&case.name), predict::Extras::default(), console)?;
         predictions.insert(case.name.clone(), done.result);
     }
     let mut object = json!(report);

@@ -118,17 +118,15 @@ impl Track {
         }
     }
 
-    /// Largest K of the cycle at the last row, Pa√m: handbook, else from the energy release rate so far.
-    pub(super) fn k_max(&self, case: &Case, horizon: f64) -> f64 {
-        let length = self.last().crack_length;
-        match &self.formula {
-            Some(formula) => formula.k_i(length, case.loading.maximum),
-            None => {
-                let recent = self.rows.iter().rposition(|row| row.growth() < self.last().growth() - horizon).unwrap_or(0);
-                let released = rates(&self.samples(&self.rows[recent..]), 2.0 * horizon, case.specimen.thickness);
-                released.last().map_or(f64::NAN, |rate| (rate.energy_release_rate * case.material.plane_modulus()).sqrt())
-            }
+    /// Largest K of the cycle at the last row, Pa√m, from the energy release rate over the last horizon of growth; `None`
+    /// where a handbook knows it.
+    pub(super) fn k_max_released(&self, case: &Case, horizon: f64) -> Option<f64> {
+        if self.formula.is_some() {
+            return None;
         }
+        let recent = self.rows.iter().rposition(|row| row.growth() < self.last().growth() - horizon).unwrap_or(0);
+        let released = rates(&self.samples(&self.rows[recent..]), 2.0 * horizon, case.specimen.thickness);
+        released.last().map(|rate| (rate.energy_release_rate * case.material.plane_modulus()).sqrt())
     }
 
     pub(super) fn progress(&self, case: &Case) -> Progress {

@@ -7,7 +7,7 @@ crate::kinds! {
     pub enum StopReason for "stop_reason" {
         CrackLengthReached = "crack_length_reached": "the crack reached stop.crack_length_mm",
         Toughness = "toughness": "the stress intensity at maximum load reached the toughness",
-        NetSectionYield = "net_section_yield": "the mean stress on the remaining section reached the yield strength",
+        NetSectionYield = "net_section_yield": "the remaining section yields throughout: its limit load at the yield strength is reached",
         Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
         LeftPlate = "left_plate": "every crack tip has left the plate",
         EnteredHole = "entered_hole": "the last crack tip ran into a hole",

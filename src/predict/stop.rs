@@ -2,12 +2,22 @@
 
 use super::StopReason;
 use super::curve::Track;
+use super::end_of_life::End;
 use crate::case::Case;
 use crate::fatigue::ageing::AgeingBond;
 use crate::fatigue::crack_tip::{CrackTip, TipState};
 
-/// Reasons that show before a block: no tip is left, or nothing ages.
-pub(super) fn before_block(case: &Case, tips: &[CrackTip], ageing: &[AgeingBond]) -> Option<StopReason> {
+/// Reasons that show before a block: the crack is too long for its load from the start, no tip is left, or nothing ages.
+pub(super) fn before_block(
+    case: &Case,
+    end: Option<End>,
+    track: &Track,
+    tips: &[CrackTip],
+    ageing: &[AgeingBond],
+) -> Option<StopReason> {
+    if let Some(end) = end.filter(|end| track.last().crack_length >= end.crack_length) {
+        return Some(end.reason);
+    }
     let gone = !tips.is_empty() && tips.iter().all(|tip| !tip.is_active());
     if gone && case.fatigue.ageing == crate::fatigue::Ageing::CrackTip {
         let entered = tips.iter().any(|tip| tip.state == TipState::EnteredHole);
@@ -16,24 +26,14 @@ pub(super) fn before_block(case: &Case, tips: &[CrackTip], ageing: &[AgeingBond]
     ageing.is_empty().then_some(StopReason::NothingAges)
 }
 
-/// Reasons that show after a block: length reached, toughness, net-section yield.
-pub(super) fn after_block(case: &Case, track: &mut Track) -> Option<StopReason> {
-    let length = track.last().crack_length;
-    if length >= case.stop.crack_length {
-        track.end_at(case.stop.crack_length);
-        return Some(StopReason::CrackLengthReached);
+/// Reasons that show after a block: length reached, toughness, net-section yield. The last row ends where the reason holds.
+pub(super) fn after_block(case: &Case, end: Option<End>, track: &mut Track) -> Option<StopReason> {
+    if let Some(end) = end.filter(|end| track.last().crack_length >= end.crack_length) {
+        track.end_at(end.crack_length);
+        return Some(end.reason);
     }
     let horizon = case.model.horizon_ratio * case.model.spacing;
-    if let Some(toughness) = case.material.toughness
-        && track.k_max(case, horizon) >= toughness
-    {
-        return Some(StopReason::Toughness);
-    }
-    if let (Some(strength), Some(stress)) =
-        (case.material.yield_strength, case.specimen.net_section_stress(length, case.loading.maximum))
-        && stress >= strength
-    {
-        return Some(StopReason::NetSectionYield);
-    }
-    None
+    // Where no handbook knows K, the energy released so far does.
+    let k_max = track.k_max_released(case, horizon)?;
+    (k_max >= case.material.toughness?).then_some(StopReason::Toughness)
 }

@@ -1,10 +1,10 @@
 //! What `perilife check` has understood of a file, in words.
 
 use crate::calibration::measured::MeasuredCurve;
-use crate::case::{Case, LawSource};
+use crate::case::{Case, LawSource, Method};
 use crate::specimen::handbook::handbook;
 use crate::specimen::{LoadMeasure, Support};
-use crate::units::{GPA, KN, MM, MPA};
+use crate::units::{GPA, KN, MM, MM_PER_CYCLE, MPA};
 
 /// One line of what was understood.
 #[derive(Debug)]
@@ -49,6 +49,11 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     };
     let law = match &case.law {
         LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
+        LawSource::Paris(law) => format!("da/dN = {:e} ΔK^{} (mm/cycle, MPa√m)", law.c / MM_PER_CYCLE, law.m),
+        LawSource::Fitted(record) if model.method == Method::Handbook => format!(
+            "da/dN = {:e} ΔK^{} (mm/cycle, MPa√m), fitted to {}",
+            record.paris_c_mm_per_cycle, record.paris_m, record.material
+        ),
         LawSource::Fitted(record) => format!(
             "a = {:e} per cycle, p = {} at horizon {} mm, fitted to {}",
             record.a, record.p, record.horizon_mm, record.material
@@ -117,7 +122,9 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         ("handbook K", formula),
         ("stop", format!("{stop}{} cycles", case.stop.cycles_max)),
     ];
-    lines.into_iter().map(|(what, value)| Line { what, value }).collect()
+    // Hand calculation has no bonds that could age.
+    let told = |what: &str| model.method == Method::Peridynamics || !["bonds", "ageing"].contains(&what);
+    lines.into_iter().filter(|(what, _)| told(what)).map(|(what, value)| Line { what, value }).collect()
 }
 
 /// A number with at most four decimals.
