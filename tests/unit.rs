@@ -1,5 +1,7 @@
 //! Does each part do its job?
 
+#[path = "support/hand_cases.rs"]
+mod hand_cases;
 #[path = "support/made_up_case.rs"]
 mod made_up_case;
 #[path = "support/made_up_run.rs"]
@@ -35,8 +37,16 @@ mod rates;
 mod report;
 #[path = "unit/case.rs"]
 mod case;
+#[path = "unit/exponent.rs"]
+mod exponent;
+#[path = "unit/fit_use.rs"]
+mod fit_use;
+#[path = "unit/hand_case.rs"]
+mod hand_case;
 #[path = "unit/handbook.rs"]
 mod handbook;
+#[path = "unit/quadrature.rs"]
+mod quadrature;
 #[path = "unit/loading.rs"]
 mod loading;
 #[path = "unit/specimen.rs"]

@@ -5,6 +5,7 @@
 //! which of the many nearly equal pairs is taken: rate there and slope are uncorrelated.
 
 use crate::calibration::line::line;
+use crate::calibration::search::Constants;
 use crate::error::{Error, Result};
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
@@ -30,6 +31,15 @@ pub struct Paris {
     pub delta_k_min: f64,
     /// Largest ΔK of the window, MPa√m.
     pub delta_k_max: f64,
+}
+
+impl Paris {
+    /// The same pivot and window for a law whose A and p are C and m themselves ([`crate::calibration::power_law`]).
+    #[must_use]
+    pub fn of_power_law(self, constants: Constants, m_error: f64) -> Self {
+        let c = constants.a / MM_PER_CYCLE;
+        Paris { c, m: constants.p, m_error, rate_at_pivot: c * self.pivot.powf(constants.p), ..self }
+    }
 }
 
 /// Equally spaced lengths of the window at which rates are taken.

@@ -40,6 +40,9 @@ pub struct FittedRecord {
     pub delta_k_max_mpa_sqrt_m: f64,
     /// Stress ratio of the tests.
     pub stress_ratio: f64,
+    /// `model.method` of the fit. A record of `handbook` holds C and m; its a, horizon_mm and spacing_mm are nan.
+    #[serde(default = "peridynamics")]
+    pub method: String,
     /// `model.bond_law`.
     pub bond_law: String,
     /// `model.kernel`.
@@ -68,6 +71,11 @@ pub struct FittedRecord {
     pub version: String,
     /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
+}
+
+/// The method of records that do not name theirs.
+fn peridynamics() -> String {
+    crate::case::Method::Peridynamics.name().to_owned()
 }
 
 /// A measured file a record was fitted to.

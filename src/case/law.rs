@@ -14,11 +14,13 @@ use crate::units::{GPA, MM, MM_PER_CYCLE};
 
 /// Numbers and names of a record make sense.
 pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
-    number("a constant in 1/cycle", 1e-60, 1e100).read("a", record.a)?;
     number("an exponent", 0.5, 20.0).read("p", record.p)?;
     number("a rate in mm/cycle", 1e-60, 1e3).read("paris_c_mm_per_cycle", record.paris_c_mm_per_cycle)?;
     number("an exponent", 0.0, 30.0).read("paris_m", record.paris_m)?;
-    LENGTH.read("horizon_mm", record.horizon_mm)?;
+    if Method::from_str(&record.method)? == Method::Peridynamics {
+        number("a constant in 1/cycle", 1e-60, 1e100).read("a", record.a)?;
+        LENGTH.read("horizon_mm", record.horizon_mm)?;
+    }
     MODULUS.read("youngs_modulus_gpa", record.youngs_modulus_gpa)?;
     number("a Poisson's ratio", 0.0, 0.499).read("poisson_ratio", record.poisson_ratio)?;
     number("a ratio", -100.0, 0.999).read("stress_ratio", record.stress_ratio)?;
@@ -36,6 +38,11 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
         check_stress_ratio(case, &record)?;
         case.law = LawSource::Fitted(Box::new(record));
         return Ok(());
+    }
+    if Method::from_str(&record.method)? == Method::Handbook {
+        let problem = "was fitted by hand calculation: it holds C and m, but no A of bonds";
+        let remedy = "calibrate with model.method = \"peridynamics\", or use model.method = \"handbook\" here";
+        return Err(input("fatigue.fitted", &record.material, problem, remedy));
     }
     let choices = case.choices;
     let law = &mut case.model.bond_law;

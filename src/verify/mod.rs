@@ -4,6 +4,7 @@
 //! the program, not records of what it reaches: a row that misses its bound either fails the command or carries the reason
 //! of a known miss.
 
+pub mod golden;
 pub mod growth;
 pub mod scene;
 pub mod table;
@@ -22,11 +23,14 @@ pub struct Topic {
 }
 
 /// All topics, in the order in which a life is computed.
-pub const TOPICS: &[Topic] = &[Topic {
-    name: "growth_law",
-    about: "da/dN of a middle-tension panel against the power law of ΔK",
-    fill: growth::middle_tension,
-}];
+pub const TOPICS: &[Topic] = &[
+    Topic { name: "golden", about: "golden lives by hand calculation, rates of readings", fill: golden::by_hand },
+    Topic {
+        name: "growth_law",
+        about: "da/dN of a middle-tension panel against the power law of ΔK",
+        fill: growth::middle_tension,
+    },
+];
 
 /// The topics of these names, all where no name is given.
 ///

@@ -43,6 +43,7 @@ pub fn case() -> Case {
 /// A record fitted between two ΔK in MPa√m.
 pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
     LawSource::Fitted(Box::new(FittedRecord {
+        method: "peridynamics".to_owned(),
         a: 1e5,
         p: 3.0,
         horizon_mm: 3.015,

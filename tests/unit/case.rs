@@ -19,6 +19,7 @@ fn read(extra: &str, overrides: &[&str]) -> Result<Case, Error> {
 
 fn record() -> FittedRecord {
     FittedRecord {
+        method: "peridynamics".into(),
         a: 5000.0,
         p: 3.0,
         horizon_mm: 3.0,
