@@ -161,7 +161,11 @@ pub fn by_hand(table: &mut Table) -> Result<()> {
     Ok(())
 }
 
-fn ended_by(run: &Prediction, reason: StopReason, what: &str) -> Result<()> {
+/// Whether a run ended for this reason.
+///
+/// # Errors
+/// It did not.
+pub(super) fn ended_by(run: &Prediction, reason: StopReason, what: &str) -> Result<()> {
     if run.stop == reason {
         return Ok(());
     }

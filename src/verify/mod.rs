@@ -5,6 +5,7 @@
 //! of a known miss.
 
 pub mod golden;
+pub mod golden_peridynamics;
 pub mod growth;
 pub mod scene;
 pub mod table;
@@ -25,6 +26,11 @@ pub struct Topic {
 /// All topics, in the order in which a life is computed.
 pub const TOPICS: &[Topic] = &[
     Topic { name: "golden", about: "golden lives by hand calculation, rates of readings", fill: golden::by_hand },
+    Topic {
+        name: "golden_peridynamics",
+        about: "the golden lives by peridynamics with an A fitted to hand calculation",
+        fill: golden_peridynamics::by_bonds,
+    },
     Topic {
         name: "growth_law",
         about: "da/dN of a middle-tension panel against the power law of ΔK",
