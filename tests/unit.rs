@@ -35,12 +35,16 @@ mod pictures;
 mod rates;
 #[path = "unit/report.rs"]
 mod report;
+#[path = "unit/residual_strength.rs"]
+mod residual_strength;
 #[path = "unit/case.rs"]
 mod case;
 #[path = "unit/exponent.rs"]
 mod exponent;
 #[path = "unit/fit_use.rs"]
 mod fit_use;
+#[path = "unit/growth_rate.rs"]
+mod growth_rate;
 #[path = "unit/hand_case.rs"]
 mod hand_case;
 #[path = "unit/handbook.rs"]

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::console::Console;
 use crate::case::{Case, LawSource, Method};
 use crate::error::{Error, Result, input};
+use crate::predict::plastic_zone::PlasticZone;
 use crate::predict::residual_strength::{check_strength, residual_strength};
 use crate::predict::{Prediction, StopReason};
 use crate::report;
@@ -210,9 +211,24 @@ fn summary(case: &Case, prediction: &Prediction, out: &Path) -> Vec<String> {
         format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
     ];
     lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
+    lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
     lines.push(format!("  computed       {}", computed(case, prediction)));
     lines.push(format!("  results        {}", out.display()));
     lines
+}
+
+/// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.
+fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
+    let PlasticZone { first, last, .. } = PlasticZone::of(case, prediction)?;
+    let (horizon, thickness) = (prediction.figures.horizon, case.specimen.thickness);
+    let of_horizon = if horizon > 0.0 { format!(", {:.2} of the horizon", last.size / horizon) } else { String::new() };
+    Some(format!(
+        "{:.3} mm to {:.3} mm ({:.3} of the ligament, {:.2} of the thickness{of_horizon})",
+        first.size / MM,
+        last.size / MM,
+        last.size / last.ligament,
+        last.size / thickness
+    ))
 }
 
 fn computed(case: &Case, prediction: &Prediction) -> String {

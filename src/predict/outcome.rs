@@ -38,7 +38,7 @@ pub struct CurvePoint {
     /// Growth rate da/dN, m/cycle.
     pub growth_rate: f64,
     /// Work of the loads over the displacement at maximum load, f·u, J: twice the strain energy, the load squared times the
-    /// compliance; NaN where the plate is severed.
+    /// compliance; NaN where the plate is severed and in hand calculation.
     pub work: f64,
     /// Bonds broken since the start, initial cracks not counted.
     pub broken_bonds: usize,

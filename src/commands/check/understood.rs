@@ -2,6 +2,7 @@
 
 use crate::calibration::measured::MeasuredCurve;
 use crate::case::{Case, LawSource, Method};
+use crate::report::fit_use;
 use crate::specimen::handbook::handbook;
 use crate::specimen::{LoadMeasure, Support};
 use crate::units::{GPA, KN, MM, MM_PER_CYCLE, MPA};
@@ -50,13 +51,12 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     let law = match &case.law {
         LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
         LawSource::Paris(law) => format!("da/dN = {:e} ΔK^{} (mm/cycle, MPa√m)", law.c / MM_PER_CYCLE, law.m),
-        LawSource::Fitted(record) if model.method == Method::Handbook => format!(
-            "da/dN = {:e} ΔK^{} (mm/cycle, MPa√m), fitted to {}",
-            record.paris_c_mm_per_cycle, record.paris_m, record.material
-        ),
+        LawSource::Fitted(_) if model.method == Method::Handbook => fit_use::law_line(case).unwrap_or_default(),
         LawSource::Fitted(record) => format!(
-            "a = {:e} per cycle, p = {} at horizon {} mm, fitted to {}",
-            record.a, record.p, record.horizon_mm, record.material
+            "{}; a = {:e} per cycle at horizon {} mm",
+            fit_use::law_line(case).unwrap_or_default(),
+            record.a,
+            record.horizon_mm
         ),
         LawSource::Missing(path) if path.as_os_str().is_empty() => "to be fitted".to_owned(),
         LawSource::Missing(path) => format!("{} does not exist yet", path.display()),
