@@ -12,6 +12,7 @@ mod outcome;
 pub mod plastic_zone;
 pub mod residual_strength;
 mod snapshot;
+mod start;
 mod stop;
 
 use std::time::Instant;
@@ -27,9 +28,8 @@ use crate::error::{Error, Result};
 use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, stretch, threshold_strain};
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
-use crate::fatigue::precrack::{Passage, passages, steady_lives};
 use crate::fatigue::remaining_life::BondLife;
-use crate::fatigue::{FatigueLaw, FatigueSettings, Precrack};
+use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
 use crate::solver::{Equilibrium, Focus};
 use crate::solver::field::Layout;
 use crate::specimen::Specimen;
@@ -38,6 +38,7 @@ use crate::state::Bonds;
 use curve::Track;
 use end_of_life::first_end;
 use snapshot::Album;
+use start::Start;
 
 /// Predicts the a-N curve of a case.
 ///
@@ -52,9 +53,8 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 
 /// Takes down what a run does, block by block, so that it can be replayed.
 pub trait Recorder {
-    /// The passages behind the bond lives at the start.
-    fn start(&mut self, passages: &[Vec<Passage>]);
-    /// One block: the strains its bonds aged by, the bonds it spent, and the crack length after it, m.
+    /// One block: the strains its bonds aged by, the bonds it spent, and the crack length after it, m. Blocks before N = 0,
+    /// in which the crack grows to its initial length, come first.
     fn block(&mut self, ageing: &[AgeingBond], spent: &[Bond], crack_length: f64);
 }
 
@@ -62,7 +62,6 @@ pub trait Recorder {
 struct Unrecorded;
 
 impl Recorder for Unrecorded {
-    fn start(&mut self, _: &[Vec<Passage>]) {}
     fn block(&mut self, _: &[AgeingBond], _: &[Bond], _: f64) {}
 }
 
@@ -79,15 +78,16 @@ pub fn run(
     let started = Instant::now();
     let (settings, model) = (&case.fatigue, &case.model);
 
-    let specimen = starting_specimen(case)?;
-    let body = Body::build(&specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
+    let start = Start::of(case)?;
+    let specimen = &start.specimen;
+    let body = Body::build(specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
     let law = law(body.horizon())?;
     let share = strain_share(&case.loading, settings);
     let threshold = share * threshold_strain(settings, &case.material, body.horizon()) / case.loading.range_share();
 
     let mut bonds = Bonds::new(&body);
     let mut life = BondLife::whole(bonds.multiplier.len());
-    let mut tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, &body)).collect();
+    let mut tips = start.tips(&body);
     let mut displacement = Vec::new();
     if let Cut::Severed = set_aside(&body, &mut bonds, &body.pre_cut) {
         return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
@@ -96,26 +96,30 @@ pub fn run(
     let mut iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;
     let mut solves = 1;
 
-    if settings.precrack == Precrack::SteadyProfile {
-        let near = candidates(&body, &bonds, &tips, settings);
-        let seeded: Vec<(CrackTip, bool)> = tips.iter().cloned().zip(specimen.tips.iter().map(|seed| seed.from_slot)).collect();
-        let passages = passages(&body, &near, &seeded, settings, &displacement);
-        for (bond, remaining) in steady_lives(&passages, law.p) {
-            life.set(bond, remaining);
-        }
-        recorder.start(&passages);
-    }
-
-    let mut track = Track::new(case, &specimen, &tips, equilibrium.work());
+    let mut track = Track::new(case, &start.growth(&tips), &tips, equilibrium.work());
     let end = first_end(case);
-    let mut album = Album::new(&body, &bonds, &displacement, track.last());
+    let mut album = Album::default();
     let mut broken_bonds = 0;
     // Whether bonds away from the tips come near the critical stretch, so that all have to be watched.
     let mut watch_all = false;
     let stop = loop {
+        // Cycles count from where every crack has its initial length.
+        let counting = start.is_over(&tips);
+        if counting && track.begin() {
+            tips.iter_mut().for_each(CrackTip::leave_rails);
+            iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
+            album.open(&body, &bonds, &displacement, track.last());
+        }
+
         // Which bonds age, and by how much strain a cycle.
-        let near = candidates(&body, &bonds, &tips, settings);
-        retire_tips(&mut tips, &body, &case.specimen, &near, settings.zone_radius_horizons);
+        let near = if counting {
+            candidates(&body, &bonds, &tips, settings)
+        } else {
+            candidates(&body, &bonds, &start.on_the_way(&tips), settings)
+        };
+        if counting {
+            retire_tips(&mut tips, &body, &case.specimen, &near, settings.zone_radius_horizons);
+        }
         iterations += equilibrium.reach(&body, &bonds, &near, &focus(&tips, &body, settings), &mut displacement)?;
         let ageing = ageing_bonds(&body, &near, &displacement, share, threshold);
         if let Some(reason) = stop::before_block(case, end, &track, &tips, &ageing) {
@@ -125,8 +129,8 @@ pub fn run(
         // Spend life over the block; bonds at the end of theirs break.
         // A tip within a spacing of an edge or hole breaks through at once: the lattice cannot resolve what is left.
         let through = break_through(&mut tips, &body, &bonds, &case.specimen);
-        let (cycles, mut spent) =
-            if through.is_empty() { life.next_block(&law, &settings.block, &ageing) } else { (0.0, through) };
+        let block = if counting { &settings.block } else { &Block::NEXT_BREAK };
+        let (cycles, mut spent) = if through.is_empty() { life.next_block(&law, block, &ageing) } else { (0.0, through) };
         if track.cycles_since_start() + cycles > case.stop.cycles_max {
             track.run_out(case.stop.cycles_max);
             break StopReason::RunOut;
@@ -174,14 +178,14 @@ pub fn run(
         broken_bonds += spent.len();
         let shares = share_out(&body, &tips, &spent);
         tips.iter_mut().zip(&shares).for_each(|(tip, broken)| tip.advance(&body, &bonds, &case.specimen, broken));
-        track.record(&specimen, &tips, broken_bonds, if outcome.is_none() { equilibrium.work() } else { f64::NAN });
+        track.record(&start.growth(&tips), &tips, broken_bonds, if outcome.is_none() { equilibrium.work() } else { f64::NAN });
         recorder.block(&ageing, &spent, track.last().crack_length);
-        if album.is_due(track.last()) && outcome.is_none() {
+        if counting && album.is_due(track.last()) && outcome.is_none() {
             iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
             album.look(&body, &bonds, &displacement, track.last());
         }
         let going_on = observer.block_done(&track.progress(case));
-        if let Some(reason) = outcome.or_else(|| stop::after_block(case, end, &mut track)) {
+        if let Some(reason) = outcome.or_else(|| stop::after_block(end, &mut track)) {
             break reason;
         }
         if !going_on {
@@ -215,39 +219,6 @@ pub fn run(
         },
         warnings,
     })
-}
-
-/// The specimen at the start of the run: with `precrack = grown`, every crack is two horizons shorter at each of its tips.
-fn starting_specimen(case: &Case) -> Result<Specimen> {
-    let mut specimen = case.specimen.clone();
-    if case.fatigue.precrack == Precrack::Grown {
-        let back = 2.0 * case.model.horizon_ratio * case.model.spacing;
-        if specimen.smallest_flaw() <= 2.5 * back {
-            return Err(crate::error::input(
-                "fatigue.precrack",
-                "\"grown\"",
-                format!(
-                    "needs cracks longer than {:.2} mm, five horizons, to grow them from two horizons shorter",
-                    2.5 * back / crate::units::MM
-                ),
-                "use \"steady_profile\", or a smaller model.spacing_mm",
-            ));
-        }
-        let growth = vec![-back; specimen.tips.len()];
-        specimen.crack_length = specimen.crack_length_after(&growth);
-        for tip in &mut specimen.tips {
-            let moved = [tip.position[0] - back * tip.direction[0], tip.position[1] - back * tip.direction[1]];
-            for crack in &mut specimen.cracks {
-                for end in [&mut crack.from, &mut crack.to] {
-                    if *end == tip.position {
-                        *end = moved;
-                    }
-                }
-            }
-            tip.position = moved;
-        }
-    }
-    Ok(specimen)
 }
 
 /// Bonds between tips and an edge or hole less than one spacing ahead; those tips end.

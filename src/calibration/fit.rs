@@ -75,6 +75,7 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
     let Found { constants, mut runs, mut warnings } = found;
     let (_, last_run) = &runs[runs.len() - 1]; // a search makes at least one run
     let (horizon, spacing) = (last_run.horizon, last_run.spacing);
+    warnings.extend(last_run.warnings.iter().cloned());
     let model_cycles = cycles_since_first(&last_run.curve, target.lengths)?;
     let record = fitted_curve(&median, constants, &model_cycles);
     let rate_lengths = paris::lengths(median.crack_length[0], longest(&median));

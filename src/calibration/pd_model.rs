@@ -7,7 +7,6 @@ use crate::error::{Error, Result};
 use crate::fatigue::FatigueLaw;
 use crate::fatigue::ageing::AgeingBond;
 use crate::fatigue::length_average::LengthAverage;
-use crate::fatigue::precrack::{Passage, steady_lives};
 use crate::predict::{CurvePoint, Observer, Recorder, StopReason, run};
 
 /// Runs a case with A = 1 and any p.
@@ -42,17 +41,18 @@ impl ForwardModel for PdModel<'_> {
         }
         let curve: UnitCurve =
             done.curve.iter().map(|CurvePoint { cycles, crack_length, .. }| (*cycles, *crack_length)).collect();
-        let (start, end) = (self.case.specimen.crack_length, done.crack_length_final());
+        let end = done.crack_length_final();
         let figures = done.figures;
-        let replay = move |p: f64| recording.replay(p, start, end, figures.spacing);
-        Ok(RecordedRun::new(curve, figures.horizon, figures.spacing, replay))
+        let replay = move |p: f64| recording.replay(p, end, figures.spacing);
+        let mut recorded = RecordedRun::new(curve, figures.horizon, figures.spacing, replay);
+        recorded.warnings = done.warnings;
+        Ok(recorded)
     }
 }
 
 /// What a run did, block by block.
 #[derive(Debug, Default)]
 struct Recording {
-    passages: Vec<Vec<Passage>>,
     blocks: Vec<RecordedBlock>,
 }
 
@@ -64,10 +64,6 @@ struct RecordedBlock {
 }
 
 impl Recorder for Recording {
-    fn start(&mut self, passages: &[Vec<Passage>]) {
-        self.passages = passages.to_vec();
-    }
-
     fn block(&mut self, ageing: &[AgeingBond], spent: &[Bond], crack_length: f64) {
         self.blocks.push(RecordedBlock { ageing: ageing.to_vec(), spent: spent.to_vec(), crack_length });
     }
@@ -76,10 +72,10 @@ impl Recorder for Recording {
 impl Recording {
     /// The same sequence of breaks at another exponent, with the strains as recorded: each block lasts until its bonds are
     /// spent. Good to about 1 % of life for a change of p by 0.3, since the order of breaks hardly depends on p.
-    fn replay(&self, p: f64, start: f64, end: f64, spacing: f64) -> UnitCurve {
-        let mut life: std::collections::HashMap<Bond, f64> = steady_lives(&self.passages, p).into_iter().collect();
+    fn replay(&self, p: f64, end: f64, spacing: f64) -> UnitCurve {
+        let mut life: std::collections::HashMap<Bond, f64> = std::collections::HashMap::new();
         let mut cycles = 0.0;
-        let (mut all_cycles, mut lengths) = (vec![0.0], vec![start]);
+        let (mut all_cycles, mut lengths) = (Vec::new(), Vec::new());
         for block in &self.blocks {
             let spending: Vec<(Bond, f64)> = block.ageing.iter().map(|b| (b.bond, b.strain.powf(p))).collect();
             let to_spend = |(bond, rate): &(Bond, f64)| life.get(bond).copied().unwrap_or(1.0).max(0.0) / rate;
@@ -91,11 +87,8 @@ impl Recording {
                 *life.entry(bond).or_insert(1.0) -= lasts * rate;
             }
             cycles += lasts;
-            let length = block.crack_length.min(end);
-            if length >= start {
-                all_cycles.push(cycles);
-                lengths.push(length);
-            }
+            all_cycles.push(cycles);
+            lengths.push(block.crack_length.min(end));
         }
         let averaged = LengthAverage::new(&all_cycles, &lengths, spacing).of_rising(&lengths);
         all_cycles.into_iter().zip(averaged).collect()

@@ -7,7 +7,6 @@ pub mod length_average;
 pub mod no_fail;
 pub mod paris;
 pub mod pieces;
-pub mod precrack;
 pub mod remaining_life;
 
 /// Critical stretch s_t where a case gives none: 5 %, which no plate bears within linear elasticity. It lets the last
@@ -25,8 +24,8 @@ crate::kinds! {
 crate::kinds! {
     /// What happened before N = 0.
     pub enum Precrack for "fatigue.precrack" {
-        Grown = "grown": "the crack is grown from two horizons shorter; N = 0 where it reaches the given length",
-        SteadyProfile = "steady_profile": "bonds ahead of the tip start with the lives that steady growth would have left them",
+        Grown = "grown": "the crack is cut two horizons shorter and grows freely to the given length, where N = 0",
+        SteadyProfile = "steady_profile": "bonds around the tip start with the lives that steady growth along the line of the crack leaves them",
         None = "none": "every bond starts with its whole life, as at a machined notch",
     }
 }
@@ -68,6 +67,11 @@ pub struct Block {
     pub cycles: f64,
     /// Bonds (or groups that break together) after which an `until_next_break` block ends.
     pub bonds: usize,
+}
+
+impl Block {
+    /// Until the next bond breaks.
+    pub const NEXT_BREAK: Block = Block { kind: BlockKind::UntilNextBreak, cycles: f64::INFINITY, bonds: 1 };
 }
 
 /// What a case says about fatigue, except the constants of the law.

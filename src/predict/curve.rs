@@ -45,23 +45,26 @@ pub struct Track {
     formula: Option<HandbookFormula>,
     /// Crack length at which N = 0.
     origin: f64,
-    /// Cycles of the run at N = 0, once the crack has reached that length.
-    zero: Option<f64>,
+    specimen: Specimen,
+    /// Row at which cycles began to count.
+    zero: Option<usize>,
     /// Cycles since N = 0 at which the run was ended without a break.
     run_out: Option<f64>,
 }
 
 impl Track {
-    pub(super) fn new(case: &Case, specimen: &Specimen, tips: &[CrackTip], work: f64) -> Self {
+    /// Starts with the plate as it was cut; `growth` counts from the initial length of every tip.
+    pub(super) fn new(case: &Case, growth: &[f64], tips: &[CrackTip], work: f64) -> Self {
         let mut track = Track {
             rows: Vec::new(),
             cycles: 0.0,
             formula: handbook(&case.specimen),
             origin: case.specimen.crack_length,
+            specimen: case.specimen.clone(),
             zero: None,
             run_out: None,
         };
-        track.record(specimen, tips, 0, work);
+        track.record(growth, tips, 0, work);
         track
     }
 
@@ -71,8 +74,15 @@ impl Track {
         &self.rows[self.rows.len() - 1]
     }
 
+    /// Blocks since N = 0.
     pub(super) fn blocks(&self) -> usize {
-        self.rows.len() - 1
+        self.zero.map_or(0, |zero| self.rows.len() - 1 - zero)
+    }
+
+    /// Lets cycles count from the latest row on; whether they did not before.
+    pub(super) fn begin(&mut self) -> bool {
+        let now = self.rows.len() - 1;
+        self.zero.replace(self.zero.unwrap_or(now)).is_none()
     }
 
     /// Lets cycles pass.
@@ -82,17 +92,13 @@ impl Track {
 
     /// Cycles since N = 0; none before.
     pub(super) fn cycles_since_start(&self) -> f64 {
-        self.zero.map_or(0.0, |zero| self.cycles - zero)
+        self.zero.map_or(0.0, |zero| self.cycles - self.rows[zero].cycles)
     }
 
-    /// Records the plate after a block.
-    pub(super) fn record(&mut self, specimen: &Specimen, tips: &[CrackTip], broken_bonds: usize, work: f64) {
-        let growth: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
-        let crack_length = specimen.crack_length_after(&growth);
-        if self.zero.is_none() && crack_length >= self.origin * (1.0 - 1e-12) {
-            self.zero = Some(self.cycles);
-        }
-        let tips = tips.iter().map(|tip| TipRecord { position: tip.position, growth: tip.growth }).collect();
+    /// Records the plate after a block; `growth` of the tips counts from their initial lengths.
+    pub(super) fn record(&mut self, growth: &[f64], tips: &[CrackTip], broken_bonds: usize, work: f64) {
+        let crack_length = self.specimen.crack_length_after(growth);
+        let tips = tips.iter().zip(growth).map(|(tip, &growth)| TipRecord { position: tip.position, growth }).collect();
         self.rows.push(Row { cycles: self.cycles, crack_length, work, broken_bonds, tips });
     }
 
@@ -123,10 +129,11 @@ impl Track {
         }
     }
 
-    /// Largest K of the cycle at the last row, Pa√m, from the energy release rate there; `None` where a handbook knows it, or
-    /// before the crack has grown by two horizons.
+    /// Largest K of the cycle at the last row, Pa√m, from the energy release rate there; `None` before N = 0, where a handbook
+    /// knows it, or before the crack has grown by two horizons since it was cut.
     pub(super) fn k_max_released(&self, case: &Case, horizon: f64) -> Option<f64> {
-        if self.formula.is_some() || self.last().growth() < RELEASE_KNOWN_HORIZONS * horizon {
+        let grown = self.last().growth() - self.rows[0].growth();
+        if self.zero.is_none() || self.formula.is_some() || grown < RELEASE_KNOWN_HORIZONS * horizon {
             return None;
         }
         let span = RELEASE_SPAN_HORIZONS * horizon;
@@ -191,7 +198,7 @@ impl Track {
         rows
     }
 
-    /// Cycles of the run at which the crack has its initial length, between two rows.
+    /// Cycles of the run at which the averaged crack has its initial length, between two rows.
     fn zero_of(&self, rows: &[Row]) -> f64 {
         match rows.iter().position(|row| row.crack_length >= self.origin * (1.0 - 1e-12)) {
             Some(at) if at > 0 => {
@@ -213,31 +220,29 @@ impl Track {
         }
         let rate = rates(&self.samples(&rows), RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
         let share = case.loading.range_share();
-        let start =
-            rows.iter().position(|row| row.cycles >= zero && row.crack_length >= self.origin * (1.0 - 1e-12)).unwrap_or(0);
-        let offset: Vec<f64> = rows[start].tips.iter().map(|tip| if start == 0 { tip.growth } else { 0.0 }).collect();
-        let grown_before = self.origin - rows[0].crack_length;
-        let point = |row: &Row, rate_at: usize, cycles: f64, crack_length: f64| CurvePoint {
+        // The first row is the plate at N = 0 exactly, with what the row there or just after it says.
+        let start = rows.partition_point(|row| row.cycles < zero).min(rows.len() - 1);
+        let broken_before = self.rows[start].broken_bonds;
+        let point = |i: usize, cycles: f64, crack_length: f64| CurvePoint {
             cycles,
             crack_length,
             delta_k: match &self.formula {
                 Some(formula) => formula.delta_k(crack_length, case.loading.maximum, share),
-                None => share * (rate[rate_at].energy_release_rate * case.material.plane_modulus()).sqrt(),
+                None => share * (rate[i].energy_release_rate * case.material.plane_modulus()).sqrt(),
             },
-            growth_rate: rate[rate_at].growth_rate,
-            work: row.work,
-            broken_bonds: row.broken_bonds,
-            tips: row
-                .tips
-                .iter()
-                .zip(&offset)
-                .map(|(tip, o)| TipRecord { position: tip.position, growth: (tip.growth - grown_before).max(0.0) - o })
-                .collect(),
+            growth_rate: rate[i].growth_rate,
+            work: rows[i].work,
+            broken_bonds: rows[i].broken_bonds - broken_before,
+            tips: rows[i].tips.clone(),
         };
-        let mut curve = vec![point(&rows[start], start, 0.0, self.origin)];
+        let mut first = point(start, 0.0, self.origin);
+        first.tips.iter_mut().for_each(|tip| tip.growth = 0.0);
+        let mut curve = vec![first];
         for (i, row) in rows.iter().enumerate().skip(start) {
             if row.cycles > zero || row.crack_length > self.origin * (1.0 + 1e-12) {
-                curve.push(point(row, i, (row.cycles - zero).max(0.0), row.crack_length));
+                let mut next = point(i, (row.cycles - zero).max(0.0), row.crack_length.max(self.origin));
+                next.tips.iter_mut().for_each(|tip| tip.growth = tip.growth.max(0.0));
+                curve.push(next);
             }
         }
         curve

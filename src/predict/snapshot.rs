@@ -10,6 +10,7 @@ use crate::state::Bonds;
 const BETWEEN: f64 = 20.0;
 
 /// Collects snapshots at even steps of growth.
+#[derive(Default)]
 pub struct Album {
     /// What was taken so far.
     pub snapshots: Vec<Snapshot>,
@@ -18,11 +19,11 @@ pub struct Album {
 }
 
 impl Album {
-    /// Starts with the plate before the first block.
-    pub fn new(body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) -> Self {
+    /// Starts with the plate at N = 0.
+    pub fn open(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) {
         let lattice = &body.lattice;
-        let step = lattice.columns.min(lattice.rows) as f64 * lattice.spacing / BETWEEN;
-        Album { snapshots: vec![take(body, bonds, displacement, row)], step, next: row.growth() + step }
+        self.step = lattice.columns.min(lattice.rows) as f64 * lattice.spacing / BETWEEN;
+        self.look(body, bonds, displacement, row);
     }
 
     /// Whether the cracks have grown enough for the next snapshot.
