@@ -11,8 +11,8 @@ use crate::specimen::handbook::{HandbookFormula, handbook};
 
 /// Growth, in horizons, over which rates are taken.
 const RATE_SPAN_HORIZONS: f64 = 1.0;
-/// Growth of all tips together, in horizons, from which the energy release rate at the end of it is taken: K within 5 % on a
-/// coarse panel (2 mm), within 3 % at 1 mm.
+/// Growth of all tips together, in horizons, from which the energy release rate at the end of it is taken: K within 2 % where
+/// the crack is four horizons long, within 7 % where it is two.
 const RELEASE_SPAN_HORIZONS: f64 = 3.0;
 /// Growth before which that says nothing: the first bonds to break turn the cut end of a crack into a grown one.
 const RELEASE_KNOWN_HORIZONS: f64 = 2.0;

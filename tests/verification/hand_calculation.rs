@@ -166,9 +166,9 @@ fn the_engine_ends_at_the_same_crack_length() {
 fn toughness_stops_plates_that_no_handbook_knows() {
     let strip = "kind=\"plate\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncracks=[{from_mm=[-12,0],to_mm=[12,0]}]\n";
     let panel = "kind=\"middle_tension\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=12\n";
-    for toughness in [18.0, 20.0, 22.5, 25.0, 28.0] {
+    for toughness in [16.0, 18.0, 20.0, 25.0] {
         let strength = format!("material.toughness_mpa_sqrt_m={toughness}");
-        let set = ["stop.cycles_max=1e7", strength.as_str()];
+        let set = ["stop.cycles_max=1e7", "model.spacing_mm=1", strength.as_str()];
         let ends = [strip, panel].map(|specimen| {
             let run = predict(&case(specimen, &set), &Silent).unwrap();
             assert_eq!(run.stop, StopReason::Toughness);
@@ -176,7 +176,7 @@ fn toughness_stops_plates_that_no_handbook_knows() {
             run.crack_length_final() / MM / if specimen == strip { 2.0 } else { 1.0 }
         });
         println!("K = {toughness} MPa√m at {:.3} mm by energy release, {:.3} mm by the handbook", ends[0], ends[1]);
-        // K within 5 % on this lattice of 2 mm; a millimetre of crack is 7 % of K here.
-        assert!((ends[0] - ends[1]).abs() < 0.7, "{ends:?}");
+        // Reached: K within 2 %, as good as that of the lattice itself; a millimetre of crack is 6 % of K here.
+        assert!((ends[0] - ends[1]).abs() < 0.5, "{ends:?}");
     }
 }
