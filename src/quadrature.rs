@@ -29,8 +29,7 @@ const KRONROD: [f64; 8] = [
     0.209_482_141_084_727_82,
 ];
 /// Weights of the Gauss rule at the abscissas of odd index and, last, in the middle.
-const GAUSS: [f64; 4] =
-    [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_9, 0.417_959_183_673_469_4];
+const GAUSS: [f64; 4] = [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_9, 0.417_959_183_673_469_4];
 
 /// Value of an integral and a bound of its error as the rules see it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

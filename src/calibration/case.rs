@@ -12,8 +12,8 @@ use crate::calibration::record::SourceFile;
 use crate::case::{Case, LAW_KEYS, LawSource, Method};
 use crate::error::{Error, input, input_missing};
 use crate::input::{Document, LENGTH, slice};
-use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::specimen::Specimen;
+use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::MM;
 
 crate::kinds! {
@@ -167,9 +167,7 @@ fn exponent(fit: &FitSlice, base_dir: &Path, method: Method, delta_k_ratio: f64)
     }
     match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
         (_, Some(p), Some(_)) => Err(input("fit.p", p, "stands beside record: p is given twice", "give p or record")),
-        (true, Some(p), None) => {
-            Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]"))
-        }
+        (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
         (true, None, None) => Ok(Exponent::fitted(delta_k_ratio)),
         (true, None, Some(file)) => Exponent::record_if_needed(file, base_dir, method, delta_k_ratio),
         (false, Some(p), None) => Ok(Exponent::given(p)),

@@ -21,9 +21,10 @@ pub fn first_end(case: &Case) -> Option<End> {
     let (start, limit) = (specimen.crack_length, specimen.length_limit().0);
     let end = |crack_length: f64, reason| End { crack_length, reason };
     let wanted = case.stop.crack_length.is_finite().then(|| end(case.stop.crack_length, StopReason::CrackLengthReached));
-    let toughness = case.material.toughness.zip(handbook(specimen)).map(|(toughness, formula)| {
-        end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), StopReason::Toughness)
-    });
+    let toughness =
+        case.material.toughness.zip(handbook(specimen)).map(|(toughness, formula)| {
+            end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), StopReason::Toughness)
+        });
     let net_section = case.material.yield_strength.filter(|_| specimen.ligament(start).is_some()).map(|strength| {
         // Known for this kind, so the default is never taken.
         let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);

@@ -73,9 +73,8 @@ struct Growth<'a> {
 
 impl<'a> Growth<'a> {
     fn of(case: &'a Case) -> Result<Self> {
-        let formula = handbook(&case.specimen).ok_or_else(|| {
-            input_missing("model.method", "\"handbook\" has no K(a) for this specimen", "use \"peridynamics\"")
-        })?;
+        let formula = handbook(&case.specimen)
+            .ok_or_else(|| input_missing("model.method", "\"handbook\" has no K(a) for this specimen", "use \"peridynamics\""))?;
         Ok(Growth { case, formula, law: case.paris_law()?, share: strain_share(&case.loading, &case.fatigue) })
     }
 
@@ -153,9 +152,8 @@ impl<'a> Growth<'a> {
         let delta_k = self.formula.delta_k(crack_length, loading.maximum, loading.range_share());
         let grows = delta_k > self.case.fatigue.threshold;
         let growth = crack_length - specimen.crack_length;
-        let ahead = |seed: &crate::specimen::TipSeed| {
-            along(seed.position, [0, 1].map(|i| seed.position[i] + seed.direction[i]), growth)
-        };
+        let ahead =
+            |seed: &crate::specimen::TipSeed| along(seed.position, [0, 1].map(|i| seed.position[i] + seed.direction[i]), growth);
         CurvePoint {
             cycles,
             crack_length,

@@ -28,8 +28,7 @@ fn unit(case: &Case) -> (&'static str, &'static str, f64) {
 #[must_use]
 pub fn table(case: &Case, curve: &[Strength]) -> String {
     let (unit, _, size) = unit(case);
-    let mut text =
-        format!("crack_length_mm,residual_strength_{unit},by_toughness_{unit},by_net_section_{unit},governed_by\n");
+    let mut text = format!("crack_length_mm,residual_strength_{unit},by_toughness_{unit},by_net_section_{unit},governed_by\n");
     let field = |load: Option<f64>| load.map_or_else(String::new, |load| number(load / size));
     for strength in curve {
         // Writing to a String cannot fail.
@@ -65,10 +64,5 @@ pub fn write(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> {
         series("maximum load of the cycle", Mark::Dots, &|_| Some(case.loading.maximum)),
     ];
     let known: Vec<Series> = all.into_iter().filter(|series| !series.points.is_empty()).collect();
-    chart::over_crack_length(
-        &folder.join("residual_strength.svg"),
-        &format!("{}: residual strength", case.name),
-        axis,
-        &known,
-    )
+    chart::over_crack_length(&folder.join("residual_strength.svg"), &format!("{}: residual strength", case.name), axis, &known)
 }

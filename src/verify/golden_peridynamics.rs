@@ -37,7 +37,13 @@ pub fn by_bonds(table: &mut Table) -> Result<()> {
     table.compare("M(T) 9 to 49.8 mm, 1 mm spacing: cycles", life(&whole, 9.0, 49.8)?, 247_247.0, BOUND, source);
     table.compare("M(T) to K_max = 40 MPa√m at 56.154 mm: cycles", life(&whole, 9.0, 56.154)?, 251_721.0, BOUND, source);
     table.compare("M(T) to net-section yield: cycles", scale * whole.life_cycles(), 254_287.0, BOUND, source);
-    table.compare("M(T) net-section yield at a, mm", whole.crack_length_final() / MM, 62.871, 0.1, "W σ_max / (W - 2a) = 345 MPa");
+    table.compare(
+        "M(T) net-section yield at a, mm",
+        whole.crack_length_final() / MM,
+        62.871,
+        0.1,
+        "W σ_max / (W - 2a) = 345 MPa",
+    );
 
     let later = bonds(PANEL, &[&m[..], &["specimen.crack_length_mm=20", "stop.crack_length_mm=49.8"]].concat())?;
     let source = "golden life by hand calculation; A fitted to the panel from 9 mm";

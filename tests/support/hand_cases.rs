@@ -11,7 +11,8 @@ const REST: &str = "[material]\nyoungs_modulus_gpa = 73.1\npoisson_ratio = 0.33\
                     [fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n";
 
 /// The panel of Virkler, Hillberry and Goel (1979).
-pub const PANEL: &str = "kind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\ncrack_length_mm = 9\n";
+pub const PANEL: &str =
+    "kind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\ncrack_length_mm = 9\n";
 /// Specimens of every kind with a handbook formula.
 pub const ALL: [&str; 4] = [
     PANEL,

@@ -74,7 +74,11 @@ fn a_narrow_window_takes_p_from_a_record_or_says_that_it_is_not_identified() {
 
     let (free, _) = report(NARROW, "");
     assert_eq!(free.p_source, "not_identified");
-    assert!(free.warnings.iter().any(|line| line.contains("p is not identified") && line.contains("record")), "{:?}", free.warnings);
+    assert!(
+        free.warnings.iter().any(|line| line.contains("p is not identified") && line.contains("record")),
+        "{:?}",
+        free.warnings
+    );
 
     let (taken, _) = report(NARROW, "record = \"fitted.toml\"");
     assert_eq!((taken.p, taken.p_error, taken.paris_m_error), (law.paris_m, 0.04, 0.04));

@@ -65,5 +65,8 @@ fn the_plastic_zone_is_told_and_warned_about() {
     let lines = warnings(&hand_case(PANEL, &strain), &hand_run(PANEL, &strain).curve);
     assert!(lines.iter().any(|line| line.contains("plane strain at the crack tip asks for a thickness of 6.5")), "{lines:?}");
     // Without a yield strength nothing is known.
-    assert!(plastic_zone(&hand_case(PANEL, &[]), &run.curve).is_none() && json::result(&hand_case(PANEL, &[]), &run)["plastic_zone"].is_null());
+    assert!(
+        plastic_zone(&hand_case(PANEL, &[]), &run.curve).is_none()
+            && json::result(&hand_case(PANEL, &[]), &run)["plastic_zone"].is_null()
+    );
 }

@@ -55,7 +55,8 @@ fn only_specimens_of_the_handbook_are_taken() {
     for kind in SpecimenKind::ALL {
         assert!(covered.contains(kind) || *kind == SpecimenKind::Plate, "{kind} is new: has it a formula?");
     }
-    let plate = "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]\n";
+    let plate =
+        "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]\n";
     let clamped = ALL[1].replace("uniform_stress", "clamped");
     for (specimen, set) in [(plate, ""), (clamped.as_str(), ""), (PANEL, "specimen.length_mm=160")] {
         let set: Vec<&str> = [set].into_iter().filter(|set| !set.is_empty()).collect();
