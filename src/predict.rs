@@ -197,9 +197,11 @@ pub fn run(
         iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
     }
     album.finish(&body, &bonds, &displacement, track.last());
-    let (blocks, mut warnings) = (track.blocks(), track.warnings(case, &body));
+    let mut warnings = track.warnings(case, &body);
     let curve = track.into_curve(case, &body);
     warnings.extend(plastic_zone::warnings(case, &curve));
+    // Those since N = 0, one row each.
+    let blocks = curve.len() - 1;
     Ok(Prediction {
         curve,
         stop,

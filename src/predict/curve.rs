@@ -74,11 +74,6 @@ impl Track {
         &self.rows[self.rows.len() - 1]
     }
 
-    /// Blocks since N = 0.
-    pub(super) fn blocks(&self) -> usize {
-        self.zero.map_or(0, |zero| self.rows.len() - 1 - zero)
-    }
-
     /// Lets cycles count from the latest row on; whether they did not before.
     pub(super) fn begin(&mut self) -> bool {
         let now = self.rows.len() - 1;
