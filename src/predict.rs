@@ -89,7 +89,7 @@ pub fn run(
     let mut life = BondLife::whole(bonds.multiplier.len());
     let mut tips = start.tips(&body);
     let mut displacement = Vec::new();
-    if let Cut::Severed = set_aside(&body, &mut bonds, &body.pre_cut) {
+    if start::cuts_in_two(&body, &bonds, case) || set_aside(&body, &mut bonds, &body.pre_cut) == Cut::Severed {
         return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
     }
     let mut equilibrium = Equilibrium::new(model.solver, &body, &bonds, case.loading.maximum);
@@ -185,7 +185,7 @@ pub fn run(
             album.look(&body, &bonds, &displacement, track.last());
         }
         let going_on = observer.block_done(&track.progress(case));
-        if let Some(reason) = outcome.or_else(|| stop::after_block(end, &mut track)) {
+        if let Some(reason) = outcome.or_else(|| stop::after_block(case, end, &track)) {
             break reason;
         }
         if !going_on {
@@ -193,12 +193,13 @@ pub fn run(
         }
     };
 
+    let stop = stop::settled(end, &track, stop);
     if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
         iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
     }
     album.finish(&body, &bonds, &displacement, track.last());
     let mut warnings = track.warnings(case, &body);
-    let curve = track.into_curve(case, &body);
+    let curve = track.into_curve(case, &body, end);
     warnings.extend(plastic_zone::warnings(case, &curve));
     // Those since N = 0, one row each.
     let blocks = curve.len() - 1;

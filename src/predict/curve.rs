@@ -1,5 +1,6 @@
 //! The growing a-N curve of a run.
 
+use super::end_of_life::End;
 use super::outcome::{CurvePoint, Progress, TipRecord};
 use crate::body::Body;
 use crate::case::Case;
@@ -80,6 +81,11 @@ impl Track {
         self.zero.replace(self.zero.unwrap_or(now)).is_none()
     }
 
+    /// Whether cycles count.
+    pub(super) fn is_counting(&self) -> bool {
+        self.zero.is_some()
+    }
+
     /// Lets cycles pass.
     pub(super) fn spend(&mut self, cycles: f64) {
         self.cycles += cycles;
@@ -102,33 +108,11 @@ impl Track {
         self.run_out = Some(cycles_max);
     }
 
-    /// Shortens the last row to the crack length at which the run stops.
-    pub(super) fn end_at(&mut self, crack_length: f64) {
-        let count = self.rows.len();
-        if count < 2 {
-            return;
-        }
-        let before = self.rows[count - 2].clone();
-        let row = &mut self.rows[count - 1];
-        let share = (crack_length - before.crack_length) / (row.crack_length - before.crack_length);
-        if !(0.0..1.0).contains(&share) {
-            return;
-        }
-        let between = |a: f64, b: f64| a + share * (b - a);
-        row.cycles = between(before.cycles, row.cycles);
-        row.crack_length = crack_length;
-        row.work = between(before.work, row.work);
-        for (tip, old) in row.tips.iter_mut().zip(&before.tips) {
-            tip.growth = between(old.growth, tip.growth);
-            tip.position = [0, 1].map(|i| between(old.position[i], tip.position[i]));
-        }
-    }
-
     /// Largest K of the cycle at the last row, Pa√m, from the energy release rate there; `None` before N = 0, where a handbook
     /// knows it, or before the crack has grown by two horizons since it was cut.
     pub(super) fn k_max_released(&self, case: &Case, horizon: f64) -> Option<f64> {
         let grown = self.last().growth() - self.rows[0].growth();
-        if self.zero.is_none() || self.formula.is_some() || grown < RELEASE_KNOWN_HORIZONS * horizon {
+        if !self.is_counting() || self.formula.is_some() || grown < RELEASE_KNOWN_HORIZONS * horizon {
             return None;
         }
         let span = RELEASE_SPAN_HORIZONS * horizon;
@@ -205,13 +189,16 @@ impl Track {
         }
     }
 
-    /// The curve from N = 0.
-    pub(super) fn into_curve(self, case: &Case, body: &Body) -> Vec<CurvePoint> {
+    /// The curve from N = 0 to a known end.
+    pub(super) fn into_curve(self, case: &Case, body: &Body, end: Option<End>) -> Vec<CurvePoint> {
         let mut rows = self.averaged(body.lattice.spacing);
         let zero = self.zero_of(&rows);
         if let Some(cycles_max) = self.run_out {
             // The crack stands where it is until then.
             rows.extend(rows.last().cloned().map(|row| Row { cycles: zero + cycles_max, ..row }));
+        }
+        if let Some(end) = end {
+            end_at(&mut rows, end.crack_length);
         }
         let rate = rates(&self.samples(&rows), RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
         let share = case.loading.range_share();
@@ -241,5 +228,22 @@ impl Track {
             }
         }
         curve
+    }
+}
+
+/// Ends the rows at a crack length that they pass.
+fn end_at(rows: &mut Vec<Row>, crack_length: f64) {
+    let Some(past) = rows.iter().position(|row| row.crack_length >= crack_length).filter(|&past| past > 0) else { return };
+    rows.truncate(past + 1);
+    let before = rows[past - 1].clone();
+    let row = &mut rows[past];
+    let share = (crack_length - before.crack_length) / (row.crack_length - before.crack_length);
+    let between = |a: f64, b: f64| a + share * (b - a);
+    row.cycles = between(before.cycles, row.cycles);
+    row.crack_length = crack_length;
+    row.work = between(before.work, row.work);
+    for (tip, old) in row.tips.iter_mut().zip(&before.tips) {
+        tip.growth = between(old.growth, tip.growth);
+        tip.position = [0, 1].map(|i| between(old.position[i], tip.position[i]));
     }
 }

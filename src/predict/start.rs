@@ -6,12 +6,15 @@
 //! cycles count: along its own line (`steady_profile`), whatever its bonds do, or freely (`grown`). Tips that are there wait for the others.
 
 use crate::body::Body;
+use crate::body::pre_crack::bonds_cut_by;
 use crate::case::Case;
 use crate::error::{Result, input};
 use crate::fatigue::Precrack;
 use crate::fatigue::crack_tip::CrackTip;
+use crate::fatigue::pieces::{Cut, set_aside};
 use crate::specimen::geometry::distance;
 use crate::specimen::{Specimen, TipSeed};
+use crate::state::Bonds;
 use crate::units::MM;
 
 /// Growth before N = 0 of a `grown` crack, in horizons.
@@ -32,6 +35,9 @@ pub(super) struct Start {
     /// Growth of every tip at which it has its initial length, m.
     lags: Vec<f64>,
     along_the_line: bool,
+    /// Lead of a steady front, m.
+    lead: f64,
+    horizon: f64,
 }
 
 impl Start {
@@ -39,6 +45,7 @@ impl Start {
     /// A crack too short to be `grown`.
     pub(super) fn of(case: &Case) -> Result<Start> {
         let horizon = case.model.horizon_ratio * case.model.spacing;
+        let lead = LEAD_SPACINGS * case.model.spacing;
         let mut specimen = case.specimen.clone();
         if case.fatigue.precrack == Precrack::Grown {
             check_grown(&specimen, GROWN_HORIZONS * horizon)?;
@@ -54,10 +61,10 @@ impl Start {
             let Some(crack) = crack.filter(|_| !tip.from_slot && wanted > 0.0) else { continue };
             let ends = case.specimen.tips.iter().filter(|t| t.position == crack.from || t.position == crack.to).count();
             let back = wanted.min(SHARE_MAX * distance(crack.from, crack.to) / ends as f64);
-            *lag = back + LEAD_SPACINGS * case.model.spacing;
+            *lag = back + lead;
         }
         for (tip, &lag) in specimen.tips.iter_mut().zip(&lags).filter(|(_, lag)| **lag > 0.0) {
-            let back = lag - LEAD_SPACINGS * case.model.spacing;
+            let back = lag - lead;
             let moved = [0, 1].map(|i| tip.position[i] - back * tip.direction[i]);
             for end in specimen.cracks.iter_mut().flat_map(|crack| [&mut crack.from, &mut crack.to]) {
                 if *end == tip.position {
@@ -66,7 +73,8 @@ impl Start {
             }
             tip.position = moved;
         }
-        Ok(Start { specimen, lags, along_the_line: case.fatigue.precrack == Precrack::SteadyProfile })
+        let along_the_line = case.fatigue.precrack == Precrack::SteadyProfile;
+        Ok(Start { specimen, lags, along_the_line, lead, horizon })
     }
 
     /// The tips of the cracks as they are cut.
@@ -78,9 +86,13 @@ impl Start {
         self.specimen.tips.iter().zip(&self.lags).map(tip).collect()
     }
 
-    /// Growth of the tips since they had their initial length, m; negative before.
+    /// Growth of the tips since they had their initial length, m; negative before. From a clean cut the lead of the front
+    /// builds up over the first horizon.
     pub(super) fn growth(&self, tips: &[CrackTip]) -> Vec<f64> {
-        tips.iter().zip(&self.lags).map(|(tip, lag)| tip.growth - lag).collect()
+        let growth = |(tip, &lag): (&CrackTip, &f64)| {
+            if lag > 0.0 { tip.growth - lag } else { tip.growth - self.lead * (tip.growth / self.horizon).min(1.0) }
+        };
+        tips.iter().zip(&self.lags).map(growth).collect()
     }
 
     /// Whether all tips have their initial length: cycles count.
@@ -92,6 +104,14 @@ impl Start {
     pub(super) fn on_the_way(&self, tips: &[CrackTip]) -> Vec<CrackTip> {
         tips.iter().zip(&self.lags).filter(|(tip, lag)| tip.growth < **lag).map(|(tip, _)| tip.clone()).collect()
     }
+}
+
+/// Whether the cracks at their initial length leave two loaded pieces.
+pub(super) fn cuts_in_two(body: &Body, bonds: &Bonds, case: &Case) -> bool {
+    let mut bonds = bonds.clone();
+    let cut = bonds_cut_by(body, &case.specimen.cracks);
+    cut.iter().for_each(|&bond| bonds.cut(body, bond));
+    set_aside(body, &mut bonds, &cut) == Cut::Severed
 }
 
 fn check_grown(specimen: &Specimen, back: f64) -> Result<()> {

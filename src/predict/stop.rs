@@ -15,7 +15,7 @@ pub(super) fn before_block(
     tips: &[CrackTip],
     ageing: &[AgeingBond],
 ) -> Option<StopReason> {
-    if let Some(end) = end.filter(|end| track.last().crack_length >= end.crack_length) {
+    if let Some(end) = end.filter(|end| end.crack_length <= case.specimen.crack_length && track.is_counting()) {
         return Some(end.reason);
     }
     // Where no handbook knows K, the energy released so far does.
@@ -32,9 +32,13 @@ pub(super) fn before_block(
     ageing.is_empty().then_some(StopReason::NothingAges)
 }
 
-/// Reasons that show after a block: a known end is reached. The last row is shortened to it.
-pub(super) fn after_block(end: Option<End>, track: &mut Track) -> Option<StopReason> {
-    let end = end.filter(|end| track.last().crack_length >= end.crack_length)?;
-    track.end_at(end.crack_length);
-    Some(end.reason)
+/// Reasons that show after a block: a known end is passed. The run goes on for a spacing more, so that the length averaged over
+/// a spacing of growth is known up to the end; the curve stops there.
+pub(super) fn after_block(case: &Case, end: Option<End>, track: &Track) -> Option<StopReason> {
+    end.filter(|end| track.last().crack_length >= end.crack_length + case.model.spacing).map(|end| end.reason)
+}
+
+/// The reason that counts where a run had passed a known end before it stopped for another reason.
+pub(super) fn settled(end: Option<End>, track: &Track, stop: StopReason) -> StopReason {
+    end.filter(|end| track.last().crack_length >= end.crack_length).map_or(stop, |end| end.reason)
 }

@@ -48,17 +48,18 @@ impl Row {
     }
 }
 
-/// `a_n.csv`: one row per cycle block; after the four columns broken bonds and, per tip, position and growth.
+/// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
+/// (load squared times compliance) and, per tip, position and growth.
 #[must_use]
 pub fn a_n(prediction: &Prediction) -> String {
     let mut text = A_N_COLUMNS.join(",");
-    text.push_str(",broken_bonds");
+    text.push_str(",broken_bonds,load_work_j");
     for tip in 0..prediction.curve.first().map_or(0, |point| point.tips.len()) {
         let _ = write!(text, ",tip{tip}_x_mm,tip{tip}_y_mm,tip{tip}_growth_mm"); // writing to a String cannot fail
     }
     text.push('\n');
     for point in &prediction.curve {
-        let _ = write!(text, "{},{}", Row::of(point).fields(), point.broken_bonds);
+        let _ = write!(text, "{},{},{}", Row::of(point).fields(), point.broken_bonds, number(point.work));
         for tip in &point.tips {
             for length in [tip.position[0], tip.position[1], tip.growth] {
                 let _ = write!(text, ",{}", number(length / MM));

@@ -47,7 +47,7 @@ fn the_curve_table_reads_back() {
     }
     let header = csv::a_n(&run).lines().next().unwrap().to_owned();
     assert!(header.starts_with(
-        "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,broken_bonds,tip0_x_mm,tip0_y_mm,tip0_growth_mm,tip1_x_mm"
+        "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,broken_bonds,load_work_j,tip0_x_mm,tip0_y_mm,tip0_growth_mm,tip1_x_mm"
     ));
 }
 

@@ -16,6 +16,7 @@ fn panel(length: f64) -> String {
 fn a_grown_crack_is_as_long_as_its_compliance_says() {
     for (name, set) in [
         ("steady profile", vec!["fatigue.precrack=steady_profile"]),
+        ("clean cut", vec!["fatigue.precrack=none"]),
         ("grown", vec!["fatigue.precrack=grown"]),
         ("p = 2", vec!["fatigue.precrack=grown", "fatigue.p=2", "stop.cycles_max=1e12"]),
         ("p = 4", vec!["fatigue.precrack=grown", "fatigue.p=4", "stop.cycles_max=1e12"]),
@@ -34,6 +35,9 @@ fn a_grown_crack_is_as_long_as_its_compliance_says() {
             let point = run.curve.iter().find(|point| point.crack_length >= target * MM).unwrap();
             let found = by_compliance(point.work);
             println!("{name}: {:.3} mm, by compliance {:.3} mm", point.crack_length / MM, found / MM);
+            // A tenth of the spacing of 1 mm once the front is steady; a clean cut takes a horizon to get there.
+            let bound = if name == "clean cut" && target < 24.0 { 0.7 } else { 0.1 };
+            assert!((point.crack_length - found).abs() < bound * MM, "{name}: {} and {}", point.crack_length / MM, found / MM);
         }
     }
 }
