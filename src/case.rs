@@ -3,14 +3,17 @@
 mod choices;
 mod fatigue;
 mod law;
+mod law_source;
 mod model;
 mod read;
 
 pub use choices::{Choices, Discretisation, Failure, Method, Symmetry};
+pub use law_source::{LAW_KEYS, fitted_record};
 pub use read::SECTIONS;
 
 use crate::bond_law::BondLaw;
 use crate::calibration::record::FittedRecord;
+use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
 use crate::loading::Loading;
 use crate::material::Material;
@@ -21,9 +24,11 @@ use crate::specimen::Specimen;
 /// neighbour along a row belongs to the family whatever the round-off.
 pub const HORIZON_RATIO: f64 = 3.015;
 
-/// Peridynamic model of a case.
+/// Model of a case: the method and, for peridynamics, points and bonds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
+    /// How growth is computed.
+    pub method: Method,
     /// Bonds.
     pub bond_law: BondLaw,
     /// Spacing asked for, m; the body takes the nearest one that fits.
@@ -50,6 +55,8 @@ pub struct Stop {
 pub enum LawSource {
     /// Given in the case: `a`, `p`, `horizon_mm`.
     Inline(FatigueLaw),
+    /// Given in the case for hand calculation: `paris_c_mm_per_cycle`, `paris_m`.
+    Paris(ParisLaw),
     /// A record written by `perilife calibrate`.
     Fitted(Box<FittedRecord>),
     /// A record that does not exist yet (only `check` accepts this), or, with an empty path, no law at all (a calibration).

@@ -5,8 +5,12 @@
 //! calibration all come through here.
 
 mod curve;
+mod end_of_life;
+mod handbook;
 mod memory;
 mod outcome;
+pub mod plastic_zone;
+pub mod residual_strength;
 mod snapshot;
 mod start;
 mod stop;
@@ -19,19 +23,20 @@ pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigu
 
 use crate::body::pre_crack::bonds_across;
 use crate::body::{Body, Bond};
-use crate::case::Case;
+use crate::case::{Case, Method};
 use crate::error::{Error, Result};
 use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, stretch, threshold_strain};
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::fatigue::remaining_life::BondLife;
 use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
-use crate::solver::{Equilibrium, Focus};
 use crate::solver::field::Layout;
+use crate::solver::{Equilibrium, Focus};
 use crate::specimen::Specimen;
 use crate::specimen::geometry::distance;
 use crate::state::Bonds;
 use curve::Track;
+use end_of_life::first_end;
 use snapshot::Album;
 use start::Start;
 
@@ -40,7 +45,10 @@ use start::Start;
 /// # Errors
 /// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
-    run(case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer)
+    match case.model.method {
+        Method::Peridynamics => run(case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer),
+        Method::Handbook => handbook::run(case, observer),
+    }
 }
 
 /// Takes down what a run does, block by block, so that it can be replayed.
@@ -89,6 +97,7 @@ pub fn run(
     let mut solves = 1;
 
     let mut track = Track::new(case, start.records(&tips), equilibrium.work());
+    let end = first_end(case);
     let mut album = Album::default();
     let mut broken_bonds = 0;
     // Whether bonds away from the tips come near the critical stretch, so that all have to be watched.
@@ -113,7 +122,7 @@ pub fn run(
         }
         iterations += equilibrium.reach(&body, &bonds, &near, &focus(&tips, &body, settings), &mut displacement)?;
         let ageing = ageing_bonds(&body, &near, &displacement, share, threshold);
-        if let Some(reason) = stop::before_block(case, &tips, &ageing) {
+        if let Some(reason) = stop::before_block(case, end, &track, &tips, &ageing) {
             break reason;
         }
 
@@ -176,7 +185,7 @@ pub fn run(
             album.look(&body, &bonds, &displacement, track.last());
         }
         let going_on = observer.block_done(&track.progress(case));
-        if let Some(reason) = outcome.or_else(|| stop::after_block(case, &track)) {
+        if let Some(reason) = outcome.or_else(|| stop::after_block(case, end, &track)) {
             break reason;
         }
         if !going_on {
@@ -184,14 +193,18 @@ pub fn run(
         }
     };
 
-    let stop = stop::settled(case, &track, stop);
+    let stop = stop::settled(end, &track, stop);
     if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
         iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
     }
     album.finish(&body, &bonds, &displacement, track.last());
-    let (blocks, warnings) = (track.blocks(), track.warnings(case, &body));
+    let mut warnings = track.warnings(case, &body);
+    let curve = track.into_curve(case, &body, end);
+    warnings.extend(plastic_zone::warnings(case, &curve));
+    // Those since N = 0, one row each.
+    let blocks = curve.len() - 1;
     Ok(Prediction {
-        curve: track.into_curve(case, &body),
+        curve,
         stop,
         snapshots: album.snapshots,
         grid: snapshot::grid(&body),
@@ -241,9 +254,7 @@ fn focus(tips: &[CrackTip], body: &Body, settings: &FatigueSettings) -> Vec<Focu
     // Bonds of the zone, bridges of the wake, and a spacing in which the crack may turn.
     let reach = (settings.zone_radius_horizons + 0.5).max(1.0) * body.horizon() + body.lattice.spacing;
     let active = tips.iter().filter(|tip| tip.is_active());
-    active
-        .map(|tip| Focus { position: tip.position, direction: tip.direction, wake: tip.wake.clone(), reach })
-        .collect()
+    active.map(|tip| Focus { position: tip.position, direction: tip.direction, wake: tip.wake.clone(), reach }).collect()
 }
 
 /// Growth of the load's work by overload within one block, at constant load, from which the plate counts as severed: it has

@@ -15,3 +15,5 @@ mod check;
 mod cli;
 #[path = "interface/export.rs"]
 mod export;
+#[path = "interface/hand_calculation.rs"]
+mod hand_calculation;

@@ -1,5 +1,7 @@
 //! Does each part do its job?
 
+#[path = "support/hand_cases.rs"]
+mod hand_cases;
 #[path = "support/made_up_case.rs"]
 mod made_up_case;
 #[path = "support/made_up_run.rs"]
@@ -33,10 +35,22 @@ mod pictures;
 mod rates;
 #[path = "unit/report.rs"]
 mod report;
+#[path = "unit/residual_strength.rs"]
+mod residual_strength;
 #[path = "unit/case.rs"]
 mod case;
+#[path = "unit/exponent.rs"]
+mod exponent;
+#[path = "unit/fit_use.rs"]
+mod fit_use;
+#[path = "unit/growth_rate.rs"]
+mod growth_rate;
+#[path = "unit/hand_case.rs"]
+mod hand_case;
 #[path = "unit/handbook.rs"]
 mod handbook;
+#[path = "unit/quadrature.rs"]
+mod quadrature;
 #[path = "unit/loading.rs"]
 mod loading;
 #[path = "unit/specimen.rs"]

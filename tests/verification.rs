@@ -1,5 +1,7 @@
 //! Is the mathematics solved right?
 
+#[path = "support/hand_cases.rs"]
+mod hand_cases;
 #[path = "support/plates.rs"]
 mod plates;
 #[path = "support/noise.rs"]
@@ -23,3 +25,5 @@ mod fatigue;
 mod round_trip;
 #[path = "verification/crack_length.rs"]
 mod crack_length;
+#[path = "verification/hand_calculation.rs"]
+mod hand_calculation;

@@ -6,13 +6,14 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 
+use crate::calibration::exponent::Exponent;
 use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurve, Units, read};
 use crate::calibration::record::SourceFile;
-use crate::case::{Case, LawSource};
+use crate::case::{Case, LAW_KEYS, LawSource, Method};
 use crate::error::{Error, input, input_missing};
 use crate::input::{Document, LENGTH, slice};
+use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
-use crate::specimen::{Specimen, SpecimenKind};
 use crate::units::MM;
 
 crate::kinds! {
@@ -34,8 +35,8 @@ pub struct CalibrationCase {
     pub case: Case,
     /// Measured curves inside the fit window, cycles counted from its first reading.
     pub curves: Vec<MeasuredCurve>,
-    /// p given by the user; `None` fits it.
-    pub fixed_p: Option<f64>,
+    /// The exponent: fitted, given, or of a record.
+    pub exponent: Exponent,
     /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
     /// What the user should know.
@@ -60,6 +61,7 @@ struct MeasuredSlice {
 struct FitSlice {
     parameters: Option<Vec<Parameter>>,
     p: Option<f64>,
+    record: Option<String>,
 }
 
 impl CalibrationCase {
@@ -85,7 +87,6 @@ impl CalibrationCase {
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
         }
         check_walker(&case)?;
-        let fixed_p = fixed_p(&fit)?;
         let formula = handbook(&case.specimen).ok_or_else(|| {
             input(
                 "specimen.kind",
@@ -96,14 +97,18 @@ impl CalibrationCase {
         })?;
         let (files, sources) = sources(&keys.files, base_dir)?;
         let measured = read(&files, Units { length: keys.length_unit, cycles: keys.cycle_unit })?;
-        let (limit, limit_name) = length_limit(&case.specimen);
+        let (limit, limit_name) = case.specimen.length_limit();
         measured.check_lengths(limit, limit_name)?;
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;
+        let shortest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(f64::INFINITY, f64::min);
         let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
         if !formula.holds_at(case.specimen.crack_length) || !formula.holds_at(longest) {
             warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
         }
+        let delta_k = |length: f64| formula.k_i(length, case.loading.maximum);
+        let exponent = exponent(&fit, base_dir, case.model.method, delta_k(longest) / delta_k(shortest))?;
+        warnings.extend(exponent.warning.clone());
         case.stop.crack_length = longest;
         // A run for A = 1 counts A x cycles, which no limit in cycles is meant for.
         case.stop.cycles_max = f64::INFINITY;
@@ -111,7 +116,7 @@ impl CalibrationCase {
         case.material.yield_strength = None;
         warnings.extend(unrecorded(&case));
         warnings.extend(case.warnings.iter().cloned());
-        Ok(CalibrationCase { case, curves, fixed_p, sources, warnings, formula })
+        Ok(CalibrationCase { case, curves, exponent, sources, warnings, formula })
     }
 
     /// ΔK of the handbook (Pa√m) at a crack length (m).
@@ -121,21 +126,10 @@ impl CalibrationCase {
     }
 }
 
-/// Largest crack length the specimen has room for, m, and its name.
-#[must_use]
-pub fn length_limit(specimen: &Specimen) -> (f64, &'static str) {
-    match specimen.kind {
-        SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => (0.5 * specimen.width, "half width"),
-        SpecimenKind::SingleEdgeTension => (specimen.width, "width"),
-        SpecimenKind::CompactTension => (specimen.width, "width from the load line"),
-        SpecimenKind::Plate => (specimen.gross_width.max(specimen.length()), "size"),
-    }
-}
-
 /// Takes the law out of the sections of a case that is to get another one, or needs none.
 pub fn remove_law(sections: &mut Table) {
     if let Some(fatigue) = sections.get_mut("fatigue").and_then(Value::as_table_mut) {
-        for key in ["fitted", "a", "p", "horizon_mm"] {
+        for key in LAW_KEYS {
             fatigue.remove(key);
         }
     }
@@ -163,21 +157,26 @@ fn unrecorded(case: &Case) -> Option<String> {
     (case.fatigue.threshold > 0.0).then(|| line.to_owned())
 }
 
-/// p of `[fit]` where it is not fitted.
-fn fixed_p(fit: &FitSlice) -> crate::Result<Option<f64>> {
+/// The exponent of `[fit]` for a window with this ratio of the largest to the smallest ΔK.
+fn exponent(fit: &FitSlice, base_dir: &Path, method: Method, delta_k_ratio: f64) -> crate::Result<Exponent> {
     let parameters = fit.parameters.clone().unwrap_or_else(|| vec![Parameter::A, Parameter::P]);
     let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
     if !parameters.contains(&Parameter::A) {
         let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
         return Err(input("fit.parameters", format!("[{}]", names.join(", ")), "leaves a out, which is always fitted", remedy));
     }
-    match (parameters.contains(&Parameter::P), fit.p) {
-        (true, None) => Ok(None),
-        (true, Some(p)) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
-        (false, Some(p)) => Ok(Some(p)),
-        (false, None) => {
-            Err(input_missing("fit.p", "is missing", "give the exponent p, or fit it too: parameters = [\"a\", \"p\"]"))
-        }
+    match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
+        (_, Some(p), Some(_)) => Err(input("fit.p", p, "stands beside record: p is given twice", "give p or record")),
+        (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
+        (true, None, None) => Ok(Exponent::fitted(delta_k_ratio)),
+        (true, None, Some(file)) => Exponent::record_if_needed(file, base_dir, method, delta_k_ratio),
+        (false, Some(p), None) => Ok(Exponent::given(p)),
+        (false, None, Some(file)) => Exponent::of_record(file, base_dir, method),
+        (false, None, None) => Err(input_missing(
+            "fit.p",
+            "is missing",
+            "give the exponent p, or record = \"fitted.toml\", or fit it too: parameters = [\"a\", \"p\"]",
+        )),
     }
 }
 

@@ -75,6 +75,7 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
     let Found { constants, mut runs, mut warnings } = found;
     let (_, last_run) = &runs[runs.len() - 1]; // a search makes at least one run
     let (horizon, spacing) = (last_run.horizon, last_run.spacing);
+    warnings.extend(last_run.warnings.iter().cloned());
     let model_cycles = cycles_since_first(&last_run.curve, target.lengths)?;
     let record = fitted_curve(&median, constants, &model_cycles);
     let rate_lengths = paris::lengths(median.crack_length[0], longest(&median));
@@ -87,7 +88,8 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
             None => Some(Surrogate::new(&runs, lengths)?.cycles_per_p(constants.p)),
         })
     };
-    let apart = readings_apart(target.lengths, spacing);
+    // A model without lattice has no steps of its own.
+    let apart = readings_apart(target.lengths, if spacing.is_finite() { spacing } else { 0.0 });
     let pick = |values: &[f64]| apart.iter().map(|&i| values[i]).collect::<Vec<f64>>();
     let slopes_apart = slopes(target.lengths)?.map(|slopes| pick(&slopes));
     let confidence = confidence(&pick(&model_cycles), slopes_apart.as_deref(), &pick(target.cycles), 1.0 / constants.a);
@@ -103,7 +105,7 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
     if task.fixed_p.is_none() && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
             "p is not identified: the fit window spans only a factor {ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} is needed); \
-             widen the window, or fix p by [fit] parameters = [\"a\"] and p = ..."
+             widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
     Ok(Fit { record, specimens: each, confidence, paris, horizon, spacing, evaluations: runs.len(), warnings })

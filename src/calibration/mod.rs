@@ -4,9 +4,11 @@
 //! fitted; [`misfit`], [`search`] and [`confidence`]; [`fit`], the page that calls them in turn; what it means as C and m
 //! ([`paris`]); [`results`] as they are written and the [`record`] that predictions read. [`case`] reads the input file.
 
+pub mod calibrate;
 pub mod case;
 pub mod columns;
 pub mod confidence;
+pub mod exponent;
 pub mod fit;
 #[cfg(feature = "tables")]
 pub mod frames;

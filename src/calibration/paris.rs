@@ -5,6 +5,7 @@
 //! which of the many nearly equal pairs is taken: rate there and slope are uncorrelated.
 
 use crate::calibration::line::line;
+use crate::calibration::search::Constants;
 use crate::error::{Error, Result};
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
@@ -18,6 +19,8 @@ pub struct Paris {
     pub c: f64,
     /// Exponent m.
     pub m: f64,
+    /// Its standard error; 0 where p was given.
+    pub m_error: f64,
     /// Pivot ΔK, MPa√m.
     pub pivot: f64,
     /// Rate at the pivot, mm/cycle.
@@ -28,6 +31,15 @@ pub struct Paris {
     pub delta_k_min: f64,
     /// Largest ΔK of the window, MPa√m.
     pub delta_k_max: f64,
+}
+
+impl Paris {
+    /// The same pivot and window for a law whose A and p are C and m themselves ([`crate::calibration::power_law`]).
+    #[must_use]
+    pub fn of_power_law(self, constants: Constants, m_error: f64) -> Self {
+        let c = constants.a / MM_PER_CYCLE;
+        Paris { c, m: constants.p, m_error, rate_at_pivot: c * self.pivot.powf(constants.p), ..self }
+    }
 }
 
 /// Equally spaced lengths of the window at which rates are taken.
@@ -65,11 +77,14 @@ pub fn equivalents(
     let Some(law) = line(&log_k, &log_rate) else {
         return Err(Error::Mechanics("the fitted run has no growth rates to draw a Paris line through".to_owned()));
     };
+    // m follows p: its slope over p is that of the sensitivities over ln ΔK.
+    let m_per_p = line(&log_k, &sensitivity).map_or(0.0, |law| law.slope);
     let (log_pivot, error) = pivot(&log_k, &sensitivity, &weight, covariance);
     let ends = [at(lengths[0]), at(lengths[lengths.len() - 1])];
     Ok(Paris {
         c: law.intercept.exp(),
         m: law.slope,
+        m_error: m_per_p.abs() * covariance[1][1].max(0.0).sqrt(),
         pivot: log_pivot.exp(),
         rate_at_pivot: law.at(log_pivot).exp(),
         rate_at_pivot_error: error,

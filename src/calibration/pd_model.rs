@@ -44,7 +44,9 @@ impl ForwardModel for PdModel<'_> {
         let end = done.crack_length_final();
         let figures = done.figures;
         let replay = move |p: f64| recording.replay(p, end, figures.spacing);
-        Ok(RecordedRun::new(curve, figures.horizon, figures.spacing, replay))
+        let mut recorded = RecordedRun::new(curve, figures.horizon, figures.spacing, replay);
+        recorded.warnings = done.warnings;
+        Ok(recorded)
     }
 }
 

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::calibration::line::{Line, line};
 use crate::calibration::measured::MeasuredCurve;
 use crate::case::Case;
-use crate::specimen::{LoadMeasure, SpecimenKind};
+use crate::specimen::{LoadMeasure, SpecimenKind, net_section};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Smallest increment of crack length between readings that E647 (8.6.2) asks for, m.
@@ -166,21 +166,13 @@ pub fn add_delta_k(points: &mut [RatePoint], piece: &TestPiece<'_>) {
 }
 
 impl TestPiece<'_> {
-    /// Whether the ligament is large enough (ASTM E647, 7.2):
-    /// M(T) `W - 2a ≥ 1.25 P_max / (B σ_YS)`, that is 80 % of net-section yield;
-    /// C(T) and, by the same reasoning, edge cracks: ligament `≥ (4/π) (K_max / σ_YS)²`. True where the yield strength is not known.
+    /// Whether the ligament is large enough, see [`net_section::small_scale_yielding`]. True where the yield strength is not
+    /// known.
     #[must_use]
     pub fn small_scale_yielding(&self, crack_length: f64, k_max: f64) -> bool {
         let Some(yield_strength) = self.yield_strength else { return true };
-        let cracked = match self.kind {
-            SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => 2.0 * crack_length,
-            SpecimenKind::SingleEdgeTension | SpecimenKind::CompactTension | SpecimenKind::Plate => crack_length,
-        };
-        let needed = match self.kind {
-            SpecimenKind::MiddleTension => 1.25 * self.force_max / (self.thickness * yield_strength),
-            _ => 4.0 / std::f64::consts::PI * (k_max / yield_strength).powi(2),
-        };
-        self.width - cracked >= needed
+        let force = self.force_max / self.thickness;
+        net_section::small_scale_yielding(self.kind, self.width, crack_length, force, k_max, yield_strength)
     }
 }
 

@@ -23,6 +23,9 @@ pub struct FittedRecord {
     pub paris_c_mm_per_cycle: f64,
     /// Paris exponent m (not the same as p).
     pub paris_m: f64,
+    /// Standard error of m; absent in records of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub paris_m_error: Option<f64>,
     /// ΔK at which the fit is best determined.
     pub pivot_delta_k_mpa_sqrt_m: f64,
     /// da/dN there.
@@ -37,6 +40,9 @@ pub struct FittedRecord {
     pub delta_k_max_mpa_sqrt_m: f64,
     /// Stress ratio of the tests.
     pub stress_ratio: f64,
+    /// `model.method` of the fit. A record of `handbook` holds C and m; its a, horizon_mm and spacing_mm are nan.
+    #[serde(default = "peridynamics")]
+    pub method: String,
     /// `model.bond_law`.
     pub bond_law: String,
     /// `model.kernel`.
@@ -65,6 +71,11 @@ pub struct FittedRecord {
     pub version: String,
     /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
+}
+
+/// The method of records that do not name theirs.
+fn peridynamics() -> String {
+    crate::case::Method::Peridynamics.name().to_owned()
 }
 
 /// A measured file a record was fitted to.

@@ -7,12 +7,13 @@ use serde::Serialize;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::{Fit, FittedCurve};
 use crate::calibration::record::{FittedRecord, SourceFile};
+use crate::case::Method;
 use crate::units::{GPA, MM};
 
 /// Content of `fit.json`; units as in the names, cycles else.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FitReport {
-    /// A at `horizon_mm`, 1/cycle.
+    /// A at `horizon_mm`, 1/cycle; null for hand calculation.
     pub a: f64,
     /// Exponent p.
     pub p: f64,
@@ -24,6 +25,8 @@ pub struct FitReport {
     pub paris_c_mm_per_cycle: f64,
     /// m of the same (not p).
     pub paris_m: f64,
+    /// Standard error of m; 0 where p was given.
+    pub paris_m_error: f64,
     /// ΔK at which the rate is best determined.
     pub pivot_delta_k_mpa_sqrt_m: f64,
     /// da/dN there.
@@ -32,6 +35,8 @@ pub struct FitReport {
     pub rate_at_pivot_relative_error: f64,
     /// Standard error of p; 0 where p was given.
     pub p_error: f64,
+    /// Where p comes from: `fitted`, `given`, `not_identified`, or the file of a record.
+    pub p_source: String,
     /// Covariance of (ln A, p).
     pub covariance: [[f64; 2]; 2],
     /// Relative scatter of the cycles between readings about the fit.
@@ -89,16 +94,18 @@ impl FitReport {
     pub fn new(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Self {
         let lengths = &fit.record.crack_length;
         FitReport {
-            a: fit.record.constants.a,
+            a: bond_constant(calibration, fit),
             p: fit.record.constants.p,
             horizon_mm: tidy(fit.horizon / MM),
             spacing_mm: tidy(fit.spacing / MM),
             paris_c_mm_per_cycle: fit.paris.c,
             paris_m: fit.paris.m,
+            paris_m_error: fit.paris.m_error.max(calibration.exponent.error),
             pivot_delta_k_mpa_sqrt_m: fit.paris.pivot,
             rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
             rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
-            p_error: fit.p_error(),
+            p_error: p_error(calibration, fit),
+            p_source: calibration.exponent.source.clone(),
             covariance: fit.confidence.covariance,
             increment_scatter: fit.confidence.increment_scatter,
             rms_life_error: fit.record.rms_life_error(),
@@ -132,12 +139,26 @@ impl SpecimenReport {
     }
 }
 
+/// A of the bonds; NaN for hand calculation, which has none.
+fn bond_constant(calibration: &CalibrationCase, fit: &Fit) -> f64 {
+    match calibration.case.model.method {
+        Method::Peridynamics => fit.record.constants.a,
+        Method::Handbook => f64::NAN,
+    }
+}
+
+/// Standard error of p: of this fit, or of the record it was taken from.
+fn p_error(calibration: &CalibrationCase, fit: &Fit) -> f64 {
+    fit.p_error().max(calibration.exponent.error)
+}
+
 /// The record that predictions read.
 #[must_use]
 pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
     let case = &calibration.case;
     FittedRecord {
-        a: fit.record.constants.a,
+        method: case.model.method.name().to_owned(),
+        a: bond_constant(calibration, fit),
         p: fit.record.constants.p,
         horizon_mm: tidy(fit.horizon / MM),
         spacing_mm: tidy(fit.spacing / MM),
@@ -145,10 +166,11 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         scaling: "a at another horizon = a * (horizon / horizon_mm)^((p - 2) / 2)".to_owned(),
         paris_c_mm_per_cycle: fit.paris.c,
         paris_m: fit.paris.m,
+        paris_m_error: Some(fit.paris.m_error.max(calibration.exponent.error)),
         pivot_delta_k_mpa_sqrt_m: fit.paris.pivot,
         rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
         rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
-        p_error: fit.p_error(),
+        p_error: p_error(calibration, fit),
         delta_k_min_mpa_sqrt_m: fit.paris.delta_k_min,
         delta_k_max_mpa_sqrt_m: fit.paris.delta_k_max,
         stress_ratio: case.loading.ratio,

@@ -7,6 +7,7 @@ crate::kinds! {
     /// Numerical methods.
     pub enum Method for "model.method" {
         Peridynamics = "peridynamics": "points and bonds",
+        Handbook = "handbook": "hand calculation: handbook K(a) of a standard specimen, Paris law, quadrature",
     }
 }
 

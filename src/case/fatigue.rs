@@ -5,13 +5,13 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::Value;
 
-use super::choices::{Choices, Failure};
+use super::choices::{Choices, Failure, Method};
+use super::law_source::LawKeys;
 use super::{LawSource, Stop};
-use crate::calibration::record::FittedRecord;
-use crate::error::{Error, Result, input, input_missing};
-use crate::fatigue::{Ageing, Block, BlockKind, FatigueLaw, FatigueSettings, OVERLOAD_STRETCH, Precrack};
-use crate::input::{Document, INTENSITY, LENGTH, number, slice};
-use crate::specimen::{LengthConvention, Specimen, SpecimenKind};
+use crate::error::{Result, input, input_missing};
+use crate::fatigue::{Ageing, Block, BlockKind, FatigueSettings, OVERLOAD_STRETCH, Precrack};
+use crate::input::{INTENSITY, LENGTH, number, slice};
+use crate::specimen::{LengthConvention, Specimen};
 
 /// Radius of the ageing zone: a narrower zone breaks bonds beside the crack path less often, see the growth law.
 const ZONE_RADIUS: f64 = 0.5;
@@ -25,6 +25,8 @@ struct Input {
     a: Option<f64>,
     p: Option<f64>,
     horizon_mm: Option<f64>,
+    paris_c_mm_per_cycle: Option<f64>,
+    paris_m: Option<f64>,
     ageing: Option<Ageing>,
     zone_radius_horizons: Option<f64>,
     precrack: Option<Precrack>,
@@ -47,8 +49,9 @@ pub(super) struct Fatigue {
     pub allow_extrapolation: bool,
 }
 
-/// Reads `[fatigue]`; a fitted record is looked for from `base_dir`. Explicit choices go into `choices`.
-pub(super) fn from_value(value: &Value, base_dir: &Path, choices: &mut Choices) -> Result<Fatigue> {
+/// Reads `[fatigue]` with the law that `method` needs; a fitted record is looked for from `base_dir`. Explicit choices go into
+/// `choices`.
+pub(super) fn from_value(value: &Value, method: Method, base_dir: &Path, choices: &mut Choices) -> Result<Fatigue> {
     let input: Input = slice(value, "fatigue")?;
     choices.ageing = input.ageing;
     choices.zone_radius_horizons =
@@ -68,7 +71,16 @@ pub(super) fn from_value(value: &Value, base_dir: &Path, choices: &mut Choices) 
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
     };
-    Ok(Fatigue { settings, law: read_law(&input, base_dir)?, allow_extrapolation: input.allow_extrapolation.unwrap_or(false) })
+    let law = LawKeys {
+        fitted: input.fitted,
+        a: input.a,
+        p: input.p,
+        horizon_mm: input.horizon_mm,
+        paris_c_mm_per_cycle: input.paris_c_mm_per_cycle,
+        paris_m: input.paris_m,
+    };
+    let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
+    Ok(Fatigue { settings, law: law.read(method, base_dir)?, allow_extrapolation })
 }
 
 fn read_block(slice: &Input) -> Result<Block> {
@@ -105,63 +117,6 @@ fn read_block(slice: &Input) -> Result<Block> {
     Ok(Block { kind, cycles: cycles.unwrap_or(f64::INFINITY), bonds: bonds as usize })
 }
 
-fn read_law(slice: &Input, base_dir: &Path) -> Result<Option<LawSource>> {
-    let inline = [("a", slice.a), ("p", slice.p), ("horizon_mm", slice.horizon_mm)];
-    if let Some(fitted) = &slice.fitted {
-        if let Some((key, value)) = inline.iter().find_map(|(key, value)| Some((key, (*value)?))) {
-            return Err(input(
-                &format!("fatigue.{key}"),
-                value,
-                "stands beside fitted: the law is given twice",
-                "give fitted, or a, p and horizon_mm",
-            ));
-        }
-        return read_record(&base_dir.join(fitted)).map(Some);
-    }
-    if inline.iter().all(|(_, value)| value.is_none()) {
-        return Ok(None);
-    }
-    if let Some((key, _)) = inline.iter().find(|(_, value)| value.is_none()) {
-        let why = if *key == "horizon_mm" { ": A is meaningless without the horizon it belongs to" } else { "" };
-        return Err(input_missing(
-            &format!("fatigue.{key}"),
-            format!("is missing{why}"),
-            "give a, p and horizon_mm together, or fitted",
-        ));
-    }
-    let need = |i: usize| inline[i].1.unwrap_or(f64::NAN);
-    Ok(Some(LawSource::Inline(FatigueLaw {
-        a: number("a constant in 1/cycle", 1e-60, 1e100).read("fatigue.a", need(0))?,
-        p: number("an exponent", 0.5, 20.0).read("fatigue.p", need(1))?,
-        horizon: LENGTH.read("fatigue.horizon_mm", need(2))?,
-    })))
-}
-
-/// Reads a `fitted.toml`; one that does not exist (yet) is [`LawSource::Missing`].
-fn read_record(path: &Path) -> Result<LawSource> {
-    match Document::read(path, &[]) {
-        Ok(document) => {
-            let record = slice::<FittedRecord>(&Value::Table(document.table.clone()), "record").and_then(|record| {
-                super::law::check_record(&record)?;
-                Ok(record)
-            });
-            let at_top = |error| match error {
-                Error::Input(mut trouble) => {
-                    trouble.key = trouble.key.map(|key| key.trim_start_matches("record.").to_owned());
-                    trouble.remedy.push_str("; this file is written by `perilife calibrate`");
-                    Error::Input(trouble)
-                }
-                other => other,
-            };
-            record.map(|record| LawSource::Fitted(Box::new(record))).map_err(|error| document.locate(at_top(error)))
-        }
-        Err(Error::File { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
-            Ok(LawSource::Missing(path.to_path_buf()))
-        }
-        Err(other) => Err(other),
-    }
-}
-
 /// Keys of `[stop]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -185,10 +140,7 @@ pub(super) fn stop_from_value(value: &Value, specimen: &Specimen) -> Result<Stop
                 "give a longer crack, or leave it out",
             ));
         }
-        let limit = match specimen.kind {
-            SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => specimen.width / 2.0,
-            _ => specimen.width,
-        };
+        let (limit, _) = specimen.length_limit();
         if specimen.convention == LengthConvention::MeanOfTips && length >= limit {
             let limit = super::model::round_mm(limit);
             return Err(input(

@@ -1,20 +1,26 @@
 //! From a calibrated record to the law of this case: what must agree, what is rescaled, and the words about it.
 
+use std::path::Path;
 use std::str::FromStr;
 
-use super::{Case, LawSource};
+use super::{Case, LawSource, Method};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::FatigueLaw;
+use crate::fatigue::paris::ParisLaw;
 use crate::input::{LENGTH, MODULUS, number};
 use crate::material::{Material, Plane};
-use crate::units::{GPA, MM};
+use crate::units::{GPA, MM, MM_PER_CYCLE};
 
 /// Numbers and names of a record make sense.
 pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
-    number("a constant in 1/cycle", 1e-60, 1e100).read("a", record.a)?;
     number("an exponent", 0.5, 20.0).read("p", record.p)?;
-    LENGTH.read("horizon_mm", record.horizon_mm)?;
+    number("a rate in mm/cycle", 1e-60, 1e3).read("paris_c_mm_per_cycle", record.paris_c_mm_per_cycle)?;
+    number("an exponent", 0.0, 30.0).read("paris_m", record.paris_m)?;
+    if Method::from_str(&record.method)? == Method::Peridynamics {
+        number("a constant in 1/cycle", 1e-60, 1e100).read("a", record.a)?;
+        LENGTH.read("horizon_mm", record.horizon_mm)?;
+    }
     MODULUS.read("youngs_modulus_gpa", record.youngs_modulus_gpa)?;
     number("a Poisson's ratio", 0.0, 0.499).read("poisson_ratio", record.poisson_ratio)?;
     number("a ratio", -100.0, 0.999).read("stress_ratio", record.stress_ratio)?;
@@ -27,6 +33,17 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
 /// Takes the record as the law of the case. Where the case is silent the record decides; where both speak they must agree.
 pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
     check_record(&record)?;
+    if case.model.method == Method::Handbook {
+        // C and m belong to ΔK, whatever bonds they were fitted with.
+        check_stress_ratio(case, &record)?;
+        case.law = LawSource::Fitted(Box::new(record));
+        return Ok(());
+    }
+    if Method::from_str(&record.method)? == Method::Handbook {
+        let problem = "was fitted by hand calculation: it holds C and m, but no A of bonds";
+        let remedy = "calibrate with model.method = \"peridynamics\", or use model.method = \"handbook\" here";
+        return Err(input("fatigue.fitted", &record.material, problem, remedy));
+    }
     let choices = case.choices;
     let law = &mut case.model.bond_law;
     law.kind = agree("model.bond_law", choices.bond_law, &record.bond_law)?;
@@ -87,7 +104,8 @@ fn recorded_modulus(record: &FittedRecord) -> Result<f64> {
 /// What the user should know about a record used in this case.
 pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<String>> {
     let mut lines = Vec::new();
-    if (case.model.horizon_ratio - record.horizon_ratio).abs() > 1e-9 {
+    let bonds = case.model.method == Method::Peridynamics;
+    if bonds && (case.model.horizon_ratio - record.horizon_ratio).abs() > 1e-9 {
         let (given, recorded) = (case.model.horizon_ratio, record.horizon_ratio);
         lines.push(format!(
             "horizon_ratio {given} is used with a law calibrated at {recorded}: the transfer between ratios is not calibrated"
@@ -97,7 +115,9 @@ pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<Str
         let (given, recorded, gamma) = (case.loading.ratio, record.stress_ratio, case.fatigue.walker_gamma);
         lines.push(format!("law calibrated at stress ratio {recorded} used at {given} with walker_gamma = {gamma}: an assumption, not a measurement"));
     }
-    lines.extend(material_line(&case.material, record)?);
+    if bonds {
+        lines.extend(material_line(&case.material, record)?);
+    }
     Ok(lines)
 }
 
@@ -133,16 +153,40 @@ impl Case {
                 let law = FatigueLaw { a: record.a * modulus * walker, p: record.p, horizon: record.horizon_mm * MM };
                 Ok(law.at_horizon(horizon))
             }
-            LawSource::Missing(path) if path.as_os_str().is_empty() => Err(input_missing(
-                "fatigue.fitted",
-                "is missing: the case has no fatigue law",
-                "give fitted = \"fitted.toml\" from `perilife calibrate`, or a, p and horizon_mm",
-            )),
-            LawSource::Missing(path) => Err(Error::file(
-                path,
-                "cannot read the fatigue law (write it with `perilife calibrate`)",
-                std::io::ErrorKind::NotFound.into(),
-            )),
+            // A case of method "peridynamics" is not read with such a law.
+            LawSource::Paris(_) => Err(missing(Method::Peridynamics, Path::new(""))),
+            LawSource::Missing(path) => Err(missing(Method::Peridynamics, path)),
         }
     }
+
+    /// C and m of hand calculation for `da/dN = C (K_max (1-R)^γ)^m`, γ Walker's exponent.
+    ///
+    /// Inline constants are those at R = 0 (Walker 1970; without γ the same at every R). A record holds them for its own
+    /// ratio: the same rate at R₁ needs `C_γ = C₁ (1-R₁)^(m (1-γ))`. C and m do not depend on elastic constants.
+    pub fn paris_law(&self) -> Result<ParisLaw> {
+        match &self.law {
+            LawSource::Paris(law) => Ok(*law),
+            LawSource::Fitted(record) => {
+                let range = 1.0 - record.stress_ratio.max(0.0);
+                let walker = range.powf(record.paris_m * (1.0 - self.fatigue.walker_gamma));
+                Ok(ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE * walker, m: record.paris_m })
+            }
+            LawSource::Inline(_) => Err(missing(Method::Handbook, Path::new(""))),
+            LawSource::Missing(path) => Err(missing(Method::Handbook, path)),
+        }
+    }
+}
+
+/// The error of a case whose law is needed: none was given (an empty path), or the record does not exist.
+pub(super) fn missing(method: Method, path: &Path) -> Error {
+    if !path.as_os_str().is_empty() {
+        let action = "cannot read the fatigue law (write it with `perilife calibrate`)";
+        return Error::file(path, action, std::io::ErrorKind::NotFound.into());
+    }
+    let constants = match method {
+        Method::Peridynamics => "a, p and horizon_mm",
+        Method::Handbook => "paris_c_mm_per_cycle and paris_m",
+    };
+    let remedy = format!("give fitted = \"fitted.toml\" from `perilife calibrate`, or {constants}");
+    input_missing("fatigue.fitted", "is missing: the case has no fatigue law", remedy)
 }

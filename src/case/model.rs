@@ -11,6 +11,7 @@ use crate::input::{LENGTH, number, slice};
 use crate::material::{Material, Plane};
 use crate::solver::SolverKind;
 use crate::specimen::Specimen;
+use crate::specimen::handbook::handbook;
 use crate::units::MM;
 
 /// More points than this do not fit into the memory of an ordinary machine.
@@ -22,8 +23,7 @@ const COLUMNS_MIN: f64 = 8.0;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Input {
-    #[serde(rename = "method")]
-    _method: Option<Method>,
+    method: Option<Method>,
     #[serde(rename = "discretisation")]
     _discretisation: Option<Discretisation>,
     #[serde(rename = "symmetry")]
@@ -41,6 +41,7 @@ struct Input {
 /// Reads `[model]`; what is left out gets the program's choice. Explicit choices go into `choices`.
 pub(super) fn from_value(value: &Value, specimen: &Specimen, choices: &mut Choices) -> Result<Model> {
     let input: Input = slice(value, "model")?;
+    let method = input.method.unwrap_or(Method::Peridynamics);
     choices.bond_law = input.bond_law;
     choices.kernel = input.kernel;
     choices.rotation = input.rotation;
@@ -50,10 +51,14 @@ pub(super) fn from_value(value: &Value, specimen: &Specimen, choices: &mut Choic
         Some(spacing) => spacing,
         None => (specimen.smallest_flaw() / 9.0).min(specimen.width / 100.0),
     };
-    check_spacing(spacing, specimen)?;
+    match method {
+        Method::Peridynamics => check_spacing(spacing, specimen)?,
+        Method::Handbook => check_formula(specimen)?,
+    }
     let angle =
         number("an angle in degrees", -90.0, 90.0).read("model.lattice_angle_deg", input.lattice_angle_deg.unwrap_or(0.0))?;
     Ok(Model {
+        method,
         bond_law: BondLaw {
             kind: choices.bond_law.unwrap_or(BondLawKind::TwoParameter),
             kernel: choices.kernel.unwrap_or(Kernel::Conical),
@@ -65,6 +70,17 @@ pub(super) fn from_value(value: &Value, specimen: &Specimen, choices: &mut Choic
         lattice_angle: angle.to_radians(),
         solver: input.solver.unwrap_or(SolverKind::Window),
     })
+}
+
+/// Hand calculation needs a formula for K(a).
+fn check_formula(specimen: &Specimen) -> Result<()> {
+    if handbook(specimen).is_some() {
+        return Ok(());
+    }
+    let problem = format!("has no K(a) for this specimen ({})", specimen.kind);
+    let remedy = "use model.method = \"peridynamics\"; or middle_tension, single_edge_tension (ends free to rotate), \
+                  double_edge_tension at least 1.5 widths long, or compact_tension";
+    Err(input("model.method", "\"handbook\"", problem, remedy))
 }
 
 /// The spacing resolves crack and plate, and the number of points can be held.
@@ -98,7 +114,11 @@ pub(super) fn round_mm(metres: f64) -> f64 {
 ///
 /// Two-parameter: tangential modulus proportional to 1-3ν (plane stress) or 1-4ν (plane strain) must not be negative.
 /// Bond-based: ν is 1/3 or 1/4 (Silling 2000; Gerstle, Sau and Silling 2005 for the plane).
-pub(super) fn check_poisson_ratio(material: &Material, kind: BondLawKind) -> Result<()> {
+pub(super) fn check_poisson_ratio(material: &Material, model: &Model) -> Result<()> {
+    let kind = model.bond_law.kind;
+    if model.method == Method::Handbook {
+        return Ok(());
+    }
     let (limit, words) = match material.plane {
         Plane::Stress => (1.0 / 3.0, "1/3 in plane stress"),
         Plane::Strain => (1.0 / 4.0, "1/4 in plane strain"),

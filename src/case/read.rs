@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::choices::Choices;
-use super::{Case, LawSource, fatigue, law, model};
+use super::{Case, LAW_KEYS, LawSource, Method, fatigue, law, model};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input, input_missing};
 use crate::input::{Document, shorten};
@@ -32,7 +32,7 @@ impl Case {
             let case = Self::from_table(document.table.clone(), &document.name, &document.base_dir)?;
             if matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
                 // Says what is missing and what to give.
-                case.fatigue_law(1.0)?;
+                return Err(law::missing(case.model.method, Path::new("")));
             }
             Ok(case)
         };
@@ -60,7 +60,7 @@ impl Case {
         let material = material::from_value(required("material")?, base_dir, &mut warnings)?;
         let loading = loading::from_values(required("loading")?, table.get("supports"), &mut specimen)?;
         let model = model::from_value(optional("model"), &specimen, &mut choices)?;
-        let fatigue = fatigue::from_value(optional("fatigue"), base_dir, &mut choices)?;
+        let fatigue = fatigue::from_value(optional("fatigue"), model.method, base_dir, &mut choices)?;
         let stop = fatigue::stop_from_value(optional("stop"), &specimen)?;
         let mut case = Case {
             name: name.to_owned(),
@@ -81,7 +81,7 @@ impl Case {
             Some(source) => case.law = source,
             None => {}
         }
-        model::check_poisson_ratio(&case.material, case.model.bond_law.kind)?;
+        model::check_poisson_ratio(&case.material, &case.model)?;
         case.warnings.extend(yield_line(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
@@ -95,13 +95,13 @@ impl Case {
         self.warnings.retain(|line| !before.contains(line));
         let fatigue = self.echo.as_object_mut().map(|case| case.entry("fatigue").or_insert_with(|| serde_json::json!({})));
         if let Some(keys) = fatigue.and_then(|fatigue| fatigue.as_object_mut()) {
-            for key in ["a", "p", "horizon_mm"] {
+            for key in LAW_KEYS {
                 keys.shift_remove(key);
             }
             keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
         }
         law::adopt(&mut self, record)?;
-        model::check_poisson_ratio(&self.material, self.model.bond_law.kind)?;
+        model::check_poisson_ratio(&self.material, &self.model)?;
         let lines = law_lines(&self)?;
         self.warnings.extend(lines);
         Ok(self)
@@ -142,13 +142,16 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
     let mut lines = Vec::new();
     match &case.law {
         LawSource::Inline(_) => lines.extend(inline_line(&case.choices)),
+        LawSource::Paris(_) => {}
         LawSource::Fitted(record) => lines.extend(law::record_lines(case, record)?),
         LawSource::Missing(path) if path.as_os_str().is_empty() => {}
         LawSource::Missing(path) => {
             lines.push(format!("{} does not exist yet: write it with `perilife calibrate` before predicting", path.display()));
         }
     }
-    lines.extend(horizon_line(case));
+    if case.model.method == Method::Peridynamics {
+        lines.extend(horizon_line(case));
+    }
     Ok(lines)
 }
 

@@ -7,9 +7,9 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::predict;
+use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::{CalibrationCase, remove_law};
-use crate::calibration::fit::{Fit, FitTask, fit};
-use crate::calibration::pd_model::PdModel;
+use crate::calibration::fit::Fit;
 use crate::calibration::record::FittedRecord;
 use crate::calibration::results::{FitReport, fit_curves_csv, record};
 use crate::case::Case;
@@ -55,9 +55,7 @@ pub fn run(args: &Args) -> Result<()> {
     let started = Instant::now();
     let fitted = {
         let progress = console.progress(&calibration.case.name);
-        let model = PdModel::new(&calibration.case, &progress)?;
-        let delta_k = |length: f64| calibration.delta_k(length);
-        fit(&FitTask { curves: &calibration.curves, fixed_p: calibration.fixed_p, delta_k: &delta_k }, &model)?
+        calibrate(&calibration, &progress)?
     };
     let report = FitReport::new(&calibration, &fitted, started.elapsed().as_secs_f64());
     for warning in &fitted.warnings {
@@ -74,7 +72,7 @@ pub fn run(args: &Args) -> Result<()> {
     let mut predictions = serde_json::Map::new();
     for document in cases {
         let case = case_of(&document)?.with_law(law.clone()).map_err(|error| document.locate(error))?;
-        let done = predict::run_case(&case, &args.out.join(&case.name), console)?;
+        let done = predict::run_case(&case, &args.out.join(&case.name), predict::Extras::default(), console)?;
         predictions.insert(case.name.clone(), done.result);
     }
     let mut object = json!(report);
@@ -190,12 +188,21 @@ fn draw_rates(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result
 /// The fit in words: rate at the pivot and exponent with their errors, never A alone.
 fn summary(report: &FitReport, out: &Path) -> Vec<String> {
     let life = 100.0 * (report.life_fitted / report.life_measured - 1.0);
-    let exponent =
-        if report.p_error > 0.0 { format!("{:.4} ± {:.4}", report.p, report.p_error) } else { format!("{} (given)", report.p) };
-    vec![
-        format!("fit to {}, {} to {} mm", report.fitted_to, report.from_crack_length_mm, report.to_crack_length_mm),
-        format!("  A              {:.6e} at horizon {} mm", report.a, report.horizon_mm),
-        format!("  p              {exponent}"),
+    let source = match report.p_source.as_str() {
+        "fitted" => String::new(),
+        "not_identified" => " (not identified)".to_owned(),
+        "given" => " (given)".to_owned(),
+        file => format!(" (from {file})"),
+    };
+    let error = |error: f64| if error > 0.0 { format!(" ± {error:.4}") } else { String::new() };
+    let mut lines =
+        vec![format!("fit to {}, {} to {} mm", report.fitted_to, report.from_crack_length_mm, report.to_crack_length_mm)];
+    // Hand calculation has no bonds: its p is m.
+    if report.a.is_finite() {
+        lines.push(format!("  A              {:.6e} at horizon {} mm", report.a, report.horizon_mm));
+        lines.push(format!("  p              {:.4}{}{source}", report.p, error(report.p_error)));
+    }
+    lines.extend([
         format!(
             "  rate           {:.4e} mm/cycle ± {:.2} % at the pivot ΔK = {:.3} MPa√m",
             report.rate_at_pivot_mm_per_cycle,
@@ -203,6 +210,7 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
             report.pivot_delta_k_mpa_sqrt_m
         ),
         format!("  Paris          da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m)", report.paris_c_mm_per_cycle, report.paris_m),
+        format!("  m              {:.4}{}{source}", report.paris_m, error(report.paris_m_error)),
         format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", report.delta_k_min_mpa_sqrt_m, report.delta_k_max_mpa_sqrt_m),
         format!(
             "  life           measured {:.0}, fitted {:.0} cycles ({life:+.2} %), rms life error {:.2} %",
@@ -217,5 +225,6 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
             report.wall_s
         ),
         format!("  results        {}", out.display()),
-    ]
+    ]);
+    lines
 }

@@ -5,15 +5,19 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::console::Console;
-use crate::case::{Case, LawSource};
+use crate::case::{Case, LawSource, Method};
 use crate::error::{Error, Result, input};
+use crate::predict::plastic_zone::PlasticZone;
+use crate::predict::residual_strength::{check_strength, residual_strength};
 use crate::predict::{Prediction, StopReason};
+use crate::report;
 use crate::report::chart::{self, Mark, Series};
 use crate::report::csv::{self, Row};
 use crate::report::damage::DamagePicture;
 use crate::report::output::{OutputFolder, write_file};
-use crate::report::{json, vtk};
+use crate::report::{fit_use, json, vtk};
 use crate::specimen::Point;
+use crate::specimen::handbook::handbook;
 use crate::units::MM;
 
 /// Arguments of `perilife predict`.
@@ -28,6 +32,9 @@ pub struct Args {
     /// Override a key of the case (repeatable), e.g. --set model.spacing_mm=0.5
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
+    /// Also write the load that would end the plate at once over crack length (residual_strength.csv and .svg)
+    #[arg(long, help_heading = "Output")]
+    pub residual_strength: bool,
     /// What is printed.
     #[command(flatten)]
     pub console: Console,
@@ -39,8 +46,16 @@ pub struct Args {
 /// Wrong input, a run without a result, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let case = Case::from_file(&args.case, &args.set)?;
-    let done = run_case(&case, &args.out, &args.console)?;
+    let extras = Extras { residual_strength: args.residual_strength };
+    let done = run_case(&case, &args.out, extras, &args.console)?;
     args.console.object(&done.result)
+}
+
+/// What a run writes on request.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Extras {
+    /// The residual-strength curve.
+    pub residual_strength: bool,
 }
 
 /// A finished and written run.
@@ -57,13 +72,21 @@ pub struct FinishedRun {
 ///
 /// # Errors
 /// As the engine and [`keep`] report; nothing is written then.
-pub fn run_case(case: &Case, out: &Path, console: &Console) -> Result<FinishedRun> {
+pub fn run_case(case: &Case, out: &Path, extras: Extras, console: &Console) -> Result<FinishedRun> {
     // Claimed first: a folder that cannot be written should not cost a run.
     let folder = OutputFolder::create(out)?;
     for warning in &case.warnings {
         console.warn(warning);
     }
+    if extras.residual_strength {
+        // A plate without known strength should not cost a run; K of its curve comes later.
+        check_strength(case)?;
+    }
     let prediction = crate::predict::predict(case, &console.progress(&case.name))?;
+    if extras.residual_strength {
+        let strengths = residual_strength(case, &prediction.curve)?;
+        report::residual_strength::write(folder.path(), case, &strengths)?;
+    }
     keep(case, prediction, folder, console)
 }
 
@@ -77,6 +100,9 @@ pub fn keep(case: &Case, prediction: Prediction, folder: OutputFolder, console: 
         console.warn(warning);
     }
     judge(case, &prediction, console)?;
+    for label in fit_use::labels(case, &prediction) {
+        console.warn(&label);
+    }
     let result = json::result(case, &prediction);
     write_run(folder.path(), case, &prediction, &result)?;
     let lines = summary(case, &prediction, folder.name());
@@ -151,6 +177,9 @@ fn write_run(folder: &Path, case: &Case, prediction: &Prediction, result: &Value
         DamagePicture { grid: &prediction.grid, snapshot, cracks: &case.specimen.cracks, paths: &paths }
             .write(&folder.join("damage.png"))?;
     }
+    if prediction.snapshots.is_empty() {
+        return Ok(());
+    }
     let paraview = folder.join("paraview");
     std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
     vtk::write_series(&paraview, &prediction.grid, &prediction.snapshots)
@@ -175,16 +204,43 @@ fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction) -> Result<()
 }
 
 fn summary(case: &Case, prediction: &Prediction, out: &Path) -> Vec<String> {
-    let figures = &prediction.figures;
     let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
-    vec![
+    let mut lines = vec![
         format!("{}: life {:.1} cycles", case.name, prediction.life_cycles()),
         format!("  crack length   {from:.3} mm to {to:.3} mm"),
         format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
-        format!(
-            "  computed       {} points, {} cycle blocks, {} solves, {:.1} s",
+    ];
+    lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
+    lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
+    lines.push(format!("  computed       {}", computed(case, prediction)));
+    lines.push(format!("  results        {}", out.display()));
+    lines
+}
+
+/// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.
+fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
+    let PlasticZone { first, last, .. } = PlasticZone::of(case, prediction)?;
+    let (horizon, thickness) = (prediction.figures.horizon, case.specimen.thickness);
+    let of_horizon = if horizon > 0.0 { format!(", {:.2} of the horizon", last.size / horizon) } else { String::new() };
+    Some(format!(
+        "{:.3} mm to {:.3} mm ({:.3} of the ligament, {:.2} of the thickness{of_horizon})",
+        first.size / MM,
+        last.size / MM,
+        last.size / last.ligament,
+        last.size / thickness
+    ))
+}
+
+fn computed(case: &Case, prediction: &Prediction) -> String {
+    let figures = &prediction.figures;
+    match case.model.method {
+        Method::Peridynamics => format!(
+            "{} points, {} cycle blocks, {} solves, {:.1} s",
             figures.points, figures.blocks, figures.solves, figures.wall_s
         ),
-        format!("  results        {}", out.display()),
-    ]
+        Method::Handbook => {
+            let formula = handbook(&case.specimen).map_or("", |formula| formula.name);
+            format!("by hand calculation: {formula}, {} rows, {:.2} ms", figures.blocks + 1, 1e3 * figures.wall_s)
+        }
+    }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::console::Console;
-use crate::calibration::case::{length_limit, remove_law};
+use crate::calibration::case::remove_law;
 use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, Units, read};
 use crate::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
 use crate::calibration::results::quoted;
@@ -95,7 +95,7 @@ fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) 
         specimens.push(SpecimenRates { name: curve.specimen.clone(), points: rates(curve, method) });
     }
     let Some(case) = case else { return Ok(specimens) };
-    let (limit, limit_name) = length_limit(&case.specimen);
+    let (limit, limit_name) = case.specimen.length_limit();
     measured.check_lengths(limit, limit_name)?;
     let Some(formula) = handbook(&case.specimen) else {
         let remedy = "give a standard specimen whose length is at least 1.5 widths, or leave --specimen out";

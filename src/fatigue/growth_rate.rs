@@ -1,5 +1,7 @@
 //! Growth rate and energy release rate along an a-N curve.
 
+use nalgebra::{Matrix3, Vector3};
+
 /// What a run records of every block, before rates are taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
@@ -42,4 +44,27 @@ pub fn rates(samples: &[Sample], span: f64, thickness: f64) -> Vec<Rate> {
         });
     }
     rates
+}
+
+/// Energy release rate at the last of `samples`, J/m², mean over the growing tips; `None` before there is growth.
+///
+/// `G = W'(g) / (2 h)` from the parabola through work W over growth g by least squares: a difference quotient over the same
+/// stretch would be that of its middle, half the stretch too late for a crack that is about to run away.
+#[must_use]
+pub fn release_rate_at_end(samples: &[Sample], thickness: f64) -> Option<f64> {
+    let (first, last) = (samples.first()?, samples.last()?);
+    let span = last.growth - first.growth;
+    if span <= 0.0 {
+        return None;
+    }
+    let secant = (last.work - first.work) / span;
+    // Work over its straight line, so that no digits are lost; growth from -1 to 0.
+    let place = |sample: &Sample| (sample.growth - last.growth) / span;
+    let beyond = |sample: &Sample| sample.work - last.work - secant * (sample.growth - last.growth);
+    let basis = |x: f64| Vector3::new(1.0, x, x * x);
+    let normal: Matrix3<f64> = samples.iter().map(|s| basis(place(s)) * basis(place(s)).transpose()).sum();
+    let right: Vector3<f64> = samples.iter().map(|s| basis(place(s)) * beyond(s)).sum();
+    // Two lengths give no parabola; their straight line has to do.
+    let bend = normal.try_inverse().filter(|_| samples.len() > 3).map_or(0.0, |inverse| (inverse * right)[1] / span);
+    Some((secant + bend) / (2.0 * thickness))
 }

@@ -5,6 +5,7 @@ pub mod crack_tip;
 pub mod growth_rate;
 pub mod length_average;
 pub mod no_fail;
+pub mod paris;
 pub mod pieces;
 pub mod remaining_life;
 

@@ -1,15 +1,21 @@
 //! The growing a-N curve of a run.
 
+use super::end_of_life::End;
 use super::outcome::{CurvePoint, Progress, TipRecord};
 use crate::body::Body;
 use crate::case::Case;
-use crate::fatigue::growth_rate::{Sample, rates};
+use crate::fatigue::growth_rate::{Sample, rates, release_rate_at_end};
 use crate::fatigue::length_average::LengthAverage;
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 
 /// Growth, in horizons, over which rates are taken.
 const RATE_SPAN_HORIZONS: f64 = 1.0;
+/// Growth of all tips together, in horizons, from which the energy release rate at the end of it is taken: K within 2 % where
+/// the crack is four horizons long, within 7 % where it is two.
+const RELEASE_SPAN_HORIZONS: f64 = 3.0;
+/// Growth before which that says nothing: the first bonds to break turn the cut end of a crack into a grown one.
+const RELEASE_KNOWN_HORIZONS: f64 = 2.0;
 /// Initial crack length, in horizons, below which the finite horizon makes short cracks grow too fast by more than some percent.
 const SHORT_CRACK_HORIZONS: f64 = 5.0;
 
@@ -68,15 +74,15 @@ impl Track {
         &self.rows[self.rows.len() - 1]
     }
 
-    /// Blocks since N = 0.
-    pub(super) fn blocks(&self) -> usize {
-        self.zero.map_or(0, |zero| self.rows.len() - 1 - zero)
-    }
-
     /// Lets cycles count from the latest row on; whether they did not before.
     pub(super) fn begin(&mut self) -> bool {
         let now = self.rows.len() - 1;
         self.zero.replace(self.zero.unwrap_or(now)).is_none()
+    }
+
+    /// Whether cycles count.
+    pub(super) fn is_counting(&self) -> bool {
+        self.zero.is_some()
     }
 
     /// Lets cycles pass.
@@ -101,17 +107,17 @@ impl Track {
         self.run_out = Some(cycles_max);
     }
 
-    /// Largest K of the cycle at the last row, Pa√m: handbook, else from the energy release rate so far.
-    pub(super) fn k_max(&self, case: &Case, horizon: f64) -> f64 {
-        let length = self.last().crack_length;
-        match &self.formula {
-            Some(formula) => formula.k_i(length, case.loading.maximum),
-            None => {
-                let recent = self.rows.iter().rposition(|row| row.growth() < self.last().growth() - horizon).unwrap_or(0);
-                let released = rates(&self.samples(&self.rows[recent..]), 2.0 * horizon, case.specimen.thickness);
-                released.last().map_or(f64::NAN, |rate| (rate.energy_release_rate * case.material.plane_modulus()).sqrt())
-            }
+    /// Largest K of the cycle at the last row, Pa√m, from the energy release rate there; `None` before N = 0, where a handbook
+    /// knows it, or before the crack has grown by two horizons since it was cut.
+    pub(super) fn k_max_released(&self, case: &Case, horizon: f64) -> Option<f64> {
+        let grown = self.last().growth() - self.rows[0].growth();
+        if !self.is_counting() || self.formula.is_some() || grown < RELEASE_KNOWN_HORIZONS * horizon {
+            return None;
         }
+        let span = RELEASE_SPAN_HORIZONS * horizon;
+        let recent = self.rows.iter().rposition(|row| row.growth() < self.last().growth() - span).unwrap_or(0);
+        let released = release_rate_at_end(&self.samples(&self.rows[recent..]), case.specimen.thickness)?;
+        Some((released * case.material.plane_modulus()).sqrt())
     }
 
     pub(super) fn progress(&self, case: &Case) -> Progress {
@@ -182,15 +188,17 @@ impl Track {
         }
     }
 
-    /// The curve from N = 0.
-    pub(super) fn into_curve(self, case: &Case, body: &Body) -> Vec<CurvePoint> {
+    /// The curve from N = 0 to a known end.
+    pub(super) fn into_curve(self, case: &Case, body: &Body, end: Option<End>) -> Vec<CurvePoint> {
         let mut rows = self.averaged(body.lattice.spacing);
         let zero = self.zero_of(&rows);
         if let Some(cycles_max) = self.run_out {
             // The crack stands where it is until then.
             rows.extend(rows.last().cloned().map(|row| Row { cycles: zero + cycles_max, ..row }));
         }
-        end_at(&mut rows, case.stop.crack_length);
+        if let Some(end) = end {
+            end_at(&mut rows, end.crack_length);
+        }
         let rate = rates(&self.samples(&rows), RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
         let share = case.loading.range_share();
         // The first row is the plate at N = 0 exactly, with what the row there or just after it says.

@@ -7,7 +7,7 @@ crate::kinds! {
     pub enum StopReason for "stop_reason" {
         CrackLengthReached = "crack_length_reached": "the crack reached stop.crack_length_mm",
         Toughness = "toughness": "the stress intensity at maximum load reached the toughness",
-        NetSectionYield = "net_section_yield": "the mean stress on the remaining section reached the yield strength",
+        NetSectionYield = "net_section_yield": "the remaining section yields throughout: its limit load at the yield strength is reached",
         Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
         LeftPlate = "left_plate": "every crack tip has left the plate",
         EnteredHole = "entered_hole": "the last crack tip ran into a hole",
@@ -38,7 +38,7 @@ pub struct CurvePoint {
     /// Growth rate da/dN, m/cycle.
     pub growth_rate: f64,
     /// Work of the loads over the displacement at maximum load, f·u, J: twice the strain energy, the load squared times the
-    /// compliance; NaN where the plate is severed.
+    /// compliance; NaN where the plate is severed and in hand calculation.
     pub work: f64,
     /// Bonds broken since the start, initial cracks not counted.
     pub broken_bonds: usize,

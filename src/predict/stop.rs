@@ -2,12 +2,28 @@
 
 use super::StopReason;
 use super::curve::Track;
+use super::end_of_life::End;
 use crate::case::Case;
 use crate::fatigue::ageing::AgeingBond;
 use crate::fatigue::crack_tip::{CrackTip, TipState};
 
-/// Reasons that show before a block: no tip is left, or nothing ages.
-pub(super) fn before_block(case: &Case, tips: &[CrackTip], ageing: &[AgeingBond]) -> Option<StopReason> {
+/// Reasons that show before a block: the crack is too long for its load, no tip is left, or nothing ages.
+pub(super) fn before_block(
+    case: &Case,
+    end: Option<End>,
+    track: &Track,
+    tips: &[CrackTip],
+    ageing: &[AgeingBond],
+) -> Option<StopReason> {
+    if let Some(end) = end.filter(|end| end.crack_length <= case.specimen.crack_length && track.is_counting()) {
+        return Some(end.reason);
+    }
+    // Where no handbook knows K, the energy released so far does.
+    let horizon = case.model.horizon_ratio * case.model.spacing;
+    let released = case.material.toughness.zip(track.k_max_released(case, horizon));
+    if released.is_some_and(|(toughness, k_max)| k_max >= toughness) {
+        return Some(StopReason::Toughness);
+    }
     let gone = !tips.is_empty() && tips.iter().all(|tip| !tip.is_active());
     if gone && case.fatigue.ageing == crate::fatigue::Ageing::CrackTip {
         let entered = tips.iter().any(|tip| tip.state == TipState::EnteredHole);
@@ -16,29 +32,13 @@ pub(super) fn before_block(case: &Case, tips: &[CrackTip], ageing: &[AgeingBond]
     ageing.is_empty().then_some(StopReason::NothingAges)
 }
 
-/// Reasons that show after a block: length reached, toughness, net-section yield.
-pub(super) fn after_block(case: &Case, track: &Track) -> Option<StopReason> {
-    let length = track.last().crack_length;
-    let horizon = case.model.horizon_ratio * case.model.spacing;
-    // A spacing more, so that the length averaged over a spacing of growth is known up to there; the curve ends at the length.
-    if length >= case.stop.crack_length + case.model.spacing {
-        return Some(StopReason::CrackLengthReached);
-    }
-    if let Some(toughness) = case.material.toughness
-        && track.k_max(case, horizon) >= toughness
-    {
-        return Some(StopReason::Toughness);
-    }
-    if let (Some(strength), Some(stress)) =
-        (case.material.yield_strength, case.specimen.net_section_stress(length, case.loading.maximum))
-        && stress >= strength
-    {
-        return Some(StopReason::NetSectionYield);
-    }
-    None
+/// Reasons that show after a block: a known end is passed. The run goes on for a spacing more, so that the length averaged over
+/// a spacing of growth is known up to the end; the curve stops there.
+pub(super) fn after_block(case: &Case, end: Option<End>, track: &Track) -> Option<StopReason> {
+    end.filter(|end| track.last().crack_length >= end.crack_length + case.model.spacing).map(|end| end.reason)
 }
 
-/// The reason that counts where a run had passed the length to stop at before it ended for another one.
-pub(super) fn settled(case: &Case, track: &Track, stop: StopReason) -> StopReason {
-    if track.last().crack_length >= case.stop.crack_length { StopReason::CrackLengthReached } else { stop }
+/// The reason that counts where a run had passed a known end before it stopped for another reason.
+pub(super) fn settled(end: Option<End>, track: &Track, stop: StopReason) -> StopReason {
+    end.filter(|end| track.last().crack_length >= end.crack_length).map_or(stop, |end| end.reason)
 }

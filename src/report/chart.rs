@@ -42,6 +42,15 @@ pub fn crack_length(path: &Path, title: &str, series: &[Series]) -> Result<()> {
     draw(path, title, axes, ["Cycles N", "Crack length a, mm"], series)
 }
 
+/// Loads against crack length in mm, both linear; `y_name` says which load in which unit.
+///
+/// # Errors
+/// [`Error::File`] if the file cannot be written.
+pub fn over_crack_length(path: &Path, title: &str, y_name: &str, series: &[Series]) -> Result<()> {
+    let axes = [Axis::linear(values(series, |p| p.0)), Axis::linear(values(series, |p| p.1))];
+    draw(path, title, axes, ["Crack length a, mm", y_name], series)
+}
+
 /// Growth rate in mm/cycle against ΔK in MPa√m, both logarithmic.
 ///
 /// # Errors

@@ -2,9 +2,14 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::case::{Case, LawSource};
+use crate::case::{Case, LawSource, Method};
+use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
-use crate::units::{MM, MPA_SQRT_M};
+use crate::specimen::handbook::handbook;
+use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+
+pub use super::fit_use::life_share_extrapolated;
+use super::fit_use::{NEAR_THRESHOLD, labels, life_share_near_threshold};
 
 /// Name of the file.
 pub const RESULT_FILE: &str = "result.json";
@@ -13,7 +18,8 @@ pub const RESULT_FILE: &str = "result.json";
 #[must_use]
 pub fn result(case: &Case, prediction: &Prediction) -> Value {
     let figures = &prediction.figures;
-    let warnings: Vec<&String> = case.warnings.iter().chain(&prediction.warnings).collect();
+    let labels = labels(case, prediction);
+    let warnings: Vec<&String> = case.warnings.iter().chain(&prediction.warnings).chain(&labels).collect();
     json!({
         "name": case.name,
         "life_cycles": prediction.life_cycles(),
@@ -23,6 +29,8 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "crack_length_initial_mm": clean(case.specimen.crack_length / MM),
         "crack_length_final_mm": clean(prediction.crack_length_final() / MM),
         "life_share_extrapolated": life_share_extrapolated(case, prediction),
+        "life_share_near_threshold": life_share_near_threshold(case, prediction),
+        "plastic_zone": plastic_zone(case, prediction),
         "points": figures.points,
         "points_solved": figures.points_solved,
         "bonds": figures.bonds,
@@ -41,9 +49,12 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
 
 /// The model that ran: every choice with its value, and under `why` whether the case asked for it or the program chose it.
 fn model(case: &Case, prediction: &Prediction) -> Value {
+    if case.model.method == Method::Handbook {
+        return hand_calculation(case);
+    }
     let (model, figures) = (&case.model, &prediction.figures);
     let values = json!({
-        "method": "peridynamics",
+        "method": model.method.name(),
         "bond_law": model.bond_law.kind.name(),
         "kernel": model.bond_law.kernel.name(),
         "rotation": model.bond_law.rotation.name(),
@@ -61,9 +72,44 @@ fn model(case: &Case, prediction: &Prediction) -> Value {
     Value::Object(object)
 }
 
+/// The formula of a run of method `handbook`. Other keys of `[model]` say nothing there.
+fn hand_calculation(case: &Case) -> Value {
+    let formula = handbook(&case.specimen);
+    json!({
+        "method": case.model.method.name(),
+        "formula": formula.map(|formula| formula.name),
+        "source": formula.map(|formula| formula.source),
+        "range": formula.map(|formula| formula.range),
+        "why": { "method": "given in the case", "formula": "that of the kind of specimen" },
+    })
+}
+
+/// Plastic zone at the first and the last row whose K is known; `null` without yield strength.
+fn plastic_zone(case: &Case, prediction: &Prediction) -> Value {
+    let Some(found) = PlasticZone::of(case, prediction) else { return Value::Null };
+    let zone = |zone: &Zone| {
+        json!({
+            "crack_length_mm": clean(zone.crack_length / MM),
+            "k_max_mpa_sqrt_m": clean(zone.k_max / MPA_SQRT_M),
+            "size_mm": clean(zone.size / MM),
+            "over_horizon": clean(zone.size / prediction.figures.horizon),
+            "ligament_mm": clean(zone.ligament / MM),
+            "over_ligament": clean(zone.size / zone.ligament),
+            "over_thickness": clean(zone.size / case.specimen.thickness),
+        })
+    };
+    json!({
+        "first": zone(&found.first),
+        "last": zone(&found.last),
+        "small_scale_yielding": found.too_large_from.is_none(),
+        "too_large_from_mm": found.too_large_from.map(|length| clean(length / MM)),
+        "life_share_too_large": clean(found.life_share_too_large),
+    })
+}
+
 /// Why the program takes what it takes where the case leaves a choice open.
 const WHY_CHOSEN: [(&str, &str); 9] = [
-    ("method", "the only method built"),
+    ("method", "default: computes any plate and the path of its cracks"),
     ("bond_law", "default: takes Poisson's ratio from the material instead of fixing it"),
     ("kernel", "default: of the kernels tried, its crack growth depends least on the lattice"),
     ("rotation", "default: rigid rotation of crack flanks must cost no energy"),
@@ -94,47 +140,29 @@ const FIXED_BY_RECORD: [&str; 5] = ["bond_law", "kernel", "rotation", "surface_c
 
 /// The constants as given, and A as it was used: at this run's horizon, modulus and stress ratio.
 fn law(case: &Case, prediction: &Prediction) -> Value {
-    let used = case.fatigue_law(prediction.figures.horizon).ok().map(|law| law.a);
+    let hand = case.model.method == Method::Handbook;
+    let used = case.fatigue_law(prediction.figures.horizon).ok().filter(|_| !hand).map(|law| law.a);
+    let c_used = case.paris_law().ok().filter(|_| hand).map(|law| clean(law.c / MM_PER_CYCLE));
     match &case.law {
         LawSource::Inline(law) => {
             json!({ "source": "inline", "a": law.a, "p": law.p, "horizon_mm": clean(law.horizon / MM), "a_used": used })
         }
+        LawSource::Paris(law) => json!({
+            "source": "inline", "paris_c_mm_per_cycle": clean(law.c / MM_PER_CYCLE), "paris_m": law.m,
+            "paris_c_used_mm_per_cycle": c_used,
+        }),
         LawSource::Fitted(record) => json!({
             "source": "fitted", "a": record.a, "p": record.p, "horizon_mm": record.horizon_mm, "a_used": used,
             "paris_c_mm_per_cycle": record.paris_c_mm_per_cycle, "paris_m": record.paris_m,
+            "paris_m_error": record.paris_m_error, "paris_c_used_mm_per_cycle": c_used, "p_error": record.p_error,
+            "pivot_delta_k_mpa_sqrt_m": record.pivot_delta_k_mpa_sqrt_m,
+            "rate_at_pivot_mm_per_cycle": record.rate_at_pivot_mm_per_cycle,
+            "rate_at_pivot_relative_error": record.rate_at_pivot_relative_error,
             "delta_k_min_mpa_sqrt_m": record.delta_k_min_mpa_sqrt_m, "delta_k_max_mpa_sqrt_m": record.delta_k_max_mpa_sqrt_m,
+            "near_threshold_below_mpa_sqrt_m": NEAR_THRESHOLD * record.delta_k_min_mpa_sqrt_m,
         }),
         LawSource::Missing(path) => json!({ "source": "missing", "file": path }),
     }
-}
-
-/// Share of the life that was spent at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
-/// within each block. `None` without a fitted record, without life, or without any known ΔK.
-#[must_use]
-pub fn life_share_extrapolated(case: &Case, prediction: &Prediction) -> Option<f64> {
-    let LawSource::Fitted(record) = &case.law else { return None };
-    let (low, high) = (record.delta_k_min_mpa_sqrt_m * MPA_SQRT_M, record.delta_k_max_mpa_sqrt_m * MPA_SQRT_M);
-    let (mut outside, mut known) = (0.0, 0.0);
-    for pair in prediction.curve.windows(2) {
-        let (from, to) = (pair[0].delta_k, pair[1].delta_k);
-        let cycles = pair[1].cycles - pair[0].cycles;
-        if from.is_nan() || to.is_nan() {
-            continue;
-        }
-        known += cycles;
-        outside += cycles * share_outside(from.min(to), from.max(to), low, high);
-    }
-    (known > 0.0).then(|| outside / known)
-}
-
-/// Share of the interval `from..to` that lies outside `low..high`. The ends of the range count as inside with a margin of
-/// 1e-6, for a curve that starts where the fit started.
-fn share_outside(from: f64, to: f64, low: f64, high: f64) -> f64 {
-    let (low, high) = (low * (1.0 - 1e-6), high * (1.0 + 1e-6));
-    if to - from <= 1e-12 * to {
-        return if (low..=high).contains(&from) { 0.0 } else { 1.0 };
-    }
-    1.0 - (to.min(high) - from.max(low)).max(0.0) / (to - from)
 }
 
 /// Hides the last digits of a double, which a unit conversion may have disturbed.

@@ -5,8 +5,10 @@
 pub mod chart;
 pub mod csv;
 pub mod damage;
+pub mod fit_use;
 pub mod json;
 pub mod output;
+pub mod residual_strength;
 pub mod specimen_picture;
 pub mod verification;
 pub mod vtk;

@@ -9,7 +9,7 @@ mod edge_tension;
 pub mod geometry;
 pub mod handbook;
 mod middle_tension;
-mod net_section;
+pub mod net_section;
 mod placement;
 mod plate;
 mod read;

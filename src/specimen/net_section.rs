@@ -1,30 +1,97 @@
-//! Stress on the section a crack leaves, to be compared with the yield strength.
+//! What a crack leaves of the section: its ligament, when that yields throughout, and when it is too small for K to mean
+//! anything.
 
 use std::f64::consts::PI;
 
-use super::{Specimen, SpecimenKind, handbook};
+use super::{Specimen, SpecimenKind, Support};
 
 impl Specimen {
-    /// Stress on the remaining section at crack length `crack_length` (m, the specimen's convention) under `load` (gross
-    /// stress, Pa, or pin force, N), in Pa; infinite once nothing remains, `None` for a `plate`.
+    /// Largest crack length the specimen has room for, m, and its name.
+    #[must_use]
+    pub fn length_limit(&self) -> (f64, &'static str) {
+        match self.kind {
+            SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => (0.5 * self.width, "half width"),
+            SpecimenKind::SingleEdgeTension => (self.width, "width"),
+            SpecimenKind::CompactTension => (self.width, "width from the load line"),
+            SpecimenKind::Plate => (self.gross_width.max(self.length()), "size"),
+        }
+    }
+
+    /// Width of the remaining section at crack length `crack_length` (m, the specimen's convention), all ligaments together;
+    /// `None` for a `plate`.
+    #[must_use]
+    pub fn ligament(&self, crack_length: f64) -> Option<f64> {
+        (self.kind != SpecimenKind::Plate).then(|| ligament(self.kind, self.width, crack_length))
+    }
+
+    /// Stress on the remaining section, Pa, when it yields throughout under `load` (gross stress, Pa, or pin force, N): the
+    /// run is over once it reaches the yield strength. Infinite once nothing remains, `None` for a `plate`.
     ///
-    /// Tension kinds: mean stress `σ W / ligament` (bending of a single edge crack left out). C(T): the stress for which
-    /// ASTM E647's size requirement `W - a ≥ (4/π) (K_max/σ_Y)²` becomes an equality, `K_max √(4 / (π (W - a)))`.
+    /// `σ = P / (B b η)` with ligament b. η is the share of `σ_Y B b` that a rigid-plastic section bears in plane stress with
+    /// +σ_Y beside the crack and -σ_Y at the far side, in equilibrium with the line of the load: 1 where the load passes
+    /// through the middle of the ligaments (M(T), DE(T)) or where clamped ends take the bending;
+    /// SE(T) `√(1+x²) - x` with x = a/b; C(T) `√(s²+1) - s` with s = 1 + 2a/b. Limit loads of Kumar, German and Shih 1981
+    /// (EPRI NP-1931, sections 3.1 to 3.5) without their factor 1.07 of the von Mises criterion.
     #[must_use]
     pub fn net_section_stress(&self, crack_length: f64, load: f64) -> Option<f64> {
-        let cracks = match self.kind {
-            SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => 2.0,
-            SpecimenKind::SingleEdgeTension | SpecimenKind::CompactTension => 1.0,
-            SpecimenKind::Plate => return None,
-        };
-        let ligament = self.width - cracks * crack_length;
+        let ligament = self.ligament(crack_length)?;
         if ligament <= 0.0 {
             return Some(f64::INFINITY);
         }
-        if self.kind == SpecimenKind::CompactTension {
-            let k_max = handbook::handbook(self)?.k_i(crack_length, load);
-            return Some(k_max * (4.0 / (PI * ligament)).sqrt());
+        // 1/η, written without the difference of two large numbers.
+        let weakened_by = |arm: f64| (arm * arm + 1.0).sqrt() + arm;
+        let factor = match self.kind {
+            SpecimenKind::SingleEdgeTension if !self.supports.contains(&Support::ClampedEnds) => {
+                weakened_by(crack_length / ligament)
+            }
+            SpecimenKind::CompactTension => weakened_by(1.0 + 2.0 * crack_length / ligament),
+            _ => 1.0,
+        };
+        Some(factor * self.force_per_thickness(load) / ligament)
+    }
+
+    /// Whether the ligament is large enough for K to describe the crack, see [`small_scale_yielding`]; for a standard kind.
+    #[must_use]
+    pub fn small_scale_yielding(&self, crack_length: f64, load_max: f64, k_max: f64, yield_strength: f64) -> bool {
+        small_scale_yielding(self.kind, self.width, crack_length, self.force_per_thickness(load_max), k_max, yield_strength)
+    }
+
+    /// Force over thickness, N/m, of a nominal load.
+    fn force_per_thickness(&self, load: f64) -> f64 {
+        match self.load_measure {
+            super::LoadMeasure::Stress => load * self.width,
+            super::LoadMeasure::Force => load / self.thickness,
         }
-        Some(load * self.width / ligament)
+    }
+}
+
+/// Whether the ligament is large enough for its plastic zone (ASTM E647, 7.2): M(T) `W - 2a ≥ 1.25 P_max / (B σ_Y)`, that is
+/// 80 % of net-section yield; C(T) and, by the same reasoning, edge cracks `b ≥ (4/π) (K_max/σ_Y)²`.
+#[must_use]
+pub fn small_scale_yielding(
+    kind: SpecimenKind,
+    width: f64,
+    crack_length: f64,
+    force_per_thickness: f64,
+    k_max: f64,
+    yield_strength: f64,
+) -> bool {
+    let needed = match kind {
+        SpecimenKind::MiddleTension => 1.25 * force_per_thickness / yield_strength,
+        _ => ligament_needed(k_max, yield_strength),
+    };
+    ligament(kind, width, crack_length) >= needed
+}
+
+/// `(4/π) (K_max/σ_Y)²`, the ligament ASTM E647 asks for, m: four times the plastic zone of plane stress.
+#[must_use]
+pub fn ligament_needed(k_max: f64, yield_strength: f64) -> f64 {
+    4.0 / PI * (k_max / yield_strength).powi(2)
+}
+
+fn ligament(kind: SpecimenKind, width: f64, crack_length: f64) -> f64 {
+    match kind {
+        SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => width - 2.0 * crack_length,
+        SpecimenKind::SingleEdgeTension | SpecimenKind::CompactTension | SpecimenKind::Plate => width - crack_length,
     }
 }

@@ -4,6 +4,8 @@
 //! the program, not records of what it reaches: a row that misses its bound either fails the command or carries the reason
 //! of a known miss.
 
+pub mod golden;
+pub mod golden_peridynamics;
 pub mod growth;
 pub mod scene;
 pub mod table;
@@ -23,7 +25,17 @@ pub struct Topic {
 
 /// All topics, in the order in which a life is computed.
 pub const TOPICS: &[Topic] = &[
-    Topic { name: "growth_law", about: "da/dN of a middle-tension panel against the power law of ΔK", fill: growth::middle_tension },
+    Topic { name: "golden", about: "golden lives by hand calculation, rates of readings", fill: golden::by_hand },
+    Topic {
+        name: "golden_peridynamics",
+        about: "the golden lives by peridynamics with an A fitted to hand calculation",
+        fill: golden_peridynamics::by_bonds,
+    },
+    Topic {
+        name: "growth_law",
+        about: "da/dN of a middle-tension panel against the power law of ΔK",
+        fill: growth::middle_tension,
+    },
     Topic { name: "one_line", about: "one A for middle tension, single edge and compact tension", fill: growth::specimens },
     Topic { name: "biaxial", about: "stress along the crack does not count", fill: growth::biaxial },
     Topic { name: "life", about: "lives of whole runs against quadrature with handbook K", fill: growth::lives },

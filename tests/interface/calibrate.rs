@@ -73,7 +73,10 @@ fn a_calibration_with_a_prediction_and_its_export() {
     // The record reads back and says what fit.json says; a case that names it reads it.
     let record: FittedRecord = toml::from_str(&fs::read_to_string(fit.join("fitted.toml")).unwrap()).unwrap();
     let report = json(&fit.join("fit.json"));
-    assert_eq!((report["a"].as_f64(), report["p"].as_f64()), (Some(record.a), Some(record.p)));
+    // The JSON reader may miss the last bit of a number.
+    for (key, value) in [("a", record.a), ("p", record.p)] {
+        assert!((report[key].as_f64().unwrap() / value - 1.0).abs() < 1e-15, "{key}: {report}");
+    }
     assert!((1.5..8.0).contains(&record.p) && (1.0..5.0).contains(&record.paris_m), "{record:?}");
     assert!(report["rms_life_error"].as_f64().unwrap() < 0.2, "{report}");
     let with_record = format!("{PANEL}[fatigue]\nfitted = \"out/fit/fitted.toml\"\n");

@@ -43,6 +43,7 @@ pub fn case() -> Case {
 /// A record fitted between two ΔK in MPa√m.
 pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
     LawSource::Fitted(Box::new(FittedRecord {
+        method: "peridynamics".to_owned(),
         a: 1e5,
         p: 3.0,
         horizon_mm: 3.015,
@@ -51,6 +52,7 @@ pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
         scaling: String::new(),
         paris_c_mm_per_cycle: 1e-8,
         paris_m: 3.0,
+        paris_m_error: None,
         pivot_delta_k_mpa_sqrt_m: 15.0,
         rate_at_pivot_mm_per_cycle: 3.4e-5,
         rate_at_pivot_relative_error: 0.01,

@@ -19,6 +19,7 @@ fn read(extra: &str, overrides: &[&str]) -> Result<Case, Error> {
 
 fn record() -> FittedRecord {
     FittedRecord {
+        method: "peridynamics".into(),
         a: 5000.0,
         p: 3.0,
         horizon_mm: 3.0,
@@ -27,6 +28,7 @@ fn record() -> FittedRecord {
         scaling: "horizon".into(),
         paris_c_mm_per_cycle: 1e-7,
         paris_m: 2.9,
+        paris_m_error: None,
         pivot_delta_k_mpa_sqrt_m: 11.4,
         rate_at_pivot_mm_per_cycle: 1e-4,
         rate_at_pivot_relative_error: 0.01,

@@ -3,7 +3,7 @@
 use super::understood::short;
 use crate::body::Body;
 use crate::body::lattice::Lattice;
-use crate::case::Case;
+use crate::case::{Case, Method};
 use crate::error::{Error, InputError, Result};
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::no_fail::stuck;
@@ -24,6 +24,9 @@ pub(super) struct Preview {
 
 /// Lays the lattice and, where that is quick, builds the body.
 pub(super) fn preview(case: &Case) -> Result<Preview> {
+    if case.model.method == Method::Handbook {
+        return Ok(Preview { points: "none: hand calculation".to_owned(), warnings: Vec::new() });
+    }
     let (model, specimen) = (&case.model, &case.specimen);
     let about = specimen.area() / model.spacing.powi(2);
     if about > POINTS_BUILT {

@@ -1,10 +1,11 @@
 //! What `perilife check` has understood of a file, in words.
 
 use crate::calibration::measured::MeasuredCurve;
-use crate::case::{Case, LawSource};
+use crate::case::{Case, LawSource, Method};
+use crate::report::fit_use;
 use crate::specimen::handbook::handbook;
 use crate::specimen::{LoadMeasure, Support};
-use crate::units::{GPA, KN, MM, MPA};
+use crate::units::{GPA, KN, MM, MM_PER_CYCLE, MPA};
 
 /// One line of what was understood.
 #[derive(Debug)]
@@ -49,9 +50,13 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     };
     let law = match &case.law {
         LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
+        LawSource::Paris(law) => format!("da/dN = {:e} ΔK^{} (mm/cycle, MPa√m)", law.c / MM_PER_CYCLE, law.m),
+        LawSource::Fitted(_) if model.method == Method::Handbook => fit_use::law_line(case).unwrap_or_default(),
         LawSource::Fitted(record) => format!(
-            "a = {:e} per cycle, p = {} at horizon {} mm, fitted to {}",
-            record.a, record.p, record.horizon_mm, record.material
+            "{}; a = {:e} per cycle at horizon {} mm",
+            fit_use::law_line(case).unwrap_or_default(),
+            record.a,
+            record.horizon_mm
         ),
         LawSource::Missing(path) if path.as_os_str().is_empty() => "to be fitted".to_owned(),
         LawSource::Missing(path) => format!("{} does not exist yet", path.display()),
@@ -117,7 +122,9 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         ("handbook K", formula),
         ("stop", format!("{stop}{} cycles", case.stop.cycles_max)),
     ];
-    lines.into_iter().map(|(what, value)| Line { what, value }).collect()
+    // Hand calculation has no bonds that could age.
+    let told = |what: &str| model.method == Method::Peridynamics || !["bonds", "ageing"].contains(&what);
+    lines.into_iter().filter(|(what, _)| told(what)).map(|(what, value)| Line { what, value }).collect()
 }
 
 /// A number with at most four decimals.

@@ -1,0 +1,30 @@
+//! A calibration from its file to the fit, by the model that `model.method` names.
+
+use crate::calibration::case::CalibrationCase;
+use crate::calibration::fit::{Fit, FitTask, fit};
+use crate::calibration::model::ForwardModel;
+use crate::calibration::pd_model::PdModel;
+use crate::calibration::power_law::PowerLaw;
+use crate::case::Method;
+use crate::error::Result;
+use crate::predict::Observer;
+
+/// Fits the constants of a calibration: A and p of bonds, or (method `handbook`) C and m of hand calculation.
+///
+/// # Errors
+/// Mechanics without a result, or a window in which the handbook has no K.
+pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Result<Fit> {
+    let delta_k = |length: f64| calibration.delta_k(length);
+    let task = FitTask { curves: &calibration.curves, fixed_p: calibration.exponent.fixed, delta_k: &delta_k };
+    let fit_with = |model: &dyn ForwardModel| fit(&task, model);
+    let case = &calibration.case;
+    match case.model.method {
+        Method::Peridynamics => fit_with(&PdModel::new(case, observer)?),
+        Method::Handbook => {
+            let mut fit = fit_with(&PowerLaw::new(case.specimen.crack_length, case.stop.crack_length, &delta_k)?)?;
+            // The fitted constants are C and m themselves; no line has to be drawn through rates.
+            fit.paris = fit.paris.of_power_law(fit.record.constants, fit.p_error());
+            Ok(fit)
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! The law of `[fatigue]`: inline constants, or a record that `perilife calibrate` wrote.
+//!
+//! The constants of both methods may stand side by side, so that one file serves `model.method` either way.
+
+use std::path::Path;
+
+use toml::Value;
+
+use super::choices::Method;
+use super::{LawSource, law};
+use crate::calibration::record::FittedRecord;
+use crate::error::{Error, Result, input, input_missing};
+use crate::fatigue::FatigueLaw;
+use crate::fatigue::paris::ParisLaw;
+use crate::input::{Document, LENGTH, number, slice};
+use crate::units::MM_PER_CYCLE;
+
+/// Keys of `[fatigue]` that give a law.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LawKeys {
+    pub fitted: Option<String>,
+    pub a: Option<f64>,
+    pub p: Option<f64>,
+    pub horizon_mm: Option<f64>,
+    pub paris_c_mm_per_cycle: Option<f64>,
+    pub paris_m: Option<f64>,
+}
+
+/// All of them, for those who take the law out of a file.
+pub const LAW_KEYS: [&str; 6] = ["fitted", "a", "p", "horizon_mm", "paris_c_mm_per_cycle", "paris_m"];
+
+impl LawKeys {
+    /// The law that `method` needs; `None` where the file gives none at all, as in a calibration.
+    pub(super) fn read(&self, method: Method, base_dir: &Path) -> Result<Option<LawSource>> {
+        if let Some(fitted) = &self.fitted {
+            let all = self.bond().into_iter().chain(self.paris());
+            if let Some((key, value)) = all.filter_map(|(key, value)| Some((key, value?))).next() {
+                let remedy = "give fitted, or constants, not both";
+                return Err(input(&format!("fatigue.{key}"), value, "stands beside fitted: the law is given twice", remedy));
+            }
+            return read_record(&base_dir.join(fitted)).map(Some);
+        }
+        let (bond, paris) = (self.bond_law()?, self.paris_law()?);
+        match method {
+            Method::Peridynamics => match (bond, paris) {
+                (None, Some(_)) => Err(wrong_law(self.paris(), method)),
+                (bond, _) => Ok(bond.map(LawSource::Inline)),
+            },
+            Method::Handbook => match (bond, paris) {
+                (Some(_), None) => Err(wrong_law(self.bond(), method)),
+                (_, paris) => Ok(paris.map(LawSource::Paris)),
+            },
+        }
+    }
+
+    fn bond(&self) -> Vec<(&'static str, Option<f64>)> {
+        vec![("a", self.a), ("p", self.p), ("horizon_mm", self.horizon_mm)]
+    }
+
+    fn paris(&self) -> Vec<(&'static str, Option<f64>)> {
+        vec![("paris_c_mm_per_cycle", self.paris_c_mm_per_cycle), ("paris_m", self.paris_m)]
+    }
+
+    fn bond_law(&self) -> Result<Option<FatigueLaw>> {
+        let Some([a, p, horizon]) = together(self.bond(), "give a, p and horizon_mm together, or fitted")? else {
+            return Ok(None);
+        };
+        Ok(Some(FatigueLaw {
+            a: number("a constant in 1/cycle", 1e-60, 1e100).read("fatigue.a", a)?,
+            p: number("an exponent", 0.5, 20.0).read("fatigue.p", p)?,
+            horizon: LENGTH.read("fatigue.horizon_mm", horizon)?,
+        }))
+    }
+
+    fn paris_law(&self) -> Result<Option<ParisLaw>> {
+        let Some([c, m]) = together(self.paris(), "give paris_c_mm_per_cycle and paris_m together, or fitted")? else {
+            return Ok(None);
+        };
+        let c = number("a rate in mm/cycle at ΔK = 1 MPa√m", 1e-60, 1e3).read("fatigue.paris_c_mm_per_cycle", c)?;
+        Ok(Some(ParisLaw { c: c * MM_PER_CYCLE, m: number("an exponent", 0.5, 20.0).read("fatigue.paris_m", m)? }))
+    }
+}
+
+/// All of the keys or none of them.
+fn together<const N: usize>(keys: Vec<(&str, Option<f64>)>, remedy: &str) -> Result<Option<[f64; N]>> {
+    if keys.iter().all(|(_, value)| value.is_none()) {
+        return Ok(None);
+    }
+    let mut values = [f64::NAN; N];
+    for (slot, (key, value)) in values.iter_mut().zip(&keys) {
+        let why = if *key == "horizon_mm" { ": A is meaningless without the horizon it belongs to" } else { "" };
+        *slot = value.ok_or_else(|| input_missing(&format!("fatigue.{key}"), format!("is missing{why}"), remedy))?;
+    }
+    Ok(Some(values))
+}
+
+/// Constants of the other method than the one that is to run; `keys` holds what was given.
+fn wrong_law(keys: Vec<(&str, Option<f64>)>, method: Method) -> Error {
+    let (key, value) = keys.into_iter().find_map(|(key, value)| Some((key, value?))).unwrap_or_default();
+    let (problem, remedy) = match method {
+        Method::Peridynamics => (
+            "is a constant of hand calculation, and method \"peridynamics\" needs the law of its bonds",
+            "give fitted, or a, p and horizon_mm; or set model.method = \"handbook\"",
+        ),
+        Method::Handbook => (
+            "is a constant of bonds, and method \"handbook\" needs the Paris law",
+            "give fitted, or paris_c_mm_per_cycle and paris_m; or set model.method = \"peridynamics\"",
+        ),
+    };
+    input(&format!("fatigue.{key}"), value, problem, remedy)
+}
+
+/// Reads a `fitted.toml`; one that does not exist (yet) is [`LawSource::Missing`].
+fn read_record(path: &Path) -> Result<LawSource> {
+    match fitted_record(path) {
+        Ok(record) => Ok(LawSource::Fitted(Box::new(record))),
+        Err(Error::File { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
+            Ok(LawSource::Missing(path.to_path_buf()))
+        }
+        Err(other) => Err(other),
+    }
+}
+
+/// Reads and checks a `fitted.toml`.
+///
+/// # Errors
+/// A file that cannot be read, or is no such record.
+pub fn fitted_record(path: &Path) -> Result<FittedRecord> {
+    let document = Document::read(path, &[])?;
+    let record = slice::<FittedRecord>(&Value::Table(document.table.clone()), "record").and_then(|record| {
+        law::check_record(&record)?;
+        Ok(record)
+    });
+    let at_top = |error| match error {
+        Error::Input(mut trouble) => {
+            trouble.key = trouble.key.map(|key| key.trim_start_matches("record.").to_owned());
+            trouble.remedy.push_str("; this file is written by `perilife calibrate`");
+            Error::Input(trouble)
+        }
+        other => other,
+    };
+    record.map_err(|error| document.locate(at_top(error)))
+}

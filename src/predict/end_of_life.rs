@@ -1,0 +1,52 @@
+//! Crack lengths at which a standard specimen is at its end, known before any run: its K(a) and its net section are.
+
+use super::StopReason;
+use crate::case::Case;
+use crate::specimen::handbook::handbook;
+
+/// A crack length that ends a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    /// Crack length in the specimen's convention, m; that of the start where the end is there already.
+    pub crack_length: f64,
+    /// Why the run ends there.
+    pub reason: StopReason,
+}
+
+/// The first of: the length the case stops at, K_max = toughness (where a handbook has K), yield of the whole net section
+/// (standard kinds). `None` where nothing of that is given.
+#[must_use]
+pub fn first_end(case: &Case) -> Option<End> {
+    let (specimen, load) = (&case.specimen, case.loading.maximum);
+    let (start, limit) = (specimen.crack_length, specimen.length_limit().0);
+    let end = |crack_length: f64, reason| End { crack_length, reason };
+    let wanted = case.stop.crack_length.is_finite().then(|| end(case.stop.crack_length, StopReason::CrackLengthReached));
+    let toughness =
+        case.material.toughness.zip(handbook(specimen)).map(|(toughness, formula)| {
+            end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), StopReason::Toughness)
+        });
+    let net_section = case.material.yield_strength.filter(|_| specimen.ligament(start).is_some()).map(|strength| {
+        // Known for this kind, so the default is never taken.
+        let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
+        end(first_reach(stress, strength, start, limit), StopReason::NetSectionYield)
+    });
+    [wanted, toughness, net_section].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
+}
+
+/// Smallest `a` in `from..=to` at which `value`, which rises with `a`, has reached `wanted`. NaN counts as reached: formulas end
+/// with the plate.
+fn first_reach(value: impl Fn(f64) -> f64, wanted: f64, from: f64, to: f64) -> f64 {
+    let reached = |a: f64| value(a).partial_cmp(&wanted) != Some(std::cmp::Ordering::Less);
+    if reached(from) {
+        return from;
+    }
+    let (mut below, mut above) = (from, to);
+    loop {
+        let middle = 0.5 * (below + above);
+        // No double lies between: the halving is done.
+        if middle <= below || middle >= above {
+            return above;
+        }
+        if reached(middle) { above = middle } else { below = middle }
+    }
+}

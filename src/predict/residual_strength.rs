@@ -1,0 +1,90 @@
+//! Residual strength: the load that would end the plate at once, over crack length.
+//!
+//! `load_c(a) = load_max min(K_c / K_max(a), σ_Y / σ_net(a))`: K and net-section stress are proportional to load. Where the curve
+//! falls to the maximum load of the cycle, the run ends.
+
+use super::CurvePoint;
+use crate::case::Case;
+use crate::error::{Result, input_missing};
+use crate::specimen::SpecimenKind;
+use crate::specimen::handbook::handbook;
+
+/// Crack lengths of the curve of a specimen whose K(a) is known.
+const STEPS: usize = 200;
+
+/// Residual strength at one crack length; loads as the case gives them: gross stress, Pa, or force, N.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strength {
+    /// Crack length, m.
+    pub crack_length: f64,
+    /// Load at which K reaches the toughness; `None` where one of them is not known.
+    pub by_toughness: Option<f64>,
+    /// Load at which the net section yields throughout; `None` without yield strength, or in a `plate`.
+    pub by_net_section: Option<f64>,
+}
+
+impl Strength {
+    /// The lower of the two.
+    #[must_use]
+    pub fn load(&self) -> f64 {
+        [self.by_toughness, self.by_net_section].into_iter().flatten().fold(f64::INFINITY, f64::min)
+    }
+
+    /// What ends the plate.
+    #[must_use]
+    pub fn governed_by(&self) -> super::StopReason {
+        let net_section = self.by_net_section.unwrap_or(f64::INFINITY);
+        if self.by_toughness.is_some_and(|load| load <= net_section) {
+            super::StopReason::Toughness
+        } else {
+            super::StopReason::NetSectionYield
+        }
+    }
+}
+
+/// Residual strength over crack length: from the initial crack to the end of the plate where a handbook knows K, else along
+/// the curve of the run.
+///
+/// # Errors
+/// Neither toughness nor yield strength is given, or neither says anything about this plate.
+pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Strength>> {
+    check_strength(case)?;
+    let material = &case.material;
+    let load = case.loading.maximum;
+    let strength = |crack_length: f64, k_max: Option<f64>| Strength {
+        crack_length,
+        by_toughness: material.toughness.zip(k_max).map(|(toughness, k_max)| load * toughness / k_max),
+        by_net_section: material
+            .yield_strength
+            .zip(case.specimen.net_section_stress(crack_length, load))
+            .map(|(strength, stress)| load * strength / stress),
+    };
+    let all: Vec<Strength> = match handbook(&case.specimen) {
+        Some(formula) => {
+            let (from, to) = (case.specimen.crack_length, case.specimen.length_limit().0);
+            let lengths = (0..STEPS).map(|i| from + (to - from) * i as f64 / STEPS as f64);
+            lengths.map(|a| strength(a, Some(formula.k_i(a, load)))).collect()
+        }
+        None => {
+            let known = |point: &CurvePoint| Some(point.delta_k / case.loading.range_share()).filter(|k| *k > 0.0);
+            curve.iter().map(|point| strength(point.crack_length, known(point))).collect()
+        }
+    };
+    Ok(all.into_iter().filter(|strength| strength.load().is_finite()).collect())
+}
+
+/// Whether the material has a strength that says anything about this plate.
+///
+/// # Errors
+/// It has none; the net section of a `plate` is not known, so that its yield strength says nothing.
+pub fn check_strength(case: &Case) -> Result<()> {
+    let net_section = case.specimen.ligament(case.specimen.crack_length).and(case.material.yield_strength);
+    if case.material.toughness.or(net_section).is_some() {
+        return Ok(());
+    }
+    let remedy = match case.specimen.kind {
+        SpecimenKind::Plate => "give material.toughness_mpa_sqrt_m",
+        _ => "give material.toughness_mpa_sqrt_m, material.yield_strength_mpa, or both",
+    };
+    Err(input_missing("--residual-strength", "needs a strength of the material", remedy))
+}

@@ -1,0 +1,92 @@
+//! How far a run stays within what its law was fitted to, and how sure that law is.
+
+use crate::calibration::record::FittedRecord;
+use crate::case::{Case, LawSource, Method};
+use crate::predict::Prediction;
+use crate::units::MPA_SQRT_M;
+
+/// Below this many times the lowest fitted ΔK a fit knows nothing of how near the threshold is.
+pub const NEAR_THRESHOLD: f64 = 1.5;
+
+/// Share of the life that was spent at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
+/// within each block. `None` without a fitted record, without life, or without any known ΔK.
+#[must_use]
+pub fn life_share_extrapolated(case: &Case, prediction: &Prediction) -> Option<f64> {
+    let record = fitted(case)?;
+    life_share_outside(prediction, record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m)
+}
+
+/// Share of the life spent at a ΔK below [`NEAR_THRESHOLD`] times the lowest fitted one, where no threshold is given. `None`
+/// with a threshold, and as [`life_share_extrapolated`].
+#[must_use]
+pub fn life_share_near_threshold(case: &Case, prediction: &Prediction) -> Option<f64> {
+    let record = fitted(case).filter(|_| case.fatigue.threshold == 0.0)?;
+    life_share_outside(prediction, NEAR_THRESHOLD * record.delta_k_min_mpa_sqrt_m, f64::INFINITY)
+}
+
+/// Labels of a run: what of its life the fit says little about.
+#[must_use]
+pub fn labels(case: &Case, prediction: &Prediction) -> Vec<String> {
+    let Some(record) = fitted(case) else { return Vec::new() };
+    let Some(share) = life_share_near_threshold(case, prediction).filter(|share| *share > 0.0) else { return Vec::new() };
+    vec![format!(
+        "{:.1} % of the life is spent at ΔK below {:.2} MPa√m, {NEAR_THRESHOLD} times the lowest fitted value, and no \
+         fatigue.delta_k_threshold_mpa_sqrt_m is given: near a threshold cracks grow slower than computed here",
+        100.0 * share,
+        NEAR_THRESHOLD * record.delta_k_min_mpa_sqrt_m
+    )]
+}
+
+/// The law of a record in words: rate at the pivot and m with their errors, never A alone. `None` for inline constants, whose
+/// errors nobody knows.
+#[must_use]
+pub fn law_line(case: &Case) -> Option<String> {
+    let record = fitted(case)?;
+    let m_error = record.paris_m_error.unwrap_or(record.p_error);
+    let exponent = match case.model.method {
+        Method::Peridynamics => format!("p = {:.4} ± {:.4}, m", record.p, record.p_error),
+        Method::Handbook => "m".to_owned(),
+    };
+    Some(format!(
+        "{:.4e} mm/cycle ± {:.1} % at ΔK = {:.2} MPa√m, {exponent} = {:.4} ± {m_error:.4} ({}, R = {})",
+        record.rate_at_pivot_mm_per_cycle,
+        100.0 * record.rate_at_pivot_relative_error,
+        record.pivot_delta_k_mpa_sqrt_m,
+        record.paris_m,
+        record.material,
+        record.stress_ratio
+    ))
+}
+
+fn fitted(case: &Case) -> Option<&FittedRecord> {
+    match &case.law {
+        LawSource::Fitted(record) => Some(record),
+        _ => None,
+    }
+}
+
+/// Share of the life at a ΔK outside `low..=high`, MPa√m.
+fn life_share_outside(prediction: &Prediction, low: f64, high: f64) -> Option<f64> {
+    let (low, high) = (low * MPA_SQRT_M, high * MPA_SQRT_M);
+    let (mut outside, mut known) = (0.0, 0.0);
+    for pair in prediction.curve.windows(2) {
+        let (from, to) = (pair[0].delta_k, pair[1].delta_k);
+        let cycles = pair[1].cycles - pair[0].cycles;
+        if from.is_nan() || to.is_nan() {
+            continue;
+        }
+        known += cycles;
+        outside += cycles * share_outside(from.min(to), from.max(to), low, high);
+    }
+    (known > 0.0).then(|| outside / known)
+}
+
+/// Share of the interval `from..to` that lies outside `low..high`. The ends of the range count as inside with a margin of
+/// 1e-6, for a curve that starts where the fit started.
+fn share_outside(from: f64, to: f64, low: f64, high: f64) -> f64 {
+    let (low, high) = (low * (1.0 - 1e-6), high * (1.0 + 1e-6));
+    if to - from <= 1e-12 * to {
+        return if (low..=high).contains(&from) { 0.0 } else { 1.0 };
+    }
+    1.0 - (to.min(high) - from.max(low)).max(0.0) / (to - from)
+}

@@ -1,0 +1,205 @@
+//! Golden lives: a-N figures that anyone can check with a pocket calculator or a closed form.
+//!
+//! Units of the constants as in the input: mm/cycle and MPa√m.
+
+use super::scene::case;
+use super::table::Table;
+use crate::calibration::measured::{MeasuredCurve, Source};
+use crate::calibration::rates::{RateMethod, rates};
+use crate::error::{Error, Result};
+use crate::predict::{Prediction, Silent, StopReason, predict};
+use crate::units::{MM, MM_PER_CYCLE};
+
+/// The panel of Virkler, Hillberry and Goel (1979) with the constants of Kotulski (1998), ln C = -26.155 and m = 2.874 in mm and
+/// MPa√mm.
+pub const PANEL: &str = r#"
+[specimen]
+kind = "middle_tension"
+width_mm = 152.4
+length_mm = 300.0
+thickness_mm = 2.54
+crack_length_mm = 9.0
+[material]
+youngs_modulus_gpa = 73.1
+poisson_ratio = 0.33
+[loading]
+stress_range_mpa = 48.28
+stress_ratio = 0.2
+[model]
+method = "handbook"
+[fatigue]
+paris_c_mm_per_cycle = 8.95422e-8
+paris_m = 2.874
+"#;
+
+/// A compact specimen of 50 mm.
+pub const COMPACT: &str = r#"
+[specimen]
+kind = "compact_tension"
+width_mm = 50.0
+thickness_mm = 12.5
+crack_length_mm = 12.5
+[material]
+youngs_modulus_gpa = 73.1
+poisson_ratio = 0.33
+[loading]
+force_range_n = 8000.0
+stress_ratio = 0.0
+[model]
+method = "handbook"
+[fatigue]
+paris_c_mm_per_cycle = 1.647547e-8
+paris_m = 3.0
+[stop]
+crack_length_mm = 30.0
+"#;
+
+/// A crack so small in its plate (20 mm in 60 m) that F = 1 to 1e-6.
+const WIDE: &str = r#"
+[specimen]
+kind = "middle_tension"
+width_mm = 60000.0
+length_mm = 100000.0
+thickness_mm = 1.0
+crack_length_mm = 2.0
+[material]
+youngs_modulus_gpa = 73.1
+poisson_ratio = 0.33
+[loading]
+stress_range_mpa = 100.0
+stress_ratio = 0.0
+[model]
+method = "handbook"
+[fatigue]
+paris_c_mm_per_cycle = 1e-7
+paris_m = 2.0
+[stop]
+crack_length_mm = 20.0
+"#;
+
+/// A life, and where it ends if not at a given length: cycles, crack length in mm.
+struct Golden {
+    what: &'static str,
+    text: &'static str,
+    set: &'static [&'static str],
+    life: f64,
+    end: Option<(StopReason, f64)>,
+    source: &'static str,
+}
+
+const QUADRATURE: &str = "quadrature of the Paris law with the secant formula, independent script";
+
+const GOLDEN: &[Golden] = &[
+    Golden {
+        what: "M(T) W 152.4 mm, range 48.28 MPa, 9 to 49.8 mm",
+        text: PANEL,
+        set: &["stop.crack_length_mm=49.8"],
+        life: 247_247.0,
+        end: None,
+        source: QUADRATURE,
+    },
+    Golden {
+        what: "M(T) W 152.4 mm, range 48.28 MPa, 20 to 49.8 mm",
+        text: PANEL,
+        set: &["specimen.crack_length_mm=20", "stop.crack_length_mm=49.8"],
+        life: 91_814.0,
+        end: None,
+        source: QUADRATURE,
+    },
+    Golden {
+        what: "C(T) W 50 mm, B 12.5 mm, range 8 kN, 12.5 to 30 mm",
+        text: COMPACT,
+        set: &[],
+        life: 127_411.0,
+        end: None,
+        source: "quadrature of the Paris law with the formula of ASTM E647, independent script",
+    },
+    Golden {
+        what: "crack in a plate without end, range 100 MPa, m 2, 2 to 20 mm",
+        text: WIDE,
+        set: &[],
+        life: 732_935.6,
+        end: None,
+        source: "closed form ln(a_end/a_0) / (C Δσ² π)",
+    },
+    Golden {
+        what: "M(T) of yield strength 345 MPa",
+        text: PANEL,
+        set: &["material.yield_strength_mpa=345"],
+        life: 254_287.0,
+        end: Some((StopReason::NetSectionYield, 62.871)),
+        source: "W σ_max / (W - 2a) = yield strength; quadrature up to there",
+    },
+    Golden {
+        what: "M(T) of toughness 40 MPa√m",
+        text: PANEL,
+        set: &["material.yield_strength_mpa=345", "material.toughness_mpa_sqrt_m=40"],
+        life: 251_721.0,
+        end: Some((StopReason::Toughness, 56.154)),
+        source: "K_max by the secant formula = toughness; quadrature up to there",
+    },
+];
+
+/// Bound of hand calculation, percent.
+const BOUND: f64 = 0.1;
+
+/// Golden lives by hand calculation, and rates by the two methods of ASTM E647.
+///
+/// # Errors
+/// As [`predict`]; a life that ends for another reason than it should.
+pub fn by_hand(table: &mut Table) -> Result<()> {
+    for golden in GOLDEN {
+        let run = predict(&case(golden.text, golden.set)?, &Silent)?;
+        table.compare(format!("{}: cycles", golden.what), run.life_cycles(), golden.life, BOUND, golden.source);
+        if let Some((reason, end)) = golden.end {
+            ended_by(&run, reason, golden.what)?;
+            let length = run.crack_length_final() / MM;
+            table.compare(format!("{}: {reason} at a, mm", golden.what), length, end, BOUND, golden.source);
+        }
+    }
+    measured_rates(table);
+    Ok(())
+}
+
+/// Whether a run ended for this reason.
+///
+/// # Errors
+/// It did not.
+pub(super) fn ended_by(run: &Prediction, reason: StopReason, what: &str) -> Result<()> {
+    if run.stop == reason {
+        return Ok(());
+    }
+    Err(Error::Mechanics(format!("{what}: stopped by {}, should be {reason}", run.stop)))
+}
+
+/// Seven readings of the median of 34 Virkler panels (Virkler, Hillberry and Goel 1979, odd numbers): cycles, crack length in mm.
+const READINGS: [(f64, f64); 7] = [
+    (157_635.0, 19.4),
+    (159_114.5, 19.6),
+    (160_502.5, 19.8),
+    (161_755.5, 20.0),
+    (162_949.0, 20.2),
+    (164_131.5, 20.4),
+    (165_058.0, 20.6),
+];
+
+/// Rates at these readings, computed by an independent script.
+fn measured_rates(table: &mut Table) {
+    let curve = MeasuredCurve {
+        specimen: "median".to_owned(),
+        cycles: READINGS.iter().map(|reading| reading.0).collect(),
+        crack_length: READINGS.iter().map(|reading| reading.1 * MM).collect(),
+        source: Source::default(),
+    };
+    for (method, length, rate) in [(RateMethod::Polynomial7, 19.997, 1.64009e-4), (RateMethod::Secant, 20.1, 1.67574e-4)] {
+        let points = rates(&curve, method);
+        let point = points.iter().find(|point| (point.crack_length / MM - length).abs() < 1e-3);
+        let computed = point.map_or(f64::NAN, |point| point.rate / MM_PER_CYCLE);
+        let what = format!("da/dN of the Virkler median at {length} mm, {method}, mm/cycle");
+        table.compare(what, computed, rate, BOUND, "same readings, independent script");
+        // Steps of 0.2 mm are shorter than E647 accepts, and a rate from them has to say so.
+        let flagged = point.is_some_and(|point| point.flags.short_step);
+        let what = format!("steps under 0.25 mm flagged at {length} mm, {method}");
+        table.error(what, if flagged { 0.0 } else { 100.0 }, BOUND, "ASTM E647, 8.6.2");
+    }
+}

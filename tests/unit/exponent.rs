@@ -1,0 +1,112 @@
+//! Where p of a calibration comes from, and calibrations by hand calculation.
+
+use std::fs;
+use std::path::Path;
+
+use perilife::calibration::calibrate::calibrate;
+use perilife::calibration::case::CalibrationCase;
+use perilife::calibration::record::FittedRecord;
+use perilife::calibration::results::{FitReport, record};
+use perilife::case::{Case, fitted_record};
+use perilife::predict::{Silent, predict};
+use tempfile::{TempDir, tempdir};
+
+use crate::hand_cases::{PANEL, hand_run};
+
+/// A calibration on exact readings of the panel with C = 8.95422e-8 and m = 2.874, every 2 mm between two lengths.
+fn calibration(folder: &TempDir, window_mm: [usize; 2], fit: &str) -> perilife::Result<CalibrationCase> {
+    let mut readings = "cycles,crack_length_mm\n0,9\n".to_owned();
+    for length in (11..=49).step_by(2) {
+        let run = hand_run(PANEL, &[&format!("stop.crack_length_mm={length}")]);
+        readings += &format!("{},{length}\n", run.life_cycles());
+    }
+    fs::write(folder.path().join("readings.csv"), readings).unwrap();
+    let text = format!(
+        "[measured]\nfiles = [\"readings.csv\"]\nfrom_crack_length_mm = {}\nto_crack_length_mm = {}\n[specimen]\n{PANEL}\
+         [material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n\
+         [model]\nmethod = \"handbook\"\n[fit]\n{fit}\n",
+        window_mm[0], window_mm[1]
+    );
+    let path = folder.path().join("panel.toml");
+    fs::write(&path, text).unwrap();
+    CalibrationCase::from_file(&path, &[])
+}
+
+const WIDE: [usize; 2] = [9, 49];
+/// ΔK from 12.8 to 17.2 MPa√m.
+const NARROW: [usize; 2] = [21, 33];
+
+#[test]
+fn hand_calculation_finds_its_own_constants_and_predicts_with_them() {
+    let folder = tempdir().unwrap();
+    let wide = calibration(&folder, WIDE, "").unwrap();
+    let fit = calibrate(&wide, &Silent).unwrap();
+    assert!((fit.paris.m / 2.874 - 1.0).abs() < 1e-3, "{:?}", fit.paris);
+    assert!((fit.paris.c / 8.95422e-8 - 1.0).abs() < 5e-3, "{:?}", fit.paris);
+    let report = FitReport::new(&wide, &fit, 0.0);
+    assert_eq!(report.p_source, "fitted");
+    assert!(report.paris_m_error < 0.02 && report.rms_life_error < 1e-4, "{} {}", report.paris_m_error, report.rms_life_error);
+    assert!(serde_json::to_value(&report).unwrap()["a"].is_null(), "hand calculation has no A of bonds");
+    // Its record reads back and gives the life of the readings.
+    let law = record(&wide, &fit);
+    fs::write(folder.path().join("fitted.toml"), toml::to_string(&law).unwrap()).unwrap();
+    let back: FittedRecord = fitted_record(&folder.path().join("fitted.toml")).unwrap();
+    assert_eq!((back.method.as_str(), back.paris_m, back.paris_m_error), ("handbook", law.paris_m, law.paris_m_error));
+    let text = format!(
+        "[specimen]\n{PANEL}[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n\
+         [model]\nmethod = \"handbook\"\n[fatigue]\nfitted = \"fitted.toml\"\n[stop]\ncrack_length_mm = 49.8\n"
+    );
+    let case = Case::from_toml(&text, "again", folder.path(), &[]).unwrap();
+    assert!((predict(&case, &Silent).unwrap().life_cycles() / 247_247.0 - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_narrow_window_takes_p_from_a_record_or_says_that_it_is_not_identified() {
+    let folder = tempdir().unwrap();
+    let wide = calibration(&folder, WIDE, "").unwrap();
+    let law = FittedRecord { paris_m_error: Some(0.04), ..record(&wide, &calibrate(&wide, &Silent).unwrap()) };
+    fs::write(folder.path().join("fitted.toml"), toml::to_string(&law).unwrap()).unwrap();
+    let report = |window, keys: &str| {
+        let calibration = calibration(&folder, window, keys).unwrap();
+        let fit = calibrate(&calibration, &Silent).unwrap();
+        (FitReport::new(&calibration, &fit, 0.0), fit)
+    };
+
+    let (free, _) = report(NARROW, "");
+    assert_eq!(free.p_source, "not_identified");
+    assert!(
+        free.warnings.iter().any(|line| line.contains("p is not identified") && line.contains("record")),
+        "{:?}",
+        free.warnings
+    );
+
+    let (taken, _) = report(NARROW, "record = \"fitted.toml\"");
+    assert_eq!((taken.p, taken.p_error, taken.paris_m_error), (law.paris_m, 0.04, 0.04));
+    assert_eq!(taken.p_source, "fitted.toml");
+    assert!(taken.warnings.iter().any(|line| line.contains("taken from fitted.toml")), "{:?}", taken.warnings);
+    // C follows from the narrow window and the p of the wide one.
+    assert!((taken.paris_c_mm_per_cycle / 8.95422e-8 - 1.0).abs() < 5e-3);
+
+    // A window that tells p needs no record; [\"a\"] alone takes it all the same.
+    let (wide, _) = report(WIDE, "record = \"fitted.toml\"");
+    assert_eq!(wide.p_source, "fitted");
+    assert!(wide.warnings.iter().any(|line| line.contains("fitted.toml is not used")), "{:?}", wide.warnings);
+    assert_eq!(report(WIDE, "parameters = [\"a\"]\nrecord = \"fitted.toml\"").0.p_source, "fitted.toml");
+    assert_eq!(report(NARROW, "parameters = [\"a\"]\np = 3").0.p_source, "given");
+    let twice = calibration(&folder, NARROW, "parameters = [\"a\"]\np = 3\nrecord = \"fitted.toml\"").unwrap_err().to_string();
+    assert!(twice.contains("fit.p = 3") && twice.contains("p is given twice"), "{twice}");
+    let nowhere = calibration(&folder, NARROW, "record = \"nowhere.toml\"").unwrap_err();
+    assert_eq!(nowhere.exit_code(), 4);
+}
+
+/// p of peridynamic records is p, not m.
+#[test]
+fn bonds_take_p_and_hand_calculation_m_of_a_record() {
+    use perilife::calibration::exponent::Exponent;
+    use perilife::case::Method;
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3");
+    let law = fitted_record(&path.join("fitted.toml")).unwrap();
+    let of = |method| Exponent::of_record("fitted.toml", &path, method).unwrap().fixed;
+    assert_eq!((of(Method::Peridynamics), of(Method::Handbook)), (Some(law.p), Some(law.paris_m)));
+    assert_ne!(law.p, law.paris_m);
+}
