@@ -121,7 +121,7 @@ pub fn run(
             retire_tips(&mut tips, &body, &case.specimen, &near, settings.zone_radius_horizons);
         }
         iterations += equilibrium.reach(&body, &bonds, &near, &focus(&tips, &body, settings), &mut displacement)?;
-        let ageing = ageing_bonds(&body, &near, &displacement, share, threshold);
+        let ageing = ageing_bonds(&body, &near, &displacement, &tips, settings, (share, threshold));
         if let Some(reason) = stop::before_block(case, end, &track, &tips, &ageing) {
             break reason;
         }

@@ -9,6 +9,7 @@ use super::choices::{Choices, Failure, Method};
 use super::law_source::LawKeys;
 use super::{LawSource, Stop};
 use crate::error::{Result, input, input_missing};
+use crate::fatigue::lattice_direction::LatticeDirection;
 use crate::fatigue::{Ageing, Block, BlockKind, FatigueSettings, OVERLOAD_STRETCH, Precrack};
 use crate::input::{INTENSITY, LENGTH, number, slice};
 use crate::specimen::{LengthConvention, Specimen};
@@ -36,6 +37,7 @@ struct Input {
     critical_stretch: Option<f64>,
     walker_gamma: Option<f64>,
     delta_k_threshold_mpa_sqrt_m: Option<f64>,
+    lattice_direction: Option<LatticeDirection>,
     allow_extrapolation: Option<bool>,
     #[serde(rename = "failure")]
     _failure: Option<Failure>,
@@ -70,6 +72,7 @@ pub(super) fn from_value(value: &Value, method: Method, base_dir: &Path, choices
         critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
+        lattice_direction: input.lattice_direction.unwrap_or(LatticeDirection::Corrected),
     };
     let law = LawKeys {
         fitted: input.fitted,

@@ -90,12 +90,33 @@ fn in_zone(body: &Body, tip: &CrackTip, radius: f64) -> Vec<Bond> {
 }
 
 /// Of the candidates those in tension, with their cyclic strain. Bonds in compression are not spent.
+///
+/// The strain is `share` times the stretch, times a factor for the direction in which the nearest tip grows
+/// ([`LatticeDirection`](super::lattice_direction::LatticeDirection)).
 #[must_use]
-pub fn ageing_bonds(body: &Body, candidates: &[Bond], displacement: &[f64], share: f64, threshold: f64) -> Vec<AgeingBond> {
+pub fn ageing_bonds(
+    body: &Body,
+    candidates: &[Bond],
+    displacement: &[f64],
+    tips: &[CrackTip],
+    settings: &FatigueSettings,
+    (share, threshold): (f64, f64),
+) -> Vec<AgeingBond> {
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
+    let active: Vec<(&CrackTip, f64)> = tips
+        .iter()
+        .filter(|tip| tip.is_active() && settings.ageing == Ageing::CrackTip)
+        .map(|tip| (tip, settings.lattice_direction.strain_factor(body, tip.direction)))
+        .collect();
+    let factor = |bond: Bond| {
+        let middle = body.middle(bond);
+        let far = |tip: &CrackTip| distance(tip.position, middle);
+        active.iter().min_by(|a, b| far(a.0).total_cmp(&far(b.0))).map_or(1.0, |(_, factor)| *factor)
+    };
     candidates
         .iter()
         .map(|&bond| AgeingBond { bond, strain: share * stretch(body, &layout, displacement, bond) })
         .filter(|ageing| ageing.strain > threshold.max(0.0))
+        .map(|ageing| AgeingBond { strain: ageing.strain * factor(ageing.bond), ..ageing })
         .collect()
 }

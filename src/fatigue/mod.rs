@@ -3,11 +3,14 @@
 pub mod ageing;
 pub mod crack_tip;
 pub mod growth_rate;
+pub mod lattice_direction;
 pub mod length_average;
 pub mod no_fail;
 pub mod paris;
 pub mod pieces;
 pub mod remaining_life;
+
+use lattice_direction::LatticeDirection;
 
 /// Critical stretch s_t where a case gives none: 5 %, which no plate bears within linear elasticity. It lets the last
 /// ligament of a plate break by overload instead of hanging on bonds that no tip spends.
@@ -91,4 +94,6 @@ pub struct FatigueSettings {
     pub walker_gamma: f64,
     /// Threshold of ΔK, Pa√m; 0 = none.
     pub threshold: f64,
+    /// Treatment of the crack's direction against the lattice.
+    pub lattice_direction: LatticeDirection,
 }

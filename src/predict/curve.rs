@@ -133,7 +133,7 @@ impl Track {
         let mut warnings = Vec::new();
         let flaw = case.specimen.smallest_flaw();
         if flaw < SHORT_CRACK_HORIZONS * body.horizon() {
-            let bias = (1.0 + 0.3 * body.horizon() / flaw).powi(3) - 1.0;
+            let bias = (1.0 + (body.horizon() / flaw).powi(2) / 3.0).powi(3) - 1.0;
             warnings.push(format!(
                 "the initial crack is only {:.1} horizons long: the finite horizon makes it grow too fast at first, by up to about {:.0} % in rate (not a short-crack effect)",
                 flaw / body.horizon(),
