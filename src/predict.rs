@@ -96,7 +96,7 @@ pub fn run(
     let mut iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;
     let mut solves = 1;
 
-    let mut track = Track::new(case, &start.growth(&tips), &tips, equilibrium.work());
+    let mut track = Track::new(case, start.records(&tips), equilibrium.work());
     let end = first_end(case);
     let mut album = Album::default();
     let mut broken_bonds = 0;
@@ -178,7 +178,7 @@ pub fn run(
         broken_bonds += spent.len();
         let shares = share_out(&body, &tips, &spent);
         tips.iter_mut().zip(&shares).for_each(|(tip, broken)| tip.advance(&body, &bonds, &case.specimen, broken));
-        track.record(&start.growth(&tips), &tips, broken_bonds, if outcome.is_none() { equilibrium.work() } else { f64::NAN });
+        track.record(start.records(&tips), broken_bonds, if outcome.is_none() { equilibrium.work() } else { f64::NAN });
         recorder.block(&ageing, &spent, track.last().crack_length);
         if counting && album.is_due(track.last()) && outcome.is_none() {
             iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;

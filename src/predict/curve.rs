@@ -4,7 +4,6 @@ use super::end_of_life::End;
 use super::outcome::{CurvePoint, Progress, TipRecord};
 use crate::body::Body;
 use crate::case::Case;
-use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::growth_rate::{Sample, rates, release_rate_at_end};
 use crate::fatigue::length_average::LengthAverage;
 use crate::specimen::Specimen;
@@ -54,8 +53,8 @@ pub struct Track {
 }
 
 impl Track {
-    /// Starts with the plate as it was cut; `growth` counts from the initial length of every tip.
-    pub(super) fn new(case: &Case, growth: &[f64], tips: &[CrackTip], work: f64) -> Self {
+    /// Starts with the plate as it was cut.
+    pub(super) fn new(case: &Case, tips: Vec<TipRecord>, work: f64) -> Self {
         let mut track = Track {
             rows: Vec::new(),
             cycles: 0.0,
@@ -65,7 +64,7 @@ impl Track {
             zero: None,
             run_out: None,
         };
-        track.record(growth, tips, 0, work);
+        track.record(tips, 0, work);
         track
     }
 
@@ -96,10 +95,10 @@ impl Track {
         self.zero.map_or(0.0, |zero| self.cycles - self.rows[zero].cycles)
     }
 
-    /// Records the plate after a block; `growth` of the tips counts from their initial lengths.
-    pub(super) fn record(&mut self, growth: &[f64], tips: &[CrackTip], broken_bonds: usize, work: f64) {
-        let crack_length = self.specimen.crack_length_after(growth);
-        let tips = tips.iter().zip(growth).map(|(tip, &growth)| TipRecord { position: tip.position, growth }).collect();
+    /// Records the plate after a block; growth of the tips counts from their initial lengths.
+    pub(super) fn record(&mut self, tips: Vec<TipRecord>, broken_bonds: usize, work: f64) {
+        let growth: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
+        let crack_length = self.specimen.crack_length_after(&growth);
         self.rows.push(Row { cycles: self.cycles, crack_length, work, broken_bonds, tips });
     }
 

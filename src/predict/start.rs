@@ -5,6 +5,7 @@
 //! field, grows 10 to 70 % too fast over its first horizon. So the crack is cut shorter and grown to its length before
 //! cycles count: along its own line (`steady_profile`), whatever its bonds do, or freely (`grown`). Tips that are there wait for the others.
 
+use super::TipRecord;
 use crate::body::Body;
 use crate::body::pre_crack::bonds_cut_by;
 use crate::case::Case;
@@ -86,13 +87,16 @@ impl Start {
         self.specimen.tips.iter().zip(&self.lags).map(tip).collect()
     }
 
-    /// Growth of the tips since they had their initial length, m; negative before. From a clean cut the lead of the front
-    /// builds up over the first horizon.
-    pub(super) fn growth(&self, tips: &[CrackTip]) -> Vec<f64> {
-        let growth = |(tip, &lag): (&CrackTip, &f64)| {
-            if lag > 0.0 { tip.growth - lag } else { tip.growth - self.lead * (tip.growth / self.horizon).min(1.0) }
+    /// Every tip with its growth since it had its initial length, negative before, at the end of the sharp crack of the same
+    /// compliance. From a clean cut the lead of the front builds up over the first horizon.
+    pub(super) fn records(&self, tips: &[CrackTip]) -> Vec<TipRecord> {
+        let record = |(tip, &lag): (&CrackTip, &f64)| {
+            let lead = if lag > 0.0 { self.lead } else { self.lead * (tip.growth / self.horizon).min(1.0) };
+            let before = if lag > 0.0 { lag - self.lead } else { 0.0 };
+            let position = [0, 1].map(|i| tip.position[i] - lead * tip.direction[i]);
+            TipRecord { position, growth: tip.growth - before - lead }
         };
-        tips.iter().zip(&self.lags).map(growth).collect()
+        tips.iter().zip(&self.lags).map(record).collect()
     }
 
     /// Whether all tips have their initial length: cycles count.

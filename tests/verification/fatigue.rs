@@ -114,14 +114,14 @@ fn two_cracks_and_ageing_everywhere_end_without_trouble() {
     }
 }
 
-/// Cycles from 16 to 24 mm of half crack, where the start no longer counts.
+/// Cycles from 19 to 24 mm of half crack, more than a horizon beyond the start.
 fn cycles_later(run: &Prediction) -> f64 {
     let at = |length: f64| {
         let pair = run.curve.windows(2).find(|pair| pair[1].crack_length >= length * MM).unwrap();
         let share = (length * MM - pair[0].crack_length) / (pair[1].crack_length - pair[0].crack_length);
         pair[0].cycles + share * (pair[1].cycles - pair[0].cycles)
     };
-    at(24.0) - at(16.0)
+    at(24.0) - at(19.0)
 }
 
 /// The window is exact: the same bonds break at the same cycles as with a solve of the whole plate per block, by any solver.
@@ -162,7 +162,7 @@ fn growth_hardly_depends_on_the_block() {
     let stop = "stop.crack_length_mm=24.5";
     let reference = grow(PANEL, &[stop]);
     for (name, set, bound) in [
-        ("no pre-crack", vec!["fatigue.precrack=none"], 0.02),
+        ("no pre-crack", vec!["fatigue.precrack=none"], 0.03),
         // Reached: 10 % at this spacing; theory.md gives up to 16 % for larger blocks. Not the default for that reason.
         ("two groups a block", vec!["fatigue.bonds_per_block=2"], 0.12),
         ("fixed blocks", vec!["fatigue.block=fixed", "fatigue.block_cycles=20"], 0.02),
