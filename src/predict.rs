@@ -30,8 +30,8 @@ use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::fatigue::remaining_life::BondLife;
 use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
-use crate::solver::{Equilibrium, Focus};
 use crate::solver::field::Layout;
+use crate::solver::{Equilibrium, Focus};
 use crate::specimen::Specimen;
 use crate::specimen::geometry::distance;
 use crate::state::Bonds;
@@ -254,9 +254,7 @@ fn focus(tips: &[CrackTip], body: &Body, settings: &FatigueSettings) -> Vec<Focu
     // Bonds of the zone, bridges of the wake, and a spacing in which the crack may turn.
     let reach = (settings.zone_radius_horizons + 0.5).max(1.0) * body.horizon() + body.lattice.spacing;
     let active = tips.iter().filter(|tip| tip.is_active());
-    active
-        .map(|tip| Focus { position: tip.position, direction: tip.direction, wake: tip.wake.clone(), reach })
-        .collect()
+    active.map(|tip| Focus { position: tip.position, direction: tip.direction, wake: tip.wake.clone(), reach }).collect()
 }
 
 /// Growth of the load's work by overload within one block, at constant load, from which the plate counts as severed: it has

@@ -49,7 +49,12 @@ pub fn run(args: &Args) -> Result<()> {
         folder.finish()?;
     }
     let (failed, missed) = (rows.iter().filter(|row| row.fails()).count(), rows.iter().filter(|row| !row.ok()).count());
-    args.console.say(&format!("{} rows, {} within their bounds, {} known misses", rows.len(), rows.len() - missed, missed - failed));
+    args.console.say(&format!(
+        "{} rows, {} within their bounds, {} known misses",
+        rows.len(),
+        rows.len() - missed,
+        missed - failed
+    ));
     args.console.object(&json!({ "rows": object["rows"], "known_misses": missed - failed, "failed": failed }))?;
     if failed > 0 {
         return Err(Error::Mechanics(format!("{failed} of {} rows miss their bounds", rows.len())));

@@ -59,7 +59,10 @@ pub fn candidates(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &Fati
         Ageing::CrackTip => {
             let radius = settings.zone_radius_horizons * body.horizon();
             let active = tips.iter().filter(|tip| tip.is_active());
-            active.flat_map(|tip| in_zone(body, tip, radius).into_iter().chain(tip.bridges.iter().copied())).filter(|&bond| may_fail(bond)).collect()
+            active
+                .flat_map(|tip| in_zone(body, tip, radius).into_iter().chain(tip.bridges.iter().copied()))
+                .filter(|&bond| may_fail(bond))
+                .collect()
         }
     };
     found.sort_unstable();

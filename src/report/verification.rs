@@ -59,7 +59,8 @@ pub fn markdown(rows: &[Row]) -> String {
     let mut text = "| what | computed | reference | error % | bound % | source |\n|---|---|---|---|---|---|\n".to_owned();
     for row in sorted {
         let miss = row.known_miss.as_ref().map_or_else(String::new, |reason| format!(" (known miss: {reason})"));
-        let figures = format!("{} | {} | {:+.2} | {}", number(row.computed), number(row.reference), row.error_percent, row.bound_percent);
+        let figures =
+            format!("{} | {} | {:+.2} | {}", number(row.computed), number(row.reference), row.error_percent, row.bound_percent);
         text += &format!("| {}: {}{miss} | {figures} | {} |\n", row.name, row.quantity, row.source);
     }
     text

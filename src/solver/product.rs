@@ -246,8 +246,7 @@ impl<const N: usize> Product<N> {
                 return Vec::new();
             }
             let root = (share * stiffness).sqrt();
-            let mut w: Vec<(usize, f64)> =
-                (0..2).flat_map(|c| [(a + c, -root * along[c]), (b + c, root * along[c])]).collect();
+            let mut w: Vec<(usize, f64)> = (0..2).flat_map(|c| [(a + c, -root * along[c]), (b + c, root * along[c])]).collect();
             if lever != 0.0 {
                 w.extend([(a + 2, -root * lever), (b + 2, -root * lever)]);
             }

@@ -31,7 +31,11 @@ pub const TOPICS: &[Topic] = &[
         about: "the golden lives by peridynamics with an A fitted to hand calculation",
         fill: golden_peridynamics::by_bonds,
     },
-    Topic { name: "growth_law", about: "da/dN of a middle-tension panel against the power law of ΔK", fill: growth::middle_tension },
+    Topic {
+        name: "growth_law",
+        about: "da/dN of a middle-tension panel against the power law of ΔK",
+        fill: growth::middle_tension,
+    },
     Topic { name: "one_line", about: "one A for middle tension, single edge and compact tension", fill: growth::specimens },
     Topic { name: "biaxial", about: "stress along the crack does not count", fill: growth::biaxial },
     Topic { name: "life", about: "lives of whole runs against quadrature with handbook K", fill: growth::lives },

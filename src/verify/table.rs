@@ -77,15 +77,7 @@ impl Table {
         self.rows
     }
 
-    fn push(
-        &mut self,
-        quantity: String,
-        computed: f64,
-        reference: f64,
-        error_percent: f64,
-        bound_percent: f64,
-        source: &str,
-    ) {
+    fn push(&mut self, quantity: String, computed: f64, reference: f64, error_percent: f64, bound_percent: f64, source: &str) {
         let wall_s = self.last.elapsed().as_secs_f64();
         self.last = Instant::now();
         let row = Row {

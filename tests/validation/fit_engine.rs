@@ -29,7 +29,13 @@ fn the_median_panel_is_fitted_within_two_percent_of_life() {
     let calibration = calibration(&[]);
     let found = fit_to(&calibration, &calibration.curves);
     let life = found.record.life_fitted() / found.record.life_measured();
-    println!("p {:.4} ± {:.4}, rms {:.4}, life {life:.4}, m {:.4}", found.record.constants.p, found.p_error(), found.record.rms_life_error(), found.paris.m);
+    println!(
+        "p {:.4} ± {:.4}, rms {:.4}, life {life:.4}, m {:.4}",
+        found.record.constants.p,
+        found.p_error(),
+        found.record.rms_life_error(),
+        found.paris.m
+    );
     assert!(found.record.rms_life_error() <= 0.02);
     assert!((life - 1.0).abs() <= 0.025);
     assert!((2.7..=3.3).contains(&found.paris.m));

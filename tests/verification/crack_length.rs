@@ -25,7 +25,12 @@ fn a_grown_crack_is_as_long_as_its_compliance_says() {
         all.extend(set);
         let run = predict(&case(&panel(20.0), &all), &Silent).unwrap();
         let cut: Vec<(f64, f64)> = (18..=32)
-            .map(|a| (f64::from(a) * MM, loaded(&case(&panel(f64::from(a)), &["model.spacing_mm=1"]), SolverKind::Multigrid).unwrap().work))
+            .map(|a| {
+                (
+                    f64::from(a) * MM,
+                    loaded(&case(&panel(f64::from(a)), &["model.spacing_mm=1"]), SolverKind::Multigrid).unwrap().work,
+                )
+            })
             .collect();
         let by_compliance = |work: f64| {
             let pair = cut.windows(2).find(|pair| pair[1].1 >= work).unwrap();

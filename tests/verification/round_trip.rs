@@ -3,9 +3,9 @@
 use perilife::calibration::confidence::distance_squared;
 use perilife::calibration::fit::{Fit, FitTask, fit};
 use perilife::calibration::measured::{MeasuredCurve, Source};
+use perilife::calibration::median::cycles_at;
 use perilife::calibration::model::ForwardModel;
 use perilife::calibration::pd_model::PdModel;
-use perilife::calibration::median::cycles_at;
 use perilife::predict::{Silent, predict};
 use perilife::specimen::handbook::handbook;
 use perilife::units::MM;
