@@ -15,9 +15,6 @@ use crate::state::Bonds;
 pub const TOLERANCE: f64 = 1e-9;
 /// Iterations after which a solve has failed.
 const ITERATIONS_MAX: usize = 400;
-/// Iterations without halving the residual after which one below [`TOLERANCE`] is as good as round-off of K u allows: a plate that
-/// bends far has large displacements.
-const ITERATIONS_STALLED: usize = 20;
 /// Iterations above those of a fresh hierarchy at which it is rebuilt.
 const ITERATIONS_SLACK: usize = 3;
 /// Broken bonds, in stencils, after which the hierarchy is rebuilt in any case.
@@ -55,15 +52,13 @@ impl<const N: usize> MultigridSolver<N> {
 
     fn iterate(&mut self, bonds: &Bonds, product: &Product<N>, f: &[f64], u: &mut [f64]) -> Option<usize> {
         let layout = *product.layout();
-        let load = dot(&layout, f, f).sqrt();
-        let target = self.tolerance * load;
+        let target = self.tolerance * dot(&layout, f, f).sqrt();
         self.r.copy_from_slice(f);
         product.apply(bonds, u, &mut self.r, Into::Subtract);
         if dot(&layout, &self.r, &self.r).sqrt() <= target {
             return Some(0);
         }
         let mut rz_last = 0.0;
-        let (mut least, mut least_at) = (f64::INFINITY, 0);
         for iteration in 1..=ITERATIONS_MAX {
             self.multigrid.precondition(bonds, product, &self.r, &mut self.z);
             let rz = dot(&layout, &self.r, &self.z);
@@ -78,12 +73,7 @@ impl<const N: usize> MultigridSolver<N> {
             let alpha = rz / curvature;
             update(u, |u, i| u + alpha * self.p[i]);
             update(&mut self.r, |r, i| r - alpha * self.q[i]);
-            let residual = dot(&layout, &self.r, &self.r).sqrt();
-            if residual < 0.5 * least {
-                (least, least_at) = (residual, iteration);
-            }
-            let stalled = iteration > least_at + ITERATIONS_STALLED && residual <= TOLERANCE * load;
-            if residual <= target || stalled {
+            if dot(&layout, &self.r, &self.r).sqrt() <= target {
                 return Some(iteration);
             }
         }

@@ -9,7 +9,7 @@ pub mod condense;
 pub mod update;
 
 use super::conjugate_gradient::MultigridSolver;
-use super::direct::pinned_components;
+use super::direct::{DirectSolver, pinned_components};
 use super::product::Product;
 use super::{Focus, LinearSolver, Solved, System};
 use crate::body::pre_crack::places_near;
@@ -61,7 +61,11 @@ impl<const N: usize> WindowSolver<N> {
 
     /// Solves the whole plate; a window that is up to date takes its new base from it.
     fn solve_whole(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        let solved = self.whole.solve(system, u)?;
+        // A part that hangs on a few bonds is nearly a mechanism, on which the iteration breaks down; a factorisation does not.
+        let solved = match self.whole.solve(system, u) {
+            Ok(solved) => solved,
+            Err(_) => DirectSolver::default().solve(system, u)?,
+        };
         self.is_whole = true;
         self.work = solved.work;
         if let Some(window) = &mut self.window {

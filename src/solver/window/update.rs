@@ -49,7 +49,7 @@ impl Update {
             row.push((-product(other, &spring) - done) / factor[factor.len() - 1]);
         }
         let pivot = 1.0 - product(&spring, &spring) - row.iter().map(|l| l * l).sum::<f64>();
-        if !(pivot > PIVOT_MIN) {
+        if pivot.is_nan() || pivot <= PIVOT_MIN {
             return false;
         }
         row.push(pivot.sqrt());
