@@ -7,6 +7,7 @@
 pub mod golden;
 pub mod golden_peridynamics;
 pub mod growth;
+pub mod resolution;
 pub mod scene;
 pub mod table;
 
@@ -37,6 +38,10 @@ pub const TOPICS: &[Topic] = &[
         fill: growth::middle_tension,
     },
     Topic { name: "one_line", about: "one A for middle tension, single edge and compact tension", fill: growth::specimens },
+    Topic { name: "spacing", about: "one A for every spacing and horizon ratio", fill: resolution::spacing },
+    Topic { name: "orientation", about: "life on turned lattices", fill: resolution::orientation },
+    Topic { name: "blocks", about: "life over the size of cycle blocks", fill: resolution::blocks },
+    Topic { name: "clean_cracks", about: "broken bonds over those that a clean cut severs", fill: resolution::clean_cracks },
     Topic { name: "biaxial", about: "stress along the crack does not count", fill: growth::biaxial },
     Topic { name: "life", about: "lives of whole runs against quadrature with handbook K", fill: growth::lives },
 ];
