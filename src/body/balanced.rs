@@ -24,7 +24,7 @@ pub mod least_squares;
 use super::Body;
 use super::facets::Facet;
 use super::sharing::Sharing;
-use crate::bond_law::stencil::StencilBond;
+use crate::bond_law::stencil::{Stencil, StencilBond};
 use crate::error::{Error, Result};
 use least_squares::{BondGain, Gain, Link, Problem};
 
@@ -35,6 +35,12 @@ const ROWS_MORE: usize = 1;
 const ROWS_LEAST: usize = 3;
 /// Bounds of a multiplier.
 const BOUNDS: [f64; 2] = [0.2, 5.0];
+
+/// Rows of points that a consistent load reaches: the fewer, the more the last row takes. Stencils with no more bonds than a
+/// point has equations cannot pass the load on from a third row.
+pub(super) fn load_rows(stencil: &Stencil) -> usize {
+    if stencil.bonds.len() > least_squares::EQUATIONS { stencil.reach.max(ROWS_LEAST) } else { 2 }
+}
 
 /// Sets the multipliers of the bonds near the rim of the uncracked body.
 ///

@@ -96,7 +96,7 @@ impl Body {
         let sharing = match law.surface_correction {
             SurfaceCorrection::Balanced => {
                 let obstacles = Obstacles::of(specimen, lattice.spacing, stencil.horizon);
-                Sharing::consistent(&grid, &occupied, obstacles, stencil.reach.max(2))
+                Sharing::consistent(&grid, &occupied, obstacles, balanced::load_rows(&stencil))
             }
             SurfaceCorrection::None | SurfaceCorrection::VolumeAndSurface => Sharing::nearest(&grid, &occupied),
         };

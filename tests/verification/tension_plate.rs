@@ -30,12 +30,12 @@ fn the_balanced_correction_is_exact_to_a_hundredth_of_a_percent_for_every_poisso
     }
 }
 
-/// Up to twenty neighbours (horizon ratio below 2.8) are too few for all equations at once.
+/// A small plate, 20 x 36 points. Asked for are 0.5 %, 0.1 % is the aim; twelve neighbours (horizon ratio below 2.2) are too few for
+/// all equations at once.
 #[test]
 fn the_balanced_correction_serves_every_horizon() {
     for kernel in Kernel::ALL {
-        for (ratio, bound) in [(1.5, 1.0), (2.015, 1.0), (2.5, 0.15), (3.015, 0.05), (4.015, 0.05), (5.015, 0.05), (6.015, 0.05)]
-        {
+        for (ratio, bound) in [(1.5, 0.5), (2.015, 0.5), (2.5, 0.1), (3.015, 0.1), (4.015, 0.1), (5.015, 0.1), (6.015, 0.1)] {
             for nu in [0.1, 1.0 / 3.0] {
                 let law = BondLaw { kernel: *kernel, ..BALANCED };
                 let errors = uniform_tension(&strip(0.02, 0.036), &law, nu, 1e-3, ratio, 0.0).unwrap();

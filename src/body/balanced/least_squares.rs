@@ -11,7 +11,7 @@ use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 
 /// Equations of a point: four of force, two of rotation.
-const EQUATIONS: usize = 6;
+pub(super) const EQUATIONS: usize = 6;
 /// ε of the equations of force: the least at which the factor is sound, and larger ones for rims that no multipliers
 /// within the bounds can serve.
 const SOFTNESS: [f64; 3] = [1e-7, 1e-5, 1e-3];
