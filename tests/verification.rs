@@ -11,6 +11,8 @@ mod statics;
 
 #[path = "verification/elasticity.rs"]
 mod elasticity;
+#[path = "verification/tension_plate.rs"]
+mod tension_plate;
 #[path = "verification/product.rs"]
 mod product;
 #[path = "verification/solvers.rs"]

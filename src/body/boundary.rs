@@ -1,21 +1,27 @@
 //! Loads and supports of a specimen as forces on points, points held, and grips.
 
+use super::facets::{Facet, arc, behind, straight, turned_over};
 use super::lattice::Lattice;
+use super::sharing::Sharing;
 use crate::bond_law::stencil::Stencil;
 use crate::error::{Error, Result};
-use crate::specimen::geometry::{along, bounding_box, distance, distance_to_segment};
+use crate::specimen::geometry::{bounding_box, distance_to_segment};
 use crate::specimen::{Load, Point, Specimen, Support};
 
 /// Stiffness of rigid grips over that of the plate.
 const GRIP_STIFFNESS: f32 = 1000.0;
-/// Samples per spacing when a boundary load is shared out to points; even, so that a sample never falls between two points.
-const SAMPLES: f64 = 8.0;
 
 /// Forces on points at unit nominal load, held components and grips.
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
     /// Loaded places with their force (lattice axes) at unit nominal load, N.
     pub forces: Vec<(u32, [f64; 2])>,
+    /// Places with a couple on their rotation (force per rotation times spacing) at unit nominal load, N.
+    pub couples: Vec<(u32, f64)>,
+    /// Places nearest to where the loads act.
+    loaded: Vec<u32>,
+    /// Force that the plate carries from end to end along y at unit nominal load, N.
+    through: f64,
     /// Held places with the components held, in lattice axes.
     pub fixed: Vec<(u32, [bool; 2])>,
     /// Clamped grips: places of the end blocks with the displacement along y, in units of half the relative displacement.
@@ -32,7 +38,7 @@ impl Boundary {
         specimen: &Specimen,
         lattice: &Lattice,
         stencil: &Stencil,
-        is_point: &[bool],
+        sharing: &Sharing,
         points: &[u32],
     ) -> Result<Boundary> {
         let mut boundary = Boundary { floating: true, ..Boundary::default() };
@@ -57,58 +63,38 @@ impl Boundary {
             }
         }
         let mut force = std::collections::BTreeMap::<u32, Point>::new();
-        let mut add = |position: Point, share: Point| -> Result<()> {
-            let place = nearest_point(lattice, is_point, position).ok_or_else(|| {
+        for load in load_pieces(specimen, lattice.spacing) {
+            let at = load.facet.at;
+            let nearest = sharing.nearest_point(at).ok_or_else(|| {
                 Error::Mechanics(format!(
                     "no point of the plate lies near the load at x = {:.3} mm, y = {:.3} mm; give a smaller spacing",
-                    position[0] * 1e3,
-                    position[1] * 1e3
+                    at[0] * 1e3,
+                    at[1] * 1e3
                 ))
             })?;
-            let share = lattice.to_axes(share);
-            let sum = force.entry(place).or_default();
-            *sum = [sum[0] + share[0], sum[1] + share[1]];
-            Ok(())
-        };
-        for load in &specimen.loads {
-            match *load {
-                Load::Edge { from, to, traction } => {
-                    let length = distance(from, to);
-                    let samples = (length / lattice.spacing).round().max(1.0) * SAMPLES;
-                    let area = length / samples * specimen.thickness;
-                    for i in 0..samples as usize {
-                        let t = (i as f64 + 0.5) / samples;
-                        add(along(from, to, t), [traction[0] * area, traction[1] * area])?;
-                    }
-                }
-                Load::Pin { hole, direction, force } => {
-                    let hole = specimen.holes[hole];
-                    // Bearing pressure p cos θ on the half circle around `direction`; ∫ cos² θ = π/2 makes the resultant `force`.
-                    let samples = (hole.radius * std::f64::consts::PI / lattice.spacing).round().max(4.0) * SAMPLES;
-                    let step = std::f64::consts::PI / samples;
-                    for i in 0..samples as usize {
-                        let theta = -0.5 * std::f64::consts::PI + (i as f64 + 0.5) * step;
-                        let (sin, cos) = theta.sin_cos();
-                        let out = [cos * direction[0] - sin * direction[1], cos * direction[1] + sin * direction[0]];
-                        let pressure = force * cos * step / (0.5 * std::f64::consts::PI);
-                        add(
-                            [hole.centre[0] + hole.radius * out[0], hole.centre[1] + hole.radius * out[1]],
-                            [pressure * out[0], pressure * out[1]],
-                        )?;
-                    }
-                }
+            boundary.loaded.push(nearest);
+            boundary.through += 0.5 * load.force[1].abs();
+            let whole = lattice.to_axes(load.force);
+            for (place, share) in sharing.of(&load.facet) {
+                let sum = force.entry(place).or_default();
+                *sum = [sum[0] + share * whole[0], sum[1] + share * whole[1]];
             }
         }
+        boundary.loaded.sort_unstable();
+        boundary.loaded.dedup();
         boundary.forces = force.into_iter().collect();
-        if boundary.floating {
-            boundary.balance(lattice)?;
-        }
         Ok(boundary)
     }
 
     /// Removes the small resultant that sharing out the loads to points has left on a floating plate: the loaded points
     /// take the smallest change of forces (least squares) after which force and moment vanish.
-    fn balance(&mut self, lattice: &Lattice) -> Result<()> {
+    ///
+    /// # Errors
+    /// Loads far out of balance on a plate that nothing holds.
+    pub(super) fn balance(&mut self, lattice: &Lattice) -> Result<()> {
+        if !self.floating {
+            return Ok(());
+        }
         let scale: f64 = self.forces.iter().map(|(_, f)| f[0].abs() + f[1].abs()).sum();
         if scale == 0.0 {
             return Ok(());
@@ -120,7 +106,8 @@ impl Boundary {
         let count = self.forces.len() as f64;
         let mean = self.forces.iter().fold([0.0; 2], |m, &(p, _)| [m[0] + seat(p)[0] / count, m[1] + seat(p)[1] / count]);
         let arm = |p: u32| [seat(p)[0] - mean[0], seat(p)[1] - mean[1]];
-        let (mut resultant, mut moment, mut inertia) = ([0.0; 2], 0.0, 0.0);
+        let couples: f64 = self.couples.iter().map(|c| c.1).sum();
+        let (mut resultant, mut moment, mut inertia) = ([0.0; 2], couples, 0.0);
         for &(p, f) in &self.forces {
             let r = arm(p);
             resultant = [resultant[0] + f[0], resultant[1] + f[1]];
@@ -144,7 +131,7 @@ impl Boundary {
     /// Force that the plate carries from end to end along y at unit nominal load, N.
     #[must_use]
     pub fn force_through(&self) -> f64 {
-        0.5 * self.forces.iter().map(|(_, f)| f[1].abs()).sum::<f64>()
+        self.through
     }
 
     /// Places within one horizon of a loaded or held place.
@@ -152,7 +139,7 @@ impl Boundary {
         let mut no_fail = vec![false; lattice.places()];
         let reach = (horizon / lattice.spacing).floor() as i32;
         let held = self.fixed.iter().map(|f| f.0).chain(self.clamped.iter().map(|c| c.0)).chain(self.rigid.iter().copied());
-        for place in self.forces.iter().map(|f| f.0).chain(held) {
+        for place in self.loaded.iter().copied().chain(held) {
             for dy in -reach..=reach {
                 for dx in -reach..=reach {
                     if f64::from(dx * dx + dy * dy).sqrt() * lattice.spacing <= horizon {
@@ -207,20 +194,37 @@ fn end_blocks<'a>(
     })
 }
 
-/// Point nearest to a position, searched within three spacings.
-fn nearest_point(lattice: &Lattice, is_point: &[bool], position: Point) -> Option<u32> {
-    let [column, row] = lattice.locate(position);
-    let mut best: Option<(f64, u32)> = None;
-    for r in (row - 3.0).ceil().max(0.0) as usize..=(row + 3.0).floor().clamp(0.0, lattice.rows as f64 - 1.0) as usize {
-        for c in
-            (column - 3.0).ceil().max(0.0) as usize..=(column + 3.0).floor().clamp(0.0, lattice.columns as f64 - 1.0) as usize
-        {
-            let place = lattice.place(c, r);
-            let away = (c as f64 - column).hypot(r as f64 - row);
-            if is_point[place] && best.is_none_or(|(least, _)| away < least - 1e-9) {
-                best = Some((away, place as u32));
+/// A piece of the rim and the force on it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LoadPiece {
+    /// Where it acts; the normal points out of the material.
+    pub facet: Facet,
+    /// Force in plate axes at unit nominal load, N.
+    pub force: Point,
+}
+
+/// The loads of a specimen in short pieces.
+pub(super) fn load_pieces(specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
+    let outward = |facet: Facet| if specimen.contains(behind(&facet, spacing)) { facet } else { turned_over(facet) };
+    let mut pieces = Vec::new();
+    for load in &specimen.loads {
+        match *load {
+            Load::Edge { from, to, traction } => pieces.extend(straight(from, to, spacing).map(|facet| {
+                let area = facet.length * specimen.thickness;
+                LoadPiece { facet: outward(facet), force: [traction[0] * area, traction[1] * area] }
+            })),
+            Load::Pin { hole, direction, force } => {
+                // Bearing pressure p cos θ on the half circle around `direction`; ∫ cos² θ = π/2 makes the resultant `force`.
+                let hole = specimen.holes[hole];
+                let half = 0.5 * std::f64::consts::PI;
+                let middle = direction[1].atan2(direction[0]);
+                pieces.extend(arc(hole.centre, hole.radius, middle - half, 2.0 * half, spacing).into_iter().map(|facet| {
+                    let cos = facet.normal[0] * direction[0] + facet.normal[1] * direction[1];
+                    let pressure = force * cos * facet.length / hole.radius / half;
+                    LoadPiece { facet: turned_over(facet), force: facet.normal.map(|n| pressure * n) }
+                }));
             }
         }
     }
-    best.map(|(_, place)| place)
+    pieces
 }

@@ -4,10 +4,14 @@
 //! Its stiffness is the spring of the stencil times a multiplier: 0 absent, 1 inside the body, other values where a
 //! surface correction acts.
 
+pub mod balanced;
 pub mod boundary;
+mod couples;
+pub mod facets;
 pub mod lattice;
 pub mod obstacles;
 pub mod pre_crack;
+pub mod sharing;
 pub mod surface_correction;
 
 use crate::bond_law::stencil::Stencil;
@@ -18,6 +22,7 @@ use crate::specimen::{Point, Specimen};
 use boundary::Boundary;
 use lattice::Lattice;
 use obstacles::Obstacles;
+use sharing::Sharing;
 
 /// A bond: `k x places + place` of its owner.
 pub type Bond = u32;
@@ -86,7 +91,16 @@ impl Body {
         let steps: Vec<isize> = stencil.bonds.iter().map(|bond| lattice.step(bond.dx, bond.dy)).collect();
         let multiplier = uncut_bonds(specimen, &lattice, &stencil, &steps, &is_point, &points);
         let bond_count = multiplier.iter().filter(|&&m| m > 0.0).count();
-        let boundary = Boundary::of(specimen, &lattice, &stencil, &is_point, &points)?;
+        // The sharing reads the lattice beside the body that takes it over.
+        let (grid, occupied) = (lattice.clone(), is_point.clone());
+        let sharing = match law.surface_correction {
+            SurfaceCorrection::Balanced => {
+                let obstacles = Obstacles::of(specimen, lattice.spacing, stencil.horizon);
+                Sharing::consistent(&grid, &occupied, obstacles, balanced::load_rows(&stencil))
+            }
+            SurfaceCorrection::None | SurfaceCorrection::VolumeAndSurface => Sharing::nearest(&grid, &occupied),
+        };
+        let boundary = Boundary::of(specimen, &lattice, &stencil, &sharing, &points)?;
         let no_fail = boundary.no_fail(&lattice, stencil.horizon);
         let mut body = Body {
             lattice,
@@ -104,7 +118,16 @@ impl Body {
         match law.surface_correction {
             SurfaceCorrection::None => {}
             SurfaceCorrection::VolumeAndSurface => surface_correction::volume_and_surface(&mut body, material),
+            SurfaceCorrection::Balanced => {
+                let rim = facets::facets(specimen, body.lattice.spacing);
+                balanced::balance(&mut body, &rim, &sharing)?;
+                if body.stencil.unknowns == 3 {
+                    let loads = boundary::load_pieces(specimen, body.lattice.spacing);
+                    body.boundary.couples = couples::couples(&body, material, &rim, &loads);
+                }
+            }
         }
+        body.boundary.balance(&body.lattice)?;
         body.boundary.stiffen_grips(&body.lattice, &body.steps, &mut body.multiplier);
         body.pre_cut = pre_crack::bonds_cut_by(&body, &specimen.cracks);
         Ok(body)

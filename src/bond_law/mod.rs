@@ -7,6 +7,7 @@ crate::kinds! {
     pub enum BondLawKind for "model.bond_law" {
         BondBased = "bond_based": "one normal spring a bond; fixes Poisson's ratio at 1/3 (plane stress) or 1/4 (plane strain)",
         TwoParameter = "two_parameter": "normal and tangential spring a bond; Poisson's ratio up to 1/3 (plane stress) or 1/4 (plane strain)",
+        OneBondTwoParameter = "one_bond_two_parameter": "the same on stretch and shear angle of the bond (Zhu and Ni 2017)",
     }
 }
 
@@ -31,6 +32,27 @@ crate::kinds! {
     pub enum SurfaceCorrection for "model.surface_correction" {
         None = "none": "no correction",
         VolumeAndSurface = "volume_and_surface": "partial volumes and energy factors of Madenci and Oterkus 2014",
+        Balanced = "balanced": "bond multipliers that keep uniform strain in equilibrium with its boundary traction",
+    }
+}
+
+impl BondLawKind {
+    /// Whether a bond has a tangential spring beside the normal one.
+    #[must_use]
+    pub fn is_two_parameter(self) -> bool {
+        match self {
+            BondLawKind::BondBased => false,
+            BondLawKind::TwoParameter | BondLawKind::OneBondTwoParameter => true,
+        }
+    }
+
+    /// Whether the micromodulus acts on stretch and shear angle instead of on relative displacement.
+    #[must_use]
+    pub fn is_stretch_form(self) -> bool {
+        match self {
+            BondLawKind::TwoParameter => false,
+            BondLawKind::BondBased | BondLawKind::OneBondTwoParameter => true,
+        }
     }
 }
 

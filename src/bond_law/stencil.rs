@@ -90,10 +90,10 @@ pub fn check_poisson_ratio(law: &BondLaw, material: &Material) -> Result<(), Err
             format!("bond_based fixes Poisson's ratio at {limit:.4} in plane {plane}"),
             if nu < limit { "use model.bond_law = \"two_parameter\"".to_owned() } else { beyond(limit, plane) },
         )),
-        BondLawKind::TwoParameter if nu > limit + 1e-9 => Err(input(
+        kind if kind.is_two_parameter() && nu > limit + 1e-9 => Err(input(
             "material.poisson_ratio",
             nu,
-            format!("two_parameter holds up to {limit:.4} in plane {plane} (the tangential spring would turn negative)"),
+            format!("{kind} holds up to {limit:.4} in plane {plane} (the tangential spring would turn negative)"),
             beyond(limit, plane),
         )),
         _ => Ok(()),
@@ -125,7 +125,8 @@ impl Stencil {
     /// Bonds and springs of a law at a spacing.
     ///
     /// Micromodulus profile over bond length r: `two_parameter` 1 or 1 - r/δ on the relative displacement η (Prakash and
-    /// Seidel 2015); `bond_based` the same divided by r (Silling 2000: force proportional to stretch).
+    /// Seidel 2015); `bond_based` and `one_bond_two_parameter` the same divided by r (Silling 2000, Zhu and Ni 2017: force
+    /// proportional to stretch and shear angle).
     ///
     /// With `surface_correction = none` or better than the classical one, c_n and c_t follow from the lattice sums
     /// `S₄ = Σ q r² n_x⁴`, `S₂₂ = Σ q r² n_x² n_y²`, so that uniform strain has exactly the energy of the continuum:
@@ -149,13 +150,13 @@ impl Stencil {
         let volume = spacing * spacing * thickness;
         let (c_n, c_t) = match law.surface_correction {
             SurfaceCorrection::VolumeAndSurface => integral_moduli(law, material, horizon, volume, thickness),
-            SurfaceCorrection::None => {
+            SurfaceCorrection::None | SurfaceCorrection::Balanced => {
                 make_isotropic(&shape, &mut weight);
                 lattice_moduli(law, material, &shape, &weight, volume)
             }
         };
         let reach = shape.iter().map(|bond| bond.dx.unsigned_abs().max(bond.dy.unsigned_abs()) as usize).max().unwrap_or(1);
-        let unknowns = if law.kind == BondLawKind::TwoParameter && law.rotation == Rotation::Free { 3 } else { 2 };
+        let unknowns = if law.kind.is_two_parameter() && law.rotation == Rotation::Free { 3 } else { 2 };
         for (bond, q) in shape.iter_mut().zip(&weight) {
             bond.k_n = c_n * q;
             bond.k_t = c_t * q;
@@ -193,10 +194,7 @@ fn profile(law: &BondLaw, length: f64, horizon: f64) -> f64 {
         Kernel::Constant => 1.0,
         Kernel::Conical => 1.0 - length / horizon,
     };
-    match law.kind {
-        BondLawKind::BondBased => kernel / length,
-        BondLawKind::TwoParameter => kernel,
-    }
+    if law.kind.is_stretch_form() { kernel / length } else { kernel }
 }
 
 /// Lattice sums S₄ and S₂₂ over the half stencil (each bond belongs to two points: the halves cancel).
@@ -226,10 +224,7 @@ fn make_isotropic(shape: &[StencilBond], weight: &mut [f64]) {
 
 /// The material with the Poisson's ratio that the law has: a bond-based law keeps E and brings its own ν.
 fn representable(law: &BondLaw, material: &Material) -> Material {
-    let poisson_ratio = match law.kind {
-        BondLawKind::BondBased => poisson_limit(material.plane),
-        BondLawKind::TwoParameter => material.poisson_ratio,
-    };
+    let poisson_ratio = if law.kind.is_two_parameter() { material.poisson_ratio } else { poisson_limit(material.plane) };
     Material { poisson_ratio, ..material.clone() }
 }
 
@@ -237,32 +232,25 @@ fn representable(law: &BondLaw, material: &Material) -> Material {
 fn lattice_moduli(law: &BondLaw, material: &Material, shape: &[StencilBond], weight: &[f64], volume: f64) -> (f64, f64) {
     let [s4, s22] = moments(shape, weight);
     let [c11, c12] = plane_stiffness(&representable(law, material));
-    match law.kind {
-        BondLawKind::BondBased => (volume * (c11 + c12) / (s4 + s22), 0.0),
-        BondLawKind::TwoParameter => {
-            let c_n = volume * (c11 + c12) / (s4 + s22);
-            (c_n, (c_n - volume * c12 / s22).max(0.0))
-        }
-    }
+    let c_n = volume * (c11 + c12) / (s4 + s22);
+    let c_t = if law.kind.is_two_parameter() { (c_n - volume * c12 / s22).max(0.0) } else { 0.0 };
+    (c_n, c_t)
 }
 
 /// (c_n, c_t) of the continuous kernel, times V² : the published moduli (Prakash and Seidel 2015 for the constant kernel,
-/// their conical counterpart, Silling and Askari 2005 for bond-based).
+/// their conical counterpart, Silling and Askari 2005 for bond-based, Zhu and Ni 2017 for one-bond two-parameter).
 fn integral_moduli(law: &BondLaw, material: &Material, horizon: f64, volume: f64, thickness: f64) -> (f64, f64) {
     let [c11, c12] = plane_stiffness(&representable(law, material));
     // ∫ c(r) r² (1, n_x⁴, n_x² n_y²) over the disc: angular means 3/8 and 1/8 of 2π; radial moments of the profiles.
-    let radial = match (law.kind, law.kernel) {
-        (BondLawKind::TwoParameter, Kernel::Constant) => horizon.powi(4) / 4.0,
-        (BondLawKind::TwoParameter, Kernel::Conical) => horizon.powi(4) / 20.0,
-        (BondLawKind::BondBased, Kernel::Constant) => horizon.powi(3) / 3.0,
-        (BondLawKind::BondBased, Kernel::Conical) => horizon.powi(3) / 12.0,
+    let radial = match (law.kind.is_stretch_form(), law.kernel) {
+        (false, Kernel::Constant) => horizon.powi(4) / 4.0,
+        (false, Kernel::Conical) => horizon.powi(4) / 20.0,
+        (true, Kernel::Constant) => horizon.powi(3) / 3.0,
+        (true, Kernel::Conical) => horizon.powi(3) / 12.0,
     };
     // C11 = h/2 ∫ (c_n n_x⁴ + c_t n_x² n_y²) r² dA = h π/8 (3 c_n + c_t) radial, C12 = h π/8 (c_n - c_t) radial.
     let scale = thickness * std::f64::consts::PI / 8.0 * radial;
     let c_n = (c11 + c12) / (4.0 * scale);
-    let c_t = match law.kind {
-        BondLawKind::BondBased => 0.0,
-        BondLawKind::TwoParameter => (c_n - c12 / scale).max(0.0),
-    };
+    let c_t = if law.kind.is_two_parameter() { (c_n - c12 / scale).max(0.0) } else { 0.0 };
     (c_n * volume * volume, c_t * volume * volume)
 }

@@ -226,6 +226,11 @@ impl<const N: usize> Sides<N> {
                 f[at] = load * force[0];
                 f[at + layout.stride] = load * force[1];
             }
+            if N == 3 {
+                for &(place, couple) in &body.boundary.couples {
+                    f[layout.index(place as usize) + 2 * layout.stride] = load * couple;
+                }
+            }
             for &index in &fixed {
                 f[index] = 0.0;
             }

@@ -10,6 +10,8 @@ pub mod growth;
 pub mod resolution;
 pub mod scene;
 pub mod table;
+pub mod tension_plate;
+pub mod uniform_tension;
 
 use crate::error::{Result, input};
 pub use table::{Row, Table};
@@ -26,6 +28,7 @@ pub struct Topic {
 
 /// All topics, in the order in which a life is computed.
 pub const TOPICS: &[Topic] = &[
+    Topic { name: "tension_plate", about: "displacements of a plate in uniform tension", fill: tension_plate::rows },
     Topic { name: "golden", about: "golden lives by hand calculation, rates of readings", fill: golden::by_hand },
     Topic {
         name: "golden_peridynamics",

@@ -6,12 +6,12 @@ use perilife::body::Body;
 use perilife::case::Case;
 
 /// A plate held at the bottom, with a horizontal crack at a height (mm) that decides where the rows of points lie.
-fn body(height: f64) -> Body {
+fn body(height: f64, correction: &str) -> Body {
     let text = format!(
         "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 120\nthickness_mm = 2\n\
          cracks = [{{ from_mm = [-15, {height}], to_mm = [5, {height}] }}]\n[material]\nname = \"al2024-t3\"\n\
          [loading]\nstress_max_mpa = 10\nstress_ratio = 0\n[supports]\nbottom = {{ fix = [\"x\", \"y\"] }}\n\
-         [model]\nspacing_mm = 2\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1"
+         [model]\nspacing_mm = 2\nsurface_correction = \"{correction}\"\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1"
     );
     let case = Case::from_toml(&text, "plate", Path::new(""), &[]).unwrap();
     let model = &case.model;
@@ -23,7 +23,7 @@ fn body(height: f64) -> Body {
 fn a_support_holds_one_row_wherever_the_rows_lie() {
     for i in 0..16 {
         let height = -57.0 + 0.25 * f64::from(i);
-        let body = body(height);
+        let body = body(height, "volume_and_surface");
         let mut rows: Vec<usize> =
             body.boundary.fixed.iter().map(|(place, _)| body.lattice.column_row(*place as usize).1).collect();
         let held = rows.len();
@@ -31,5 +31,43 @@ fn a_support_holds_one_row_wherever_the_rows_lie() {
         assert_eq!((held, rows.len()), (30, 1), "crack at y = {height} mm");
         let force: f64 = body.boundary.forces.iter().map(|(_, force)| force[1]).sum();
         assert!((force - 0.06 * 0.002).abs() < 1e-12, "crack at y = {height} mm: {force}");
+    }
+}
+
+/// Resultant, moment and work on uniform strain are those of the traction on the edge itself, wherever the rows lie against it.
+#[test]
+fn the_balanced_correction_loads_the_true_edge() {
+    for i in 0..16 {
+        let height = -57.0 + 0.25 * f64::from(i);
+        let body = body(height, "balanced");
+        let sum = |of: &dyn Fn([f64; 2], [f64; 2]) -> f64| -> f64 {
+            body.boundary.forces.iter().map(|&(place, force)| of(body.lattice.position(place as usize), force)).sum()
+        };
+        let force = 0.06 * 0.002;
+        for (what, computed, exact) in [
+            ("force", sum(&|_, f| f[1]), force),
+            ("side force", sum(&|_, f| f[0]), 0.0),
+            ("work along y", sum(&|x, f| x[1] * f[1]), force * 0.06),
+            ("moment", sum(&|x, f| x[0] * f[1] - x[1] * f[0]), 0.0),
+        ] {
+            assert!((computed - exact).abs() < 1e-12 * force, "crack at y = {height} mm, {what}: {computed:e} against {exact:e}");
+        }
+    }
+}
+
+/// Bonds stay positive and bounded, and those with all neighbours about them keep the multiplier of the infinite lattice.
+#[test]
+fn the_balanced_correction_changes_bonds_near_the_rim_only() {
+    let body = body(0.0, "balanced");
+    let depth = body.stencil.reach + 1;
+    for (bond, &multiplier) in body.multiplier.iter().enumerate().filter(|(_, m)| **m > 0.0) {
+        assert!((0.2..=5.0).contains(&multiplier), "{multiplier}");
+        let (_, from, to) = body.ends(bond as u32);
+        let inside = [from, to].iter().all(|&place| {
+            let (column, row) = body.lattice.column_row(place);
+            let within = |i: usize, count: usize| i >= depth && i + depth < count;
+            within(column, body.lattice.columns) && within(row, body.lattice.rows)
+        });
+        assert!(!inside || multiplier == 1.0, "{multiplier}");
     }
 }

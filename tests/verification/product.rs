@@ -120,7 +120,7 @@ fn the_stiffness_is_positive_but_for_rigid_motion() {
             eigenvalues[..5].iter().map(|value| (value / top) as f32).collect::<Vec<_>>()
         );
         assert!(eigenvalues[0] > -1e-12 * top, "{law:?}: {:e}", eigenvalues[0] / top);
-        let resisted = law.kind == BondLawKind::TwoParameter && law.rotation == Rotation::Resisted;
+        let resisted = law.kind.is_two_parameter() && law.rotation == Rotation::Resisted;
         assert_eq!(modes, if resisted { 2 } else { 3 }, "{law:?}");
     }
 }

@@ -48,7 +48,7 @@ fn panel(rotation: &str, correction: &str, nu: f64) -> [f64; 3] {
 
 #[test]
 fn a_centre_crack_has_the_handbook_k_whatever_poissons_ratio() {
-    for correction in ["volume_and_surface", "none"] {
+    for correction in ["balanced", "volume_and_surface", "none"] {
         let [a, b, c] = [0.1, 0.2, 0.3].map(|nu| {
             let ratios = panel("free", correction, nu);
             println!("{correction}, nu {nu}: K over handbook at {LENGTHS_MM:?} mm: {ratios:.4?}");
@@ -57,15 +57,25 @@ fn a_centre_crack_has_the_handbook_k_whatever_poissons_ratio() {
         for i in 0..LENGTHS_MM.len() {
             let at_length = [a[i], b[i], c[i]];
             for ratio in at_length {
-                // Reached: 0.9 % with the classical correction, 2.2 % without; 4 % is what was asked for.
-                let bound = if correction == "none" { 0.025 } else { 0.012 };
+                // Reached: 1.2 % balanced, 0.7 % with the classical correction, 2.2 % without; 4 % is what was asked for. What is
+                // left falls with the spacing, see below.
+                let bound = if correction == "none" { 0.025 } else { 0.0125 };
                 assert!((ratio - 1.0).abs() < bound, "{correction}: {ratio} at {} mm", LENGTHS_MM[i]);
             }
             let (low, high) = at_length.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &r| (l.min(r), h.max(r)));
-            // Reached: 0.1 %.
-            assert!(high - low < 0.002, "{correction}: {low} to {high} over nu at {} mm", LENGTHS_MM[i]);
+            // Reached: 0.24 % balanced, 0.1 % with the classical correction.
+            assert!(high - low < 0.003, "{correction}: {low} to {high} over nu at {} mm", LENGTHS_MM[i]);
         }
     }
+}
+
+/// Error of K with the balanced correction: 3.5 % at 3 mm, 1.0 % at 1.5 mm, 0.5 % at 0.75 mm (a = 18.2 mm, handbook good to 0.3 %).
+#[test]
+fn k_converges_with_the_spacing() {
+    let set = ["model.surface_correction=balanced".to_owned()];
+    let [coarse, middle, fine] = [3.0, 1.5, 0.75].map(|spacing| k_over_handbook(PANEL, &set, LENGTHS_MM[0], spacing) - 1.0);
+    println!("balanced, K over handbook less 1 at 3, 1.5, 0.75 mm: {coarse:.4}, {middle:.4}, {fine:.4}");
+    assert!(middle.abs() < 0.5 * coarse.abs() && fine.abs() < 0.7 * middle.abs());
 }
 
 /// A spring that resists the rotation of crack flanks carries part of the load past the tip: the test above can fail.
@@ -91,9 +101,12 @@ fn the_other_specimens_have_the_handbook_k() {
         ("double edge", double, 1.5, [28.0, 40.0, 50.0], 0.02),
         ("compact", compact, 1.25, [25.0, 40.0, 60.0], 0.04),
     ] {
-        let ratios = lengths.map(|a| k_over_handbook(specimen, &[], a, spacing));
-        println!("{name}: K over handbook at {lengths:?} mm: {ratios:.4?}");
-        assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < bound), "{name}: {ratios:?}");
+        for correction in ["balanced", "volume_and_surface"] {
+            let set = [format!("model.surface_correction={correction}")];
+            let ratios = lengths.map(|a| k_over_handbook(specimen, &set, a, spacing));
+            println!("{correction}, {name}: K over handbook at {lengths:?} mm: {ratios:.4?}");
+            assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < bound), "{correction}, {name}: {ratios:?}");
+        }
     }
 }
 
