@@ -8,6 +8,7 @@ pub mod boundary;
 pub mod lattice;
 pub mod obstacles;
 pub mod pre_crack;
+pub mod severed;
 pub mod surface_correction;
 
 use crate::bond_law::stencil::Stencil;
