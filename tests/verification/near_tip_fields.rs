@@ -45,9 +45,9 @@ fn gradients_are_the_slopes_of_displacements() {
             let [mut ahead, mut behind] = [at; 2];
             ahead[j] += step;
             behind[j] -= step;
-            for i in 0..2 {
+            for (i, row) in given.iter().enumerate() {
                 let slope = (u(ahead)[i] - u(behind)[i]) / (2.0 * step);
-                assert!((given[i][j] - slope).abs() < 1e-6 * (1.0 + slope.abs()), "{f:?} {i}{j}: {} {slope}", given[i][j]);
+                assert!((row[j] - slope).abs() < 1e-6 * (1.0 + slope.abs()), "{f:?} {i}{j}: {} {slope}", row[j]);
             }
         }
     }
