@@ -21,6 +21,7 @@ pub mod state;
 pub mod solver;
 pub mod fatigue;
 pub mod case;
+pub mod stress_intensity;
 pub mod predict;
 pub mod calibration;
 pub mod verify;

@@ -17,3 +17,5 @@ mod cli;
 mod export;
 #[path = "interface/hand_calculation.rs"]
 mod hand_calculation;
+#[path = "interface/sif.rs"]
+mod sif;

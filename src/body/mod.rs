@@ -11,6 +11,7 @@ pub mod facets;
 pub mod lattice;
 pub mod obstacles;
 pub mod pre_crack;
+pub mod severed;
 pub mod sharing;
 pub mod surface_correction;
 

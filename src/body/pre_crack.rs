@@ -1,7 +1,7 @@
 //! Initial cracks as cut bonds: no point is removed, every bond that crosses the crack line is.
 
 use super::{Body, Bond};
-use crate::specimen::geometry::{distance, distance_to_segment, segments_touch};
+use crate::specimen::geometry::{direction, distance, distance_to_segment, segments_touch};
 use crate::specimen::{Crack, Point};
 
 /// Share of the spacing by which a crack is shifted sideways, so that a crack along a row of points has that row on one side.
@@ -16,18 +16,25 @@ pub fn bonds_cut_by(body: &Body, cracks: &[Crack]) -> Vec<Bond> {
     cut
 }
 
+/// How far a crack from `a` to `b` is shifted, to its left, before bonds are cut, m.
+#[must_use]
+pub fn tie_break(body: &Body, a: Point, b: Point) -> Point {
+    let [x, y] = direction(a, b);
+    let shift = TIE_BREAK * body.lattice.spacing;
+    [-y * shift, x * shift]
+}
+
 /// Bonds that cross the segment from `a` to `b`.
 #[must_use]
 pub fn bonds_across(body: &Body, a: Point, b: Point) -> Vec<Bond> {
     let (lattice, places) = (&body.lattice, body.places());
-    let length = distance(a, b);
-    if length == 0.0 {
+    if distance(a, b) == 0.0 {
         return Vec::new();
     }
-    let shift = TIE_BREAK * lattice.spacing / length;
-    let (x, y) = ((b[0] - a[0]) * shift, (b[1] - a[1]) * shift);
+    let aside = tie_break(body, a, b);
     // Longer by ten times the sideways shift, so that a bond through an end of the crack is cut at both ends alike.
-    let (a, b) = ([a[0] - y - 10.0 * x, a[1] + x - 10.0 * y], [b[0] - y + 10.0 * x, b[1] + x + 10.0 * y]);
+    let (x, y) = (10.0 * aside[1], -10.0 * aside[0]);
+    let (a, b) = ([a[0] + aside[0] - x, a[1] + aside[1] - y], [b[0] + aside[0] + x, b[1] + aside[1] + y]);
     let mut cut = Vec::new();
     for place in places_near(body, a, b, body.horizon()) {
         let here = lattice.position(place);

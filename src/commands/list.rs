@@ -17,6 +17,7 @@ use crate::material::{Plane, library};
 use crate::predict::StopReason;
 use crate::solver::SolverKind;
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
+use crate::stress_intensity::StressIntensityMethod;
 use crate::verify::TOPICS;
 
 /// Arguments of `perilife list`.
@@ -55,6 +56,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         Failure::lines(),
     ];
     let of_calibration = [Parameter::lines(), LengthUnit::lines(), CycleUnit::lines(), RateMethod::lines(), StopReason::lines()];
+    let of_the_tips = StressIntensityMethod::lines();
     let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
     let mut all: Vec<_> = of_the_test.into_iter().flatten().map(words).collect();
     all.extend(library::names().into_iter().map(|name| {
@@ -66,6 +68,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     }));
     all.extend(of_the_model.into_iter().flatten().map(words));
     all.extend(of_calibration.into_iter().flatten().map(words));
+    all.extend(of_the_tips.into_iter().map(words));
     all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
     all
 }

@@ -8,10 +8,12 @@ pub mod export;
 pub mod list;
 pub mod predict;
 pub mod rates;
+pub mod sif;
 pub mod verify;
 
 pub mod console;
 pub mod message;
+mod unaged;
 
 use clap::{Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
@@ -42,8 +44,8 @@ commands! {
     Calibrate: calibrate,
     /// Resample the a-N curve of a finished run
     Export: export,
-    // /// Stress intensity factors of every crack tip, beside the handbook value
-    // Sif: sif,
+    /// Stress intensity factors of every crack tip, beside the handbook value
+    Sif: sif,
     /// Growth rate da/dN against ΔK from measured a-N curves
     Rates: rates,
     /// Run the built-in verification: computed, reference, error and bound of every row

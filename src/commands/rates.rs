@@ -1,18 +1,17 @@
 //! `perilife rates`: da/dN against ΔK from measured a-N curves.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde_json::{Value, json};
 
 use super::console::Console;
-use crate::calibration::case::remove_law;
+use super::unaged::case_without_law;
 use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, Units, read};
 use crate::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
 use crate::calibration::results::quoted;
 use crate::case::Case;
 use crate::error::{Result, input};
-use crate::input::Document;
 use crate::report::output::write_file;
 use crate::specimen::handbook::handbook;
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
@@ -63,7 +62,7 @@ pub fn run(args: &Args) -> Result<()> {
         cycles: args.cycle_unit.as_deref().map(str::parse::<CycleUnit>).transpose()?,
     };
     let measured = read(&args.measured, units)?;
-    let case = args.specimen.as_deref().map(|path| test_of(path, &args.set)).transpose()?;
+    let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     for warning in &measured.warnings {
         args.console.warn(warning);
     }
@@ -77,16 +76,6 @@ pub fn run(args: &Args) -> Result<()> {
         specimens.iter().for_each(|specimen| args.console.say(&specimen.summary()));
     }
     args.console.object(&object(&specimens, method))
-}
-
-/// The test that a case or a calibration file describes.
-fn test_of(path: &Path, overrides: &[String]) -> Result<Case> {
-    let mut document = Document::read(path, overrides)?;
-    document.table.remove("measured");
-    document.table.remove("fit");
-    // Rates need no fatigue law, and a record that does not exist yet is no obstacle.
-    remove_law(&mut document.table);
-    Case::from_table(document.table.clone(), &document.name, &document.base_dir).map_err(|error| document.locate(error))
 }
 
 fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) -> Result<Vec<SpecimenRates>> {

@@ -12,6 +12,7 @@
 use std::collections::VecDeque;
 
 use crate::body::pre_crack::bonds_across;
+use crate::body::severed::{severed_per_length, severed_weight};
 use crate::body::{Body, Bond};
 use crate::specimen::geometry::{direction, distance, segments_touch};
 use crate::specimen::{Point, Specimen, TipSeed};
@@ -122,11 +123,11 @@ impl CrackTip {
             return;
         }
         let along = body.lattice.to_axes(self.direction);
-        let per_length = bonds_per_length(body, [-along[1], along[0]]);
+        let per_length = severed_per_length(body, [-along[1], along[0]]);
         // One mark for all that broke together: the order of twins must not tell the tips of a symmetric crack apart.
         let mut mark = Mark { at: [0.0; 2], length: 0.0 };
         for &bond in broken {
-            let (middle, length) = (body.middle(bond), weight(body, body.ends(bond).0) / per_length);
+            let (middle, length) = (body.middle(bond), severed_weight(body, body.ends(bond).0) / per_length);
             mark.at = [mark.at[0] + length * middle[0], mark.at[1] + length * middle[1]];
             mark.length += length;
         }
@@ -227,22 +228,6 @@ impl CrackTip {
 fn front(body: &Body) -> f64 {
     let spacing = body.lattice.spacing;
     (FRONT_HORIZONS * body.horizon() / spacing).ceil() * spacing
-}
-
-/// Weight g_k of a stencil bond in the length measure: normal stiffness times length.
-fn weight(body: &Body, k: usize) -> f64 {
-    let bond = &body.stencil.bonds[k];
-    bond.k_n * bond.length
-}
-
-/// ρ(n): weight of the bonds severed by a unit length of crack with normal n (lattice axes).
-fn bonds_per_length(body: &Body, normal: Point) -> f64 {
-    let bonds = &body.stencil.bonds;
-    let severed = |k: usize| {
-        let bond = &bonds[k];
-        weight(body, k) * bond.length * (bond.normal[0] * normal[0] + bond.normal[1] * normal[1]).abs()
-    };
-    (0..bonds.len()).map(severed).sum::<f64>() / body.lattice.spacing.powi(2)
 }
 
 /// Gives every broken bond near a tip to the nearest active one.

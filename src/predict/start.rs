@@ -64,16 +64,8 @@ impl Start {
             let back = wanted.min(SHARE_MAX * distance(crack.from, crack.to) / ends as f64);
             *lag = back + lead;
         }
-        for (tip, &lag) in specimen.tips.iter_mut().zip(&lags).filter(|(_, lag)| **lag > 0.0) {
-            let back = lag - lead;
-            let moved = [0, 1].map(|i| tip.position[i] - back * tip.direction[i]);
-            for end in specimen.cracks.iter_mut().flat_map(|crack| [&mut crack.from, &mut crack.to]) {
-                if *end == tip.position {
-                    *end = moved;
-                }
-            }
-            tip.position = moved;
-        }
+        let moves: Vec<f64> = lags.iter().map(|&lag| if lag > 0.0 { lead - lag } else { 0.0 }).collect();
+        specimen.move_tips(&moves);
         let along_the_line = case.fatigue.precrack == Precrack::SteadyProfile;
         Ok(Start { specimen, lags, along_the_line, lead, horizon })
     }

@@ -246,4 +246,18 @@ impl Specimen {
             LengthConvention::SumOfTips => self.crack_length + sum,
         }
     }
+
+    /// Moves every tip, and the end of its crack with it, by its growth, m; negative growth makes a crack shorter. The
+    /// crack length stays the one that was read.
+    pub fn move_tips(&mut self, growth_of_tips: &[f64]) {
+        for (tip, &growth) in self.tips.iter_mut().zip(growth_of_tips).filter(|(_, growth)| **growth != 0.0) {
+            let moved = [0, 1].map(|i| tip.position[i] + growth * tip.direction[i]);
+            for end in self.cracks.iter_mut().flat_map(|crack| [&mut crack.from, &mut crack.to]) {
+                if *end == tip.position {
+                    *end = moved;
+                }
+            }
+            tip.position = moved;
+        }
+    }
 }

@@ -9,6 +9,7 @@ pub mod golden_peridynamics;
 pub mod growth;
 pub mod resolution;
 pub mod scene;
+pub mod stress_intensity;
 pub mod table;
 pub mod tension_plate;
 pub mod uniform_tension;
@@ -29,6 +30,11 @@ pub struct Topic {
 /// All topics, in the order in which a life is computed.
 pub const TOPICS: &[Topic] = &[
     Topic { name: "tension_plate", about: "displacements of a plate in uniform tension", fill: tension_plate::rows },
+    Topic {
+        name: "stress_intensity",
+        about: "K_I and K_II of standard specimens, slanted cracks and two cracks, by every method",
+        fill: stress_intensity::all,
+    },
     Topic { name: "golden", about: "golden lives by hand calculation, rates of readings", fill: golden::by_hand },
     Topic {
         name: "golden_peridynamics",

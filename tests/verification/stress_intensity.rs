@@ -1,36 +1,25 @@
-//! K_I from the energy released between two crack lengths, against handbook formulas.
-//!
-//! At constant load a crack that grows by da releases half the work the loads do: `G = d(f·u)/2 / (tips h da)`,
-//! `K = √(E' G)`. Cracks one spacing longer and shorter give the central difference.
+//! K_I and K_II of every method against handbook formulas and closed forms.
 
-use perilife::case::Case;
-use perilife::solver::SolverKind;
-use perilife::specimen::handbook::handbook;
-use perilife::units::MM;
+use perilife::stress_intensity::{StressIntensityMethod, TipResult, stress_intensity};
 
 use crate::plates::{PANEL, case};
-use crate::statics::loaded;
 
-/// K by energy release at a crack length, Pa√m, and the case of that length.
-fn k_released(specimen: &str, set: &[String], crack_length_mm: f64, spacing_mm: f64) -> (f64, Case) {
-    let with = |length: f64| -> Case {
-        let own = [format!("specimen.crack_length_mm={length}"), format!("model.spacing_mm={spacing_mm}")];
-        let all: Vec<&str> = own.iter().chain(set).map(String::as_str).collect();
-        case(specimen, &all)
-    };
-    // The spacing that divides the width: then both cracks end at the same place between two columns.
-    let here = with(crack_length_mm);
-    let step = here.specimen.gross_width / (here.specimen.gross_width / (spacing_mm * MM)).round() / MM;
-    let [shorter, longer] = [-step, step].map(|more| loaded(&with(crack_length_mm + more), SolverKind::Multigrid).unwrap().work);
-    let tips = here.specimen.tips.len() as f64;
-    let released = 0.5 * (longer - shorter) / (tips * here.specimen.thickness * 2.0 * step * MM);
-    ((here.material.plane_modulus() * released).sqrt(), here)
+/// Factors of the first tip of a case.
+fn first_tip(specimen: &str, set: &[String], methods: &[StressIntensityMethod]) -> TipResult {
+    let all: Vec<&str> = set.iter().map(String::as_str).collect();
+    stress_intensity(&case(specimen, &all), methods).unwrap().remove(0)
 }
 
-/// The same over the handbook's K.
+/// K_I by one method over the handbook's at a crack length.
+fn ratio(method: StressIntensityMethod, specimen: &str, set: &[String], crack_length_mm: f64, spacing_mm: f64) -> f64 {
+    let own = [format!("specimen.crack_length_mm={crack_length_mm}"), format!("model.spacing_mm={spacing_mm}")];
+    let tip = first_tip(specimen, &own.iter().chain(set).cloned().collect::<Vec<_>>(), &[method]);
+    tip.methods[0].intensity.k_i.unwrap() / tip.handbook_k_i.unwrap()
+}
+
+/// The same from the energy released.
 pub fn k_over_handbook(specimen: &str, set: &[String], crack_length_mm: f64, spacing_mm: f64) -> f64 {
-    let (k, case) = k_released(specimen, set, crack_length_mm, spacing_mm);
-    k / handbook(&case.specimen).unwrap().k_i(case.specimen.crack_length, case.loading.maximum)
+    ratio(StressIntensityMethod::EnergyRelease, specimen, set, crack_length_mm, spacing_mm)
 }
 
 const SPACING_MM: f64 = 1.5;
@@ -115,10 +104,61 @@ fn the_other_specimens_have_the_handbook_k() {
 #[test]
 fn clamped_ends_take_the_bending_off() {
     for (over_width, reference) in [(4.0, 1.7), (2.0, 1.3)] {
-        let set = [format!("specimen.length_mm={}", 100.0 * over_width), "specimen.ends=clamped".to_owned()];
-        let (k, case) = k_released(&format!("{SINGLE}ends=\"pinned\"\n"), &set, 50.0, 2.0);
-        let factor = k / (case.loading.maximum * (std::f64::consts::PI * case.specimen.crack_length).sqrt());
-        println!("clamped, length/width {over_width}: F = {factor:.3}");
-        assert!((factor - reference).abs() < 0.1, "length/width {over_width}: {factor} against {reference}");
+        let set = [format!("specimen.length_mm={}", 100.0 * over_width), "specimen.ends=clamped".to_owned()]
+            .into_iter()
+            .chain(["specimen.crack_length_mm=50".to_owned(), "model.spacing_mm=2".to_owned()]);
+        let tip = first_tip(&format!("{SINGLE}ends=\"pinned\"\n"), &set.collect::<Vec<_>>(), StressIntensityMethod::ALL);
+        for result in &tip.methods {
+            let factor = result.intensity.k_i.unwrap() / (70e6 * (std::f64::consts::PI * 50e-3).sqrt());
+            println!("clamped, length/width {over_width}, {}: F = {factor:.3}", result.method);
+            assert!((factor - reference).abs() < 0.05, "length/width {over_width}: {factor} against {reference}");
+        }
+        assert_eq!(tip.handbook_k_i, None, "the formula is for ends that turn");
+    }
+}
+
+/// Cracks of six horizons: what is asked for is 1.5 %, at every Poisson's ratio and at every place between two columns.
+#[test]
+fn every_method_agrees_with_the_handbook_between_columns_and_over_poissons_ratio() {
+    for &method in StressIntensityMethod::ALL {
+        let at = |a: f64, nu: f64| ratio(method, PANEL, &[format!("material.poisson_ratio={nu}")], a, 1.5);
+        let lengths = [27.0, 27.4, 27.8, 28.2].map(|a| at(a, 0.3));
+        let nus = [0.0, 0.15, 0.3333].map(|nu| at(27.0, nu));
+        println!("{method}: over length {lengths:.4?}, over nu {nus:.4?}");
+        for ratio in lengths.into_iter().chain(nus) {
+            assert!((ratio - 1.0).abs() < 0.015, "{method}: {ratio}");
+        }
+        let spread =
+            |values: &[f64]| values.iter().fold(f64::MIN, |m, &v| m.max(v)) - values.iter().fold(f64::MAX, |m, &v| m.min(v));
+        // Reached: 0.2 % and 0.3 %. Without the correction to the length asked for, the first is 1.4 %.
+        assert!(spread(&lengths) < 0.004 && spread(&nus) < 0.005, "{method}: {lengths:?} {nus:?}");
+    }
+}
+
+/// `K_I = σ √(π a) cos²φ`, `K_II = σ √(π a) sin φ cos φ` for a crack φ off the horizontal under vertical tension, in an
+/// infinite plate; this one is 14 a wide and 21 a long, which adds 1.3 % (secant of the width).
+#[test]
+fn a_slant_crack_has_both_modes_with_their_signs() {
+    let a = 18.0;
+    for phi in [30.0_f64, -30.0, 45.0] {
+        let (sin, cos) = phi.to_radians().sin_cos();
+        let (x, y) = (a * cos, a * sin);
+        let specimen = format!(
+            "kind=\"plate\"\nwidth_mm={}\nlength_mm={}\nthickness_mm=2\ncracks=[{{from_mm=[{},{}],to_mm=[{x},{y}]}}]\n",
+            14.0 * a,
+            21.0 * a,
+            -x,
+            -y
+        );
+        let tips = stress_intensity(&case(&specimen, &["model.spacing_mm=1"]), StressIntensityMethod::ALL).unwrap();
+        let unit = 70e6 * (std::f64::consts::PI * a * 1e-3).sqrt() * 1.013;
+        for result in tips.iter().flat_map(|tip| &tip.methods) {
+            let [k_i, k_ii] = [result.intensity.k_i, result.intensity.k_ii].map(|k| k.unwrap() / unit);
+            let errors = [k_i / (cos * cos) - 1.0, k_ii / (sin * cos) - 1.0];
+            println!("{phi}°, {}: errors {errors:.4?}", result.method);
+            // The energy sees that the faces of a crack cut into bonds are soft within a horizon: 4 % at this length.
+            let bound = if result.method == StressIntensityMethod::EnergyRelease { 0.05 } else { 0.03 };
+            assert!(errors.iter().all(|error| error.abs() < bound), "{phi}°, {}: {errors:?}", result.method);
+        }
     }
 }

@@ -1,0 +1,113 @@
+//! `perilife sif`: stress intensity factors of every crack tip.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use serde_json::{Map, Value, json};
+
+use super::console::Console;
+use super::unaged::case_without_law;
+use crate::error::{Error, Result};
+use crate::stress_intensity::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
+use crate::units::{MM, MPA_SQRT_M};
+
+/// Arguments of `perilife sif`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Case file (a calibration file does as well); its fatigue law is not needed
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Methods: energy_release, domain_integral, near_tip_displacement; all where none is given
+    #[arg(long, value_name = "METHOD", num_args = 1.., help_heading = "Method")]
+    pub method: Vec<String>,
+    /// Override a key of the case (repeatable), e.g. --set specimen.crack_length_mm=20
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
+    pub set: Vec<String>,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// Runs `perilife sif`.
+///
+/// # Errors
+/// Wrong input, mechanics without equilibrium, or no method that gives a factor of any tip.
+pub fn run(args: &Args) -> Result<()> {
+    let methods = methods(&args.method)?;
+    let case = case_without_law(&args.case, &args.set)?;
+    for warning in &case.warnings {
+        args.console.warn(warning);
+    }
+    let tips = stress_intensity(&case, &methods).map_err(|error| error.in_file(&args.case))?;
+    let results = || tips.iter().flat_map(|tip| &tip.methods);
+    if results().all(|result| result.intensity.k_i.is_none()) {
+        let notes: Vec<&str> = results().filter_map(|result| result.note.as_deref()).collect();
+        return Err(Error::Mechanics(format!("{}: {}", case.name, notes.first().unwrap_or(&"no method gives a factor"))));
+    }
+    for result in results() {
+        if let Some(note) = &result.note {
+            args.console.warn(&format!("{}: {note}", result.method));
+        }
+    }
+    args.console.result(&table(&tips))?;
+    args.console.object(&json!({ "tips": tips.iter().map(object).collect::<Vec<_>>() }))
+}
+
+/// The methods of these names, each once; all where no name is given.
+fn methods(names: &[String]) -> Result<Vec<StressIntensityMethod>> {
+    let mut methods: Vec<StressIntensityMethod> = Vec::new();
+    for name in names {
+        let method = name.parse()?;
+        if !methods.contains(&method) {
+            methods.push(method);
+        }
+    }
+    Ok(if methods.is_empty() { StressIntensityMethod::ALL.to_vec() } else { methods })
+}
+
+fn in_mpa(factor: Option<f64>) -> Option<f64> {
+    factor.map(|k| k / MPA_SQRT_M)
+}
+
+fn object(tip: &TipResult) -> Value {
+    let mut methods = Map::new();
+    for MethodResult { method, intensity, note, wall_s } in &tip.methods {
+        let mut entry = json!({
+            "k_i_mpa_sqrt_m": in_mpa(intensity.k_i), "k_ii_mpa_sqrt_m": in_mpa(intensity.k_ii), "wall_s": wall_s
+        });
+        if let Some(note) = note {
+            entry["note"] = json!(note);
+        }
+        methods.insert(method.name().to_owned(), entry);
+    }
+    let [x, y] = tip.tip.position;
+    json!({
+        "x_mm": x / MM, "y_mm": y / MM, "direction": tip.tip.direction,
+        "methods": methods, "handbook_k_i_mpa_sqrt_m": in_mpa(tip.handbook_k_i)
+    })
+}
+
+/// One line a tip and method; K in MPa√m.
+fn table(tips: &[TipResult]) -> String {
+    let mut text = format!(
+        "{:>10} {:>10}  {:<22} {:>12} {:>12} {:>12} {:>8}\n",
+        "x_mm", "y_mm", "method", "K_I MPa√m", "K_II MPa√m", "handbook K_I", "time s"
+    );
+    let words = |factor: Option<f64>| in_mpa(factor).map_or_else(|| "-".to_owned(), |k| format!("{k:.4}"));
+    for tip in tips {
+        let [x, y] = tip.tip.position.map(|metres| metres / MM);
+        for result in &tip.methods {
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "{x:>10.4} {y:>10.4}  {:<22} {:>12} {:>12} {:>12} {:>8.2}",
+                result.method,
+                words(result.intensity.k_i),
+                words(result.intensity.k_ii),
+                words(tip.handbook_k_i),
+                result.wall_s
+            );
+        }
+    }
+    text
+}

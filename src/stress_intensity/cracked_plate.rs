@@ -1,0 +1,183 @@
+//! A plate in equilibrium at several lengths of its cracks; points and uncut bonds are built once.
+
+use super::TipFrame;
+use crate::body::Body;
+use crate::body::pre_crack::{bonds_cut_by, places_near, tie_break};
+use crate::body::severed::{RepresentedEnd, represented_end};
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::fatigue::pieces::{Cut, set_aside};
+use crate::solver::field::Layout;
+use crate::solver::{Equilibrium, SolverKind};
+use crate::specimen::geometry::{distance, distance_to_polygon, distance_to_segment};
+use crate::specimen::{Crack, Point, Specimen};
+use crate::state::Bonds;
+use crate::units::MM;
+
+/// A case as points and bonds whose cracks can be moved.
+pub struct CrackedPlate<'a> {
+    /// The case.
+    pub case: &'a Case,
+    /// Its body; the cut bonds are those of the last solution.
+    pub body: Body,
+}
+
+/// The plate in equilibrium at one length of its cracks.
+pub struct Field {
+    /// The specimen with these cracks.
+    pub specimen: Specimen,
+    /// Bonds, cracks cut.
+    pub bonds: Bonds,
+    /// Displacement in the layout of [`Layout::of`], m.
+    pub displacement: Vec<f64>,
+    /// Work of the loads, f·u, J.
+    pub work: f64,
+}
+
+impl<'a> CrackedPlate<'a> {
+    /// Discretises a case.
+    ///
+    /// # Errors
+    /// As [`Body::build`].
+    pub fn new(case: &'a Case) -> Result<Self> {
+        let model = &case.model;
+        let (spacing, ratio, angle) = (model.spacing, model.horizon_ratio, model.lattice_angle);
+        let body = Body::build(&case.specimen, &case.material, &model.bond_law, spacing, ratio, angle)?;
+        Ok(CrackedPlate { case, body })
+    }
+
+    /// Growths for [`CrackedPlate::solve`]: every crack tip by the same, m.
+    #[must_use]
+    pub fn growth_of_all(&self, growth: f64) -> Vec<f64> {
+        self.case.specimen.tips.iter().map(|tip| if tip.from_slot { 0.0 } else { growth }).collect()
+    }
+
+    /// Cuts the cracks with every tip moved by its growth, m; nothing is solved.
+    ///
+    /// # Errors
+    /// A tip that leaves the material, cracks that cut the plate in two.
+    pub fn cut(&mut self, growth_of_tips: &[f64]) -> Result<(Specimen, Bonds)> {
+        let mut specimen = self.case.specimen.clone();
+        specimen.move_tips(growth_of_tips);
+        if let Some(tip) = specimen.tips.iter().find(|tip| !tip.from_slot && !specimen.contains(tip.position)) {
+            let [x, y] = tip.position.map(|metres| metres / MM);
+            return Err(Error::Mechanics(format!(
+                "{}: a crack tip at ({x:.6}, {y:.6}) mm, within a horizon of the one asked for, lies outside the material; \
+                 give a smaller model.spacing_mm",
+                self.case.name
+            )));
+        }
+        self.body.pre_cut = bonds_cut_by(&self.body, &specimen.cracks);
+        let mut bonds = Bonds::new(&self.body);
+        if set_aside(&self.body, &mut bonds, &self.body.pre_cut) == Cut::Severed {
+            return Err(Error::Mechanics(format!("{}: the cracks cut the plate in two", self.case.name)));
+        }
+        Ok((specimen, bonds))
+    }
+
+    /// Equilibrium at maximum load with every tip moved by its growth, m.
+    ///
+    /// # Errors
+    /// As [`CrackedPlate::cut`], and a solver that does not converge.
+    pub fn solve(&mut self, growth_of_tips: &[f64]) -> Result<Field> {
+        let (specimen, bonds) = self.cut(growth_of_tips)?;
+        let (displacement, work) = self.balance(&bonds, self.case.loading.maximum)?;
+        Ok(Field { specimen, bonds, displacement, work })
+    }
+
+    /// Displacement and work of the loads f·u under other forces on points (lattice axes, N) than the case's own.
+    ///
+    /// # Errors
+    /// A solver that does not converge.
+    pub fn solve_forces(&mut self, bonds: &Bonds, forces: &[(u32, Point)]) -> Result<(Vec<f64>, f64)> {
+        let own = std::mem::replace(&mut self.body.boundary.forces, forces.to_vec());
+        let solved = self.balance(bonds, 1.0);
+        self.body.boundary.forces = own;
+        solved
+    }
+
+    fn balance(&self, bonds: &Bonds, load: f64) -> Result<(Vec<f64>, f64)> {
+        let mut displacement = Vec::new();
+        // A window pays only where bonds break one after the other.
+        let solver = match self.case.model.solver {
+            SolverKind::Window => SolverKind::Multigrid,
+            whole => whole,
+        };
+        let mut equilibrium = Equilibrium::new(solver, &self.body, bonds, load);
+        equilibrium.solve(&self.body, bonds, &mut displacement)?;
+        Ok((displacement, equilibrium.work()))
+    }
+
+    /// Layout of displacements.
+    #[must_use]
+    pub fn layout(&self) -> Layout {
+        Layout::of(&self.body.lattice, self.body.stencil.unknowns)
+    }
+
+    /// Where the crack of `specimen` that a tip ends reaches once cut into bonds.
+    #[must_use]
+    pub fn represented(&self, specimen: &Specimen, tip: usize) -> RepresentedEnd {
+        let own = own_crack(specimen, tip);
+        represented_end(&self.body, &own.crack, own.at_to, own.length)
+    }
+
+    /// Length of straight crack behind a tip up to its middle, where both its ends are tips, or its mouth, m.
+    #[must_use]
+    pub fn crack_behind(&self, specimen: &Specimen, tip: usize) -> f64 {
+        own_crack(specimen, tip).length
+    }
+
+    /// Frame of a tip: in the middle of the gap that the cut bonds leave, at the place to which they reach.
+    #[must_use]
+    pub fn frame(&self, specimen: &Specimen, tip: usize) -> TipFrame {
+        let seed = &specimen.tips[tip];
+        let crack = own_crack(specimen, tip).crack;
+        let RepresentedEnd { excess, aside } = self.represented(specimen, tip);
+        let [x, y] = seed.direction;
+        let origin = [seed.position[0] + excess * x - aside * y, seed.position[1] + excess * y + aside * x];
+        let mut frame = TipFrame { origin, ahead: seed.direction, line: 0.0 };
+        // Bonds are cut by a line a trifle beside the crack.
+        let shift = tie_break(&self.body, crack.from, crack.to);
+        frame.line = frame.local([seed.position[0] + shift[0], seed.position[1] + shift[1]])[1];
+        frame
+    }
+
+    /// Radius around a tip that stays clear, by one horizon, of everything but the flanks of its own crack, m.
+    #[must_use]
+    pub fn clear_radius(&self, specimen: &Specimen, tip: usize) -> f64 {
+        let here = specimen.tips[tip].position;
+        let Own { crack: own, at_to, .. } = own_crack(specimen, tip);
+        let other_end = if at_to { own.from } else { own.to };
+        let holes = specimen.holes.iter().map(|hole| distance(here, hole.centre) - hole.radius);
+        let slots = specimen.slots.iter().map(|slot| distance_to_polygon(here, &slot.corners()));
+        let cracks = specimen.cracks.iter().filter(|&crack| *crack != own);
+        let cracks = cracks.map(|crack| distance_to_segment(here, crack.from, crack.to));
+        let edge = distance_to_polygon(here, &specimen.outline).min(distance(here, other_end));
+        holes.chain(slots).chain(cracks).fold(edge, f64::min) - self.body.horizon()
+    }
+
+    /// Points within `radius` of the origin of a frame.
+    pub fn points_around(&self, frame: &TipFrame, radius: f64) -> impl Iterator<Item = usize> + '_ {
+        places_near(&self.body, frame.origin, frame.origin, radius)
+    }
+}
+
+/// The crack that a tip ends.
+struct Own {
+    crack: Crack,
+    /// Whether the tip is its end `to`.
+    at_to: bool,
+    /// Length of it that belongs to the tip, m: all, or half where both ends are tips.
+    length: f64,
+}
+
+fn own_crack(specimen: &Specimen, tip: usize) -> Own {
+    let here = specimen.tips[tip].position;
+    let is_own = |crack: &&Crack| crack.from == here || crack.to == here;
+    // Every sharp tip was placed at an end of its crack and moves with it; a lone tip stands for itself.
+    let crack = specimen.cracks.iter().find(is_own).copied().unwrap_or(Crack { from: here, to: here });
+    let at_to = crack.to == here;
+    let other = if at_to { crack.from } else { crack.to };
+    let shared = specimen.tips.iter().any(|seed| seed.position == other);
+    Own { crack, at_to, length: distance(crack.from, crack.to) * if shared { 0.5 } else { 1.0 } }
+}

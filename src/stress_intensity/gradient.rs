@@ -1,0 +1,58 @@
+//! Displacement gradients on the lattice by moving least squares.
+//!
+//! Around a point the displacement is fitted by a quadratic over the points it is bonded to: `u(ξ) = u + H ξ + ½ ξ·Q ξ`,
+//! weights falling with the distance. Bonds that the crack cut take no part, so a gradient never looks across the crack;
+//! the quadratic terms keep it second order on the crack faces, where the neighbours lie on one side only.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::{CrackedPlate, Field, TipFrame};
+use crate::body::Bond;
+use crate::solver::field::Layout;
+use crate::specimen::Point;
+
+/// Unknowns of the quadratic: two of the gradient, three of the curvature.
+const TERMS: usize = 5;
+
+/// Displacement of a place in a frame's axes, m.
+#[must_use]
+pub fn displacement_at(plate: &CrackedPlate, layout: &Layout, displacement: &[f64], frame: &TipFrame, place: usize) -> Point {
+    let at = layout.index(place);
+    frame.vector(plate.body.lattice.from_axes([displacement[at], displacement[at + layout.stride]]))
+}
+
+/// `∂u_i/∂x_j` at a place in a frame's axes; `None` where too few bonds are left to tell.
+#[must_use]
+pub fn gradient_at(
+    plate: &CrackedPlate,
+    layout: &Layout,
+    field: &Field,
+    frame: &TipFrame,
+    place: usize,
+) -> Option<[[f64; 2]; 2]> {
+    let body = &plate.body;
+    let (places, spacing) = (body.places(), body.lattice.spacing);
+    let here = displacement_at(plate, layout, &field.displacement, frame, place);
+    let mut normal = SMatrix::<f64, TERMS, TERMS>::zeros();
+    let mut right = SMatrix::<f64, TERMS, 2>::zeros();
+    for (k, bond) in body.stencil.bonds.iter().enumerate() {
+        let step = body.steps[k];
+        let behind = place.wrapping_add_signed(-step);
+        for (sign, owner, other) in [(1.0, place, place.wrapping_add_signed(step)), (-1.0, behind, behind)] {
+            if !field.bonds.is_intact((k * places + owner) as Bond) {
+                continue;
+            }
+            // In spacings, so that the five columns are of one size.
+            let [x, y] = frame.vector(body.lattice.from_axes([sign * f64::from(bond.dx), sign * f64::from(bond.dy)]));
+            let weight = (1.0 - bond.length / (body.horizon() + spacing)).powi(2);
+            let there = displacement_at(plate, layout, &field.displacement, frame, other);
+            let basis = SVector::from([x, y, 0.5 * x * x, x * y, 0.5 * y * y]);
+            let difference = SMatrix::<f64, 1, 2>::from([[there[0] - here[0]], [there[1] - here[1]]]);
+            normal += weight * basis * basis.transpose();
+            right += weight * basis * difference;
+        }
+    }
+    let fit = normal.cholesky()?.solve(&right) / spacing;
+    let gradient = [[fit[(0, 0)], fit[(1, 0)]], [fit[(0, 1)], fit[(1, 1)]]];
+    gradient.iter().flatten().all(|value| value.is_finite()).then_some(gradient)
+}

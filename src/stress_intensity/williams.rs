@@ -1,0 +1,109 @@
+//! Eigenfunctions of a straight traction-free crack in an isotropic plane.
+//!
+//! Williams 1957 (J. Appl. Mech. 24:109): displacements `u = Σ_n r^(n/2) (a_n F_n(θ) + b_n G_n(θ)) / 2G`, n = 1 being the
+//! singular term: `K_I = √(2π) a_1`, `K_II = -√(2π) b_1`. n = 0 and the second function of n = 2 are rigid motions, the first
+//! of n = 2 is the T-stress; negative n describe what a disturbed core leaves outside it, n = -1 a shift of the tip.
+
+use crate::material::{Material, Plane};
+
+/// Symmetry of an eigenfunction about the crack plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Symmetry {
+    /// Opens the crack.
+    Opening,
+    /// Slides the faces.
+    Sliding,
+}
+
+/// Elastic constants as the near-tip fields take them, Pa.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elasticity {
+    /// Kolosov's constant κ: (3-ν)/(1+ν) in plane stress, 3-4ν in plane strain.
+    pub kappa: f64,
+    /// Shear modulus G.
+    pub shear_modulus: f64,
+    /// E' of `G = K²/E'`.
+    pub plane_modulus: f64,
+}
+
+impl Elasticity {
+    /// Constants of a material.
+    #[must_use]
+    pub fn of(material: &Material) -> Self {
+        let nu = material.poisson_ratio;
+        let kappa = match material.plane {
+            Plane::Stress => (3.0 - nu) / (1.0 + nu),
+            Plane::Strain => 3.0 - 4.0 * nu,
+        };
+        let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + nu));
+        Elasticity { kappa, shear_modulus, plane_modulus: material.plane_modulus() }
+    }
+
+    /// Stress of a displacement gradient `∂u_i/∂x_j`, as [xx, yy, xy], Pa: `σ = 2G (ε + (3-κ)/(2(κ-1)) tr ε)`.
+    #[must_use]
+    pub fn stress(&self, gradient: &[[f64; 2]; 2]) -> [f64; 3] {
+        let [[xx, xy], [yx, yy]] = *gradient;
+        let two_g = 2.0 * self.shear_modulus;
+        let pressure = (3.0 - self.kappa) / (2.0 * (self.kappa - 1.0)) * (xx + yy);
+        [two_g * (xx + pressure), two_g * (yy + pressure), 0.5 * two_g * (xy + yx)]
+    }
+}
+
+/// An eigenfunction: order n and symmetry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Eigenfunction {
+    /// Order n; displacement goes with r^(n/2).
+    pub order: i32,
+    /// Symmetry.
+    pub symmetry: Symmetry,
+}
+
+impl Eigenfunction {
+    /// 2G u at (r, θ) for coefficient 1, in the axes of the tip.
+    #[must_use]
+    pub fn displacement(&self, kappa: f64, r: f64, theta: f64) -> [f64; 2] {
+        let [u, v, ..] = self.angular(kappa, theta);
+        let power = r.powf(0.5 * f64::from(self.order));
+        [power * u, power * v]
+    }
+
+    /// 2G ∂u_i/∂x_j at (r, θ) for coefficient 1.
+    #[must_use]
+    pub fn gradient(&self, kappa: f64, r: f64, theta: f64) -> [[f64; 2]; 2] {
+        let half = 0.5 * f64::from(self.order);
+        let [u, v, du, dv] = self.angular(kappa, theta);
+        let (sin, cos) = theta.sin_cos();
+        let power = r.powf(half - 1.0);
+        // ∂/∂x₁ = cos θ ∂/∂r - sin θ/r ∂/∂θ, ∂/∂x₂ = sin θ ∂/∂r + cos θ/r ∂/∂θ.
+        [(u, du), (v, dv)].map(|(f, df)| [power * (cos * half * f - sin * df), power * (sin * half * f + cos * df)])
+    }
+
+    /// Angular functions of both components and their derivatives over θ.
+    fn angular(&self, kappa: f64, theta: f64) -> [f64; 4] {
+        let h = 0.5 * f64::from(self.order);
+        let sign = if self.order % 2 == 0 { 1.0 } else { -1.0 };
+        let (sin_h, cos_h) = (h * theta).sin_cos();
+        let (sin_l, cos_l) = ((h - 2.0) * theta).sin_cos();
+        let (h_l, l) = (h * (h - 2.0), h);
+        match self.symmetry {
+            Symmetry::Opening => {
+                let (a, b) = (kappa + h + sign, kappa - h - sign);
+                [a * cos_h - l * cos_l, b * sin_h + l * sin_l, -a * h * sin_h + h_l * sin_l, b * h * cos_h + h_l * cos_l]
+            }
+            Symmetry::Sliding => {
+                let (a, b) = (kappa + h - sign, kappa - h + sign);
+                [-a * sin_h + l * sin_l, b * cos_h + l * cos_l, -a * h * cos_h + h_l * cos_l, -b * h * sin_h - h_l * sin_l]
+            }
+        }
+    }
+}
+
+/// Coefficient of the n = 1 function over the factor it stands for: K_I = a₁ √(2π), K_II = -b₁ √(2π).
+#[must_use]
+pub fn coefficient_of_unit_factor(symmetry: Symmetry) -> f64 {
+    let size = 1.0 / (2.0 * std::f64::consts::PI).sqrt();
+    match symmetry {
+        Symmetry::Opening => size,
+        Symmetry::Sliding => -size,
+    }
+}

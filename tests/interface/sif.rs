@@ -1,0 +1,106 @@
+//! `perilife sif`.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use tempfile::tempdir;
+
+use crate::cli::{SMALL_CASE, assert_refused, perilife, texts};
+
+/// A slant crack in a plate that no handbook covers.
+const SLANT: &str = "cracks = [{ from_mm = [-13, -7.5], to_mm = [13, 7.5] }]\n";
+
+fn plate(extra: &str) -> String {
+    let text = SMALL_CASE.replace("kind = \"middle_tension\"", "kind = \"plate\"").replace("crack_length_mm = 12.0\n", extra);
+    text.replace("crack_length_mm = 20.0\n", "").replace("spacing_mm = 2.0", "spacing_mm = 1.0")
+}
+
+fn json(folder: &Path, arguments: &[&str]) -> Value {
+    let output = perilife(folder, arguments);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    serde_json::from_str(&stdout).expect("one JSON object and nothing else")
+}
+
+#[test]
+fn a_standard_specimen_stands_beside_its_handbook() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let object = json(dir.path(), &["sif", "small.toml", "--json", "--set", "model.spacing_mm=1"]);
+    let tips = object["tips"].as_array().unwrap();
+    assert_eq!(
+        (tips.len(), &tips[0]["x_mm"], &tips[1]["x_mm"], &tips[0]["y_mm"]),
+        (2, &(-12.0).into(), &12.0.into(), &0.0.into())
+    );
+    for tip in tips {
+        let handbook = tip["handbook_k_i_mpa_sqrt_m"].as_f64().unwrap();
+        // 50 MPa √(π 12 mm sec(π 12/60)).
+        assert!((handbook - 10.794).abs() < 1e-3, "{handbook}");
+        let methods = tip["methods"].as_object().unwrap();
+        assert_eq!(methods.keys().collect::<Vec<_>>(), ["energy_release", "domain_integral", "near_tip_displacement"]);
+        for (method, result) in methods {
+            let [k_i, k_ii, wall] = ["k_i_mpa_sqrt_m", "k_ii_mpa_sqrt_m", "wall_s"].map(|key| result[key].as_f64().unwrap());
+            // A crack of four horizons.
+            assert!((k_i / handbook - 1.0).abs() < 0.025 && k_ii.abs() < 1e-3 && wall > 0.0, "{method}: {result}");
+        }
+    }
+    let (stdout, _) = texts(&perilife(dir.path(), &["sif", "small.toml"]));
+    assert!(stdout.contains("handbook K_I") && stdout.contains("10.79") && stdout.contains("energy_release"), "{stdout}");
+}
+
+#[test]
+fn a_plate_has_both_modes_and_no_handbook() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("slant.toml"), plate(SLANT).replace("width_mm = 60.0", "width_mm = 120.0")).unwrap();
+    let object = json(dir.path(), &["sif", "slant.toml", "--json", "--method", "domain_integral", "energy_release"]);
+    for tip in object["tips"].as_array().unwrap() {
+        assert_eq!((&tip["handbook_k_i_mpa_sqrt_m"], tip["methods"].as_object().unwrap().len()), (&Value::Null, 2));
+        for result in tip["methods"].as_object().unwrap().values() {
+            let share = result["k_ii_mpa_sqrt_m"].as_f64().unwrap() / result["k_i_mpa_sqrt_m"].as_f64().unwrap();
+            // tan 30° in a plate without end; this one is eight half cracks wide.
+            assert!((share - 0.577).abs() < 0.04, "{tip}");
+        }
+    }
+    // The law of the case is not looked for.
+    fs::write(
+        dir.path().join("unfitted.toml"),
+        plate(SLANT).replace("a = 1e5\np = 3.0\nhorizon_mm = 6.03", "fitted = \"none.toml\""),
+    )
+    .unwrap();
+    let output = perilife(dir.path(), &["sif", "unfitted.toml", "--method", "domain_integral"]);
+    assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+}
+
+#[test]
+fn tips_without_room_are_told() {
+    let dir = tempdir().unwrap();
+    // The tip of the short crack stands a horizon (3 mm) below the other crack.
+    let cracks = "cracks = [{ from_mm = [-15, 0], to_mm = [15, 0] }, { from_mm = [0, -16], to_mm = [0, -3.5] }]\n";
+    fs::write(dir.path().join("near.toml"), plate(cracks)).unwrap();
+    let output = perilife(dir.path(), &["sif", "near.toml", "--json", "--method", "domain_integral"]);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    assert!(stderr.contains("domain_integral: there is no room") && stderr.contains("(0.000000, -4.000000) mm"), "{stderr}");
+    let object: Value = serde_json::from_str(&stdout).unwrap();
+    let known = |tip: usize| object["tips"][tip]["methods"]["domain_integral"]["k_i_mpa_sqrt_m"].is_number();
+    assert_eq!([known(0), known(1), known(2), known(3)], [true, true, true, false]);
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    fs::write(dir.path().join("notch.toml"), plate("notches = [{ from_mm = [-30, 0], to_mm = [-15, 0], width_mm = 3 }]\n"))
+        .unwrap();
+    let calls: [(&[&str], i32, &[&str]); 5] = [
+        (&["sif", "small.toml", "--method", "jj"], 2, &["sif --method = \"jj\"", "domain_integral", "near_tip_displacement"]),
+        (&["sif", "no.toml"], 4, &["no.toml", "cannot read"]),
+        (&["sif", "small.toml", "--set", "specimen.crack_length_mm=40"], 2, &["specimen.crack_length_mm = 40"]),
+        (&["sif", "notch.toml"], 2, &["notch.toml", "sharp crack", "starts in the notch"]),
+        (&["sif", "small.toml", "--set", "material.poisson_ratio=0.45"], 2, &["material.poisson_ratio = 0.45"]),
+    ];
+    for (arguments, code, words) in calls {
+        assert_refused(&perilife(dir.path(), arguments), code, words);
+    }
+}
