@@ -55,6 +55,12 @@ pub struct FittedRecord {
     pub ageing: String,
     /// `fatigue.zone_radius_horizons`.
     pub zone_radius_horizons: f64,
+    /// `fatigue.lattice_direction`; records from before there was one ignored it.
+    #[serde(default = "ignored")]
+    pub lattice_direction: String,
+    /// `fatigue.finite_horizon`, likewise.
+    #[serde(default = "ignored")]
+    pub finite_horizon: String,
     /// `fatigue.precrack`.
     pub precrack: String,
     /// Young's modulus of the calibration.
@@ -74,6 +80,10 @@ pub struct FittedRecord {
 }
 
 /// The method of records that do not name theirs.
+fn ignored() -> String {
+    "ignored".to_owned()
+}
+
 fn peridynamics() -> String {
     crate::case::Method::Peridynamics.name().to_owned()
 }

@@ -179,6 +179,8 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         rotation: case.model.bond_law.rotation.name().to_owned(),
         surface_correction: case.model.bond_law.surface_correction.name().to_owned(),
         ageing: case.fatigue.ageing.name().to_owned(),
+        lattice_direction: case.fatigue.lattice_direction.name().to_owned(),
+        finite_horizon: case.fatigue.finite_horizon.name().to_owned(),
         zone_radius_horizons: case.fatigue.zone_radius_horizons,
         precrack: case.fatigue.precrack.name().to_owned(),
         youngs_modulus_gpa: tidy(case.material.youngs_modulus / GPA),

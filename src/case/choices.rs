@@ -2,6 +2,8 @@
 
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::fatigue::Ageing;
+use crate::fatigue::finite_horizon::FiniteHorizon;
+use crate::fatigue::lattice_direction::LatticeDirection;
 
 crate::kinds! {
     /// Numerical methods.
@@ -45,6 +47,10 @@ pub struct Choices {
     pub surface_correction: Option<SurfaceCorrection>,
     /// `model.horizon_ratio`.
     pub horizon_ratio: Option<f64>,
+    /// `fatigue.lattice_direction`.
+    pub lattice_direction: Option<LatticeDirection>,
+    /// `fatigue.finite_horizon`.
+    pub finite_horizon: Option<FiniteHorizon>,
     /// `fatigue.ageing`.
     pub ageing: Option<Ageing>,
     /// `fatigue.zone_radius_horizons`.

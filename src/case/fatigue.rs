@@ -9,6 +9,7 @@ use super::choices::{Choices, Failure, Method};
 use super::law_source::LawKeys;
 use super::{LawSource, Stop};
 use crate::error::{Result, input, input_missing};
+use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::lattice_direction::LatticeDirection;
 use crate::fatigue::{Ageing, Block, BlockKind, FatigueSettings, OVERLOAD_STRETCH, Precrack};
 use crate::input::{INTENSITY, LENGTH, number, slice};
@@ -38,6 +39,7 @@ struct Input {
     walker_gamma: Option<f64>,
     delta_k_threshold_mpa_sqrt_m: Option<f64>,
     lattice_direction: Option<LatticeDirection>,
+    finite_horizon: Option<FiniteHorizon>,
     allow_extrapolation: Option<bool>,
     #[serde(rename = "failure")]
     _failure: Option<Failure>,
@@ -56,6 +58,8 @@ pub(super) struct Fatigue {
 pub(super) fn from_value(value: &Value, method: Method, base_dir: &Path, choices: &mut Choices) -> Result<Fatigue> {
     let input: Input = slice(value, "fatigue")?;
     choices.ageing = input.ageing;
+    choices.lattice_direction = input.lattice_direction;
+    choices.finite_horizon = input.finite_horizon;
     choices.zone_radius_horizons =
         number("a radius in horizons", 0.05, 10.0).read_optional("fatigue.zone_radius_horizons", input.zone_radius_horizons)?;
     choices.walker_gamma = number("a Walker exponent", 0.0, 2.0).read_optional("fatigue.walker_gamma", input.walker_gamma)?;
@@ -72,7 +76,8 @@ pub(super) fn from_value(value: &Value, method: Method, base_dir: &Path, choices
         critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
-        lattice_direction: input.lattice_direction.unwrap_or(LatticeDirection::Corrected),
+        lattice_direction: choices.lattice_direction.unwrap_or(LatticeDirection::Corrected),
+        finite_horizon: choices.finite_horizon.unwrap_or(FiniteHorizon::Corrected),
     };
     let law = LawKeys {
         fitted: input.fitted,

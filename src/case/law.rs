@@ -51,6 +51,8 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
     law.rotation = agree("model.rotation", choices.rotation, &record.rotation)?;
     law.surface_correction = agree("model.surface_correction", choices.surface_correction, &record.surface_correction)?;
     case.fatigue.ageing = agree("fatigue.ageing", choices.ageing, &record.ageing)?;
+    case.fatigue.lattice_direction = agree("fatigue.lattice_direction", choices.lattice_direction, &record.lattice_direction)?;
+    case.fatigue.finite_horizon = agree("fatigue.finite_horizon", choices.finite_horizon, &record.finite_horizon)?;
     if let Some(given) = choices.zone_radius_horizons
         && (given - record.zone_radius_horizons).abs() > 1e-9
     {

@@ -9,6 +9,7 @@ use crate::calibration::columns::{CycleUnit, LengthUnit};
 use crate::calibration::rates::RateMethod;
 use crate::case::{Discretisation, Failure, Method, Symmetry};
 use crate::error::Result;
+use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::lattice_direction::LatticeDirection;
 use crate::fatigue::{Ageing, BlockKind, Precrack};
 use crate::kinds::KindLine;
@@ -51,6 +52,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         SolverKind::lines(),
         Ageing::lines(),
         LatticeDirection::lines(),
+        FiniteHorizon::lines(),
         Precrack::lines(),
         BlockKind::lines(),
         Failure::lines(),

@@ -91,8 +91,9 @@ fn in_zone(body: &Body, tip: &CrackTip, radius: f64) -> Vec<Bond> {
 
 /// Of the candidates those in tension, with their cyclic strain. Bonds in compression are not spent.
 ///
-/// The strain is `share` times the stretch, times a factor for the direction in which the nearest tip grows
-/// ([`LatticeDirection`](super::lattice_direction::LatticeDirection)).
+/// The strain is `share` times the stretch, times factors for the direction in which the nearest tip grows
+/// ([`LatticeDirection`](super::lattice_direction::LatticeDirection)) and for the length of its crack
+/// ([`FiniteHorizon`](super::finite_horizon::FiniteHorizon)).
 #[must_use]
 pub fn ageing_bonds(
     body: &Body,
@@ -106,7 +107,10 @@ pub fn ageing_bonds(
     let active: Vec<(&CrackTip, f64)> = tips
         .iter()
         .filter(|tip| tip.is_active() && settings.ageing == Ageing::CrackTip)
-        .map(|tip| (tip, settings.lattice_direction.strain_factor(body, tip.direction)))
+        .map(|tip| {
+            let direction = settings.lattice_direction.strain_factor(body, tip.direction);
+            (tip, direction * settings.finite_horizon.strain_factor(body.horizon(), tip.crack + tip.growth))
+        })
         .collect();
     let factor = |bond: Bond| {
         let middle = body.middle(bond);

@@ -57,6 +57,8 @@ pub struct CrackTip {
     pub direction: Point,
     /// Growth since the start, m; never falls.
     pub growth: f64,
+    /// Length of its crack at the start, m: half the length of one with two tips. Infinite where nobody says.
+    pub crack: f64,
     /// Whether it still grows.
     pub state: TipState,
     /// Where the tip has been last, oldest first, the present place last.
@@ -87,6 +89,7 @@ impl CrackTip {
             position: seed.position,
             direction: seed.direction,
             growth: 0.0,
+            crack: f64::INFINITY,
             state: TipState::Active,
             wake: vec![seed.position],
             bridges: Vec::new(),
@@ -95,6 +98,12 @@ impl CrackTip {
             centre: behind(0.5 * front(body)),
             rails: None,
         }
+    }
+
+    /// Tells the tip the length of its crack at the start, m.
+    #[must_use]
+    pub fn of_crack(self, length: f64) -> Self {
+        CrackTip { crack: length, ..self }
     }
 
     /// Lets the tip move along its direction, whatever breaks.

@@ -2,6 +2,7 @@
 
 pub mod ageing;
 pub mod crack_tip;
+pub mod finite_horizon;
 pub mod growth_rate;
 pub mod lattice_direction;
 pub mod length_average;
@@ -10,6 +11,7 @@ pub mod paris;
 pub mod pieces;
 pub mod remaining_life;
 
+use finite_horizon::FiniteHorizon;
 use lattice_direction::LatticeDirection;
 
 /// Critical stretch s_t where a case gives none: 5 %, which no plate bears within linear elasticity. It lets the last
@@ -96,4 +98,6 @@ pub struct FatigueSettings {
     pub threshold: f64,
     /// Treatment of the crack's direction against the lattice.
     pub lattice_direction: LatticeDirection,
+    /// Treatment of cracks that are short against the horizon.
+    pub finite_horizon: FiniteHorizon,
 }

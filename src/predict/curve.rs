@@ -4,6 +4,7 @@ use super::end_of_life::End;
 use super::outcome::{CurvePoint, Progress, TipRecord};
 use crate::body::Body;
 use crate::case::Case;
+use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::growth_rate::{Sample, rates, release_rate_at_end};
 use crate::fatigue::length_average::LengthAverage;
 use crate::specimen::Specimen;
@@ -16,7 +17,7 @@ const RATE_SPAN_HORIZONS: f64 = 1.0;
 const RELEASE_SPAN_HORIZONS: f64 = 3.0;
 /// Growth before which that says nothing: the first bonds to break turn the cut end of a crack into a grown one.
 const RELEASE_KNOWN_HORIZONS: f64 = 2.0;
-/// Initial crack length, in horizons, below which the finite horizon makes short cracks grow too fast by more than some percent.
+/// Initial crack length, in horizons, below which the finite horizon matters by more than some percent in rate.
 const SHORT_CRACK_HORIZONS: f64 = 5.0;
 
 /// The plate after a block.
@@ -133,11 +134,15 @@ impl Track {
         let mut warnings = Vec::new();
         let flaw = case.specimen.smallest_flaw();
         if flaw < SHORT_CRACK_HORIZONS * body.horizon() {
-            let bias = (1.0 + (body.horizon() / flaw).powi(2) / 3.0).powi(3) - 1.0;
+            let rate = FiniteHorizon::Corrected.strain_factor(body.horizon(), flaw).powi(-3) - 1.0;
+            let treatment = match case.fatigue.finite_horizon {
+                FiniteHorizon::Corrected => "grow too fast at first, which is corrected",
+                FiniteHorizon::Ignored => "grow too fast at first, which is not corrected",
+            };
             warnings.push(format!(
-                "the initial crack is only {:.1} horizons long: the finite horizon makes it grow too fast at first, by up to about {:.0} % in rate (not a short-crack effect)",
+                "the initial crack is only {:.1} horizons long: the finite horizon makes it {treatment}: {:.0} % in rate (fatigue.finite_horizon; not a short-crack effect)",
                 flaw / body.horizon(),
-                100.0 * bias
+                100.0 * rate
             ));
         }
         let stopped_in_grip = self.rows.last().is_some_and(|row| {

@@ -33,6 +33,8 @@ const LEAD_SPACINGS: f64 = 0.2;
 pub(super) struct Start {
     /// The specimen with its cracks as they are cut.
     pub specimen: Specimen,
+    /// Length of the crack of every tip as it is cut, m.
+    cracks: Vec<f64>,
     /// Growth of every tip at which it has its initial length, m.
     lags: Vec<f64>,
     along_the_line: bool,
@@ -57,26 +59,30 @@ impl Start {
             Precrack::SteadyProfile => PROFILE_HORIZONS * horizon,
         };
         let mut lags = vec![0.0; specimen.tips.len()];
-        for (tip, lag) in case.specimen.tips.iter().zip(&mut lags) {
+        let mut cracks = vec![specimen.smallest_flaw(); specimen.tips.len()];
+        for ((tip, lag), length) in case.specimen.tips.iter().zip(&mut lags).zip(&mut cracks) {
             let crack = case.specimen.cracks.iter().find(|crack| crack.from == tip.position || crack.to == tip.position);
-            let Some(crack) = crack.filter(|_| !tip.from_slot && wanted > 0.0) else { continue };
+            let Some(crack) = crack.filter(|_| !tip.from_slot) else { continue };
             let ends = case.specimen.tips.iter().filter(|t| t.position == crack.from || t.position == crack.to).count();
-            let back = wanted.min(SHARE_MAX * distance(crack.from, crack.to) / ends as f64);
-            *lag = back + lead;
+            *length = distance(crack.from, crack.to) / ends.max(1) as f64;
+            if wanted > 0.0 {
+                let back = wanted.min(SHARE_MAX * *length);
+                (*lag, *length) = (back + lead, *length - back);
+            }
         }
         let moves: Vec<f64> = lags.iter().map(|&lag| if lag > 0.0 { lead - lag } else { 0.0 }).collect();
         specimen.move_tips(&moves);
         let along_the_line = case.fatigue.precrack == Precrack::SteadyProfile;
-        Ok(Start { specimen, lags, along_the_line, lead, horizon })
+        Ok(Start { specimen, cracks, lags, along_the_line, lead, horizon })
     }
 
     /// The tips of the cracks as they are cut.
     pub(super) fn tips(&self, body: &Body) -> Vec<CrackTip> {
-        let tip = |(seed, &lag): (&TipSeed, &f64)| {
-            let tip = CrackTip::at(seed, body);
+        let tip = |((seed, &lag), &crack): ((&TipSeed, &f64), &f64)| {
+            let tip = CrackTip::at(seed, body).of_crack(crack);
             if self.along_the_line && lag > 0.0 { tip.on_rails() } else { tip }
         };
-        self.specimen.tips.iter().zip(&self.lags).map(tip).collect()
+        self.specimen.tips.iter().zip(&self.lags).zip(&self.cracks).map(tip).collect()
     }
 
     /// Every tip with its growth since it had its initial length, negative before, at the end of the sharp crack of the same

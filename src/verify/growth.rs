@@ -26,10 +26,10 @@ const SOURCE: &str = "power law with handbook K";
 /// As [`predict`].
 pub fn middle_tension(table: &mut Table) -> Result<()> {
     for p in EXPONENTS {
-        let panel = case(PANEL, &["model.spacing_mm=0.75", &format!("fatigue.p={p}"), "stop.crack_length_mm=45"])?;
+        let panel = case(PANEL, &["model.spacing_mm=1", &format!("fatigue.p={p}"), "stop.crack_length_mm=45"])?;
         let constants = constants(&panel, &predict(&panel, &Silent)?.curve, p);
         let (slope, deviation) = power_law(&constants);
-        let scene = format!("M(T) 9-45 mm, spacing 0.75 mm, p {p}");
+        let scene = format!("M(T) 9-45 mm, spacing 1 mm, p {p}");
         table.compare(format!("{scene}: exponent of da/dN"), p + slope, p, 100.0 * 0.05 / p, SOURCE);
         table.error(format!("{scene}: largest deviation of a rate over 3 mm"), deviation, 4.0, SOURCE);
     }

@@ -42,6 +42,8 @@ fn record() -> FittedRecord {
         surface_correction: "none".into(),
         ageing: "crack_tip".into(),
         zone_radius_horizons: 0.6,
+        lattice_direction: "corrected".into(),
+        finite_horizon: "corrected".into(),
         precrack: "steady_profile".into(),
         youngs_modulus_gpa: 73.1,
         poisson_ratio: 0.33,
