@@ -199,7 +199,8 @@ pub fn run(
     }
     album.finish(&body, &bonds, &displacement, track.last());
     let mut warnings = track.warnings(case, &body);
-    let curve = track.into_curve(case, &body, end);
+    let (curve, zero) = track.into_curve(case, &body, end);
+    album.count_from(zero, &curve);
     warnings.extend(plastic_zone::warnings(case, &curve));
     // Those since N = 0, one row each.
     let blocks = curve.len() - 1;

@@ -3,6 +3,8 @@
 #[path = "support/shared.rs"]
 mod shared;
 
+#[path = "validation/examples.rs"]
+mod examples;
 #[path = "validation/fit_engine.rs"]
 mod fit_engine;
 #[path = "validation/fit_virkler.rs"]

@@ -169,7 +169,9 @@ impl Track {
     fn averaged(&self, spacing: f64) -> Vec<Row> {
         let cycles: Vec<f64> = self.rows.iter().map(|row| row.cycles).collect();
         let lengths: Vec<f64> = self.rows.iter().map(|row| row.crack_length).collect();
-        let average = LengthAverage::new(&cycles, &lengths, spacing);
+        // A spacing of growth at every tip.
+        let growth = vec![spacing; self.rows[0].tips.len()];
+        let average = LengthAverage::new(&cycles, &lengths, self.specimen.crack_length_after(&growth) - self.origin);
         let mut rows = self.rows.clone();
         let work: Vec<f64> = self.rows.iter().map(|row| row.work).collect();
         rows.iter_mut().zip(average.of(&work)).for_each(|(row, work)| row.work = work);
@@ -193,8 +195,8 @@ impl Track {
         }
     }
 
-    /// The curve from N = 0 to a known end.
-    pub(super) fn into_curve(self, case: &Case, body: &Body, end: Option<End>) -> Vec<CurvePoint> {
+    /// The curve from N = 0 to a known end, and the cycles of the run at N = 0.
+    pub(super) fn into_curve(self, case: &Case, body: &Body, end: Option<End>) -> (Vec<CurvePoint>, f64) {
         let mut rows = self.averaged(body.lattice.spacing);
         let zero = self.zero_of(&rows);
         if let Some(cycles_max) = self.run_out {
@@ -231,7 +233,7 @@ impl Track {
                 curve.push(next);
             }
         }
-        curve
+        (curve, zero)
     }
 }
 

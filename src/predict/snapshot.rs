@@ -1,7 +1,7 @@
 //! Pictures of the damaged plate along a run.
 
 use super::curve::Row;
-use super::{PointGrid, Snapshot};
+use super::{CurvePoint, PointGrid, Snapshot};
 use crate::body::Body;
 use crate::solver::field::Layout;
 use crate::state::Bonds;
@@ -35,6 +35,15 @@ impl Album {
     pub fn look(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) {
         self.next = row.growth() + self.step;
         self.snapshots.push(take(body, bonds, displacement, row));
+    }
+
+    /// Counts cycles from N = 0, `zero` cycles after the start of the run, and keeps to the ends of the curve.
+    pub fn count_from(&mut self, zero: f64, curve: &[CurvePoint]) {
+        let (Some(first), Some(last)) = (curve.first(), curve.last()) else { return };
+        for snapshot in &mut self.snapshots {
+            snapshot.cycles = (snapshot.cycles - zero).clamp(first.cycles, last.cycles);
+            snapshot.crack_length = snapshot.crack_length.clamp(first.crack_length, last.crack_length);
+        }
     }
 
     /// Takes the last snapshot.

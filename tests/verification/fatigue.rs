@@ -92,6 +92,10 @@ fn every_scene_ends_with_a_named_stop_and_an_orderly_curve() {
             assert!(pair[1].cycles >= pair[0].cycles && pair[1].crack_length >= pair[0].crack_length, "{name}");
             assert!(pair[1].cycles.is_finite() && pair[1].crack_length.is_finite(), "{name}");
         }
+        // Pictures count cycles as the curve does.
+        let (shown, last) = (run.snapshots.last().unwrap(), run.curve.last().unwrap());
+        assert_eq!(run.snapshots[0].cycles, 0.0, "{name}");
+        assert!(shown.cycles <= last.cycles && shown.cycles >= 0.99 * last.cycles || run.stop == StopReason::RunOut, "{name}");
         if run.stop == StopReason::CrackLengthReached {
             assert!((run.crack_length_final() - 16.4 * MM).abs() < 1e-15);
         }
