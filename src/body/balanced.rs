@@ -10,7 +10,7 @@
 //! four equations a point for all three strains and every Poisson's ratio at once, since the lattice is isotropic
 //! (S₄ = 3 S₂₂). The rotation of a point stays zero where `Σ m q r² n_x n_y = Σ m q r² (n_x² - n_y²) = 0`. A corner cannot do
 //! that: all its bonds lie in one quadrant and turn it the same way. So these two are asked for softly, and
-//! what is left comes in as couples of the load ([`super::couples`]).
+//! what is left comes in as couples of the load (`couples.rs`).
 //!
 //! A solution exists for all strains only if the loads are consistent, `Σ x_i A_j = δ_ij × area` ([`super::sharing`]): by
 //! reciprocity of two strain states the plate must be as wide for one as it is for the other. Loads put on the last

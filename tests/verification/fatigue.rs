@@ -94,7 +94,7 @@ fn every_scene_ends_with_a_named_stop_and_an_orderly_curve() {
         }
         // Pictures count cycles as the curve does.
         let (shown, last) = (run.snapshots.last().unwrap(), run.curve.last().unwrap());
-        assert_eq!(run.snapshots[0].cycles, 0.0, "{name}");
+        assert!(run.snapshots[0].cycles <= 0.1 * last.cycles, "{name}: {} of {}", run.snapshots[0].cycles, last.cycles);
         assert!(shown.cycles <= last.cycles && shown.cycles >= 0.99 * last.cycles || run.stop == StopReason::RunOut, "{name}");
         if run.stop == StopReason::CrackLengthReached {
             assert!((run.crack_length_final() - 16.4 * MM).abs() < 1e-15);

@@ -1,7 +1,7 @@
 //! Equilibrium through a condensed window around the crack tips.
 //!
 //! Between two blocks only some bonds near the tips change. The plate is condensed onto the points around the tips
-//! ([`condense`]), and broken bonds are low-rank changes of the small dense inverse ([`update`]): exact, at a cost that does
+//! ([`mod@condense`]), and broken bonds are low-rank changes of the small dense inverse ([`update`]): exact, at a cost that does
 //! not grow with the plate. Now and then, after a fixed number of breaks, the whole plate is solved, which refreshes the
 //! displacement outside the window and keeps round-off from adding up. The window moves when a tip nears its end.
 
