@@ -38,14 +38,14 @@ pub fn spacing(table: &mut Table) -> Result<()> {
 /// # Errors
 /// As [`predict`].
 pub fn orientation(table: &mut Table) -> Result<()> {
-    let upright = life(&["model.spacing_mm=1"])?;
+    let long = ["specimen.width_mm=120", "specimen.length_mm=160", "stop.crack_length_mm=40", "model.spacing_mm=1"];
+    let upright = life(&long)?;
     for angle in [15, 30, 45] {
-        let turned = life(&["model.spacing_mm=1", &format!("model.lattice_angle_deg={angle}")])?;
-        let quantity = format!("M(T) W 110, a 20-27 mm, 1 mm: life on a lattice turned by {angle}° over upright");
-        table.compare(quantity, turned / upright, 1.0, 8.0, "the lattice is not part of the material");
-        table.known_miss(
-            "along the diagonal the first two horizons of growth are slower than the steady rate that the correction knows",
-        );
+        let turned = format!("model.lattice_angle_deg={angle}");
+        let ratio = life(&[&long[..], &[&turned]].concat())? / upright;
+        let quantity = format!("M(T) W 120, a 20-40 mm, 1 mm: life on a lattice turned by {angle}° over upright");
+        table.compare(quantity, ratio, 1.0, 8.0, "the lattice is not part of the material");
+        table.known_miss("on a turned lattice the crack steps between rows, which scatters its rate by 10 % over some horizons");
     }
     Ok(())
 }
