@@ -180,7 +180,7 @@ fn horizon_line(case: &Case) -> Option<String> {
     // The default spacing, a ninth of the crack, gives 1.005 thirds: that is meant to pass.
     (horizon > 1.01 * flaw / 3.0).then(|| {
         let (horizon, flaw) = (model::round_mm(horizon), model::round_mm(flaw));
-        format!("the horizon is {horizon} mm, more than a third of the crack ({flaw} mm): early growth comes out too fast; a smaller spacing_mm helps")
+        format!("the horizon is {horizon} mm, more than a third of the crack ({flaw} mm): the correction of early growth is rough; a smaller spacing_mm helps")
     })
 }
 

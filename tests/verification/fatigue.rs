@@ -196,26 +196,31 @@ fn the_start_decides_only_the_first_cycles() {
 /// However the lattice lies, a crack across the load runs straight, growth is the way of its tip, and life is the same.
 #[test]
 fn life_does_not_depend_on_how_the_lattice_lies() {
-    let panel = "kind=\"middle_tension\"\nwidth_mm=90\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=20\n";
-    let run = |angle: u32, direction: &str| {
-        let set = [format!("model.lattice_angle_deg={angle}"), format!("fatigue.lattice_direction={direction}")];
-        grow(panel, &["stop.crack_length_mm=27", "model.spacing_mm=1", &set[0], &set[1]])
-    };
-    let upright = run(0, "corrected").life_cycles();
-    for angle in [15, 30, 45] {
-        let turned = run(angle, "corrected");
-        for tip in &turned.curve.last().unwrap().tips {
-            let (way, y) = (tip.position[0].abs() - 20.0 * MM, tip.position[1]);
-            println!("{angle} degrees: growth {:.3} mm, way {:.3} mm, y {:.3} mm", tip.growth / MM, way / MM, y / MM);
-            assert!(y.abs() < 2.0 * turned.figures.horizon, "{angle}");
-            assert!((tip.growth - way).abs() < 0.1 * way + 0.5 * turned.figures.spacing, "{angle}: {} and {way}", tip.growth);
+    let panel = "kind=\"middle_tension\"\nwidth_mm=120\nlength_mm=160\nthickness_mm=2\ncrack_length_mm=20\n";
+    for nu in [0.2, 0.3] {
+        let run = |angle: u32, direction: &str| {
+            let set = [
+                format!("model.lattice_angle_deg={angle}"),
+                format!("fatigue.lattice_direction={direction}"),
+                format!("material.poisson_ratio={nu}"),
+            ];
+            grow(panel, &["stop.crack_length_mm=40", "model.spacing_mm=1", &set[0], &set[1], &set[2]])
+        };
+        let upright = run(0, "corrected").life_cycles();
+        for angle in [15, 30, 45] {
+            let turned = run(angle, "corrected");
+            for tip in &turned.curve.last().unwrap().tips {
+                let (way, y) = (tip.position[0].abs() - 20.0 * MM, tip.position[1]);
+                println!("{angle} degrees: growth {:.3} mm, way {:.3} mm, y {:.3} mm", tip.growth / MM, way / MM, y / MM);
+                assert!(y.abs() < 2.0 * turned.figures.horizon, "{angle}");
+                assert!((tip.growth - way).abs() < 0.1 * way, "{angle}: {} and {way}", tip.growth);
+            }
+            let ratio = turned.life_cycles() / upright;
+            println!("nu {nu}, {angle} degrees: life over upright {ratio:.4}");
+            assert!((ratio - 1.0).abs() < 0.08, "{angle}: {ratio}");
         }
-        let (ratio, without) = (turned.life_cycles() / upright, run(angle, "ignored").life_cycles() / upright);
-        println!("{angle} degrees: life over upright {ratio:.4}, {without:.4} without the correction");
-        // Along the diagonal the first two horizons are slower than the rest.
-        let bound = if angle == 45 { 0.10 } else { 0.08 };
-        assert!((ratio - 1.0).abs() < bound, "{angle}: {ratio}");
-        assert!(without > 1.15, "{angle}: {without}");
+        let without = run(15, "ignored").life_cycles() / upright;
+        assert!(without > 1.15, "the correction corrects nothing: {without}");
     }
 }
 
