@@ -67,6 +67,4 @@ fn panels_kept_back_live_as_the_others_say() {
         assert!(own.abs() <= bound, "{length} mm: {own}");
         assert!(other.abs() <= bound + halves.abs(), "{length} mm: {other}");
     }
-    let life = at(&fitted, 49.8) / at(&kept_back, 49.8) - 1.0;
-    assert!(life.abs() <= 0.02, "life of the kept-back median: {life}");
 }
