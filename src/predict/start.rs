@@ -3,7 +3,8 @@
 //! A test specimen is pre-cracked: at N = 0 the bonds around the tip have the lives that steady growth leaves them, some
 //! ahead are broken already, some behind are not yet. A clean cut with whole lives, or with lives estimated from its own
 //! field, grows 10 to 70 % too fast over its first horizon. So the crack is cut shorter and grown to its length before
-//! cycles count: along its own line (`steady_profile`), whatever its bonds do, or freely (`grown`). Tips that are there wait for the others.
+//! cycles count: along its own line (`steady_profile`), whatever its bonds do, or freely (`grown`). Tips that are there wait
+//! for the others.
 
 use super::TipRecord;
 use crate::body::Body;

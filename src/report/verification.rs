@@ -9,7 +9,7 @@ use crate::verify::Row;
 pub fn line(row: &Row) -> String {
     let mark = verdict(row);
     let figures = format!("{:>12} against {:>12}", number(row.computed), number(row.reference));
-    let error = format!("{:+.3} % (bound {} %)", row.error_percent, row.bound_percent);
+    let error = format!("{:+.3} % (bound {:.3} %)", row.error_percent, row.bound_percent);
     format!("  {mark:<5} {:<62} {figures}  {error}, {:.1} s", row.quantity, row.wall_s)
 }
 

@@ -5,7 +5,7 @@
 //! computed, and compared with hand calculation for them.
 
 use super::golden::{COMPACT, PANEL, ended_by};
-use super::scene::case;
+use super::scene::{case, points};
 use super::table::Table;
 use crate::calibration::misfit::inverse_a;
 use crate::calibration::model::cycles_since_first;
@@ -64,10 +64,6 @@ fn compact(table: &mut Table) -> Result<()> {
 
 fn bonds(text: &str, set: &[&str]) -> Result<Prediction> {
     predict(&case(text, &[&BONDS[..], set].concat())?, &Silent)
-}
-
-fn points(run: &Prediction) -> Vec<(f64, f64)> {
-    run.curve.iter().map(|point| (point.cycles, point.crack_length)).collect()
 }
 
 /// What the cycles of a run have to be multiplied with to be nearest to hand calculation between two lengths in mm.

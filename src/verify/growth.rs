@@ -3,12 +3,15 @@
 //! Steady growth gives `da/dN = C ΔK^p` (bond lives of Silling and Askari 2014 integrated along the way of a bond through the
 //! ageing zone), so the rate over `ΔK^p`, with ΔK of the handbook, must depend neither on crack length nor on the specimen.
 
-use super::scene::{PANEL, case};
+use super::scene::{PANEL, case, points};
 use super::table::Table;
+use crate::calibration::line::line;
+use crate::calibration::model::cycles_since_first;
 use crate::case::Case;
 use crate::error::Result;
-use crate::predict::{CurvePoint, Prediction, Silent, predict};
-use crate::specimen::handbook::handbook;
+use crate::predict::{Prediction, Silent, predict};
+use crate::quadrature::integrate;
+use crate::specimen::handbook::delta_k;
 use crate::units::MM;
 
 /// Exponents of the study: low (2) to high (4), with those of aluminium between.
@@ -27,7 +30,7 @@ const SOURCE: &str = "power law with handbook K";
 pub fn middle_tension(table: &mut Table) -> Result<()> {
     for p in EXPONENTS {
         let panel = case(PANEL, &["model.spacing_mm=1", &format!("fatigue.p={p}"), "stop.crack_length_mm=45"])?;
-        let constants = constants(&panel, &predict(&panel, &Silent)?.curve, p);
+        let constants = constants(&panel, &predict(&panel, &Silent)?, p)?;
         let (slope, deviation) = power_law(&constants);
         let scene = format!("M(T) 9-45 mm, spacing 1 mm, p {p}");
         table.compare(format!("{scene}: exponent of da/dN"), p + slope, p, 100.0 * 0.05 / p, SOURCE);
@@ -60,7 +63,7 @@ pub fn specimens(table: &mut Table) -> Result<()> {
     for (name, set) in scenes {
         let text = if set.is_empty() { COMPACT } else { PANEL };
         let scene = case(text, &[set, &["model.spacing_mm=1", &format!("fatigue.p={EXPONENT}")]].concat())?;
-        let constants = constants(&scene, &predict(&scene, &Silent)?.curve, EXPONENT);
+        let constants = constants(&scene, &predict(&scene, &Silent)?, EXPONENT)?;
         all.extend(&constants);
         of_scene.push((name, constants));
     }
@@ -119,10 +122,10 @@ pub fn biaxial(table: &mut Table) -> Result<()> {
 pub fn lives(table: &mut Table) -> Result<()> {
     let panel = case(PANEL, &["model.spacing_mm=1", "stop.crack_length_mm=49.8"])?;
     let run: Prediction = predict(&panel, &Silent)?;
-    let settled = cycles_at(&run.curve, 45.0 * MM) - cycles_at(&run.curve, 20.0 * MM);
+    let settled = cycles_between(&run, 20.0 * MM, 45.0 * MM)?;
     let constant = growth_integral(&panel, 20.0 * MM, 45.0 * MM, EXPONENT) / settled;
     for (from, to) in [(9.0, 49.8), (20.0, 49.8)] {
-        let cycles = cycles_at(&run.curve, to * MM) - cycles_at(&run.curve, from * MM);
+        let cycles = cycles_between(&run, from * MM, to * MM)?;
         let by_hand = growth_integral(&panel, from * MM, to * MM, EXPONENT) / constant;
         let quantity = format!("M(T) {from}-{to} mm, 1 mm: life over quadrature with C of 20-45 mm");
         table.compare(quantity, cycles / by_hand, 1.0, 5.0, SOURCE);
@@ -131,52 +134,35 @@ pub fn lives(table: &mut Table) -> Result<()> {
 }
 
 /// Constants C = ∫ da/ΔK^p / ΔN over windows of equal growth: (ΔK in the middle of the window, C), SI.
-fn constants(case: &Case, curve: &[CurvePoint], p: f64) -> Vec<(f64, f64)> {
-    let Some(formula) = handbook(&case.specimen) else { return Vec::new() };
-    let (first, last) = (curve[0].crack_length, curve[curve.len() - 1].crack_length);
+fn constants(case: &Case, run: &Prediction, p: f64) -> Result<Vec<(f64, f64)>> {
+    let (first, last) = (case.specimen.crack_length, run.crack_length_final());
     let windows = ((last - first) / WINDOW * (1.0 + 1e-9)).floor() as usize;
-    (0..windows)
-        .map(|i| {
-            let (from, to) = (first + i as f64 * WINDOW, first + (i + 1) as f64 * WINDOW);
-            let cycles = cycles_at(curve, to) - cycles_at(curve, from);
-            let middle = formula.delta_k(0.5 * (from + to), case.loading.maximum, case.loading.range_share());
-            (middle, growth_integral(case, from, to, p) / cycles)
-        })
-        .collect()
-}
-
-/// ∫ da / ΔK^p between two lengths with the handbook's K, by Simpson's rule.
-fn growth_integral(case: &Case, from: f64, to: f64, p: f64) -> f64 {
-    const PARTS: usize = 200;
-    let Some(formula) = handbook(&case.specimen) else { return f64::NAN };
-    let step = (to - from) / PARTS as f64;
-    let value = |i: usize| {
-        let weight = if i == 0 || i == PARTS { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
-        weight * formula.delta_k(from + i as f64 * step, case.loading.maximum, case.loading.range_share()).powf(-p)
+    let constant = |i: usize| {
+        let (from, to) = (first + i as f64 * WINDOW, first + (i + 1) as f64 * WINDOW);
+        let middle = delta_k(&case.specimen, 0.5 * (from + to), case.loading.maximum, case.loading.range_share());
+        Ok((middle.unwrap_or(f64::NAN), growth_integral(case, from, to, p) / cycles_between(run, from, to)?))
     };
-    (0..=PARTS).map(value).sum::<f64>() * step / 3.0
+    (0..windows).map(constant).collect()
 }
 
-/// Cycles at which a curve reaches a length, linear between rows.
-#[must_use]
-pub fn cycles_at(curve: &[CurvePoint], crack_length: f64) -> f64 {
-    let next = curve.partition_point(|point| point.crack_length < crack_length * (1.0 - 1e-12)).min(curve.len() - 1);
-    if next == 0 {
-        return curve[0].cycles;
-    }
-    let (a, b) = (&curve[next - 1], &curve[next]);
-    let share = ((crack_length - a.crack_length) / (b.crack_length - a.crack_length)).clamp(0.0, 1.0);
-    a.cycles + share * (b.cycles - a.cycles)
+/// ∫ da / ΔK^p between two lengths with the handbook's K.
+fn growth_integral(case: &Case, from: f64, to: f64, p: f64) -> f64 {
+    let range = |length: f64| delta_k(&case.specimen, length, case.loading.maximum, case.loading.range_share());
+    integrate(|length| range(length).map_or(f64::NAN, |k| k.powf(-p)), from, to, 1e-9).value
+}
+
+/// Cycles between two lengths of a run.
+fn cycles_between(run: &Prediction, from: f64, to: f64) -> Result<f64> {
+    Ok(cycles_since_first(&points(run), &[from, to])?[1])
 }
 
 /// Least squares slope of ln C over ln ΔK, which is what the exponent is off by, and the largest deviation from the mean C in
 /// percent.
 fn power_law(constants: &[(f64, f64)]) -> (f64, f64) {
-    let count = constants.len() as f64;
-    let (x, y) = constants.iter().fold((0.0, 0.0), |(x, y), (k, c)| (x + k.ln() / count, y + c.ln() / count));
-    let cross: f64 = constants.iter().map(|(k, c)| (k.ln() - x) * (c.ln() - y)).sum();
-    let slope = cross / constants.iter().map(|(k, _)| (k.ln() - x).powi(2)).sum::<f64>();
-    (slope, constants.iter().map(|(_, c)| 100.0 * (c.ln() - y).exp_m1()).fold(0.0, larger))
+    let (log_k, log_c): (Vec<f64>, Vec<f64>) = constants.iter().map(|(k, c)| (k.ln(), c.ln())).unzip();
+    let slope = line(&log_k, &log_c).map_or(f64::NAN, |line| line.slope);
+    let mean = log_c.iter().sum::<f64>() / log_c.len() as f64;
+    (slope, log_c.iter().map(|c| 100.0 * (c - mean).exp_m1()).fold(0.0, larger))
 }
 
 fn larger(a: f64, b: f64) -> f64 {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::case::Case;
 use crate::error::Result;
+use crate::predict::Prediction;
 
 /// The panel of Virkler, Hillberry and Goel (1979): middle tension, W 152.4 mm, stress range 48.28 MPa at R = 0.2, aluminium
 /// 2024-T3 with the Paris-like exponent of its growth rates.
@@ -36,4 +37,10 @@ horizon_mm = 3.015
 pub fn case(text: &str, set: &[&str]) -> Result<Case> {
     let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
     Case::from_toml(text, "verification", Path::new("."), &overrides)
+}
+
+/// The curve of a run as (cycles, crack length in m).
+#[must_use]
+pub fn points(run: &Prediction) -> Vec<(f64, f64)> {
+    run.curve.iter().map(|point| (point.cycles, point.crack_length)).collect()
 }

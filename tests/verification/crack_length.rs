@@ -40,9 +40,8 @@ fn a_grown_crack_is_as_long_as_its_compliance_says() {
             let point = run.curve.iter().find(|point| point.crack_length >= target * MM).unwrap();
             let found = by_compliance(point.work);
             println!("{name}: {:.3} mm, by compliance {:.3} mm", point.crack_length / MM, found / MM);
-            // A tenth of the spacing of 1 mm once the front is steady; a clean cut takes a horizon to get there.
-            let bound = if name == "clean cut" && target < 24.0 { 0.7 } else { 0.1 };
-            assert!((point.crack_length - found).abs() < bound * MM, "{name}: {} and {}", point.crack_length / MM, found / MM);
+            // A tenth of the spacing of 1 mm; reached are 0.04, and 0.08 while the front of a clean cut takes its shape.
+            assert!((point.crack_length - found).abs() < 0.1 * MM, "{name}: {} and {}", point.crack_length / MM, found / MM);
         }
     }
 }

@@ -166,7 +166,7 @@ fn growth_hardly_depends_on_the_block() {
     let stop = "stop.crack_length_mm=24.5";
     let reference = grow(PANEL, &[stop]);
     for (name, set, bound) in [
-        ("no pre-crack", vec!["fatigue.precrack=none"], 0.03),
+        ("no pre-crack", vec!["fatigue.precrack=none"], 0.02),
         // Reached: 10 % at this spacing; theory.md gives up to 16 % for larger blocks. Not the default for that reason.
         ("two groups a block", vec!["fatigue.bonds_per_block=2"], 0.12),
         ("fixed blocks", vec!["fatigue.block=fixed", "fatigue.block_cycles=20"], 0.02),
@@ -247,10 +247,7 @@ fn a_centre_crack_grows_by_the_power_law() {
         let mean = constants.iter().sum::<f64>() / 4.0;
         let relative: Vec<f64> = constants.iter().map(|c| c / mean).collect();
         println!("p {p}: rate over the power law {relative:.3?}");
-        for (i, r) in relative.iter().enumerate() {
-            // The first interval starts at three horizons, where the finite horizon makes the crack too fast: 7 % at p = 2.87.
-            let bound = if i == 0 { 0.12 } else { 0.05 };
-            assert!((r - 1.0).abs() < bound, "p {p}: {relative:?}");
-        }
+        // Reached: 2.1 % at p = 4, from three horizons on.
+        assert!(relative.iter().all(|r| (r - 1.0).abs() < 0.03), "p {p}: {relative:?}");
     }
 }

@@ -48,12 +48,17 @@ fn a_centre_crack_has_the_handbook_k_whatever_poissons_ratio() {
             for ratio in at_length {
                 // Reached: 1.2 % balanced, 0.7 % with the classical correction, 2.2 % without; 4 % is what was asked for. What is
                 // left falls with the spacing, see below.
-                let bound = if correction == "none" { 0.025 } else { 0.0125 };
+                let bound = match correction {
+                    "none" => 0.025,
+                    "balanced" => 0.0125,
+                    _ => 0.012,
+                };
                 assert!((ratio - 1.0).abs() < bound, "{correction}: {ratio} at {} mm", LENGTHS_MM[i]);
             }
             let (low, high) = at_length.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &r| (l.min(r), h.max(r)));
             // Reached: 0.24 % balanced, 0.1 % with the classical correction.
-            assert!(high - low < 0.003, "{correction}: {low} to {high} over nu at {} mm", LENGTHS_MM[i]);
+            let spread = if correction == "balanced" { 0.003 } else { 0.002 };
+            assert!(high - low < spread, "{correction}: {low} to {high} over nu at {} mm", LENGTHS_MM[i]);
         }
     }
 }
