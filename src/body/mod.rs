@@ -15,7 +15,7 @@ pub mod severed;
 pub mod sharing;
 pub mod surface_correction;
 
-use crate::bond_law::stencil::Stencil;
+use crate::bond_law::stencil::{Stencil, spring_material};
 use crate::bond_law::{BondLaw, SurfaceCorrection};
 use crate::error::{Error, Result};
 use crate::material::Material;
@@ -118,7 +118,9 @@ impl Body {
         };
         match law.surface_correction {
             SurfaceCorrection::None => {}
-            SurfaceCorrection::VolumeAndSurface => surface_correction::volume_and_surface(&mut body, material),
+            SurfaceCorrection::VolumeAndSurface => {
+                surface_correction::volume_and_surface(&mut body, &spring_material(law, material))
+            }
             SurfaceCorrection::Balanced => {
                 let rim = facets::facets(specimen, body.lattice.spacing);
                 balanced::balance(&mut body, &rim, &sharing)?;

@@ -8,7 +8,8 @@ use crate::material::Material;
 ///
 /// Under uniaxial strain e along direction d (the lattice axes) a point stores W_PD(x) instead of `W = C₁₁ e²/2`;
 /// `g_d(x) = W / W_PD(x)`. A bond with unit vector n gets the factor `[(n_x/G_x)² + (n_y/G_y)²]^(-1/2)`,
-/// `G_d = (g_d(x) + g_d(x'))/2`. Computed once, on the uncracked plate.
+/// `G_d = (g_d(x) + g_d(x'))/2`. Computed once, on the uncracked plate. C₁₁ is that of the material that the springs stand
+/// for; the dilatation of a state-based law is right up to a straight edge without a correction.
 ///
 /// The factor of the interior, which only rescales the micromoduli to the lattice, is moved into the springs of the
 /// stencil, so that interior bonds keep the multiplier 1.

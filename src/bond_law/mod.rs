@@ -8,6 +8,7 @@ crate::kinds! {
         BondBased = "bond_based": "one normal spring a bond; fixes Poisson's ratio at 1/3 (plane stress) or 1/4 (plane strain)",
         TwoParameter = "two_parameter": "normal and tangential spring a bond; Poisson's ratio up to 1/3 (plane stress) or 1/4 (plane strain)",
         OneBondTwoParameter = "one_bond_two_parameter": "the same on stretch and shear angle of the bond (Zhu and Ni 2017)",
+        StateBased = "state_based": "normal spring a bond and dilatation of every point (linear ordinary state-based, Silling et al. 2007); any Poisson's ratio",
     }
 }
 
@@ -41,7 +42,7 @@ impl BondLawKind {
     #[must_use]
     pub fn is_two_parameter(self) -> bool {
         match self {
-            BondLawKind::BondBased => false,
+            BondLawKind::BondBased | BondLawKind::StateBased => false,
             BondLawKind::TwoParameter | BondLawKind::OneBondTwoParameter => true,
         }
     }
@@ -50,7 +51,7 @@ impl BondLawKind {
     #[must_use]
     pub fn is_stretch_form(self) -> bool {
         match self {
-            BondLawKind::TwoParameter => false,
+            BondLawKind::TwoParameter | BondLawKind::StateBased => false,
             BondLawKind::BondBased | BondLawKind::OneBondTwoParameter => true,
         }
     }

@@ -4,6 +4,12 @@
 //! of the half plane (the other half belongs to the neighbours). A spring stiffness is the force per relative
 //! displacement of the two points, N/m: `k_n = c_n(r) b V²`, `k_t = c_t(r) b V²` with micromodulus c, partial-volume
 //! weight b and point volume V = Δ² h.
+//!
+//! A state-based law has normal springs that give the shear modulus G, and beside them the energy `½ κ θ²` of the dilatation
+//! of each point: `W = ½ Σ k_n (n·η)² / 2V + ½ κ θ²`. Springs alone have `C₁₁ = 3 G`, `C₁₂ = G`, so `κ = C₁₂ - G`: zero at
+//! the Poisson's ratio of a bond-based law, negative below. This is the linear peridynamic solid (Silling, Epton, Weckner,
+//! Xu and Askari 2007, J. Elasticity 88:151, section 15) in the plane, its deviatoric part written out: there
+//! `W = ½ k' θ² + ½ α Σ ω (e - θ r/2)²`, which is the same with `ω = k_n`.
 
 use super::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::{Error, input};
@@ -11,6 +17,9 @@ use crate::material::{Material, Plane};
 
 /// Allowed distance of ν from the one value a bond-based law has.
 pub const BOND_BASED_POISSON_TOLERANCE: f64 = 0.01;
+
+/// Modulus of dilatation over shear modulus below which it is round-off.
+const LEAST_DILATATION: f64 = 1e-9;
 
 /// One bond of the half stencil.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,6 +61,8 @@ pub struct Stencil {
     pub reach: usize,
     /// Unknowns of a point: 2 displacements, and its rotation where the law leaves that free.
     pub unknowns: usize,
+    /// Modulus of dilatation times point volume, κ V, J; zero for laws of springs alone.
+    pub dilatation: f64,
 }
 
 /// Elastic constants C11 and C12 of the plane state, Pa.
@@ -78,34 +89,35 @@ pub fn poisson_limit(plane: Plane) -> f64 {
 
 /// Refuses a Poisson's ratio that the law cannot represent, naming the law to use.
 ///
+/// Two-parameter: tangential modulus proportional to 1-3ν (plane stress) or 1-4ν (plane strain) must not be negative.
+/// Bond-based: ν is 1/3 or 1/4 (Silling 2000; Gerstle, Sau and Silling 2005 for the plane). State-based: any.
+///
 /// # Errors
 /// `Error::Input` on `material.poisson_ratio`.
 pub fn check_poisson_ratio(law: &BondLaw, material: &Material) -> Result<(), Error> {
-    let (nu, limit) = (material.poisson_ratio, poisson_limit(material.plane));
-    let plane = material.plane;
-    match law.kind {
-        BondLawKind::BondBased if (nu - limit).abs() > BOND_BASED_POISSON_TOLERANCE => Err(input(
-            "material.poisson_ratio",
-            nu,
-            format!("bond_based fixes Poisson's ratio at {limit:.4} in plane {plane}"),
-            if nu < limit { "use model.bond_law = \"two_parameter\"".to_owned() } else { beyond(limit, plane) },
-        )),
-        kind if kind.is_two_parameter() && nu > limit + 1e-9 => Err(input(
-            "material.poisson_ratio",
-            nu,
-            format!("{kind} holds up to {limit:.4} in plane {plane} (the tangential spring would turn negative)"),
-            beyond(limit, plane),
-        )),
-        _ => Ok(()),
-    }
-}
-
-fn beyond(limit: f64, plane: Plane) -> String {
-    let nearest = match plane {
-        Plane::Stress => format!("the nearest usable value is {limit:.4}"),
-        Plane::Strain => format!("the nearest usable value is {limit:.4}; plane = \"stress\" reaches 0.3333"),
+    const KEY: &str = "material.poisson_ratio";
+    let (kind, nu, limit) = (law.kind, material.poisson_ratio, poisson_limit(material.plane));
+    let words = match material.plane {
+        Plane::Stress => "1/3 in plane stress",
+        Plane::Strain => "1/4 in plane strain",
     };
-    format!("{nearest}; a state-based law for larger ratios is not built yet")
+    let tolerance = if kind == BondLawKind::BondBased { BOND_BASED_POISSON_TOLERANCE } else { 1e-9 };
+    if kind == BondLawKind::StateBased {
+        return Ok(());
+    }
+    if nu > limit + tolerance {
+        let problem = format!("is beyond what {kind} can represent, {words}");
+        let remedy = format!(
+            "use model.bond_law = \"state_based\", which takes any; \"two_parameter\" goes up to {}",
+            (limit * 1e4).floor() / 1e4
+        );
+        return Err(input(KEY, nu, problem, remedy));
+    }
+    if kind == BondLawKind::BondBased && nu < limit - tolerance {
+        let problem = format!("is not what bond_based fixes, {words}");
+        return Err(input(KEY, nu, problem, "use model.bond_law = \"two_parameter\", which takes any smaller value"));
+    }
+    Ok(())
 }
 
 /// Partial-volume weight b(r): 1 inside δ - Δ/2, falling to 1/2 at δ, 0 beyond
@@ -157,11 +169,12 @@ impl Stencil {
         };
         let reach = shape.iter().map(|bond| bond.dx.unsigned_abs().max(bond.dy.unsigned_abs()) as usize).max().unwrap_or(1);
         let unknowns = if law.kind.is_two_parameter() && law.rotation == Rotation::Free { 3 } else { 2 };
+        let dilatation = volume * dilatation_modulus(law, material);
         for (bond, q) in shape.iter_mut().zip(&weight) {
             bond.k_n = c_n * q;
             bond.k_t = c_t * q;
         }
-        Ok(Stencil { bonds: shape, spacing, horizon, reach, unknowns })
+        Ok(Stencil { bonds: shape, spacing, horizon, reach, unknowns, dilatation })
     }
 }
 
@@ -222,16 +235,34 @@ fn make_isotropic(shape: &[StencilBond], weight: &mut [f64]) {
     }
 }
 
-/// The material with the Poisson's ratio that the law has: a bond-based law keeps E and brings its own ν.
-fn representable(law: &BondLaw, material: &Material) -> Material {
-    let poisson_ratio = if law.kind.is_two_parameter() { material.poisson_ratio } else { poisson_limit(material.plane) };
-    Material { poisson_ratio, ..material.clone() }
+/// The material that the springs of a law stand for: all of it for a two-parameter law; with E and the law's own ν for a
+/// bond-based one; with G and that ν for a state-based one, whose dilatation does the rest.
+#[must_use]
+pub fn spring_material(law: &BondLaw, material: &Material) -> Material {
+    let poisson_ratio = poisson_limit(material.plane);
+    match law.kind {
+        BondLawKind::TwoParameter | BondLawKind::OneBondTwoParameter => material.clone(),
+        BondLawKind::BondBased => Material { poisson_ratio, ..material.clone() },
+        BondLawKind::StateBased => {
+            let youngs_modulus = 2.0 * material.shear_modulus() * (1.0 + poisson_ratio);
+            Material { poisson_ratio, youngs_modulus, ..material.clone() }
+        }
+    }
+}
+
+/// Modulus of dilatation κ = C₁₂ - G of a state-based law, Pa; 0 for others, and where springs alone serve.
+fn dilatation_modulus(law: &BondLaw, material: &Material) -> f64 {
+    if law.kind != BondLawKind::StateBased {
+        return 0.0;
+    }
+    let (shear, modulus) = (material.shear_modulus(), plane_stiffness(material)[1] - material.shear_modulus());
+    if modulus.abs() < LEAST_DILATATION * shear { 0.0 } else { modulus }
 }
 
 /// (c_n, c_t) that give the lattice the elastic constants of the material; springs are c times weight.
 fn lattice_moduli(law: &BondLaw, material: &Material, shape: &[StencilBond], weight: &[f64], volume: f64) -> (f64, f64) {
     let [s4, s22] = moments(shape, weight);
-    let [c11, c12] = plane_stiffness(&representable(law, material));
+    let [c11, c12] = plane_stiffness(&spring_material(law, material));
     let c_n = volume * (c11 + c12) / (s4 + s22);
     let c_t = if law.kind.is_two_parameter() { (c_n - volume * c12 / s22).max(0.0) } else { 0.0 };
     (c_n, c_t)
@@ -240,7 +271,7 @@ fn lattice_moduli(law: &BondLaw, material: &Material, shape: &[StencilBond], wei
 /// (c_n, c_t) of the continuous kernel, times V² : the published moduli (Prakash and Seidel 2015 for the constant kernel,
 /// their conical counterpart, Silling and Askari 2005 for bond-based, Zhu and Ni 2017 for one-bond two-parameter).
 fn integral_moduli(law: &BondLaw, material: &Material, horizon: f64, volume: f64, thickness: f64) -> (f64, f64) {
-    let [c11, c12] = plane_stiffness(&representable(law, material));
+    let [c11, c12] = plane_stiffness(&spring_material(law, material));
     // ∫ c(r) r² (1, n_x⁴, n_x² n_y²) over the disc: angular means 3/8 and 1/8 of 2π; radial moments of the profiles.
     let radial = match (law.kind.is_stretch_form(), law.kernel) {
         (false, Kernel::Constant) => horizon.powi(4) / 4.0,

@@ -5,10 +5,11 @@ use toml::Value;
 
 use super::choices::{Choices, Discretisation, Method, Symmetry};
 use super::{HORIZON_RATIO, Model};
+use crate::bond_law::stencil::check_poisson_ratio;
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::{Result, input};
 use crate::input::{LENGTH, number, slice};
-use crate::material::{Material, Plane};
+use crate::material::Material;
 use crate::solver::SolverKind;
 use crate::specimen::Specimen;
 use crate::specimen::handbook::handbook;
@@ -110,32 +111,15 @@ pub(super) fn round_mm(metres: f64) -> f64 {
     (metres / MM * 1e6).round() / 1e6
 }
 
-/// The bond law can represent the material's Poisson's ratio.
-///
-/// Two-parameter: tangential modulus proportional to 1-3ν (plane stress) or 1-4ν (plane strain) must not be negative.
-/// Bond-based: ν is 1/3 or 1/4 (Silling 2000; Gerstle, Sau and Silling 2005 for the plane).
-pub(super) fn check_poisson_ratio(material: &Material, model: &Model) -> Result<()> {
-    let kind = model.bond_law.kind;
+/// The bond law can represent the material, and its choices go together.
+pub(super) fn check_law(material: &Material, model: &Model) -> Result<()> {
     if model.method == Method::Handbook {
         return Ok(());
     }
-    let (limit, words) = match material.plane {
-        Plane::Stress => (1.0 / 3.0, "1/3 in plane stress"),
-        Plane::Strain => (1.0 / 4.0, "1/4 in plane strain"),
-    };
-    let nu = material.poisson_ratio;
-    const KEY: &str = "material.poisson_ratio";
-    if nu > limit + 1e-9 && !(kind == BondLawKind::BondBased && nu <= limit + 0.01) {
-        let usable = (limit * 1e4).floor() / 1e4;
-        let problem = format!("is beyond what {kind} can represent, {words}");
-        let remedy = format!(
-            "no law built so far goes further (a state-based law will); the nearest usable value is poisson_ratio = {usable} with bond_law = \"two_parameter\""
-        );
-        return Err(input(KEY, nu, problem, remedy));
+    let law = &model.bond_law;
+    if law.kind == BondLawKind::StateBased && law.surface_correction == SurfaceCorrection::Balanced {
+        let problem = "balances springs only, and bond_law is \"state_based\"";
+        return Err(input("model.surface_correction", "\"balanced\"", problem, "use \"volume_and_surface\""));
     }
-    if kind == BondLawKind::BondBased && (nu - limit).abs() > 0.01 {
-        let problem = format!("is not what bond_based fixes, {words}");
-        return Err(input(KEY, nu, problem, "use model.bond_law = \"two_parameter\", which takes any smaller value"));
-    }
-    Ok(())
+    check_poisson_ratio(law, material)
 }

@@ -33,6 +33,12 @@ pub struct Material {
 }
 
 impl Material {
+    /// Shear modulus G = E / (2 (1+ν)), Pa.
+    #[must_use]
+    pub fn shear_modulus(&self) -> f64 {
+        self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+    }
+
     /// E' of `K = √(E' G)`: E in plane stress, E/(1-ν²) in plane strain, Pa.
     #[must_use]
     pub fn plane_modulus(&self) -> f64 {

@@ -1,8 +1,12 @@
-//! Sparse Cholesky factorisation by faer: the reference that other solvers are compared with.
+//! Sparse factorisation by faer, the reference that other solvers are compared with: Cholesky, and LU for a state-based law,
+//! whose matrix with the stresses as unknowns is not positive definite.
+
+use std::collections::HashSet;
 
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 
+use super::assembly::{Assembly, MIXED, Mixed, Springs};
 use super::field::dot;
 use super::product::Product;
 use super::{LinearSolver, Solved, System};
@@ -16,84 +20,113 @@ pub struct DirectSolver {}
 
 impl<const N: usize> LinearSolver<N> for DirectSolver {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        let System { body, bonds, product, f } = system;
-        let layout = product.layout();
-        let mut number = vec![usize::MAX; layout.len()];
-        let mut indices = Vec::new();
-        let held: std::collections::HashSet<usize> = product.fixed().iter().copied().chain(pins(body, bonds, product)).collect();
-        for &place in &body.points {
-            let at = layout.index(place as usize);
-            for index in (0..N).map(|c| at + c * layout.stride) {
-                if !held.contains(&index) {
-                    number[index] = indices.len();
-                    indices.push(index);
-                }
-            }
+        let System { bonds, product, f, .. } = system;
+        match product.dilatation() {
+            None => factorise_and_solve::<N, N>(system, &Springs::new(product), u)?,
+            Some(dilatation) => factorise_and_solve::<N, MIXED>(system, &Mixed::new(product, dilatation, bonds), u)?,
         }
-        let mut entries: Vec<Triplet<usize, usize, f64>> = Vec::with_capacity(indices.len() * 40);
-        let places = body.places();
-        for &point in &body.points {
-            let place = point as usize;
-            for (k, &step) in body.steps.iter().enumerate() {
-                let share = f64::from(bonds.multiplier[k * places + place]);
-                if share == 0.0 {
-                    continue;
-                }
-                let other = place.wrapping_add_signed(step);
-                let (from, to) = (layout.index(place), layout.index(other));
-                for (sign, a, b) in [(1.0, from, to), (-1.0, to, from)] {
-                    let (own, off) = product.bond_blocks(k, sign, share);
-                    for c in 0..N {
-                        let row = number[a + c * layout.stride];
-                        if row == usize::MAX {
-                            continue;
-                        }
-                        for d in 0..N {
-                            for (column, value) in
-                                [(number[a + d * layout.stride], own[c][d]), (number[b + d * layout.stride], off[c][d])]
-                            {
-                                if column != usize::MAX && value != 0.0 && column <= row {
-                                    entries.push(Triplet::new(row, column, value));
-                                }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        // Points without bonds have empty rows: a unit diagonal keeps them at rest.
-        let mut filled = vec![false; indices.len()];
-        entries.iter().filter(|t| t.row == t.col).for_each(|t| filled[t.row] = true);
-        entries.extend(filled.iter().enumerate().filter(|(_, f)| !**f).map(|(i, _)| Triplet::new(i, i, 1.0)));
-        let n = indices.len();
-        let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(n, n, &entries)
-            .map_err(|e| Error::Mechanics(format!("the stiffness matrix could not be built: {e:?}")))?;
-        drop(entries);
-        let factor = matrix
-            .sp_cholesky(faer::Side::Lower)
-            .map_err(|e| Error::Mechanics(format!("the stiffness matrix is not positive definite: {e:?}")))?;
-        let rhs = faer::Mat::from_fn(n, 1, |i, _| f[indices[i]]);
-        let solution = factor.solve(&rhs);
-        u.fill(0.0);
-        for (i, &index) in indices.iter().enumerate() {
-            u[index] = solution[(i, 0)];
-        }
-        Ok(Solved { iterations: 0, work: dot(layout, f, u) })
+        Ok(Solved { iterations: 0, work: dot(product.layout(), f, u) })
     }
 
     fn broke(&mut self, _: &Body, _: &Bonds, _: &Product<N>, _: &[Bond]) {}
 }
 
-/// Components that hold a floating plate without carrying load.
-fn pins<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<N>) -> Vec<usize> {
+/// Solves with M unknowns a point, of which the first N go into `u`.
+fn factorise_and_solve<const N: usize, const M: usize>(
+    system: System<'_, N>,
+    assembly: &impl Assembly<M>,
+    u: &mut [f64],
+) -> Result<()> {
+    let System { body, bonds, product, f } = system;
+    let layout = product.layout();
+    let pinned: HashSet<(usize, usize)> = pins::<N>(body, bonds, product).into_iter().collect();
+    let mut number = vec![[usize::MAX; M]; body.places()];
+    let mut unknowns = Vec::new();
+    for place in body.points.iter().map(|&place| place as usize) {
+        for c in (0..M).filter(|&c| !assembly.is_held(place, c) && !pinned.contains(&(place, c))) {
+            number[place][c] = unknowns.len();
+            unknowns.push((place, c));
+        }
+    }
+    let definite = (0..M).all(|c| assembly.pivot_sign(c) > 0.0);
+    let mut entries = entries(body, bonds, assembly, &number);
+    if definite {
+        entries.retain(|entry| entry.col <= entry.row);
+    }
+    // Points without bonds have empty rows: a unit diagonal keeps them at rest.
+    let mut filled = vec![false; unknowns.len()];
+    entries.iter().filter(|t| t.row == t.col && t.val != 0.0).for_each(|t| filled[t.row] = true);
+    entries.extend(filled.iter().enumerate().filter(|(_, filled)| !**filled).map(|(i, _)| Triplet::new(i, i, 1.0)));
+
+    let n = unknowns.len();
+    let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(n, n, &entries)
+        .map_err(|e| Error::Mechanics(format!("the stiffness matrix could not be built: {e:?}")))?;
+    drop(entries);
+    let rhs = faer::Mat::from_fn(n, 1, |i, _| {
+        let (place, c) = unknowns[i];
+        if c < N { f[layout.index(place) + c * layout.stride] } else { 0.0 }
+    });
+    let solution = if definite {
+        let factor = matrix
+            .sp_cholesky(faer::Side::Lower)
+            .map_err(|e| Error::Mechanics(format!("the stiffness matrix is not positive definite: {e:?}")))?;
+        factor.solve(&rhs)
+    } else {
+        let factor =
+            matrix.sp_lu().map_err(|e| Error::Mechanics(format!("the stiffness matrix could not be factorised: {e:?}")))?;
+        factor.solve(&rhs)
+    };
+    u.fill(0.0);
+    for (i, &(place, c)) in unknowns.iter().enumerate().filter(|(_, (_, c))| *c < N) {
+        u[layout.index(place) + c * layout.stride] = solution[(i, 0)];
+    }
+    Ok(())
+}
+
+/// Entries of the matrix whose unknowns have these numbers.
+fn entries<const M: usize>(
+    body: &Body,
+    bonds: &Bonds,
+    assembly: &impl Assembly<M>,
+    number: &[[usize; M]],
+) -> Vec<Triplet<usize, usize, f64>> {
+    let places = body.places();
+    let mut entries = Vec::with_capacity(body.points.len() * M * 40);
+    let mut add = |row: usize, column: usize, value: f64| {
+        if row != usize::MAX && column != usize::MAX && value != 0.0 {
+            entries.push(Triplet::new(row, column, value));
+        }
+    };
+    for place in body.points.iter().map(|&place| place as usize) {
+        add(number[place][M - 1], number[place][M - 1], assembly.point(place));
+        for (k, &step) in body.steps.iter().enumerate() {
+            let share = f64::from(bonds.multiplier[k * places + place]);
+            if share == 0.0 {
+                continue;
+            }
+            let other = place.wrapping_add_signed(step);
+            for (sign, a, b) in [(1.0, place, other), (-1.0, other, place)] {
+                let (own, off) = assembly.bond(k, sign, share);
+                for c in 0..M {
+                    for d in 0..M {
+                        add(number[a][c], number[a][d], own[c][d]);
+                        add(number[a][c], number[b][d], off[c][d]);
+                    }
+                }
+            }
+        }
+    }
+    entries
+}
+
+/// Components that hold a floating plate without carrying load, as place and component.
+fn pins<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<N>) -> Vec<(usize, usize)> {
     if !product.fixed().is_empty() {
         return Vec::new();
     }
-    let layout = product.layout();
     let carrying = || body.points.iter().map(|&p| p as usize).filter(|&p| bonds.intact_at(body, p) > 3);
     let (Some(first), Some(last)) = (carrying().next(), carrying().next_back()) else { return Vec::new() };
-    let pinned = pinned_components::<N>(body, first, last);
-    pinned.into_iter().map(|(place, component)| layout.index(place) + component * layout.stride).collect()
+    pinned_components::<N>(body, first, last)
 }
 
 /// Of two distant points the components that hold a floating plate: both of one and, where the law lets the plate turn

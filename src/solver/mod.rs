@@ -1,6 +1,8 @@
 //! Equilibrium of the body at maximum load.
 
+pub mod assembly;
 pub mod conjugate_gradient;
+pub mod dilatation;
 pub mod direct;
 pub mod field;
 pub mod multigrid;

@@ -6,16 +6,18 @@
 
 use rayon::prelude::*;
 
+use super::dilatation::Dilatation;
 use super::field::Layout;
+use super::window::update::Term;
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::state::Bonds;
 
 /// A value for each of [`LANES`] neighbouring places.
-type Lanes = [f64; LANES];
+pub(super) type Lanes = [f64; LANES];
 
 /// Rows that one task takes.
-const ROWS_PER_TASK: usize = 8;
+pub(super) const ROWS_PER_TASK: usize = 8;
 
 /// One stencil bond as the product uses it.
 #[derive(Debug, Clone, Copy)]
@@ -69,6 +71,8 @@ pub struct Product<const N: usize> {
     diagonal: [f64; 2],
     /// Vector indices of held components.
     fixed: Vec<usize>,
+    /// What a state-based law stores beside its springs.
+    dilatation: Option<Dilatation>,
 }
 
 impl<const N: usize> Product<N> {
@@ -99,7 +103,8 @@ impl<const N: usize> Product<N> {
         let stretch = springs.iter().map(|s| s.a[0] + s.a[2]).sum::<f64>();
         let turn = springs.iter().map(|s| 2.0 * s.k_t * s.lever * s.lever).sum::<f64>();
         // xx and yy of an interior point are equal by the symmetry of the square; each is half the trace, twice for both bond directions.
-        Product { layout, springs, lattice_rows: body.lattice.rows, diagonal: [stretch, turn], fixed }
+        let dilatation = Dilatation::of(body, layout);
+        Product { layout, springs, lattice_rows: body.lattice.rows, diagonal: [stretch, turn], fixed, dilatation }
     }
 
     /// Layout of its vectors.
@@ -114,8 +119,23 @@ impl<const N: usize> Product<N> {
         &self.fixed
     }
 
+    /// What a state-based law stores beside its springs.
+    #[must_use]
+    pub fn dilatation(&self) -> Option<&Dilatation> {
+        self.dilatation.as_ref()
+    }
+
     /// y = K x or y -= K x; held components of y become zero. x must be zero outside the points.
     pub fn apply(&self, bonds: &Bonds, x: &[f64], y: &mut [f64], into: Into) {
+        self.apply_springs(bonds, x, y, into);
+        if let Some(dilatation) = &self.dilatation {
+            dilatation.apply(bonds, x, y, into);
+            self.fixed.iter().for_each(|&index| y[index] = 0.0);
+        }
+    }
+
+    /// [`Product::apply`] of the springs alone.
+    pub fn apply_springs(&self, bonds: &Bonds, x: &[f64], y: &mut [f64], into: Into) {
         let (row_len, padding) = (self.layout.row_len(), self.layout.padding);
         let body_rows = &mut y[padding * row_len..(padding + self.lattice_rows) * row_len];
         let arch = pulp::Arch::new();
@@ -237,20 +257,20 @@ impl<const N: usize> Product<N> {
         y
     }
 
-    /// The springs of a stencil bond between two points whose unknowns start at `a` (owner) and `b`, as vectors w of their
-    /// stiffness w wᵀ: normal and tangential, each empty where its stiffness is zero.
-    pub(super) fn springs_of(&self, k: usize, share: f64, a: usize, b: usize) -> [Vec<(usize, f64)>; 2] {
+    /// The springs that a broken bond of stencil entry k takes out between two points whose unknowns start at `a` (owner) and
+    /// `b`: normal and tangential, each empty where its stiffness is zero.
+    pub(super) fn springs_of(&self, k: usize, share: f64, a: usize, b: usize) -> [Term; 2] {
         let spring = &self.springs[k];
         let across = |stiffness: f64, along: [f64; 2], lever: f64| {
-            if share * stiffness <= 0.0 {
-                return Vec::new();
+            let mut vector = Vec::new();
+            if share * stiffness > 0.0 {
+                let root = (share * stiffness).sqrt();
+                vector.extend((0..2).flat_map(|c| [(a + c, -root * along[c]), (b + c, root * along[c])]));
+                if lever != 0.0 {
+                    vector.extend([(a + 2, -root * lever), (b + 2, -root * lever)]);
+                }
             }
-            let root = (share * stiffness).sqrt();
-            let mut w: Vec<(usize, f64)> = (0..2).flat_map(|c| [(a + c, -root * along[c]), (b + c, root * along[c])]).collect();
-            if lever != 0.0 {
-                w.extend([(a + 2, -root * lever), (b + 2, -root * lever)]);
-            }
-            w
+            Term { sign: -1.0, vector }
         };
         [across(spring.k_n, spring.n, 0.0), across(spring.k_t, spring.t, if N == 3 { spring.lever } else { 0.0 })]
     }
@@ -285,14 +305,14 @@ impl<const N: usize> Product<N> {
 }
 
 #[inline(always)]
-fn load(x: &[f64], at: usize) -> Lanes {
+pub(super) fn load(x: &[f64], at: usize) -> Lanes {
     let mut lanes = [0.0; LANES];
     lanes.copy_from_slice(&x[at..at + LANES]);
     lanes
 }
 
 #[inline(always)]
-fn load_f32(x: &[f32], at: usize) -> Lanes {
+pub(super) fn load_f32(x: &[f32], at: usize) -> Lanes {
     let mut lanes = [0.0; LANES];
     for (lane, &value) in lanes.iter_mut().zip(&x[at..at + LANES]) {
         *lane = f64::from(value);

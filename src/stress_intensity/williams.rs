@@ -35,7 +35,7 @@ impl Elasticity {
             Plane::Stress => (3.0 - nu) / (1.0 + nu),
             Plane::Strain => 3.0 - 4.0 * nu,
         };
-        let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + nu));
+        let shear_modulus = material.shear_modulus();
         Elasticity { kappa, shear_modulus, plane_modulus: material.plane_modulus() }
     }
 

@@ -8,14 +8,14 @@
 use std::collections::HashMap;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt;
+use faer::linalg::cholesky::ldlt;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, Par};
 
 use crate::body::Body;
-use crate::solver::product::Product;
+use crate::solver::assembly::Assembly;
 use crate::state::Bonds;
 
 /// Lattice places of a rectangle that is eliminated at once.
@@ -28,32 +28,31 @@ const FORK: usize = 1024;
 pub struct Condensed {
     /// Window points, ascending.
     pub places: Vec<u32>,
-    /// (S⁻¹)_ij, N components a point, both triangles.
+    /// (S⁻¹)_ij, M unknowns a point, both triangles.
     pub inverse: Mat<f64>,
 }
 
 /// Condenses the plate with its present bonds onto `window` (ascending places, each with a bond). `None` where the
 /// stiffness is not positive definite in these digits.
 ///
-/// `held` tells for every vector index whether its component is held. A plate that floats is held at its window, at
+/// A plate that floats is held at its window, at
 /// `pins` (indices of the window's vector): displacement is then relative to these, which strains do not feel.
 #[must_use]
-pub fn condense<const N: usize>(
+pub fn condense<const M: usize, A: Assembly<M>>(
     body: &Body,
     bonds: &Bonds,
-    product: &Product<N>,
-    held: &[bool],
+    assembly: &A,
     window: &[u32],
     pins: &[usize],
 ) -> Option<Condensed> {
     let mut kept = vec![false; body.places()];
     window.iter().for_each(|&place| kept[place as usize] = true);
-    let condenser = Condenser { body, bonds, product, held, kept };
+    let condenser = Condenser { body, bonds, assembly, kept };
     let whole = Rectangle { columns: (0, body.lattice.columns), rows: (0, body.lattice.rows) };
     let rest = condenser.eliminate(whole)?;
 
     // What is left couples window points only; bonds among them come in now.
-    let mut sum = Front::<N>::zeros(window.to_vec());
+    let mut sum = Front::<M>::zeros(window.to_vec());
     sum.add(&rest);
     condenser.assemble(&mut sum, window, &|other| condenser.kept[other]);
     for (at, &place) in window.iter().enumerate() {
@@ -61,10 +60,11 @@ pub fn condense<const N: usize>(
     }
     pins.iter().for_each(|&index| hold(&mut sum.matrix, index));
     let order = sum.matrix.nrows();
-    factorise(sum.matrix.as_mut())?;
+    condenser.factorise(sum.matrix.as_mut())?;
     let mut inverse = Mat::zeros(order, order);
-    let mut memory = MemBuffer::new(llt::inverse::inverse_scratch::<f64>(order, Par::Seq));
-    llt::inverse::inverse(inverse.as_mut(), sum.matrix.as_ref(), Par::Seq, MemStack::new(&mut memory));
+    let mut memory = MemBuffer::new(ldlt::inverse::inverse_scratch::<f64>(order, Par::Seq));
+    let pivots = sum.matrix.diagonal();
+    ldlt::inverse::inverse(inverse.as_mut(), sum.matrix.as_ref(), pivots, Par::Seq, MemStack::new(&mut memory));
     for column in 0..order {
         for row in 0..column {
             inverse[(row, column)] = inverse[(column, row)];
@@ -134,17 +134,16 @@ impl<const N: usize> Front<N> {
     }
 }
 
-struct Condenser<'a, const N: usize> {
+struct Condenser<'a, const M: usize, A: Assembly<M>> {
     body: &'a Body,
     bonds: &'a Bonds,
-    product: &'a Product<N>,
-    held: &'a [bool],
+    assembly: &'a A,
     kept: Vec<bool>,
 }
 
-impl<const N: usize> Condenser<'_, N> {
+impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
     /// Condenses all points of a rectangle but the window's onto their surroundings and the window.
-    fn eliminate(&self, region: Rectangle) -> Option<Front<N>> {
+    fn eliminate(&self, region: Rectangle) -> Option<Front<M>> {
         let reach = self.body.lattice.padding;
         let (below, own) = match region.split(reach) {
             None => (Vec::new(), region),
@@ -176,7 +175,7 @@ impl<const N: usize> Condenser<'_, N> {
         outer.dedup();
         outer.retain(|place| !is_inner.contains(place));
 
-        let mut front = Front::<N>::zeros(inner.iter().chain(&outer).copied().collect());
+        let mut front = Front::<M>::zeros(inner.iter().chain(&outer).copied().collect());
         for child in &below {
             front.add(child);
         }
@@ -185,8 +184,8 @@ impl<const N: usize> Condenser<'_, N> {
         for (at, &place) in inner.iter().enumerate() {
             self.hold(&mut front.matrix, at, place);
         }
-        let matrix = schur_complement(front.matrix, N * inner.len())?;
-        let mut rest = Front::<N> { at: HashMap::new(), points: outer, matrix };
+        let matrix = self.schur_complement(front.matrix, M * inner.len())?;
+        let mut rest = Front::<M> { at: HashMap::new(), points: outer, matrix };
         rest.at = rest.points.iter().enumerate().map(|(i, &place)| (place, i)).collect();
         Some(rest)
     }
@@ -217,11 +216,13 @@ impl<const N: usize> Condenser<'_, N> {
     }
 
     /// Adds the stiffness of the bonds of `points` to those points that `counts`; bonds among `points` once.
-    fn assemble(&self, front: &mut Front<N>, points: &[u32], counts: &dyn Fn(usize) -> bool) {
+    fn assemble(&self, front: &mut Front<M>, points: &[u32], counts: &dyn Fn(usize) -> bool) {
         let among: std::collections::HashSet<u32> = points.iter().copied().collect();
         let places = self.body.places();
         let Front { at, matrix, .. } = front;
         for &place in points {
+            let last = M * at[&place] + M - 1;
+            matrix[(last, last)] += self.assembly.point(place as usize);
             self.for_bonds(place as usize, |k, owned, other| {
                 if !counts(other) || (!owned && among.contains(&(other as u32))) {
                     return;
@@ -230,14 +231,14 @@ impl<const N: usize> Condenser<'_, N> {
                 let share = f64::from(self.bonds.multiplier[k * places + owner]);
                 let (a, b) = (at[&place], at[&(other as u32)]);
                 let sign = if owned { 1.0 } else { -1.0 };
-                let (own_a, off_ab) = self.product.bond_blocks(k, sign, share);
-                let (own_b, off_ba) = self.product.bond_blocks(k, -sign, share);
-                add_block::<N>(matrix, a, a, &own_a);
-                add_block::<N>(matrix, b, b, &own_b);
+                let (own_a, off_ab) = self.assembly.bond(k, sign, share);
+                let (own_b, off_ba) = self.assembly.bond(k, -sign, share);
+                add_block::<M>(matrix, a, a, &own_a);
+                add_block::<M>(matrix, b, b, &own_b);
                 if a > b {
-                    add_block::<N>(matrix, a, b, &off_ab);
+                    add_block::<M>(matrix, a, b, &off_ab);
                 } else {
-                    add_block::<N>(matrix, b, a, &off_ba);
+                    add_block::<M>(matrix, b, a, &off_ba);
                 }
             });
         }
@@ -245,13 +246,48 @@ impl<const N: usize> Condenser<'_, N> {
 
     /// Takes held components of a point out of the system.
     fn hold(&self, matrix: &mut Mat<f64>, at: usize, place: u32) {
-        let layout = self.product.layout();
-        let first = layout.index(place as usize);
-        for c in 0..N {
-            if self.held[first + c * layout.stride] {
-                hold(matrix, N * at + c);
-            }
+        for c in (0..M).filter(|&c| self.assembly.is_held(place as usize, c)) {
+            hold(matrix, M * at + c);
         }
+    }
+
+    /// Factors L D Lᵀ in the lower triangle, D on the diagonal; `None` where a pivot has not the sign it should.
+    fn factorise(&self, mut matrix: MatMut<'_, f64>) -> Option<()> {
+        let scratch = ldlt::factor::cholesky_in_place_scratch::<f64>(matrix.nrows(), Par::Seq, faer::Spec::default());
+        let mut memory = MemBuffer::new(scratch);
+        ldlt::factor::cholesky_in_place(
+            matrix.rb_mut(),
+            ldlt::factor::LdltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            faer::Spec::default(),
+        )
+        .ok()?;
+        let is_right = |i: usize| matrix[(i, i)] * self.assembly.pivot_sign(i % M) > 0.0 || matrix[(i, i)] == 1.0;
+        (0..matrix.nrows()).all(is_right).then_some(())
+    }
+
+    /// Eliminates the first `count` unknowns; what is left, lower triangle.
+    fn schur_complement(&self, mut matrix: Mat<f64>, count: usize) -> Option<Mat<f64>> {
+        let rest = matrix.nrows() - count;
+        let (mut first, _, mut coupling, mut left) = matrix.as_mut().split_at_mut(count, count);
+        self.factorise(first.rb_mut())?;
+        // C L⁻ᵀ, and the same times D⁻¹.
+        solve_unit_lower_triangular_in_place(first.rb(), coupling.rb_mut().transpose_mut(), Par::Seq);
+        let scaled = Mat::from_fn(rest, count, |i, j| coupling[(i, j)] / first[(j, j)]);
+        triangular::matmul(
+            left.rb_mut(),
+            BlockStructure::TriangularLower,
+            Accum::Add,
+            coupling.rb(),
+            BlockStructure::Rectangular,
+            scaled.transpose(),
+            BlockStructure::Rectangular,
+            -1.0,
+            Par::Seq,
+        );
+        let left = left.rb();
+        Some(Mat::from_fn(rest, rest, |i, j| if i >= j { left[(i, j)] } else { 0.0 }))
     }
 }
 
@@ -271,40 +307,4 @@ fn add_block<const N: usize>(matrix: &mut Mat<f64>, a: usize, b: usize, block: &
             }
         }
     }
-}
-
-/// Cholesky factor in the lower triangle.
-fn factorise(matrix: MatMut<'_, f64>) -> Option<()> {
-    let scratch = llt::factor::cholesky_in_place_scratch::<f64>(matrix.nrows(), Par::Seq, faer::Spec::default());
-    let mut memory = MemBuffer::new(scratch);
-    llt::factor::cholesky_in_place(
-        matrix,
-        llt::factor::LltRegularization::default(),
-        Par::Seq,
-        MemStack::new(&mut memory),
-        faer::Spec::default(),
-    )
-    .ok()
-    .map(|_| ())
-}
-
-/// Eliminates the first `count` unknowns; what is left, lower triangle.
-fn schur_complement(mut matrix: Mat<f64>, count: usize) -> Option<Mat<f64>> {
-    let rest = matrix.nrows() - count;
-    let (mut first, _, mut coupling, mut left) = matrix.as_mut().split_at_mut(count, count);
-    factorise(first.rb_mut())?;
-    solve_lower_triangular_in_place(first.rb(), coupling.rb_mut().transpose_mut(), Par::Seq);
-    triangular::matmul(
-        left.rb_mut(),
-        BlockStructure::TriangularLower,
-        Accum::Add,
-        coupling.rb(),
-        BlockStructure::Rectangular,
-        coupling.rb().transpose(),
-        BlockStructure::Rectangular,
-        -1.0,
-        Par::Seq,
-    );
-    let left = left.rb();
-    Some(Mat::from_fn(rest, rest, |i, j| if i >= j { left[(i, j)] } else { 0.0 }))
 }

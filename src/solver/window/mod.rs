@@ -8,6 +8,7 @@
 pub mod condense;
 pub mod update;
 
+use super::assembly::{MIXED, Mixed, Springs};
 use super::conjugate_gradient::MultigridSolver;
 use super::direct::{DirectSolver, pinned_components};
 use super::product::Product;
@@ -17,7 +18,7 @@ use crate::body::{Body, Bond};
 use crate::error::Result;
 use crate::state::Bonds;
 use condense::{Condensed, condense};
-use update::{Spring, Update};
+use update::{Term, Update};
 
 /// Length of the window ahead of a tip, in horizons.
 const AHEAD_HORIZONS: f64 = 8.0;
@@ -45,7 +46,7 @@ pub struct WindowSolver<const N: usize> {
 /// A window with what broke since it was condensed.
 struct Window {
     condensed: Condensed,
-    /// Displacement of its points at the last whole solve.
+    /// Unknowns of its points at the last whole solve.
     base: Vec<f64>,
     /// Work f·u then.
     base_work: f64,
@@ -70,7 +71,7 @@ impl<const N: usize> WindowSolver<N> {
         self.work = solved.work;
         if let Some(window) = &mut self.window {
             window.update.fold(&mut window.condensed.inverse);
-            window.base = indices(system.product, &window.condensed.places).map(|index| u[index]).collect();
+            window.base = unknowns(system, u, &window.condensed.places);
             window.base_work = solved.work;
         }
         Ok(solved)
@@ -79,21 +80,24 @@ impl<const N: usize> WindowSolver<N> {
     /// Condenses the plate onto the points around the tips, if these are few enough and hold all watched bonds.
     fn condense(&mut self, system: System<'_, N>, u: &[f64], watched: &[Bond], tips: &[Focus]) -> Option<Window> {
         let System { body, bonds, product, .. } = system;
-        if self.is_off || watched.len() * N > UNKNOWNS_MAX {
+        let width = width(product);
+        if self.is_off || watched.len() * width > UNKNOWNS_MAX {
             return None;
         }
         let places = points_around(body, bonds, tips, watched);
-        if places.is_empty() || N * places.len() > UNKNOWNS_MAX {
+        if places.is_empty() || width * places.len() > UNKNOWNS_MAX {
             return None;
         }
-        let mut held = vec![false; product.layout().len()];
-        product.fixed().iter().for_each(|&index| held[index] = true);
-        let pins = if product.fixed().is_empty() { pins::<N>(body, bonds, &places) } else { Vec::new() };
-        let Some(condensed) = condense(body, bonds, product, &held, &places, &pins) else {
+        let pins = if product.fixed().is_empty() { pins::<N>(body, bonds, &places, width) } else { Vec::new() };
+        let condensed = match product.dilatation() {
+            None => condense::<N, _>(body, bonds, &Springs::new(product), &places, &pins),
+            Some(dilatation) => condense::<MIXED, _>(body, bonds, &Mixed::new(product, dilatation, bonds), &places, &pins),
+        };
+        let Some(condensed) = condensed else {
             self.is_off = true;
             return None;
         };
-        let base = indices(product, &places).map(|index| u[index]).collect();
+        let base = unknowns(system, u, &places);
         tracing::debug!(points = places.len(), "window condensed");
         Some(Window { condensed, base, base_work: self.work, update: Update::default() })
     }
@@ -108,9 +112,7 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
                 self.window = None;
             } else if window.update.rank() <= RANK_MAX {
                 let (displacement, gain) = window.update.displacement(&window.condensed.inverse, &window.base);
-                for (index, value) in indices(system.product, &window.condensed.places).zip(displacement) {
-                    u[index] = value;
-                }
+                give(system.product, &window.condensed.places, &displacement, u);
                 self.is_whole = false;
                 self.work = window.base_work + gain;
                 return Ok(Solved { iterations: 0, work: self.work });
@@ -149,14 +151,17 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
 impl Window {
     /// Takes in broken bonds; `false` if that cannot be done.
     fn take_in<const N: usize>(&mut self, body: &Body, product: &Product<N>, broken: &[Bond]) -> bool {
+        let width = width(product);
         broken.iter().all(|&bond| {
             let (k, from, to) = body.ends(bond);
             let (Some(a), Some(b)) = (self.at(from), self.at(to)) else { return false };
-            let springs: [Spring; 2] = product.springs_of(k, f64::from(body.multiplier[bond as usize]), N * a, N * b);
-            springs
-                .into_iter()
-                .filter(|spring| !spring.is_empty())
-                .all(|spring| self.update.add(&self.condensed.inverse, &self.base, spring))
+            let share = f64::from(body.multiplier[bond as usize]);
+            let terms: Vec<Term> = match product.dilatation() {
+                None => product.springs_of(k, share, width * a, width * b).into(),
+                Some(dilatation) => dilatation.terms_of(k, share, (from, width * a), (to, width * b)),
+            };
+            let mut terms = terms.into_iter().filter(|term| !term.vector.is_empty());
+            terms.all(|term| self.update.add(&self.condensed.inverse, &self.base, term))
         })
     }
 
@@ -174,22 +179,40 @@ fn hold(body: &Body, places: &[u32], bonds: &[Bond]) -> bool {
     })
 }
 
-/// Vector indices of all components of some places, in the order of the window's vector.
-fn indices<const N: usize>(product: &Product<N>, places: &[u32]) -> impl Iterator<Item = usize> {
-    let layout = *product.layout();
-    places.iter().flat_map(move |&place| {
-        let first = layout.index(place as usize);
-        (0..N).map(move |c| first + c * layout.stride)
-    })
+/// Unknowns of a window point: those of the body, and the stress of a state-based law.
+fn width<const N: usize>(product: &Product<N>) -> usize {
+    if product.dilatation().is_some() { MIXED } else { N }
 }
 
-/// Indices in the window's vector of the components that hold a floating plate at two distant window points.
-fn pins<const N: usize>(body: &Body, bonds: &Bonds, places: &[u32]) -> Vec<usize> {
+/// Unknowns of some points in the order of the window's vector, from a displacement that is right everywhere.
+fn unknowns<const N: usize>(system: System<'_, N>, u: &[f64], places: &[u32]) -> Vec<f64> {
+    let System { bonds, product, .. } = system;
+    let layout = product.layout();
+    let stress = product.dilatation().map(|dilatation| dilatation.stress(bonds, u));
+    let of_place = |place: usize| {
+        let first = layout.index(place);
+        (0..N).map(move |c| u[first + c * layout.stride]).chain(stress.as_ref().map(|stress| stress[place]))
+    };
+    places.iter().flat_map(|&place| of_place(place as usize)).collect()
+}
+
+/// Puts the window's displacement into that of the body.
+fn give<const N: usize>(product: &Product<N>, places: &[u32], unknowns: &[f64], u: &mut [f64]) {
+    let layout = product.layout();
+    for (&place, values) in places.iter().zip(unknowns.chunks(width(product))) {
+        let first = layout.index(place as usize);
+        values[..N].iter().enumerate().for_each(|(c, value)| u[first + c * layout.stride] = *value);
+    }
+}
+
+/// Indices in the window's vector, `width` unknowns a point, of the components that hold a floating plate at two distant window
+/// points.
+fn pins<const N: usize>(body: &Body, bonds: &Bonds, places: &[u32], width: usize) -> Vec<usize> {
     let carrying = || (0..places.len()).filter(|&i| bonds.intact_at(body, places[i] as usize) > 3);
     let (Some(first), Some(last)) = (carrying().next(), carrying().next_back()) else { return Vec::new() };
     let pinned = pinned_components::<N>(body, places[first] as usize, places[last] as usize);
     let at = |place: usize| if place == places[first] as usize { first } else { last };
-    pinned.into_iter().map(|(place, component)| N * at(place) + component).collect()
+    pinned.into_iter().map(|(place, component)| width * at(place) + component).collect()
 }
 
 /// Points within reach of the way of a tip, a little behind it and straight ahead, and the ends of the watched bonds.

@@ -1,83 +1,98 @@
 //! Broken bonds as low-rank changes of a condensed stiffness.
 //!
-//! A broken bond takes `w wᵀ` from the stiffness for each of its springs, w = √k (n, -n) and √k (t, -t, -r, -r). With the
-//! vectors as columns of W (Woodbury 1950):
+//! A broken bond adds `s w wᵀ` to the stiffness for each of its terms, s = ±1: -1 and w = √k (n, -n) or √k (t, -t, -r, -r) for
+//! its springs. With the vectors as columns of W and the signs on the diagonal of Σ (Woodbury 1950):
 //!
 //! ```text
-//! (S - W Wᵀ)⁻¹ = G + G W C⁻¹ Wᵀ G,   C = 1 - Wᵀ G W,   G = S⁻¹
+//! (S + W Σ Wᵀ)⁻¹ = G + G W C⁻¹ Wᵀ G,   C = -(Σ + Wᵀ G W),   G = S⁻¹
 //! ```
 //!
-//! A column more adds a row to the Cholesky factor of C. Displacement under the same load follows as
-//! `u = u₀ + G W y`, `C y = Wᵀ u₀`, and the work of the load grows by `y·Wᵀ u₀`.
+//! A column more adds a row to the factors L D Lᵀ of C; its pivot has the sign of -s as long as the plate holds together.
+//! Displacement under the same load follows as `u = u₀ + G W y`, `C y = Wᵀ u₀`, and the work of the load grows by `y·Wᵀ u₀`.
 
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, Mat, Par};
 
-/// Square of a pivot of C below which the window is about to lose a part of itself.
+/// Pivot of C below which the window is about to lose a part of itself.
 const PIVOT_MIN: f64 = 1e-9;
 
-/// One spring of a broken bond: index in the window's vector and weight.
-pub type Spring = Vec<(usize, f64)>;
+/// One term s w wᵀ of a broken bond.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Term {
+    /// s, 1 or -1.
+    pub sign: f64,
+    /// w: index in the window's vector and value.
+    pub vector: Vec<(usize, f64)>,
+}
 
-/// Springs broken since the inverse was made.
+/// Terms since the inverse was made.
 #[derive(Debug, Default)]
 pub struct Update {
-    springs: Vec<Spring>,
-    /// Rows of the Cholesky factor of C, one after the other.
+    terms: Vec<Term>,
+    /// Rows of L below the unit diagonal, one after the other.
     rows: Vec<Vec<f64>>,
+    /// D.
+    pivots: Vec<f64>,
     /// Wᵀ u₀.
     opening: Vec<f64>,
 }
 
 impl Update {
-    /// Springs taken in so far.
+    /// Terms taken in so far.
     #[must_use]
     pub fn rank(&self) -> usize {
-        self.springs.len()
+        self.terms.len()
     }
 
-    /// Takes in a broken spring; `false` where the stiffness left would not be positive definite.
+    /// Takes in a term; `false` where the plate would not hold together.
     #[must_use]
-    pub fn add(&mut self, inverse: &Mat<f64>, base: &[f64], spring: Spring) -> bool {
-        let product = |a: &Spring, b: &Spring| -> f64 {
-            b.iter().map(|&(j, wj)| wj * a.iter().map(|&(i, wi)| wi * inverse[(i, j)]).sum::<f64>()).sum()
+    pub fn add(&mut self, inverse: &Mat<f64>, base: &[f64], term: Term) -> bool {
+        let product = |a: &Term, b: &Term| -> f64 {
+            b.vector.iter().map(|&(j, wj)| wj * a.vector.iter().map(|&(i, wi)| wi * inverse[(i, j)]).sum::<f64>()).sum()
         };
-        let mut row: Vec<f64> = Vec::with_capacity(self.rank() + 1);
-        for (other, factor) in self.springs.iter().zip(&self.rows) {
+        // L D of the new row, then L.
+        let mut row: Vec<f64> = Vec::with_capacity(self.rank());
+        for (other, factor) in self.terms.iter().zip(&self.rows) {
             let done: f64 = factor.iter().zip(&row).map(|(l, r)| l * r).sum();
-            row.push((-product(other, &spring) - done) / factor[factor.len() - 1]);
+            row.push(-product(other, &term) - done);
         }
-        let pivot = 1.0 - product(&spring, &spring) - row.iter().map(|l| l * l).sum::<f64>();
-        if pivot.is_nan() || pivot <= PIVOT_MIN {
+        let mut pivot = -term.sign - product(&term, &term);
+        for (entry, d) in row.iter_mut().zip(&self.pivots) {
+            let scaled = *entry / d;
+            pivot -= scaled * *entry;
+            *entry = scaled;
+        }
+        let holds = -term.sign * pivot;
+        if holds.is_nan() || holds <= PIVOT_MIN {
             return false;
         }
-        row.push(pivot.sqrt());
-        self.opening.push(spring.iter().map(|&(i, w)| w * base[i]).sum());
+        self.opening.push(term.vector.iter().map(|&(i, w)| w * base[i]).sum());
         self.rows.push(row);
-        self.springs.push(spring);
+        self.pivots.push(pivot);
+        self.terms.push(term);
         true
     }
 
     /// Displacement of the window from that before the breaks, and the gain of the load's work.
     #[must_use]
     pub fn displacement(&self, inverse: &Mat<f64>, base: &[f64]) -> (Vec<f64>, f64) {
-        // L z = b, Lᵀ y = z.
+        // L z = b, D Lᵀ y = z.
         let mut y: Vec<f64> = Vec::with_capacity(self.rank());
         for (row, b) in self.rows.iter().zip(&self.opening) {
             let done: f64 = row.iter().zip(&y).map(|(l, z)| l * z).sum();
-            y.push((b - done) / row[row.len() - 1]);
+            y.push(b - done);
         }
+        y.iter_mut().zip(&self.pivots).for_each(|(y, d)| *y /= d);
         for i in (0..self.rank()).rev() {
-            y[i] /= self.rows[i][i];
             for j in 0..i {
                 y[j] -= self.rows[i][j] * y[i];
             }
         }
         let gain = y.iter().zip(&self.opening).map(|(y, b)| y * b).sum();
         let mut force = vec![0.0; base.len()];
-        for (spring, y) in self.springs.iter().zip(&y) {
-            spring.iter().for_each(|&(i, w)| force[i] += w * y);
+        for (term, y) in self.terms.iter().zip(&y) {
+            term.vector.iter().for_each(|&(i, w)| force[i] += w * y);
         }
         let mut displacement = base.to_vec();
         for (j, &force) in force.iter().enumerate().filter(|(_, force)| **force != 0.0) {
@@ -93,22 +108,23 @@ impl Update {
         let (order, rank) = (inverse.nrows(), self.rank());
         // Columns of (G W)ᵀ, then L⁻¹ (G W)ᵀ.
         let mut reduced = Mat::<f64>::zeros(rank, order);
-        for (row, spring) in self.springs.iter().enumerate() {
-            for &(i, w) in spring {
+        for (row, term) in self.terms.iter().enumerate() {
+            for &(i, w) in &term.vector {
                 for (j, g) in inverse.col_as_slice(i).iter().enumerate() {
                     reduced[(row, j)] += w * g;
                 }
             }
         }
-        let factor = Mat::from_fn(rank, rank, |i, j| if i >= j { self.rows[i][j] } else { 0.0 });
-        solve_lower_triangular_in_place(factor.as_ref(), reduced.as_mut(), Par::Seq);
+        let factor = Mat::from_fn(rank, rank, |i, j| if i > j { self.rows[i][j] } else { 0.0 });
+        solve_unit_lower_triangular_in_place(factor.as_ref(), reduced.as_mut(), Par::Seq);
+        let scaled = Mat::from_fn(rank, order, |i, j| reduced[(i, j)] / self.pivots[i]);
         triangular::matmul(
             inverse.as_mut(),
             BlockStructure::TriangularLower,
             Accum::Add,
             reduced.transpose(),
             BlockStructure::Rectangular,
-            reduced.as_ref(),
+            scaled.as_ref(),
             BlockStructure::Rectangular,
             1.0,
             Par::Seq,

@@ -1,0 +1,107 @@
+//! The stiffness bond by bond, for solvers that need its entries.
+
+use super::dilatation::Dilatation;
+use super::product::Product;
+use crate::state::Bonds;
+
+/// Block of a point with itself and with the other end of a bond.
+pub type Blocks<const M: usize> = ([[f64; M]; M], [[f64; M]; M]);
+
+/// Entries of a stiffness with M unknowns a point.
+pub trait Assembly<const M: usize>: Sync {
+    /// What stencil bond k in direction `sign` (+1 from its owner, -1 from the other end), with its multiplier, brings to the
+    /// block of the point with itself and to that with the other end.
+    fn bond(&self, k: usize, sign: f64, multiplier: f64) -> Blocks<M>;
+    /// What the point brings by itself to the diagonal of its last unknown.
+    fn point(&self, place: usize) -> f64;
+    /// Whether a component of a point is held.
+    fn is_held(&self, place: usize, component: usize) -> bool;
+    /// Sign of the pivots of a component.
+    fn pivot_sign(&self, component: usize) -> f64;
+}
+
+/// Springs alone.
+pub struct Springs<'a, const N: usize> {
+    product: &'a Product<N>,
+    held: Vec<bool>,
+}
+
+impl<'a, const N: usize> Springs<'a, N> {
+    /// The springs of a body and its held components.
+    #[must_use]
+    pub fn new(product: &'a Product<N>) -> Self {
+        let mut held = vec![false; product.layout().len()];
+        product.fixed().iter().for_each(|&index| held[index] = true);
+        Springs { product, held }
+    }
+}
+
+impl<const N: usize> Assembly<N> for Springs<'_, N> {
+    fn bond(&self, k: usize, sign: f64, multiplier: f64) -> Blocks<N> {
+        self.product.bond_blocks(k, sign, multiplier)
+    }
+
+    fn point(&self, _: usize) -> f64 {
+        0.0
+    }
+
+    fn is_held(&self, place: usize, component: usize) -> bool {
+        let layout = self.product.layout();
+        self.held[layout.index(place) + component * layout.stride]
+    }
+
+    fn pivot_sign(&self, _: usize) -> f64 {
+        1.0
+    }
+}
+
+/// Springs and dilatation, the stress P of a point being its third unknown ([`super::dilatation`]).
+pub struct Mixed<'a, const N: usize> {
+    springs: Springs<'a, N>,
+    dilatation: &'a Dilatation,
+    bonds: &'a Bonds,
+}
+
+/// Unknowns of a point with its stress.
+pub const MIXED: usize = 3;
+
+impl<'a, const N: usize> Mixed<'a, N> {
+    /// A state-based body with its present bonds.
+    #[must_use]
+    pub fn new(product: &'a Product<N>, dilatation: &'a Dilatation, bonds: &'a Bonds) -> Self {
+        Mixed { springs: Springs::new(product), dilatation, bonds }
+    }
+}
+
+impl<const N: usize> Assembly<MIXED> for Mixed<'_, N> {
+    fn bond(&self, k: usize, sign: f64, multiplier: f64) -> Blocks<MIXED> {
+        let springs = self.springs.bond(k, sign, multiplier);
+        let (mut own, mut off) = ([[0.0; MIXED]; MIXED], [[0.0; MIXED]; MIXED]);
+        let force = self.dilatation.force(k);
+        for i in 0..2 {
+            for j in 0..2 {
+                own[i][j] = springs.0[i][j];
+                off[i][j] = springs.1[i][j];
+            }
+            // Either end's D holds k_n r n·(u' - u), n from the owner to the other end.
+            let along = sign * force[i];
+            own[i][2] = -along;
+            own[2][i] = -along;
+            off[i][2] = -along;
+            off[2][i] = along;
+        }
+        (own, off)
+    }
+
+    fn point(&self, place: usize) -> f64 {
+        -self.dilatation.compliance(self.bonds, place)
+    }
+
+    fn is_held(&self, place: usize, component: usize) -> bool {
+        component < N && self.springs.is_held(place, component)
+    }
+
+    fn pivot_sign(&self, component: usize) -> f64 {
+        if component < 2 { 1.0 } else { -self.dilatation.sign() }
+    }
+}

@@ -1,0 +1,301 @@
+//! Dilatation of the points of a state-based body.
+//!
+//! Beside its springs a state-based body stores `½ κ V (Q/Q₀) θ²` at every point. The dilatation of a point is the mean of its
+//! intact bonds, weighted by their springs (Silling, Epton, Weckner, Xu and Askari 2007, J. Elasticity 88:151, section 15, in
+//! the plane), lengths in spacings Δ:
+//!
+//! ```text
+//! θ = 2 D / (Q Δ),   D = Σ k_n r n·(u' - u),   Q = Σ k_n r²
+//! ```
+//!
+//! Q₀ is Q of the uncracked plate: θ is right up to a straight edge, where half of the bonds are missing, and on the face of a
+//! crack the point keeps of this energy the share that it keeps of its bonds. For κ < 0 that also keeps the body stable:
+//! `|κ| ≤ 2 G` is then enough, whatever has broken. The energy is `½ P D` with the stress `P = c D`, `c = 4 κ V / (Δ² Q₀ Q)`, and
+//! a bond carries `k_n r (P + P')` beside its spring force.
+//!
+//! With P as an unknown of its own the stiffness couples no points farther apart than a horizon:
+//!
+//! ```text
+//! | K_springs  Dᵀ   | | u |   | f |
+//! | D          -1/c | | P | = | 0 |
+//! ```
+//!
+//! For κ > 0 it is quasi-definite: every symmetric permutation has a factorisation L D Lᵀ (Vanderbei 1995, SIAM J. Optim. 5:100).
+
+use nalgebra::Matrix2;
+use rayon::prelude::*;
+
+use super::field::Layout;
+use super::product::{Into, Lanes, ROWS_PER_TASK, load, load_f32};
+use super::window::update::Term;
+use crate::body::Body;
+use crate::body::lattice::LANES;
+use crate::state::Bonds;
+
+/// One stencil bond as the dilatation uses it.
+#[derive(Debug, Clone, Copy)]
+struct Arm {
+    step: isize,
+    place_step: isize,
+    /// k_n, N/m.
+    k_n: f64,
+    /// Unit vector n and length r in spacings.
+    normal: [f64; 2],
+    length: f64,
+    /// k_n r n: force per stress.
+    force: [f64; 2],
+    /// k_n r²: share of Q.
+    weight: f64,
+}
+
+/// Dilatation of a body with two unknowns a point.
+#[derive(Debug, Clone)]
+pub struct Dilatation {
+    layout: Layout,
+    arms: Vec<Arm>,
+    lattice_rows: usize,
+    /// c Q = 4 κ V / (Δ² Q₀) of every place, dimensionless; 0 where there is no bond.
+    gain: Vec<f64>,
+    /// Q of an interior point, N/m.
+    whole: f64,
+}
+
+/// A kernel over chunks of a row, compiled for every vector width and run with the widest the processor has.
+struct Chunks<F: FnMut(usize)> {
+    count: usize,
+    take: F,
+}
+
+impl<F: FnMut(usize)> pulp::WithSimd for Chunks<F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(mut self, _: S) {
+        for chunk in 0..self.count {
+            (self.take)(chunk);
+        }
+    }
+}
+
+impl Dilatation {
+    /// Dilatation of a body; `None` where its law has springs alone.
+    #[must_use]
+    pub fn of(body: &Body, layout: Layout) -> Option<Self> {
+        if body.stencil.dilatation == 0.0 {
+            return None;
+        }
+        let spacing = body.stencil.spacing;
+        let arms: Vec<Arm> = body
+            .stencil
+            .bonds
+            .iter()
+            .zip(&body.steps)
+            .map(|(bond, &place_step)| {
+                let length = bond.length / spacing;
+                Arm {
+                    step: layout.step(bond.dx, bond.dy),
+                    place_step,
+                    k_n: bond.k_n,
+                    normal: bond.normal,
+                    length,
+                    force: bond.normal.map(|n| bond.k_n * length * n),
+                    weight: bond.k_n * length * length,
+                }
+            })
+            .collect();
+        let places = body.places();
+        let mut family = vec![0.0; places];
+        for (k, arm) in arms.iter().enumerate() {
+            for place in (0..places).filter(|&place| body.multiplier[k * places + place] > 0.0) {
+                family[place] += arm.weight;
+                family[place.wrapping_add_signed(arm.place_step)] += arm.weight;
+            }
+        }
+        let modulus = 4.0 * body.stencil.dilatation / (spacing * spacing);
+        let gain = family.iter().map(|&q| if q > 0.0 { modulus / q } else { 0.0 }).collect();
+        let whole = 2.0 * arms.iter().map(|arm| arm.weight).sum::<f64>();
+        Some(Dilatation { layout, arms, lattice_rows: body.lattice.rows, gain, whole })
+    }
+
+    /// y += or -= the forces of the dilatation of a displacement x.
+    pub fn apply(&self, bonds: &Bonds, x: &[f64], y: &mut [f64], into: Into) {
+        let stress = self.stress(bonds, x);
+        let (row_len, padding, stride) = (self.layout.row_len(), self.layout.padding, self.layout.stride);
+        let sign = if into == Into::Set { 1.0 } else { -1.0 };
+        let arch = pulp::Arch::new();
+        let body_rows = &mut y[padding * row_len..(padding + self.lattice_rows) * row_len];
+        body_rows.par_chunks_mut(row_len * ROWS_PER_TASK).enumerate().for_each(|(task, rows)| {
+            for (i, out) in rows.chunks_exact_mut(row_len).enumerate() {
+                let row = task * ROWS_PER_TASK + i;
+                let take = |chunk: usize| {
+                    let place = (row + padding) * stride + padding + chunk * LANES;
+                    let force = if bonds.chunk_is_regular(row, chunk) {
+                        self.regular_force(&stress, place)
+                    } else {
+                        self.masked_force(&bonds.multiplier, &stress, place)
+                    };
+                    for (c, force) in force.iter().enumerate() {
+                        let start = c * stride + padding + chunk * LANES;
+                        for (target, value) in out[start..start + LANES].iter_mut().zip(force) {
+                            *target += sign * value;
+                        }
+                    }
+                };
+                arch.dispatch(Chunks { count: bonds.chunks(), take });
+            }
+        });
+    }
+
+    /// Stress P of every place under a displacement, m.
+    #[must_use]
+    pub fn stress(&self, bonds: &Bonds, x: &[f64]) -> Vec<f64> {
+        let (padding, stride) = (self.layout.padding, self.layout.stride);
+        let mut stress = vec![0.0; self.gain.len() + LANES];
+        let arch = pulp::Arch::new();
+        let body_rows = &mut stress[padding * stride..(padding + self.lattice_rows) * stride];
+        body_rows.par_chunks_mut(stride * ROWS_PER_TASK).enumerate().for_each(|(task, rows)| {
+            for (i, out) in rows.chunks_exact_mut(stride).enumerate() {
+                let row = task * ROWS_PER_TASK + i;
+                let take = |chunk: usize| {
+                    let first = padding + chunk * LANES;
+                    let (at, place) = ((row + padding) * self.layout.row_len() + first, (row + padding) * stride + first);
+                    let (extension, family) = if bonds.chunk_is_regular(row, chunk) {
+                        (self.regular_extension(x, at), [self.whole; LANES])
+                    } else {
+                        self.masked_extension(&bonds.multiplier, x, at, place)
+                    };
+                    let gain = load(&self.gain, place);
+                    for lane in 0..LANES {
+                        out[first + lane] = if family[lane] > 0.0 { gain[lane] * extension[lane] / family[lane] } else { 0.0 };
+                    }
+                };
+                arch.dispatch(Chunks { count: bonds.chunks(), take });
+            }
+        });
+        stress
+    }
+
+    #[inline(always)]
+    fn regular_extension(&self, x: &[f64], at: usize) -> Lanes {
+        let stride = self.layout.stride;
+        let mut extension = [0.0; LANES];
+        for arm in &self.arms {
+            let (plus, minus) = (at.wrapping_add_signed(arm.step), at.wrapping_add_signed(-arm.step));
+            let (u_p, u_m, v_p, v_m) = (load(x, plus), load(x, minus), load(x, plus + stride), load(x, minus + stride));
+            for lane in 0..LANES {
+                extension[lane] += arm.force[0].mul_add(u_p[lane] - u_m[lane], arm.force[1] * (v_p[lane] - v_m[lane]));
+            }
+        }
+        extension
+    }
+
+    /// D and Q where bonds may be missing.
+    #[inline(always)]
+    fn masked_extension(&self, multiplier: &[f32], x: &[f64], at: usize, place: usize) -> (Lanes, Lanes) {
+        let stride = self.layout.stride;
+        let (mut extension, mut family) = ([0.0; LANES], [0.0; LANES]);
+        let (u, v) = (load(x, at), load(x, at + stride));
+        self.for_directions(multiplier, place, |arm, sign, step, intact| {
+            let other = at.wrapping_add_signed(step);
+            let (u_o, v_o) = (load(x, other), load(x, other + stride));
+            for lane in 0..LANES {
+                let along = sign * (arm.force[0] * (u_o[lane] - u[lane]) + arm.force[1] * (v_o[lane] - v[lane]));
+                extension[lane] += intact[lane] * along;
+                family[lane] += intact[lane] * arm.weight;
+            }
+        });
+        (extension, family)
+    }
+
+    #[inline(always)]
+    fn regular_force(&self, stress: &[f64], place: usize) -> [Lanes; 2] {
+        let mut force = [[0.0; LANES]; 2];
+        for arm in &self.arms {
+            let plus = load(stress, place.wrapping_add_signed(arm.place_step));
+            let minus = load(stress, place.wrapping_add_signed(-arm.place_step));
+            for (force, along) in force.iter_mut().zip(arm.force) {
+                for lane in 0..LANES {
+                    force[lane] += along * (minus[lane] - plus[lane]);
+                }
+            }
+        }
+        force
+    }
+
+    #[inline(always)]
+    fn masked_force(&self, multiplier: &[f32], stress: &[f64], place: usize) -> [Lanes; 2] {
+        let mut force = [[0.0; LANES]; 2];
+        let here = load(stress, place);
+        self.for_directions(multiplier, place, |arm, sign, _, intact| {
+            let step = if sign > 0.0 { arm.place_step } else { -arm.place_step };
+            let other = load(stress, place.wrapping_add_signed(step));
+            for (force, along) in force.iter_mut().zip(arm.force) {
+                for lane in 0..LANES {
+                    force[lane] -= sign * intact[lane] * along * (here[lane] + other[lane]);
+                }
+            }
+        });
+        force
+    }
+
+    /// Calls `take(arm, sign, vector step, intact)` for both directions of every bond; intact is 1 or 0 a lane.
+    #[inline(always)]
+    fn for_directions(&self, multiplier: &[f32], place: usize, mut take: impl FnMut(&Arm, f64, isize, Lanes)) {
+        let places = self.gain.len();
+        for (k, arm) in self.arms.iter().enumerate() {
+            for (sign, step, owner) in [(1.0, arm.step, place), (-1.0, -arm.step, place.wrapping_add_signed(-arm.place_step))] {
+                let intact = load_f32(multiplier, k * places + owner).map(|share| if share > 0.0 { 1.0 } else { 0.0 });
+                take(arm, sign, step, intact);
+            }
+        }
+    }
+
+    /// Q of a place, N/m.
+    fn family(&self, bonds: &Bonds, place: usize) -> f64 {
+        let places = self.gain.len();
+        let intact = |k: usize, owner: usize| bonds.multiplier[k * places + owner] > 0.0;
+        let both = self.arms.iter().enumerate().map(|(k, arm)| {
+            let ends = [intact(k, place), intact(k, place.wrapping_add_signed(-arm.place_step))];
+            arm.weight * ends.into_iter().filter(|&intact| intact).count() as f64
+        });
+        both.sum()
+    }
+
+    /// 1/c of a place, N/m.
+    pub(super) fn compliance(&self, bonds: &Bonds, place: usize) -> f64 {
+        self.family(bonds, place) / self.gain[place]
+    }
+
+    /// Sign of κ.
+    pub(super) fn sign(&self) -> f64 {
+        self.gain.iter().copied().find(|gain| *gain != 0.0).map_or(1.0, f64::signum)
+    }
+
+    /// k_n r n of a stencil bond.
+    pub(super) fn force(&self, k: usize) -> [f64; 2] {
+        self.arms[k].force
+    }
+
+    /// What a broken bond of stencil entry k takes out of the matrix with P as unknown, between two points given by place and
+    /// by the index of their first unknown.
+    ///
+    /// The bond is `½ k e² + f (P + P') e - ½ β P² - ½ β' P'²` with its opening e, `f = k_n r`, `k = share k_n` and its share
+    /// β of 1/c: `½ k (e + f/k (P + P'))²` and a quadratic form in P and P', which is brought to its principal axes.
+    pub(super) fn terms_of(&self, k: usize, share: f64, a: (usize, usize), b: (usize, usize)) -> Vec<Term> {
+        let Arm { k_n, normal, length, weight, .. } = self.arms[k];
+        let ((place_a, a), (place_b, b)) = (a, b);
+        let (root, lever) = ((share * k_n).sqrt(), length / share);
+        let mut vector: Vec<(usize, f64)> =
+            (0..2).flat_map(|c| [(a + c, -root * normal[c]), (b + c, root * normal[c])]).collect();
+        vector.extend([(a + 2, root * lever), (b + 2, root * lever)]);
+        let mut terms = vec![Term { sign: -1.0, vector }];
+        let both = weight / share;
+        let form = Matrix2::new(both + weight / self.gain[place_a], both, both, both + weight / self.gain[place_b]);
+        let axes = form.symmetric_eigen();
+        for (value, axis) in axes.eigenvalues.iter().zip(axes.eigenvectors.column_iter()).filter(|(value, _)| **value != 0.0) {
+            let root = value.abs().sqrt();
+            terms.push(Term { sign: value.signum(), vector: vec![(a + 2, root * axis[0]), (b + 2, root * axis[1])] });
+        }
+        terms
+    }
+}
