@@ -87,14 +87,18 @@ pub fn poisson_limit(plane: Plane) -> f64 {
     }
 }
 
-/// Refuses a Poisson's ratio that the law cannot represent, naming the law to use.
+/// Refuses choices that do not go together, and a Poisson's ratio that the law cannot represent, naming the law to use.
 ///
 /// Two-parameter: tangential modulus proportional to 1-3ν (plane stress) or 1-4ν (plane strain) must not be negative.
 /// Bond-based: ν is 1/3 or 1/4 (Silling 2000; Gerstle, Sau and Silling 2005 for the plane). State-based: any.
 ///
 /// # Errors
-/// `Error::Input` on `material.poisson_ratio`.
-pub fn check_poisson_ratio(law: &BondLaw, material: &Material) -> Result<(), Error> {
+/// `Error::Input` on `material.poisson_ratio` or `model.surface_correction`.
+pub fn check(law: &BondLaw, material: &Material) -> Result<(), Error> {
+    if law.kind == BondLawKind::StateBased && law.surface_correction == SurfaceCorrection::Balanced {
+        let problem = "balances springs only, and bond_law is \"state_based\"";
+        return Err(input("model.surface_correction", "\"balanced\"", problem, "use \"volume_and_surface\""));
+    }
     const KEY: &str = "material.poisson_ratio";
     let (kind, nu, limit) = (law.kind, material.poisson_ratio, poisson_limit(material.plane));
     let words = match material.plane {
@@ -147,9 +151,9 @@ impl Stencil {
     /// the direction of the rows by some percent.
     ///
     /// # Errors
-    /// Poisson's ratio outside the range of the law.
+    /// As [`check`].
     pub fn new(law: &BondLaw, material: &Material, spacing: f64, horizon_ratio: f64, thickness: f64) -> Result<Self, Error> {
-        check_poisson_ratio(law, material)?;
+        check(law, material)?;
         let horizon = horizon_ratio * spacing;
         let mut shape = half_plane(horizon_ratio, spacing);
         let mut weight: Vec<f64> =

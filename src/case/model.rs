@@ -5,8 +5,7 @@ use toml::Value;
 
 use super::choices::{Choices, Discretisation, Method, Symmetry};
 use super::{HORIZON_RATIO, Model};
-use crate::bond_law::stencil::check_poisson_ratio;
-use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
 use crate::error::{Result, input};
 use crate::input::{LENGTH, number, slice};
 use crate::material::Material;
@@ -113,13 +112,8 @@ pub(super) fn round_mm(metres: f64) -> f64 {
 
 /// The bond law can represent the material, and its choices go together.
 pub(super) fn check_law(material: &Material, model: &Model) -> Result<()> {
-    if model.method == Method::Handbook {
-        return Ok(());
+    match model.method {
+        Method::Handbook => Ok(()),
+        Method::Peridynamics => stencil::check(&model.bond_law, material),
     }
-    let law = &model.bond_law;
-    if law.kind == BondLawKind::StateBased && law.surface_correction == SurfaceCorrection::Balanced {
-        let problem = "balances springs only, and bond_law is \"state_based\"";
-        return Err(input("model.surface_correction", "\"balanced\"", problem, "use \"volume_and_surface\""));
-    }
-    check_poisson_ratio(law, material)
 }

@@ -10,7 +10,7 @@ use crate::error::{Error, InputError, Result, input, input_missing};
 /// Looked at only after a room has refused the name, so a name that gets built needs no line changed here.
 pub const PLANNED: &[(&str, &[&str])] = &[
     ("model.method", &["element_free_galerkin", "auto"]),
-    ("model.bond_law", &["state_based", "correspondence", "one_bond_two_parameter"]),
+    ("model.bond_law", &["correspondence"]),
     ("model.surface_correction", &["balanced"]),
     ("model.discretisation", &["dual_horizon"]),
     ("model.symmetry", &["auto"]),

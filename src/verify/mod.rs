@@ -9,6 +9,7 @@ pub mod golden_peridynamics;
 pub mod growth;
 pub mod resolution;
 pub mod scene;
+pub mod state_based;
 pub mod stress_intensity;
 pub mod table;
 pub mod tension_plate;
@@ -51,6 +52,11 @@ pub const TOPICS: &[Topic] = &[
     Topic { name: "orientation", about: "life on turned lattices", fill: resolution::orientation },
     Topic { name: "blocks", about: "life over the size of cycle blocks", fill: resolution::blocks },
     Topic { name: "clean_cracks", about: "broken bonds over those that a clean cut severs", fill: resolution::clean_cracks },
+    Topic {
+        name: "state_based",
+        about: "Poisson's ratios that springs alone cannot have: displacements, K and growth law of the state-based law",
+        fill: state_based::rows,
+    },
     Topic { name: "biaxial", about: "stress along the crack does not count", fill: growth::biaxial },
     Topic { name: "life", about: "lives of whole runs against quadrature with handbook K", fill: growth::lives },
 ];

@@ -38,12 +38,21 @@ pub fn spacing(table: &mut Table) -> Result<()> {
 /// # Errors
 /// As [`predict`].
 pub fn orientation(table: &mut Table) -> Result<()> {
+    turned_lattices(table, "", &[])
+}
+
+/// [`orientation`] with these keys beside the usual ones.
+///
+/// # Errors
+/// As [`predict`].
+pub(super) fn turned_lattices(table: &mut Table, what: &str, set: &[&str]) -> Result<()> {
     let long = ["specimen.width_mm=120", "specimen.length_mm=160", "stop.crack_length_mm=40", "model.spacing_mm=1"];
+    let long = [&long[..], set].concat();
     let upright = life(&long)?;
     for angle in [15, 30, 45] {
         let turned = format!("model.lattice_angle_deg={angle}");
         let ratio = life(&[&long[..], &[&turned]].concat())? / upright;
-        let quantity = format!("M(T) W 120, a 20-40 mm, 1 mm: life on a lattice turned by {angle}° over upright");
+        let quantity = format!("{what}M(T) W 120, a 20-40 mm, 1 mm: life on a lattice turned by {angle}° over upright");
         table.compare(quantity, ratio, 1.0, 8.0, "the lattice is not part of the material");
     }
     Ok(())

@@ -24,7 +24,8 @@ a = 6450.0
 p = 2.86
 horizon_mm = 3.015
 "#;
-const MIDDLE: &str = "kind = \"middle_tension\"\nwidth_mm = 150\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 28\n";
+pub(super) const MIDDLE: &str =
+    "kind = \"middle_tension\"\nwidth_mm = 150\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 28\n";
 const SINGLE: &str = "kind = \"single_edge_tension\"\nwidth_mm = 120\nlength_mm = 360\nthickness_mm = 2\ncrack_length_mm = 30\nends = \"uniform_stress\"\n";
 const DOUBLE: &str = "kind = \"double_edge_tension\"\nwidth_mm = 150\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 30\n";
 const COMPACT: &str = "kind = \"compact_tension\"\nwidth_mm = 120\nthickness_mm = 5\ncrack_length_mm = 48\n";
@@ -33,7 +34,7 @@ const HALF_CRACK: f64 = 18.0;
 const SPACING_MM: f64 = 1.5;
 const STRESS: f64 = 100e6;
 
-fn scene(specimen: &str, set: &[&str]) -> Result<Case> {
+pub(super) fn scene(specimen: &str, set: &[&str]) -> Result<Case> {
     let text = format!("[specimen]\n{specimen}{REST}");
     let text = if specimen == COMPACT { text.replace("stress_max_mpa = 100.0", "force_max_n = 10000.0") } else { text };
     case(&text, set)
@@ -85,7 +86,7 @@ pub fn standard_specimens(table: &mut Table) -> Result<()> {
 }
 
 /// K_I of the first tip over the handbook's, for every method.
-fn over_handbook(case: &Case) -> Result<Vec<(StressIntensityMethod, f64)>> {
+pub(super) fn over_handbook(case: &Case) -> Result<Vec<(StressIntensityMethod, f64)>> {
     let tips = stress_intensity(case, StressIntensityMethod::ALL)?;
     let handbook = tips[0].handbook_k_i.unwrap_or(f64::NAN);
     Ok(tips[0].methods.iter().map(|m| (m.method, m.intensity.k_i.unwrap_or(f64::NAN) / handbook)).collect())

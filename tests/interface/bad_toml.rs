@@ -197,7 +197,12 @@ const BAD: &[Bad] = &[
     panel("spacing_mm = 1.0", "spacing_mm = 0.001", &["model.spacing_mm", "points", "or more"]),
     panel("spacing_mm = 1.0", "horizon_ratio = 0.5", &["model.horizon_ratio", "between 1.5 and"]),
     panel("spacing_mm = 1.0", "bond_law = \"springs\"", &["model.bond_law", "springs", "bond_based, two_parameter"]),
-    panel("spacing_mm = 1.0", "bond_law = \"state_based\"", &["model.bond_law", "not built yet"]),
+    panel("spacing_mm = 1.0", "bond_law = \"correspondence\"", &["model.bond_law", "not built yet"]),
+    panel(
+        "spacing_mm = 1.0",
+        "bond_law = \"state_based\"\nsurface_correction = \"balanced\"",
+        &["model.surface_correction", "balanced", "state_based", "volume_and_surface"],
+    ),
     plate(
         "[fatigue]",
         "[model]\nbond_law = \"bond_based\"\n[fatigue]",

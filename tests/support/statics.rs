@@ -16,20 +16,28 @@ pub fn laws() -> impl Iterator<Item = (BondLawKind, Kernel, Rotation)> {
     BondLawKind::ALL.iter().flat_map(move |&kind| kernels.clone().map(move |(kernel, rotation)| (kind, kernel, rotation)))
 }
 
-/// The same with every surface correction.
+/// The same with every surface correction they go with.
 pub fn corrected_laws() -> impl Iterator<Item = BondLaw> {
     laws().flat_map(|(kind, kernel, rotation)| {
-        SurfaceCorrection::ALL.iter().map(move |&surface_correction| BondLaw { kind, kernel, rotation, surface_correction })
+        SurfaceCorrection::ALL
+            .iter()
+            .map(move |&surface_correction| BondLaw { kind, kernel, rotation, surface_correction })
+            .filter(|law| (law.kind, law.surface_correction) != (BondLawKind::StateBased, SurfaceCorrection::Balanced))
     })
 }
 
-/// A material that the law can represent: bond-based has one Poisson's ratio.
+/// A material that the law can represent: bond-based has one Poisson's ratio, state-based goes beyond it.
 pub fn material(kind: BondLawKind, plane: Plane) -> Material {
     let limit = perilife::bond_law::stencil::poisson_limit(plane);
     Material {
         name: "test".to_owned(),
         youngs_modulus: 200e9,
-        poisson_ratio: if kind == BondLawKind::BondBased { limit } else { 0.7 * limit },
+        poisson_ratio: limit
+            * match kind {
+                BondLawKind::BondBased => 1.0,
+                BondLawKind::TwoParameter | BondLawKind::OneBondTwoParameter => 0.7,
+                BondLawKind::StateBased => 1.2,
+            },
         plane,
         yield_strength: None,
         toughness: None,

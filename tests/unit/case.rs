@@ -189,7 +189,7 @@ fn a_table_without_law_is_a_calibration() {
 fn what_is_planned_is_said_to_be_planned() {
     let planned = [
         ("model.method", "auto"),
-        ("model.bond_law", "state_based"),
+        ("model.bond_law", "correspondence"),
         ("model.solver", "adaptive_dynamic_relaxation"),
         ("fatigue.failure", "energy"),
         ("loading.kind", "velocity"),

@@ -142,6 +142,8 @@ fn every_solver_grows_the_same_crack() {
         ("two cracks", TWO, vec!["stop.crack_length_mm=60"]),
         ("resisted", SLANT, vec!["model.rotation=resisted", "stop.crack_length_mm=26"]),
         ("turned", PANEL, vec!["model.lattice_angle_deg=30", "stop.crack_length_mm=18"]),
+        ("state-based", SLANT, vec!["model.bond_law=state_based", "material.poisson_ratio=0.4", "stop.crack_length_mm=26"]),
+        ("state-based, low ν", PANEL, vec!["model.bond_law=state_based", "material.poisson_ratio=0", "stop.crack_length_mm=18"]),
     ] {
         let grown_by = |solver: &SolverKind| {
             let solver = format!("model.solver={solver}");

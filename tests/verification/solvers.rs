@@ -27,6 +27,9 @@ fn iterations_max(name: &str, ratio: f64) -> usize {
     }
 }
 
+/// More iterations of a state-based law, whose dilatation the preconditioner does not know.
+const MORE: usize = 6;
+
 const PLATE: &str = "kind=\"plate\"\nwidth_mm=100\nlength_mm=160\nthickness_mm=2\n";
 
 /// Name, `[specimen]`, settings.
@@ -59,6 +62,16 @@ fn scenes() -> Vec<(&'static str, String, &'static [&'static str])> {
         ("two cracks", plate("cracks=[{from_mm=[-30,-6],to_mm=[-4,-6]},{from_mm=[4,6],to_mm=[30,6]}]"), &[]),
         ("slant crack, nu 1/3", plate(slant), &["material.poisson_ratio=0.3333333333333333"]),
         ("slant crack, turned lattice", plate(slant), &["model.lattice_angle_deg=30"]),
+    ]
+}
+
+/// Name, settings and horizon ratios of the laws that differ for a solver: with three unknowns a point, with two, with the
+/// dilatation beside them.
+fn laws() -> [(&'static str, Vec<&'static str>, Vec<f64>); 3] {
+    [
+        ("free", vec!["model.rotation=free"], vec![2.015, 3.015, 4.015]),
+        ("resisted", vec!["model.rotation=resisted"], vec![2.015, 3.015, 4.015]),
+        ("state-based", vec!["model.bond_law=state_based", "material.poisson_ratio=0.4"], vec![3.015]),
     ]
 }
 
@@ -99,18 +112,19 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 fn multigrid_and_cholesky_agree() {
     let mut faults = Vec::new();
     println!(
-        "{:>28} {:>9} {:>6} {:>6} {:>10} {:>9} {:>9} {:>9}",
-        "plate", "rotation", "ratio", "points", "iterations", "u", "s", "work"
+        "{:>28} {:>11} {:>6} {:>6} {:>10} {:>9} {:>9} {:>9}",
+        "plate", "law", "ratio", "points", "iterations", "u", "s", "work"
     );
     for (name, specimen, set) in scenes() {
         for cracked in [true, false] {
             if !cracked && name != "centre crack" {
                 continue;
             }
-            for rotation in Rotation::ALL {
-                for ratio in [2.015, 3.015, 4.015] {
-                    let own = [format!("model.rotation={rotation}"), format!("model.horizon_ratio={ratio}")];
-                    let all: Vec<&str> = own.iter().map(String::as_str).chain(set.iter().copied()).collect();
+            for (law, choices, ratios) in laws() {
+                for ratio in ratios {
+                    let ratio_set = format!("model.horizon_ratio={ratio}");
+                    let all: Vec<&str> =
+                        [&*ratio_set].into_iter().chain(choices.iter().copied()).chain(set.iter().copied()).collect();
                     let mut case = case(&specimen, &all);
                     if !cracked {
                         case.specimen.cracks.clear();
@@ -120,7 +134,7 @@ fn multigrid_and_cholesky_agree() {
                     let (multigrid, direct) = match (multigrid, direct) {
                         (Ok(multigrid), Ok(direct)) => (multigrid, direct),
                         (a, b) => {
-                            faults.push(format!("{name}, {rotation}, {ratio}: {:?} {:?}", a.err(), b.err()));
+                            faults.push(format!("{name}, {law}, {ratio}: {:?} {:?}", a.err(), b.err()));
                             continue;
                         }
                     };
@@ -128,8 +142,7 @@ fn multigrid_and_cholesky_agree() {
                     let strained = largest_difference(&direct.stretches(), &multigrid.stretches());
                     let work = (multigrid.work / direct.work - 1.0).abs();
                     let line = format!(
-                        "{name:>28} {:>9} {ratio:>6} {:>6} {:>10} {far:>9.1e} {strained:>9.1e} {work:>9.1e}",
-                        rotation.name(),
+                        "{name:>28} {law:>11} {ratio:>6} {:>6} {:>10} {far:>9.1e} {strained:>9.1e} {work:>9.1e}",
                         multigrid.body.points.len(),
                         multigrid.iterations
                     );
@@ -137,7 +150,7 @@ fn multigrid_and_cholesky_agree() {
                     if !(far < AGREEMENT
                         && strained < AGREEMENT
                         && work < AGREEMENT
-                        && multigrid.iterations <= iterations_max(name, ratio))
+                        && multigrid.iterations <= iterations_max(name, ratio) + if law == "state-based" { MORE } else { 0 })
                     {
                         faults.push(line);
                     }

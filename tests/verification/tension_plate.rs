@@ -19,7 +19,8 @@ fn the_published_errors_come_out_with_the_classical_corrections() {
 #[test]
 fn the_balanced_correction_is_exact_to_a_hundredth_of_a_percent_for_every_poissons_ratio() {
     let of_default = POISSON_RATIOS.iter().map(|&nu| (BALANCED, nu));
-    let of_all = laws().map(|(kind, kernel, rotation)| {
+    let of_springs = laws().filter(|law| law.0 != BondLawKind::StateBased);
+    let of_all = of_springs.map(|(kind, kernel, rotation)| {
         let nu = if kind == BondLawKind::BondBased { 1.0 / 3.0 } else { 0.1 };
         (BondLaw { kind, kernel, rotation, surface_correction: SurfaceCorrection::Balanced }, nu)
     });
