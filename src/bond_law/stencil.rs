@@ -182,6 +182,14 @@ impl Stencil {
     }
 }
 
+impl Stencil {
+    /// Whether a rigid rotation costs energy: tangential springs between points that do not turn.
+    #[must_use]
+    pub fn resists_rotation(&self) -> bool {
+        self.unknowns == 2 && self.bonds.iter().any(|bond| bond.k_t > 1e-9 * bond.k_n)
+    }
+}
+
 /// Bond vectors of the half plane within the horizon, springs still zero.
 fn half_plane(horizon_ratio: f64, spacing: f64) -> Vec<StencilBond> {
     let reach = horizon_ratio.floor() as i32;

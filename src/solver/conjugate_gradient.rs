@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::field::dot;
 use super::multigrid::Multigrid;
 use super::product::{Into, Product};
+use super::rigid_motion::RigidMotion;
 use super::{LinearSolver, Solved, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
@@ -50,7 +51,8 @@ impl<const N: usize> MultigridSolver<N> {
         }
     }
 
-    fn iterate(&mut self, bonds: &Bonds, product: &Product<N>, f: &[f64], u: &mut [f64]) -> Option<usize> {
+    fn iterate(&mut self, system: System<'_, N>, u: &mut [f64]) -> Option<usize> {
+        let System { body, bonds, product, f } = system;
         let layout = *product.layout();
         let target = self.tolerance * dot(&layout, f, f).sqrt();
         self.r.copy_from_slice(f);
@@ -58,9 +60,13 @@ impl<const N: usize> MultigridSolver<N> {
         if dot(&layout, &self.r, &self.r).sqrt() <= target {
             return Some(0);
         }
+        let rigid = product.fixed().is_empty().then(|| RigidMotion::of(body, bonds, layout));
         let mut rz_last = 0.0;
         for iteration in 1..=ITERATIONS_MAX {
             self.multigrid.precondition(bonds, product, &self.r, &mut self.z);
+            if let Some(rigid) = &rigid {
+                rigid.take_off(&mut self.z);
+            }
             let rz = dot(&layout, &self.r, &self.z);
             let beta = if iteration == 1 { 0.0 } else { rz / rz_last };
             rz_last = rz;
@@ -68,6 +74,7 @@ impl<const N: usize> MultigridSolver<N> {
             product.apply(bonds, &self.p, &mut self.q, Into::Set);
             let curvature = dot(&layout, &self.p, &self.q);
             if !(curvature > 0.0 && curvature.is_finite()) {
+                tracing::debug!(iteration, curvature, rz, "conjugate gradients broke down");
                 return None;
             }
             let alpha = rz / curvature;
@@ -77,6 +84,7 @@ impl<const N: usize> MultigridSolver<N> {
                 return Some(iteration);
             }
         }
+        tracing::debug!(residual = dot(&layout, &self.r, &self.r).sqrt(), target, "conjugate gradients did not converge");
         None
     }
 }
@@ -100,13 +108,13 @@ impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
             self.broken_since = 0;
             self.fresh_iterations = None;
         }
-        let mut spent = self.iterate(bonds, product, f, u);
+        let mut spent = self.iterate(system, u);
         if spent.is_none() && self.broken_since > 0 {
             // The hierarchy belongs to an older crack: try once more with a new one, from rest.
             self.multigrid = Multigrid::new(body, bonds, product);
             self.broken_since = 0;
             u.fill(0.0);
-            spent = self.iterate(bonds, product, f, u);
+            spent = self.iterate(system, u);
         }
         let spent = spent.ok_or_else(|| {
             Error::Mechanics(format!(

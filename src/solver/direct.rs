@@ -134,8 +134,7 @@ fn pins<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<N>) -> Vec
 pub(super) fn pinned_components<const N: usize>(body: &Body, first: usize, last: usize) -> Vec<(usize, usize)> {
     let (a, b) = (body.lattice.column_row(first), body.lattice.column_row(last));
     let across = usize::from(b.1.abs_diff(a.1) <= b.0.abs_diff(a.0));
-    let turns = N == 3 || body.stencil.bonds.iter().all(|bond| bond.k_t <= 1e-9 * bond.k_n);
     let mut held = vec![(first, 0), (first, 1)];
-    held.extend(turns.then_some((last, across)));
+    held.extend((!body.stencil.resists_rotation()).then_some((last, across)));
     held
 }

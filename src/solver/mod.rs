@@ -7,6 +7,7 @@ pub mod direct;
 pub mod field;
 pub mod multigrid;
 pub mod product;
+mod rigid_motion;
 pub mod window;
 
 use crate::body::{Body, Bond};

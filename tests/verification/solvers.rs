@@ -79,9 +79,8 @@ fn laws() -> [(&'static str, Vec<&'static str>, Vec<f64>); 3] {
 fn distance(a: &Loaded, b: &Loaded) -> f64 {
     let body = &a.body;
     // Without tangential springs even the resisted law does not know how the plate is turned.
-    let turns = body.stencil.unknowns == 3 || body.stencil.bonds.iter().all(|bond| bond.k_t < 1e-9 * bond.k_n);
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
-    let columns = if turns { 3 } else { 2 };
+    let columns = if body.stencil.resists_rotation() { 2 } else { 3 };
     let mut rows = Vec::new();
     let mut size = 0.0_f64;
     for &point in body.points.iter().filter(|&&point| a.bonds.intact_at(body, point as usize) > 0) {
