@@ -2,6 +2,8 @@
 
 pub mod stencil;
 
+use crate::material::Material;
+
 crate::kinds! {
     /// Constitutive laws of a bond.
     pub enum BondLawKind for "model.bond_law" {
@@ -38,6 +40,12 @@ crate::kinds! {
 }
 
 impl BondLawKind {
+    /// The law for a material where a case leaves it open: two-parameter as far as its springs reach, else state-based.
+    #[must_use]
+    pub fn for_material(material: &Material) -> Self {
+        if stencil::is_within_springs(material) { BondLawKind::TwoParameter } else { BondLawKind::StateBased }
+    }
+
     /// Whether a bond has a tangential spring beside the normal one.
     #[must_use]
     pub fn is_two_parameter(self) -> bool {

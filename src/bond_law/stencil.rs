@@ -18,6 +18,8 @@ use crate::material::{Material, Plane};
 /// Allowed distance of ν from the one value a bond-based law has.
 pub const BOND_BASED_POISSON_TOLERANCE: f64 = 0.01;
 
+/// Excess over the limit of Poisson's ratio that is round-off.
+const POISSON_ROUND_OFF: f64 = 1e-9;
 /// Modulus of dilatation over shear modulus below which it is round-off.
 const LEAST_DILATATION: f64 = 1e-9;
 
@@ -87,6 +89,12 @@ pub fn poisson_limit(plane: Plane) -> f64 {
     }
 }
 
+/// Whether springs with tangential stiffness c_t ≥ 0 reach the material's Poisson's ratio.
+#[must_use]
+pub fn is_within_springs(material: &Material) -> bool {
+    material.poisson_ratio <= poisson_limit(material.plane) + POISSON_ROUND_OFF
+}
+
 /// Refuses choices that do not go together, and a Poisson's ratio that the law cannot represent, naming the law to use.
 ///
 /// Two-parameter: tangential modulus proportional to 1-3ν (plane stress) or 1-4ν (plane strain) must not be negative.
@@ -105,7 +113,7 @@ pub fn check(law: &BondLaw, material: &Material) -> Result<(), Error> {
         Plane::Stress => "1/3 in plane stress",
         Plane::Strain => "1/4 in plane strain",
     };
-    let tolerance = if kind == BondLawKind::BondBased { BOND_BASED_POISSON_TOLERANCE } else { 1e-9 };
+    let tolerance = if kind == BondLawKind::BondBased { BOND_BASED_POISSON_TOLERANCE } else { POISSON_ROUND_OFF };
     if kind == BondLawKind::StateBased {
         return Ok(());
     }

@@ -39,7 +39,7 @@ struct Input {
 }
 
 /// Reads `[model]`; what is left out gets the program's choice. Explicit choices go into `choices`.
-pub(super) fn from_value(value: &Value, specimen: &Specimen, choices: &mut Choices) -> Result<Model> {
+pub(super) fn from_value(value: &Value, specimen: &Specimen, material: &Material, choices: &mut Choices) -> Result<Model> {
     let input: Input = slice(value, "model")?;
     let method = input.method.unwrap_or(Method::Peridynamics);
     choices.bond_law = input.bond_law;
@@ -60,7 +60,7 @@ pub(super) fn from_value(value: &Value, specimen: &Specimen, choices: &mut Choic
     Ok(Model {
         method,
         bond_law: BondLaw {
-            kind: choices.bond_law.unwrap_or(BondLawKind::TwoParameter),
+            kind: choices.bond_law.unwrap_or_else(|| BondLawKind::for_material(material)),
             kernel: choices.kernel.unwrap_or(Kernel::Conical),
             rotation: choices.rotation.unwrap_or(Rotation::Free),
             surface_correction: choices.surface_correction.unwrap_or(SurfaceCorrection::VolumeAndSurface),

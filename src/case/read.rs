@@ -59,7 +59,7 @@ impl Case {
         let mut specimen = specimen::from_value(required("specimen")?)?;
         let material = material::from_value(required("material")?, base_dir, &mut warnings)?;
         let loading = loading::from_values(required("loading")?, table.get("supports"), &mut specimen)?;
-        let model = model::from_value(optional("model"), &specimen, &mut choices)?;
+        let model = model::from_value(optional("model"), &specimen, &material, &mut choices)?;
         let fatigue = fatigue::from_value(optional("fatigue"), model.method, base_dir, &mut choices)?;
         let stop = fatigue::stop_from_value(optional("stop"), &specimen)?;
         let mut case = Case {
@@ -141,7 +141,7 @@ fn check_sections(table: &Table) -> Result<()> {
 fn law_lines(case: &Case) -> Result<Vec<String>> {
     let mut lines = Vec::new();
     match &case.law {
-        LawSource::Inline(_) => lines.extend(inline_line(&case.choices)),
+        LawSource::Inline(_) => lines.extend(inline_line(case)),
         LawSource::Paris(_) => {}
         LawSource::Fitted(record) => lines.extend(law::record_lines(case, record)?),
         LawSource::Missing(path) if path.as_os_str().is_empty() => {}
@@ -156,10 +156,11 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
 }
 
 /// An inline `a` belongs to the default law, kernel and zone; another choice is the user's to answer for.
-fn inline_line(choices: &Choices) -> Option<String> {
+fn inline_line(case: &Case) -> Option<String> {
     use crate::bond_law::{BondLawKind, Kernel, Rotation};
     let mut other = Vec::new();
-    other.extend(choices.bond_law.filter(|law| *law != BondLawKind::TwoParameter).map(|law| format!("bond_law {law}")));
+    let (law, choices) = (case.model.bond_law.kind, &case.choices);
+    other.extend((law != BondLawKind::TwoParameter).then(|| format!("bond_law {law}")));
     other.extend(choices.kernel.filter(|kernel| *kernel != Kernel::Conical).map(|kernel| format!("kernel {kernel}")));
     other.extend(choices.rotation.filter(|rotation| *rotation != Rotation::Free).map(|rotation| format!("rotation {rotation}")));
     other.extend(

@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::bond_law::BondLawKind;
 use crate::case::{Case, LawSource, Method};
 use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
@@ -120,12 +121,16 @@ const WHY_CHOSEN: [(&str, &str); 9] = [
     ("solver", "default: the fastest exact one built"),
 ];
 
+/// Why the default bond law is not taken.
+const BEYOND_SPRINGS: &str = "chosen: springs alone cannot have this Poisson's ratio";
+
 fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> String {
     let given = case.echo.get("model").and_then(|model| model.get(key)).is_some();
     let recorded = matches!(case.law, LawSource::Fitted(_)) && FIXED_BY_RECORD.contains(&key);
     let source = match (given, recorded) {
         (true, _) => "given in the case",
         (false, true) => "as in the fitted record: the law holds for this choice only",
+        (false, false) if key == "bond_law" && case.model.bond_law.kind == BondLawKind::StateBased => BEYOND_SPRINGS,
         (false, false) => reason,
     };
     let (asked, actual) = (case.model.spacing / MM, prediction.figures.spacing / MM);

@@ -151,12 +151,16 @@ const BAD: &[Bad] = &[
     // Material
     panel("name = \"al2024-t3\"", "name = \"unobtainium\"", &[":8:", "material.name", "unobtainium", "al2024-t3"]),
     panel("name = \"al2024-t3\"", "youngs_modulus_gpa = 70", &["material.poisson_ratio", "missing"]),
-    panel(
-        "name = \"al2024-t3\"",
-        "name = \"al2024-t3\"\npoisson_ratio = 0.4",
-        &[":9:", "material.poisson_ratio", "0.4", "1/3 in plane stress", "0.3333"],
+    plate(
+        "poisson_ratio = 0.3",
+        "poisson_ratio = 0.4\n[model]\nbond_law = \"two_parameter\"",
+        &[":11:", "material.poisson_ratio", "0.4", "1/3 in plane stress", "0.3333", "state_based"],
     ),
-    panel("name = \"al2024-t3\"", "name = \"al2024-t3\"\nplane = \"strain\"", &["material.poisson_ratio", "1/4 in plane strain"]),
+    plate(
+        "poisson_ratio = 0.3",
+        "poisson_ratio = 0.3\nplane = \"strain\"\n[model]\nbond_law = \"two_parameter\"",
+        &["material.poisson_ratio", "1/4 in plane strain"],
+    ),
     panel(
         "name = \"al2024-t3\"",
         "name = \"al2024-t3\"\nplane = \"membrane\"",

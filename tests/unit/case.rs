@@ -186,6 +186,21 @@ fn a_table_without_law_is_a_calibration() {
 }
 
 #[test]
+fn the_bond_law_left_open_is_one_that_the_material_can_have() {
+    for (set, law) in [
+        (vec!["material.poisson_ratio=0.3333"], BondLawKind::TwoParameter),
+        (vec!["material.poisson_ratio=0.34"], BondLawKind::StateBased),
+        (vec!["material.plane=strain", "material.poisson_ratio=0.25"], BondLawKind::TwoParameter),
+        (vec!["material.plane=strain"], BondLawKind::StateBased),
+    ] {
+        let case = read(INLINE, &set).unwrap();
+        assert_eq!(case.model.bond_law.kind, law, "{set:?}");
+        // A of an inline law belongs to the two-parameter law.
+        assert_eq!(case.warnings.iter().any(|line| line.contains("bond_law state_based")), law == BondLawKind::StateBased);
+    }
+}
+
+#[test]
 fn what_is_planned_is_said_to_be_planned() {
     let planned = [
         ("model.method", "auto"),
