@@ -8,7 +8,7 @@ use super::console::Console;
 use crate::error::{Error, Result};
 use crate::report::output::{OutputFolder, write_file};
 use crate::report::verification;
-use crate::verify::{Row, Table, topics};
+use crate::verify::{self, topics};
 
 /// Arguments of `perilife verify`.
 #[derive(Debug, clap::Args)]
@@ -31,16 +31,10 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let topics = topics(&args.names)?;
     let folder = args.out.as_deref().map(OutputFolder::create).transpose()?;
-    let mut rows: Vec<Row> = Vec::new();
-    for topic in topics {
-        args.console.say(&format!("{}: {}", topic.name, topic.about));
-        let mut table = Table::new(topic.name);
-        (topic.fill)(&mut table)?;
-        for row in table.into_rows() {
-            args.console.say(&verification::line(&row));
-            rows.push(row);
-        }
-    }
+    let rows = verify::rows(&topics, &|topic, rows| {
+        let lines: Vec<String> = rows.iter().map(verification::line).collect();
+        args.console.say(&format!("{}: {}\n{}", topic.name, topic.about, lines.join("\n")));
+    })?;
     let object = verification::object(&rows);
     if let Some(folder) = folder {
         write_file(&folder.path().join("verify.csv"), verification::csv(&rows).as_bytes())?;

@@ -1,6 +1,7 @@
 //! Which bonds age, and by how much strain a cycle.
 
 use super::crack_tip::CrackTip;
+use super::tip_strain::dilatation_factor;
 use super::{Ageing, FatigueSettings};
 use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
@@ -92,8 +93,8 @@ fn in_zone(body: &Body, tip: &CrackTip, radius: f64) -> Vec<Bond> {
 /// Of the candidates those in tension, with their cyclic strain. Bonds in compression are not spent.
 ///
 /// The strain is `share` times the stretch, times factors for the direction in which the nearest tip grows
-/// ([`LatticeDirection`](super::lattice_direction::LatticeDirection)) and for the length of its crack
-/// ([`FiniteHorizon`](super::finite_horizon::FiniteHorizon)).
+/// ([`LatticeDirection`](super::lattice_direction::LatticeDirection)), for the length of its crack
+/// ([`FiniteHorizon`](super::finite_horizon::FiniteHorizon)), and for the law ([`dilatation_factor`]).
 #[must_use]
 pub fn ageing_bonds(
     body: &Body,
@@ -104,12 +105,13 @@ pub fn ageing_bonds(
     (share, threshold): (f64, f64),
 ) -> Vec<AgeingBond> {
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
+    let dilatation = dilatation_factor(body);
     let active: Vec<(&CrackTip, f64)> = tips
         .iter()
         .filter(|tip| tip.is_active() && settings.ageing == Ageing::CrackTip)
         .map(|tip| {
             let direction = settings.lattice_direction.strain_factor(body, tip.direction);
-            (tip, direction * settings.finite_horizon.strain_factor(body.horizon(), tip.crack + tip.growth))
+            (tip, dilatation * direction * settings.finite_horizon.strain_factor(body.horizon(), tip.crack + tip.growth))
         })
         .collect();
     let factor = |bond: Bond| {

@@ -10,6 +10,7 @@ pub mod no_fail;
 pub mod paris;
 pub mod pieces;
 pub mod remaining_life;
+pub mod tip_strain;
 
 use finite_horizon::FiniteHorizon;
 use lattice_direction::LatticeDirection;

@@ -15,6 +15,11 @@ pub mod table;
 pub mod tension_plate;
 pub mod uniform_tension;
 
+use std::num::NonZero;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
 use crate::error::{Result, input};
 pub use table::{Row, Table};
 
@@ -77,4 +82,32 @@ pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
             .ok_or_else(|| input("NAME", name, "is not a verification topic", format!("known are {}", known())))
     };
     names.iter().map(find).collect()
+}
+
+/// Rows of some topics in their order, computed side by side on the processors there are. `done` hears of every topic as it
+/// ends.
+///
+/// # Errors
+/// That of the first topic that has one.
+pub fn rows(topics: &[&'static Topic], done: &(dyn Fn(&Topic, &[Row]) + Sync)) -> Result<Vec<Row>> {
+    let next = AtomicUsize::new(0);
+    let computed = Mutex::new(Vec::new());
+    let work = || {
+        while let Some((at, topic)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, topics.get(at)?))) {
+            let mut table = Table::new(topic.name);
+            let rows = (topic.fill)(&mut table).map(|()| table.into_rows());
+            rows.iter().for_each(|rows| done(topic, rows));
+            computed.lock().unwrap_or_else(PoisonError::into_inner).push((at, rows));
+        }
+    };
+    let workers = thread::available_parallelism().map_or(1, NonZero::get).min(topics.len());
+    thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(work);
+        }
+    });
+    let mut computed = computed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    computed.sort_by_key(|(at, _)| *at);
+    let tables: Vec<Vec<Row>> = computed.into_iter().map(|(_, rows)| rows).collect::<Result<_>>()?;
+    Ok(tables.concat())
 }
