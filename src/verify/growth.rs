@@ -140,6 +140,33 @@ pub fn lives(table: &mut Table) -> Result<()> {
     Ok(())
 }
 
+/// One growth rate at equal K for every law, Poisson's ratio and plane state, A moving with E'^p as that of a fitted law does.
+///
+/// # Errors
+/// As [`predict`].
+pub fn poissons_ratio(table: &mut Table) -> Result<()> {
+    let life = |law: &str, plane: &str, nu: f64| -> Result<f64> {
+        let keys = [format!("model.bond_law={law}"), format!("material.plane={plane}"), format!("material.poisson_ratio={nu}")];
+        let set = ["specimen.width_mm=120", "specimen.length_mm=160", "specimen.crack_length_mm=20", "stop.crack_length_mm=30"];
+        let case = case(PANEL, &[&set[..], &keys.each_ref().map(String::as_str)].concat())?;
+        Ok(predict(&case, &Silent)?.life_cycles() / case.material.plane_modulus().powf(EXPONENT))
+    };
+    let aluminium = life("two_parameter", "stress", 0.33)?;
+    for (law, plane, nu) in [
+        ("two_parameter", "stress", 0.1),
+        ("two_parameter", "stress", 0.2),
+        ("two_parameter", "stress", 0.3),
+        ("two_parameter", "strain", 0.2),
+        ("state_based", "stress", 0.2),
+        ("state_based", "stress", 0.4),
+        ("state_based", "strain", 0.3),
+    ] {
+        let quantity = format!("M(T) a 20-30 mm: life of {law} in plane {plane} at nu {nu} over two_parameter at 0.33");
+        table.compare(quantity, life(law, plane, nu)? / aluminium, 1.0, 4.0, "equal K, equal C and m");
+    }
+    Ok(())
+}
+
 /// Constants C = ∫ da/ΔK^p / ΔN over windows of equal growth: (ΔK in the middle of the window, C), SI.
 fn constants(case: &Case, run: &Prediction, p: f64) -> Result<Vec<(f64, f64)>> {
     let (first, last) = (case.specimen.crack_length, run.crack_length_final());

@@ -62,6 +62,11 @@ pub const TOPICS: &[Topic] = &[
         about: "Poisson's ratios that springs alone cannot have: displacements, K and growth law of the state-based law",
         fill: state_based::rows,
     },
+    Topic {
+        name: "poissons_ratio",
+        about: "one growth rate at equal K whatever Poisson's ratio and plane state",
+        fill: growth::poissons_ratio,
+    },
     Topic { name: "biaxial", about: "stress along the crack does not count", fill: growth::biaxial },
     Topic { name: "life", about: "lives of whole runs against quadrature with handbook K", fill: growth::lives },
 ];

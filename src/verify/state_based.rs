@@ -55,25 +55,7 @@ pub fn rows(table: &mut Table) -> Result<()> {
     let life = |law: &str| -> Result<f64> { Ok(predict(&case(PANEL, &[&limit[..], &[law]].concat())?, &Silent)?.life_cycles()) };
     let ratio = life(STATE_BASED)? / life("model.bond_law=two_parameter")?;
     table.compare("state_based, nu 1/3: life over that of two_parameter", ratio, 1.0, 0.01, "both are the same springs");
-    one_rate(table)?;
     panel_follows(table, "state_based, nu 0.34: ", &TITANIUM, 2.87)?;
     panel_follows(table, "state_based, nu 0.34: ", &TITANIUM, 4.0)?;
     turned_lattices(table, "state_based, nu 0.34: ", &TITANIUM)
-}
-
-/// One growth rate at equal K for every Poisson's ratio and plane state, A moving with E'^p as a fitted law does.
-fn one_rate(table: &mut Table) -> Result<()> {
-    const P: f64 = 2.87;
-    let life = |plane: &str, nu: f64| -> Result<f64> {
-        let keys = [format!("material.plane={plane}"), format!("material.poisson_ratio={nu}")];
-        let set = ["specimen.width_mm=120", "specimen.length_mm=160", "specimen.crack_length_mm=20", "stop.crack_length_mm=30"];
-        let case = case(PANEL, &[&set[..], &[STATE_BASED, &keys[0], &keys[1]]].concat())?;
-        Ok(predict(&case, &Silent)?.life_cycles() / case.material.plane_modulus().powf(P))
-    };
-    let aluminium = life("stress", 0.33)?;
-    for (plane, nu) in [("stress", 0.2), ("stress", 0.4), ("strain", 0.3)] {
-        let quantity = format!("state_based, M(T) a 20-30 mm: life in plane {plane} at nu {nu} over plane stress at 0.33");
-        table.compare(quantity, life(plane, nu)? / aluminium, 1.0, 4.0, "equal K, equal C and m");
-    }
-    Ok(())
 }
