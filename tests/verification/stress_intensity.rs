@@ -129,7 +129,7 @@ fn the_arc_of_a_pin_has_the_k_of_finite_elements() {
         k_i(&tip) / handbook / reference
     });
     for ratio in over_elements {
-        // Reached: 0.4 %, and 0.1 % between arcs.
+        // Reached: 0.35 %, and 0.1 % between arcs.
         assert!((ratio - 1.0).abs() < 0.01 && (ratio / over_elements[0] - 1.0).abs() < 0.002, "{over_elements:?}");
     }
 }
