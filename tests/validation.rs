@@ -9,6 +9,8 @@ mod examples;
 mod fit_engine;
 #[path = "validation/fit_virkler.rs"]
 mod fit_virkler;
+#[path = "validation/kept_back.rs"]
+mod kept_back;
 #[path = "validation/median_virkler.rs"]
 mod median_virkler;
 #[path = "validation/rates_virkler.rs"]

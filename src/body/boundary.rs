@@ -6,7 +6,7 @@ use super::sharing::Sharing;
 use crate::bond_law::stencil::Stencil;
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{bounding_box, distance_to_segment};
-use crate::specimen::{Load, Point, Specimen, Support};
+use crate::specimen::{Hole, Load, Point, Specimen, Support};
 
 /// Stiffness of rigid grips over that of the plate.
 const GRIP_STIFFNESS: f32 = 1000.0;
@@ -213,18 +213,25 @@ pub(super) fn load_pieces(specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
                 let area = facet.length * specimen.thickness;
                 LoadPiece { facet: outward(facet), force: [traction[0] * area, traction[1] * area] }
             })),
-            Load::Pin { hole, direction, force } => {
-                // Bearing pressure p cos θ on the half circle around `direction`; ∫ cos² θ = π/2 makes the resultant `force`.
-                let hole = specimen.holes[hole];
-                let half = 0.5 * std::f64::consts::PI;
-                let middle = direction[1].atan2(direction[0]);
-                pieces.extend(arc(hole.centre, hole.radius, middle - half, 2.0 * half, spacing).into_iter().map(|facet| {
-                    let cos = facet.normal[0] * direction[0] + facet.normal[1] * direction[1];
-                    let pressure = force * cos * facet.length / hole.radius / half;
-                    LoadPiece { facet: turned_over(facet), force: facet.normal.map(|n| pressure * n) }
-                }));
+            Load::Pin { hole, direction, force, contact } => {
+                pieces.extend(bearing(&specimen.holes[hole], direction, contact, spacing, force))
             }
         }
     }
     pieces
+}
+
+/// Pressure `p cos(π θ / 2θ_c)` over the arc |θ| ≤ θ_c of a hole around `direction`, its resultant `force`. With θ_c = 90° this
+/// is the cosine of a pin that fills its hole.
+fn bearing(hole: &Hole, direction: Point, contact: f64, spacing: f64, force: f64) -> Vec<LoadPiece> {
+    let middle = direction[1].atan2(direction[0]);
+    let facets = arc(hole.centre, hole.radius, middle - contact, 2.0 * contact, spacing);
+    let along = |facet: &Facet| (facet.normal[0] * direction[0] + facet.normal[1] * direction[1]).clamp(-1.0, 1.0);
+    let push = |facet: &Facet| (std::f64::consts::FRAC_PI_2 * along(facet).acos() / contact).cos() * facet.length;
+    let resultant: f64 = facets.iter().map(|facet| push(facet) * along(facet)).sum();
+    let piece = |facet: &Facet| {
+        let size = force * push(facet) / resultant;
+        LoadPiece { facet: turned_over(*facet), force: facet.normal.map(|n| size * n) }
+    };
+    facets.iter().map(piece).collect()
 }

@@ -15,7 +15,12 @@ use crate::predict::Observer;
 /// Mechanics without a result, or a window in which the handbook has no K.
 pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Result<Fit> {
     let delta_k = |length: f64| calibration.delta_k(length);
-    let task = FitTask { curves: &calibration.curves, fixed_p: calibration.exponent.fixed, delta_k: &delta_k };
+    let task = FitTask {
+        curves: &calibration.curves,
+        fixed_p: calibration.exponent.fixed,
+        criterion: calibration.criterion,
+        delta_k: &delta_k,
+    };
     let fit_with = |model: &dyn ForwardModel| fit(&task, model);
     let case = &calibration.case;
     match case.model.method {

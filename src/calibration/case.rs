@@ -6,8 +6,9 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 
+use crate::calibration::criterion::Criterion;
 use crate::calibration::exponent::Exponent;
-use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurve, Units, read};
+use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurve, Units, parse, read};
 use crate::calibration::record::SourceFile;
 use crate::case::{Case, LAW_KEYS, LawSource, Method};
 use crate::error::{Error, input, input_missing};
@@ -37,6 +38,8 @@ pub struct CalibrationCase {
     pub curves: Vec<MeasuredCurve>,
     /// The exponent: fitted, given, or of a record.
     pub exponent: Exponent,
+    /// Which lives count.
+    pub criterion: Criterion,
     /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
     /// What the user should know.
@@ -55,6 +58,12 @@ struct MeasuredSlice {
     cycle_unit: Option<CycleUnit>,
 }
 
+impl MeasuredSlice {
+    fn units(&self) -> Units {
+        Units { length: self.length_unit, cycles: self.cycle_unit }
+    }
+}
+
 /// `[fit]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,12 +71,36 @@ struct FitSlice {
     parameters: Option<Vec<Parameter>>,
     p: Option<f64>,
     record: Option<String>,
+    criterion: Option<Criterion>,
 }
 
 impl CalibrationCase {
     /// Reads a calibration file and the measured files it names; `overrides` are `section.key=value`.
     pub fn from_file(path: &Path, overrides: &[String]) -> crate::Result<Self> {
-        let mut document = Document::read(path, overrides)?;
+        let document = Document::read(path, overrides)?;
+        let base_dir = document.base_dir.clone();
+        Self::from_document(document, |keys| {
+            let (files, sources) = sources(&keys.files, &base_dir)?;
+            Ok((read(&files, keys.units())?, sources))
+        })
+    }
+
+    /// The same for text and readings that are at hand; `measured.files` then names the readings only.
+    pub fn from_text(text: &str, name: &str, readings: &[u8]) -> crate::Result<Self> {
+        let document = Document::parse(text, name, Path::new(""), &[])?;
+        Self::from_document(document, |keys| {
+            let [file] = &keys.files[..] else {
+                let given = format!("{} files", keys.files.len());
+                return Err(input("measured.files", given, "do not go with one table of readings", "name one file"));
+            };
+            Ok((parse(readings, Path::new(file), keys.units())?, vec![source(file, readings)]))
+        })
+    }
+
+    fn from_document(
+        mut document: Document,
+        readings: impl Fn(&MeasuredSlice) -> crate::Result<(Measured, Vec<SourceFile>)>,
+    ) -> crate::Result<Self> {
         // Taken out of the table, but not of the text: errors still find their line.
         let measured = document.table.remove("measured");
         let fit = document.table.remove("fit").unwrap_or_else(|| Value::Table(Table::new()));
@@ -76,12 +109,18 @@ impl CalibrationCase {
                 .as_ref()
                 .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
             let case = Case::from_table(document.table.clone(), &document.name, &document.base_dir)?;
-            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.base_dir)
+            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.base_dir, readings)
         };
         build().map_err(|error| document.locate(error))
     }
 
-    fn build(mut case: Case, keys: MeasuredSlice, fit: FitSlice, base_dir: &Path) -> crate::Result<Self> {
+    fn build(
+        mut case: Case,
+        keys: MeasuredSlice,
+        fit: FitSlice,
+        base_dir: &Path,
+        readings: impl Fn(&MeasuredSlice) -> crate::Result<(Measured, Vec<SourceFile>)>,
+    ) -> crate::Result<Self> {
         if !matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
             let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
@@ -95,8 +134,7 @@ impl CalibrationCase {
                 "calibrate on a standard specimen (length at least 1.5 widths), then predict the plate with the fit",
             )
         })?;
-        let (files, sources) = sources(&keys.files, base_dir)?;
-        let measured = read(&files, Units { length: keys.length_unit, cycles: keys.cycle_unit })?;
+        let (measured, sources) = readings(&keys)?;
         let (limit, limit_name) = case.specimen.length_limit();
         measured.check_lengths(limit, limit_name)?;
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
@@ -109,6 +147,7 @@ impl CalibrationCase {
         let delta_k = |length: f64| formula.k_i(length, case.loading.maximum);
         let exponent = exponent(&fit, base_dir, case.model.method, delta_k(longest) / delta_k(shortest))?;
         warnings.extend(exponent.warning.clone());
+        let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
         case.stop.crack_length = longest;
         // A run for A = 1 counts A x cycles, which no limit in cycles is meant for.
         case.stop.cycles_max = f64::INFINITY;
@@ -116,7 +155,7 @@ impl CalibrationCase {
         case.material.yield_strength = None;
         warnings.extend(unrecorded(&case));
         warnings.extend(case.warnings.iter().cloned());
-        Ok(CalibrationCase { case, curves, exponent, sources, warnings, formula })
+        Ok(CalibrationCase { case, curves, exponent, criterion, sources, warnings, formula })
     }
 
     /// ΔK of the handbook (Pa√m) at a crack length (m).
@@ -189,10 +228,15 @@ fn sources(files: &[String], base_dir: &Path) -> crate::Result<(Vec<PathBuf>, Ve
     let mut sources = Vec::with_capacity(files.len());
     for (file, path) in files.iter().zip(&paths) {
         let bytes = std::fs::read(path).map_err(|error| Error::file(path, "cannot read", error))?;
-        let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-        sources.push(SourceFile { file: file.clone(), sha256 });
+        sources.push(source(file, &bytes));
     }
     Ok((paths, sources))
+}
+
+/// What the record says about a measured file.
+fn source(file: &str, bytes: &[u8]) -> SourceFile {
+    let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    SourceFile { file: file.to_owned(), sha256 }
 }
 
 fn window(measured: &Measured, keys: &MeasuredSlice) -> crate::Result<Measured> {

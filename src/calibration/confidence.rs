@@ -2,15 +2,16 @@
 //!
 //! A crack that runs slowly between two readings shifts all later cycles: errors of cumulated cycles are sums of errors
 //! of the increments and strongly correlated. The usual `s² (JᵀJ)⁻¹` takes them as independent and is far too sure of itself.
-//! So the least squares estimate on cumulated cycles (best for life, see `misfit`) gets a sandwich covariance
+//! So the least squares estimate on lives (best for life, see `misfit`) gets a sandwich covariance
 //!
 //! ```text
-//! Cov = (JᵀJ)⁻¹ Jᵀ Σ J (JᵀJ)⁻¹,   Σ = L diag(σ² ΔN_i²) Lᵀ
+//! Cov = (JᵀWJ)⁻¹ JᵀW Σ WJ (JᵀWJ)⁻¹,   Σ = L diag(σ² ΔN_i²) Lᵀ
 //! ```
 //!
-//! (White 1980; L sums increments up) with increments `ΔN_i` of the fit that scatter independently by the same relative
-//! σ, which is the rms of the relative residual increments.
+//! (White 1980; W weights the lives, L sums up the increments that each of them spans) with increments `ΔN_i` of the fit that
+//! scatter independently by the same relative σ, which is the rms of the relative residual increments.
 
+use crate::calibration::criterion::Criterion;
 use nalgebra::{Matrix2, Vector2};
 
 /// Covariance of (ln A, p) and the scatter it rests on.
@@ -22,11 +23,21 @@ pub struct Confidence {
     pub increment_scatter: f64,
 }
 
-/// Covariance at a fit, from A x cycles `model` and their derivative `model_per_p` at the measured lengths.
-///
-/// All three slices count from the first reading. `None` for `model_per_p` means that p was fixed.
+/// A curve at a fit, all three counted from the first reading.
+#[derive(Debug, Clone, Copy)]
+pub struct Lives<'a> {
+    /// A x cycles of the model at the measured lengths.
+    pub model: &'a [f64],
+    /// Their derivative over p; `None` where p was fixed.
+    pub model_per_p: Option<&'a [f64]>,
+    /// Measured cycles.
+    pub measured: &'a [f64],
+}
+
+/// Covariance at a fit by a criterion.
 #[must_use]
-pub fn confidence(model: &[f64], model_per_p: Option<&[f64]>, measured: &[f64], inverse_a: f64) -> Confidence {
+pub fn confidence(criterion: Criterion, lives: &Lives<'_>, inverse_a: f64) -> Confidence {
+    let Lives { model, model_per_p, measured } = *lives;
     let increments: Vec<(f64, f64)> = model
         .windows(2)
         .zip(measured.windows(2))
@@ -39,20 +50,30 @@ pub fn confidence(model: &[f64], model_per_p: Option<&[f64]>, measured: &[f64], 
     let variance = usable().map(|(fitted, measured)| (measured / fitted - 1.0).powi(2)).sum::<f64>() / freedom;
 
     // N = n / A: ∂N/∂ln A = -N, ∂N/∂p = (∂n/∂p) / A.
-    let jacobian: Vec<Vector2<f64>> = (1..model.len())
-        .map(|i| Vector2::new(-model[i] * inverse_a, model_per_p.map_or(0.0, |slope| slope[i] * inverse_a)))
-        .collect();
-    let normal: Matrix2<f64> = jacobian.iter().map(|row| row * row.transpose()).sum();
+    let jacobian = |(from, to): (usize, usize)| {
+        let per_p = model_per_p.map_or(0.0, |slope| slope[to] - slope[from]);
+        Vector2::new(-(model[to] - model[from]) * inverse_a, per_p * inverse_a)
+    };
+    let spans = criterion.spans(model.len());
+    let mut normal = Matrix2::zeros();
+    // Change from one increment to the next of the sum of weighted rows of J over the lives that span it.
+    let mut change = vec![Vector2::zeros(); model.len()];
+    for ((from, to), weight) in spans.into_iter().zip(criterion.weights(measured)) {
+        let row = jacobian((from, to));
+        normal += row * row.transpose() * weight;
+        change[from] += row * weight;
+        change[to] -= row * weight;
+    }
     let inverse = match model_per_p {
         Some(_) => normal.try_inverse().unwrap_or_else(|| Matrix2::repeat(f64::NAN)),
         None => Matrix2::new(1.0 / normal[(0, 0)], 0.0, 0.0, 0.0),
     };
-    // Column i of Jᵀ L is the sum of all later rows of J: an increment moves every cycle count after it.
+    // An increment moves every life that spans it: column i of Jᵀ W L.
     let mut meat = Matrix2::zeros();
-    let mut later = Vector2::zeros();
-    for (row, (fitted, _)) in jacobian.iter().zip(&increments).rev() {
-        later += row;
-        meat += later * later.transpose() * (variance * fitted * fitted);
+    let mut spanning = Vector2::zeros();
+    for (step, (fitted, _)) in change.iter().zip(&increments) {
+        spanning += step;
+        meat += spanning * spanning.transpose() * (variance * fitted * fitted);
     }
     let covariance = inverse * meat * inverse;
     Confidence {

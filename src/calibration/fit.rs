@@ -1,6 +1,7 @@
 //! The calibration on one page: from measured curves and a forward model to A, p and how sure they are.
 
-use crate::calibration::confidence::{Confidence, confidence};
+use crate::calibration::confidence::{Confidence, Lives, confidence};
+use crate::calibration::criterion::Criterion;
 use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::pointwise_median;
 use crate::calibration::misfit::rms_life_error;
@@ -23,6 +24,8 @@ pub struct FitTask<'a> {
     pub curves: &'a [MeasuredCurve],
     /// p given by the user; `None` fits it.
     pub fixed_p: Option<f64>,
+    /// Which lives count.
+    pub criterion: Criterion,
     /// ΔK of the handbook (Pa√m) at a crack length (m).
     pub delta_k: &'a dyn Fn(f64) -> f64,
 }
@@ -67,7 +70,7 @@ pub struct Fit {
 pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
     let mut median = pointwise_median(task.curves)?;
     median.cycles = since_first(&median);
-    let target = target_of(&median);
+    let target = target_of(&median, task.criterion);
     let found = match task.fixed_p {
         Some(p) => search_a(model, target, checked_p(p)?)?,
         None => search(model, target, start_of(target, task.delta_k))?,
@@ -92,7 +95,11 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
     let apart = readings_apart(target.lengths, if spacing.is_finite() { spacing } else { 0.0 });
     let pick = |values: &[f64]| apart.iter().map(|&i| values[i]).collect::<Vec<f64>>();
     let slopes_apart = slopes(target.lengths)?.map(|slopes| pick(&slopes));
-    let confidence = confidence(&pick(&model_cycles), slopes_apart.as_deref(), &pick(target.cycles), 1.0 / constants.a);
+    let confidence = confidence(
+        task.criterion,
+        &Lives { model: &pick(&model_cycles), model_per_p: slopes_apart.as_deref(), measured: &pick(target.cycles) },
+        1.0 / constants.a,
+    );
     let paris = paris::equivalents(
         &rate_lengths,
         &rate_cycles,
@@ -114,8 +121,10 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
 /// Each specimen's own fit, reusing (and where needed adding to) the true runs; of a single specimen the record's.
 fn fit_each(task: &FitTask<'_>, model: &dyn ForwardModel, record: Constants, runs: &mut Runs) -> Result<Vec<FittedCurve>> {
     let targets: Vec<(Vec<f64>, &MeasuredCurve)> = task.curves.iter().map(|curve| (since_first(curve), curve)).collect();
-    let targets: Vec<Target<'_>> =
-        targets.iter().map(|(cycles, curve)| Target { cycles, lengths: &curve.crack_length }).collect();
+    let targets: Vec<Target<'_>> = targets
+        .iter()
+        .map(|(cycles, curve)| Target { cycles, lengths: &curve.crack_length, criterion: task.criterion })
+        .collect();
     let constants = match (task.fixed_p, task.curves.len()) {
         (_, 1) => vec![record],
         (Some(_), _) => search_each_a(&targets, runs)?,
@@ -166,8 +175,8 @@ fn since_first(curve: &MeasuredCurve) -> Vec<f64> {
     curve.cycles.iter().map(|n| n - curve.cycles[0]).collect()
 }
 
-fn target_of(curve: &MeasuredCurve) -> Target<'_> {
-    Target { cycles: &curve.cycles, lengths: &curve.crack_length }
+fn target_of(curve: &MeasuredCurve, criterion: Criterion) -> Target<'_> {
+    Target { cycles: &curve.cycles, lengths: &curve.crack_length, criterion }
 }
 
 fn longest(curve: &MeasuredCurve) -> f64 {

@@ -37,6 +37,8 @@ pub struct FitReport {
     pub p_error: f64,
     /// Where p comes from: `fitted`, `given`, `not_identified`, or the file of a record.
     pub p_source: String,
+    /// Which lives were counted: `fit.criterion`.
+    pub criterion: String,
     /// Covariance of (ln A, p).
     pub covariance: [[f64; 2]; 2],
     /// Relative scatter of the cycles between readings about the fit.
@@ -106,6 +108,7 @@ impl FitReport {
             rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
             p_error: p_error(calibration, fit),
             p_source: calibration.exponent.source.clone(),
+            criterion: calibration.criterion.name().to_owned(),
             covariance: fit.confidence.covariance,
             increment_scatter: fit.confidence.increment_scatter,
             rms_life_error: fit.record.rms_life_error(),

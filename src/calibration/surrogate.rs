@@ -3,16 +3,18 @@
 //! `ln n(p)` at a fixed length is smooth and nearly straight in p (its slope is the mean of -ln ε, its curvature the
 //! variance of ln ε over the life), so a parabola through a few true runs interpolates it better than a replay of one
 //! run does, whose error grows with the distance in p: strains are those of another crack path in time. With a single run
-//! there is only the replay.
+//! there is only the replay of it.
 
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector};
 
 use crate::calibration::model::{RecordedRun, cycles_since_first};
 use crate::error::Result;
 
-/// True runs closer than this in p count as one node: bonds break one by one, so runs carry noise of about 0.1 % in
-/// cycles, and the difference of two close runs would be mostly that.
+/// Exponents closer than this count as one: bonds break one by one, so runs carry noise of about 0.1 % in cycles, and the
+/// difference of two close runs would be mostly that.
 const NODE_DISTANCE: f64 = 0.03;
+/// Largest degree of the polynomial in p.
+const DEGREE_MAX: usize = 2;
 
 /// Step of the numerical derivative over p where there is only a replay.
 const REPLAY_STEP: f64 = 0.02;
@@ -20,32 +22,30 @@ const REPLAY_STEP: f64 = 0.02;
 /// Interpolates n(p) at fixed lengths.
 pub struct Surrogate<'a> {
     lengths: &'a [f64],
-    /// Exponents of the nodes.
+    /// Exponents of the runs, the newest first.
     p: Vec<f64>,
-    /// ln n of each node (row) at each length (column); -∞ where n = 0, as at the first length.
+    /// ln n of each run (row) at each length (column); -∞ where n = 0, as at the first length.
     log_cycles: DMatrix<f64>,
-    /// The newest run, for replays while there is one node only.
+    /// Degree of the polynomial that the exponents of the runs determine.
+    degree: usize,
+    /// The newest run, for replays while the runs determine a constant only.
     newest: &'a RecordedRun,
 }
 
 impl<'a> Surrogate<'a> {
     /// From true runs `(p, run)`, newest last (at least one), for readings at `lengths`.
     pub fn new(runs: &'a [(f64, RecordedRun)], lengths: &'a [f64]) -> Result<Self> {
-        let mut p: Vec<f64> = Vec::new();
-        let mut rows: Vec<Vec<f64>> = Vec::new();
-        for (exponent, run) in runs.iter().rev() {
-            if p.iter().all(|kept| (kept - exponent).abs() >= NODE_DISTANCE) {
-                p.push(*exponent);
-                rows.push(cycles_since_first(&run.curve, lengths)?.into_iter().map(f64::ln).collect());
-            }
-        }
-        let log_cycles = DMatrix::from_fn(p.len(), lengths.len(), |row, column| rows[row][column]);
-        Ok(Surrogate { lengths, p, log_cycles, newest: &runs[runs.len() - 1].1 })
+        let p: Vec<f64> = runs.iter().rev().map(|(exponent, _)| *exponent).collect();
+        let rows: Vec<Vec<f64>> =
+            runs.iter().rev().map(|(_, run)| cycles_since_first(&run.curve, lengths)).collect::<Result<_>>()?;
+        let log_cycles = DMatrix::from_fn(p.len(), lengths.len(), |row, column| rows[row][column].ln());
+        let degree = (apart(&p) - 1).min(DEGREE_MAX);
+        Ok(Surrogate { lengths, p, log_cycles, degree, newest: &runs[runs.len() - 1].1 })
     }
 
     /// A x cycles since the first length, at each length.
     pub fn cycles(&self, p: f64) -> Vec<f64> {
-        if self.p.len() == 1 {
+        if self.degree == 0 {
             if (p - self.p[0]).abs() < 1e-12 {
                 return self.log_cycles.row(0).iter().map(|log| log.exp()).collect();
             }
@@ -59,7 +59,7 @@ impl<'a> Surrogate<'a> {
 
     /// ∂n/∂p at each length, A fixed at 1.
     pub fn cycles_per_p(&self, p: f64) -> Vec<f64> {
-        let step = if self.p.len() == 1 { REPLAY_STEP } else { 1e-4 };
+        let step = if self.degree == 0 { REPLAY_STEP } else { 1e-4 };
         let (below, above) = (self.cycles(p - step), self.cycles(p + step));
         above.iter().zip(below).map(|(above, below)| (above - below) / (2.0 * step)).collect()
     }
@@ -77,18 +77,28 @@ impl<'a> Surrogate<'a> {
         weights.iter().zip(logs.iter()).map(|(weight, log)| weight * log).sum()
     }
 
-    /// Weights of the nodes at p: the line through two, the parabola through three, its least squares fit beyond.
+    /// Weights of the runs at p: least squares of a line or parabola through all of them, which averages their noise.
     fn weights(&self, p: f64) -> Vec<f64> {
-        let x = |node: f64| node - self.p[0];
-        if self.p.len() == 2 {
-            let share = x(p) / x(self.p[1]);
-            return vec![1.0 - share, share];
-        }
-        let basis = |node: f64| Vector3::new(1.0, x(node), x(node) * x(node));
-        let normal: Matrix3<f64> = self.p.iter().map(|&node| basis(node) * basis(node).transpose()).sum();
-        // Three nodes at least NODE_DISTANCE apart: the parabola is determined, so the matrix has an inverse.
+        let basis = |p: f64| DVector::from_fn(self.degree + 1, |power, _| (p - self.p[0]).powi(power as i32));
+        let size = self.degree + 1;
+        let normal = self.p.iter().fold(DMatrix::zeros(size, size), |sum, &p| sum + basis(p) * basis(p).transpose());
+        // As many exponents apart as it has coefficients: the polynomial is determined, so the matrix has an inverse.
         let Some(inverse) = normal.try_inverse() else { return vec![f64::NAN; self.p.len()] };
         let at_p = inverse * basis(p);
-        self.p.iter().map(|&node| basis(node).dot(&at_p)).collect()
+        self.p.iter().map(|&p| basis(p).dot(&at_p)).collect()
     }
+}
+
+/// How many exponents lie apart from each other.
+fn apart(exponents: &[f64]) -> usize {
+    let mut sorted = exponents.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let mut last = f64::NEG_INFINITY;
+    let mut count = 0;
+    for p in sorted {
+        if p - last >= NODE_DISTANCE {
+            (last, count) = (p, count + 1);
+        }
+    }
+    count
 }

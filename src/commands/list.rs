@@ -6,6 +6,7 @@ use super::console::Console;
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::calibration::case::Parameter;
 use crate::calibration::columns::{CycleUnit, LengthUnit};
+use crate::calibration::criterion::Criterion;
 use crate::calibration::rates::RateMethod;
 use crate::case::{Discretisation, Failure, Method, Symmetry};
 use crate::error::Result;
@@ -57,7 +58,14 @@ pub fn lines() -> Vec<(String, String, String)> {
         BlockKind::lines(),
         Failure::lines(),
     ];
-    let of_calibration = [Parameter::lines(), LengthUnit::lines(), CycleUnit::lines(), RateMethod::lines(), StopReason::lines()];
+    let of_calibration = [
+        Parameter::lines(),
+        Criterion::lines(),
+        LengthUnit::lines(),
+        CycleUnit::lines(),
+        RateMethod::lines(),
+        StopReason::lines(),
+    ];
     let of_the_tips = StressIntensityMethod::lines();
     let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
     let mut all: Vec<_> = of_the_test.into_iter().flatten().map(words).collect();

@@ -10,7 +10,7 @@ use super::read::Input;
 use crate::error::{Result, input, input_missing};
 use crate::input::{number, shorten, slice, table_of};
 use crate::specimen::geometry::distance;
-use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
+use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, SNUG_PIN, Specimen, SpecimenKind, Support};
 use crate::units::MM;
 
 /// One entry of `[supports]`.
@@ -30,6 +30,8 @@ struct PinInput {
     direction: [f64; 2],
     #[serde(default = "one")]
     share: f64,
+    /// Half angle of contact; a pin that fills its hole where it is left out.
+    contact_half_angle_deg: Option<f64>,
 }
 
 fn one() -> f64 {
@@ -217,7 +219,10 @@ fn read_pins(pins: &[Value], specimen: &mut Specimen) -> Result<()> {
                 "give [x, y] of the force on the plate, for example [0, 1]",
             ));
         }
-        specimen.loads.push(Load::Pin { hole: pin.hole, direction: [x / size, y / size], force: share });
+        let contact = number("an angle in degrees, 90 for a pin that fills its hole", 1.0, 90.0)
+            .read_optional(&format!("{path}.contact_half_angle_deg"), pin.contact_half_angle_deg)?
+            .map_or(SNUG_PIN, f64::to_radians);
+        specimen.loads.push(Load::Pin { hole: pin.hole, direction: [x / size, y / size], force: share, contact });
     }
     Ok(())
 }
@@ -263,6 +268,6 @@ fn resultant(load: &Load, specimen: &Specimen) -> (Point, Point) {
             let length = distance(*from, *to);
             ([(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0], [traction[0] * length, traction[1] * length])
         }
-        Load::Pin { hole, direction, force } => (specimen.holes[*hole].centre, [direction[0] * force, direction[1] * force]),
+        Load::Pin { hole, direction, force, .. } => (specimen.holes[*hole].centre, [direction[0] * force, direction[1] * force]),
     }
 }

@@ -133,7 +133,7 @@ fn draw_loads(sketch: &mut Sketch, specimen: &Specimen) {
                     named = true;
                 }
             }
-            Load::Pin { hole, direction, force } => {
+            Load::Pin { hole, direction, force, .. } => {
                 let Some(hole) = specimen.holes.get(*hole) else { continue };
                 let centre = sketch.place(hole.centre);
                 let reach = hole.radius * sketch.scale + ARROW * (force / largest).max(0.5);

@@ -11,6 +11,9 @@ use super::{Specimen, SpecimenKind, Support};
 /// error (a square plate with a/W = 0.5: 3.00 against 2.83 for a single edge crack).
 pub const SHORTEST_LENGTH_OVER_WIDTH: f64 = 1.5;
 
+/// Slack of the range of a formula: 20 mm of 100 mm is 0.2 less a rounding.
+const RANGE_SLACK: f64 = 1e-9;
+
 /// A formula for K of one specimen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandbookFormula {
@@ -128,7 +131,7 @@ impl HandbookFormula {
     /// Whether the formula holds at this crack length.
     #[must_use]
     pub fn holds_at(&self, crack_length: f64) -> bool {
-        (self.bounds[0]..=self.bounds[1]).contains(&self.relative_length(crack_length))
+        (self.bounds[0] - RANGE_SLACK..=self.bounds[1] + RANGE_SLACK).contains(&self.relative_length(crack_length))
     }
 
     /// Relative crack length of the formula: 2a/W or a/W.

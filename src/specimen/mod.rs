@@ -94,7 +94,7 @@ pub enum Load {
         /// Traction on the plate, Pa per Pa.
         traction: Point,
     },
-    /// Bearing pressure of a pin on the side of a hole that faces `direction` (cosine distribution over the half circle).
+    /// Bearing pressure `p cos(π θ / 2θ_c)` of a frictionless pin where it touches the hole, |θ| up to θ_c about `direction`.
     /// `force` is in N per N of the case's force, along the unit vector `direction`.
     Pin {
         /// Index into `Specimen::holes`.
@@ -103,8 +103,13 @@ pub enum Load {
         direction: Point,
         /// Force on the plate, N per N.
         force: f64,
+        /// Half angle of contact θ_c, rad: up to [`SNUG_PIN`].
+        contact: f64,
     },
 }
+
+/// Half angle of contact of a pin that fills its hole, rad: a pin without friction pushes over half the circle.
+pub const SNUG_PIN: f64 = std::f64::consts::FRAC_PI_2;
 
 /// What is held.
 #[derive(Debug, Clone, Copy, PartialEq)]

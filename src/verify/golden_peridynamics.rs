@@ -7,6 +7,7 @@
 use super::golden::{COMPACT, PANEL, ended_by};
 use super::scene::{case, points};
 use super::table::Table;
+use crate::calibration::criterion::Criterion;
 use crate::calibration::misfit::inverse_a;
 use crate::calibration::model::cycles_since_first;
 use crate::error::Result;
@@ -71,5 +72,9 @@ fn scale(run: &Prediction, text: &str, set: &[&str], window_mm: [usize; 2]) -> R
     let end = format!("stop.crack_length_mm={}", window_mm[1]);
     let by_hand = predict(&case(text, &[set, &[&end]].concat())?, &Silent)?;
     let lengths: Vec<f64> = (window_mm[0]..=window_mm[1]).step_by(STEP_MM).map(|length| length as f64 * MM).collect();
-    Ok(inverse_a(&cycles_since_first(&points(run), &lengths)?, &cycles_since_first(&points(&by_hand), &lengths)?))
+    Ok(inverse_a(
+        Criterion::FirstReading,
+        &cycles_since_first(&points(run), &lengths)?,
+        &cycles_since_first(&points(&by_hand), &lengths)?,
+    ))
 }

@@ -7,6 +7,7 @@
 pub mod golden;
 pub mod golden_peridynamics;
 pub mod growth;
+pub mod measured;
 pub mod resolution;
 pub mod scene;
 pub mod state_based;
@@ -68,6 +69,11 @@ pub const TOPICS: &[Topic] = &[
         fill: growth::poissons_ratio,
     },
     Topic { name: "biaxial", about: "stress along the crack does not count", fill: growth::biaxial },
+    Topic {
+        name: "measured",
+        about: "the fit to a measured panel, and its C and m by hand calculation in other specimens",
+        fill: measured::all,
+    },
     Topic { name: "life", about: "lives of whole runs against quadrature with handbook K", fill: growth::lives },
 ];
 

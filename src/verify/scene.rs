@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use crate::calibration::record::FittedRecord;
 use crate::case::Case;
 use crate::error::Result;
+use crate::input::Document;
 use crate::predict::Prediction;
 
 /// The panel of Virkler, Hillberry and Goel (1979): middle tension, W 152.4 mm, stress range 48.28 MPa at R = 0.2, aluminium
@@ -37,6 +39,15 @@ horizon_mm = 3.015
 pub fn case(text: &str, set: &[&str]) -> Result<Case> {
     let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
     Case::from_toml(text, "verification", Path::new("."), &overrides)
+}
+
+/// A case from text without fatigue law, with a fitted one and keys overridden.
+///
+/// # Errors
+/// As [`Case::from_table`] and [`Case::with_law`].
+pub fn case_with_law(text: &str, set: &[String], record: &FittedRecord) -> Result<Case> {
+    let document = Document::parse(text, "verification", Path::new("."), set)?;
+    Case::from_table(document.table.clone(), &document.name, &document.base_dir)?.with_law(record.clone())
 }
 
 /// The curve of a run as (cycles, crack length in m).

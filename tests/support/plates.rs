@@ -26,10 +26,15 @@ const FORCE: &str = "[loading]\nforce_max_n = 4000.0\nstress_ratio = 0.1\n";
 pub const PANEL: &str =
     "kind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300.0\nthickness_mm = 2.54\ncrack_length_mm = 20.0\n";
 
-/// The case of a `[specimen]` section with other keys set by `section.key=value`.
+/// The case of a `[specimen]` section, and of a `[loading]` section where one follows it, with other keys set by
+/// `section.key=value`.
 pub fn try_case(specimen: &str, set: &[&str]) -> Result<Case> {
     let overrides: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
-    let loading = if specimen.contains("compact_tension") { FORCE } else { STRESS };
+    let loading = match specimen {
+        given if given.contains("[loading]") => "",
+        pins if pins.contains("compact_tension") => FORCE,
+        _ => STRESS,
+    };
     Case::from_toml(&format!("[specimen]\n{specimen}{loading}{REST}"), "plate", Path::new("."), &overrides)
 }
 

@@ -13,7 +13,11 @@ fn body(height: f64, correction: &str) -> Body {
          [loading]\nstress_max_mpa = 10\nstress_ratio = 0\n[supports]\nbottom = {{ fix = [\"x\", \"y\"] }}\n\
          [model]\nspacing_mm = 2\nsurface_correction = \"{correction}\"\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1"
     );
-    let case = Case::from_toml(&text, "plate", Path::new(""), &[]).unwrap();
+    built(&text)
+}
+
+fn built(text: &str) -> Body {
+    let case = Case::from_toml(text, "plate", Path::new(""), &[]).unwrap();
     let model = &case.model;
     Body::build(&case.specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, 0.0).unwrap()
 }
@@ -70,4 +74,32 @@ fn the_balanced_correction_changes_bonds_near_the_rim_only() {
         });
         assert!(!inside || multiplier == 1.0, "{multiplier}");
     }
+}
+
+/// Whatever the arc over which a pin touches its hole, its whole force arrives, along its direction, and the narrower the arc
+/// the farther from the plate's middle it pushes.
+#[test]
+fn a_pin_brings_its_force_over_any_arc() {
+    let mut reach = Vec::new();
+    for half_angle in [15.0, 45.0, 90.0] {
+        let text = format!(
+            "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 120\nthickness_mm = 2\n\
+             holes = [{{ x_mm = 0, y_mm = 30, diameter_mm = 20 }}, {{ x_mm = 0, y_mm = -30, diameter_mm = 20 }}]\n\
+             cracks = [{{ from_mm = [-30, 0], to_mm = [-15, 0] }}]\n[material]\nname = \"al2024-t3\"\n[loading]\nforce_max_n = 100\n\
+             stress_ratio = 0\npins = [{{ hole = 0, direction = [0, 1], contact_half_angle_deg = {half_angle} }}, \
+             {{ hole = 1, direction = [0, -1], contact_half_angle_deg = {half_angle} }}]\n\
+             [model]\nspacing_mm = 1\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1"
+        );
+        let body = built(&text);
+        let upper = |of: &dyn Fn([f64; 2], [f64; 2]) -> f64| -> f64 {
+            let forces = body.boundary.forces.iter().map(|&(place, force)| (body.lattice.position(place as usize), force));
+            forces.filter(|(at, _)| at[1] > 0.0).map(|(at, force)| of(at, force)).sum()
+        };
+        let (across, along, moment) = (upper(&|_, f| f[0]), upper(&|_, f| f[1]), upper(&|x, f| x[0] * f[1] - x[1] * f[0]));
+        assert!(across.abs() < 1e-9 && (along - 1.0).abs() < 1e-3 && moment.abs() < 1e-9, "{half_angle}°: {across} {along}");
+        reach.push(upper(&|x, f| x[1] * f[1]));
+    }
+    assert!(reach[0] > reach[1] && reach[1] > reach[2], "{reach:?}");
+    // The middle of a narrow arc lies at the rim, 40 mm up; of a cosine over half the circle at 30 + 10 · 8/3π mm.
+    assert!((reach[0] - 0.04).abs() < 1e-3 && (reach[2] - 0.0385).abs() < 1e-3, "{reach:?}");
 }

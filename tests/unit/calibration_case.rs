@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use perilife::calibration::case::CalibrationCase;
+use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, fit};
 use perilife::calibration::power_law::PowerLaw;
 use perilife::calibration::record::FittedRecord;
@@ -45,7 +46,13 @@ fn read(text: &str, overrides: &[&str]) -> perilife::Result<CalibrationCase> {
 fn fitted(calibration: &CalibrationCase) -> Fit {
     let delta_k = |length: f64| calibration.delta_k(length);
     let model = PowerLaw::new(9.0 * MM, calibration.case.stop.crack_length, &delta_k).unwrap();
-    fit(&FitTask { curves: &calibration.curves, fixed_p: calibration.exponent.fixed, delta_k: &delta_k }, &model).unwrap()
+    let task = FitTask {
+        curves: &calibration.curves,
+        fixed_p: calibration.exponent.fixed,
+        criterion: calibration.criterion,
+        delta_k: &delta_k,
+    };
+    fit(&task, &model).unwrap()
 }
 
 #[test]
@@ -192,4 +199,30 @@ fn every_committed_calibration_can_be_read() {
         count += 1;
     }
     assert!(count >= 1);
+}
+
+#[test]
+fn the_criterion_is_a_choice() {
+    assert_eq!(read(GOOD, &[]).unwrap().criterion, Criterion::BothEnds);
+    for &criterion in Criterion::ALL {
+        let calibration = read(GOOD, &[&format!("fit.criterion={criterion}")]).unwrap();
+        assert_eq!(calibration.criterion, criterion);
+        assert_eq!(FitReport::new(&calibration, &fitted(&calibration), 0.0).criterion, criterion.name());
+    }
+    let error = read(GOOD, &["fit.criterion=least_effort"]).unwrap_err().to_string();
+    assert!(error.contains("least_effort") && error.contains("both_ends, first_reading"), "{error}");
+}
+
+/// A calibration whose readings are at hand is the one of the same readings in a file.
+#[test]
+fn readings_at_hand_are_those_of_the_file() {
+    let (from_file, at_hand) = (read(GOOD, &[]).unwrap(), CalibrationCase::from_text(GOOD, "alloy", CURVES.as_bytes()).unwrap());
+    assert_eq!((&at_hand.case, &at_hand.sources), (&from_file.case, &from_file.sources));
+    let readings = |calibration: &CalibrationCase| -> Vec<(String, Vec<f64>, Vec<f64>)> {
+        calibration.curves.iter().map(|c| (c.specimen.clone(), c.cycles.clone(), c.crack_length.clone())).collect()
+    };
+    assert_eq!(readings(&at_hand), readings(&from_file));
+    let two = GOOD.replace("[\"curves.csv\"]", "[\"curves.csv\", \"more.csv\"]");
+    let error = CalibrationCase::from_text(&two, "alloy", CURVES.as_bytes()).unwrap_err().to_string();
+    assert!(error.contains("measured.files") && error.contains("2 files"), "{error}");
 }

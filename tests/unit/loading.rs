@@ -89,3 +89,19 @@ fn loads_must_balance() {
         assert!(error.contains("not in equilibrium") && error.contains(words), "{loading}: {error}");
     }
 }
+
+#[test]
+fn a_pin_touches_over_at_most_half_its_hole() {
+    let pins = |half_angle: &str| {
+        let pin = |hole, y| format!("{{ hole = {hole}, direction = [0, {y}]{half_angle} }}");
+        case(PLATE, &format!("force_max_n = 10\nstress_ratio = 0\npins = [{}, {}]", pin(0, 1), pin(1, -1)))
+    };
+    let contact =
+        |case: Case| if let Load::Pin { contact, .. } = case.specimen.loads[0] { contact.to_degrees() } else { f64::NAN };
+    assert!((contact(pins("").unwrap()) - 90.0).abs() < 1e-9, "a pin that fills its hole");
+    assert!((contact(pins(", contact_half_angle_deg = 15").unwrap()) - 15.0).abs() < 1e-9);
+    for wrong in ["0", "120"] {
+        let error = pins(&format!(", contact_half_angle_deg = {wrong}")).unwrap_err().to_string();
+        assert!(error.contains("loading.pins[0].contact_half_angle_deg") && error.contains(wrong), "{error}");
+    }
+}

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use perilife::Result;
+use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, fit};
 use perilife::calibration::measured::{MeasuredCurve, Source};
 use perilife::calibration::misfit::{inverse_a, misfit, rms_life_error};
@@ -34,7 +35,11 @@ pub fn exact_curve(name: &str, a: f64, p: f64) -> MeasuredCurve {
 }
 
 pub fn fit_to(curves: &[MeasuredCurve], fixed_p: Option<f64>, model: &dyn ForwardModel) -> Result<Fit> {
-    fit(&FitTask { curves, fixed_p, delta_k: &delta_k }, model)
+    fit_by(Criterion::BothEnds, curves, fixed_p, model)
+}
+
+pub fn fit_by(criterion: Criterion, curves: &[MeasuredCurve], fixed_p: Option<f64>, model: &dyn ForwardModel) -> Result<Fit> {
+    fit(&FitTask { curves, fixed_p, criterion, delta_k: &delta_k }, model)
 }
 
 /// A model as the peridynamic one behaves: the first guess from hand calculation is off by `shift` in p, replays drift away
@@ -69,8 +74,41 @@ impl ForwardModel for Crooked {
 fn least_squares_in_cycles_gives_a_of_a_scaled_curve() {
     let model = [0.0, 1.0, 3.0, 7.0];
     let measured = [0.0, 20.0, 60.0, 140.0];
-    assert!((inverse_a(&model, &measured) - 20.0).abs() < 1e-12);
-    assert!(misfit(&model, &measured) < 1e-15);
+    for &criterion in Criterion::ALL {
+        assert!((inverse_a(criterion, &model, &measured) - 20.0).abs() < 1e-12, "{criterion}");
+        assert!(misfit(criterion, &model, &measured) < 1e-15, "{criterion}");
+    }
+}
+
+/// No A near the one of least squares comes nearer to a curve that the model cannot follow.
+#[test]
+fn least_squares_is_the_minimum_of_every_criterion() {
+    let (model, measured) = ([0.0, 1.0, 3.0, 7.0, 9.0], [0.0, 26.0, 60.0, 131.0, 190.0]);
+    for &criterion in Criterion::ALL {
+        let best = inverse_a(criterion, &model, &measured);
+        let away = |factor: f64| -> f64 {
+            let lives = criterion.lives(&model).into_iter().zip(criterion.lives(&measured));
+            lives.zip(criterion.weights(&measured)).map(|((n, m), w)| w * (n * best * factor - m).powi(2)).sum()
+        };
+        assert!(away(1.0) < away(1.001) && away(1.0) < away(0.999), "{criterion}");
+        let whole: f64 = criterion.lives(&measured).iter().zip(criterion.weights(&measured)).map(|(m, w)| w * m * m).sum();
+        assert!((misfit(criterion, &model, &measured) - (away(1.0) / whole).sqrt()).abs() < 1e-12, "{criterion}");
+    }
+}
+
+#[test]
+fn lives_are_counted_from_the_first_reading_and_to_the_last() {
+    let cycles = [0.0, 10.0, 16.0, 20.0];
+    assert_eq!(Criterion::FirstReading.lives(&cycles), [10.0, 16.0, 20.0]);
+    assert_eq!(Criterion::BothEnds.lives(&cycles), [10.0, 16.0, 20.0, 10.0, 4.0]);
+    assert_eq!(Criterion::BothEnds.weights(&cycles), [0.1, 1.0 / 16.0, 0.05, 0.1, 0.25]);
+    // Turned round, from the last reading to the first, a curve has the same lives.
+    let turned: Vec<f64> = cycles.iter().rev().map(|n| 20.0 - n).collect();
+    let sorted = |mut lives: Vec<f64>| {
+        lives.sort_by(f64::total_cmp);
+        lives
+    };
+    assert_eq!(sorted(Criterion::BothEnds.lives(&turned)), sorted(Criterion::BothEnds.lives(&cycles)));
 }
 
 #[test]
@@ -84,6 +122,8 @@ fn rms_life_error_follows_its_definition() {
 fn exact_curves_give_back_their_constants() {
     for p in [1.6, 2.0, 2.87, 4.0, 6.0] {
         let a = 1e-10;
+        let plain = fit_by(Criterion::FirstReading, &[exact_curve("exact", a, p)], None, &paris_model()).unwrap();
+        assert!((plain.record.constants.p - p).abs() < 0.003, "p = {p}: {:?}", plain.record.constants);
         let fit = fit_to(&[exact_curve("exact", a, p)], None, &paris_model()).unwrap();
         assert!((fit.record.constants.p - p).abs() < 0.003, "p = {p}: {:?}", fit.record.constants);
         assert!(fit.record.rms_life_error() < 1e-3, "p = {p}: rms {}", fit.record.rms_life_error());

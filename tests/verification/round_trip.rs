@@ -1,6 +1,7 @@
 //! The calibration finds the constants of curves that the engine itself computed.
 
 use perilife::calibration::confidence::distance_squared;
+use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, fit};
 use perilife::calibration::measured::{MeasuredCurve, Source};
 use perilife::calibration::median::cycles_at;
@@ -51,7 +52,7 @@ fn fits(spacing: f64, scatter: f64, seeds: u64) -> Vec<Fit> {
     (1..=seeds)
         .map(|seed| {
             let curves = [curve(spacing, &exact, scatter, seed)];
-            fit(&FitTask { curves: &curves, fixed_p: None, delta_k: &delta_k }, model).unwrap()
+            fit(&FitTask { curves: &curves, fixed_p: None, criterion: Criterion::BothEnds, delta_k: &delta_k }, model).unwrap()
         })
         .collect()
 }

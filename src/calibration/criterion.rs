@@ -1,0 +1,55 @@
+//! Which lives a fit counts, and how heavily.
+//!
+//! What is predicted is life: from the first reading to some length, and what remains from a length to the end. Plain least
+//! squares on cycles since the first reading hardly sees the latter, since the last millimetres take few cycles, and leaves
+//! the exponent to the readings in the middle. `BothEnds` counts both kinds of lives, each against the scatter it is expected
+//! to have: increments that scatter independently make the variance of a life grow with the life.
+//!
+//! Paris growth with handbook K on the median of the Virkler panels (0.8 mm steps), errors in percent:
+//!
+//! | lives counted | m | life | rms | remaining from 20, 30, 35 mm | m of 34 panels ± | m of made curves ± |
+//! |---|---|---|---|---|---|---|
+//! | since the first reading, alike | 3.02 | -0.6 | 1.06 | -3.0 -7.2 -10.4 | 0.22 | 0.034 |
+//! | from both ends, alike | 2.98 | -0.5 | 1.08 | -1.6 -5.2 -8.2 | 0.18 | 0.028 |
+//! | from both ends, over life | 2.96 | -0.1 | 1.10 | -0.5 -3.6 -6.5 | 0.17 | 0.026 |
+//! | between all pairs, alike | 2.87 | -3.3 | 3.25 | -0.9 -2.3 -4.5 | | |
+//!
+//! (last column: standard deviation over 200 made curves, 5 % scatter of the cycles between readings).
+
+crate::kinds! {
+    /// What the least squares of a fit count.
+    pub enum Criterion for "fit.criterion" {
+        BothEnds = "both_ends": "lives from the first reading and lives to the last one, each over the scatter expected of it",
+        FirstReading = "first_reading": "cycles since the first reading, all alike: plain least squares on the a-N curve",
+    }
+}
+
+impl Criterion {
+    /// Readings (from, to) between which lives are counted, of a curve with this many readings.
+    #[must_use]
+    pub fn spans(self, readings: usize) -> Vec<(usize, usize)> {
+        let since_first = (1..readings).map(|to| (0, to));
+        match self {
+            Criterion::FirstReading => since_first.collect(),
+            Criterion::BothEnds => since_first.chain((2..readings).map(|from| (from - 1, readings - 1))).collect(),
+        }
+    }
+
+    /// The lives of a curve.
+    #[must_use]
+    pub fn lives(self, cycles: &[f64]) -> Vec<f64> {
+        self.spans(cycles.len()).into_iter().map(|(from, to)| cycles[to] - cycles[from]).collect()
+    }
+
+    /// Weights of the lives of a measured curve.
+    #[must_use]
+    pub fn weights(self, measured: &[f64]) -> Vec<f64> {
+        let weight = |life: f64| match self {
+            Criterion::FirstReading => 1.0,
+            // Cycles of a measured curve rise; a made one that does not has no scatter to compare with.
+            Criterion::BothEnds if life > 0.0 => 1.0 / life,
+            Criterion::BothEnds => 0.0,
+        };
+        self.lives(measured).into_iter().map(weight).collect()
+    }
+}
