@@ -26,10 +26,11 @@ use crate::body::{Body, Bond};
 use crate::case::{Case, Method};
 use crate::error::{Error, Result};
 use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, stretch, threshold_strain};
+use crate::fatigue::block_control::{Around, BlockControl};
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::fatigue::remaining_life::BondLife;
-use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
+use crate::fatigue::{Block, BlockKind, FatigueLaw, FatigueSettings};
 use crate::solver::field::Layout;
 use crate::solver::{Equilibrium, Focus};
 use crate::specimen::Specimen;
@@ -93,6 +94,10 @@ pub fn run(
         return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
     }
     let mut equilibrium = Equilibrium::new(model.solver, &body, &bonds, case.loading.maximum);
+    if settings.block.kind == BlockKind::Controlled {
+        equilibrium = equilibrium.foreseeing();
+    }
+    let mut control = BlockControl::new(&settings.block, law.p, tips.len());
     let mut iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;
     let mut solves = 1;
 
@@ -121,7 +126,8 @@ pub fn run(
             retire_tips(&mut tips, &body, &case.specimen, &near, settings.zone_radius_horizons);
         }
         iterations += equilibrium.reach(&body, &bonds, &near, &focus(&tips, &body, settings), &mut displacement)?;
-        let ageing = ageing_bonds(&body, &near, &displacement, &tips, settings, (share, threshold));
+        let mut ageing = ageing_bonds(&body, &near, &displacement, &tips, settings, (share, threshold));
+        control.correct(&equilibrium, &body, &tips, &mut ageing);
         if let Some(reason) = stop::before_block(case, end, &track, &tips, &ageing) {
             break reason;
         }
@@ -150,13 +156,15 @@ pub fn run(
             };
             newly.extend(aside);
             equilibrium.broke(&body, &bonds, &newly);
-            match equilibrium.solve(&body, &bonds, &mut displacement) {
-                Ok(more) => iterations += more,
+            let may_foresee = counting && !overloaded && !watch_all;
+            let around = Around { body: &body, bonds: &bonds, tips: &tips, watched: &near };
+            match control.settle(&mut equilibrium, around, &newly, may_foresee, &mut displacement) {
+                Ok(None) => {}
+                Ok(Some(more)) => (solves, iterations) = (solves + 1, iterations + more),
                 // What is left after bonds broke by overload cannot carry the load: the plate is as good as in two.
                 Err(_) if overloaded => break Some(StopReason::Severed),
                 Err(_) => break Some(StopReason::NoConvergence),
             }
-            solves += 1;
             if watch_all {
                 iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
             }
@@ -178,9 +186,10 @@ pub fn run(
         broken_bonds += spent.len();
         let shares = share_out(&body, &tips, &spent);
         tips.iter_mut().zip(&shares).for_each(|(tip, broken)| tip.advance(&body, &bonds, &case.specimen, broken));
-        track.record(start.records(&tips), broken_bonds, if outcome.is_none() { equilibrium.work() } else { f64::NAN });
+        let work = if outcome.is_none() { equilibrium.work() } else { f64::NAN };
+        track.record(start.records(&tips), broken_bonds, work, equilibrium.is_foreseen() && outcome.is_none());
         recorder.block(&ageing, &spent, track.last().crack_length);
-        if counting && album.is_due(track.last()) && outcome.is_none() {
+        if counting && album.is_due(track.last()) && outcome.is_none() && !equilibrium.is_foreseen() {
             iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
             album.look(&body, &bonds, &displacement, track.last());
         }
@@ -196,6 +205,7 @@ pub fn run(
     let stop = stop::settled(end, &track, stop);
     if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
         iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
+        track.close(equilibrium.work());
     }
     album.finish(&body, &bonds, &displacement, track.last());
     let mut warnings = track.warnings(case, &body);

@@ -11,6 +11,8 @@ mod noise;
 #[path = "support/shared.rs"]
 mod shared;
 
+#[path = "unit/block.rs"]
+mod block;
 #[path = "unit/boundary.rs"]
 mod boundary;
 #[path = "unit/calibration_case.rs"]

@@ -25,6 +25,8 @@ mod stress_intensity;
 mod readme_accuracy;
 #[path = "verification/fatigue.rs"]
 mod fatigue;
+#[path = "verification/blocks.rs"]
+mod blocks;
 #[path = "verification/round_trip.rs"]
 mod round_trip;
 #[path = "verification/crack_length.rs"]

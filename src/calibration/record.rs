@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::fatigue::BlockKind;
+
 /// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -63,6 +65,12 @@ pub struct FittedRecord {
     pub finite_horizon: String,
     /// `fatigue.precrack`.
     pub precrack: String,
+    /// `fatigue.block` of the runs of the fit; another choice here is free, since blocks are a matter of error, not of model.
+    #[serde(default = "until_next_break")]
+    pub block: String,
+    /// `fatigue.block_error_percent` of controlled blocks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub block_error_percent: Option<f64>,
     /// Young's modulus of the calibration.
     pub youngs_modulus_gpa: f64,
     /// Poisson's ratio of the calibration.
@@ -82,6 +90,11 @@ pub struct FittedRecord {
 /// The method of records that do not name theirs.
 fn ignored() -> String {
     "ignored".to_owned()
+}
+
+/// The blocks of records from before they were controlled.
+fn until_next_break() -> String {
+    BlockKind::UntilNextBreak.name().to_owned()
 }
 
 fn peridynamics() -> String {

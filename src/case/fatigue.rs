@@ -18,6 +18,8 @@ use crate::specimen::{LengthConvention, Specimen};
 /// Radius of the ageing zone: a narrower zone breaks bonds beside the crack path less often, see the growth law.
 const ZONE_RADIUS: f64 = 0.5;
 const CYCLES_MAX: f64 = 1e9;
+/// Error of life that a `controlled` run may make, percent.
+const BLOCK_ERROR_PERCENT: f64 = 1.0;
 
 /// Keys of `[fatigue]`.
 #[derive(Deserialize)]
@@ -35,6 +37,7 @@ struct Input {
     block: Option<BlockKind>,
     block_cycles: Option<f64>,
     bonds_per_block: Option<u32>,
+    block_error_percent: Option<f64>,
     critical_stretch: Option<f64>,
     walker_gamma: Option<f64>,
     delta_k_threshold_mpa_sqrt_m: Option<f64>,
@@ -91,38 +94,35 @@ pub(super) fn from_value(value: &Value, method: Method, base_dir: &Path, choices
     Ok(Fatigue { settings, law: law.read(method, base_dir)?, allow_extrapolation })
 }
 
+/// Reads the cycle block: every kind has one key of its own, and no other takes it.
 fn read_block(slice: &Input) -> Result<Block> {
-    let kind = slice.block.unwrap_or(BlockKind::UntilNextBreak);
+    use BlockKind::{Controlled, Fixed, UntilNextBreak};
+    let kind = slice.block.unwrap_or(Controlled);
     let cycles = number("a number of cycles", 1e-3, 1e12).read_optional("fatigue.block_cycles", slice.block_cycles)?;
-    match (kind, cycles, slice.bonds_per_block) {
-        (BlockKind::Fixed, None, _) => {
-            return Err(input_missing(
-                "fatigue.block_cycles",
-                "is missing, and block is \"fixed\"",
-                "give the cycles of a block",
-            ));
+    let bonds = slice.bonds_per_block.map(f64::from);
+    let bonds = number("a number of bonds", 1.0, 1e6).read_optional("fatigue.bonds_per_block", bonds)?;
+    let error = slice.block_error_percent;
+    let error = number("an error in percent", 0.01, 20.0).read_optional("fatigue.block_error_percent", error)?;
+    for (key, value, of) in
+        [("block_cycles", cycles, Fixed), ("bonds_per_block", bonds, UntilNextBreak), ("block_error_percent", error, Controlled)]
+    {
+        if let Some(value) = value.filter(|_| kind != of) {
+            let chosen = if slice.block.is_some() { "" } else { ", the default" };
+            let problem = format!("does not go with block = \"{kind}\"{chosen}");
+            let remedy = format!("leave it out, or use block = \"{of}\"");
+            return Err(input(&format!("fatigue.{key}"), value, problem, remedy));
         }
-        (BlockKind::Fixed, _, Some(bonds)) => {
-            return Err(input(
-                "fatigue.bonds_per_block",
-                bonds,
-                "does not go with block = \"fixed\"",
-                "leave it out, or use block = \"until_next_break\"",
-            ));
-        }
-        (BlockKind::UntilNextBreak, Some(cycles), _) => {
-            return Err(input(
-                "fatigue.block_cycles",
-                cycles,
-                "does not go with block = \"until_next_break\"",
-                "leave it out, or use block = \"fixed\"",
-            ));
-        }
-        _ => {}
     }
-    let bonds = slice.bonds_per_block.unwrap_or(1);
-    number("a number of bonds", 1.0, 1e6).read("fatigue.bonds_per_block", f64::from(bonds))?;
-    Ok(Block { kind, cycles: cycles.unwrap_or(f64::INFINITY), bonds: bonds as usize })
+    if kind == Fixed && cycles.is_none() {
+        let remedy = "give the cycles of a block";
+        return Err(input_missing("fatigue.block_cycles", "is missing, and block is \"fixed\"", remedy));
+    }
+    Ok(Block {
+        kind,
+        cycles: cycles.unwrap_or(f64::INFINITY),
+        bonds: bonds.unwrap_or(1.0) as usize,
+        error_percent: error.unwrap_or(BLOCK_ERROR_PERCENT),
+    })
 }
 
 /// Keys of `[stop]`.

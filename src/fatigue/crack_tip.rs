@@ -244,13 +244,26 @@ fn front(body: &Body) -> f64 {
 pub fn share_out(body: &Body, tips: &[CrackTip], broken: &[Bond]) -> Vec<Vec<Bond>> {
     let mut shares = vec![Vec::new(); tips.len()];
     for &bond in broken {
-        let middle = body.middle(bond);
-        let nearest = (0..tips.len())
-            .filter(|&t| tips[t].is_active() && distance(tips[t].position, middle) <= REACH_HORIZONS * body.horizon())
-            .min_by(|&a, &b| distance(tips[a].position, middle).total_cmp(&distance(tips[b].position, middle)));
-        if let Some(nearest) = nearest {
+        if let Some(nearest) = nearest_tip(body, tips, bond) {
             shares[nearest].push(bond);
         }
     }
     shares
+}
+
+/// The nearest active tip that a bond is near to.
+#[must_use]
+pub fn nearest_tip(body: &Body, tips: &[CrackTip], bond: Bond) -> Option<usize> {
+    let middle = body.middle(bond);
+    (0..tips.len())
+        .filter(|&t| tips[t].is_active() && distance(tips[t].position, middle) <= REACH_HORIZONS * body.horizon())
+        .min_by(|&a, &b| distance(tips[a].position, middle).total_cmp(&distance(tips[b].position, middle)))
+}
+
+/// Length of crack that broken bonds near a tip stand for, m.
+#[must_use]
+pub fn severed_length(body: &Body, tip: &CrackTip, broken: &[Bond]) -> f64 {
+    let along = body.lattice.to_axes(tip.direction);
+    let per_length = severed_per_length(body, [-along[1], along[0]]);
+    broken.iter().map(|&bond| severed_weight(body, body.ends(bond).0) / per_length).sum()
 }

@@ -1,6 +1,7 @@
 //! Life of a bond under cycles: dλ/dN = -A ε^p (Silling and Askari 2014, SAND2014-18590).
 
 pub mod ageing;
+pub mod block_control;
 pub mod crack_tip;
 pub mod finite_horizon;
 pub mod growth_rate;
@@ -39,6 +40,7 @@ crate::kinds! {
 crate::kinds! {
     /// How long a cycle block is.
     pub enum BlockKind for "fatigue.block" {
+        Controlled = "controlled": "as many breaks as the estimated error of strains not solved for, block_error_percent of life, allows",
         UntilNextBreak = "until_next_break": "cycles until the next bond, or the next bonds_per_block bonds, are spent",
         Fixed = "fixed": "block_cycles cycles",
     }
@@ -73,11 +75,23 @@ pub struct Block {
     pub cycles: f64,
     /// Bonds (or groups that break together) after which an `until_next_break` block ends.
     pub bonds: usize,
+    /// Bound on the error of a `controlled` run, percent of its life.
+    pub error_percent: f64,
+}
+
+impl std::fmt::Display for Block {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.kind {
+            BlockKind::Controlled => write!(f, "{} to {} % of life", self.kind, self.error_percent),
+            BlockKind::UntilNextBreak => write!(f, "{}, {} a block", self.kind, self.bonds),
+            BlockKind::Fixed => write!(f, "{}, {} cycles", self.kind, self.cycles),
+        }
+    }
 }
 
 impl Block {
     /// Until the next bond breaks.
-    pub const NEXT_BREAK: Block = Block { kind: BlockKind::UntilNextBreak, cycles: f64::INFINITY, bonds: 1 };
+    pub const NEXT_BREAK: Block = Block { kind: BlockKind::UntilNextBreak, cycles: f64::INFINITY, bonds: 1, error_percent: 0.0 };
 }
 
 /// What a case says about fatigue, except the constants of the law.

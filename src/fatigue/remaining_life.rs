@@ -32,13 +32,15 @@ impl BondLife {
         self.life[bond as usize] = life;
     }
 
-    /// Chooses the next cycle block: its cycles and the bonds it spends.
+    /// Chooses the next cycle block, or its part up to the next break: its cycles and the bonds it spends.
     #[must_use]
     pub fn next_block(&self, law: &FatigueLaw, block: &Block, ageing: &[AgeingBond]) -> (f64, Vec<Bond>) {
         let rates: Vec<f64> = ageing.iter().map(|b| law.a * b.strain.powf(law.p)).collect();
         let cycles = match block.kind {
             BlockKind::Fixed => block.cycles,
             BlockKind::UntilNextBreak => self.nth_break(ageing, &rates, block.bonds),
+            // A controlled block goes from break to break with strains foreseen in between.
+            BlockKind::Controlled => self.nth_break(ageing, &rates, 1),
         };
         let spent =
             ageing.iter().zip(&rates).filter(|(b, rate)| self.of(b.bond) - cycles * *rate <= TOGETHER).map(|(b, _)| b.bond);

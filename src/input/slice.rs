@@ -15,7 +15,6 @@ pub const PLANNED: &[(&str, &[&str])] = &[
     ("model.discretisation", &["dual_horizon"]),
     ("model.symmetry", &["auto"]),
     ("model.solver", &["adaptive_dynamic_relaxation", "velocity_verlet"]),
-    ("fatigue.block", &["controlled"]),
     ("fatigue.failure", &["energy", "stress"]),
     ("loading.kind", &["traction", "displacement", "velocity", "platens"]),
 ];

@@ -30,6 +30,8 @@ pub struct Row {
     work: f64,
     broken_bonds: usize,
     tips: Vec<TipRecord>,
+    /// Whether its block goes on: the crack is read off its row, but the curve has one row a block.
+    is_open: bool,
 }
 
 impl Row {
@@ -65,7 +67,7 @@ impl Track {
             zero: None,
             run_out: None,
         };
-        track.record(tips, 0, work);
+        track.record(tips, 0, work, false);
         track
     }
 
@@ -96,11 +98,19 @@ impl Track {
         self.zero.map_or(0.0, |zero| self.cycles - self.rows[zero].cycles)
     }
 
-    /// Records the plate after a block; growth of the tips counts from their initial lengths.
-    pub(super) fn record(&mut self, tips: Vec<TipRecord>, broken_bonds: usize, work: f64) {
+    /// Records the plate after a block, or after a break within one that is still open. Growth of the tips counts from their
+    /// initial lengths.
+    pub(super) fn record(&mut self, tips: Vec<TipRecord>, broken_bonds: usize, work: f64, is_open: bool) {
         let growth: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
         let crack_length = self.specimen.crack_length_after(&growth);
-        self.rows.push(Row { cycles: self.cycles, crack_length, work, broken_bonds, tips });
+        self.rows.push(Row { cycles: self.cycles, crack_length, work, broken_bonds, tips, is_open });
+    }
+
+    /// Ends the block at hand with the work of a plate in equilibrium.
+    pub(super) fn close(&mut self, work: f64) {
+        if let Some(row) = self.rows.last_mut().filter(|row| row.is_open) {
+            (row.work, row.is_open) = (work, false);
+        }
     }
 
     /// Ends the curve at a run-out: the crack stands where it is.
@@ -225,9 +235,10 @@ impl Track {
         };
         let mut first = point(start, 0.0, self.origin);
         first.tips.iter_mut().for_each(|tip| tip.growth = 0.0);
-        let mut curve = vec![first];
+        let (mut curve, last) = (vec![first], rows.len() - 1);
         for (i, row) in rows.iter().enumerate().skip(start) {
-            if row.cycles > zero || row.crack_length > self.origin * (1.0 + 1e-12) {
+            let ends = !row.is_open || i == last;
+            if ends && (row.cycles > zero || row.crack_length > self.origin * (1.0 + 1e-12)) {
                 let mut next = point(i, (row.cycles - zero).max(0.0), row.crack_length.max(self.origin));
                 next.tips.iter_mut().for_each(|tip| tip.growth = tip.growth.max(0.0));
                 curve.push(next);

@@ -19,6 +19,7 @@ use direct::DirectSolver;
 use field::Layout;
 use product::{Into, Product};
 use window::WindowSolver;
+use window::held_rim::HeldRim;
 
 crate::kinds! {
     /// Equilibrium solvers.
@@ -40,6 +41,14 @@ pub struct Focus {
     pub wake: Vec<Point>,
     /// Distance from that way and its continuation within which the ends of ageing bonds lie, m.
     pub reach: f64,
+}
+
+impl Focus {
+    /// The way of the tip and its continuation straight ahead, as segments.
+    fn way(&self, ahead: f64) -> impl Iterator<Item = (Point, Point)> + '_ {
+        let end = [0, 1].map(|i| self.position[i] + ahead * self.direction[i]);
+        self.wake.windows(2).map(|step| (step[0], step[1])).chain(std::iter::once((self.position, end)))
+    }
 }
 
 /// What a solve took and gave.
@@ -104,6 +113,9 @@ trait Balance: Send {
         displacement: &mut Vec<f64>,
     ) -> Result<usize>;
     fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
+    fn get_ready_to_foresee(&mut self);
+    fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool;
+    fn is_foreseen(&self) -> bool;
     fn is_whole(&self) -> bool;
     fn window(&self) -> Option<&[u32]>;
 }
@@ -157,6 +169,27 @@ impl Equilibrium {
         self.inner.complete(body, bonds, displacement)
     }
 
+    /// Lets [`Equilibrium::foresee`] stand in for solves from now on, where a solve takes long: the window's solver needs no
+    /// such help, its solves are as fast and exact.
+    #[must_use]
+    pub fn foreseeing(mut self) -> Self {
+        self.inner.get_ready_to_foresee();
+        self
+    }
+
+    /// Estimates the displacement around the tips after the breaks told since the last solve, on the points that
+    /// [`Equilibrium::window`] then gives, with the plate farther away kept still; `false`, and nothing changed, where only a
+    /// solve can tell.
+    pub fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool {
+        self.inner.foresee(body, bonds, displacement)
+    }
+
+    /// Whether the displacement is such an estimate, not yet solved for.
+    #[must_use]
+    pub fn is_foreseen(&self) -> bool {
+        self.inner.is_foreseen()
+    }
+
     /// Whether the displacement is right everywhere.
     #[must_use]
     pub fn is_whole(&self) -> bool {
@@ -185,6 +218,11 @@ struct Sides<const N: usize> {
     grips: Option<Grips>,
     u: Vec<f64>,
     work: f64,
+    /// Stands in for solves that take long.
+    rim: Option<HeldRim>,
+    /// Whether u is what it foresees.
+    is_foreseen: bool,
+    has_fast_solves: bool,
 }
 
 struct Grips {
@@ -244,19 +282,20 @@ impl<const N: usize> Sides<N> {
             SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product, TOLERANCE)),
             SolverKind::Direct => Box::new(DirectSolver::default()),
         };
-        Sides { product, solver, f, grips, u: layout.zeros(), work: 0.0 }
+        let has_fast_solves = kind == SolverKind::Window;
+        Sides { product, solver, f, grips, u: layout.zeros(), work: 0.0, rim: None, is_foreseen: false, has_fast_solves }
     }
 }
 
 impl<const N: usize> Sides<N> {
-    /// The solver and the system it works on, with its unknown.
+    /// The solver and the system it works on, with its unknown, and what stands in for it.
     fn parts<'a>(
         &'a mut self,
         body: &'a Body,
         bonds: &'a Bonds,
-    ) -> (&'a mut Box<dyn LinearSolver<N>>, System<'a, N>, &'a mut [f64]) {
+    ) -> (&'a mut Box<dyn LinearSolver<N>>, System<'a, N>, &'a mut [f64], Option<&'a mut HeldRim>) {
         let f = self.grips.as_ref().map_or(&self.f, |grips| &grips.drag);
-        (&mut self.solver, System { body, bonds, product: &self.product, f }, &mut self.u)
+        (&mut self.solver, System { body, bonds, product: &self.product, f }, &mut self.u, self.rim.as_mut())
     }
 
     /// Free components follow the grips: K u = -K g. The stiffness at the grips never changes, so -K g does not either.
@@ -294,14 +333,37 @@ impl<const N: usize> Sides<N> {
 impl<const N: usize> Balance for Sides<N> {
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
         self.drag_grips(bonds);
-        let (solver, system, u) = self.parts(body, bonds);
+        let (solver, system, u, rim) = self.parts(body, bonds);
         let solved = solver.solve(system, u)?;
+        if let Some(rim) = rim {
+            rim.renew(system, u, solved.work);
+        }
+        self.is_foreseen = false;
         self.give(body, bonds, solved.work, displacement);
         Ok(solved.iterations)
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
         self.solver.broke(body, bonds, &self.product, broken);
+        if let Some(rim) = &mut self.rim {
+            rim.broke(broken);
+        }
+    }
+
+    fn get_ready_to_foresee(&mut self) {
+        self.rim = (!self.has_fast_solves).then(HeldRim::default);
+    }
+
+    fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool {
+        let (_, system, u, rim) = self.parts(body, bonds);
+        let Some(work) = rim.and_then(|rim| rim.foresee(system, u)) else { return false };
+        self.is_foreseen = true;
+        self.give(body, bonds, work, displacement);
+        true
+    }
+
+    fn is_foreseen(&self) -> bool {
+        self.is_foreseen
     }
 
     fn work(&self) -> f64 {
@@ -316,9 +378,17 @@ impl<const N: usize> Balance for Sides<N> {
         tips: &[Focus],
         displacement: &mut Vec<f64>,
     ) -> Result<usize> {
-        let (solver, system, u) = self.parts(body, bonds);
+        let mut iterations = 0;
+        if self.is_foreseen && !self.rim.as_ref().is_some_and(|rim| rim.holds(body, watched, tips)) {
+            iterations += self.solve(body, bonds, displacement)?;
+        }
+        let is_foreseen = self.is_foreseen;
+        let (solver, system, u, rim) = self.parts(body, bonds);
+        if let Some(rim) = rim.filter(|_| !is_foreseen) {
+            rim.follow(system, u, watched, tips);
+        }
         let was_whole = solver.is_whole();
-        let iterations = solver.reach(system, u, watched, tips)?;
+        iterations += solver.reach(system, u, watched, tips)?;
         if solver.is_whole() && !was_whole {
             let work = field::dot(system.product.layout(), system.f, u);
             self.give(body, bonds, work, displacement);
@@ -327,7 +397,10 @@ impl<const N: usize> Balance for Sides<N> {
     }
 
     fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
-        let (solver, system, u) = self.parts(body, bonds);
+        if self.is_foreseen {
+            return self.solve(body, bonds, displacement);
+        }
+        let (solver, system, u, _) = self.parts(body, bonds);
         if solver.is_whole() {
             return Ok(0);
         }
@@ -338,10 +411,10 @@ impl<const N: usize> Balance for Sides<N> {
     }
 
     fn is_whole(&self) -> bool {
-        self.solver.is_whole()
+        !self.is_foreseen && self.solver.is_whole()
     }
 
     fn window(&self) -> Option<&[u32]> {
-        self.solver.window()
+        self.rim.as_ref().and_then(HeldRim::places).or_else(|| self.solver.window())
     }
 }

@@ -4,6 +4,7 @@
 //! the program, not records of what it reaches: a row that misses its bound either fails the command or carries the reason
 //! of a known miss.
 
+pub mod blocks;
 pub mod golden;
 pub mod golden_peridynamics;
 pub mod growth;
@@ -56,7 +57,7 @@ pub const TOPICS: &[Topic] = &[
     Topic { name: "one_line", about: "one A for middle tension, single edge and compact tension", fill: growth::specimens },
     Topic { name: "spacing", about: "one A for every spacing and horizon ratio", fill: resolution::spacing },
     Topic { name: "orientation", about: "life on turned lattices", fill: resolution::orientation },
-    Topic { name: "blocks", about: "life over the size of cycle blocks", fill: resolution::blocks },
+    Topic { name: "blocks", about: "life over the size of cycle blocks, controlled or not", fill: blocks::rows },
     Topic { name: "clean_cracks", about: "broken bonds over those that a clean cut severs", fill: resolution::clean_cracks },
     Topic {
         name: "state_based",

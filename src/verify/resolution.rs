@@ -1,18 +1,9 @@
 //! Does the life depend on how the plate is divided into points?
 
-use super::scene::{PANEL, case};
+use super::scene::{PANEL, SMALL, case};
 use super::table::Table;
 use crate::error::Result;
 use crate::predict::{Silent, predict};
-
-/// A panel small enough for fine lattices, its crack long enough for wide horizons.
-const SMALL: [&str; 5] = [
-    "specimen.width_mm=110",
-    "specimen.length_mm=140",
-    "specimen.crack_length_mm=20",
-    "stop.crack_length_mm=27",
-    "stop.cycles_max=1e12",
-];
 
 /// One A for all spacings at the default horizon ratio, and for wider horizons.
 ///
@@ -54,23 +45,6 @@ pub(super) fn turned_lattices(table: &mut Table, what: &str, set: &[&str]) -> Re
         let ratio = life(&[&long[..], &[&turned]].concat())? / upright;
         let quantity = format!("{what}M(T) W 120, a 20-40 mm, 1 mm: life on a lattice turned by {angle}° over upright");
         table.compare(quantity, ratio, 1.0, 8.0, "the lattice is not part of the material");
-    }
-    Ok(())
-}
-
-/// Error over block size, against single breaks.
-///
-/// # Errors
-/// As [`predict`].
-pub fn blocks(table: &mut Table) -> Result<()> {
-    let single = life(&["model.spacing_mm=1"])?;
-    for bonds in [2, 6, 24] {
-        let ratio = life(&["model.spacing_mm=1", &format!("fatigue.bonds_per_block={bonds}")])? / single;
-        let quantity = format!("M(T) W 110, a 20-27 mm, 1 mm: life with {bonds} breaks a block over single breaks");
-        table.compare(quantity, ratio, 1.0, 1.0, "blocks until the next break");
-        table.known_miss(
-            "bonds spent in one block do not feel each other's break; the default breaks one (or mirror twins) a block",
-        );
     }
     Ok(())
 }

@@ -32,6 +32,15 @@ p = 2.87
 horizon_mm = 3.015
 "#;
 
+/// Turns [`PANEL`] into one small enough for fine lattices, its crack long enough for wide horizons.
+pub const SMALL: [&str; 5] = [
+    "specimen.width_mm=110",
+    "specimen.length_mm=140",
+    "specimen.crack_length_mm=20",
+    "stop.crack_length_mm=27",
+    "stop.cycles_max=1e12",
+];
+
 /// A case from its text, with keys overridden by `section.key=value`.
 ///
 /// # Errors

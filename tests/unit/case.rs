@@ -45,6 +45,8 @@ fn record() -> FittedRecord {
         lattice_direction: "corrected".into(),
         finite_horizon: "corrected".into(),
         precrack: "steady_profile".into(),
+        block: "controlled".into(),
+        block_error_percent: Some(1.0),
         youngs_modulus_gpa: 73.1,
         poisson_ratio: 0.33,
         plane: "stress".into(),
@@ -67,6 +69,7 @@ fn defaults_are_those_of_the_contract() {
     assert_eq!((law.kind, law.kernel, law.rotation), (BondLawKind::TwoParameter, Kernel::Conical, Rotation::Free));
     assert_eq!((case.model.horizon_ratio, case.fatigue.zone_radius_horizons, case.stop.cycles_max), (3.015, 0.5, 1e9));
     assert_eq!((case.fatigue.precrack.name(), case.fatigue.ageing.name()), ("steady_profile", "crack_tip"));
+    assert_eq!((case.fatigue.block.kind.name(), case.fatigue.block.error_percent), ("controlled", 1.0));
     assert!(
         case.stop.crack_length.is_infinite()
             && case.fatigue.critical_stretch == perilife::fatigue::OVERLOAD_STRETCH

@@ -116,7 +116,7 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
             "ageing",
             format!(
                 "{}, zone radius {} horizons, precrack {}, block {}",
-                fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack, fatigue.block.kind
+                fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack, fatigue.block
             ),
         ),
         ("handbook K", formula),

@@ -35,8 +35,9 @@ pub struct Condensed {
 /// Condenses the plate with its present bonds onto `window` (ascending places, each with a bond). `None` where the
 /// stiffness is not positive definite in these digits.
 ///
-/// A plate that floats is held at its window, at
-/// `pins` (indices of the window's vector): displacement is then relative to these, which strains do not feel.
+/// Points held altogether, and not of the window, take part as ground only, so that a small part of a large plate costs no
+/// more than its size. A plate that floats is held at its window, at `pins` (indices of the window's vector): displacement is
+/// then relative to these, which strains do not feel.
 #[must_use]
 pub fn condense<const M: usize, A: Assembly<M>>(
     body: &Body,
@@ -47,14 +48,17 @@ pub fn condense<const M: usize, A: Assembly<M>>(
 ) -> Option<Condensed> {
     let mut kept = vec![false; body.places()];
     window.iter().for_each(|&place| kept[place as usize] = true);
-    let condenser = Condenser { body, bonds, assembly, kept };
-    let whole = Rectangle { columns: (0, body.lattice.columns), rows: (0, body.lattice.rows) };
-    let rest = condenser.eliminate(whole)?;
+    let mut ground = vec![false; body.places()];
+    for place in body.points.iter().map(|&place| place as usize) {
+        ground[place] = !kept[place] && (0..M).all(|c| assembly.is_held(place, c));
+    }
+    let condenser = Condenser { body, bonds, assembly, kept, ground };
+    let rest = condenser.eliminate(condenser.rectangle())?;
 
     // What is left couples window points only; bonds among them come in now.
     let mut sum = Front::<M>::zeros(window.to_vec());
     sum.add(&rest);
-    condenser.assemble(&mut sum, window, &|other| condenser.kept[other]);
+    condenser.assemble(&mut sum, window, &|other| condenser.kept[other] || condenser.ground[other]);
     for (at, &place) in window.iter().enumerate() {
         condenser.hold(&mut sum.matrix, at, place);
     }
@@ -139,9 +143,22 @@ struct Condenser<'a, const M: usize, A: Assembly<M>> {
     bonds: &'a Bonds,
     assembly: &'a A,
     kept: Vec<bool>,
+    /// Points held in all components, the window's not counted.
+    ground: Vec<bool>,
 }
 
 impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
+    /// The rectangle around all points that are not ground.
+    fn rectangle(&self) -> Rectangle {
+        let moving = self.body.points.iter().map(|&place| place as usize).filter(|&place| !self.ground[place]);
+        let none = Rectangle { columns: (usize::MAX, 0), rows: (usize::MAX, 0) };
+        let around = moving.map(|place| self.body.lattice.column_row(place)).fold(none, |all, (column, row)| Rectangle {
+            columns: (all.columns.0.min(column), all.columns.1.max(column + 1)),
+            rows: (all.rows.0.min(row), all.rows.1.max(row + 1)),
+        });
+        if around.columns.1 == 0 { Rectangle { columns: (0, 0), rows: (0, 0) } } else { around }
+    }
+
     /// Condenses all points of a rectangle but the window's onto their surroundings and the window.
     fn eliminate(&self, region: Rectangle) -> Option<Front<M>> {
         let reach = self.body.lattice.padding;
@@ -166,7 +183,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         let mut outer: Vec<u32> = below.iter().flat_map(|front| &front.points).copied().collect();
         for &place in &inner {
             self.for_bonds(place as usize, |_, _, other| {
-                if !done(other) {
+                if !done(other) && !self.ground[other] {
                     outer.push(other as u32);
                 }
             });
@@ -180,7 +197,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
             front.add(child);
         }
         drop(below);
-        self.assemble(&mut front, &inner, &|other| !done(other));
+        self.assemble(&mut front, &inner, &|other| self.ground[other] || !done(other));
         for (at, &place) in inner.iter().enumerate() {
             self.hold(&mut front.matrix, at, place);
         }
@@ -196,7 +213,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         let places = (region.rows.0..region.rows.1)
             .flat_map(|row| (region.columns.0..region.columns.1).map(move |column| lattice.place(column, row)));
         places
-            .filter(|&p| self.body.is_point[p] && !self.kept[p] && self.bonds.intact_at(self.body, p) > 0)
+            .filter(|&p| self.body.is_point[p] && !self.kept[p] && !self.ground[p] && self.bonds.intact_at(self.body, p) > 0)
             .map(|place| place as u32)
             .collect()
     }
@@ -229,9 +246,14 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
                 }
                 let owner = if owned { place as usize } else { other };
                 let share = f64::from(self.bonds.multiplier[k * places + owner]);
-                let (a, b) = (at[&place], at[&(other as u32)]);
+                let a = at[&place];
                 let sign = if owned { 1.0 } else { -1.0 };
                 let (own_a, off_ab) = self.assembly.bond(k, sign, share);
+                if self.ground[other] {
+                    add_block::<M>(matrix, a, a, &own_a);
+                    return;
+                }
+                let b = at[&(other as u32)];
                 let (own_b, off_ba) = self.assembly.bond(k, -sign, share);
                 add_block::<M>(matrix, a, a, &own_a);
                 add_block::<M>(matrix, b, b, &own_b);

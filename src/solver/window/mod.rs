@@ -6,6 +6,7 @@
 //! displacement outside the window and keeps round-off from adding up. The window moves when a tip nears its end.
 
 pub mod condense;
+pub(in crate::solver) mod held_rim;
 pub mod update;
 
 use super::assembly::{MIXED, Mixed, Springs};
@@ -70,9 +71,7 @@ impl<const N: usize> WindowSolver<N> {
         self.is_whole = true;
         self.work = solved.work;
         if let Some(window) = &mut self.window {
-            window.update.fold(&mut window.condensed.inverse);
-            window.base = unknowns(system, u, &window.condensed.places);
-            window.base_work = solved.work;
+            window.renew(system, u, solved.work);
         }
         Ok(solved)
     }
@@ -84,7 +83,7 @@ impl<const N: usize> WindowSolver<N> {
         if self.is_off || watched.len() * width > UNKNOWNS_MAX {
             return None;
         }
-        let places = points_around(body, bonds, tips, watched);
+        let places = points_around(body, bonds, tips, watched, AHEAD_HORIZONS);
         if places.is_empty() || width * places.len() > UNKNOWNS_MAX {
             return None;
         }
@@ -97,9 +96,8 @@ impl<const N: usize> WindowSolver<N> {
             self.is_off = true;
             return None;
         };
-        let base = unknowns(system, u, &places);
         tracing::debug!(points = places.len(), "window condensed");
-        Some(Window { condensed, base, base_work: self.work, update: Update::default() })
+        Some(Window::new(condensed, system, u, self.work))
     }
 }
 
@@ -111,10 +109,8 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
                 // A bond outside, or a part of the window on the point of coming loose.
                 self.window = None;
             } else if window.update.rank() <= RANK_MAX {
-                let (displacement, gain) = window.update.displacement(&window.condensed.inverse, &window.base);
-                give(system.product, &window.condensed.places, &displacement, u);
                 self.is_whole = false;
-                self.work = window.base_work + gain;
+                self.work = window.move_points(system.product, u);
                 return Ok(Solved { iterations: 0, work: self.work });
             }
         }
@@ -149,6 +145,26 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
 }
 
 impl Window {
+    /// A window on a plate in equilibrium.
+    fn new<const N: usize>(condensed: Condensed, system: System<'_, N>, u: &[f64], work: f64) -> Self {
+        let base = unknowns(system, u, &condensed.places);
+        Window { condensed, base, base_work: work, update: Update::default() }
+    }
+
+    /// Starts anew from a plate in equilibrium, all breaks taken in.
+    fn renew<const N: usize>(&mut self, system: System<'_, N>, u: &[f64], work: f64) {
+        self.update.fold(&mut self.condensed.inverse);
+        self.base = unknowns(system, u, &self.condensed.places);
+        self.base_work = work;
+    }
+
+    /// Moves the window's points to where the breaks let them go; the work of the loads then.
+    fn move_points<const N: usize>(&self, product: &Product<N>, u: &mut [f64]) -> f64 {
+        let (displacement, gain) = self.update.displacement(&self.condensed.inverse, &self.base);
+        give(product, &self.condensed.places, &displacement, u);
+        self.base_work + gain
+    }
+
     /// Takes in broken bonds; `false` if that cannot be done.
     fn take_in<const N: usize>(&mut self, body: &Body, product: &Product<N>, broken: &[Bond]) -> bool {
         let width = width(product);
@@ -215,14 +231,12 @@ fn pins<const N: usize>(body: &Body, bonds: &Bonds, places: &[u32], width: usize
     pinned.into_iter().map(|(place, component)| width * at(place) + component).collect()
 }
 
-/// Points within reach of the way of a tip, a little behind it and straight ahead, and the ends of the watched bonds.
-fn points_around(body: &Body, bonds: &Bonds, tips: &[Focus], watched: &[Bond]) -> Vec<u32> {
+/// Points within reach of the way of a tip, a little behind it and some horizons straight ahead, and the ends of the watched
+/// bonds.
+fn points_around(body: &Body, bonds: &Bonds, tips: &[Focus], watched: &[Bond], ahead_horizons: f64) -> Vec<u32> {
     let mut found: Vec<u32> = Vec::new();
     for tip in tips {
-        let ahead = AHEAD_HORIZONS * body.horizon();
-        let end = [0, 1].map(|i| tip.position[i] + ahead * tip.direction[i]);
-        let way = tip.wake.windows(2).map(|step| (step[0], step[1])).chain(std::iter::once((tip.position, end)));
-        for (from, to) in way {
+        for (from, to) in tip.way(ahead_horizons * body.horizon()) {
             let near = places_near(body, from, to, tip.reach);
             found.extend(near.filter(|&p| bonds.intact_at(body, p) > 0).map(|place| place as u32));
         }
