@@ -4,7 +4,7 @@ use perilife::body::Bond;
 use perilife::body::pre_crack::places_near;
 use perilife::fatigue::ageing::stretch;
 use perilife::fatigue::crack_tip::CrackTip;
-use perilife::predict::{Prediction, Silent, predict};
+use perilife::predict::{CurvePoint, Prediction, Silent, TipRecord, predict};
 use perilife::solver::field::Layout;
 use perilife::solver::{Equilibrium, Focus, SolverKind};
 use perilife::specimen::geometry::distance;
@@ -43,7 +43,7 @@ fn grow(specimen: &str, set: &[&str], more: &[&str]) -> Prediction {
 /// Life within the bound of one break a block, and fewer solves; a solver without need for blocks is exact.
 #[test]
 fn controlled_blocks_keep_their_bound() {
-    for (name, specimen, set) in scenes() {
+    for (name, specimen, set) in scenes().into_iter().take(3) {
         for p in ["fatigue.p=2.5", "fatigue.p=4"] {
             let single = grow(specimen, set, &[p, "fatigue.block=until_next_break"]);
             for percent in [1.0, 5.0] {
@@ -55,6 +55,10 @@ fn controlled_blocks_keep_their_bound() {
                 assert!((ratio - 1.0).abs() < 0.01 * percent, "{name}, {p}, {percent} %: {ratio}");
                 assert!(2 * blocks[0] < blocks[1], "{name}, {p}, {percent} %: {blocks:?}");
                 assert_eq!(run.stop, single.stop, "{name}, {p}, {percent} %");
+                if name == "middle tension" {
+                    let twins = |tips: &[TipRecord]| (tips[0].growth - tips[1].growth).abs() < 1e-12;
+                    assert!(run.curve.iter().all(|point| twins(&point.tips)), "{p}, {percent} %: twins part");
+                }
             }
         }
         let [a, b] = ["until_next_break", "controlled"].map(|block| grow(specimen, set, &[&format!("fatigue.block={block}")]));
@@ -65,16 +69,14 @@ fn controlled_blocks_keep_their_bound() {
 /// A whole run, to the end of the plate, with every solver.
 #[test]
 fn controlled_blocks_end_as_single_breaks_do() {
-    let (_, specimen, _) = scenes()[2];
+    let (_, specimen, _) = scenes()[3];
     let single = grow(specimen, &[], &["fatigue.block=until_next_break", "model.spacing_mm=2"]);
     for solver in SolverKind::ALL {
         let run = grow(specimen, &[], &[&format!("model.solver={solver}"), "model.spacing_mm=2"]);
         println!("{solver}: {} after {:.5} of the cycles", run.stop, run.life_cycles() / single.life_cycles());
         assert_eq!(run.stop, single.stop, "{solver}");
         assert!((run.life_cycles() / single.life_cycles() - 1.0).abs() < 0.01, "{solver}");
-        let ordered = |pair: &[perilife::predict::CurvePoint]| {
-            pair[1].cycles >= pair[0].cycles && pair[1].crack_length >= pair[0].crack_length
-        };
+        let ordered = |pair: &[CurvePoint]| pair[1].cycles >= pair[0].cycles && pair[1].crack_length >= pair[0].crack_length;
         assert!(run.curve.windows(2).all(ordered), "{solver}");
     }
 }
@@ -128,7 +130,7 @@ fn foreseen_strains_are_those_of_the_plate_nearly() {
 
         let size = solved.iter().copied().fold(0.0, f64::max);
         let off = |other: &[f64]| other.iter().zip(&solved).map(|(a, b)| (a - b).abs() / size).fold(0.0, f64::max);
-        // What the rim would add opens the crack as a whole: once that share is known, little is left.
+        // What the rim would add opens the crack as a whole: once that share is known, a hundredth of the change is left.
         let share = solved.iter().sum::<f64>() / foreseen.iter().sum::<f64>();
         let corrected: Vec<f64> = foreseen.iter().map(|s| s * share).collect();
         let [frozen, foreseen, corrected] = [frozen, foreseen, corrected].map(|strains| off(&strains));
@@ -138,7 +140,7 @@ fn foreseen_strains_are_those_of_the_plate_nearly() {
         );
         assert!(frozen > 0.1, "{name}: {frozen}");
         assert!(foreseen < frozen / 8.0, "{name}: {foreseen}");
-        assert!(corrected < foreseen / 8.0, "{name}: {corrected}");
+        assert!(corrected < 0.01 * frozen, "{name}: {corrected}");
         // Held farther away, the plate is stiffer: the work of the load stays below.
         assert!(work <= equilibrium.work() * (1.0 + 1e-9), "{name}");
     }
