@@ -2,6 +2,7 @@
 
 use perilife::body::Bond;
 use perilife::body::pre_crack::places_near;
+use perilife::bond_law::BondLawKind;
 use perilife::fatigue::ageing::stretch;
 use perilife::fatigue::crack_tip::CrackTip;
 use perilife::predict::{CurvePoint, Prediction, Silent, TipRecord, predict};
@@ -46,6 +47,7 @@ fn controlled_blocks_keep_their_bound() {
     for (name, specimen, set) in scenes().into_iter().take(3) {
         for p in ["fatigue.p=2.5", "fatigue.p=4"] {
             let single = grow(specimen, set, &[p, "fatigue.block=until_next_break"]);
+            assert_eq!(grow(specimen, set, &[p]).curve, single.curve, "{name}, {p}: the window solves after every break");
             for percent in [1.0, 5.0] {
                 let error = format!("fatigue.block_error_percent={percent}");
                 let run = grow(specimen, set, &[p, "model.solver=multigrid", &error]);
@@ -61,31 +63,41 @@ fn controlled_blocks_keep_their_bound() {
                 }
             }
         }
-        let [a, b] = ["until_next_break", "controlled"].map(|block| grow(specimen, set, &[&format!("fatigue.block={block}")]));
-        assert_eq!(a.curve, b.curve, "{name}: the window solves after every break");
     }
 }
 
-/// A whole run, to the end of the plate, with every solver.
+/// Every law, with a Poisson's ratio that it has.
+fn laws() -> impl Iterator<Item = [String; 2]> {
+    let ratio = |kind: BondLawKind| if kind == BondLawKind::BondBased { 1.0 / 3.0 } else { 0.3 };
+    BondLawKind::ALL
+        .iter()
+        .map(move |&kind| [format!("model.bond_law={kind}"), format!("material.poisson_ratio={}", ratio(kind))])
+}
+
+/// A whole run, to the end of the plate, between rigid grips, with every law and solver.
 #[test]
 fn controlled_blocks_end_as_single_breaks_do() {
     let (_, specimen, _) = scenes()[3];
-    let single = grow(specimen, &[], &["fatigue.block=until_next_break", "model.spacing_mm=2"]);
-    for solver in SolverKind::ALL {
-        let run = grow(specimen, &[], &[&format!("model.solver={solver}"), "model.spacing_mm=2"]);
-        println!("{solver}: {} after {:.5} of the cycles", run.stop, run.life_cycles() / single.life_cycles());
-        assert_eq!(run.stop, single.stop, "{solver}");
-        assert!((run.life_cycles() / single.life_cycles() - 1.0).abs() < 0.01, "{solver}");
-        let ordered = |pair: &[CurvePoint]| pair[1].cycles >= pair[0].cycles && pair[1].crack_length >= pair[0].crack_length;
-        assert!(run.curve.windows(2).all(ordered), "{solver}");
+    for [law, ratio] in laws() {
+        let set = [&*law, &ratio, "model.spacing_mm=2"];
+        let single = grow(specimen, &set, &["fatigue.block=until_next_break"]);
+        for solver in SolverKind::ALL {
+            let run = grow(specimen, &set, &[&format!("model.solver={solver}")]);
+            println!("{law}, {solver}: {} after {:.5} of the cycles", run.stop, run.life_cycles() / single.life_cycles());
+            assert_eq!(run.stop, single.stop, "{law}, {solver}");
+            assert!((run.life_cycles() / single.life_cycles() - 1.0).abs() < 0.01, "{law}, {solver}");
+            let ordered = |pair: &[CurvePoint]| pair[1].cycles >= pair[0].cycles && pair[1].crack_length >= pair[0].crack_length;
+            assert!(run.curve.windows(2).all(ordered), "{law}, {solver}");
+        }
     }
 }
 
 /// Bonds that break at a tip strain the others there: with the rim held nearly as much as in the whole plate.
 #[test]
 fn foreseen_strains_are_those_of_the_plate_nearly() {
-    for (name, specimen, _) in scenes() {
-        let case = case(specimen, &["model.spacing_mm=1"]);
+    for ((name, specimen, _), [law, ratio]) in scenes().into_iter().flat_map(|scene| laws().map(move |law| (scene, law))) {
+        let name = format!("{name}, {law}");
+        let case = case(specimen, &["model.spacing_mm=1", &law, &ratio]);
         let body = body(&case);
         let mut bonds = Bonds::new(&body);
         let tips: Vec<CrackTip> = case.specimen.tips.iter().map(|seed| CrackTip::at(seed, &body)).collect();
