@@ -30,7 +30,7 @@ use crate::fatigue::block_control::{Around, BlockControl};
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::fatigue::remaining_life::BondLife;
-use crate::fatigue::{Block, BlockKind, FatigueLaw, FatigueSettings};
+use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
 use crate::solver::field::Layout;
 use crate::solver::{Equilibrium, Focus};
 use crate::specimen::Specimen;
@@ -94,10 +94,10 @@ pub fn run(
         return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
     }
     let mut equilibrium = Equilibrium::new(model.solver, &body, &bonds, case.loading.maximum);
-    if settings.block.kind == BlockKind::Controlled {
+    let mut control = BlockControl::new(&settings.block, law.p, tips.len());
+    if control.foresees() {
         equilibrium = equilibrium.foreseeing();
     }
-    let mut control = BlockControl::new(&settings.block, law.p, tips.len());
     let mut iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;
     let mut solves = 1;
 

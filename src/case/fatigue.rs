@@ -102,7 +102,7 @@ fn read_block(slice: &Input) -> Result<Block> {
     let bonds = slice.bonds_per_block.map(f64::from);
     let bonds = number("a number of bonds", 1.0, 1e6).read_optional("fatigue.bonds_per_block", bonds)?;
     let error = slice.block_error_percent;
-    let error = number("an error in percent", 0.01, 20.0).read_optional("fatigue.block_error_percent", error)?;
+    let error = number("an error in percent", 0.01, 10.0).read_optional("fatigue.block_error_percent", error)?;
     for (key, value, of) in
         [("block_cycles", cycles, Fixed), ("bonds_per_block", bonds, UntilNextBreak), ("block_error_percent", error, Controlled)]
     {

@@ -35,6 +35,8 @@ const AIM: f64 = 0.8;
 const CHANGE: (f64, f64) = (0.2, 2.0);
 /// Largest growth of a tip within a block, in horizons: the rim must not come near.
 const GROWTH_HORIZONS: f64 = 1.0;
+/// Bound, percent, below which every break is solved for: two breaks that change places change life by about as much.
+const BOUND_LEAST_PERCENT: f64 = 0.5;
 /// Error, over the bound, below which blocks cannot be told apart.
 const ERROR_LEAST: f64 = 1e-3;
 
@@ -54,7 +56,7 @@ pub struct Around<'a> {
 /// Decides when the whole plate is solved; its state is what past blocks taught, and what has happened since the last solve.
 #[derive(Debug)]
 pub struct BlockControl {
-    /// Bound on the share of wrong cycles; `None` for blocks of another kind.
+    /// Bound on the share of wrong cycles; `None` where every break is solved for.
     bound: Option<f64>,
     exponent: f64,
     tips: Vec<Foresight>,
@@ -68,8 +70,15 @@ impl BlockControl {
     /// Control of the blocks of a run with `tips` tips, its law having exponent `p`.
     #[must_use]
     pub fn new(block: &Block, exponent: f64, tips: usize) -> Self {
-        let bound = (block.kind == BlockKind::Controlled).then_some(block.error_percent / 100.0);
+        let foresees = block.kind == BlockKind::Controlled && block.error_percent >= BOUND_LEAST_PERCENT;
+        let bound = foresees.then_some(block.error_percent / 100.0);
         BlockControl { bound, exponent, tips: vec![Foresight::default(); tips], limit: 0.0, last_error: None }
+    }
+
+    /// Whether blocks may hold several breaks.
+    #[must_use]
+    pub fn foresees(&self) -> bool {
+        self.bound.is_some()
     }
 
     /// Corrects the strains of ageing bonds, where they are foreseen, by what is known of their error.

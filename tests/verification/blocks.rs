@@ -81,6 +81,8 @@ fn controlled_blocks_end_as_single_breaks_do() {
     for [law, ratio] in laws() {
         let set = [&*law, &ratio, "model.spacing_mm=2"];
         let single = grow(specimen, &set, &["fatigue.block=until_next_break"]);
+        let strict = grow(specimen, &set, &["model.solver=multigrid", "fatigue.block_error_percent=0.1"]);
+        assert!((strict.life_cycles() / single.life_cycles() - 1.0).abs() < 1e-6, "{law}: every break is solved for");
         for solver in SolverKind::ALL {
             let run = grow(specimen, &set, &[&format!("model.solver={solver}")]);
             println!("{law}, {solver}: {} after {:.5} of the cycles", run.stop, run.life_cycles() / single.life_cycles());
