@@ -1,6 +1,6 @@
 //! Which bonds age, and by how much strain a cycle.
 
-use super::crack_tip::CrackTip;
+use super::crack_tip::{CrackTip, ROUND_OFF};
 use super::tip_strain::dilatation_factor;
 use super::{Ageing, FatigueSettings};
 use crate::body::pre_crack::places_near;
@@ -74,6 +74,7 @@ pub fn candidates(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &Fati
 /// Bonds of the zone of a tip.
 fn in_zone(body: &Body, tip: &CrackTip, radius: f64) -> Vec<Bond> {
     let (lattice, places) = (&body.lattice, body.places());
+    let radius = radius * (1.0 + ROUND_OFF);
     let reach = radius + 0.5 * body.horizon();
     let behind = tip.wake.first().copied().unwrap_or(tip.position);
     let mut found = Vec::new();

@@ -5,7 +5,7 @@
 //! `ρ(n) = Σ_k g_k |ξ_k·n| / Δ²` over the half stencil.
 //!
 //! The bonds that broke last, half a horizon of crack of them, have their centre c a quarter horizon behind the tip;
-//! together with the horizon of crack before them they show the direction d. Growth is the way of that centre along the
+//! together with the half horizon of crack before them they show the direction d. Growth is the way of that centre along the
 //! crack, `∫ d·dc`: a measure in broken bonds that is continuous, that does not depend on the spacing or on how the lattice
 //! lies, and that damage beside the crack does not lengthen.
 
@@ -21,12 +21,18 @@ use crate::state::Bonds;
 /// Least length of crack, in horizons, whose broken bonds show where the tip is; rounded up to whole spacings, since bonds
 /// along a row of points break in a pattern that repeats with the spacing.
 const FRONT_HORIZONS: f64 = 0.5;
-/// Length of crack before the front, in horizons, that shows where the tip is heading together with it.
-const TRAIL_HORIZONS: f64 = 1.0;
+/// Length of crack before the front, in horizons, that shows where the tip is heading together with it. Of a longer one the
+/// direction lags behind at a kink, and with it the ageing zone: a crack that should turn by 60° then turned by 45 to 50°.
+const TRAIL_HORIZONS: f64 = 0.5;
 /// Length of wake behind a tip, in horizons, that is searched for bridges at every block; older ones stand in a list.
 const WAKE_HORIZONS: f64 = 2.0;
 /// Distance of a bond from every tip, in horizons, beyond which its break moves no tip.
 const REACH_HORIZONS: f64 = 1.5;
+/// Distance behind a tip, in horizons, beyond which a broken bond was a bridge of the wake: it does not show where the front is.
+/// Of a crack along the diagonal of the lattice so many are left that they turned the tip round.
+const BEHIND_HORIZONS: f64 = 1.0;
+/// Relative difference between lengths that are equal but for round-off: mirror twins must not fall on two sides of a limit.
+pub(super) const ROUND_OFF: f64 = 1e-9;
 /// Marks that stand for the crack behind a tip at the start.
 const SEED_MARKS: usize = 48;
 
@@ -233,18 +239,23 @@ impl CrackTip {
     }
 }
 
-/// Length of the front, m.
+/// Length of the front, m. Of whole spacings none is added for round-off.
 fn front(body: &Body) -> f64 {
     let spacing = body.lattice.spacing;
-    (FRONT_HORIZONS * body.horizon() / spacing).ceil() * spacing
+    (FRONT_HORIZONS * body.horizon() / spacing * (1.0 - ROUND_OFF)).ceil() * spacing
 }
 
-/// Gives every broken bond near a tip to the nearest active one.
+/// Gives every broken bond near a tip to the nearest active one, unless it lies too far behind that to belong to its front.
 #[must_use]
 pub fn share_out(body: &Body, tips: &[CrackTip], broken: &[Bond]) -> Vec<Vec<Bond>> {
     let mut shares = vec![Vec::new(); tips.len()];
     for &bond in broken {
-        if let Some(nearest) = nearest_tip(body, tips, bond) {
+        let middle = body.middle(bond);
+        let behind = |tip: &CrackTip| {
+            let [x, y] = [0, 1].map(|i| tip.position[i] - middle[i]);
+            x * tip.direction[0] + y * tip.direction[1] > BEHIND_HORIZONS * body.horizon() * (1.0 + ROUND_OFF)
+        };
+        if let Some(nearest) = nearest_tip(body, tips, bond).filter(|&t| !behind(&tips[t])) {
             shares[nearest].push(bond);
         }
     }
@@ -256,7 +267,9 @@ pub fn share_out(body: &Body, tips: &[CrackTip], broken: &[Bond]) -> Vec<Vec<Bon
 pub fn nearest_tip(body: &Body, tips: &[CrackTip], bond: Bond) -> Option<usize> {
     let middle = body.middle(bond);
     (0..tips.len())
-        .filter(|&t| tips[t].is_active() && distance(tips[t].position, middle) <= REACH_HORIZONS * body.horizon())
+        .filter(|&t| {
+            tips[t].is_active() && distance(tips[t].position, middle) <= REACH_HORIZONS * body.horizon() * (1.0 + ROUND_OFF)
+        })
         .min_by(|&a, &b| distance(tips[a].position, middle).total_cmp(&distance(tips[b].position, middle)))
 }
 
