@@ -132,6 +132,9 @@ pub fn check(law: &BondLaw, material: &Material) -> Result<(), Error> {
     Ok(())
 }
 
+/// Weight over the largest one of the stencil that is round-off.
+const NO_STIFFNESS: f64 = 1e-9;
+
 /// Partial-volume weight b(r): 1 inside δ - Δ/2, falling to 1/2 at δ, 0 beyond
 /// (Madenci and Oterkus 2014, Peridynamic Theory and Its Applications, ch. 7).
 #[must_use]
@@ -166,11 +169,13 @@ impl Stencil {
         let mut shape = half_plane(horizon_ratio, spacing);
         let mut weight: Vec<f64> =
             shape.iter().map(|bond| profile(law, bond.length, horizon) * partial_volume(bond.length, horizon, spacing)).collect();
-        // A bond exactly at the horizon has no conical micromodulus: it would be an idle entry.
-        let keep: Vec<bool> = weight.iter().map(|&w| w > 0.0).collect();
+        // A bond exactly at the horizon has no conical micromodulus but for round-off. It would carry nothing, and yet age and
+        // break, on one side of a symmetric crack before the other.
+        let least = NO_STIFFNESS * weight.iter().fold(0.0, |a: f64, &b| a.max(b));
+        let keep: Vec<bool> = weight.iter().map(|&w| w > least).collect();
         let mut kept = keep.iter();
         shape.retain(|_| *kept.next().unwrap_or(&false));
-        weight.retain(|&w| w > 0.0);
+        weight.retain(|&w| w > least);
         let volume = spacing * spacing * thickness;
         let (c_n, c_t) = match law.surface_correction {
             SurfaceCorrection::VolumeAndSurface => integral_moduli(law, material, horizon, volume, thickness),
