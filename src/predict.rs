@@ -21,6 +21,7 @@ use rayon::prelude::*;
 
 pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 
+use crate::body::lattice::fitting_spacing;
 use crate::body::pre_crack::bonds_across;
 use crate::body::{Body, Bond};
 use crate::case::{Case, Method};
@@ -77,6 +78,10 @@ pub fn run(
     observer: &dyn Observer,
 ) -> Result<Prediction> {
     let started = Instant::now();
+    // Whatever a run measures in spacings and horizons, it measures in those that its body has.
+    let mut case = case.clone();
+    case.model.spacing = fitting_spacing(&case.specimen, case.model.spacing, case.model.lattice_angle);
+    let case = &case;
     let (settings, model) = (&case.fatigue, &case.model);
 
     let start = Start::of(case)?;

@@ -29,6 +29,13 @@ pub struct Lattice {
     pub stride: usize,
 }
 
+/// The spacing nearest to the requested one that divides the gross width; the requested one itself on a turned lattice, m.
+#[must_use]
+pub fn fitting_spacing(specimen: &Specimen, spacing: f64, angle: f64) -> f64 {
+    let across = (specimen.gross_width / spacing).round().max(1.0);
+    if angle == 0.0 { specimen.gross_width / across } else { spacing }
+}
+
 impl Lattice {
     /// Lattice over a specimen: the requested spacing is moved to the nearest one that divides the gross width, and rows
     /// are laid so that a central horizontal crack falls between two of them.
@@ -41,7 +48,7 @@ impl Lattice {
         let [low, high] = bounding_box(&specimen.outline);
         let upright = angle == 0.0;
         let across = (specimen.gross_width / spacing).round().max(1.0);
-        let spacing = if upright { specimen.gross_width / across } else { spacing };
+        let spacing = fitting_spacing(specimen, spacing, angle);
         if across < 4.0 {
             return Err(input(
                 "model.spacing_mm",

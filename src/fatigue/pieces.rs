@@ -32,6 +32,14 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
             }
         }
     }
+    // Where points come loose one by one no cut-off piece is found between them, however wide the gap.
+    let loose = broken.iter().chain(&aside).any(|&bond| {
+        let (_, a, b) = body.ends(bond);
+        bonds.intact_at(body, a) == 0 || bonds.intact_at(body, b) == 0
+    });
+    if loose && !loads_are_connected(body, bonds) {
+        return Cut::Severed;
+    }
     for &bond in broken {
         let (_, a, b) = body.ends(bond);
         let Some(piece) = cut_off(body, bonds, a, b) else { continue };
@@ -57,6 +65,24 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
         }
     }
     Cut::Whole(aside)
+}
+
+/// Whether all loaded points that still have bonds hang together.
+fn loads_are_connected(body: &Body, bonds: &Bonds) -> bool {
+    let carries = |place: usize| is_loaded(body, place) && bonds.intact_at(body, place) > 0;
+    let loaded: Vec<usize> = body.points.iter().map(|&p| p as usize).filter(|&p| carries(p)).collect();
+    let Some(&first) = loaded.first() else { return false };
+    let mut seen = vec![false; body.places()];
+    let mut front = vec![first];
+    seen[first] = true;
+    while let Some(place) = front.pop() {
+        for (_, other) in intact_bonds(body, bonds, place) {
+            if !std::mem::replace(&mut seen[other], true) {
+                front.push(other);
+            }
+        }
+    }
+    loaded.into_iter().all(|place| seen[place])
 }
 
 fn is_loaded(body: &Body, place: usize) -> bool {

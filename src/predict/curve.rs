@@ -7,8 +7,8 @@ use crate::case::Case;
 use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::growth_rate::{Sample, rates, release_rate_at_end};
 use crate::fatigue::length_average::LengthAverage;
-use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
+use crate::specimen::{LengthConvention, Specimen};
 
 /// Growth, in horizons, over which rates are taken.
 const RATE_SPAN_HORIZONS: f64 = 1.0;
@@ -53,6 +53,10 @@ pub struct Track {
     zero: Option<usize>,
     /// Cycles since N = 0 at which the run was ended without a break.
     run_out: Option<f64>,
+    /// Largest crack length the plate has room for, m.
+    limit: f64,
+    /// Longest crack so far as the ways of its tips have it, m.
+    longest: f64,
 }
 
 impl Track {
@@ -66,6 +70,11 @@ impl Track {
             specimen: case.specimen.clone(),
             zero: None,
             run_out: None,
+            limit: match case.specimen.convention {
+                LengthConvention::MeanOfTips => case.specimen.length_limit().0,
+                LengthConvention::SumOfTips => f64::INFINITY,
+            },
+            longest: 0.0,
         };
         track.record(tips, 0, work, false);
         track
@@ -100,9 +109,13 @@ impl Track {
 
     /// Records the plate after a block, or after a break within one that is still open. Growth of the tips counts from their
     /// initial lengths.
+    ///
+    /// Where bonds break all around, the way of a tip goes to and fro: a crack is never recorded longer than its plate.
     pub(super) fn record(&mut self, tips: Vec<TipRecord>, broken_bonds: usize, work: f64, is_open: bool) {
         let growth: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
         let crack_length = self.specimen.crack_length_after(&growth);
+        self.longest = self.longest.max(crack_length);
+        let crack_length = crack_length.min(self.limit);
         self.rows.push(Row { cycles: self.cycles, crack_length, work, broken_bonds, tips, is_open });
     }
 
@@ -154,6 +167,11 @@ impl Track {
                 flaw / body.horizon(),
                 100.0 * rate
             ));
+        }
+        if self.longest > self.limit + body.horizon() {
+            let words = "bonds broke all around the tips, so that their way says nothing about the crack near its end: read the \
+                         life, not the length (fatigue.ageing = \"crack_tip\" keeps breaks at the tips)";
+            warnings.push(words.to_owned());
         }
         let stopped_in_grip = self.rows.last().is_some_and(|row| {
             row.tips.iter().any(|tip| {
@@ -225,6 +243,7 @@ impl Track {
             cycles,
             crack_length,
             delta_k: match &self.formula {
+                Some(_) if crack_length >= self.limit * (1.0 - 1e-9) => f64::NAN,
                 Some(formula) => formula.delta_k(crack_length, case.loading.maximum, share),
                 None => share * (rate[i].energy_release_rate * case.material.plane_modulus()).sqrt(),
             },
