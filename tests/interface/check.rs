@@ -67,6 +67,34 @@ fn mechanics_that_show_before_a_run_are_wrong_input() {
     assert!(stderr.contains("cut.toml"), "{stderr}");
 }
 
+/// What a scene at the rim of the model is told, and the codes of runs in which nothing happens.
+#[test]
+fn coarse_models_are_told_their_error() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let check = |set: &str| perilife(dir.path(), &["check", "small.toml", "--set", set]);
+    for (set, words) in [
+        ("specimen.crack_length_mm=4", "the life about 26 % too short until the crack has doubled"),
+        ("model.horizon_ratio=1.5", "leaves a point few neighbours: with the same A the life is about 40 % too short"),
+        ("model.horizon_ratio=2", "wrong by up to 15 %"),
+    ] {
+        let output = check(set);
+        let (_, stderr) = texts(&output);
+        assert_eq!(output.status.code(), Some(0), "{set}: {stderr}");
+        assert!(stderr.contains(words), "{set}: {stderr}");
+    }
+    assert_refused(&check("model.horizon_ratio=1.4"), 2, &["model.horizon_ratio", "1.4"]);
+    assert_refused(&check("specimen.crack_length_mm=1"), 2, &["model.spacing_mm", "larger than the crack"]);
+    let arguments =
+        ["predict", "small.toml", "--out", "run", "--json", "--set", "fatigue.a=1e-30", "--set", "stop.cycles_max=1e6"];
+    let output = perilife(dir.path(), &arguments);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let result: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!((&result["stop_reason"], &result["life_cycles"]), (&"run_out".into(), &1e6.into()));
+    assert_eq!(result["crack_length_final_mm"], 12.0);
+}
+
 #[test]
 fn a_calibration_is_checked_with_its_measured_files() {
     let dir = tempdir().unwrap();
