@@ -13,6 +13,8 @@ mod shared;
 
 #[path = "unit/block.rs"]
 mod block;
+#[path = "unit/collinear.rs"]
+mod collinear;
 #[path = "unit/boundary.rs"]
 mod boundary;
 #[path = "unit/calibration_case.rs"]

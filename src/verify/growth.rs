@@ -180,13 +180,13 @@ fn constants(case: &Case, run: &Prediction, p: f64) -> Result<Vec<(f64, f64)>> {
 }
 
 /// ∫ da / ΔK^p between two lengths with the handbook's K.
-fn growth_integral(case: &Case, from: f64, to: f64, p: f64) -> f64 {
+pub(super) fn growth_integral(case: &Case, from: f64, to: f64, p: f64) -> f64 {
     let range = |length: f64| delta_k(&case.specimen, length, case.loading.maximum, case.loading.range_share());
     integrate(|length| range(length).map_or(f64::NAN, |k| k.powf(-p)), from, to, 1e-9).value
 }
 
 /// Cycles between two lengths of a run.
-fn cycles_between(run: &Prediction, from: f64, to: f64) -> Result<f64> {
+pub(super) fn cycles_between(run: &Prediction, from: f64, to: f64) -> Result<f64> {
     Ok(cycles_since_first(&points(run), &[from, to])?[1])
 }
 

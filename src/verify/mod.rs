@@ -5,10 +5,13 @@
 //! of a known miss.
 
 pub mod blocks;
+pub mod collinear;
 pub mod golden;
 pub mod golden_peridynamics;
+pub mod grown;
 pub mod growth;
 pub mod measured;
+pub mod paths;
 pub mod resolution;
 pub mod scene;
 pub mod state_based;
@@ -69,6 +72,7 @@ pub const TOPICS: &[Topic] = &[
         about: "one growth rate at equal K whatever Poisson's ratio and plane state",
         fill: growth::poissons_ratio,
     },
+    Topic { name: "paths", about: "kinks, cracks that join or turn into a hole, clean curved cracks", fill: paths::all },
     Topic { name: "biaxial", about: "stress along the crack does not count", fill: growth::biaxial },
     Topic {
         name: "measured",
