@@ -190,8 +190,8 @@ fn horizon_line(case: &Case) -> Option<String> {
 }
 
 /// Below three spacings a point has too few neighbours for rates that do not depend on their number. Measured (middle tension,
-/// W 110 mm, a 20 to 27 mm, spacing 1 mm, p = 2.87, ν 0.2 and 0.33): life over that at 3.015 0.63 to 0.66 at 1.5, 0.85 to
-/// 1.11 from 1.9 to 2.5, 0.97 at 2.9.
+/// W 110 mm, a 20 to 27 mm, spacing 1 mm, p = 2.87, ν 0.2 and 0.33): life over that at 3.015 0.63 to 0.66 at 1.5 (0.60 at
+/// a 14 mm, ν 0.3), 0.85 to 1.11 from 1.9 to 2.5, 0.97 at 2.9.
 fn coarse_line(case: &Case) -> Option<String> {
     let ratio = case.model.horizon_ratio;
     let error = match ratio {

@@ -139,6 +139,10 @@ pub fn offset_cracks(table: &mut Table) -> Result<()> {
     let gap = 100.0 * distance(end, meets) / grown.body.horizon();
     let quantity = format!("two offset cracks: bonds left where they meet (gap of the paths {gap:.0} % of the horizon), %");
     table.error(quantity, 100.0 * grown.intact_across(end, meets), 1.0, "cracks that join leave none");
+    table.known_miss(
+        "the run ends as severed, by overload of what is left of the plate, while the inner tips have run past each other and a \
+         horizon between the two paths still holds: at this load the last ligament is not spent by fatigue",
+    );
     clean(table, "two offset cracks until severed", EXPONENT, &grown);
     Ok(())
 }
