@@ -9,38 +9,36 @@ mod end_of_life;
 mod handbook;
 mod memory;
 mod outcome;
+mod overload;
 pub mod plastic_zone;
 pub mod residual_strength;
 mod snapshot;
 mod start;
 mod stop;
+mod tip_end;
 
 use std::time::Instant;
-
-use rayon::prelude::*;
 
 pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 
 use crate::body::lattice::fitting_spacing;
-use crate::body::pre_crack::bonds_across;
 use crate::body::{Body, Bond};
 use crate::case::{Case, Method};
 use crate::error::{Error, Result};
-use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, stretch, threshold_strain};
+use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, threshold_strain};
 use crate::fatigue::block_control::{Around, BlockControl};
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::fatigue::remaining_life::BondLife;
 use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
-use crate::solver::field::Layout;
 use crate::solver::{Equilibrium, Focus};
-use crate::specimen::Specimen;
-use crate::specimen::geometry::distance;
 use crate::state::Bonds;
 use curve::Track;
 use end_of_life::first_end;
+use overload::{away_is_stretched, overstretched};
 use snapshot::Album;
 use start::Start;
+use tip_end::{break_through, retire_tips};
 
 /// Predicts the a-N curve of a case.
 ///
@@ -240,31 +238,6 @@ pub fn run(
     })
 }
 
-/// Bonds between tips and an edge or hole less than one spacing ahead; those tips end.
-fn break_through(tips: &mut [CrackTip], body: &Body, bonds: &Bonds, specimen: &Specimen) -> Vec<Bond> {
-    let mut through = Vec::new();
-    for tip in tips.iter_mut().filter(|tip| tip.is_active()) {
-        if tip.retire(specimen, body.lattice.spacing) {
-            let along = |way: f64| [0, 1].map(|i| tip.position[i] + way * tip.direction[i]);
-            let across = bonds_across(body, along(-body.horizon()), along(body.horizon()));
-            through.extend(across.into_iter().filter(|&bond| bonds.is_intact(bond) && body.can_fail(bond)));
-        }
-    }
-    through.sort_unstable();
-    through.dedup();
-    through
-}
-
-/// Ends the tips at an edge or hole around which no bond is left.
-fn retire_tips(tips: &mut [CrackTip], body: &Body, specimen: &Specimen, candidates: &[Bond], zone_radius_horizons: f64) {
-    let radius = zone_radius_horizons * body.horizon();
-    for tip in tips.iter_mut().filter(|tip| tip.is_active()) {
-        if !candidates.iter().any(|&bond| distance(body.middle(bond), tip.position) <= radius) {
-            tip.retire(specimen, body.horizon());
-        }
-    }
-}
-
 /// Where the solver has to expect the next breaks.
 fn focus(tips: &[CrackTip], body: &Body, settings: &FatigueSettings) -> Vec<Focus> {
     // Bonds of the zone, bridges of the wake, and a spacing in which the crack may turn.
@@ -276,58 +249,3 @@ fn focus(tips: &[CrackTip], body: &Body, settings: &FatigueSettings) -> Vec<Focu
 /// Growth of the load's work by overload within one block, at constant load, from which the plate counts as severed: it has
 /// lost half of its stiffness without a cycle, and what is left only gets softer.
 const GIVEN_WAY: f64 = 2.0;
-
-/// Share of the critical stretch at which bonds away from the tips are watched after every break.
-const WATCHED_SHARE: f64 = 0.5;
-
-/// Bonds stretched beyond the critical stretch s_t: the last ligament of a plate breaks by overload, not by fatigue.
-/// Looked at are the bonds whose displacement is known: all after a whole solve, else those around the tips.
-fn overstretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &[f64], equilibrium: &Equilibrium) -> Vec<Bond> {
-    let limit = case.fatigue.critical_stretch;
-    if limit.is_infinite() {
-        return Vec::new();
-    }
-    let window = equilibrium.window().filter(|_| !equilibrium.is_whole());
-    let beyond = stretched_beyond(limit, body, bonds, displacement, window.unwrap_or(&body.points), |other| {
-        window.is_none_or(|window| window.binary_search(&(other as u32)).is_ok())
-    });
-    // The worst first: where they break, others are relieved.
-    let worst = beyond.iter().map(|b| b.1).fold(0.0, f64::max);
-    beyond.into_iter().filter(|&(_, s)| s >= 0.5 * worst).map(|(bond, _)| bond).collect()
-}
-
-/// Whether a bond outside the window is stretched so far that it may go beyond the critical stretch before the next whole
-/// solve.
-fn away_is_stretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &[f64], window: Option<&[u32]>) -> bool {
-    let limit = WATCHED_SHARE * case.fatigue.critical_stretch;
-    let Some(window) = window.filter(|_| limit.is_finite()) else { return false };
-    let inside = |place: usize| window.binary_search(&(place as u32)).is_ok();
-    let beyond = stretched_beyond(limit, body, bonds, displacement, &body.points, |_| true);
-    beyond.into_iter().any(|(bond, _)| {
-        let (_, from, to) = body.ends(bond);
-        !inside(from) || !inside(to)
-    })
-}
-
-/// Bonds that can fail, from one of `owners` to a place that `counts`, stretched beyond a limit.
-fn stretched_beyond(
-    limit: f64,
-    body: &Body,
-    bonds: &Bonds,
-    displacement: &[f64],
-    owners: &[u32],
-    counts: impl Fn(usize) -> bool + Sync,
-) -> Vec<(Bond, f64)> {
-    let layout = Layout::of(&body.lattice, body.stencil.unknowns);
-    let places = body.places();
-    let of_stencil = |k: usize| {
-        let counts = &counts;
-        let owned = owners.iter().map(move |&place| (k * places + place as usize) as Bond);
-        owned.filter(move |&bond| bonds.is_intact(bond) && counts(body.ends(bond).2))
-    };
-    let stretched = |bond: Bond| (bond, stretch(body, &layout, displacement, bond));
-    (0..body.steps.len())
-        .into_par_iter()
-        .flat_map_iter(|k| of_stencil(k).map(stretched).filter(|&(bond, s)| s > limit && body.can_fail(bond)))
-        .collect()
-}
