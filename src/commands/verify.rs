@@ -39,7 +39,10 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(folder) = folder {
         write_file(&folder.path().join("verify.csv"), verification::csv(&rows).as_bytes())?;
         write_file(&folder.path().join("verify.json"), format!("{object:#}\n").as_bytes())?;
-        write_file(&folder.path().join("verify.md"), verification::markdown(&rows).as_bytes())?;
+        write_file(
+            &folder.path().join("verify.md"),
+            format!("{}\n{}", verification::summary(&rows), verification::markdown(&rows)).as_bytes(),
+        )?;
         folder.finish()?;
     }
     let (failed, missed) = (rows.iter().filter(|row| row.fails()).count(), rows.iter().filter(|row| !row.ok()).count());

@@ -1,4 +1,6 @@
-//! Verification rows as text, CSV, JSON and as a table for documents.
+//! Verification rows as text, CSV, JSON and as tables for documents.
+
+use std::cmp::Ordering;
 
 use serde_json::{Value, json};
 
@@ -49,10 +51,38 @@ pub fn csv(rows: &[Row]) -> String {
     text
 }
 
+/// A table for a document: every topic with the row that takes the largest share of its bound, the worst topic first. Known misses
+/// are counted, and left out of that where the topic has other rows.
+#[must_use]
+pub fn summary(rows: &[Row]) -> String {
+    let mut names: Vec<&str> = rows.iter().map(|row| row.name).collect();
+    names.dedup();
+    let mut topics: Vec<(f64, String)> = names
+        .into_iter()
+        .filter_map(|name| {
+            let of_topic = || rows.iter().filter(|row| row.name == name);
+            let misses = of_topic().filter(|row| !row.ok()).count();
+            let worst =
+                of_topic().max_by(|a, b| (a.ok(), share(a)).partial_cmp(&(b.ok(), share(b))).unwrap_or(Ordering::Less))?;
+            let figures = format!("{:+.1} % | {:.2} %", worst.error_percent, worst.bound_percent);
+            let line = format!("| `{name}` | {} | {misses} | {} | {figures} |\n", of_topic().count(), worst.quantity);
+            Some((share(worst), line))
+        })
+        .collect();
+    topics.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let head =
+        "| topic | rows | known misses | its worst row within bounds | error | bound |\n|---|---|---|---|---|---|\n".to_owned();
+    topics.into_iter().fold(head, |text, (_, line)| text + &line)
+}
+
+/// Share of its bound that a row takes.
+fn share(row: &Row) -> f64 {
+    (row.error_percent / row.bound_percent).abs()
+}
+
 /// A table for a document: the row with the largest share of its bound first.
 #[must_use]
 pub fn markdown(rows: &[Row]) -> String {
-    let share = |row: &Row| (row.error_percent / row.bound_percent).abs();
     let mut sorted: Vec<&Row> = rows.iter().collect();
     // An error that is not a number counts as the worst.
     sorted.sort_by(|a, b| share(b).total_cmp(&share(a)));

@@ -1,5 +1,8 @@
 //! The accuracy table of the README is recomputed here, so that it cannot age.
 
+use perilife::report::verification;
+use perilife::verify;
+
 use crate::plates::PANEL;
 use crate::stress_intensity::{SINGLE, k_over_handbook};
 
@@ -28,6 +31,18 @@ fn rows() -> Vec<(f64, String)> {
         .collect();
     rows.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     rows
+}
+
+/// The table over all topics of `perilife verify`.
+#[test]
+#[ignore = "long: the whole verification, a quarter of an hour"]
+fn the_verification_table_of_the_readme_is_what_the_program_computes() {
+    let rows = verify::rows(&verify::topics(&[]).unwrap(), &|_, _| {}).unwrap();
+    assert!(rows.iter().all(|row| !row.fails()), "{:?}", rows.iter().filter(|row| row.fails()).collect::<Vec<_>>());
+    let table = verification::summary(&rows);
+    println!("{table}");
+    let readme = std::fs::read_to_string("README.md").unwrap();
+    assert!(readme.contains(&table), "the verification table of README.md is out of date; it should read as printed above");
 }
 
 #[test]
