@@ -1,0 +1,222 @@
+//! Both sides of K u = f for a body: load, held components, grips, and the linear solver that keeps them equal.
+
+use super::conjugate_gradient::{MultigridSolver, TOLERANCE};
+use super::direct::DirectSolver;
+use super::field::{self, Layout};
+use super::product::{Into, Product};
+use super::window::WindowSolver;
+use super::window::held_rim::HeldRim;
+use super::{Balance, Focus, LinearSolver, SolverKind, System};
+use crate::body::{Body, Bond};
+use crate::error::Result;
+use crate::state::Bonds;
+
+/// Load, held components and the linear solver of a body with N unknowns a point.
+pub(super) struct Sides<const N: usize> {
+    product: Product<N>,
+    solver: Box<dyn LinearSolver<N>>,
+    f: Vec<f64>,
+    /// Prescribed field of clamped grips, per unit of half their relative displacement.
+    grips: Option<Grips>,
+    u: Vec<f64>,
+    work: f64,
+    /// Stands in for solves that take long.
+    rim: Option<HeldRim>,
+    /// Whether u is what it foresees.
+    is_foreseen: bool,
+    has_fast_solves: bool,
+}
+
+struct Grips {
+    /// Relative motion of the grips, held components only.
+    field: Vec<f64>,
+    /// Force that the grips must transmit, N.
+    force: f64,
+    /// Force on the free components that this motion brings, -K g.
+    drag: Vec<f64>,
+    /// Energy of the field with its free components, plus the work of the drag, J x 2: no break away from the grips changes it.
+    constant: f64,
+}
+
+impl<const N: usize> Sides<N> {
+    pub(super) fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Self {
+        let layout = Layout::of(&body.lattice, N);
+        let mut fixed: Vec<usize> = Vec::new();
+        for &(place, held) in &body.boundary.fixed {
+            let at = layout.index(place as usize);
+            fixed.extend((0..2).filter(|&c| held[c]).map(|c| at + c * layout.stride));
+        }
+        for &(place, _) in &body.boundary.clamped {
+            let at = layout.index(place as usize);
+            fixed.extend((0..N).map(|c| at + c * layout.stride));
+        }
+        fixed.sort_unstable();
+        fixed.dedup();
+        let mut f = layout.zeros();
+        let grips = (!body.boundary.clamped.is_empty()).then(|| {
+            let mut field = layout.zeros();
+            let up = body.lattice.to_axes([0.0, 1.0]);
+            for &(place, side) in &body.boundary.clamped {
+                let at = layout.index(place as usize);
+                field[at] = side * up[0] * body.lattice.spacing;
+                field[at + layout.stride] = side * up[1] * body.lattice.spacing;
+            }
+            Grips { field, force: load * body.boundary.force_through(), drag: Vec::new(), constant: f64::NAN }
+        });
+        if grips.is_none() {
+            for &(place, force) in &body.boundary.forces {
+                let at = layout.index(place as usize);
+                f[at] = load * force[0];
+                f[at + layout.stride] = load * force[1];
+            }
+            if N == 3 {
+                for &(place, couple) in &body.boundary.couples {
+                    f[layout.index(place as usize) + 2 * layout.stride] = load * couple;
+                }
+            }
+            for &index in &fixed {
+                f[index] = 0.0;
+            }
+        }
+        let product = Product::<N>::new(body, fixed);
+        let solver: Box<dyn LinearSolver<N>> = match kind {
+            SolverKind::Window => Box::new(WindowSolver::new(body, bonds, &product)),
+            SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product, TOLERANCE)),
+            SolverKind::Direct => Box::new(DirectSolver::default()),
+        };
+        let has_fast_solves = kind == SolverKind::Window;
+        Sides { product, solver, f, grips, u: layout.zeros(), work: 0.0, rim: None, is_foreseen: false, has_fast_solves }
+    }
+}
+
+impl<const N: usize> Sides<N> {
+    /// The solver and the system it works on, with its unknown, and what stands in for it.
+    fn parts<'a>(
+        &'a mut self,
+        body: &'a Body,
+        bonds: &'a Bonds,
+    ) -> (&'a mut Box<dyn LinearSolver<N>>, System<'a, N>, &'a mut [f64], Option<&'a mut HeldRim>) {
+        let f = self.grips.as_ref().map_or(&self.f, |grips| &grips.drag);
+        (&mut self.solver, System { body, bonds, product: &self.product, f }, &mut self.u, self.rim.as_mut())
+    }
+
+    /// Free components follow the grips: K u = -K g. The stiffness at the grips never changes, so -K g does not either.
+    fn drag_grips(&mut self, bonds: &Bonds) {
+        let Some(grips) = self.grips.as_mut().filter(|grips| grips.drag.is_empty()) else { return };
+        grips.drag = self.product.layout().zeros();
+        self.product.apply(bonds, &grips.field, &mut grips.drag, Into::Subtract);
+    }
+
+    /// The displacement under the load, from the solver's.
+    fn give(&mut self, body: &Body, bonds: &Bonds, work: f64, displacement: &mut Vec<f64>) {
+        let Some(grips) = &mut self.grips else {
+            displacement.clone_from(&self.u);
+            self.work = work;
+            return;
+        };
+        displacement.clone_from(&grips.field);
+        displacement.iter_mut().zip(&self.u).for_each(|(d, u)| *d += u);
+        // (g + u)ᵀK(g + u) = gᵀKg - f·u with f = -Kg.
+        if grips.constant.is_nan() {
+            let free = Product::<N>::new(body, Vec::new());
+            let mut forces = self.product.layout().zeros();
+            free.apply(bonds, displacement, &mut forces, Into::Set);
+            grips.constant = field::dot(self.product.layout(), displacement, &forces) + work;
+        }
+        let energy = grips.constant - work;
+        // Energy = force x relative displacement of the grips (2 spacings in this scaling); the field is scaled to the load.
+        let reaction = energy / (2.0 * body.lattice.spacing);
+        let scale = if reaction > 0.0 { grips.force / reaction } else { 0.0 };
+        displacement.iter_mut().for_each(|d| *d *= scale);
+        self.work = energy * scale * scale;
+    }
+}
+
+impl<const N: usize> Balance for Sides<N> {
+    fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
+        self.drag_grips(bonds);
+        let (solver, system, u, rim) = self.parts(body, bonds);
+        let solved = solver.solve(system, u)?;
+        if let Some(rim) = rim {
+            rim.renew(system, u, solved.work);
+        }
+        self.is_foreseen = false;
+        self.give(body, bonds, solved.work, displacement);
+        Ok(solved.iterations)
+    }
+
+    fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
+        self.solver.broke(body, bonds, &self.product, broken);
+        if let Some(rim) = &mut self.rim {
+            rim.broke(broken);
+        }
+    }
+
+    fn get_ready_to_foresee(&mut self) {
+        self.rim = (!self.has_fast_solves).then(HeldRim::default);
+    }
+
+    fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool {
+        let (_, system, u, rim) = self.parts(body, bonds);
+        let Some(work) = rim.and_then(|rim| rim.foresee(system, u)) else { return false };
+        self.is_foreseen = true;
+        self.give(body, bonds, work, displacement);
+        true
+    }
+
+    fn is_foreseen(&self) -> bool {
+        self.is_foreseen
+    }
+
+    fn work(&self) -> f64 {
+        self.work
+    }
+
+    fn reach(
+        &mut self,
+        body: &Body,
+        bonds: &Bonds,
+        watched: &[Bond],
+        tips: &[Focus],
+        displacement: &mut Vec<f64>,
+    ) -> Result<usize> {
+        let mut iterations = 0;
+        if self.is_foreseen && !self.rim.as_ref().is_some_and(|rim| rim.holds(body, watched, tips)) {
+            iterations += self.solve(body, bonds, displacement)?;
+        }
+        let is_foreseen = self.is_foreseen;
+        let (solver, system, u, rim) = self.parts(body, bonds);
+        if let Some(rim) = rim.filter(|_| !is_foreseen) {
+            rim.follow(system, u, watched, tips);
+        }
+        let was_whole = solver.is_whole();
+        iterations += solver.reach(system, u, watched, tips)?;
+        if solver.is_whole() && !was_whole {
+            let work = field::dot(system.product.layout(), system.f, u);
+            self.give(body, bonds, work, displacement);
+        }
+        Ok(iterations)
+    }
+
+    fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
+        if self.is_foreseen {
+            return self.solve(body, bonds, displacement);
+        }
+        let (solver, system, u, _) = self.parts(body, bonds);
+        if solver.is_whole() {
+            return Ok(0);
+        }
+        let iterations = solver.complete(system, u)?;
+        let work = field::dot(system.product.layout(), system.f, u);
+        self.give(body, bonds, work, displacement);
+        Ok(iterations)
+    }
+
+    fn is_whole(&self) -> bool {
+        !self.is_foreseen && self.solver.is_whole()
+    }
+
+    fn window(&self) -> Option<&[u32]> {
+        self.rim.as_ref().and_then(HeldRim::places).or_else(|| self.solver.window())
+    }
+}
