@@ -62,5 +62,7 @@ mod specimen;
 #[cfg(feature = "tables")]
 #[path = "unit/tables.rs"]
 mod tables;
+#[path = "unit/verification_table.rs"]
+mod verification_table;
 #[path = "unit/length_average.rs"]
 mod length_average;

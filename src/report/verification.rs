@@ -65,7 +65,7 @@ pub fn summary(rows: &[Row]) -> String {
             let worst =
                 of_topic().max_by(|a, b| (a.ok(), share(a)).partial_cmp(&(b.ok(), share(b))).unwrap_or(Ordering::Less))?;
             let figures = format!("{:+.1} % | {:.2} %", worst.error_percent, worst.bound_percent);
-            let line = format!("| `{name}` | {} | {misses} | {} | {figures} |\n", of_topic().count(), worst.quantity);
+            let line = format!("| `{name}` | {} | {misses} | {} | {figures} |\n", of_topic().count(), cell(&worst.quantity));
             Some((share(worst), line))
         })
         .collect();
@@ -73,6 +73,11 @@ pub fn summary(rows: &[Row]) -> String {
     let head =
         "| topic | rows | known misses | its worst row within bounds | error | bound |\n|---|---|---|---|---|---|\n".to_owned();
     topics.into_iter().fold(head, |text, (_, line)| text + &line)
+}
+
+/// Text for a cell of a table, in which a bar would end it.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
 }
 
 /// Share of its bound that a row takes.
@@ -89,9 +94,14 @@ pub fn markdown(rows: &[Row]) -> String {
     let mut text = "| what | computed | reference | error % | bound % | source |\n|---|---|---|---|---|---|\n".to_owned();
     for row in sorted {
         let miss = row.known_miss.as_ref().map_or_else(String::new, |reason| format!(" (known miss: {reason})"));
-        let figures =
-            format!("{} | {} | {:+.2} | {}", number(row.computed), number(row.reference), row.error_percent, row.bound_percent);
-        text += &format!("| {}: {}{miss} | {figures} | {} |\n", row.name, row.quantity, row.source);
+        let figures = format!(
+            "{} | {} | {:+.2} | {:.2}",
+            number(row.computed),
+            number(row.reference),
+            row.error_percent,
+            row.bound_percent
+        );
+        text += &format!("| {}: {}{miss} | {figures} | {} |\n", row.name, cell(&row.quantity), cell(&row.source));
     }
     text
 }
