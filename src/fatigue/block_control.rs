@@ -6,7 +6,7 @@
 //! ([`Equilibrium::foresee`]); a solve of the whole plate ends the block and shows how wrong they were.
 //!
 //! What the rim would add opens the crack as a whole, so it is the same share for all bonds of a tip, `ln(ε/ε_foreseen)`; it
-//! follows from the work that the breaks bring, and past blocks teach how ([`foresight`]): the next block is corrected by it.
+//! follows from the work that the breaks bring, and past blocks teach how (`foresight`): the next block is corrected by it.
 //! What is left at the end of a block, r, grew from nothing, so the bonds of the tip were spent at a rate wrong by `p r / 2`
 //! over the block, which is the share of its cycles that is wrong. Blocks are chosen so that this share, the mean of |r| over
 //! bonds by their spending, stays at the bound: the whole life then keeps it. The growth allowed follows the error as a step

@@ -19,7 +19,7 @@ crate::kinds! {
 /// half a spacing is much of such a crack; from 1.5 on they lie within 0.03 of 1.
 const SHORT_LIFE: [(f64, f64); 6] = [(0.33, 0.44), (0.5, 0.60), (0.66, 0.74), (0.83, 0.88), (1.1, 0.96), (1.5, 1.0)];
 
-/// Share by which the life of a crack of `length` is about too short for its horizon, from the measured [`SHORT_LIFE`].
+/// Share by which the life of a crack of `length` is about too short for its horizon, from what was measured.
 #[must_use]
 pub fn life_shortfall(horizon: f64, length: f64) -> f64 {
     let ratio = length / horizon;

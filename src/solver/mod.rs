@@ -129,7 +129,7 @@ impl Equilibrium {
     }
 
     /// Solves for the present bonds, starting from the last solution; returns the iterations.
-    /// `displacement` receives the field in the layout of [`Layout::of`], right on the [`Equilibrium::window`].
+    /// `displacement` receives the field in the layout of [`field::Layout::of`], right on the [`Equilibrium::window`].
     ///
     /// # Errors
     /// `Error::Mechanics` if the iteration does not converge.
