@@ -63,8 +63,8 @@ pub fn kinks(table: &mut Table) -> Result<()> {
             let quantity = format!("crack at {beta}° to the load, lattice turned by {lattice}°: kink, degrees");
             table.compare(quantity, measured, reference, bound, "maximum circumferential stress (Erdogan and Sih 1963)");
             table.known_miss(
-                "bonds see the stress along the crack T = σ cos 2β half a horizon from the tip, which a criterion of K alone does \
-                 not: with T at that distance (Smith, Ayatollahi and Pavier 2001) the kinks are -66, -53, -35°, and it falls with \
+                "likely, not shown by a run: bonds see the stress along the crack T = σ cos 2β half a horizon from the tip, which a \
+                 criterion of K alone does not: with T at that distance (Smith, Ayatollahi and Pavier 2001) the kinks are -66, -53, -35°, and it falls with \
                  the root of horizon over crack only; bonds age by stretch, whose largest is 2 to 5° flatter at ν = 0.33",
             );
         }
