@@ -7,7 +7,7 @@ mod law_source;
 mod model;
 mod read;
 
-pub use choices::{Choices, Discretisation, Failure, Method, Symmetry};
+pub use choices::{Choices, Discretisation, Failure, Method};
 pub use law_source::{LAW_KEYS, fitted_record};
 pub use read::SECTIONS;
 
@@ -17,7 +17,7 @@ use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
 use crate::loading::Loading;
 use crate::material::Material;
-use crate::solver::SolverKind;
+use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
 
 /// Horizon over spacing where the case says nothing: the value of the literature, just above 3 so that the third
@@ -39,6 +39,8 @@ pub struct Model {
     pub lattice_angle: f64,
     /// Equilibrium solver.
     pub solver: SolverKind,
+    /// Use of mirror symmetry.
+    pub symmetry: Symmetry,
 }
 
 /// When a run stops at the latest.

@@ -96,7 +96,7 @@ pub fn run(
     if start::cuts_in_two(&body, &bonds, case) || set_aside(&body, &mut bonds, &body.pre_cut) == Cut::Severed {
         return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
     }
-    let mut equilibrium = Equilibrium::new(model.solver, &body, &bonds, case.loading.maximum);
+    let mut equilibrium = Equilibrium::new(model.solver, model.symmetry, &body, &bonds, case.loading.maximum);
     let mut control = BlockControl::new(&settings.block, law.p, tips.len());
     if control.foresees() {
         equilibrium = equilibrium.foreseeing();
@@ -224,7 +224,7 @@ pub fn run(
         grid: snapshot::grid(&body),
         figures: RunFigures {
             points: body.points.len(),
-            points_solved: body.points.len(),
+            points_solved: equilibrium.points(&body),
             bonds: body.bond_count,
             blocks,
             solves,

@@ -18,15 +18,22 @@ impl Bonds {
     /// Bonds of the plate with its initial cracks cut.
     #[must_use]
     pub fn new(body: &Body) -> Self {
+        let mut bonds = Bonds::with_multipliers(body, body.multiplier.clone());
+        for &bond in &body.pre_cut {
+            bonds.cut(body, bond);
+        }
+        bonds
+    }
+
+    /// Bonds with these multipliers.
+    #[must_use]
+    pub fn with_multipliers(body: &Body, multiplier: Vec<f32>) -> Self {
         let chunks = body.lattice.columns.div_ceil(LANES);
-        let mut bonds = Bonds { multiplier: body.multiplier.clone(), regular: vec![false; chunks * body.lattice.rows], chunks };
+        let mut bonds = Bonds { multiplier, regular: vec![false; chunks * body.lattice.rows], chunks };
         for row in 0..body.lattice.rows {
             for chunk in 0..chunks {
                 bonds.regular[row * chunks + chunk] = bonds.is_regular(body, body.lattice.place(chunk * LANES, row));
             }
-        }
-        for &bond in &body.pre_cut {
-            bonds.cut(body, bond);
         }
         bonds
     }
@@ -63,7 +70,8 @@ impl Bonds {
     pub fn cut(&mut self, body: &Body, bond: Bond) {
         self.multiplier[bond as usize] = 0.0;
         let (_, from, to) = body.ends(bond);
-        for place in [from, to] {
+        // A mirror image's row of the stiffness is nowhere.
+        for place in [from, to].into_iter().filter(|&place| body.is_point[place]) {
             let (column, row) = body.lattice.column_row(place);
             self.regular[row * self.chunks + column / LANES] = false;
         }

@@ -22,8 +22,8 @@ pub struct Boundary {
     loaded: Vec<u32>,
     /// Force that the plate carries from end to end along y at unit nominal load, N.
     through: f64,
-    /// Held places with the components held, in lattice axes.
-    pub fixed: Vec<(u32, [bool; 2])>,
+    /// Held places with what is held: the components in lattice axes, and the rotation.
+    pub fixed: Vec<(u32, [bool; 3])>,
     /// Clamped grips: places of the end blocks with the displacement along y, in units of half the relative displacement.
     pub clamped: Vec<(u32, f64)>,
     /// Rigid grips that may turn: places of the end blocks.
@@ -128,6 +128,26 @@ impl Boundary {
         Ok(())
     }
 
+    /// Loads and supports of a part of a symmetric plate, `place` giving the part's place of one of the plate's. Points on a line
+    /// of symmetry (with its axis) take half of their loads, and neither cross it nor turn.
+    pub(super) fn of_part(&self, on_line: &[(u32, usize)], place: impl Fn(usize) -> Option<usize>) -> Boundary {
+        let here = |p: &u32| place(*p as usize).map(|p| p as u32);
+        let share = |p: u32| 0.5_f64.powi(on_line.iter().filter(|(other, _)| *other == p).count() as i32);
+        let mut fixed: Vec<(u32, [bool; 3])> = self.fixed.iter().filter_map(|(p, held)| Some((here(p)?, *held))).collect();
+        fixed.extend(on_line.iter().map(|&(p, axis)| (p, [axis == 0, axis == 1, true])));
+        let forces = self.forces.iter().filter_map(|(p, f)| here(p).map(|p| (p, f.map(|f| share(p) * f))));
+        Boundary {
+            forces: forces.collect(),
+            couples: self.couples.iter().filter_map(|(p, c)| here(p).map(|p| (p, share(p) * c))).collect(),
+            loaded: self.loaded.iter().filter_map(here).collect(),
+            through: self.through,
+            fixed,
+            clamped: self.clamped.iter().filter_map(|(p, side)| Some((here(p)?, *side))).collect(),
+            rigid: self.rigid.iter().filter_map(here).collect(),
+            floating: self.floating,
+        }
+    }
+
     /// Force that the plate carries from end to end along y at unit nominal load, N.
     #[must_use]
     pub fn force_through(&self) -> f64 {
@@ -170,8 +190,8 @@ impl Boundary {
 }
 
 /// Components of the lattice axes that are held when plate components are; a turned lattice holds both.
-fn held(lattice: &Lattice, x: bool, y: bool) -> [bool; 2] {
-    if lattice.axis[1] == 0.0 { [x, y] } else { [x || y; 2] }
+fn held(lattice: &Lattice, x: bool, y: bool) -> [bool; 3] {
+    if lattice.axis[1] == 0.0 { [x, y, false] } else { [x || y, x || y, false] }
 }
 
 /// Points within one horizon of the lower (-1) and upper (+1) end of the specimen.

@@ -9,6 +9,7 @@ pub mod boundary;
 mod couples;
 pub mod facets;
 pub mod lattice;
+pub mod mirror;
 pub mod obstacles;
 pub mod pre_crack;
 pub mod severed;
@@ -22,6 +23,7 @@ use crate::material::Material;
 use crate::specimen::{Point, Specimen};
 use boundary::Boundary;
 use lattice::Lattice;
+use mirror::{Flips, Mirror};
 use obstacles::Obstacles;
 use sharing::Sharing;
 
@@ -53,6 +55,8 @@ pub struct Body {
     pub bond_count: usize,
     /// Thickness, m.
     pub thickness: f64,
+    /// Lines of symmetry at which it ends, if it is part of a plate.
+    pub mirror: Mirror,
 }
 
 impl Body {
@@ -115,6 +119,7 @@ impl Body {
             boundary,
             bond_count,
             thickness: specimen.thickness,
+            mirror: Mirror::default(),
         };
         match law.surface_correction {
             SurfaceCorrection::None => {}
@@ -153,6 +158,19 @@ impl Body {
     pub fn ends(&self, bond: Bond) -> (usize, usize, usize) {
         let (k, place) = (bond as usize / self.places(), bond as usize % self.places());
         (k, place, place.wrapping_add_signed(self.steps[k]))
+    }
+
+    /// The point behind a place: itself, or that whose mirror image it is, and how it is mirrored.
+    #[must_use]
+    pub fn behind(&self, place: usize) -> (usize, Flips) {
+        self.mirror.behind(&self.lattice, place)
+    }
+
+    /// Rigid motions that cost nothing: along the rows, along the columns, turning.
+    #[must_use]
+    pub fn free_motion(&self) -> [bool; 3] {
+        let [across, along] = [0, 1].map(|axis| self.boundary.floating && self.mirror.lines[axis].is_none());
+        [across, along, across && along && !self.stencil.resists_rotation()]
     }
 
     /// Middle of a bond, m.

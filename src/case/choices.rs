@@ -21,13 +21,6 @@ crate::kinds! {
 }
 
 crate::kinds! {
-    /// Use of mirror symmetry.
-    pub enum Symmetry for "model.symmetry" {
-        Off = "off": "the whole plate is solved",
-    }
-}
-
-crate::kinds! {
     /// What spends the life of a bond.
     pub enum Failure for "fatigue.failure" {
         Stretch = "stretch": "bond stretch range",

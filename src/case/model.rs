@@ -3,13 +3,13 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::choices::{Choices, Discretisation, Method, Symmetry};
+use super::choices::{Choices, Discretisation, Method};
 use super::{HORIZON_RATIO, Model};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
 use crate::error::{Result, input};
 use crate::input::{LENGTH, number, slice};
 use crate::material::Material;
-use crate::solver::SolverKind;
+use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::handbook;
 use crate::units::MM;
@@ -26,8 +26,7 @@ struct Input {
     method: Option<Method>,
     #[serde(rename = "discretisation")]
     _discretisation: Option<Discretisation>,
-    #[serde(rename = "symmetry")]
-    _symmetry: Option<Symmetry>,
+    symmetry: Option<Symmetry>,
     bond_law: Option<BondLawKind>,
     kernel: Option<Kernel>,
     rotation: Option<Rotation>,
@@ -69,6 +68,7 @@ pub(super) fn from_value(value: &Value, specimen: &Specimen, material: &Material
         horizon_ratio: choices.horizon_ratio.unwrap_or(HORIZON_RATIO),
         lattice_angle: angle.to_radians(),
         solver: input.solver.unwrap_or(SolverKind::Window),
+        symmetry: input.symmetry.unwrap_or(Symmetry::Auto),
     })
 }
 

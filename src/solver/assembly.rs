@@ -2,6 +2,8 @@
 
 use super::dilatation::Dilatation;
 use super::product::Product;
+use crate::body::Body;
+use crate::body::mirror::{Flips, signs};
 use crate::state::Bonds;
 
 /// Block of a point with itself and with the other end of a bond.
@@ -18,6 +20,54 @@ pub trait Assembly<const M: usize>: Sync {
     fn is_held(&self, place: usize, component: usize) -> bool;
     /// Sign of the pivots of a component.
     fn pivot_sign(&self, component: usize) -> f64;
+    /// Signs of the unknowns of a mirror image.
+    fn signs(&self, flips: Flips) -> [f64; M];
+}
+
+/// A bond between a point and another, or a mirror image of one, as entries of the stiffness.
+pub struct Joint<const M: usize> {
+    /// The other point, or that whose mirror image is the other end.
+    pub other: usize,
+    /// Whether it is an image.
+    pub is_image: bool,
+    /// Blocks of the row of the point: with itself, with the other.
+    pub here: Blocks<M>,
+    /// Blocks of the row of the other: with itself, with the point.
+    pub there: Blocks<M>,
+}
+
+/// Calls `take` for every intact bond of a point.
+pub fn for_joints<const M: usize>(
+    assembly: &impl Assembly<M>,
+    body: &Body,
+    bonds: &Bonds,
+    place: usize,
+    mut take: impl FnMut(Joint<M>, bool),
+) {
+    let places = body.places();
+    for (k, &step) in body.steps.iter().enumerate() {
+        let (ahead, behind) = (place.wrapping_add_signed(step), place.wrapping_add_signed(-step));
+        for (sign, owner, end) in [(1.0, place, ahead), (-1.0, behind, behind)] {
+            let share = f64::from(bonds.multiplier[k * places + owner]);
+            if share == 0.0 {
+                continue;
+            }
+            let (other, flips) = body.behind(end);
+            let (mut here, mut there) = (assembly.bond(k, sign, share), assembly.bond(k, -sign, share));
+            let is_image = flips != [false; 2];
+            if is_image {
+                let signs = assembly.signs(flips);
+                for c in 0..M {
+                    for d in 0..M {
+                        here.1[c][d] *= signs[d];
+                        there.0[c][d] *= signs[c] * signs[d];
+                        there.1[c][d] *= signs[c];
+                    }
+                }
+            }
+            take(Joint { other, is_image, here, there }, sign > 0.0);
+        }
+    }
 }
 
 /// Springs alone.
@@ -53,6 +103,10 @@ impl<const N: usize> Assembly<N> for Springs<'_, N> {
     fn pivot_sign(&self, _: usize) -> f64 {
         1.0
     }
+
+    fn signs(&self, flips: Flips) -> [f64; N] {
+        std::array::from_fn(|c| signs(flips)[c])
+    }
 }
 
 /// A part of a plate, with all that lies beyond it held.
@@ -78,6 +132,10 @@ impl<const M: usize, A: Assembly<M>> Assembly<M> for Within<A> {
 
     fn pivot_sign(&self, component: usize) -> f64 {
         self.plate.pivot_sign(component)
+    }
+
+    fn signs(&self, flips: Flips) -> [f64; M] {
+        self.plate.signs(flips)
     }
 }
 
@@ -129,5 +187,10 @@ impl<const N: usize> Assembly<MIXED> for Mixed<'_, N> {
 
     fn pivot_sign(&self, component: usize) -> f64 {
         if component < 2 { 1.0 } else { -self.dilatation.sign() }
+    }
+
+    fn signs(&self, flips: Flips) -> [f64; MIXED] {
+        let [x, y, _] = signs(flips);
+        [x, y, 1.0]
     }
 }

@@ -60,7 +60,7 @@ impl<const N: usize> MultigridSolver<N> {
         if dot(&layout, &self.r, &self.r).sqrt() <= target {
             return Some(0);
         }
-        let rigid = product.fixed().is_empty().then(|| RigidMotion::of(body, bonds, layout));
+        let rigid = RigidMotion::of(body, bonds, layout);
         let mut rz_last = 0.0;
         for iteration in 1..=ITERATIONS_MAX {
             self.multigrid.precondition(bonds, product, &self.r, &mut self.z);
@@ -71,7 +71,7 @@ impl<const N: usize> MultigridSolver<N> {
             let beta = if iteration == 1 { 0.0 } else { rz / rz_last };
             rz_last = rz;
             update(&mut self.p, |p, i| self.z[i] + beta * p);
-            product.apply(bonds, &self.p, &mut self.q, Into::Set);
+            product.apply(bonds, &mut self.p, &mut self.q, Into::Set);
             let curvature = dot(&layout, &self.p, &self.q);
             if !(curvature > 0.0 && curvature.is_finite()) {
                 tracing::debug!(iteration, curvature, rz, "conjugate gradients broke down");
@@ -130,7 +130,8 @@ impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
-        let mut places: Vec<usize> = broken.iter().flat_map(|&bond| [body.ends(bond).1, body.ends(bond).2]).collect();
+        let ends = |bond: Bond| [body.ends(bond).1, body.ends(bond).2].map(|place| body.behind(place).0);
+        let mut places: Vec<usize> = broken.iter().flat_map(|&bond| ends(bond)).collect();
         places.sort_unstable();
         places.dedup();
         self.multigrid.refresh_points(body, bonds, product, &places);

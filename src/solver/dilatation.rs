@@ -26,7 +26,8 @@ use nalgebra::Matrix2;
 use rayon::prelude::*;
 
 use super::field::Layout;
-use super::product::{Into, Lanes, ROWS_PER_TASK, load, load_f32};
+use super::ghosts::Ghosts;
+use super::product::{End, Into, Lanes, ROWS_PER_TASK, load, load_f32};
 use super::window::update::Term;
 use crate::body::Body;
 use crate::body::lattice::LANES;
@@ -58,6 +59,7 @@ pub struct Dilatation {
     gain: Vec<f64>,
     /// Q of an interior point, N/m.
     whole: f64,
+    ghosts: Ghosts,
 }
 
 /// A kernel over chunks of a row, compiled for every vector width and run with the widest the processor has.
@@ -114,7 +116,7 @@ impl Dilatation {
         let modulus = 4.0 * body.stencil.dilatation / (spacing * spacing);
         let gain = family.iter().map(|&q| if q > 0.0 { modulus / q } else { 0.0 }).collect();
         let whole = 2.0 * arms.iter().map(|arm| arm.weight).sum::<f64>();
-        Some(Dilatation { layout, arms, lattice_rows: body.lattice.rows, gain, whole })
+        Some(Dilatation { layout, arms, lattice_rows: body.lattice.rows, gain, whole, ghosts: Ghosts::of_scalar(body, layout) })
     }
 
     /// y += or -= the forces of the dilatation of a displacement x.
@@ -146,7 +148,7 @@ impl Dilatation {
         });
     }
 
-    /// Stress P of every place under a displacement, m.
+    /// Stress P of every place under a displacement, m, mirror images included.
     #[must_use]
     pub fn stress(&self, bonds: &Bonds, x: &[f64]) -> Vec<f64> {
         let (padding, stride) = (self.layout.padding, self.layout.stride);
@@ -172,6 +174,7 @@ impl Dilatation {
                 arch.dispatch(Chunks { count: bonds.chunks(), take });
             }
         });
+        self.ghosts.fill(&mut stress[..self.gain.len()]);
         stress
     }
 
@@ -276,25 +279,24 @@ impl Dilatation {
         self.arms[k].force
     }
 
-    /// What a broken bond of stencil entry k takes out of the matrix with P as unknown, between two points given by place and
-    /// by the index of their first unknown.
+    /// What a broken bond of stencil entry k takes out of the matrix with P as unknown, between its owner and the other
+    /// end.
     ///
     /// The bond is `½ k e² + f (P + P') e - ½ β P² - ½ β' P'²` with its opening e, `f = k_n r`, `k = share k_n` and its share
     /// β of 1/c: `½ k (e + f/k (P + P'))²` and a quadratic form in P and P', which is brought to its principal axes.
-    pub(super) fn terms_of(&self, k: usize, share: f64, a: (usize, usize), b: (usize, usize)) -> Vec<Term> {
+    pub(super) fn terms_of(&self, k: usize, share: f64, [a, b]: [End; 2]) -> Vec<Term> {
         let Arm { k_n, normal, length, weight, .. } = self.arms[k];
-        let ((place_a, a), (place_b, b)) = (a, b);
         let (root, lever) = ((share * k_n).sqrt(), length / share);
         let mut vector: Vec<(usize, f64)> =
-            (0..2).flat_map(|c| [(a + c, -root * normal[c]), (b + c, root * normal[c])]).collect();
-        vector.extend([(a + 2, root * lever), (b + 2, root * lever)]);
+            (0..2).flat_map(|c| [a.entry(c, -root * normal[c]), b.entry(c, root * normal[c])]).collect();
+        vector.extend([a.entry(2, root * lever), b.entry(2, root * lever)]);
         let mut terms = vec![Term { sign: -1.0, vector }];
         let both = weight / share;
-        let form = Matrix2::new(both + weight / self.gain[place_a], both, both, both + weight / self.gain[place_b]);
+        let form = Matrix2::new(both + weight / self.gain[a.place], both, both, both + weight / self.gain[b.place]);
         let axes = form.symmetric_eigen();
         for (value, axis) in axes.eigenvalues.iter().zip(axes.eigenvectors.column_iter()).filter(|(value, _)| **value != 0.0) {
             let root = value.abs().sqrt();
-            terms.push(Term { sign: value.signum(), vector: vec![(a + 2, root * axis[0]), (b + 2, root * axis[1])] });
+            terms.push(Term { sign: value.signum(), vector: vec![a.entry(2, root * axis[0]), b.entry(2, root * axis[1])] });
         }
         terms
     }

@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 
-use super::assembly::{Assembly, MIXED, Mixed, Springs};
+use super::assembly::{Assembly, MIXED, Mixed, Springs, for_joints};
 use super::field::dot;
 use super::product::Product;
 use super::{LinearSolver, Solved, System};
@@ -39,7 +39,7 @@ fn factorise_and_solve<const N: usize, const M: usize>(
 ) -> Result<()> {
     let System { body, bonds, product, f } = system;
     let layout = product.layout();
-    let pinned: HashSet<(usize, usize)> = pins::<N>(body, bonds, product).into_iter().collect();
+    let pinned: HashSet<(usize, usize)> = pins(body, bonds).into_iter().collect();
     let mut number = vec![[usize::MAX; M]; body.places()];
     let mut unknowns = Vec::new();
     for place in body.points.iter().map(|&place| place as usize) {
@@ -80,6 +80,7 @@ fn factorise_and_solve<const N: usize, const M: usize>(
     for (i, &(place, c)) in unknowns.iter().enumerate().filter(|(_, (_, c))| *c < N) {
         u[layout.index(place) + c * layout.stride] = solution[(i, 0)];
     }
+    product.mirror(u);
     Ok(())
 }
 
@@ -90,7 +91,6 @@ fn entries<const M: usize>(
     assembly: &impl Assembly<M>,
     number: &[[usize; M]],
 ) -> Vec<Triplet<usize, usize, f64>> {
-    let places = body.places();
     let mut entries = Vec::with_capacity(body.points.len() * M * 40);
     let mut add = |row: usize, column: usize, value: f64| {
         if row != usize::MAX && column != usize::MAX && value != 0.0 {
@@ -99,42 +99,33 @@ fn entries<const M: usize>(
     };
     for place in body.points.iter().map(|&place| place as usize) {
         add(number[place][M - 1], number[place][M - 1], assembly.point(place));
-        for (k, &step) in body.steps.iter().enumerate() {
-            let share = f64::from(bonds.multiplier[k * places + place]);
-            if share == 0.0 {
-                continue;
-            }
-            let other = place.wrapping_add_signed(step);
-            for (sign, a, b) in [(1.0, place, other), (-1.0, other, place)] {
-                let (own, off) = assembly.bond(k, sign, share);
-                for c in 0..M {
-                    for d in 0..M {
-                        add(number[a][c], number[a][d], own[c][d]);
-                        add(number[a][c], number[b][d], off[c][d]);
-                    }
+        for_joints(assembly, body, bonds, place, |joint, _| {
+            let (own, off) = joint.here;
+            for c in 0..M {
+                for d in 0..M {
+                    add(number[place][c], number[place][d], own[c][d]);
+                    add(number[place][c], number[joint.other][d], off[c][d]);
                 }
             }
-        }
+        });
     }
     entries
 }
 
 /// Components that hold a floating plate without carrying load, as place and component.
-fn pins<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<N>) -> Vec<(usize, usize)> {
-    if !product.fixed().is_empty() {
-        return Vec::new();
-    }
+fn pins(body: &Body, bonds: &Bonds) -> Vec<(usize, usize)> {
     let carrying = || body.points.iter().map(|&p| p as usize).filter(|&p| bonds.intact_at(body, p) > 3);
     let (Some(first), Some(last)) = (carrying().next(), carrying().next_back()) else { return Vec::new() };
-    pinned_components::<N>(body, first, last)
+    pinned_components(body, first, last)
 }
 
-/// Of two distant points the components that hold a floating plate: both of one and, where the law lets the plate turn
-/// freely, the one across of the other. A law that resists rotation has an equilibrium position to turn to.
-pub(super) fn pinned_components<const N: usize>(body: &Body, first: usize, last: usize) -> Vec<(usize, usize)> {
+/// Of two distant points the components that hold what is free to move: of one those along which the plate floats and, where it
+/// turns freely, the one across of the other. A law that resists rotation has an equilibrium position to turn to.
+pub(super) fn pinned_components(body: &Body, first: usize, last: usize) -> Vec<(usize, usize)> {
     let (a, b) = (body.lattice.column_row(first), body.lattice.column_row(last));
     let across = usize::from(b.1.abs_diff(a.1) <= b.0.abs_diff(a.0));
-    let mut held = vec![(first, 0), (first, 1)];
-    held.extend((!body.stencil.resists_rotation()).then_some((last, across)));
+    let free = body.free_motion();
+    let mut held: Vec<(usize, usize)> = (0..2).filter(|&c| free[c]).map(|c| (first, c)).collect();
+    held.extend(free[2].then_some((last, across)));
     held
 }

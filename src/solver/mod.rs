@@ -7,6 +7,8 @@ pub mod direct;
 pub mod field;
 pub mod multigrid;
 pub mod product;
+mod ghosts;
+pub mod mirrored;
 mod rigid_motion;
 mod sides;
 pub mod window;
@@ -16,7 +18,8 @@ use crate::error::Result;
 use crate::specimen::Point;
 use crate::state::Bonds;
 use product::Product;
-use sides::Sides;
+pub use mirrored::Symmetry;
+use mirrored::Mirrored;
 
 crate::kinds! {
     /// Equilibrium solvers.
@@ -96,7 +99,7 @@ pub struct Equilibrium {
     inner: Box<dyn Balance>,
 }
 
-/// [`Sides`] with the number of unknowns hidden.
+/// Both sides of the system, with the number of unknowns and mirror images hidden.
 trait Balance: Send {
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]);
@@ -115,17 +118,28 @@ trait Balance: Send {
     fn is_foreseen(&self) -> bool;
     fn is_whole(&self) -> bool;
     fn window(&self) -> Option<&[u32]>;
+    fn points(&self, body: &Body) -> usize;
 }
 
 impl Equilibrium {
     /// Equilibrium of a body under `load` times its unit load (Pa or N, as the specimen measures load).
     #[must_use]
-    pub fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Self {
-        let inner: Box<dyn Balance> = match body.stencil.unknowns {
-            3 => Box::new(Sides::<3>::new(kind, body, bonds, load)),
-            _ => Box::new(Sides::<2>::new(kind, body, bonds, load)),
+    pub fn new(kind: SolverKind, symmetry: Symmetry, body: &Body, bonds: &Bonds, load: f64) -> Self {
+        let mirrored = match symmetry {
+            Symmetry::Auto => Mirrored::new(kind, body, bonds, load),
+            Symmetry::Off => None,
+        };
+        let inner: Box<dyn Balance> = match mirrored {
+            Some(mirrored) => Box::new(mirrored),
+            None => sides::balance(kind, body, bonds, load),
         };
         Equilibrium { inner }
+    }
+
+    /// Points that are solved for: those of the body, or of the part of it that stands for all by symmetry.
+    #[must_use]
+    pub fn points(&self, body: &Body) -> usize {
+        self.inner.points(body)
     }
 
     /// Solves for the present bonds, starting from the last solution; returns the iterations.

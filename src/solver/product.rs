@@ -8,10 +8,29 @@ use rayon::prelude::*;
 
 use super::dilatation::Dilatation;
 use super::field::Layout;
+use super::ghosts::Ghosts;
 use super::window::update::Term;
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::state::Bonds;
+
+/// End of a bond in a window's vector.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct End {
+    /// Its place, or that of which it is the image.
+    pub place: usize,
+    /// Index of that place's first unknown.
+    pub first: usize,
+    /// Signs of its unknowns there.
+    pub signs: [f64; 3],
+}
+
+impl End {
+    /// An entry of a vector for component c of this end.
+    pub fn entry(&self, c: usize, value: f64) -> (usize, f64) {
+        (self.first + c, self.signs[c] * value)
+    }
+}
 
 /// A value for each of [`LANES`] neighbouring places.
 pub(super) type Lanes = [f64; LANES];
@@ -73,6 +92,7 @@ pub struct Product<const N: usize> {
     fixed: Vec<usize>,
     /// What a state-based law stores beside its springs.
     dilatation: Option<Dilatation>,
+    ghosts: Ghosts,
 }
 
 impl<const N: usize> Product<N> {
@@ -104,7 +124,7 @@ impl<const N: usize> Product<N> {
         let turn = springs.iter().map(|s| 2.0 * s.k_t * s.lever * s.lever).sum::<f64>();
         // xx and yy of an interior point are equal by the symmetry of the square; each is half the trace, twice for both bond directions.
         let dilatation = Dilatation::of(body, layout);
-        Product { layout, springs, lattice_rows: body.lattice.rows, diagonal: [stretch, turn], fixed, dilatation }
+        Product { layout, springs, lattice_rows: body.lattice.rows, diagonal: [stretch, turn], fixed, dilatation, ghosts: Ghosts::of_motion(body, layout) }
     }
 
     /// Layout of its vectors.
@@ -125,8 +145,14 @@ impl<const N: usize> Product<N> {
         self.dilatation.as_ref()
     }
 
-    /// y = K x or y -= K x; held components of y become zero. x must be zero outside the points.
-    pub fn apply(&self, bonds: &Bonds, x: &[f64], y: &mut [f64], into: Into) {
+    /// Puts the mirror images of a field into its padding.
+    pub(super) fn mirror(&self, x: &mut [f64]) {
+        self.ghosts.fill(x);
+    }
+
+    /// y = K x or y -= K x; held components of y become zero. x must be zero outside the points, but for its mirror images, which
+    /// are put there.
+    pub fn apply(&self, bonds: &Bonds, x: &mut [f64], y: &mut [f64], into: Into) {
         self.apply_springs(bonds, x, y, into);
         if let Some(dilatation) = &self.dilatation {
             dilatation.apply(bonds, x, y, into);
@@ -135,7 +161,9 @@ impl<const N: usize> Product<N> {
     }
 
     /// [`Product::apply`] of the springs alone.
-    pub fn apply_springs(&self, bonds: &Bonds, x: &[f64], y: &mut [f64], into: Into) {
+    pub fn apply_springs(&self, bonds: &Bonds, x: &mut [f64], y: &mut [f64], into: Into) {
+        self.mirror(x);
+        let x = &*x;
         let (row_len, padding) = (self.layout.row_len(), self.layout.padding);
         let body_rows = &mut y[padding * row_len..(padding + self.lattice_rows) * row_len];
         let arch = pulp::Arch::new();
@@ -257,17 +285,17 @@ impl<const N: usize> Product<N> {
         y
     }
 
-    /// The springs that a broken bond of stencil entry k takes out between two points whose unknowns start at `a` (owner) and
-    /// `b`: normal and tangential, each empty where its stiffness is zero.
-    pub(super) fn springs_of(&self, k: usize, share: f64, a: usize, b: usize) -> [Term; 2] {
+    /// The springs that a broken bond of stencil entry k takes out between its owner and the other end: normal and tangential,
+    /// each empty where its stiffness is zero.
+    pub(super) fn springs_of(&self, k: usize, share: f64, [a, b]: [End; 2]) -> [Term; 2] {
         let spring = &self.springs[k];
         let across = |stiffness: f64, along: [f64; 2], lever: f64| {
             let mut vector = Vec::new();
             if share * stiffness > 0.0 {
                 let root = (share * stiffness).sqrt();
-                vector.extend((0..2).flat_map(|c| [(a + c, -root * along[c]), (b + c, root * along[c])]));
+                vector.extend((0..2).flat_map(|c| [a.entry(c, -root * along[c]), b.entry(c, root * along[c])]));
                 if lever != 0.0 {
-                    vector.extend([(a + 2, -root * lever), (b + 2, -root * lever)]);
+                    vector.extend([a.entry(2, -root * lever), b.entry(2, -root * lever)]);
                 }
             }
             Term { sign: -1.0, vector }

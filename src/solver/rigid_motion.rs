@@ -13,22 +13,29 @@ pub struct RigidMotion {
     places: Vec<u32>,
     /// Mean column and row.
     centre: [f64; 2],
-    /// Square of the rotation about the centre, in spacings; infinite where the law resists rotation.
+    /// Square of the rotation about the centre, in spacings; infinite where it costs energy.
     inertia: f64,
+    /// Which shifts are free, 1 or 0.
+    shifts: [f64; 2],
 }
 
 impl RigidMotion {
-    /// Rigid motions of a body that nothing holds, with its present bonds.
+    /// Rigid motions of a body along which nothing holds it, with its present bonds; `None` where it is held altogether.
     #[must_use]
-    pub fn of(body: &Body, bonds: &Bonds, layout: Layout) -> Self {
+    pub fn of(body: &Body, bonds: &Bonds, layout: Layout) -> Option<Self> {
+        let free = body.free_motion();
+        if free == [false; 3] {
+            return None;
+        }
         let places: Vec<u32> = body.points.iter().copied().filter(|&p| bonds.intact_at(body, p as usize) > 0).collect();
         let seats = || places.iter().map(|&place| seat(&layout, place));
         let mean = |axis: usize| seats().map(|seat| seat[axis]).sum::<f64>() / places.len() as f64;
         let centre = [mean(0), mean(1)];
         let own = if layout.unknowns == 3 { 1.0 } else { 0.0 };
         let square = |seat: [f64; 2]| (seat[0] - centre[0]).powi(2) + (seat[1] - centre[1]).powi(2) + own;
-        let inertia = if body.stencil.resists_rotation() { f64::INFINITY } else { seats().map(square).sum() };
-        RigidMotion { layout, places, centre, inertia }
+        let inertia = if free[2] { seats().map(square).sum() } else { f64::INFINITY };
+        let shifts = [0, 1].map(|axis| if free[axis] { 1.0 } else { 0.0 });
+        Some(RigidMotion { layout, places, centre, inertia, shifts })
     }
 
     /// Takes its rigid motion off a field.
@@ -45,7 +52,7 @@ impl RigidMotion {
                 turn += field[at + 2 * stride];
             }
         }
-        let shift = shift.map(|sum| sum / self.places.len() as f64);
+        let shift = [0, 1].map(|axis| self.shifts[axis] * shift[axis] / self.places.len() as f64);
         let turn = turn / self.inertia;
         for &place in &self.places {
             let at = self.layout.index(place as usize);

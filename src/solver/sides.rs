@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::state::Bonds;
 
 /// Load, held components and the linear solver of a body with N unknowns a point.
-pub(super) struct Sides<const N: usize> {
+struct Sides<const N: usize> {
     product: Product<N>,
     solver: Box<dyn LinearSolver<N>>,
     f: Vec<f64>,
@@ -38,13 +38,21 @@ struct Grips {
     constant: f64,
 }
 
+/// Load, supports and linear solver of a body under `load` times its unit load.
+pub(super) fn balance(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Box<dyn Balance> {
+    match body.stencil.unknowns {
+        3 => Box::new(Sides::<3>::new(kind, body, bonds, load)),
+        _ => Box::new(Sides::<2>::new(kind, body, bonds, load)),
+    }
+}
+
 impl<const N: usize> Sides<N> {
-    pub(super) fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Self {
+    fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Self {
         let layout = Layout::of(&body.lattice, N);
         let mut fixed: Vec<usize> = Vec::new();
         for &(place, held) in &body.boundary.fixed {
             let at = layout.index(place as usize);
-            fixed.extend((0..2).filter(|&c| held[c]).map(|c| at + c * layout.stride));
+            fixed.extend((0..N).filter(|&c| held[c]).map(|c| at + c * layout.stride));
         }
         for &(place, _) in &body.boundary.clamped {
             let at = layout.index(place as usize);
@@ -104,14 +112,15 @@ impl<const N: usize> Sides<N> {
     fn drag_grips(&mut self, bonds: &Bonds) {
         let Some(grips) = self.grips.as_mut().filter(|grips| grips.drag.is_empty()) else { return };
         grips.drag = self.product.layout().zeros();
-        self.product.apply(bonds, &grips.field, &mut grips.drag, Into::Subtract);
+        self.product.apply(bonds, &mut grips.field, &mut grips.drag, Into::Subtract);
     }
 
-    /// The displacement under the load, from the solver's.
+    /// The displacement under the load, from the solver's; the work is that of the whole plate.
     fn give(&mut self, body: &Body, bonds: &Bonds, work: f64, displacement: &mut Vec<f64>) {
+        let copies = body.mirror.copies() as f64;
         let Some(grips) = &mut self.grips else {
             displacement.clone_from(&self.u);
-            self.work = work;
+            self.work = copies * work;
             return;
         };
         displacement.clone_from(&grips.field);
@@ -123,7 +132,7 @@ impl<const N: usize> Sides<N> {
             free.apply(bonds, displacement, &mut forces, Into::Set);
             grips.constant = field::dot(self.product.layout(), displacement, &forces) + work;
         }
-        let energy = grips.constant - work;
+        let energy = copies * (grips.constant - work);
         // Energy = force x relative displacement of the grips (2 spacings in this scaling); the field is scaled to the load.
         let reaction = energy / (2.0 * body.lattice.spacing);
         let scale = if reaction > 0.0 { grips.force / reaction } else { 0.0 };
@@ -210,6 +219,10 @@ impl<const N: usize> Balance for Sides<N> {
         let work = field::dot(system.product.layout(), system.f, u);
         self.give(body, bonds, work, displacement);
         Ok(iterations)
+    }
+
+    fn points(&self, body: &Body) -> usize {
+        body.points.len()
     }
 
     fn is_whole(&self) -> bool {

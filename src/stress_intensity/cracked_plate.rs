@@ -103,7 +103,7 @@ impl<'a> CrackedPlate<'a> {
             SolverKind::Window => SolverKind::Multigrid,
             whole => whole,
         };
-        let mut equilibrium = Equilibrium::new(solver, &self.body, bonds, load);
+        let mut equilibrium = Equilibrium::new(solver, self.case.model.symmetry, &self.body, bonds, load);
         equilibrium.solve(&self.body, bonds, &mut displacement)?;
         Ok((displacement, equilibrium.work()))
     }

@@ -5,7 +5,7 @@ use crate::bond_law::BondLaw;
 use crate::error::Result;
 use crate::material::{Material, Plane};
 use crate::solver::field::Layout;
-use crate::solver::{Equilibrium, SolverKind};
+use crate::solver::{Equilibrium, SolverKind, Symmetry};
 use crate::specimen::geometry::{direction, edges};
 use crate::specimen::{Hole, Load, Point, Slot, Specimen, SpecimenKind};
 use crate::state::Bonds;
@@ -51,7 +51,7 @@ pub fn uniform_tension(
     // Unit strain.
     let stress = material.youngs_modulus;
     let mut displacement = Vec::new();
-    Equilibrium::new(SolverKind::Direct, &body, &bonds, stress).solve(&body, &bonds, &mut displacement)?;
+    Equilibrium::new(SolverKind::Direct, Symmetry::Auto, &body, &bonds, stress).solve(&body, &bonds, &mut displacement)?;
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let seats: Vec<Point> = body.points.iter().map(|&place| body.lattice.position(place as usize)).collect();
     let exact: Vec<Point> = seats.iter().map(|[x, y]| [-poisson_ratio * x, *y]).collect();

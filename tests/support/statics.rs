@@ -7,7 +7,7 @@ use perilife::case::Case;
 use perilife::fatigue::ageing::stretch;
 use perilife::material::{Material, Plane};
 use perilife::solver::field::Layout;
-use perilife::solver::{Equilibrium, SolverKind};
+use perilife::solver::{Equilibrium, SolverKind, Symmetry};
 use perilife::state::Bonds;
 
 /// Every bond law with every kernel and rotation.
@@ -70,7 +70,7 @@ pub fn loaded(case: &Case, solver: SolverKind) -> Result<Loaded> {
 /// A plate with these bonds under a load.
 pub fn loaded_with(body: Body, bonds: Bonds, load: f64, solver: SolverKind) -> Result<Loaded> {
     let mut displacement = Vec::new();
-    let mut equilibrium = Equilibrium::new(solver, &body, &bonds, load);
+    let mut equilibrium = Equilibrium::new(solver, Symmetry::Off, &body, &bonds, load);
     let iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;
     Ok(Loaded { work: equilibrium.work(), body, bonds, displacement, iterations })
 }

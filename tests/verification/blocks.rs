@@ -7,7 +7,7 @@ use perilife::fatigue::ageing::stretch;
 use perilife::fatigue::crack_tip::CrackTip;
 use perilife::predict::{CurvePoint, Prediction, Silent, TipRecord, predict};
 use perilife::solver::field::Layout;
-use perilife::solver::{Equilibrium, Focus, SolverKind};
+use perilife::solver::{Equilibrium, Focus, SolverKind, Symmetry};
 use perilife::specimen::geometry::distance;
 use perilife::state::Bonds;
 
@@ -120,7 +120,7 @@ fn foreseen_strains_are_those_of_the_plate_nearly() {
             .collect();
 
         let mut u = Vec::new();
-        let mut equilibrium = Equilibrium::new(SolverKind::Multigrid, &body, &bonds, case.loading.maximum).foreseeing();
+        let mut equilibrium = Equilibrium::new(SolverKind::Multigrid, Symmetry::Off, &body, &bonds, case.loading.maximum).foreseeing();
         equilibrium.solve(&body, &bonds, &mut u).unwrap();
         equilibrium.reach(&body, &bonds, &near, &focus, &mut u).unwrap();
         assert!(!equilibrium.is_foreseen() && equilibrium.is_whole());

@@ -105,8 +105,8 @@ fn forces(body: &Body, field: impl Fn([f64; 2]) -> [f64; 3]) -> (Layout, Vec<f64
     }
     let bonds = Bonds::new(body);
     match body.stencil.unknowns {
-        3 => Product::<3>::new(body, vec![]).apply(&bonds, &x, &mut y, Into::Set),
-        _ => Product::<2>::new(body, vec![]).apply(&bonds, &x, &mut y, Into::Set),
+        3 => Product::<3>::new(body, vec![]).apply(&bonds, &mut x.clone(), &mut y, Into::Set),
+        _ => Product::<2>::new(body, vec![]).apply(&bonds, &mut x.clone(), &mut y, Into::Set),
     }
     (layout, x, y)
 }

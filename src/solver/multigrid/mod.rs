@@ -14,6 +14,7 @@ pub mod transfer;
 use super::field::Layout;
 use super::product::{Into, Product};
 use crate::body::Body;
+use crate::body::mirror::signs;
 use crate::state::Bonds;
 use coarse::{BlockRow, CoarseOperator};
 use smoother::Smoother;
@@ -146,21 +147,21 @@ impl<const N: usize> Multigrid<N> {
         z.fill(0.0);
         for (i, &(a, b)) in steps.iter().enumerate() {
             if i > 0 {
-                product.apply_springs(bonds, &work.d, &mut work.r, Into::Subtract);
+                product.apply_springs(bonds, &mut work.d, &mut work.r, Into::Subtract);
             }
             self.smoother.step(a, b, &work.r, &mut work.d, z);
         }
-        product.apply_springs(bonds, &work.d, &mut work.r, Into::Subtract);
+        product.apply_springs(bonds, &mut work.d, &mut work.r, Into::Subtract);
         work.e.fill(0.0);
         descend(&mut self.levels, &self.coarsest, &work.r, &mut work.e);
         for &index in product.fixed() {
             work.e[index] = 0.0;
         }
         z.iter_mut().zip(&work.e).for_each(|(z, e)| *z += e);
-        product.apply_springs(bonds, &work.e, &mut work.r, Into::Subtract);
+        product.apply_springs(bonds, &mut work.e, &mut work.r, Into::Subtract);
         for (i, &(a, b)) in steps.iter().enumerate() {
             if i > 0 {
-                product.apply_springs(bonds, &work.d, &mut work.r, Into::Subtract);
+                product.apply_springs(bonds, &mut work.d, &mut work.r, Into::Subtract);
             }
             self.smoother.step(a, b, &work.r, &mut work.d, z);
         }
@@ -325,12 +326,16 @@ impl<'a, const N: usize> Fine<'a, N> {
         if self.held.is_empty() { 0 } else { self.held.get(&(column, row)).copied().unwrap_or(0) }
     }
 
-    /// Diagonal block of a point, held components cleared.
+    /// Diagonal block of a point, held components cleared, bonds to its own images included.
     fn diagonal(&self, column: usize, row: usize) -> [[f64; N]; N] {
-        self.block_row(column, row)[0].1
+        let mut sum = [[0.0; N]; N];
+        for (_, block) in self.block_row(column, row).iter().filter(|(step, _)| *step == [0, 0]) {
+            sum.iter_mut().flatten().zip(block.iter().flatten()).for_each(|(sum, value)| *sum += value);
+        }
+        sum
     }
 
-    /// Blocks of a point: itself first, then its intact bonds.
+    /// Blocks of a point: itself first, then its intact bonds; those to mirror images belong to the points behind them.
     fn block_row(&self, column: usize, row: usize) -> BlockRow<N> {
         let (body, places) = (self.body, self.body.places());
         let place = body.lattice.place(column, row);
@@ -344,7 +349,14 @@ impl<'a, const N: usize> Fine<'a, N> {
                 let share = self.bonds.multiplier[k * places + owner];
                 if share > 0.0 {
                     let (own, mut off) = self.product.bond_blocks(k, sign as f64, f64::from(share));
-                    let (dx, dy) = (sign * bond.dx as isize, sign * bond.dy as isize);
+                    let (other, flips) = body.behind(place.wrapping_add_signed(sign * body.steps[k]));
+                    let (mut dx, mut dy) = (sign * bond.dx as isize, sign * bond.dy as isize);
+                    if flips != [false; 2] {
+                        let seat = body.lattice.column_row(other);
+                        (dx, dy) = (seat.0 as isize - column as isize, seat.1 as isize - row as isize);
+                        let signs = signs(flips);
+                        off.iter_mut().flatten().enumerate().for_each(|(i, value)| *value *= signs[i % N]);
+                    }
                     clear(&mut off, own_held, self.held_at(column.wrapping_add_signed(dx), row.wrapping_add_signed(dy)));
                     for c in 0..N {
                         for d in 0..N {

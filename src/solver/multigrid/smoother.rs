@@ -93,7 +93,7 @@ impl<const N: usize> Smoother<N> {
     }
 
     /// Estimates the largest eigenvalue of D⁻¹ A by power iteration from a fixed start that holds all frequencies.
-    pub fn estimate_top(&mut self, apply: impl Fn(&[f64], &mut [f64])) {
+    pub fn estimate_top(&mut self, apply: impl Fn(&mut [f64], &mut [f64])) {
         let mut v = self.layout.zeros();
         // A fixed pseudo-random start: reproducible, with weight on every mode.
         let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
@@ -113,7 +113,7 @@ impl<const N: usize> Smoother<N> {
             }
             v.iter_mut().for_each(|x| *x /= norm);
             av.fill(0.0);
-            apply(&v, &mut av);
+            apply(&mut v, &mut av);
             let mut unused = vec![0.0; av.len()];
             d.fill(0.0);
             self.step(0.0, 1.0, &av, &mut d, &mut unused);

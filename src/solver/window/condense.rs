@@ -15,7 +15,7 @@ use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, Par};
 
 use crate::body::Body;
-use crate::solver::assembly::Assembly;
+use crate::solver::assembly::{Assembly, for_joints};
 use crate::state::Bonds;
 
 /// Lattice places of a rectangle that is eliminated at once.
@@ -182,7 +182,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         let is_inner: std::collections::HashSet<u32> = inner.iter().copied().collect();
         let mut outer: Vec<u32> = below.iter().flat_map(|front| &front.points).copied().collect();
         for &place in &inner {
-            self.for_bonds(place as usize, |_, _, other| {
+            self.for_neighbours(place as usize, |other| {
                 if !done(other) && !self.ground[other] {
                     outer.push(other as u32);
                 }
@@ -218,16 +218,16 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
             .collect()
     }
 
-    /// Calls `take(k, owned, other)` for every intact bond of a point.
-    fn for_bonds(&self, place: usize, mut take: impl FnMut(usize, bool, usize)) {
+    /// Calls `take` with the point at, or behind, the other end of every intact bond of a point.
+    fn for_neighbours(&self, place: usize, mut take: impl FnMut(usize)) {
         let places = self.body.places();
         for (k, &step) in self.body.steps.iter().enumerate() {
             let (ahead, behind) = (place.wrapping_add_signed(step), place.wrapping_add_signed(-step));
             if self.bonds.multiplier[k * places + place] > 0.0 {
-                take(k, true, ahead);
+                take(self.body.behind(ahead).0);
             }
             if self.bonds.multiplier[k * places + behind] > 0.0 {
-                take(k, false, behind);
+                take(self.body.behind(behind).0);
             }
         }
     }
@@ -235,27 +235,29 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
     /// Adds the stiffness of the bonds of `points` to those points that `counts`; bonds among `points` once.
     fn assemble(&self, front: &mut Front<M>, points: &[u32], counts: &dyn Fn(usize) -> bool) {
         let among: std::collections::HashSet<u32> = points.iter().copied().collect();
-        let places = self.body.places();
         let Front { at, matrix, .. } = front;
         for &place in points {
-            let last = M * at[&place] + M - 1;
+            let a = at[&place];
+            let last = M * a + M - 1;
             matrix[(last, last)] += self.assembly.point(place as usize);
-            self.for_bonds(place as usize, |k, owned, other| {
-                if !counts(other) || (!owned && among.contains(&(other as u32))) {
+            for_joints(self.assembly, self.body, self.bonds, place as usize, |joint, owned| {
+                let other = joint.other;
+                // A bond across a line of symmetry is met from both of its ends, each time as that between a point and an image.
+                let is_second = if joint.is_image { other < place as usize } else { !owned };
+                if !counts(other) || (is_second && among.contains(&(other as u32))) {
                     return;
                 }
-                let owner = if owned { place as usize } else { other };
-                let share = f64::from(self.bonds.multiplier[k * places + owner]);
-                let a = at[&place];
-                let sign = if owned { 1.0 } else { -1.0 };
-                let (own_a, off_ab) = self.assembly.bond(k, sign, share);
+                let ((own_a, off_ab), (own_b, off_ba)) = (joint.here, joint.there);
+                add_block::<M>(matrix, a, a, &own_a);
                 if self.ground[other] {
-                    add_block::<M>(matrix, a, a, &own_a);
                     return;
                 }
                 let b = at[&(other as u32)];
-                let (own_b, off_ba) = self.assembly.bond(k, -sign, share);
-                add_block::<M>(matrix, a, a, &own_a);
+                if a == b {
+                    // A bond to the point's own image: its row of the stiffness.
+                    add_block::<M>(matrix, a, a, &off_ab);
+                    return;
+                }
                 add_block::<M>(matrix, b, b, &own_b);
                 if a > b {
                     add_block::<M>(matrix, a, b, &off_ab);

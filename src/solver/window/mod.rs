@@ -12,8 +12,9 @@ pub mod update;
 use super::assembly::{MIXED, Mixed, Springs};
 use super::conjugate_gradient::MultigridSolver;
 use super::direct::{DirectSolver, pinned_components};
-use super::product::Product;
+use super::product::{End, Product};
 use super::{Focus, LinearSolver, Solved, System};
+use crate::body::mirror::signs;
 use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
 use crate::error::Result;
@@ -87,7 +88,7 @@ impl<const N: usize> WindowSolver<N> {
         if places.is_empty() || width * places.len() > UNKNOWNS_MAX {
             return None;
         }
-        let pins = if product.fixed().is_empty() { pins::<N>(body, bonds, &places, width) } else { Vec::new() };
+        let pins = pins(body, bonds, &places, width);
         let condensed = match product.dilatation() {
             None => condense::<N, _>(body, bonds, &Springs::new(product), &places, &pins),
             Some(dilatation) => condense::<MIXED, _>(body, bonds, &Mixed::new(product, dilatation, bonds), &places, &pins),
@@ -170,25 +171,33 @@ impl Window {
         let width = width(product);
         broken.iter().all(|&bond| {
             let (k, from, to) = body.ends(bond);
-            let (Some(a), Some(b)) = (self.at(from), self.at(to)) else { return false };
-            let share = f64::from(body.multiplier[bond as usize]);
+            let ends = [from, to].map(|end| self.end(body, end, width));
+            let [Some(a), Some(b)] = ends else { return false };
+            // Half of a bond between a point and its own image belongs to the part.
+            let share = f64::from(body.multiplier[bond as usize]) * if a.place == b.place { 0.5 } else { 1.0 };
             let terms: Vec<Term> = match product.dilatation() {
-                None => product.springs_of(k, share, width * a, width * b).into(),
-                Some(dilatation) => dilatation.terms_of(k, share, (from, width * a), (to, width * b)),
+                None => product.springs_of(k, share, [a, b]).into(),
+                Some(dilatation) => dilatation.terms_of(k, share, [a, b]),
             };
             let mut terms = terms.into_iter().filter(|term| !term.vector.is_empty());
             terms.all(|term| self.update.add(&self.condensed.inverse, &self.base, term))
         })
     }
 
-    fn at(&self, place: usize) -> Option<usize> {
-        self.condensed.places.binary_search(&(place as u32)).ok()
+    /// The end of a bond in the window's vector, `width` unknowns a point.
+    fn end(&self, body: &Body, place: usize, width: usize) -> Option<End> {
+        let (place, flips) = body.behind(place);
+        let at = self.condensed.places.binary_search(&(place as u32)).ok()?;
+        let [x, y, turn] = signs(flips);
+        // The stress of a state-based law has no direction.
+        let third = if body.stencil.unknowns == 3 { turn } else { 1.0 };
+        Some(End { place, first: width * at, signs: [x, y, third] })
     }
 }
 
 /// Whether both ends of all these bonds are among some points (ascending).
 fn hold(body: &Body, places: &[u32], bonds: &[Bond]) -> bool {
-    let has = |place: usize| places.binary_search(&(place as u32)).is_ok();
+    let has = |place: usize| places.binary_search(&(body.behind(place).0 as u32)).is_ok();
     bonds.iter().all(|&bond| {
         let (_, from, to) = body.ends(bond);
         has(from) && has(to)
@@ -223,10 +232,10 @@ fn give<const N: usize>(product: &Product<N>, places: &[u32], unknowns: &[f64], 
 
 /// Indices in the window's vector, `width` unknowns a point, of the components that hold a floating plate at two distant window
 /// points.
-fn pins<const N: usize>(body: &Body, bonds: &Bonds, places: &[u32], width: usize) -> Vec<usize> {
+fn pins(body: &Body, bonds: &Bonds, places: &[u32], width: usize) -> Vec<usize> {
     let carrying = || (0..places.len()).filter(|&i| bonds.intact_at(body, places[i] as usize) > 3);
     let (Some(first), Some(last)) = (carrying().next(), carrying().next_back()) else { return Vec::new() };
-    let pinned = pinned_components::<N>(body, places[first] as usize, places[last] as usize);
+    let pinned = pinned_components(body, places[first] as usize, places[last] as usize);
     let at = |place: usize| if place == places[first] as usize { first } else { last };
     pinned.into_iter().map(|(place, component)| width * at(place) + component).collect()
 }
@@ -242,7 +251,8 @@ fn points_around(body: &Body, bonds: &Bonds, tips: &[Focus], watched: &[Bond], a
         }
     }
     if !found.is_empty() {
-        found.extend(watched.iter().flat_map(|&bond| [body.ends(bond).1 as u32, body.ends(bond).2 as u32]));
+        let ends = |bond: Bond| [body.ends(bond).1, body.ends(bond).2].map(|place| body.behind(place).0 as u32);
+        found.extend(watched.iter().flat_map(|&bond| ends(bond)));
     }
     found.sort_unstable();
     found.dedup();

@@ -1,0 +1,180 @@
+//! Equilibrium of a symmetric plate through the part of it that says everything ([`crate::body::mirror`]).
+//!
+//! Bonds break in mirror images of each other as long as the plate is symmetric. When they do not, the whole plate takes over.
+
+use super::{Balance, Focus, SolverKind, sides};
+use crate::body::mirror::{Mirror, Part, signs};
+use crate::body::{Body, Bond};
+use crate::error::Result;
+use crate::solver::field::Layout;
+use crate::state::Bonds;
+
+crate::kinds! {
+    /// Use of mirror symmetry.
+    pub enum Symmetry for "model.symmetry" {
+        Auto = "auto": "a plate that is its own mirror image, with its cracks and loads, is solved on its half or quarter",
+        Off = "off": "the whole plate is solved",
+    }
+}
+
+/// The part of a plate and what it is solved by.
+pub(super) struct Mirrored {
+    part: Part,
+    bonds: Bonds,
+    inner: Box<dyn Balance>,
+    displacement: Vec<f64>,
+    /// The plate's points on which the displacement is always right.
+    window: Option<Vec<u32>>,
+    /// What the window is made of: the part's points.
+    window_of_part: Vec<u32>,
+    /// Whether bonds broke on one side only: then `inner` works on the whole plate.
+    is_lost: bool,
+    kind: SolverKind,
+    load: f64,
+    foresees: bool,
+}
+
+impl Mirrored {
+    /// The part of a plate under `load` times its unit load; `None` where the plate is not symmetric.
+    pub(super) fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Option<Self> {
+        let part = Part::of(body, Mirror::of(body)).filter(|part| part.keeps_intact(body, &bonds.multiplier))?;
+        let bonds = Bonds::with_multipliers(&part.body, part.multiplier(body, &bonds.multiplier));
+        let inner = sides::balance(kind, &part.body, &bonds, load);
+        let (displacement, window_of_part) = (Vec::new(), Vec::new());
+        Some(Mirrored {
+            part,
+            bonds,
+            inner,
+            displacement,
+            window: None,
+            window_of_part,
+            is_lost: false,
+            kind,
+            load,
+            foresees: false,
+        })
+    }
+
+    /// Gives the plate the displacement of its part: everywhere where that is right everywhere, else in the window.
+    fn unfold(&mut self, whole: &Body, displacement: &mut Vec<f64>) {
+        let part = &self.part;
+        match self.inner.window() {
+            None => self.window = None,
+            Some(places) if self.window.is_some() && self.window_of_part == places => {}
+            Some(places) => {
+                let all = places.iter().flat_map(|&place| part.images(whole, place as usize));
+                let mut window: Vec<u32> = all.map(|(place, _)| place as u32).collect();
+                window.sort_unstable();
+                window.dedup();
+                self.window = Some(window);
+                self.window_of_part = places.to_vec();
+            }
+        }
+        let unknowns = whole.stencil.unknowns;
+        let (from, to) = (Layout::of(&part.body.lattice, unknowns), Layout::of(&whole.lattice, unknowns));
+        displacement.resize(to.len(), 0.0);
+        let places = self.inner.window().filter(|_| !self.inner.is_whole()).unwrap_or(&part.body.points);
+        for &place in places {
+            let source = from.index(place as usize);
+            for (image, flips) in part.images(whole, place as usize) {
+                let target = to.index(image);
+                for (c, sign) in signs(flips).into_iter().take(unknowns).enumerate() {
+                    displacement[target + c * to.stride] = sign * self.displacement[source + c * from.stride];
+                }
+            }
+        }
+    }
+}
+
+impl Balance for Mirrored {
+    fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
+        if self.is_lost {
+            return self.inner.solve(body, bonds, displacement);
+        }
+        let iterations = self.inner.solve(&self.part.body, &self.bonds, &mut self.displacement)?;
+        self.unfold(body, displacement);
+        Ok(iterations)
+    }
+
+    fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
+        if !self.is_lost && !self.part.keeps(body, broken) {
+            tracing::info!("the crack is not symmetric any more: the whole plate is solved from now on");
+            self.is_lost = true;
+            self.inner = sides::balance(self.kind, body, bonds, self.load);
+            if self.foresees {
+                self.inner.get_ready_to_foresee();
+            }
+            return;
+        }
+        if self.is_lost {
+            return self.inner.broke(body, bonds, broken);
+        }
+        broken.iter().filter_map(|&bond| self.part.bond(body, bond)).for_each(|bond| self.bonds.cut(&self.part.body, bond));
+        self.inner.broke(&self.part.body, &self.bonds, &self.part.bonds(body, broken));
+    }
+
+    fn work(&self) -> f64 {
+        self.inner.work()
+    }
+
+    fn reach(
+        &mut self,
+        body: &Body,
+        bonds: &Bonds,
+        watched: &[Bond],
+        tips: &[Focus],
+        displacement: &mut Vec<f64>,
+    ) -> Result<usize> {
+        if self.is_lost {
+            return self.inner.reach(body, bonds, watched, tips, displacement);
+        }
+        let watched = self.part.bonds(body, watched);
+        let iterations = self.inner.reach(&self.part.body, &self.bonds, &watched, tips, &mut self.displacement)?;
+        self.unfold(body, displacement);
+        Ok(iterations)
+    }
+
+    fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
+        if self.is_lost {
+            return self.inner.complete(body, bonds, displacement);
+        }
+        if self.is_whole() {
+            return Ok(0);
+        }
+        let iterations = self.inner.complete(&self.part.body, &self.bonds, &mut self.displacement)?;
+        self.unfold(body, displacement);
+        Ok(iterations)
+    }
+
+    fn get_ready_to_foresee(&mut self) {
+        self.foresees = true;
+        self.inner.get_ready_to_foresee();
+    }
+
+    fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool {
+        if self.is_lost {
+            return self.inner.foresee(body, bonds, displacement);
+        }
+        let foreseen = self.inner.foresee(&self.part.body, &self.bonds, &mut self.displacement);
+        if foreseen {
+            self.unfold(body, displacement);
+        }
+        foreseen
+    }
+
+    fn is_foreseen(&self) -> bool {
+        self.inner.is_foreseen()
+    }
+
+    fn is_whole(&self) -> bool {
+        self.inner.is_whole()
+    }
+
+    fn window(&self) -> Option<&[u32]> {
+        if self.is_lost { self.inner.window() } else { self.window.as_deref() }
+    }
+
+    fn points(&self, body: &Body) -> usize {
+        if self.is_lost { body.points.len() } else { self.part.body.points.len() }
+    }
+}
