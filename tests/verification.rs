@@ -17,6 +17,8 @@ mod tension_plate;
 mod product;
 #[path = "verification/solvers.rs"]
 mod solvers;
+#[path = "verification/symmetry.rs"]
+mod symmetry;
 #[path = "verification/near_tip_fields.rs"]
 mod near_tip_fields;
 #[path = "verification/stress_intensity.rs"]

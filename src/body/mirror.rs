@@ -75,16 +75,21 @@ impl Mirror {
         (row * lattice.stride + column, flips)
     }
 
-    /// The lines about which a plate is symmetric: its points, bonds, loads and supports, to round-off.
+    /// The lines about which a plate is symmetric: its points, bonds, loads and supports, to round-off, and which of its bonds
+    /// are left, by their multipliers.
     #[must_use]
-    pub fn of(body: &Body) -> Mirror {
+    pub fn of(body: &Body, multiplier: &[f32]) -> Mirror {
         let lines = [0, 1].map(|axis| {
             let count = if axis == 0 { body.lattice.columns } else { body.lattice.rows };
             let is_wide = count >= 2 * (body.lattice.padding + 1);
             // The stress of a state-based point is stored whole or not at all.
-            let is_half = count % 2 == 0 || body.stencil.dilatation == 0.0;
+            let has_middle = count % 2 == 0 || body.stencil.dilatation == 0.0;
             let line = if count % 2 == 0 { Line::Between } else { Line::Through };
-            (is_wide && is_half && Reflection::new(body, axis).keeps(body)).then_some(line)
+            let intact = |bond: usize| multiplier[bond] > 0.0;
+            let keeps = |reflection: Reflection| {
+                reflection.keeps(body) && reflection.keeps_bonds(body, |bond, image| intact(bond) == intact(image))
+            };
+            (is_wide && has_middle && keeps(Reflection::new(body, axis))).then_some(line)
         });
         Mirror { lines }
     }
@@ -149,8 +154,7 @@ impl Reflection {
     }
 
     /// Whether `same(bond, image)` for every bond of the plate.
-    #[must_use]
-    pub fn keeps_bonds(&self, body: &Body, same: impl Fn(usize, usize) -> bool) -> bool {
+    fn keeps_bonds(&self, body: &Body, same: impl Fn(usize, usize) -> bool) -> bool {
         let of_point = |place: usize| {
             (0..body.steps.len()).map(move |k| k * self.places + place).filter(|&bond| body.multiplier[bond] > 0.0)
         };
@@ -329,13 +333,6 @@ impl Part {
     pub fn keeps(&self, whole: &Body, bonds: &[Bond]) -> bool {
         let all: std::collections::HashSet<Bond> = bonds.iter().copied().collect();
         self.reflections.iter().all(|reflection| bonds.iter().all(|&bond| all.contains(&reflection.bond(whole, bond))))
-    }
-
-    /// Whether the intact bonds of a plate are symmetric.
-    #[must_use]
-    pub fn keeps_intact(&self, whole: &Body, multiplier: &[f32]) -> bool {
-        let same = |a: usize, b: usize| (multiplier[a] > 0.0) == (multiplier[b] > 0.0);
-        self.reflections.iter().all(|reflection| reflection.keeps_bonds(whole, same))
     }
 
     /// Stiffness multipliers of the part's bonds, from those of the plate.

@@ -37,7 +37,7 @@ pub(super) struct Mirrored {
 impl Mirrored {
     /// The part of a plate under `load` times its unit load; `None` where the plate is not symmetric.
     pub(super) fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Option<Self> {
-        let part = Part::of(body, Mirror::of(body)).filter(|part| part.keeps_intact(body, &bonds.multiplier))?;
+        let part = Part::of(body, Mirror::of(body, &bonds.multiplier))?;
         let bonds = Bonds::with_multipliers(&part.body, part.multiplier(body, &bonds.multiplier));
         let inner = sides::balance(kind, &part.body, &bonds, load);
         let (displacement, window_of_part) = (Vec::new(), Vec::new());

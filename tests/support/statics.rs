@@ -58,21 +58,28 @@ pub struct Loaded {
     pub displacement: Vec<f64>,
     pub work: f64,
     pub iterations: usize,
+    /// Points that were solved for.
+    pub solved: usize,
 }
 
 /// The plate of a case at maximum load.
 pub fn loaded(case: &Case, solver: SolverKind) -> Result<Loaded> {
     let body = body(case);
     let bonds = Bonds::new(&body);
-    loaded_with(body, bonds, case.loading.maximum, solver)
+    loaded_by(body, bonds, case.loading.maximum, solver, case.model.symmetry)
 }
 
-/// A plate with these bonds under a load.
+/// A plate with these bonds under a load, solved as a whole.
 pub fn loaded_with(body: Body, bonds: Bonds, load: f64, solver: SolverKind) -> Result<Loaded> {
+    loaded_by(body, bonds, load, solver, Symmetry::Off)
+}
+
+fn loaded_by(body: Body, bonds: Bonds, load: f64, solver: SolverKind, symmetry: Symmetry) -> Result<Loaded> {
     let mut displacement = Vec::new();
-    let mut equilibrium = Equilibrium::new(solver, Symmetry::Off, &body, &bonds, load);
+    let mut equilibrium = Equilibrium::new(solver, symmetry, &body, &bonds, load);
     let iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;
-    Ok(Loaded { work: equilibrium.work(), body, bonds, displacement, iterations })
+    let solved = equilibrium.points(&body);
+    Ok(Loaded { work: equilibrium.work(), body, bonds, displacement, iterations, solved })
 }
 
 impl Loaded {

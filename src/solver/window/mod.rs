@@ -173,12 +173,15 @@ impl Window {
             let (k, from, to) = body.ends(bond);
             let ends = [from, to].map(|end| self.end(body, end, width));
             let [Some(a), Some(b)] = ends else { return false };
-            // Half of a bond between a point and its own image belongs to the part.
-            let share = f64::from(body.multiplier[bond as usize]) * if a.place == b.place { 0.5 } else { 1.0 };
-            let terms: Vec<Term> = match product.dilatation() {
+            let share = f64::from(body.multiplier[bond as usize]);
+            let mut terms: Vec<Term> = match product.dilatation() {
                 None => product.springs_of(k, share, [a, b]).into(),
                 Some(dilatation) => dilatation.terms_of(k, share, [a, b]),
             };
+            if a.place == b.place {
+                // Half of a bond between a point and its own image belongs to the part.
+                terms.iter_mut().flat_map(|term| &mut term.vector).for_each(|(_, value)| *value *= 0.5_f64.sqrt());
+            }
             let mut terms = terms.into_iter().filter(|term| !term.vector.is_empty());
             terms.all(|term| self.update.add(&self.condensed.inverse, &self.base, term))
         })
