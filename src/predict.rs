@@ -35,7 +35,7 @@ use crate::solver::{Equilibrium, Focus};
 use crate::state::Bonds;
 use curve::Track;
 use end_of_life::first_end;
-use overload::{away_is_stretched, overstretched};
+use overload::{are_within, overstretched, stretched};
 use snapshot::Album;
 use start::Start;
 use tip_end::{break_through, retire_tips};
@@ -108,8 +108,8 @@ pub fn run(
     let end = first_end(case);
     let mut album = Album::default();
     let mut broken_bonds = 0;
-    // Whether bonds away from the tips come near the critical stretch, so that all have to be watched.
-    let mut watch_all = false;
+    // Bonds that come near the critical stretch, also away from the tips.
+    let mut near_limit: Vec<Bond> = Vec::new();
     let stop = loop {
         // Cycles count from where every crack has its initial length.
         let counting = start.is_over(&tips);
@@ -128,7 +128,9 @@ pub fn run(
         if counting {
             retire_tips(&mut tips, &body, &case.specimen, &near, settings.zone_radius_horizons);
         }
-        iterations += equilibrium.reach(&body, &bonds, &near, &focus(&tips, &body, settings), &mut displacement)?;
+        near_limit.retain(|&bond| bonds.is_intact(bond));
+        let watched: Vec<Bond> = near.iter().chain(&near_limit).copied().collect();
+        iterations += equilibrium.reach(&body, &bonds, &watched, &focus(&tips, &body, settings), &mut displacement)?;
         let mut ageing = ageing_bonds(&body, &near, &displacement, &tips, settings, (share, threshold));
         control.correct(&equilibrium, &body, &tips, &mut ageing);
         if let Some(reason) = stop::before_block(case, end, &track, &tips, &ageing) {
@@ -159,7 +161,7 @@ pub fn run(
             };
             newly.extend(aside);
             equilibrium.broke(&body, &bonds, &newly);
-            let may_foresee = counting && !overloaded && !watch_all;
+            let may_foresee = counting && !overloaded && are_within(equilibrium.window(), &body, &near_limit);
             let around = Around { body: &body, bonds: &bonds, tips: &tips, watched: &near };
             match control.settle(&mut equilibrium, around, &newly, may_foresee, &mut displacement) {
                 Ok(None) => {}
@@ -168,12 +170,9 @@ pub fn run(
                 Err(_) if overloaded => break Some(StopReason::Severed),
                 Err(_) => break Some(StopReason::NoConvergence),
             }
-            if watch_all {
-                iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
-            }
             newly = overstretched(&body, &bonds, case, &displacement, &equilibrium);
             if equilibrium.is_whole() {
-                watch_all = away_is_stretched(&body, &bonds, case, &displacement, equilibrium.window());
+                near_limit = stretched(&body, &bonds, case, &displacement, equilibrium.window());
             }
             overloaded |= !newly.is_empty();
             if overloaded && equilibrium.work() > GIVEN_WAY * work_before {

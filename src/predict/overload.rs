@@ -34,17 +34,23 @@ pub(super) fn overstretched(
     beyond.into_iter().filter(|&(_, s)| s >= 0.5 * worst).map(|(bond, _)| bond).collect()
 }
 
-/// Whether a bond outside the window is stretched so far that it may go beyond the critical stretch before the next whole
-/// solve.
-pub(super) fn away_is_stretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &[f64], window: Option<&[u32]>) -> bool {
+/// Bonds stretched so far that they may go beyond the critical stretch before the next whole solve, wherever they are: all whose
+/// displacement has to be right after every break, beside those around the tips. To be asked after a whole solve.
+pub(super) fn stretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &[f64], window: Option<&[u32]>) -> Vec<Bond> {
     let limit = WATCHED_SHARE * case.fatigue.critical_stretch;
-    let Some(window) = window.filter(|_| limit.is_finite()) else { return false };
-    let inside = |place: usize| window.binary_search(&(place as u32)).is_ok();
+    // Without a window the displacement is right everywhere.
+    if limit.is_infinite() || window.is_none() {
+        return Vec::new();
+    }
     let beyond = stretched_beyond(limit, body, bonds, displacement, &body.points, |_| true);
-    beyond.into_iter().any(|(bond, _)| {
-        let (_, from, to) = body.ends(bond);
-        !inside(from) || !inside(to)
-    })
+    beyond.into_iter().map(|(bond, _)| bond).collect()
+}
+
+/// Whether both ends of all these bonds are in a window; without one, everything is.
+pub(super) fn are_within(window: Option<&[u32]>, body: &Body, bonds: &[Bond]) -> bool {
+    let Some(window) = window else { return true };
+    let inside = |place: usize| window.binary_search(&(place as u32)).is_ok();
+    bonds.iter().all(|&bond| inside(body.ends(bond).1) && inside(body.ends(bond).2))
 }
 
 /// Bonds that can fail, from one of `owners` to a place that `counts`, stretched beyond a limit.

@@ -65,6 +65,7 @@ fn model(case: &Case, prediction: &Prediction) -> Value {
         "horizon_mm": clean(figures.horizon / MM),
         "lattice_angle_deg": clean(model.lattice_angle.to_degrees()),
         "solver": model.solver.name(),
+        "symmetry": model.symmetry.name(),
     });
     let why: Map<String, Value> =
         WHY_CHOSEN.iter().map(|(key, reason)| ((*key).to_owned(), why_text(case, prediction, key, reason).into())).collect();
@@ -109,7 +110,7 @@ fn plastic_zone(case: &Case, prediction: &Prediction) -> Value {
 }
 
 /// Why the program takes what it takes where the case leaves a choice open.
-const WHY_CHOSEN: [(&str, &str); 9] = [
+const WHY_CHOSEN: [(&str, &str); 10] = [
     ("method", "default: computes any plate and the path of its cracks"),
     ("bond_law", "default: takes Poisson's ratio from the material instead of fixing it"),
     ("kernel", "default: of the kernels tried, its crack growth depends least on the lattice"),
@@ -119,6 +120,7 @@ const WHY_CHOSEN: [(&str, &str); 9] = [
     ("horizon_ratio", "default: 3.015, three neighbours in every lattice direction"),
     ("lattice_angle_deg", "default: lattice rows along x"),
     ("solver", "default: the fastest exact one built"),
+    ("symmetry", "default: exact"),
 ];
 
 /// Why the default bond law is not taken.
@@ -137,7 +139,21 @@ fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> St
     if key == "spacing_mm" && ((asked - actual) / actual).abs() > 1e-9 {
         return format!("{source}; moved from {asked:.6} to {actual:.6} so that it divides the width");
     }
+    if key == "symmetry" {
+        return format!("{source}; {}", solved_part(prediction));
+    }
     source.to_owned()
+}
+
+/// How much of the plate was solved for.
+fn solved_part(prediction: &Prediction) -> &'static str {
+    let (all, solved) = (prediction.figures.points, prediction.figures.points_solved);
+    // A line of symmetry through a row of points leaves half a row more.
+    match (solved == all, 3 * solved > all) {
+        (true, _) => "the whole plate was solved",
+        (false, true) => "one half was solved, the other is its mirror image",
+        (false, false) => "a quarter was solved, the others are its mirror images",
+    }
 }
 
 /// Choices that a fitted law is meaningless without.

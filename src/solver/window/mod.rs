@@ -30,7 +30,7 @@ const UNKNOWNS_MAX: usize = 3000;
 /// not symmetric to the last digit: mirror twins have to agree better than the tolerance within which bonds break together.
 const TOLERANCE: f64 = 1e-11;
 /// Springs after which the whole plate is solved and the inverse renewed.
-const RANK_MAX: usize = 128;
+const RANK_MAX: usize = 256;
 
 /// Multigrid for whole solves, a condensed window between them.
 pub struct WindowSolver<const N: usize> {
