@@ -147,7 +147,9 @@ impl Reflection {
         let boundary = &body.boundary;
         let points = body.points.iter().all(|&place| body.is_point[self.place(place as usize)]);
         points
-            && self.keeps_bonds(body, |a, b| close(f64::from(body.multiplier[a]), f64::from(body.multiplier[b]), f64::from(body.multiplier[a])))
+            && self.keeps_bonds(body, |a, b| {
+                close(f64::from(body.multiplier[a]), f64::from(body.multiplier[b]), f64::from(body.multiplier[a]))
+            })
             && self.keeps_vectors(&boundary.forces)
             && self.keeps_scalars(&boundary.couples)
             && self.keeps_supports(body)

@@ -17,9 +17,9 @@ use crate::body::{Body, Bond};
 use crate::error::Result;
 use crate::specimen::Point;
 use crate::state::Bonds;
-use product::Product;
-pub use mirrored::Symmetry;
 use mirrored::Mirrored;
+pub use mirrored::Symmetry;
+use product::Product;
 
 crate::kinds! {
     /// Equilibrium solvers.

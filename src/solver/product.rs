@@ -124,7 +124,15 @@ impl<const N: usize> Product<N> {
         let turn = springs.iter().map(|s| 2.0 * s.k_t * s.lever * s.lever).sum::<f64>();
         // xx and yy of an interior point are equal by the symmetry of the square; each is half the trace, twice for both bond directions.
         let dilatation = Dilatation::of(body, layout);
-        Product { layout, springs, lattice_rows: body.lattice.rows, diagonal: [stretch, turn], fixed, dilatation, ghosts: Ghosts::of_motion(body, layout) }
+        Product {
+            layout,
+            springs,
+            lattice_rows: body.lattice.rows,
+            diagonal: [stretch, turn],
+            fixed,
+            dilatation,
+            ghosts: Ghosts::of_motion(body, layout),
+        }
     }
 
     /// Layout of its vectors.

@@ -120,7 +120,8 @@ fn foreseen_strains_are_those_of_the_plate_nearly() {
             .collect();
 
         let mut u = Vec::new();
-        let mut equilibrium = Equilibrium::new(SolverKind::Multigrid, Symmetry::Off, &body, &bonds, case.loading.maximum).foreseeing();
+        let mut equilibrium =
+            Equilibrium::new(SolverKind::Multigrid, Symmetry::Off, &body, &bonds, case.loading.maximum).foreseeing();
         equilibrium.solve(&body, &bonds, &mut u).unwrap();
         equilibrium.reach(&body, &bonds, &near, &focus, &mut u).unwrap();
         assert!(!equilibrium.is_foreseen() && equilibrium.is_whole());

@@ -123,8 +123,11 @@ fn multigrid_and_cholesky_agree() {
                 for ratio in ratios {
                     let ratio_set = format!("model.horizon_ratio={ratio}");
                     // Symmetric plates have tests of their own.
-                    let all: Vec<&str> =
-                        [&*ratio_set, "model.symmetry=off"].into_iter().chain(choices.iter().copied()).chain(set.iter().copied()).collect();
+                    let all: Vec<&str> = [&*ratio_set, "model.symmetry=off"]
+                        .into_iter()
+                        .chain(choices.iter().copied())
+                        .chain(set.iter().copied())
+                        .collect();
                     let mut case = case(&specimen, &all);
                     if !cracked {
                         case.specimen.cracks.clear();

@@ -30,8 +30,18 @@ fn scenes() -> Vec<Scene> {
         scene("compact", "kind=\"compact_tension\"\nwidth_mm=50\nthickness_mm=5\ncrack_length_mm=20\n".to_owned(), &[], 2),
         scene("bottom held", plate("cracks=[{from_mm=[-10,1],to_mm=[10,1]}]"), bottom, 2),
         scene("crack along the load", plate("cracks=[{from_mm=[0,-13],to_mm=[0,13]}]"), &[], 4),
-        scene("hole, crack one side", plate("holes=[{x_mm=0,y_mm=0,diameter_mm=16}]\ncracks=[{from_mm=[8,0],to_mm=[16,0]}]"), &[], 2),
-        scene("hole off the middle", plate("holes=[{x_mm=5,y_mm=8,diameter_mm=16}]\ncracks=[{from_mm=[-10,-7],to_mm=[-2,-7]}]"), &[], 1),
+        scene(
+            "hole, crack one side",
+            plate("holes=[{x_mm=0,y_mm=0,diameter_mm=16}]\ncracks=[{from_mm=[8,0],to_mm=[16,0]}]"),
+            &[],
+            2,
+        ),
+        scene(
+            "hole off the middle",
+            plate("holes=[{x_mm=5,y_mm=8,diameter_mm=16}]\ncracks=[{from_mm=[-10,-7],to_mm=[-2,-7]}]"),
+            &[],
+            1,
+        ),
         scene("slant crack", plate("cracks=[{from_mm=[-10,-7],to_mm=[10,7]}]"), &[], 1),
     ]
 }
@@ -60,8 +70,11 @@ fn a_part_of_a_symmetric_plate_says_everything() {
             for solver in [SolverKind::Direct, SolverKind::Multigrid] {
                 let chosen = format!("model.solver={solver}");
                 let of = |symmetry: &str| {
-                    let all: Vec<&str> =
-                        [symmetry, &*chosen].into_iter().chain(choices.iter().copied()).chain(scene.set.iter().copied()).collect();
+                    let all: Vec<&str> = [symmetry, &*chosen]
+                        .into_iter()
+                        .chain(choices.iter().copied())
+                        .chain(scene.set.iter().copied())
+                        .collect();
                     loaded(&try_case(&scene.specimen, &all).unwrap(), solver).unwrap()
                 };
                 let (part, whole) = (of("model.symmetry=auto"), of("model.symmetry=off"));
@@ -94,7 +107,8 @@ fn a_part_grows_the_crack_of_the_whole() {
                 let chosen = format!("model.solver={solver}");
                 let grown = |symmetry: &str| {
                     let fixed = [symmetry, &*chosen, "stop.cycles_max=1e6", "fatigue.block=until_next_break"];
-                    let all: Vec<&str> = fixed.into_iter().chain(choices.iter().copied()).chain(scene.set.iter().copied()).collect();
+                    let all: Vec<&str> =
+                        fixed.into_iter().chain(choices.iter().copied()).chain(scene.set.iter().copied()).collect();
                     let mut case = case(&scene.specimen, &all);
                     case.stop.crack_length = case.specimen.crack_length + 3e-3;
                     predict(&case, &Silent).unwrap()

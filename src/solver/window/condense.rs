@@ -5,8 +5,6 @@
 //! as wide as the bonds reach, both halves are condensed onto their surroundings, and the separator is eliminated from
 //! their sum. Only the dense matrices of the branch at hand are in memory; window points are never eliminated.
 
-use std::collections::HashMap;
-
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
@@ -56,7 +54,7 @@ pub fn condense<const M: usize, A: Assembly<M>>(
     let rest = condenser.eliminate(condenser.rectangle())?;
 
     // What is left couples window points only; bonds among them come in now.
-    let mut sum = Front::<M>::zeros(window.to_vec());
+    let mut sum = Front::<M>::zeros(window, &[]);
     sum.add(&rest);
     condenser.assemble(&mut sum, window, &|other| condenser.kept[other] || condenser.ground[other]);
     for (at, &place) in window.iter().enumerate() {
@@ -113,26 +111,45 @@ impl Rectangle {
 
 /// A dense symmetric matrix over some points; the lower triangle counts.
 struct Front<const N: usize> {
+    /// Points to eliminate and then points to keep, each ascending.
     points: Vec<u32>,
-    at: HashMap<u32, usize>,
+    /// How many are to be eliminated.
+    inner: usize,
     matrix: Mat<f64>,
 }
 
 impl<const N: usize> Front<N> {
-    fn zeros(points: Vec<u32>) -> Self {
-        let at = points.iter().enumerate().map(|(i, &place)| (place, i)).collect();
+    fn zeros(inner: &[u32], outer: &[u32]) -> Self {
+        let points = [inner, outer].concat();
         let order = N * points.len();
-        Front { points, at, matrix: Mat::zeros(order, order) }
+        Front { points, inner: inner.len(), matrix: Mat::zeros(order, order) }
+    }
+
+    /// Where a point stands.
+    fn at(&self, place: u32) -> usize {
+        let (inner, outer) = self.points.split_at(self.inner);
+        let (Ok(at) | Err(at)) = inner.binary_search(&place).or_else(|_| outer.binary_search(&place).map(|at| at + self.inner));
+        debug_assert_eq!(self.points.get(at), Some(&place));
+        at
     }
 
     /// Adds a matrix over some of the same points.
     fn add(&mut self, other: &Front<N>) {
-        let to: Vec<usize> = other.points.iter().map(|place| self.at[place]).collect();
-        for j in 0..other.matrix.ncols() {
-            let column = N * to[j / N] + j % N;
-            for i in j..other.matrix.nrows() {
-                let row = N * to[i / N] + i % N;
-                self.matrix[(row.max(column), row.min(column))] += other.matrix[(i, j)];
+        let to: Vec<usize> = other
+            .points
+            .iter()
+            .flat_map(|&place| (0..N).map(move |c| (place, c)))
+            .map(|(place, c)| N * self.at(place) + c)
+            .collect();
+        for (j, &column) in to.iter().enumerate() {
+            let source = &other.matrix.col_as_slice(j)[j..];
+            // Those of the lower triangle first, whose targets lie in one column.
+            let target = self.matrix.col_as_slice_mut(column);
+            for (&row, value) in to[j..].iter().zip(source).filter(|(row, _)| **row >= column) {
+                target[row] += value;
+            }
+            for (&row, value) in to[j..].iter().zip(source).filter(|(row, _)| **row < column) {
+                self.matrix[(column, row)] += value;
             }
         }
     }
@@ -179,7 +196,6 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
             let at = self.body.lattice.column_row(place);
             region.contains(at) && !own.contains(at) && !self.kept[place]
         };
-        let is_inner: std::collections::HashSet<u32> = inner.iter().copied().collect();
         let mut outer: Vec<u32> = below.iter().flat_map(|front| &front.points).copied().collect();
         for &place in &inner {
             self.for_neighbours(place as usize, |other| {
@@ -190,9 +206,9 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         }
         outer.sort_unstable();
         outer.dedup();
-        outer.retain(|place| !is_inner.contains(place));
+        outer.retain(|place| inner.binary_search(place).is_err());
 
-        let mut front = Front::<M>::zeros(inner.iter().chain(&outer).copied().collect());
+        let mut front = Front::<M>::zeros(&inner, &outer);
         for child in &below {
             front.add(child);
         }
@@ -202,9 +218,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
             self.hold(&mut front.matrix, at, place);
         }
         let matrix = self.schur_complement(front.matrix, M * inner.len())?;
-        let mut rest = Front::<M> { at: HashMap::new(), points: outer, matrix };
-        rest.at = rest.points.iter().enumerate().map(|(i, &place)| (place, i)).collect();
-        Some(rest)
+        Some(Front { points: outer, inner: 0, matrix })
     }
 
     /// Points of a rectangle outside the window that have a bond.
@@ -232,27 +246,24 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         }
     }
 
-    /// Adds the stiffness of the bonds of `points` to those points that `counts`; bonds among `points` once.
+    /// Adds the stiffness of the bonds of `points` (ascending) to those points that `counts`; bonds among `points` once.
     fn assemble(&self, front: &mut Front<M>, points: &[u32], counts: &dyn Fn(usize) -> bool) {
-        let among: std::collections::HashSet<u32> = points.iter().copied().collect();
-        let Front { at, matrix, .. } = front;
         for &place in points {
-            let a = at[&place];
+            let a = front.at(place);
             let last = M * a + M - 1;
-            matrix[(last, last)] += self.assembly.point(place as usize);
+            front.matrix[(last, last)] += self.assembly.point(place as usize);
             for_joints(self.assembly, self.body, self.bonds, place as usize, |joint, owned| {
                 let other = joint.other;
                 // A bond across a line of symmetry is met from both of its ends, each time as that between a point and an image.
                 let is_second = if joint.is_image { other < place as usize } else { !owned };
-                if !counts(other) || (is_second && among.contains(&(other as u32))) {
+                if !counts(other) || (is_second && points.binary_search(&(other as u32)).is_ok()) {
                     return;
                 }
                 let ((own_a, off_ab), (own_b, off_ba)) = (joint.here, joint.there);
+                let b = (!self.ground[other]).then(|| front.at(other as u32));
+                let matrix = &mut front.matrix;
                 add_block::<M>(matrix, a, a, &own_a);
-                if self.ground[other] {
-                    return;
-                }
-                let b = at[&(other as u32)];
+                let Some(b) = b else { return };
                 if a == b {
                     // A bond to the point's own image: its row of the stiffness.
                     add_block::<M>(matrix, a, a, &off_ab);
@@ -298,7 +309,11 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         self.factorise(first.rb_mut())?;
         // C L⁻ᵀ, and the same times D⁻¹.
         solve_unit_lower_triangular_in_place(first.rb(), coupling.rb_mut().transpose_mut(), Par::Seq);
-        let scaled = Mat::from_fn(rest, count, |i, j| coupling[(i, j)] / first[(j, j)]);
+        let mut scaled = coupling.to_owned();
+        for j in 0..count {
+            let pivot = first[(j, j)];
+            scaled.col_as_slice_mut(j).iter_mut().for_each(|value| *value /= pivot);
+        }
         triangular::matmul(
             left.rb_mut(),
             BlockStructure::TriangularLower,
@@ -310,8 +325,11 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
             -1.0,
             Par::Seq,
         );
-        let left = left.rb();
-        Some(Mat::from_fn(rest, rest, |i, j| if i >= j { left[(i, j)] } else { 0.0 }))
+        let mut below = Mat::zeros(rest, rest);
+        for j in 0..rest {
+            below.col_as_slice_mut(j)[j..].copy_from_slice(&matrix.col_as_slice(count + j)[count + j..]);
+        }
+        Some(below)
     }
 }
 
