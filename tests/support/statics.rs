@@ -52,6 +52,7 @@ pub fn body(case: &Case) -> Body {
 }
 
 /// A plate in equilibrium.
+#[derive(Clone)]
 pub struct Loaded {
     pub body: Body,
     pub bonds: Bonds,

@@ -1,10 +1,12 @@
 //! A symmetric plate solved on its half or quarter against the whole.
 
+use perilife::body::pre_crack::bonds_across;
 use perilife::predict::{Silent, predict};
-use perilife::solver::SolverKind;
+use perilife::solver::{Equilibrium, SolverKind, Symmetry};
+use perilife::state::Bonds;
 
 use crate::plates::{case, try_case};
-use crate::statics::{Loaded, loaded};
+use crate::statics::{Loaded, body, loaded, loaded_with};
 
 /// Share of the plate that is left where columns and rows are even in number; a line through a row of points leaves half a row more.
 struct Scene {
@@ -127,6 +129,34 @@ fn a_part_grows_the_crack_of_the_whole() {
                 let (a, b) = (part.curve.last().unwrap(), whole.curve.last().unwrap());
                 assert_eq!(a.broken_bonds, b.broken_bonds, "{}, {law}, {solver}", scene.name);
             }
+        }
+    }
+}
+
+/// A bond that breaks on one side only ends the symmetry: from then on the whole plate is solved, and rightly.
+#[test]
+fn a_break_on_one_side_ends_the_symmetry() {
+    for solver in [SolverKind::Window, SolverKind::Multigrid] {
+        let case = case(&scenes()[0].specimen, &[]);
+        let body = body(&case);
+        let mut bonds = Bonds::new(&body);
+        let mut displacement = Vec::new();
+        let mut equilibrium = Equilibrium::new(solver, Symmetry::Auto, &body, &bonds, case.loading.maximum);
+        equilibrium.solve(&body, &bonds, &mut displacement).unwrap();
+        let ahead = |side: f64| bonds_across(&body, [side * 16e-3, 0.0], [side * 19e-3, 0.0]);
+        let one_side = bonds_across(&body, [19e-3, 0.0], [22e-3, 0.0]);
+        for (broken, is_symmetric) in [([ahead(1.0), ahead(-1.0)].concat(), true), (one_side, false)] {
+            let broken: Vec<_> = broken.into_iter().filter(|&bond| bonds.is_intact(bond)).collect();
+            assert!(!broken.is_empty());
+            broken.iter().for_each(|&bond| bonds.cut(&body, bond));
+            equilibrium.broke(&body, &bonds, &broken);
+            equilibrium.solve(&body, &bonds, &mut displacement).unwrap();
+            let whole = loaded_with(body.clone(), bonds.clone(), case.loading.maximum, SolverKind::Direct).unwrap();
+            println!("{solver}: symmetric {is_symmetric}, work {:.12e} and {:.12e}", equilibrium.work(), whole.work);
+            assert!((equilibrium.work() / whole.work - 1.0).abs() < 1e-9, "{solver}");
+            assert_eq!(equilibrium.points(&body) < body.points.len(), is_symmetric, "{solver}");
+            let part = Loaded { displacement: displacement.clone(), ..whole.clone() };
+            assert!(stretch_difference(&part, &whole) < 1e-7, "{solver}");
         }
     }
 }
