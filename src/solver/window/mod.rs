@@ -29,6 +29,8 @@ const UNKNOWNS_MAX: usize = 3000;
 /// Residual over load of a whole solve. Its error stays in the base of many blocks, and starting values from the window are
 /// not symmetric to the last digit: mirror twins have to agree better than the tolerance within which bonds break together.
 const TOLERANCE: f64 = 1e-11;
+/// Relative error of the work of the loads, found at a whole solve, from which a window is not used any more.
+const DRIFT_MAX: f64 = 1e-7;
 /// Springs after which the whole plate is solved and the inverse renewed.
 const RANK_MAX: usize = 256;
 
@@ -69,6 +71,13 @@ impl<const N: usize> WindowSolver<N> {
             Ok(solved) => solved,
             Err(_) => DirectSolver::default().solve(system, u)?,
         };
+        // The work of the loads by the window's account against that by the whole system: the error of the window in energy.
+        let drift = (self.work / solved.work - 1.0).abs();
+        tracing::debug!(drift, "whole plate solved");
+        if self.window.is_some() && drift > DRIFT_MAX {
+            tracing::warn!(drift, "the window has lost its accuracy: whole solves from now on");
+            (self.window, self.is_off) = (None, true);
+        }
         self.is_whole = true;
         self.work = solved.work;
         if let Some(window) = &mut self.window {
@@ -109,10 +118,12 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
             if !window.take_in(system.body, system.product, &broken) {
                 // A bond outside, or a part of the window on the point of coming loose.
                 self.window = None;
-            } else if window.update.rank() <= RANK_MAX {
+            } else {
                 self.is_whole = false;
                 self.work = window.move_points(system.product, u);
-                return Ok(Solved { iterations: 0, work: self.work });
+                if window.update.rank() <= RANK_MAX {
+                    return Ok(Solved { iterations: 0, work: self.work });
+                }
             }
         }
         self.solve_whole(system, u)
