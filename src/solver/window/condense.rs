@@ -55,23 +55,20 @@ pub fn condense<const M: usize, A: Assembly<M>>(
 
     // What is left couples window points only; bonds among them come in now.
     let mut sum = Front::<M>::zeros(window, &[]);
-    sum.add(&rest);
+    sum.add(rest);
     condenser.assemble(&mut sum, window, &|other| condenser.kept[other] || condenser.ground[other]);
     for (at, &place) in window.iter().enumerate() {
         condenser.hold(&mut sum.matrix, at, place);
     }
-    pins.iter().for_each(|&index| hold(&mut sum.matrix, index));
-    let order = sum.matrix.nrows();
-    condenser.factorise(sum.matrix.as_mut())?;
+    pins.iter().for_each(|&index| sum.matrix.hold(index));
+    let (order, par) = (sum.matrix.order, parallelism(sum.matrix.order));
+    let mut factors = sum.matrix.as_mut();
+    condenser.factorise(factors.rb_mut())?;
     let mut inverse = Mat::zeros(order, order);
-    let mut memory = MemBuffer::new(ldlt::inverse::inverse_scratch::<f64>(order, Par::Seq));
-    let pivots = sum.matrix.diagonal();
-    ldlt::inverse::inverse(inverse.as_mut(), sum.matrix.as_ref(), pivots, Par::Seq, MemStack::new(&mut memory));
-    for column in 0..order {
-        for row in 0..column {
-            inverse[(row, column)] = inverse[(column, row)];
-        }
-    }
+    let mut memory = MemBuffer::new(ldlt::inverse::inverse_scratch::<f64>(order, par));
+    let factors = factors.rb();
+    ldlt::inverse::inverse(inverse.as_mut(), factors, factors.diagonal(), par, MemStack::new(&mut memory));
+    complete_upper(&mut inverse);
     Some(Condensed { places: window.to_vec(), inverse })
 }
 
@@ -109,20 +106,86 @@ impl Rectangle {
     }
 }
 
+/// Copies the lower triangle of a symmetric matrix to the upper one.
+pub(super) fn complete_upper(matrix: &mut Mat<f64>) {
+    const BLOCK: usize = 32;
+    let order = matrix.nrows();
+    for first in (0..order).step_by(BLOCK) {
+        for column in 0..order {
+            for row in first..(first + BLOCK).min(column) {
+                matrix[(row, column)] = matrix[(column, row)];
+            }
+        }
+    }
+}
+
+/// Order of a matrix from which two threads share the work on it.
+const SHARED_ORDER: usize = 600;
+
+/// How to work on a dense matrix: whoever shares the work, the sums are the same.
+pub(super) fn parallelism(order: usize) -> Par {
+    if order >= SHARED_ORDER { Par::rayon(0) } else { Par::Seq }
+}
+
+/// A square matrix, column by column. Its zeros come from the operating system untouched.
+struct Square {
+    order: usize,
+    values: Vec<f64>,
+}
+
+impl Square {
+    fn zeros(order: usize) -> Self {
+        Square { order, values: vec![0.0; order * order] }
+    }
+
+    fn as_mut(&mut self) -> MatMut<'_, f64> {
+        MatMut::from_column_major_slice_mut(&mut self.values, self.order, self.order)
+    }
+
+    fn column(&self, column: usize) -> &[f64] {
+        &self.values[column * self.order..(column + 1) * self.order]
+    }
+
+    fn column_mut(&mut self, column: usize) -> &mut [f64] {
+        &mut self.values[column * self.order..(column + 1) * self.order]
+    }
+
+    /// Adds to an entry of the lower triangle.
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.values[column * self.order + row] += value;
+    }
+
+    /// Adds a block at point row `a` and column `b` <= `a`.
+    fn add_block<const N: usize>(&mut self, a: usize, b: usize, block: &[[f64; N]; N]) {
+        for (i, row) in block.iter().enumerate() {
+            for (j, &value) in row.iter().enumerate().filter(|(j, _)| a > b || i >= *j) {
+                self.add(N * a + i, N * b + j, value);
+            }
+        }
+    }
+
+    /// Takes an unknown out of the system: a unit diagonal alone in its row and column.
+    fn hold(&mut self, index: usize) {
+        for i in 0..self.order {
+            self.values[index.min(i) * self.order + index.max(i)] = if i == index { 1.0 } else { 0.0 };
+        }
+    }
+}
+
 /// A dense symmetric matrix over some points; the lower triangle counts.
 struct Front<const N: usize> {
     /// Points to eliminate and then points to keep, each ascending.
     points: Vec<u32>,
-    /// How many are to be eliminated.
+    /// How many are to be eliminated, or have been.
     inner: usize,
-    matrix: Mat<f64>,
+    matrix: Square,
 }
 
 impl<const N: usize> Front<N> {
     fn zeros(inner: &[u32], outer: &[u32]) -> Self {
         let points = [inner, outer].concat();
         let order = N * points.len();
-        Front { points, inner: inner.len(), matrix: Mat::zeros(order, order) }
+        Front { points, inner: inner.len(), matrix: Square::zeros(order) }
     }
 
     /// Where a point stands.
@@ -133,23 +196,31 @@ impl<const N: usize> Front<N> {
         at
     }
 
-    /// Adds a matrix over some of the same points.
-    fn add(&mut self, other: &Front<N>) {
-        let to: Vec<usize> = other
-            .points
-            .iter()
-            .flat_map(|&place| (0..N).map(move |c| (place, c)))
-            .map(|(place, c)| N * self.at(place) + c)
-            .collect();
-        for (j, &column) in to.iter().enumerate() {
-            let source = &other.matrix.col_as_slice(j)[j..];
-            // Those of the lower triangle first, whose targets lie in one column.
-            let target = self.matrix.col_as_slice_mut(column);
-            for (&row, value) in to[j..].iter().zip(source).filter(|(row, _)| **row >= column) {
-                target[row] += value;
+    /// Adds what is left of another matrix, over some of the same points.
+    fn add(&mut self, other: Front<N>) {
+        let left = other.points[other.inner..].iter().map(|&place| N * self.at(place));
+        let to: Vec<usize> = left.flat_map(|first| first..first + N).collect();
+        let done = N * other.inner;
+        // Neighbours stay neighbours but for the border of what is eliminated here.
+        let mut runs: Vec<std::ops::Range<usize>> = Vec::new();
+        for i in 0..to.len() {
+            match runs.last_mut() {
+                Some(run) if to[i] == to[i - 1] + 1 => run.end = i + 1,
+                _ => runs.push(i..i + 1),
             }
-            for (&row, value) in to[j..].iter().zip(source).filter(|(row, _)| **row < column) {
-                self.matrix[(column, row)] += value;
+        }
+        for (j, &column) in to.iter().enumerate() {
+            let source = &other.matrix.column(done + j)[done..];
+            for run in runs.iter().filter(|run| run.end > j) {
+                let from = run.start.max(j);
+                let (row, values) = (to[from], &source[from..run.end]);
+                if row >= column {
+                    let target = &mut self.matrix.column_mut(column)[row..row + values.len()];
+                    target.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+                } else {
+                    // The lower triangle has these on the other side of the diagonal.
+                    values.iter().enumerate().for_each(|(i, value)| self.matrix.add(column, row + i, *value));
+                }
             }
         }
     }
@@ -196,7 +267,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
             let at = self.body.lattice.column_row(place);
             region.contains(at) && !own.contains(at) && !self.kept[place]
         };
-        let mut outer: Vec<u32> = below.iter().flat_map(|front| &front.points).copied().collect();
+        let mut outer: Vec<u32> = below.iter().flat_map(|front| &front.points[front.inner..]).copied().collect();
         for &place in &inner {
             self.for_neighbours(place as usize, |other| {
                 if !done(other) && !self.ground[other] {
@@ -209,16 +280,13 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         outer.retain(|place| inner.binary_search(place).is_err());
 
         let mut front = Front::<M>::zeros(&inner, &outer);
-        for child in &below {
-            front.add(child);
-        }
-        drop(below);
+        below.into_iter().for_each(|child| front.add(child));
         self.assemble(&mut front, &inner, &|other| self.ground[other] || !done(other));
         for (at, &place) in inner.iter().enumerate() {
             self.hold(&mut front.matrix, at, place);
         }
-        let matrix = self.schur_complement(front.matrix, M * inner.len())?;
-        Some(Front { points: outer, inner: 0, matrix })
+        self.eliminate_first(&mut front.matrix, M * inner.len())?;
+        Some(front)
     }
 
     /// Points of a rectangle outside the window that have a bond.
@@ -251,7 +319,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         for &place in points {
             let a = front.at(place);
             let last = M * a + M - 1;
-            front.matrix[(last, last)] += self.assembly.point(place as usize);
+            front.matrix.add(last, last, self.assembly.point(place as usize));
             for_joints(self.assembly, self.body, self.bonds, place as usize, |joint, owned| {
                 let other = joint.other;
                 // A bond across a line of symmetry is met from both of its ends, each time as that between a point and an image.
@@ -262,53 +330,48 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
                 let ((own_a, off_ab), (own_b, off_ba)) = (joint.here, joint.there);
                 let b = (!self.ground[other]).then(|| front.at(other as u32));
                 let matrix = &mut front.matrix;
-                add_block::<M>(matrix, a, a, &own_a);
+                matrix.add_block(a, a, &own_a);
                 let Some(b) = b else { return };
                 if a == b {
                     // A bond to the point's own image: its row of the stiffness.
-                    add_block::<M>(matrix, a, a, &off_ab);
+                    matrix.add_block(a, a, &off_ab);
                     return;
                 }
-                add_block::<M>(matrix, b, b, &own_b);
+                matrix.add_block(b, b, &own_b);
                 if a > b {
-                    add_block::<M>(matrix, a, b, &off_ab);
+                    matrix.add_block(a, b, &off_ab);
                 } else {
-                    add_block::<M>(matrix, b, a, &off_ba);
+                    matrix.add_block(b, a, &off_ba);
                 }
             });
         }
     }
 
     /// Takes held components of a point out of the system.
-    fn hold(&self, matrix: &mut Mat<f64>, at: usize, place: u32) {
+    fn hold(&self, matrix: &mut Square, at: usize, place: u32) {
         for c in (0..M).filter(|&c| self.assembly.is_held(place as usize, c)) {
-            hold(matrix, M * at + c);
+            matrix.hold(M * at + c);
         }
     }
 
     /// Factors L D Lᵀ in the lower triangle, D on the diagonal; `None` where a pivot has not the sign it should.
     fn factorise(&self, mut matrix: MatMut<'_, f64>) -> Option<()> {
-        let scratch = ldlt::factor::cholesky_in_place_scratch::<f64>(matrix.nrows(), Par::Seq, faer::Spec::default());
-        let mut memory = MemBuffer::new(scratch);
-        ldlt::factor::cholesky_in_place(
-            matrix.rb_mut(),
-            ldlt::factor::LdltRegularization::default(),
-            Par::Seq,
-            MemStack::new(&mut memory),
-            faer::Spec::default(),
-        )
-        .ok()?;
+        let (order, par) = (matrix.nrows(), parallelism(matrix.nrows()));
+        let mut memory = MemBuffer::new(ldlt::factor::cholesky_in_place_scratch::<f64>(order, par, faer::Spec::default()));
+        let regularization = ldlt::factor::LdltRegularization::default();
+        let stack = MemStack::new(&mut memory);
+        ldlt::factor::cholesky_in_place(matrix.rb_mut(), regularization, par, stack, faer::Spec::default()).ok()?;
         let is_right = |i: usize| matrix[(i, i)] * self.assembly.pivot_sign(i % M) > 0.0 || matrix[(i, i)] == 1.0;
-        (0..matrix.nrows()).all(is_right).then_some(())
+        (0..order).all(is_right).then_some(())
     }
 
-    /// Eliminates the first `count` unknowns; what is left, lower triangle.
-    fn schur_complement(&self, mut matrix: Mat<f64>, count: usize) -> Option<Mat<f64>> {
-        let rest = matrix.nrows() - count;
+    /// Eliminates the first `count` unknowns: what is left stands in the lower triangle after them.
+    fn eliminate_first(&self, matrix: &mut Square, count: usize) -> Option<()> {
+        let par = parallelism(matrix.order);
         let (mut first, _, mut coupling, mut left) = matrix.as_mut().split_at_mut(count, count);
         self.factorise(first.rb_mut())?;
         // C L⁻ᵀ, and the same times D⁻¹.
-        solve_unit_lower_triangular_in_place(first.rb(), coupling.rb_mut().transpose_mut(), Par::Seq);
+        solve_unit_lower_triangular_in_place(first.rb(), coupling.rb_mut().transpose_mut(), par);
         let mut scaled = coupling.to_owned();
         for j in 0..count {
             let pivot = first[(j, j)];
@@ -323,30 +386,8 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
             scaled.transpose(),
             BlockStructure::Rectangular,
             -1.0,
-            Par::Seq,
+            par,
         );
-        let mut below = Mat::zeros(rest, rest);
-        for j in 0..rest {
-            below.col_as_slice_mut(j)[j..].copy_from_slice(&matrix.col_as_slice(count + j)[count + j..]);
-        }
-        Some(below)
-    }
-}
-
-/// Takes an unknown out of the system: a unit diagonal alone in its row and column.
-fn hold(matrix: &mut Mat<f64>, index: usize) {
-    for i in 0..matrix.nrows() {
-        matrix[(index.max(i), index.min(i))] = if i == index { 1.0 } else { 0.0 };
-    }
-}
-
-/// Adds a block at point row `a` and column `b` <= `a`.
-fn add_block<const N: usize>(matrix: &mut Mat<f64>, a: usize, b: usize, block: &[[f64; N]; N]) {
-    for i in 0..N {
-        for j in 0..N {
-            if a > b || i >= j {
-                matrix[(N * a + i, N * b + j)] += block[i][j];
-            }
-        }
+        Some(())
     }
 }

@@ -12,7 +12,9 @@
 
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
-use faer::{Accum, Mat, Par};
+use faer::{Accum, Mat};
+
+use super::condense::{complete_upper, parallelism};
 
 /// Pivot of C below which the window is about to lose a part of itself.
 const PIVOT_MIN: f64 = 1e-9;
@@ -116,8 +118,12 @@ impl Update {
             }
         }
         let factor = Mat::from_fn(rank, rank, |i, j| if i > j { self.rows[i][j] } else { 0.0 });
-        solve_unit_lower_triangular_in_place(factor.as_ref(), reduced.as_mut(), Par::Seq);
-        let scaled = Mat::from_fn(rank, order, |i, j| reduced[(i, j)] / self.pivots[i]);
+        let par = parallelism(order);
+        solve_unit_lower_triangular_in_place(factor.as_ref(), reduced.as_mut(), par);
+        let mut scaled = reduced.clone();
+        for j in 0..order {
+            scaled.col_as_slice_mut(j).iter_mut().zip(&self.pivots).for_each(|(value, pivot)| *value /= pivot);
+        }
         triangular::matmul(
             inverse.as_mut(),
             BlockStructure::TriangularLower,
@@ -127,13 +133,9 @@ impl Update {
             scaled.as_ref(),
             BlockStructure::Rectangular,
             1.0,
-            Par::Seq,
+            par,
         );
-        for column in 0..order {
-            for row in 0..column {
-                inverse[(row, column)] = inverse[(column, row)];
-            }
-        }
+        complete_upper(inverse);
         *self = Update::default();
     }
 }
