@@ -54,6 +54,12 @@ impl Bonds {
         self.regular[row * self.chunks + chunk]
     }
 
+    /// Whether the chunks of a row are regular.
+    #[must_use]
+    pub fn row_is_regular(&self, row: usize) -> &[bool] {
+        &self.regular[row * self.chunks..(row + 1) * self.chunks]
+    }
+
     /// Chunks of a row.
     #[must_use]
     pub fn chunks(&self) -> usize {

@@ -29,7 +29,6 @@ pub struct MultigridSolver<const N: usize> {
     broken_since: usize,
     stale: bool,
     r: Vec<f64>,
-    z: Vec<f64>,
     p: Vec<f64>,
     q: Vec<f64>,
 }
@@ -45,7 +44,6 @@ impl<const N: usize> MultigridSolver<N> {
             broken_since: 0,
             stale: false,
             r: layout.zeros(),
-            z: layout.zeros(),
             p: layout.zeros(),
             q: layout.zeros(),
         }
@@ -63,14 +61,14 @@ impl<const N: usize> MultigridSolver<N> {
         let rigid = RigidMotion::of(body, bonds, layout);
         let mut rz_last = 0.0;
         for iteration in 1..=ITERATIONS_MAX {
-            self.multigrid.precondition(bonds, product, &self.r, &mut self.z);
+            let z = self.multigrid.precondition(bonds, product, &self.r);
             if let Some(rigid) = &rigid {
-                rigid.take_off(&mut self.z);
+                rigid.take_off(z);
             }
-            let rz = dot(&layout, &self.r, &self.z);
+            let rz = dot(&layout, &self.r, z);
             let beta = if iteration == 1 { 0.0 } else { rz / rz_last };
             rz_last = rz;
-            update(&mut self.p, |p, i| self.z[i] + beta * p);
+            update(&mut self.p, z, |p, z| z + beta * p);
             product.apply(bonds, &mut self.p, &mut self.q, Into::Set);
             let curvature = dot(&layout, &self.p, &self.q);
             if !(curvature > 0.0 && curvature.is_finite()) {
@@ -78,8 +76,8 @@ impl<const N: usize> MultigridSolver<N> {
                 return None;
             }
             let alpha = rz / curvature;
-            update(u, |u, i| u + alpha * self.p[i]);
-            update(&mut self.r, |r, i| r - alpha * self.q[i]);
+            update(u, &self.p, |u, p| u + alpha * p);
+            update(&mut self.r, &self.q, |r, q| r - alpha * q);
             if dot(&layout, &self.r, &self.r).sqrt() <= target {
                 return Some(iteration);
             }
@@ -89,13 +87,11 @@ impl<const N: usize> MultigridSolver<N> {
     }
 }
 
-/// v[i] = new(v[i], i) for all i, shared out to threads.
-fn update(v: &mut [f64], new: impl Fn(f64, usize) -> f64 + Sync) {
+/// v = new(v, w) component by component, shared out to threads.
+fn update<T: Copy + Sync + std::convert::Into<f64>>(v: &mut [f64], w: &[T], new: impl Fn(f64, f64) -> f64 + Sync) {
     const PART: usize = 1 << 14;
-    v.par_chunks_mut(PART).enumerate().for_each(|(part, values)| {
-        for (i, value) in values.iter_mut().enumerate() {
-            *value = new(*value, part * PART + i);
-        }
+    v.par_chunks_mut(PART).zip(w.par_chunks(PART)).for_each(|(v, w)| {
+        v.iter_mut().zip(w).for_each(|(v, &w)| *v = new(*v, w.into()));
     });
 }
 

@@ -6,6 +6,9 @@
 
 use crate::body::lattice::{LANES, Lattice};
 
+/// Places of a task, about.
+const PLACES_PER_TASK: usize = 1 << 12;
+
 /// Layout of a vector with `unknowns` components a place over a padded lattice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
@@ -69,26 +72,42 @@ impl Layout {
     pub fn zeros(&self) -> Vec<f64> {
         vec![0.0; self.len()]
     }
+
+    /// Padded rows that one task takes: enough work that handing it out does not count, the same for any number of threads.
+    #[must_use]
+    pub fn rows_per_task(&self) -> usize {
+        PLACES_PER_TASK.div_ceil(self.stride)
+    }
 }
 
-/// Scalar product, summed row by row in a fixed order: the same digits whatever the number of threads.
+/// Scalar product, summed part by part in a fixed order: the same digits whatever the number of threads. The second vector may
+/// be in single precision.
 #[must_use]
-pub fn dot(layout: &Layout, a: &[f64], b: &[f64]) -> f64 {
+pub fn dot<T: Copy + Sync + Into<f64>>(layout: &Layout, a: &[f64], b: &[T]) -> f64 {
     use rayon::prelude::*;
-    let row_len = layout.row_len();
-    let rows: Vec<f64> = a.par_chunks(row_len * 16).zip(b.par_chunks(row_len * 16)).map(|(a, b)| lane_sum(a, b)).collect();
-    rows.iter().sum()
+    let part = layout.row_len() * layout.rows_per_task();
+    let parts: Vec<f64> = a.par_chunks(part).zip(b.par_chunks(part)).map(|(a, b)| lane_sum(a, b)).collect();
+    parts.iter().sum()
+}
+
+/// Euclidean norm of a vector in single precision, summed like [`dot`].
+#[must_use]
+pub fn norm(layout: &Layout, a: &[f32]) -> f64 {
+    use rayon::prelude::*;
+    let square = |part: &[f32]| part.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>();
+    let parts: Vec<f64> = a.par_chunks(layout.row_len() * layout.rows_per_task()).map(square).collect();
+    parts.iter().sum::<f64>().sqrt()
 }
 
 /// Sum of products with eight running sums, which the compiler turns into vector instructions.
-fn lane_sum(a: &[f64], b: &[f64]) -> f64 {
+fn lane_sum<T: Copy + Into<f64>>(a: &[f64], b: &[T]) -> f64 {
     let mut sums = [0.0; LANES];
     let (a_lanes, a_rest) = a.as_chunks::<LANES>();
     let (b_lanes, b_rest) = b.as_chunks::<LANES>();
     for (a, b) in a_lanes.iter().zip(b_lanes) {
         for lane in 0..LANES {
-            sums[lane] += a[lane] * b[lane];
+            sums[lane] += a[lane] * b[lane].into();
         }
     }
-    sums.iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f64>()
+    sums.iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(a, &b)| a * b.into()).sum::<f64>()
 }

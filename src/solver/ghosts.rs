@@ -1,6 +1,7 @@
 //! Mirror images in the padding of vectors over the part of a symmetric plate.
 
 use super::field::Layout;
+use super::kernel::Real;
 use crate::body::Body;
 use crate::body::mirror::{Line, signs};
 
@@ -25,12 +26,12 @@ impl Ghosts {
     }
 
     /// Puts the images into the padding.
-    pub(super) fn fill(&self, x: &mut [f64]) {
+    pub(super) fn fill<T: Real>(&self, x: &mut [T]) {
         let Layout { unknowns, stride, rows, padding, .. } = self.layout;
         let row_len = self.layout.row_len();
         if let Some(line) = self.lines[0] {
             for (component, values) in x[..rows * row_len].chunks_exact_mut(stride).enumerate() {
-                let sign = self.signs[0][component % unknowns];
+                let sign = T::of(self.signs[0][component % unknowns]);
                 for steps in 1..=padding {
                     values[padding - steps] = sign * values[padding + line.source(steps)];
                 }
@@ -42,8 +43,8 @@ impl Ghosts {
                 let target = &mut before[(padding - steps) * row_len..][..row_len];
                 let source = &after[line.source(steps) * row_len..][..row_len];
                 for (component, (target, source)) in target.chunks_mut(stride).zip(source.chunks(stride)).enumerate() {
-                    let sign = self.signs[1][component];
-                    target.iter_mut().zip(source).for_each(|(target, source)| *target = sign * source);
+                    let sign = T::of(self.signs[1][component]);
+                    target.iter_mut().zip(source).for_each(|(target, source)| *target = sign * *source);
                 }
             }
         }

@@ -5,6 +5,7 @@ pub mod conjugate_gradient;
 pub mod dilatation;
 pub mod direct;
 pub mod field;
+pub mod kernel;
 pub mod multigrid;
 pub mod product;
 mod ghosts;
@@ -94,6 +95,11 @@ trait LinearSolver<const N: usize>: Send {
     }
 }
 
+/// Does work on a thread of the pool: a parallel loop started from outside would wait for threads to be woken every time.
+fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    rayon::scope(|_| work())
+}
+
 /// Keeps a body in equilibrium with its load while bonds break.
 pub struct Equilibrium {
     inner: Box<dyn Balance>,
@@ -125,14 +131,16 @@ impl Equilibrium {
     /// Equilibrium of a body under `load` times its unit load (Pa or N, as the specimen measures load).
     #[must_use]
     pub fn new(kind: SolverKind, symmetry: Symmetry, body: &Body, bonds: &Bonds, load: f64) -> Self {
-        let mirrored = match symmetry {
-            Symmetry::Auto => Mirrored::new(kind, body, bonds, load),
-            Symmetry::Off => None,
-        };
-        let inner: Box<dyn Balance> = match mirrored {
-            Some(mirrored) => Box::new(mirrored),
-            None => sides::balance(kind, body, bonds, load),
-        };
+        let inner = in_pool(|| -> Box<dyn Balance> {
+            let mirrored = match symmetry {
+                Symmetry::Auto => Mirrored::new(kind, body, bonds, load),
+                Symmetry::Off => None,
+            };
+            match mirrored {
+                Some(mirrored) => Box::new(mirrored),
+                None => sides::balance(kind, body, bonds, load),
+            }
+        });
         Equilibrium { inner }
     }
 
@@ -148,7 +156,7 @@ impl Equilibrium {
     /// # Errors
     /// `Error::Mechanics` if the iteration does not converge.
     pub fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
-        self.inner.solve(body, bonds, displacement)
+        in_pool(|| self.inner.solve(body, bonds, displacement))
     }
 
     /// Tells the solver which bonds were cut since the last solve.
@@ -169,7 +177,7 @@ impl Equilibrium {
         tips: &[Focus],
         displacement: &mut Vec<f64>,
     ) -> Result<usize> {
-        self.inner.reach(body, bonds, watched, tips, displacement)
+        in_pool(|| self.inner.reach(body, bonds, watched, tips, displacement))
     }
 
     /// Makes the displacement right everywhere; returns the iterations.
@@ -177,7 +185,7 @@ impl Equilibrium {
     /// # Errors
     /// As [`Equilibrium::solve`].
     pub fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
-        self.inner.complete(body, bonds, displacement)
+        in_pool(|| self.inner.complete(body, bonds, displacement))
     }
 
     /// Lets [`Equilibrium::foresee`] stand in for solves from now on, where a solve takes long: the window's solver needs no

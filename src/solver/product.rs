@@ -9,9 +9,12 @@ use rayon::prelude::*;
 use super::dilatation::Dilatation;
 use super::field::Layout;
 use super::ghosts::Ghosts;
+pub use super::kernel::Into;
+use super::kernel::{Kernel, Real};
 use super::window::update::Term;
 use crate::body::Body;
 use crate::body::lattice::LANES;
+use crate::bond_law::stencil::StencilBond;
 use crate::state::Bonds;
 
 /// End of a bond in a window's vector.
@@ -38,46 +41,41 @@ pub(super) type Lanes = [f64; LANES];
 /// Rows that one task takes.
 pub(super) const ROWS_PER_TASK: usize = 8;
 
-/// One stencil bond as the product uses it.
+/// Springs in double precision, for solutions. Two blocks side by side would overflow the registers.
+type Double<const N: usize> = Kernel<f64, N, 1, 8>;
+/// The same in single precision, for preconditioners.
+type Single<const N: usize> = Kernel<f32, N, 2, 16>;
+
+/// One stencil bond as assembly uses it.
 #[derive(Debug, Clone, Copy)]
 struct Spring {
-    step: isize,
-    place_step: isize,
     n: [f64; 2],
     t: [f64; 2],
     k_n: f64,
     k_t: f64,
     lever: f64,
-    /// k_n n nᵀ + k_t t tᵀ: xx, xy, yy.
-    a: [f64; 3],
 }
 
 /// Some rows of a product, compiled for every vector width and run with the widest the processor has.
-struct Rows<'a, const N: usize> {
-    product: &'a Product<N>,
+struct Rows<'a, T, const N: usize, const B: usize, const L: usize> {
+    kernel: &'a Kernel<T, N, B, L>,
+    row_len: usize,
     bonds: &'a Bonds,
-    x: &'a [f64],
+    x: &'a [T],
     first: usize,
-    out: &'a mut [f64],
+    out: &'a mut [T],
     into: Into,
 }
 
-impl<const N: usize> pulp::WithSimd for Rows<'_, N> {
+impl<T: Real, const N: usize, const B: usize, const L: usize> pulp::WithSimd for Rows<'_, T, N, B, L> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.product.rows(self.bonds, self.x, self.first, self.out, self.into);
+        for (i, out) in self.out.chunks_exact_mut(self.row_len).enumerate() {
+            self.kernel.row(self.bonds, self.first + i, self.x, out, self.into);
+        }
     }
-}
-
-/// What a combined product does with K x.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Into {
-    /// y = K x.
-    Set,
-    /// y -= K x.
-    Subtract,
 }
 
 /// Stiffness product of a body for N unknowns a point.
@@ -85,9 +83,9 @@ pub enum Into {
 pub struct Product<const N: usize> {
     layout: Layout,
     springs: Vec<Spring>,
+    double: Double<N>,
+    single: Single<N>,
     lattice_rows: usize,
-    /// Diagonal of an interior point: xx = yy of the displacement, and of the rotation.
-    diagonal: [f64; 2],
     /// Vector indices of held components.
     fixed: Vec<usize>,
     /// What a state-based law stores beside its springs.
@@ -100,39 +98,13 @@ impl<const N: usize> Product<N> {
     #[must_use]
     pub fn new(body: &Body, fixed: Vec<usize>) -> Self {
         let layout = Layout::of(&body.lattice, N);
-        let springs: Vec<Spring> = body
-            .stencil
-            .bonds
-            .iter()
-            .zip(&body.steps)
-            .map(|(bond, &place_step)| {
-                let (n, t) = (bond.normal, bond.tangent());
-                let a = [(0, 0), (0, 1), (1, 1)].map(|(i, j)| bond.k_n * n[i] * n[j] + bond.k_t * t[i] * t[j]);
-                Spring {
-                    step: layout.step(bond.dx, bond.dy),
-                    place_step,
-                    n,
-                    t,
-                    k_n: bond.k_n,
-                    k_t: bond.k_t,
-                    lever: bond.lever,
-                    a,
-                }
-            })
-            .collect();
-        let stretch = springs.iter().map(|s| s.a[0] + s.a[2]).sum::<f64>();
-        let turn = springs.iter().map(|s| 2.0 * s.k_t * s.lever * s.lever).sum::<f64>();
-        // xx and yy of an interior point are equal by the symmetry of the square; each is half the trace, twice for both bond directions.
+        let spring =
+            |bond: &StencilBond| Spring { n: bond.normal, t: bond.tangent(), k_n: bond.k_n, k_t: bond.k_t, lever: bond.lever };
+        let springs = body.stencil.bonds.iter().map(spring).collect();
+        let (double, single) = (Kernel::new(body, layout), Kernel::new(body, layout));
         let dilatation = Dilatation::of(body, layout);
-        Product {
-            layout,
-            springs,
-            lattice_rows: body.lattice.rows,
-            diagonal: [stretch, turn],
-            fixed,
-            dilatation,
-            ghosts: Ghosts::of_motion(body, layout),
-        }
+        let ghosts = Ghosts::of_motion(body, layout);
+        Product { layout, springs, double, single, lattice_rows: body.lattice.rows, fixed, dilatation, ghosts }
     }
 
     /// Layout of its vectors.
@@ -154,7 +126,7 @@ impl<const N: usize> Product<N> {
     }
 
     /// Puts the mirror images of a field into its padding.
-    pub(super) fn mirror(&self, x: &mut [f64]) {
+    pub(super) fn mirror<T: Real>(&self, x: &mut [T]) {
         self.ghosts.fill(x);
     }
 
@@ -175,122 +147,24 @@ impl<const N: usize> Product<N> {
         let (row_len, padding) = (self.layout.row_len(), self.layout.padding);
         let body_rows = &mut y[padding * row_len..(padding + self.lattice_rows) * row_len];
         let arch = pulp::Arch::new();
-        body_rows.par_chunks_mut(row_len * ROWS_PER_TASK).enumerate().for_each(|(task, rows)| {
-            arch.dispatch(Rows { product: self, bonds, x, first: task * ROWS_PER_TASK, out: rows, into });
+        let rows_per_task = self.layout.rows_per_task();
+        body_rows.par_chunks_mut(row_len * rows_per_task).enumerate().for_each(|(task, out)| {
+            arch.dispatch(Rows { kernel: &self.double, row_len, bonds, x, first: task * rows_per_task, out, into });
         });
         for &index in &self.fixed {
             y[index] = 0.0;
         }
     }
 
-    /// Rows of the product into `out`, which holds whole padded rows.
+    /// r -= K x of the springs in single precision on one body row of a field that has its mirror images; held
+    /// components of r become zero. `r` is that padded row.
     #[inline(always)]
-    fn rows(&self, bonds: &Bonds, x: &[f64], first: usize, out: &mut [f64], into: Into) {
-        for (i, out) in out.chunks_exact_mut(self.layout.row_len()).enumerate() {
-            self.row(bonds, first + i, x, out, into);
-        }
-    }
-
-    #[inline(always)]
-    fn row(&self, bonds: &Bonds, row: usize, x: &[f64], out: &mut [f64], into: Into) {
-        let stride = self.layout.stride;
-        let first = (row + self.layout.padding) * self.layout.row_len() + self.layout.padding;
-        let place_first = (row + self.layout.padding) * stride + self.layout.padding;
-        for chunk in 0..bonds.chunks() {
-            let at = first + chunk * LANES;
-            let sums = if bonds.chunk_is_regular(row, chunk) {
-                self.regular_chunk(x, at)
-            } else {
-                self.masked_chunk(&bonds.multiplier, x, at, place_first + chunk * LANES)
-            };
-            for (c, sum) in sums.iter().enumerate() {
-                let start = c * stride + self.layout.padding + chunk * LANES;
-                let target = &mut out[start..start + LANES];
-                for lane in 0..LANES {
-                    target[lane] = if into == Into::Set { sum[lane] } else { target[lane] - sum[lane] };
-                }
-            }
-        }
-    }
-
-    /// All bonds present with multiplier 1: opposite neighbours are added first.
-    #[inline(always)]
-    fn regular_chunk(&self, x: &[f64], at: usize) -> [Lanes; N] {
-        let stride = self.layout.stride;
-        let mut y = [[0.0; LANES]; N];
-        let (u, v) = (load(x, at), load(x, at + stride));
-        for lane in 0..LANES {
-            y[0][lane] = self.diagonal[0] * u[lane];
-            y[1][lane] = self.diagonal[0] * v[lane];
-        }
-        if N == 3 {
-            let turn = load(x, at + 2 * stride);
-            for lane in 0..LANES {
-                y[2][lane] = self.diagonal[1] * turn[lane];
-            }
-        }
-        for spring in &self.springs {
-            let (plus, minus) = (at.wrapping_add_signed(spring.step), at.wrapping_add_signed(-spring.step));
-            let (u_p, u_m) = (load(x, plus), load(x, minus));
-            let (v_p, v_m) = (load(x, plus + stride), load(x, minus + stride));
-            let [a_xx, a_xy, a_yy] = spring.a;
-            for lane in 0..LANES {
-                let (u_sum, v_sum) = (u_p[lane] + u_m[lane], v_p[lane] + v_m[lane]);
-                y[0][lane] = a_xx.mul_add(-u_sum, a_xy.mul_add(-v_sum, y[0][lane]));
-                y[1][lane] = a_xy.mul_add(-u_sum, a_yy.mul_add(-v_sum, y[1][lane]));
-            }
-            if N == 3 {
-                let (w_p, w_m) = (load(x, plus + 2 * stride), load(x, minus + 2 * stride));
-                let couple = spring.k_t * spring.lever;
-                let (c_x, c_y, c_w) = (couple * spring.t[0], couple * spring.t[1], couple * spring.lever);
-                for lane in 0..LANES {
-                    let w_difference = w_p[lane] - w_m[lane];
-                    y[0][lane] = c_x.mul_add(w_difference, y[0][lane]);
-                    y[1][lane] = c_y.mul_add(w_difference, y[1][lane]);
-                    let (u_difference, v_difference, w_sum) =
-                        (u_p[lane] - u_m[lane], v_p[lane] - v_m[lane], w_p[lane] + w_m[lane]);
-                    y[2][lane] = c_x.mul_add(-u_difference, c_y.mul_add(-v_difference, c_w.mul_add(w_sum, y[2][lane])));
-                }
-            }
-        }
-        y
-    }
-
-    /// Any multipliers: both directions of every bond by themselves.
-    #[inline(always)]
-    fn masked_chunk(&self, multiplier: &[f32], x: &[f64], at: usize, place: usize) -> [Lanes; N] {
-        let (stride, places) = (self.layout.stride, multiplier.len() / self.springs.len());
-        let mut y = [[0.0; LANES]; N];
-        let mut here = [[0.0; LANES]; N];
-        for (c, value) in here.iter_mut().enumerate() {
-            *value = load(x, at + c * stride);
-        }
-        for (k, spring) in self.springs.iter().enumerate() {
-            for (sign, step, owner) in
-                [(1.0, spring.step, place), (-1.0, -spring.step, place.wrapping_add_signed(-spring.place_step))]
-            {
-                let share = load_f32(multiplier, k * places + owner);
-                let other = at.wrapping_add_signed(step);
-                let (u_o, v_o) = (load(x, other), load(x, other + stride));
-                let w_o = if N == 3 { load(x, other + 2 * stride) } else { [0.0; LANES] };
-                for lane in 0..LANES {
-                    // From i to j along ξ whichever end this point is: sign turns the difference.
-                    let (du, dv) = (sign * (u_o[lane] - here[0][lane]), sign * (v_o[lane] - here[1][lane]));
-                    let f_n = share[lane] * spring.k_n * (spring.n[0] * du + spring.n[1] * dv);
-                    let mut shear = spring.t[0] * du + spring.t[1] * dv;
-                    if N == 3 {
-                        shear -= spring.lever * (here[2][lane] + w_o[lane]);
-                    }
-                    let f_t = share[lane] * spring.k_t * shear;
-                    y[0][lane] -= sign * (spring.n[0] * f_n + spring.t[0] * f_t);
-                    y[1][lane] -= sign * (spring.n[1] * f_n + spring.t[1] * f_t);
-                    if N == 3 {
-                        y[2][lane] -= spring.lever * f_t;
-                    }
-                }
-            }
-        }
-        y
+    pub(super) fn subtract_row(&self, bonds: &Bonds, row: usize, x: &[f32], r: &mut [f32]) {
+        self.single.row(bonds, row, x, r, Into::Subtract);
+        let start = (row + self.layout.padding) * self.layout.row_len();
+        let held = &self.fixed[self.fixed.partition_point(|&index| index < start)..];
+        let end = start + r.len();
+        held.iter().take_while(|&&index| index < end).for_each(|&index| r[index - start] = 0.0);
     }
 
     /// The springs that a broken bond of stencil entry k takes out between its owner and the other end: normal and tangential,

@@ -1,7 +1,9 @@
 //! Rigid motion of a floating plate: it costs no energy, so an iteration must not go along it.
 //!
-//! A preconditioner that is not exact for rigid motion (lattices turned against the edges) lets it grow from round-off until
-//! it drowns the curvature of the search direction.
+//! A preconditioner that is not exact for rigid motion (lattices turned against the edges, round-off of single precision) lets
+//! it grow until it drowns the curvature of the search direction.
+
+use rayon::prelude::*;
 
 use super::field::Layout;
 use crate::body::Body;
@@ -10,7 +12,10 @@ use crate::state::Bonds;
 /// The rigid motions of the points that carry.
 pub struct RigidMotion {
     layout: Layout,
-    places: Vec<u32>,
+    /// 1 where a place holds a point that carries, else 0.
+    carries: Vec<f32>,
+    /// Their number.
+    count: f64,
     /// Mean column and row.
     centre: [f64; 2],
     /// Square of the rotation about the centre, in spacings; infinite where it costs energy.
@@ -27,53 +32,67 @@ impl RigidMotion {
         if free == [false; 3] {
             return None;
         }
-        let places: Vec<u32> = body.points.iter().copied().filter(|&p| bonds.intact_at(body, p as usize) > 0).collect();
-        let seats = || places.iter().map(|&place| seat(&layout, place));
-        let mean = |axis: usize| seats().map(|seat| seat[axis]).sum::<f64>() / places.len() as f64;
-        let centre = [mean(0), mean(1)];
-        let own = if layout.unknowns == 3 { 1.0 } else { 0.0 };
-        let square = |seat: [f64; 2]| (seat[0] - centre[0]).powi(2) + (seat[1] - centre[1]).powi(2) + own;
-        let inertia = if free[2] { seats().map(square).sum() } else { f64::INFINITY };
+        let mut carries = vec![0.0; layout.rows * layout.stride];
+        carries.par_iter_mut().enumerate().for_each(|(place, carries)| {
+            // Away from cracks and the rim there is no need to count bonds.
+            let is_inside = |place: usize| {
+                let (column, row) = body.lattice.column_row(place);
+                bonds.chunk_is_regular(row, column / crate::body::lattice::LANES)
+            };
+            if body.is_point[place] && (is_inside(place) || bonds.intact_at(body, place) > 0) {
+                *carries = 1.0;
+            }
+        });
         let shifts = [0, 1].map(|axis| if free[axis] { 1.0 } else { 0.0 });
-        Some(RigidMotion { layout, places, centre, inertia, shifts })
+        let mut motion = RigidMotion { layout, carries, count: 0.0, centre: [0.0; 2], inertia: f64::INFINITY, shifts };
+        let [count, x, y] = motion.sum(|_, _, seat| [1.0, seat[0], seat[1]], &[]);
+        (motion.count, motion.centre) = (count, [x / count, y / count]);
+        if free[2] {
+            let own = if layout.unknowns == 3 { 1.0 } else { 0.0 };
+            [motion.inertia, ..] = motion.sum(|_, _, [x, y]| [x * x + y * y + own, 0.0, 0.0], &[]);
+        }
+        Some(motion)
     }
 
     /// Takes its rigid motion off a field.
-    pub fn take_off(&self, field: &mut [f64]) {
-        let stride = self.layout.stride;
-        let (mut shift, mut turn) = ([0.0; 2], 0.0);
-        for &place in &self.places {
-            let at = self.layout.index(place as usize);
-            let [x, y] = self.arm(place);
-            let (u, v) = (field[at], field[at + stride]);
-            shift = [shift[0] + u, shift[1] + v];
-            turn += x * v - y * u;
-            if self.layout.unknowns == 3 {
-                turn += field[at + 2 * stride];
-            }
-        }
-        let shift = [0, 1].map(|axis| self.shifts[axis] * shift[axis] / self.places.len() as f64);
+    pub fn take_off(&self, field: &mut [f32]) {
+        let (stride, has_turns) = (self.layout.stride, self.layout.unknowns == 3);
+        let motion = |row: &[f32], column: usize, [x, y]: [f64; 2]| {
+            let (u, v) = (f64::from(row[column]), f64::from(row[column + stride]));
+            let own = if has_turns { f64::from(row[column + 2 * stride]) } else { 0.0 };
+            [u, v, x * v - y * u + own]
+        };
+        let [u, v, turn] = self.sum(motion, field);
+        let shift = [self.shifts[0] * u / self.count, self.shifts[1] * v / self.count];
         let turn = turn / self.inertia;
-        for &place in &self.places {
-            let at = self.layout.index(place as usize);
-            let [x, y] = self.arm(place);
-            field[at] -= shift[0] - turn * y;
-            field[at + stride] -= shift[1] + turn * x;
-            if self.layout.unknowns == 3 {
-                field[at + 2 * stride] -= turn;
-            }
-        }
+        field.par_chunks_exact_mut(self.layout.row_len()).zip(self.carries.par_chunks(stride)).enumerate().for_each(
+            |(row, (values, carries))| {
+                let y = row as f64 - self.centre[1];
+                for (column, &carries) in carries.iter().enumerate() {
+                    let (carries, x) = (f64::from(carries), column as f64 - self.centre[0]);
+                    values[column] -= (carries * (shift[0] - turn * y)) as f32;
+                    values[column + stride] -= (carries * (shift[1] + turn * x)) as f32;
+                    if has_turns {
+                        values[column + 2 * stride] -= (carries * turn) as f32;
+                    }
+                }
+            },
+        );
     }
 
-    /// Column and row of a place from the centre.
-    fn arm(&self, place: u32) -> [f64; 2] {
-        let seat = seat(&self.layout, place);
-        [seat[0] - self.centre[0], seat[1] - self.centre[1]]
+    /// Sum over the points that carry, row by row in a fixed order, of what `of` makes of a row of a field, the column in it and
+    /// the way from the centre in columns and rows.
+    fn sum(&self, of: impl Fn(&[f32], usize, [f64; 2]) -> [f64; 3] + Sync, field: &[f32]) -> [f64; 3] {
+        let (stride, row_len) = (self.layout.stride, self.layout.row_len());
+        let row_sum = |(row, carries): (usize, &[f32])| {
+            let values = field.get(row * row_len..(row + 1) * row_len).unwrap_or(&[]);
+            let y = row as f64 - self.centre[1];
+            carries.iter().enumerate().filter(|(_, carries)| **carries > 0.0).fold([0.0; 3], |sum, (column, _)| {
+                let add = of(values, column, [column as f64 - self.centre[0], y]);
+                [sum[0] + add[0], sum[1] + add[1], sum[2] + add[2]]
+            })
+        };
+        let rows: Vec<[f64; 3]> = self.carries.par_chunks(stride).enumerate().map(row_sum).collect();
+        rows.iter().fold([0.0; 3], |sum, add| [sum[0] + add[0], sum[1] + add[1], sum[2] + add[2]])
     }
-}
-
-/// Column and row of a place in memory.
-fn seat(layout: &Layout, place: u32) -> [f64; 2] {
-    let place = place as usize;
-    [(place % layout.stride) as f64, (place / layout.stride) as f64]
 }

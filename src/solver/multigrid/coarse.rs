@@ -1,15 +1,21 @@
-//! Coarse operators: five by five stencils of N x N blocks, one for every coarse place (Galerkin, A_c = Pᵀ A P).
+//! Coarse operators: five by five stencils of N x N blocks (Galerkin, A_c = Pᵀ A P).
+//!
+//! Away from the rim and from cracks all places have the same stencil, which is kept once; the others keep their own.
 
 use rayon::prelude::*;
 
 use super::super::field::Layout;
+use super::super::kernel::load;
+use super::smoother::Operator;
 use super::transfer::{Transfer, times_interpolation};
 use crate::body::lattice::LANES;
 
 /// Stencil half width of a coarse operator.
-const REACH: isize = 2;
+pub(super) const REACH: isize = 2;
 /// Blocks of a coarse stencil.
 pub const BLOCKS: usize = 25;
+/// Slot of a chunk that has the common stencil.
+const COMMON: u32 = u32::MAX;
 
 /// Block index of a neighbour within reach.
 #[must_use]
@@ -17,29 +23,33 @@ pub fn block_of(dx: isize, dy: isize) -> usize {
     ((dy + REACH) * (2 * REACH + 1) + dx + REACH) as usize
 }
 
+/// Blocks of one coarse place.
+type CoarseRow<const N: usize> = [[[f64; N]; N]; BLOCKS];
+
 /// Operator of a coarse level.
 #[derive(Debug, Clone)]
 pub struct CoarseOperator<const N: usize> {
     layout: Layout,
     rows: usize,
-    /// Columns rounded up to whole chunks.
-    width: usize,
-    /// For each row, block, component pair: the values along the row.
+    /// Chunks of a row.
+    chunks: usize,
+    /// For every chunk of a row where its stencils stand, [`COMMON`] if they are the common one.
+    slots: Vec<u32>,
+    common: Option<CoarseRow<N>>,
+    /// For each chunk with its own stencils, block, component pair: the values along the row.
     values: Vec<f64>,
-    /// The same in single precision: what products read. They are bound by memory, and only smoothing uses them; rigid
+    /// Both in single precision: what products read. They are bound by memory, and only smoothing uses them; rigid
     /// motion, which must stay free of force, is judged from `values` alone.
     single: Vec<f32>,
+    common_single: Vec<f32>,
 }
 
 /// A row of blocks of the fine operator: neighbour offsets with their blocks.
 pub type BlockRow<const N: usize> = Vec<([isize; 2], [[f64; N]; N])>;
 
 impl<const N: usize> CoarseOperator<N> {
-    fn zeros(layout: Layout) -> Self {
-        let rows = layout.rows - 2 * layout.padding;
-        let width = layout.columns.next_multiple_of(LANES);
-        CoarseOperator { layout, rows, width, values: vec![0.0; rows * BLOCKS * N * N * width], single: Vec::new() }
-    }
+    /// Values of a chunk.
+    const CHUNK: usize = BLOCKS * N * N * LANES;
 
     /// Layout of its vectors.
     #[must_use]
@@ -47,15 +57,29 @@ impl<const N: usize> CoarseOperator<N> {
         &self.layout
     }
 
-    fn at(&self, column: usize, row: usize, block: usize, c: usize, d: usize) -> usize {
-        ((row * BLOCKS + block) * N * N + c * N + d) * self.width + column
+    /// The common stencil's block of a place with itself.
+    #[must_use]
+    pub fn common_diagonal(&self) -> Option<[[f64; N]; N]> {
+        self.common.as_ref().map(|common| common[block_of(0, 0)])
+    }
+
+    /// Whether all places of a chunk of a row have the common stencil.
+    #[must_use]
+    pub fn is_common(&self, row: usize, chunk: usize) -> bool {
+        self.slots[row * self.chunks + chunk] == COMMON
     }
 
     /// Block between a place and its neighbour.
     #[must_use]
     pub fn block(&self, column: usize, row: usize, dx: isize, dy: isize) -> [[f64; N]; N] {
         let index = block_of(dx, dy);
-        std::array::from_fn(|c| std::array::from_fn(|d| self.values[self.at(column, row, index, c, d)]))
+        match (self.slots[row * self.chunks + column / LANES], &self.common) {
+            (COMMON, Some(common)) => common[index],
+            (slot, _) => {
+                let first = slot as usize * Self::CHUNK + index * N * N * LANES + column % LANES;
+                std::array::from_fn(|c| std::array::from_fn(|d| self.values[first + (c * N + d) * LANES]))
+            }
+        }
     }
 
     /// Blocks of a place that are not zero.
@@ -81,86 +105,73 @@ impl<const N: usize> CoarseOperator<N> {
         block_row: impl Fn(usize, usize) -> BlockRow<N> + Sync,
         regular: impl Fn(usize, usize) -> bool + Sync,
     ) -> Self {
-        let mut operator = CoarseOperator::zeros(*transfer.coarse());
-        let coarse_size = transfer.coarse_size();
-        let template = (0..coarse_size[1])
-            .flat_map(|row| (0..coarse_size[0]).map(move |column| [column, row]))
+        let (layout, [columns, rows]) = (*transfer.coarse(), transfer.coarse_size());
+        let chunks = columns.div_ceil(LANES);
+        let template = (0..rows)
+            .flat_map(|row| (0..columns).map(move |column| [column, row]))
             .find(|&[column, row]| regular(column, row))
             .map(|place| coarse_row(transfer, size, &block_row, place));
-        let width = operator.width;
-        operator.values.par_chunks_mut(BLOCKS * N * N * width).enumerate().for_each(|(row, values)| {
-            for column in 0..coarse_size[0] {
-                let own;
+        let mut own = Vec::new();
+        let mut slots = vec![COMMON; rows * chunks];
+        for (index, slot) in slots.iter_mut().enumerate() {
+            let (row, first) = (index / chunks, index % chunks * LANES);
+            if !(first..first + LANES).all(|column| column < columns && regular(column, row)) {
+                *slot = own.len() as u32;
+                own.push((row, first));
+            }
+        }
+        let mut values = vec![0.0; own.len() * Self::CHUNK];
+        values.par_chunks_mut(Self::CHUNK).zip(&own).for_each(|(values, &(row, first))| {
+            for column in first..(first + LANES).min(columns) {
                 let blocks = match &template {
-                    Some(template) if regular(column, row) => template,
-                    _ => {
-                        own = coarse_row(transfer, size, &block_row, [column, row]);
-                        &own
-                    }
+                    Some(template) if regular(column, row) => *template,
+                    _ => coarse_row(transfer, size, &block_row, [column, row]),
                 };
-                for (index, block) in blocks.iter().enumerate() {
-                    for c in 0..N {
-                        for d in 0..N {
-                            values[(index * N * N + c * N + d) * width + column] = block[c][d];
-                        }
-                    }
+                for (entry, value) in blocks.as_flattened().as_flattened().iter().enumerate() {
+                    values[entry * LANES + column - first] = *value;
                 }
             }
         });
-        operator.single = operator.values.iter().map(|&v| v as f32).collect();
-        operator
+        let single = values.iter().map(|&v| v as f32).collect();
+        let common_single = template.iter().flatten().flatten().flatten().map(|&v| v as f32).collect();
+        CoarseOperator { layout, rows, chunks, slots, common: template, values, single, common_single }
     }
 
     /// Keeps single precision only, once the next coarser operator has been built.
     pub fn compact(&mut self) {
         self.values = Vec::new();
     }
+}
 
-    /// r -= A d (or r = A d).
-    pub fn apply(&self, d: &[f64], r: &mut [f64], subtract: bool) {
-        let (row_len, padding) = (self.layout.row_len(), self.layout.padding);
-        let arch = pulp::Arch::new();
-        let work = |row: usize, out: &mut [f64]| arch.dispatch(RowProduct { operator: self, d, row, out, subtract });
-        let body = &mut r[padding * row_len..(padding + self.rows) * row_len];
-        if self.rows * self.width > 1000 {
-            body.par_chunks_mut(row_len).enumerate().for_each(|(row, out)| work(row, out));
-        } else {
-            body.chunks_mut(row_len).enumerate().for_each(|(row, out)| work(row, out));
-        }
+impl<const N: usize> Operator for CoarseOperator<N> {
+    fn layout(&self) -> &Layout {
+        &self.layout
     }
-}
-
-/// One row of a product, run with the widest vectors the processor has.
-struct RowProduct<'a, const N: usize> {
-    operator: &'a CoarseOperator<N>,
-    d: &'a [f64],
-    row: usize,
-    out: &'a mut [f64],
-    subtract: bool,
-}
-
-impl<const N: usize> pulp::WithSimd for RowProduct<'_, N> {
-    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        let RowProduct { operator, d, row, out, subtract } = self;
-        let layout = &operator.layout;
-        let (row_len, padding, stride) = (layout.row_len(), layout.padding, layout.stride);
-        for chunk in 0..operator.width / LANES {
-            let mut sums = [[0.0; LANES]; N];
-            for dy in -REACH..=REACH {
-                for dx in -REACH..=REACH {
-                    let block = block_of(dx, dy);
-                    let from =
-                        (row + padding).wrapping_add_signed(dy) * row_len + (padding + chunk * LANES).wrapping_add_signed(dx);
-                    for component in 0..N {
-                        let x = &d[from + component * stride..from + component * stride + LANES];
-                        for (c, sum) in sums.iter_mut().enumerate() {
-                            let start = operator.at(chunk * LANES, row, block, c, component);
-                            let a = &operator.single[start..start + LANES];
+    fn subtract_row(&self, row: usize, x: &[f32], r: &mut [f32]) {
+        let (row_len, padding, stride) = (self.layout.row_len(), self.layout.padding, self.layout.stride);
+        debug_assert!(row < self.rows);
+        for chunk in 0..self.chunks {
+            let slot = self.slots[row * self.chunks + chunk];
+            let own = if slot == COMMON { None } else { self.single.chunks_exact(Self::CHUNK).nth(slot as usize) };
+            let mut sums = [[0.0_f32; LANES]; N];
+            for block in 0..BLOCKS {
+                let (dx, dy) = ((block % 5) as isize - REACH, (block / 5) as isize - REACH);
+                let from = (row + padding).wrapping_add_signed(dy) * row_len + (padding + chunk * LANES).wrapping_add_signed(dx);
+                for d in 0..N {
+                    let x = load::<f32, LANES>(x, from + d * stride);
+                    for (c, sum) in sums.iter_mut().enumerate() {
+                        let entry = block * N * N + c * N + d;
+                        if let Some(own) = own {
+                            let a = load::<f32, LANES>(own, entry * LANES);
                             for lane in 0..LANES {
-                                sum[lane] = f64::from(a[lane]).mul_add(x[lane], sum[lane]);
+                                sum[lane] = a[lane].mul_add(x[lane], sum[lane]);
+                            }
+                        } else {
+                            let a = self.common_single[entry];
+                            for lane in 0..LANES {
+                                sum[lane] = a.mul_add(x[lane], sum[lane]);
                             }
                         }
                     }
@@ -168,8 +179,9 @@ impl<const N: usize> pulp::WithSimd for RowProduct<'_, N> {
             }
             for (c, sum) in sums.iter().enumerate() {
                 let start = c * stride + padding + chunk * LANES;
-                for (target, value) in out[start..start + LANES].iter_mut().zip(sum) {
-                    *target = if subtract { *target - value } else { *value };
+                let target = &mut r[start..start + LANES];
+                for lane in 0..LANES {
+                    target[lane] -= sum[lane];
                 }
             }
         }
@@ -182,7 +194,7 @@ fn coarse_row<const N: usize>(
     size: [usize; 2],
     block_row: &impl Fn(usize, usize) -> BlockRow<N>,
     place: [usize; 2],
-) -> [[[f64; N]; N]; BLOCKS] {
+) -> CoarseRow<N> {
     let mut result = [[[0.0; N]; N]; BLOCKS];
     let seat = transfer.seat(place);
     let half = transfer.factor as isize - 1;

@@ -11,22 +11,29 @@ pub mod coarse;
 pub mod smoother;
 pub mod transfer;
 
+use rayon::prelude::*;
+
 use super::field::Layout;
-use super::product::{Into, Product};
+use super::product::Product;
 use crate::body::Body;
+use crate::body::lattice::LANES;
 use crate::body::mirror::signs;
 use crate::state::Bonds;
 use coarse::{BlockRow, CoarseOperator};
-use smoother::Smoother;
+use smoother::{Operator, Smoother, Step, Work};
 use transfer::{Link, Transfer};
 
-/// Smoothing steps before and after each coarse correction.
-const DEGREE: usize = 2;
+/// Smoothing steps before and after each coarse correction: with two an iteration is a fifth cheaper and there are a fifth more.
+const DEGREE: usize = 3;
 /// Unknowns below which a level is solved by a dense pseudo-inverse.
 const COARSEST: usize = 420;
 /// Stiffness between two coarse places below which, relative to the diagonal, they count as severed.
 const SEVERED: f64 = 1e-7;
 
+/// Values that one task rounds.
+const PART: usize = 1 << 14;
+/// Coarsening factor of the levels after the first.
+const COARSENING: usize = 3;
 /// Common neighbours that join two points whose own bond is broken: around a tip fewer reach across the crack.
 const SHARED_NEIGHBOURS: usize = 3;
 
@@ -36,20 +43,6 @@ struct Level<const N: usize> {
     operator: CoarseOperator<N>,
     smoother: Smoother<N>,
     work: Work,
-}
-
-/// Vectors of a level.
-struct Work {
-    r: Vec<f64>,
-    x: Vec<f64>,
-    d: Vec<f64>,
-    e: Vec<f64>,
-}
-
-impl Work {
-    fn new(layout: &Layout) -> Self {
-        Work { r: layout.zeros(), x: layout.zeros(), d: layout.zeros(), e: layout.zeros() }
-    }
 }
 
 /// Dense pseudo-inverse of the coarsest operator.
@@ -84,17 +77,20 @@ impl<const N: usize> Multigrid<N> {
         let fine = Fine::new(body, bonds, product);
         let layout = *product.layout();
         let (columns, rows) = (body.lattice.columns, body.lattice.rows);
+        let mut work = Work::new(&layout);
         let mut smoother = Smoother::new(
             layout,
-            body.points.iter().map(|&p| {
-                let (column, row) = body.lattice.column_row(p as usize);
-                (column, row, fine.diagonal(column, row))
-            }),
+            fine.interior_diagonal(),
+            |row, chunk| fine.is_whole(row, chunk),
+            |column, row| fine.is_point(column, row).then(|| fine.diagonal(column, row)),
         );
-        smoother.estimate_top(|x, y| product.apply_springs(bonds, x, y, Into::Set));
+        smoother.estimate_top(&Springs { product, bonds }, &mut work);
         let factor = first_factor(body.stencil.reach, body.stencil.horizon / body.stencil.spacing);
-        let transfer = Transfer::<N>::new(layout, rows, factor, 1.0, |c, r| fine.is_point(c, r), |a, b| fine.link(a, b));
-        let surroundings = fine.regular_surroundings(&transfer, factor as isize - 1 + body.stencil.reach as isize);
+        let regular = |row, chunk| bonds.chunk_is_regular(row, chunk);
+        let transfer = Transfer::<N>::new(layout, rows, factor, 1.0, regular, |c, r| fine.is_point(c, r), |a, b| fine.link(a, b));
+        let reach = factor as isize - 1 + body.stencil.reach as isize;
+        let odd = |row, chunk| !(fine.is_whole(row, chunk) && transfer.is_plain(row, chunk));
+        let surroundings = regular_surroundings(&transfer, [columns, rows], reach, odd);
         let operator = CoarseOperator::galerkin(
             &transfer,
             [columns, rows],
@@ -103,31 +99,13 @@ impl<const N: usize> Multigrid<N> {
         );
         let mut levels = vec![Level::new(transfer, operator)];
         let mut unit = factor as f64;
-        loop {
-            let level = &levels[levels.len() - 1];
-            let size = level.transfer.coarse_size();
-            if size[0] * size[1] * N <= COARSEST || size[0].min(size[1]) < 4 {
-                break;
-            }
-            let operator = &level.operator;
-            let scale: Vec<f64> = (0..size[1])
-                .flat_map(|r| (0..size[0]).map(move |c| (c, r)))
-                .map(|(c, r)| trace(&operator.block(c, r, 0, 0)))
-                .collect();
-            let exists = |c: usize, r: usize| scale[r * size[0] + c] > 0.0;
-            let link = |a: [usize; 2], b: [usize; 2]| {
-                let [dx, dy] = [0, 1].map(|i| b[i] as isize - a[i] as isize);
-                let norm = operator.block(a[0], a[1], dx, dy).iter().flatten().map(|v| v.abs()).fold(0.0, f64::max);
-                if norm > SEVERED * scale[a[1] * size[0] + a[0]] || (dx, dy) == (0, 0) { Link::Joined } else { Link::Severed }
-            };
-            let transfer = Transfer::<N>::new(*operator.layout(), size[1], 3, unit, exists, link);
-            let next = CoarseOperator::galerkin(&transfer, size, |c, r| operator.block_row(c, r), |_, _| false);
-            unit *= 3.0;
-            levels.push(Level::new(transfer, next));
+        while let Some(level) = levels[levels.len() - 1].coarsened(unit) {
+            unit *= COARSENING as f64;
+            levels.push(level);
         }
         let coarsest = Coarsest::new(&levels[levels.len() - 1]);
         levels.iter_mut().for_each(|level| level.operator.compact());
-        Multigrid { smoother, levels, coarsest, work: Work::new(&layout) }
+        Multigrid { smoother, levels, coarsest, work }
     }
 
     /// Takes over the changed diagonal of a few points without rebuilding coarse levels.
@@ -139,62 +117,73 @@ impl<const N: usize> Multigrid<N> {
         }
     }
 
-    /// z = M r, one V-cycle from zero.
-    pub fn precondition(&mut self, bonds: &Bonds, product: &Product<N>, r: &[f64], z: &mut [f64]) {
-        let steps = self.smoother.coefficients(DEGREE);
-        let work = &mut self.work;
-        work.r.copy_from_slice(r);
-        z.fill(0.0);
-        for (i, &(a, b)) in steps.iter().enumerate() {
-            if i > 0 {
-                product.apply_springs(bonds, &mut work.d, &mut work.r, Into::Subtract);
-            }
-            self.smoother.step(a, b, &work.r, &mut work.d, z);
-        }
-        product.apply_springs(bonds, &mut work.d, &mut work.r, Into::Subtract);
-        work.e.fill(0.0);
-        descend(&mut self.levels, &self.coarsest, &work.r, &mut work.e);
-        for &index in product.fixed() {
-            work.e[index] = 0.0;
-        }
-        z.iter_mut().zip(&work.e).for_each(|(z, e)| *z += e);
-        product.apply_springs(bonds, &mut work.e, &mut work.r, Into::Subtract);
-        for (i, &(a, b)) in steps.iter().enumerate() {
-            if i > 0 {
-                product.apply_springs(bonds, &mut work.d, &mut work.r, Into::Subtract);
-            }
-            self.smoother.step(a, b, &work.r, &mut work.d, z);
-        }
+    /// M r, one V-cycle from zero in single precision.
+    pub fn precondition(&mut self, bonds: &Bonds, product: &Product<N>, r: &[f64]) -> &mut [f32] {
+        let Multigrid { smoother, levels, coarsest, work } = self;
+        work.r.par_chunks_mut(PART).zip(r.par_chunks(PART)).for_each(|(single, r)| {
+            single.iter_mut().zip(r).for_each(|(single, r)| *single = *r as f32);
+        });
+        cycle(&Springs { product, bonds }, smoother, work, |residual, correction| {
+            descend(levels, coarsest, residual, correction);
+            product.fixed().iter().for_each(|&index| correction[index] = 0.0);
+        });
+        &mut work.x
     }
 }
 
-/// fine += P (coarse correction for the residual).
-fn descend<const N: usize>(levels: &mut [Level<N>], coarsest: &Coarsest, residual: &[f64], correction: &mut [f64]) {
+/// The springs of the body as the smoother takes them.
+struct Springs<'a, const N: usize> {
+    product: &'a Product<N>,
+    bonds: &'a Bonds,
+}
+
+impl<const N: usize> Operator for Springs<'_, N> {
+    fn layout(&self) -> &Layout {
+        self.product.layout()
+    }
+
+    fn prepare(&self, x: &mut [f32]) {
+        self.product.mirror(x);
+    }
+
+    #[inline(always)]
+    fn subtract_row(&self, row: usize, x: &[f32], r: &mut [f32]) {
+        self.product.subtract_row(self.bonds, row, x, r);
+    }
+}
+
+/// One V-cycle from rest for the residual in `work.r`; its solution stands in `work.x`. `correct` sets the correction of the
+/// coarser levels for a residual.
+fn cycle<const N: usize>(
+    operator: &impl Operator,
+    smoother: &Smoother<N>,
+    work: &mut Work,
+    correct: impl FnOnce(&[f32], &mut [f32]),
+) {
+    let Work { r, x, d, e } = work;
+    let steps = smoother.coefficients(DEGREE);
+    smoother.start(steps[0].1, r, d, x);
+    for &(a, b) in &steps[1..] {
+        smoother.relax(operator, Step { a, b, takes_last: false }, d, r, e, x);
+        std::mem::swap(d, e);
+    }
+    smoother.residual(operator, d, r);
+    correct(r, d);
+    for (i, &(a, b)) in steps.iter().enumerate() {
+        smoother.relax(operator, Step { a, b, takes_last: i == 0 }, d, r, e, x);
+        std::mem::swap(d, e);
+    }
+}
+
+/// correction = P (coarse correction for the residual).
+fn descend<const N: usize>(levels: &mut [Level<N>], coarsest: &Coarsest, residual: &[f32], correction: &mut [f32]) {
     let Some((level, rest)) = levels.split_first_mut() else { return };
     let Level { transfer, operator, smoother, work } = level;
     transfer.restrict(residual, &mut work.r);
-    work.x.fill(0.0);
     if rest.is_empty() {
         coarsest.solve(&work.r, &mut work.x);
     } else {
-        let steps = smoother.coefficients(DEGREE);
-        for (i, &(a, b)) in steps.iter().enumerate() {
-            if i > 0 {
-                operator.apply(&work.d, &mut work.r, true);
-            }
-            smoother.step(a, b, &work.r, &mut work.d, &mut work.x);
-        }
-        operator.apply(&work.d, &mut work.r, true);
-        work.e.fill(0.0);
-        descend(rest, coarsest, &work.r, &mut work.e);
-        work.x.iter_mut().zip(&work.e).for_each(|(x, e)| *x += e);
-        operator.apply(&work.e, &mut work.r, true);
-        for (i, &(a, b)) in steps.iter().enumerate() {
-            if i > 0 {
-                operator.apply(&work.d, &mut work.r, true);
-            }
-            smoother.step(a, b, &work.r, &mut work.d, &mut work.x);
-        }
+        cycle(operator, smoother, work, |residual, correction| descend(rest, coarsest, residual, correction));
     }
     transfer.prolong(&work.x, correction);
 }
@@ -202,12 +191,76 @@ fn descend<const N: usize>(levels: &mut [Level<N>], coarsest: &Coarsest, residua
 impl<const N: usize> Level<N> {
     fn new(transfer: Transfer<N>, operator: CoarseOperator<N>) -> Self {
         let layout = *operator.layout();
-        let size = transfer.coarse_size();
-        let places = (0..size[1]).flat_map(|r| (0..size[0]).map(move |c| (c, r)));
-        let mut smoother = Smoother::new(layout, places.map(|(c, r)| (c, r, operator.block(c, r, 0, 0))));
-        smoother.estimate_top(|x, y| operator.apply(x, y, false));
-        Level { transfer, operator, smoother, work: Work::new(&layout) }
+        let mut work = Work::new(&layout);
+        let mut smoother = Smoother::new(
+            layout,
+            operator.common_diagonal(),
+            |row, chunk| operator.is_common(row, chunk),
+            |column, row| Some(operator.block(column, row, 0, 0)),
+        );
+        smoother.estimate_top(&operator, &mut work);
+        Level { transfer, operator, smoother, work }
     }
+
+    /// The next coarser level; `None` if this one is small enough for a dense inverse. `unit` is the spacing of this one.
+    fn coarsened(&self, unit: f64) -> Option<Self> {
+        let (operator, size) = (&self.operator, self.transfer.coarse_size());
+        if size[0] * size[1] * N <= COARSEST || size[0].min(size[1]) < 4 {
+            return None;
+        }
+        let scale = |at: [usize; 2]| trace(&operator.block(at[0], at[1], 0, 0));
+        let link = |a: [usize; 2], b: [usize; 2]| {
+            let [dx, dy] = [0, 1].map(|i| b[i] as isize - a[i] as isize);
+            let norm = operator.block(a[0], a[1], dx, dy).iter().flatten().map(|v| v.abs()).fold(0.0, f64::max);
+            if norm > SEVERED * scale(a) || (dx, dy) == (0, 0) { Link::Joined } else { Link::Severed }
+        };
+        let common = |row: usize, chunk: usize| operator.is_common(row, chunk);
+        let is_point = |c: usize, r: usize| scale([c, r]) > 0.0;
+        let transfer = Transfer::<N>::new(*operator.layout(), size[1], COARSENING, unit, common, is_point, link);
+        let odd = |row, chunk| !(common(row, chunk) && transfer.is_plain(row, chunk));
+        let reach = COARSENING as isize - 1 + coarse::REACH;
+        let surroundings = regular_surroundings(&transfer, size, reach, odd);
+        let regular = |c: usize, r: usize| surroundings[r * transfer.coarse_size()[0] + c];
+        let next = CoarseOperator::galerkin(&transfer, size, |c, r| operator.block_row(c, r), regular);
+        Some(Level::new(transfer, next))
+    }
+}
+
+/// For each coarse place, whether all chunks of fine places (of `columns` x `rows`) that come within `reach` of it are there,
+/// and none of them is odd.
+fn regular_surroundings<const N: usize>(
+    transfer: &Transfer<N>,
+    [columns, rows]: [usize; 2],
+    reach: isize,
+    odd: impl Fn(usize, usize) -> bool,
+) -> Vec<bool> {
+    let chunks = columns.div_ceil(LANES);
+    // Sums over rectangles of odd chunks: prefix[r][c] counts those left of c and below r.
+    let width = chunks + 1;
+    let mut prefix = vec![0_u32; width * (rows + 1)];
+    for row in 0..rows {
+        for chunk in 0..chunks {
+            prefix[(row + 1) * width + chunk + 1] =
+                u32::from(odd(row, chunk)) + prefix[row * width + chunk + 1] + prefix[(row + 1) * width + chunk]
+                    - prefix[row * width + chunk];
+        }
+    }
+    let size = transfer.coarse_size();
+    let mut regular = vec![false; size[0] * size[1]];
+    for row in 0..size[1] {
+        for column in 0..size[0] {
+            let [c, r] = transfer.seat([column, row]);
+            let (left, right, below, above) = (c - reach, c + reach, r - reach, r + reach);
+            if left >= 0 && below >= 0 && right < columns as isize && above < rows as isize {
+                let (left, right) = (left as usize / LANES, right as usize / LANES + 1);
+                let sum = |row: usize, chunk: usize| i64::from(prefix[row * width + chunk]);
+                let (below, above) = (below as usize, above as usize + 1);
+                regular[row * size[0] + column] =
+                    sum(above, right) - sum(below, right) - sum(above, left) + sum(below, left) == 0;
+            }
+        }
+    }
+    regular
 }
 
 impl Coarsest {
@@ -255,12 +308,15 @@ impl Coarsest {
         Coarsest { unknowns, inverse }
     }
 
-    fn solve(&self, r: &[f64], x: &mut [f64]) {
+    fn solve(&self, r: &[f32], x: &mut [f32]) {
         let n = self.unknowns.len();
-        let rhs: Vec<f64> = self.unknowns.iter().map(|&i| r[i]).collect();
-        for (i, row) in self.inverse.chunks(n.max(1)).enumerate() {
-            x[self.unknowns[i]] = row.iter().zip(&rhs).map(|(a, b)| a * b).sum();
+        let mut sums = vec![0.0; n];
+        // The inverse is symmetric: its rows are its columns.
+        for (column, &index) in self.inverse.chunks(n.max(1)).zip(&self.unknowns) {
+            let r = f64::from(r[index]);
+            sums.iter_mut().zip(column).for_each(|(sum, a)| *sum += a * r);
         }
+        self.unknowns.iter().zip(sums).for_each(|(&index, sum)| x[index] = sum as f32);
     }
 }
 
@@ -326,6 +382,25 @@ impl<'a, const N: usize> Fine<'a, N> {
         if self.held.is_empty() { 0 } else { self.held.get(&(column, row)).copied().unwrap_or(0) }
     }
 
+    /// Whether all places of a chunk are interior points with all their bonds, none of them held or near a line of symmetry.
+    fn is_whole(&self, row: usize, chunk: usize) -> bool {
+        let (reach, lines) = (self.body.stencil.reach, self.body.mirror.lines);
+        let mirrored = (lines[0].is_some() && chunk * LANES < reach) || (lines[1].is_some() && row < reach);
+        let is_held = |column: usize| self.held_at(column, row) != 0;
+        let is_free = || self.held.is_empty() || !(chunk * LANES..(chunk + 1) * LANES).any(is_held);
+        !mirrored && self.bonds.chunk_is_regular(row, chunk) && is_free()
+    }
+
+    /// Diagonal block of an interior point that keeps all its bonds.
+    fn interior_diagonal(&self) -> Option<[[f64; N]; N]> {
+        let mut diagonal = [[0.0; N]; N];
+        for (k, sign) in (0..self.body.steps.len()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
+            let own = self.product.bond_blocks(k, sign, 1.0).0;
+            diagonal.as_flattened_mut().iter_mut().zip(own.as_flattened()).for_each(|(sum, own)| *sum += own);
+        }
+        Some(diagonal)
+    }
+
     /// Diagonal block of a point, held components cleared, bonds to its own images included.
     fn diagonal(&self, column: usize, row: usize) -> [[f64; N]; N] {
         let mut sum = [[0.0; N]; N];
@@ -370,36 +445,6 @@ impl<'a, const N: usize> Fine<'a, N> {
         clear(&mut diagonal, own_held, own_held);
         blocks[0].1 = diagonal;
         blocks
-    }
-
-    /// For each coarse place, whether all fine places within `reach` of it are interior, uncut, free and plainly interpolated.
-    fn regular_surroundings(&self, transfer: &Transfer<N>, reach: isize) -> Vec<bool> {
-        let (columns, rows) = (self.body.lattice.columns as isize, self.body.lattice.rows as isize);
-        // Sums over rectangles of odd places: prefix[r][c] counts those left of c and below r.
-        let width = columns as usize + 1;
-        let mut prefix = vec![0_u32; width * (rows as usize + 1)];
-        for row in 0..rows as usize {
-            for column in 0..columns as usize {
-                let chunk_regular = self.bonds.chunk_is_regular(row, column / crate::body::lattice::LANES);
-                let odd = !chunk_regular || self.held_at(column, row) != 0 || !transfer.is_plain(column, row);
-                prefix[(row + 1) * width + column + 1] =
-                    u32::from(odd) + prefix[row * width + column + 1] + prefix[(row + 1) * width + column]
-                        - prefix[row * width + column];
-            }
-        }
-        let size = transfer.coarse_size();
-        let mut regular = vec![false; size[0] * size[1]];
-        for row in 0..size[1] {
-            for column in 0..size[0] {
-                let [c, r] = transfer.seat([column, row]);
-                let (c0, c1, r0, r1) = (c - reach, c + reach + 1, r - reach, r + reach + 1);
-                if c0 >= 0 && r0 >= 0 && c1 <= columns && r1 <= rows {
-                    let sum = |r: isize, c: isize| i64::from(prefix[r as usize * width + c as usize]);
-                    regular[row * size[0] + column] = sum(r1, c1) - sum(r0, c1) - sum(r1, c0) + sum(r0, c0) == 0;
-                }
-            }
-        }
-        regular
     }
 }
 

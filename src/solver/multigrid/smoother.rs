@@ -1,126 +1,218 @@
 //! Chebyshev smoothing with the inverse diagonal blocks (Adams, Brezina, Hu, Tuminaro 2003, J. Comput. Phys. 188:593).
+//!
+//! Vectors are in single precision: smoothing only preconditions, and it is bound by memory. A step goes through memory once:
+//! row by row it takes the product off the residual, forms the correction and adds it.
 
-use super::super::field::Layout;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use super::super::field::{Layout, norm};
+use super::super::kernel::load;
+use crate::body::lattice::LANES;
 
 /// Upper over lower end of the damped part of the spectrum.
-const SPECTRUM_RATIO: f64 = 12.0;
+const SPECTRUM_RATIO: f64 = 15.0;
 /// Margin on the estimated largest eigenvalue.
 const SAFETY: f64 = 1.08;
 /// Steps of the power iteration.
 const POWER_STEPS: usize = 12;
+/// Slot of a chunk that has the common block.
+const COMMON: u32 = u32::MAX;
+/// Most pairs of components of a symmetric block.
+const PAIRS: usize = 6;
+
+/// What is smoothed: the stiffness of a level.
+pub trait Operator: Sync {
+    /// Layout of its vectors.
+    fn layout(&self) -> &Layout;
+    /// Makes a vector ready for products.
+    fn prepare(&self, _x: &mut [f32]) {}
+    /// r -= A x on one row of the level, `r` being that padded row. Compiled into the loops that call it.
+    fn subtract_row(&self, row: usize, x: &[f32], r: &mut [f32]);
+}
+
+/// Inverse diagonal blocks of some places side by side, by pairs c <= d of components.
+type Inverses = [[f32; LANES]; PAIRS];
 
 /// Inverse N x N diagonal blocks of an operator, and the spectrum that smoothing damps.
 #[derive(Debug, Clone)]
 pub struct Smoother<const N: usize> {
     layout: Layout,
-    /// For each component pair c <= d: values over places of the padded lattice (plain place index).
-    inverse: Vec<f64>,
+    rows: usize,
+    chunks: usize,
+    /// For every chunk of a row where its blocks stand, [`COMMON`] inside the plate.
+    slots: Vec<u32>,
+    common: Inverses,
+    own: Vec<Inverses>,
     /// Largest eigenvalue of D⁻¹ A, with margin.
     pub top: f64,
 }
 
-impl<const N: usize> Smoother<N> {
-    /// Pairs c <= d of a symmetric block.
-    const PAIRS: usize = N * (N + 1) / 2;
+/// Vectors of a level.
+pub struct Work {
+    /// Residual.
+    pub r: Vec<f32>,
+    /// Solution.
+    pub x: Vec<f32>,
+    /// Last correction.
+    pub d: Vec<f32>,
+    /// The next one, or that of the level below.
+    pub e: Vec<f32>,
+}
 
-    /// Smoother from the diagonal blocks of `(column, row, block)`.
-    pub fn new(layout: Layout, blocks: impl Iterator<Item = (usize, usize, [[f64; N]; N])>) -> Self {
-        let places = layout.rows * layout.stride;
-        let mut smoother = Smoother { layout, inverse: vec![0.0; Self::PAIRS * places], top: 1.0 };
-        for (column, row, block) in blocks {
-            smoother.set_block(column, row, &block);
+impl Work {
+    /// Zero vectors.
+    #[must_use]
+    pub fn new(layout: &Layout) -> Self {
+        let zeros = || vec![0.0; layout.len()];
+        Work { r: zeros(), x: zeros(), d: zeros(), e: zeros() }
+    }
+}
+
+/// One step: r -= A d; next = a d + b D⁻¹ r; x += next, and d too where it is not yet in x.
+#[derive(Debug, Clone, Copy)]
+pub struct Step {
+    /// Share of the last correction.
+    pub a: f64,
+    /// Share of the preconditioned residual.
+    pub b: f64,
+    /// Whether x takes d too.
+    pub takes_last: bool,
+}
+
+impl<const N: usize> Smoother<N> {
+    /// Smoother for an operator with the block `common` at every place of the chunks `(row, chunk)` that are common, and its
+    /// own `(column, row)` block elsewhere, `None` where there is no place.
+    pub fn new(
+        layout: Layout,
+        common: Option<[[f64; N]; N]>,
+        is_common: impl Fn(usize, usize) -> bool,
+        block: impl Fn(usize, usize) -> Option<[[f64; N]; N]> + Sync,
+    ) -> Self {
+        let (rows, chunks) = (layout.rows - 2 * layout.padding, layout.columns.div_ceil(LANES));
+        let mut slots = vec![COMMON; rows * chunks];
+        let mut places = Vec::new();
+        for (index, slot) in slots.iter_mut().enumerate() {
+            let (row, chunk) = (index / chunks, index % chunks);
+            if common.is_none() || !is_common(row, chunk) {
+                *slot = places.len() as u32;
+                places.push((row, chunk));
+            }
         }
-        smoother
+        let inverses = |&(row, chunk): &(usize, usize)| {
+            let mut own = [[0.0; LANES]; PAIRS];
+            for lane in (0..LANES).filter(|lane| chunk * LANES + lane < layout.columns) {
+                if let Some(block) = block(chunk * LANES + lane, row) {
+                    put(&mut own, lane, &pseudo_inverse(&block));
+                }
+            }
+            own
+        };
+        let own = places.par_iter().map(inverses).collect();
+        let mut everywhere = [[0.0; LANES]; PAIRS];
+        if let Some(block) = common {
+            let inverse = pseudo_inverse(&block);
+            (0..LANES).for_each(|lane| put(&mut everywhere, lane, &inverse));
+        }
+        Smoother { layout, rows, chunks, slots, common: everywhere, own, top: 1.0 }
     }
 
     /// Replaces the diagonal block of one place.
     pub fn set_block(&mut self, column: usize, row: usize, block: &[[f64; N]; N]) {
-        let inverse = pseudo_inverse(block);
-        let place = (row + self.layout.padding) * self.layout.stride + column + self.layout.padding;
-        let places = self.layout.rows * self.layout.stride;
-        let mut pair = 0;
-        for (c, row) in inverse.iter().enumerate() {
-            for value in &row[c..] {
-                self.inverse[pair * places + place] = *value;
-                pair += 1;
-            }
+        let slot = &mut self.slots[row * self.chunks + column / LANES];
+        if *slot == COMMON {
+            *slot = self.own.len() as u32;
+            self.own.push(self.common);
         }
+        put(&mut self.own[*slot as usize], column % LANES, &pseudo_inverse(block));
     }
 
-    /// d = a d + b D⁻¹ r and x += d, over all places.
-    pub fn step(&self, a: f64, b: f64, r: &[f64], d: &mut [f64], x: &mut [f64]) {
-        use rayon::prelude::*;
-        let (row_len, stride) = (self.layout.row_len(), self.layout.stride);
-        let places = self.layout.rows * stride;
-        let rows_per_task = if self.layout.rows * stride > 4000 { 16 } else { self.layout.rows };
-        let chunk = row_len * rows_per_task;
-        let whole = self.layout.rows * row_len;
-        d[..whole]
-            .par_chunks_mut(chunk)
-            .zip(x[..whole].par_chunks_mut(chunk))
-            .zip(r[..whole].par_chunks(chunk))
+    /// d = b D⁻¹ r, x = d: the first step from rest.
+    pub fn start(&self, b: f64, r: &[f32], d: &mut [f32], x: &mut [f32]) {
+        let (row_len, rows_per_task) = (self.layout.row_len(), self.layout.rows_per_task());
+        let arch = pulp::Arch::new();
+        self.body_mut(d)
+            .par_chunks_mut(row_len * rows_per_task)
+            .zip(self.body_mut(x).par_chunks_mut(row_len * rows_per_task))
             .enumerate()
-            .for_each(|(task, ((d, x), r))| {
-                for (i, ((d, x), r)) in d.chunks_mut(row_len).zip(x.chunks_mut(row_len)).zip(r.chunks(row_len)).enumerate() {
-                    let row = task * rows_per_task + i;
-                    let inverse = |pair: usize| &self.inverse[pair * places + row * stride..pair * places + (row + 1) * stride];
-                    if N == 2 {
-                        let (d0, d1) = d.split_at_mut(stride);
-                        let (xx, xy, yy) = (inverse(0), inverse(1), inverse(2));
-                        for p in 0..stride {
-                            let (r0, r1) = (r[p], r[stride + p]);
-                            d0[p] = a * d0[p] + b * (xx[p] * r0 + xy[p] * r1);
-                            d1[p] = a * d1[p] + b * (xy[p] * r0 + yy[p] * r1);
-                        }
-                    } else {
-                        let (d0, rest) = d.split_at_mut(stride);
-                        let (d1, d2) = rest.split_at_mut(stride);
-                        let (xx, xy, xz) = (inverse(0), inverse(1), inverse(2));
-                        let (yy, yz, zz) = (inverse(3), inverse(4), inverse(5));
-                        let (ra, rb, rc) = (&r[..stride], &r[stride..2 * stride], &r[2 * stride..3 * stride]);
-                        for p in 0..stride {
-                            let (r0, r1, r2) = (ra[p], rb[p], rc[p]);
-                            d0[p] = a * d0[p] + b * (xx[p] * r0 + xy[p] * r1 + xz[p] * r2);
-                            d1[p] = a * d1[p] + b * (xy[p] * r0 + yy[p] * r1 + yz[p] * r2);
-                            d2[p] = a * d2[p] + b * (xz[p] * r0 + yz[p] * r1 + zz[p] * r2);
-                        }
-                    }
-                    for (x, d) in x.iter_mut().zip(d.iter()) {
-                        *x += d;
-                    }
-                }
+            .for_each(|(task, (d, x))| {
+                let first = task * rows_per_task;
+                arch.dispatch(Rest { smoother: self, b: b as f32, first, r, d, x });
             });
     }
 
+    /// One step; `d` is only made ready for the product.
+    pub fn relax(&self, operator: &impl Operator, step: Step, d: &mut [f32], r: &mut [f32], next: &mut [f32], x: &mut [f32]) {
+        operator.prepare(d);
+        let (row_len, rows_per_task) = (self.layout.row_len(), self.layout.rows_per_task());
+        let length = row_len * rows_per_task;
+        let arch = pulp::Arch::new();
+        let d = &*d;
+        let rows = self.body_mut(r).par_chunks_mut(length).zip(self.body_mut(next).par_chunks_mut(length));
+        rows.zip(self.body_mut(x).par_chunks_mut(length)).enumerate().for_each(|(task, ((r, next), x))| {
+            let first = task * rows_per_task;
+            arch.dispatch(Relax { smoother: self, operator, step, first, d, r, next, x });
+        });
+    }
+
+    /// r -= A d.
+    pub fn residual(&self, operator: &impl Operator, d: &mut [f32], r: &mut [f32]) {
+        operator.prepare(d);
+        let (row_len, rows_per_task) = (self.layout.row_len(), self.layout.rows_per_task());
+        let arch = pulp::Arch::new();
+        let d = &*d;
+        self.body_mut(r).par_chunks_mut(row_len * rows_per_task).enumerate().for_each(|(task, r)| {
+            arch.dispatch(Residual { operator, row_len, first: task * rows_per_task, d, r });
+        });
+    }
+
+    /// The rows of a vector that are not padding.
+    fn body_mut<'a>(&self, v: &'a mut [f32]) -> &'a mut [f32] {
+        let (row_len, padding) = (self.layout.row_len(), self.layout.padding);
+        &mut v[padding * row_len..(padding + self.rows) * row_len]
+    }
+
+    /// D⁻¹ r of a chunk; `r` is a padded row.
+    #[inline(always)]
+    fn inverse_times(&self, row: usize, chunk: usize, r: &[f32]) -> [[f32; LANES]; N] {
+        let slot = self.slots[row * self.chunks + chunk];
+        let inverse = if slot == COMMON { &self.common } else { &self.own[slot as usize] };
+        let start = self.layout.padding + chunk * LANES;
+        let mut sums = [[0.0_f32; LANES]; N];
+        for d in 0..N {
+            let r = load::<f32, LANES>(r, start + d * self.layout.stride);
+            for (c, sum) in sums.iter_mut().enumerate() {
+                let entry = &inverse[pair::<N>(c, d)];
+                for lane in 0..LANES {
+                    sum[lane] = entry[lane].mul_add(r[lane], sum[lane]);
+                }
+            }
+        }
+        sums
+    }
+
     /// Estimates the largest eigenvalue of D⁻¹ A by power iteration from a fixed start that holds all frequencies.
-    pub fn estimate_top(&mut self, apply: impl Fn(&mut [f64], &mut [f64])) {
-        let mut v = self.layout.zeros();
+    pub fn estimate_top(&mut self, operator: &impl Operator, work: &mut Work) {
+        let Work { r, x, d, e } = work;
         // A fixed pseudo-random start: reproducible, with weight on every mode.
         let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
-        for value in &mut v {
+        for value in r.iter_mut() {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            *value = (seed >> 40) as f64 / (1_u64 << 24) as f64 - 0.5;
+            *value = (seed >> 40) as f32 / (1_u64 << 24) as f32 - 0.5;
         }
-        let (mut av, mut d) = (self.layout.zeros(), self.layout.zeros());
         // Places without material have zero blocks: the first product clears them.
-        self.step(0.0, 1.0, &v.clone(), &mut d, &mut av);
-        std::mem::swap(&mut v, &mut d);
-        let mut top = 1.0;
+        self.start(1.0, r, d, x);
+        let step = Step { a: 0.0, b: -1.0, takes_last: false };
         for _ in 0..POWER_STEPS {
-            let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if norm == 0.0 {
-                break;
-            }
-            v.iter_mut().for_each(|x| *x /= norm);
-            av.fill(0.0);
-            apply(&mut v, &mut av);
-            let mut unused = vec![0.0; av.len()];
-            d.fill(0.0);
-            self.step(0.0, 1.0, &av, &mut d, &mut unused);
-            top = d.iter().map(|x| x * x).sum::<f64>().sqrt();
-            std::mem::swap(&mut v, &mut d);
+            r.fill(0.0);
+            self.relax(operator, step, d, r, e, x);
+            std::mem::swap(d, e);
         }
-        self.top = SAFETY * top;
+        // Both with what makes them ready, so that their norms compare.
+        operator.prepare(d);
+        let before = norm(&self.layout, e);
+        self.top = if before > 0.0 { SAFETY * (norm(&self.layout, d) / before).max(1.0) } else { 1.0 };
+        [r, x, d, e].into_iter().for_each(|v| v.fill(0.0));
     }
 
     /// Coefficients (a, b) of `degree` Chebyshev steps on [top / ratio, top].
@@ -139,10 +231,122 @@ impl<const N: usize> Smoother<N> {
     }
 }
 
+/// Rows of [`Smoother::start`].
+struct Rest<'a, const N: usize> {
+    smoother: &'a Smoother<N>,
+    b: f32,
+    first: usize,
+    r: &'a [f32],
+    d: &'a mut [f32],
+    x: &'a mut [f32],
+}
+
+impl<const N: usize> pulp::WithSimd for Rest<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let layout = &self.smoother.layout;
+        let row_len = layout.row_len();
+        for (i, (d, x)) in self.d.chunks_exact_mut(row_len).zip(self.x.chunks_exact_mut(row_len)).enumerate() {
+            let row = self.first + i;
+            let r = &self.r[(row + layout.padding) * row_len..(row + layout.padding + 1) * row_len];
+            for chunk in 0..self.smoother.chunks {
+                let sums = self.smoother.inverse_times(row, chunk, r);
+                for (c, sum) in sums.iter().enumerate() {
+                    let start = c * layout.stride + layout.padding + chunk * LANES;
+                    let (d, x) = (&mut d[start..start + LANES], &mut x[start..start + LANES]);
+                    for lane in 0..LANES {
+                        d[lane] = self.b * sum[lane];
+                        x[lane] = d[lane];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Rows of [`Smoother::relax`].
+struct Relax<'a, O, const N: usize> {
+    smoother: &'a Smoother<N>,
+    operator: &'a O,
+    step: Step,
+    first: usize,
+    d: &'a [f32],
+    r: &'a mut [f32],
+    next: &'a mut [f32],
+    x: &'a mut [f32],
+}
+
+impl<O: Operator, const N: usize> pulp::WithSimd for Relax<'_, O, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let layout = &self.smoother.layout;
+        let row_len = layout.row_len();
+        let (a, b, last) = (self.step.a as f32, self.step.b as f32, if self.step.takes_last { 1.0_f32 } else { 0.0 });
+        let rows = self.r.chunks_exact_mut(row_len).zip(self.next.chunks_exact_mut(row_len));
+        for (i, ((r, next), x)) in rows.zip(self.x.chunks_exact_mut(row_len)).enumerate() {
+            let row = self.first + i;
+            self.operator.subtract_row(row, self.d, r);
+            let d = &self.d[(row + layout.padding) * row_len..(row + layout.padding + 1) * row_len];
+            for chunk in 0..self.smoother.chunks {
+                let sums = self.smoother.inverse_times(row, chunk, r);
+                for (c, sum) in sums.iter().enumerate() {
+                    let start = c * layout.stride + layout.padding + chunk * LANES;
+                    let d = load::<f32, LANES>(d, start);
+                    let (next, x) = (&mut next[start..start + LANES], &mut x[start..start + LANES]);
+                    for lane in 0..LANES {
+                        next[lane] = a.mul_add(d[lane], b * sum[lane]);
+                        x[lane] += last.mul_add(d[lane], next[lane]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Rows of [`Smoother::residual`].
+struct Residual<'a, O> {
+    operator: &'a O,
+    row_len: usize,
+    first: usize,
+    d: &'a [f32],
+    r: &'a mut [f32],
+}
+
+impl<O: Operator> pulp::WithSimd for Residual<'_, O> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        for (i, r) in self.r.chunks_exact_mut(self.row_len).enumerate() {
+            self.operator.subtract_row(self.first + i, self.d, r);
+        }
+    }
+}
+
+/// Index of a pair of components of a symmetric block.
+#[inline(always)]
+const fn pair<const N: usize>(c: usize, d: usize) -> usize {
+    let (low, high) = if c < d { (c, d) } else { (d, c) };
+    low * N + high - low * (low + 1) / 2
+}
+
+/// Puts the inverse block of one place.
+fn put<const N: usize>(inverses: &mut Inverses, lane: usize, inverse: &[[f64; N]; N]) {
+    for c in 0..N {
+        for d in c..N {
+            inverses[pair::<N>(c, d)][lane] = inverse[c][d] as f32;
+        }
+    }
+}
+
 /// Inverse of a symmetric positive semidefinite block on its range; a point without bonds, or one that hangs on a hinge,
 /// has directions without stiffness: no correction is made along them.
 fn pseudo_inverse<const N: usize>(block: &[[f64; N]; N]) -> [[f64; N]; N] {
-    let matrix = nalgebra::DMatrix::from_fn(N, N, |i, j| block[i][j]);
+    let matrix = DMatrix::from_fn(N, N, |i, j| block[i][j]);
     let trace = matrix.trace();
     if trace <= 0.0 {
         return [[0.0; N]; N];

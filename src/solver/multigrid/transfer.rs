@@ -9,9 +9,10 @@
 use rayon::prelude::*;
 
 use super::super::field::Layout;
+use crate::body::lattice::LANES;
 
-/// Rows that one task takes.
-const ROWS_PER_TASK: usize = 16;
+/// Slot of a chunk of fine places with plain bilinear weights.
+const PLAIN: u32 = u32::MAX;
 
 /// How a fine place may use a coarse one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,10 +37,21 @@ pub struct Transfer<const N: usize> {
     fine: Layout,
     fine_rows: usize,
     coarse: Layout,
-    /// Weights of the four coarse places around each fine place (columns x rows, no padding).
-    weights: Vec<[f32; 4]>,
-    /// Whether a fine place moves rigidly with its coarse places.
-    rigid: Vec<bool>,
+    /// Lower coarse column of every fine column, and the share of the way to the next.
+    lower: Vec<(u32, f32)>,
+    /// Chunks of a fine row.
+    chunks: usize,
+    /// For every chunk of a fine row where its weights stand, [`PLAIN`] if they are bilinear.
+    slots: Vec<u32>,
+    own: Vec<[Weights; LANES]>,
+}
+
+/// Weights of the four coarse places around a fine place.
+#[derive(Debug, Clone, Copy, Default)]
+struct Weights {
+    share: [f32; 4],
+    /// Whether the fine place moves rigidly with its coarse places.
+    rigid: bool,
 }
 
 /// Offset that lays the coarse places symmetrically over `count` fine ones where that is possible.
@@ -49,15 +61,16 @@ fn symmetric_offset(count: usize, factor: usize) -> usize {
 
 impl<const N: usize> Transfer<N> {
     /// Lays a coarse lattice over a fine one of `columns` x `rows` places. `link(place, coarse place)` in (column, row)
-    /// says whether a fine place may use a coarse one; `is_point` whether a fine place is in use; `unit` is the spacing
-    /// of the fine level in lattice spacings.
+    /// says whether a fine place may use a coarse one; `is_point` whether a fine place is in use, `is_regular` whether
+    /// all bonds of a chunk (row, chunk) are whole; `unit` is the spacing of the fine level in lattice spacings.
     pub fn new(
         fine: Layout,
         rows: usize,
         factor: usize,
         unit: f64,
-        is_point: impl Fn(usize, usize) -> bool,
-        link: impl Fn([usize; 2], [usize; 2]) -> Link,
+        is_regular: impl Fn(usize, usize) -> bool,
+        is_point: impl Fn(usize, usize) -> bool + Sync,
+        link: impl Fn([usize; 2], [usize; 2]) -> Link + Sync,
     ) -> Self {
         let columns = fine.columns;
         // Where fine places lie before the first regular coarse one, a further coarse place stands outside.
@@ -75,26 +88,45 @@ impl<const N: usize> Transfer<N> {
             padding,
             columns: coarse_columns,
         };
-        let mut transfer = Transfer {
-            factor,
-            unit,
-            offset,
-            fine,
-            fine_rows: rows,
-            coarse,
-            weights: vec![[0.0; 4]; columns * rows],
-            rigid: vec![false; columns * rows],
-        };
-        for row in 0..rows {
-            for column in 0..columns {
-                if is_point(column, row) {
-                    let (weights, rigid) = transfer.weigh([column, row], &is_point, &link);
-                    transfer.weights[row * columns + column] = weights;
-                    transfer.rigid[row * columns + column] = rigid && N == 3;
-                }
+        let chunks = columns.div_ceil(LANES);
+        let place = |column: usize| column + offset[0];
+        let lower = (0..columns).map(|c| ((place(c) / factor) as u32, (place(c) % factor) as f32 / factor as f32)).collect();
+        let slots = vec![PLAIN; rows * chunks];
+        let mut transfer =
+            Transfer { factor, unit, offset, fine, fine_rows: rows, coarse, lower, chunks, slots, own: Vec::new() };
+        let irregular: Vec<usize> = (0..rows * chunks).filter(|&index| !is_regular(index / chunks, index % chunks)).collect();
+        let weights = |&index: &usize| transfer.weights_of_chunk(index / chunks, index % chunks, &is_point, &link);
+        let found: Vec<Option<[Weights; LANES]>> = irregular.par_iter().map(weights).collect();
+        for (index, weights) in irregular.into_iter().zip(found) {
+            if let Some(weights) = weights {
+                transfer.slots[index] = transfer.own.len() as u32;
+                transfer.own.push(weights);
             }
         }
         transfer
+    }
+
+    /// Weights of the places of a chunk; `None` if all are in use and plain.
+    fn weights_of_chunk(
+        &self,
+        row: usize,
+        chunk: usize,
+        is_point: &impl Fn(usize, usize) -> bool,
+        link: &impl Fn([usize; 2], [usize; 2]) -> Link,
+    ) -> Option<[Weights; LANES]> {
+        let mut weights = [Weights::default(); LANES];
+        let mut plain = true;
+        for (lane, weights) in weights.iter_mut().enumerate() {
+            let column = chunk * LANES + lane;
+            if column < self.fine.columns && is_point(column, row) {
+                *weights = self.weigh([column, row], is_point, link);
+                let bilinear = self.bilinear([column, row]);
+                plain &= !weights.rigid && (0..4).all(|i| (f64::from(weights.share[i]) - bilinear[i]).abs() < 1e-6);
+            } else {
+                plain = false;
+            }
+        }
+        (!plain).then_some(weights)
     }
 
     fn weigh(
@@ -102,46 +134,36 @@ impl<const N: usize> Transfer<N> {
         place: [usize; 2],
         is_point: &impl Fn(usize, usize) -> bool,
         link: &impl Fn([usize; 2], [usize; 2]) -> Link,
-    ) -> ([f32; 4], bool) {
-        let (corners, fraction) = self.corners(place);
-        let mut weights = [0.0_f32; 4];
+    ) -> Weights {
+        let (corners, _) = self.corners(place);
+        let mut share = [0.0_f32; 4];
         let (mut severed, mut ghosts) = (false, [false; 4]);
-        for (corner, weight) in weights.iter_mut().enumerate() {
-            let (a, b) = (corner & 1, corner >> 1);
-            let share = |f: f64, upper: usize| if upper == 1 { f } else { 1.0 - f };
-            let bilinear = share(fraction[0], a) * share(fraction[1], b);
-            if bilinear == 0.0 {
-                continue;
-            }
-            let seat = [self.fine_seat(corners[0] + a, 0), self.fine_seat(corners[1] + b, 1)];
+        for (corner, bilinear) in self.bilinear(place).into_iter().enumerate().filter(|(_, bilinear)| *bilinear > 0.0) {
+            let seat = [self.fine_seat(corners[0] + (corner & 1), 0), self.fine_seat(corners[1] + (corner >> 1), 1)];
             let found = match seat {
                 [Some(c), Some(r)] if is_point(c, r) => link(place, [c, r]),
                 _ => Link::Ghost,
             };
-            match found {
-                Link::Severed => severed = true,
-                Link::Joined => *weight = bilinear as f32,
-                Link::Ghost => {
-                    ghosts[corner] = true;
-                    *weight = bilinear as f32;
-                }
-            }
+            severed |= found == Link::Severed;
+            ghosts[corner] = found == Link::Ghost;
+            share[corner] = if found == Link::Severed { 0.0 } else { bilinear as f32 };
         }
         // A place without material cannot tell sides: it serves only away from cracks.
         if severed {
-            for (weight, ghost) in weights.iter_mut().zip(ghosts) {
-                if ghost {
-                    *weight = 0.0;
-                }
-            }
+            share.iter_mut().zip(ghosts).filter(|(_, ghost)| *ghost).for_each(|(share, _)| *share = 0.0);
         }
-        let sum: f32 = weights.iter().sum();
+        let sum: f32 = share.iter().sum();
         if sum > 0.0 {
-            for weight in &mut weights {
-                *weight /= sum;
-            }
+            share.iter_mut().for_each(|share| *share /= sum);
         }
-        (weights, severed)
+        Weights { share, rigid: severed && N == 3 }
+    }
+
+    /// Bilinear weights of the four coarse places around a fine one.
+    fn bilinear(&self, place: [usize; 2]) -> [f64; 4] {
+        let (_, fraction) = self.corners(place);
+        let share = |axis: usize, upper: usize| if upper == 1 { fraction[axis] } else { 1.0 - fraction[axis] };
+        std::array::from_fn(|corner| share(0, corner & 1) * share(1, corner >> 1))
     }
 
     /// Lower left coarse place of a fine place, and the fraction of the way to the next.
@@ -178,109 +200,142 @@ impl<const N: usize> Transfer<N> {
     #[must_use]
     pub fn parents(&self, column: usize, row: usize) -> [([usize; 2], f64, [f64; 2]); 4] {
         let (lower, _) = self.corners([column, row]);
-        let index = row * self.fine.columns + column;
-        let arm = self.arm(index, column, row);
+        let seat = |corner: usize| [lower[0] + (corner & 1), lower[1] + (corner >> 1)];
+        let slot = self.slots[row * self.chunks + column / LANES];
+        if slot == PLAIN {
+            let weights = self.bilinear([column, row]);
+            return std::array::from_fn(|corner| (seat(corner), weights[corner], [0.0; 2]));
+        }
+        let weights = &self.own[slot as usize][column % LANES];
+        let arm = self.arm(weights, column, row);
         std::array::from_fn(|corner| {
-            let place = [lower[0] + (corner & 1), lower[1] + (corner >> 1)];
-            (place, f64::from(self.weights[index][corner]), arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)))
+            (seat(corner), f64::from(weights.share[corner]), arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)))
         })
     }
 
-    /// Whether a fine place uses plain bilinear weights.
+    /// Whether all fine places of a chunk of a row use plain bilinear weights.
     #[must_use]
-    pub fn is_plain(&self, column: usize, row: usize) -> bool {
-        let index = row * self.fine.columns + column;
-        let (_, f) = self.corners([column, row]);
-        let plain = |i: usize| {
-            let share = |f: f64, upper: usize| if upper == 1 { f } else { 1.0 - f };
-            (share(f[0], i & 1) * share(f[1], i >> 1)) as f32
-        };
-        !self.rigid[index] && (0..4).all(|i| (self.weights[index][i] - plain(i)).abs() < 1e-6)
+    pub fn is_plain(&self, row: usize, chunk: usize) -> bool {
+        self.slots[row * self.chunks + chunk] == PLAIN
     }
 
-    /// fine += P coarse.
-    pub fn prolong(&self, coarse: &[f64], fine: &mut [f64]) {
-        let (fine_len, padding) = (self.fine.row_len(), self.fine.padding);
+    /// Coarse row below a fine one, and the share of the way to the next.
+    fn rows_around(&self, row: usize) -> (usize, f32) {
+        let at = row + self.offset[1];
+        (at / self.factor, (at % self.factor) as f32 / self.factor as f32)
+    }
+
+    /// fine = P coarse.
+    pub fn prolong(&self, coarse: &[f32], fine: &mut [f32]) {
+        let (fine_len, padding, rows_per_task) = (self.fine.row_len(), self.fine.padding, self.fine.rows_per_task());
         let body = &mut fine[padding * fine_len..(padding + self.fine_rows) * fine_len];
-        body.par_chunks_mut(fine_len * ROWS_PER_TASK).enumerate().for_each(|(task, rows)| {
-            for (i, out) in rows.chunks_mut(fine_len).enumerate() {
-                self.prolong_row(task * ROWS_PER_TASK + i, coarse, out);
+        let arch = pulp::Arch::new();
+        body.par_chunks_mut(fine_len * rows_per_task).enumerate().for_each(|(task, rows)| {
+            let mut between = vec![0.0; self.coarse.row_len()];
+            for (i, out) in rows.chunks_exact_mut(fine_len).enumerate() {
+                let row = task * rows_per_task + i;
+                arch.dispatch(Prolonged { transfer: self, row, coarse, between: &mut between, out: &mut *out });
+                for chunk in (0..self.chunks).filter(|&chunk| !self.is_plain(row, chunk)) {
+                    self.prolong_chunk(row, chunk, coarse, out);
+                }
             }
         });
     }
 
-    fn prolong_row(&self, row: usize, coarse: &[f64], out: &mut [f64]) {
+    /// The places of a chunk with weights of their own.
+    fn prolong_chunk(&self, row: usize, chunk: usize, coarse: &[f32], out: &mut [f32]) {
         let (fine_stride, stride) = (self.fine.stride, self.coarse.stride);
-        for column in 0..self.fine.columns {
-            let index = row * self.fine.columns + column;
-            let first = self.coarse_index(column, row);
-            let arm = self.arm(index, column, row);
-            for (corner, &weight) in self.weights[index].iter().enumerate() {
-                if weight == 0.0 {
-                    continue;
-                }
-                let weight = f64::from(weight);
-                let at = first + (corner & 1) + (corner >> 1) * self.coarse.row_len();
-                let (mut u, mut v) = (coarse[at], coarse[at + stride]);
-                if N == 3 {
-                    let turn = coarse[at + 2 * stride];
-                    if let Some(arm) = arm {
-                        let arm = self.arm_of_corner(arm, corner);
-                        u -= turn * arm[1];
-                        v += turn * arm[0];
+        let weights = &self.own[self.slots[row * self.chunks + chunk] as usize];
+        for (lane, weights) in weights.iter().enumerate() {
+            let column = chunk * LANES + lane;
+            let mut sums = [0.0; N];
+            if column < self.fine.columns {
+                let (first, arm) = (self.coarse_index(column, row), self.arm(weights, column, row));
+                for (corner, &weight) in weights.share.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+                    let at = first + (corner & 1) + (corner >> 1) * self.coarse.row_len();
+                    let turn = if N == 3 { coarse[at + 2 * stride] } else { 0.0 };
+                    let arm = arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)).map(|arm| arm as f32);
+                    sums[0] += weight * (coarse[at] - turn * arm[1]);
+                    sums[1] += weight * (coarse[at + stride] + turn * arm[0]);
+                    if N == 3 {
+                        sums[2] += weight * turn;
                     }
-                    out[self.fine.padding + column + 2 * fine_stride] += weight * turn;
                 }
-                out[self.fine.padding + column] += weight * u;
-                out[self.fine.padding + column + fine_stride] += weight * v;
+            }
+            for (c, sum) in sums.into_iter().enumerate() {
+                out[self.fine.padding + column + c * fine_stride] = sum;
             }
         }
     }
 
     /// coarse = Pᵀ fine, each coarse row gathered from the fine rows around it.
-    pub fn restrict(&self, fine: &[f64], coarse: &mut [f64]) {
+    pub fn restrict(&self, fine: &[f32], coarse: &mut [f32]) {
         let (row_len, padding) = (self.coarse.row_len(), self.coarse.padding);
-        let rows = self.coarse.rows - 2 * padding;
-        let body = &mut coarse[padding * row_len..(padding + rows) * row_len];
-        body.par_chunks_mut(row_len).enumerate().for_each(|(coarse_row, out)| {
-            out.fill(0.0);
-            // Fine rows whose lower coarse row is this one, or the one below it.
-            for upper in [1, 0] {
-                let Some(lower) = coarse_row.checked_sub(upper) else { continue };
-                for shift in 0..self.factor {
-                    match (lower * self.factor + shift).checked_sub(self.offset[1]) {
-                        Some(row) if row < self.fine_rows => self.restrict_row(row, upper, fine, out),
-                        _ => {}
-                    }
-                }
+        let rows_per_task = self.fine.rows_per_task().div_ceil(self.factor);
+        let body = &mut coarse[padding * row_len..(self.coarse.rows - padding) * row_len];
+        let arch = pulp::Arch::new();
+        body.par_chunks_mut(row_len * rows_per_task).enumerate().for_each(|(task, rows)| {
+            let mut sums = vec![0.0; self.fine.row_len()];
+            for (i, out) in rows.chunks_exact_mut(row_len).enumerate() {
+                out.fill(0.0);
+                sums.fill(0.0);
+                self.gather(arch, task * rows_per_task + i, fine, &mut sums, out);
             }
         });
     }
 
-    fn restrict_row(&self, row: usize, upper: usize, fine: &[f64], out: &mut [f64]) {
-        let (fine_stride, stride) = (self.fine.stride, self.coarse.stride);
-        let start = (row + self.fine.padding) * self.fine.row_len() + self.fine.padding;
-        for column in 0..self.fine.columns {
-            let index = row * self.fine.columns + column;
-            let first = (column + self.offset[0]) / self.factor + self.coarse.padding;
-            let arm = self.arm(index, column, row);
-            let (u, v) = (fine[start + column], fine[start + column + fine_stride]);
-            let w = if N == 3 { fine[start + column + 2 * fine_stride] } else { 0.0 };
-            for right in 0..2 {
-                let corner = right + 2 * upper;
-                let weight = f64::from(self.weights[index][corner]);
-                if weight == 0.0 {
+    /// Row of the coarse lattice from the fine rows around it; `sums` holds a fine row.
+    fn gather(&self, arch: pulp::Arch, coarse_row: usize, fine: &[f32], sums: &mut [f32], out: &mut [f32]) {
+        // Fine rows whose lower coarse row is this one, or the one below it.
+        for upper in [1, 0] {
+            let Some(lower) = coarse_row.checked_sub(upper) else { continue };
+            for shift in 0..self.factor {
+                let Some(row) = (lower * self.factor + shift).checked_sub(self.offset[1]) else { continue };
+                let share = self.rows_around(row).1;
+                let weight = if upper == 1 { share } else { 1.0 - share };
+                if row >= self.fine_rows || weight == 0.0 {
                     continue;
                 }
-                let at = first + right;
-                out[at] += weight * u;
-                out[at + stride] += weight * v;
+                let start = (row + self.fine.padding) * self.fine.row_len();
+                let from = &fine[start..start + self.fine.row_len()];
+                let plain = &self.slots[row * self.chunks..(row + 1) * self.chunks];
+                arch.dispatch(Weighed { layout: &self.fine, plain, weight, from, sums: &mut *sums });
+                for chunk in (0..self.chunks).filter(|&chunk| plain[chunk] != PLAIN) {
+                    self.restrict_chunk(row, chunk, upper, from, out);
+                }
+            }
+        }
+        for c in 0..N {
+            let from = &sums[c * self.fine.stride + self.fine.padding..][..self.fine.columns];
+            let out = &mut out[c * self.coarse.stride + self.coarse.padding..(c + 1) * self.coarse.stride];
+            for (value, &(lower, share)) in from.iter().zip(&self.lower) {
+                out[lower as usize] += (1.0 - share) * value;
+                out[lower as usize + 1] += share * value;
+            }
+        }
+    }
+
+    /// The places of a chunk with weights of their own, for the coarse row below (0) or above (1) them.
+    fn restrict_chunk(&self, row: usize, chunk: usize, upper: usize, from: &[f32], out: &mut [f32]) {
+        let (fine_stride, stride) = (self.fine.stride, self.coarse.stride);
+        let weights = &self.own[self.slots[row * self.chunks + chunk] as usize];
+        for (lane, weights) in weights.iter().enumerate() {
+            let column = chunk * LANES + lane;
+            if column >= self.fine.columns {
+                break;
+            }
+            let at = self.fine.padding + column;
+            let (u, v) = (from[at], from[at + fine_stride]);
+            let w = if N == 3 { from[at + 2 * fine_stride] } else { 0.0 };
+            let (first, arm) = (self.lower[column].0 as usize + self.coarse.padding, self.arm(weights, column, row));
+            for right in 0..2 {
+                let corner = right + 2 * upper;
+                let weight = weights.share[corner];
+                let arm = arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)).map(|arm| arm as f32);
+                out[first + right] += weight * u;
+                out[first + right + stride] += weight * v;
                 if N == 3 {
-                    let lever = arm.map_or(0.0, |arm| {
-                        let arm = self.arm_of_corner(arm, corner);
-                        arm[0] * v - arm[1] * u
-                    });
-                    out[at + 2 * stride] += weight * (w + lever);
+                    out[first + right + 2 * stride] += weight * (w + arm[0] * v - arm[1] * u);
                 }
             }
         }
@@ -293,14 +348,75 @@ impl<const N: usize> Transfer<N> {
     }
 
     /// Arm from the lower left coarse place to a fine place that moves rigidly, in lattice spacings.
-    fn arm(&self, index: usize, column: usize, row: usize) -> Option<[f64; 2]> {
-        self.rigid[index].then(|| [column + self.offset[0], row + self.offset[1]].map(|at| (at % self.factor) as f64 * self.unit))
+    fn arm(&self, weights: &Weights, column: usize, row: usize) -> Option<[f64; 2]> {
+        weights.rigid.then(|| [column + self.offset[0], row + self.offset[1]].map(|at| (at % self.factor) as f64 * self.unit))
     }
 
     /// The same arm from another of the four coarse places.
     fn arm_of_corner(&self, arm: [f64; 2], corner: usize) -> [f64; 2] {
         let step = self.factor as f64 * self.unit;
         [arm[0] - (corner & 1) as f64 * step, arm[1] - (corner >> 1) as f64 * step]
+    }
+}
+
+/// A fine row with plain weights all along.
+struct Prolonged<'a, const N: usize> {
+    transfer: &'a Transfer<N>,
+    row: usize,
+    coarse: &'a [f32],
+    /// A coarse row.
+    between: &'a mut [f32],
+    out: &'a mut [f32],
+}
+
+impl<const N: usize> pulp::WithSimd for Prolonged<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Prolonged { transfer, row, coarse, between, out } = self;
+        let (lower, share) = transfer.rows_around(row);
+        let row_len = transfer.coarse.row_len();
+        let start = (lower + transfer.coarse.padding) * row_len;
+        let (below, above) = (&coarse[start..start + row_len], &coarse[start + row_len..start + 2 * row_len]);
+        for ((between, below), above) in between.iter_mut().zip(below).zip(above) {
+            *between = (1.0 - share) * below + share * above;
+        }
+        for c in 0..N {
+            let from = &between[c * transfer.coarse.stride + transfer.coarse.padding..(c + 1) * transfer.coarse.stride];
+            let out = &mut out[c * transfer.fine.stride + transfer.fine.padding..][..transfer.fine.columns];
+            for (out, &(lower, share)) in out.iter_mut().zip(&transfer.lower) {
+                *out = (1.0 - share) * from[lower as usize] + share * from[lower as usize + 1];
+            }
+        }
+    }
+}
+
+/// sums += weight x the plain chunks of a fine row.
+struct Weighed<'a> {
+    layout: &'a Layout,
+    plain: &'a [u32],
+    weight: f32,
+    from: &'a [f32],
+    sums: &'a mut [f32],
+}
+
+impl pulp::WithSimd for Weighed<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        for c in 0..self.layout.unknowns {
+            let start = c * self.layout.stride + self.layout.padding;
+            let length = self.plain.len() * LANES;
+            let (from, sums) = (&self.from[start..start + length], &mut self.sums[start..start + length]);
+            let chunks = from.chunks_exact(LANES).zip(sums.chunks_exact_mut(LANES));
+            for ((from, sums), _) in chunks.zip(self.plain).filter(|(_, slot)| **slot == PLAIN) {
+                for lane in 0..LANES {
+                    sums[lane] += self.weight * from[lane];
+                }
+            }
+        }
     }
 }
 
