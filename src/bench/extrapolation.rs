@@ -71,7 +71,8 @@ impl History {
         self.blocks.len()
     }
 
-    /// Measures a solver at up to [`BLOCKS`] places, fewer where they would take more than about `seconds`.
+    /// Measures a solver at up to [`BLOCKS`] places, fewer where their solves, taken as long as the first one, would take more than
+    /// `seconds`; the solves that lead up to them come on top.
     ///
     /// # Errors
     /// A run that broke nothing; a solver that does not converge.
@@ -84,7 +85,7 @@ impl History {
         let mut equilibrium = Equilibrium::new(kind, body, &bonds, load);
         equilibrium.solve(body, &bonds, &mut displacement)?;
         let start_s = started.elapsed().as_secs_f64();
-        let count = places(self.blocks.len(), (seconds / (2.0 * start_s)) as usize);
+        let count = places(self.blocks.len(), (seconds / start_s) as usize);
         let mut blocks = Vec::with_capacity(count.len());
         let mut done = 0;
         for block in count {

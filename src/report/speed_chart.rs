@@ -20,6 +20,8 @@ const FOOT: u32 = 54;
 /// Margins of the plotting area inside a panel: left, right, top, bottom, px.
 const MARGINS: [u32; 4] = [86, 16, 38, 60];
 const LABEL_SIZE: u32 = 13;
+/// Errors, percent, beyond which a run says nothing and has no mark: one of them would squeeze all others together.
+const ERROR_MAX: f64 = 100.0;
 
 type Drawn = std::result::Result<(), Box<dyn std::error::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -29,7 +31,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// # Errors
 /// [`crate::Error::File`] if the file cannot be written.
 pub fn speed_accuracy(path: &Path, outcome: &Outcome) -> Result<bool> {
-    let mut groups: Vec<&'static str> = outcome.rows.iter().filter(|row| row.place().is_some()).map(|row| row.group).collect();
+    let mut groups: Vec<&'static str> = outcome.rows.iter().filter(|row| drawn(row).is_some()).map(|row| row.group).collect();
     groups.dedup();
     if groups.is_empty() {
         return Ok(false);
@@ -56,11 +58,16 @@ fn draw(svg: &mut String, size: (u32, u32), (columns, rows): (u32, u32), outcome
         foot.draw(&Text::new(line, (px(size.0 / 2), px(height)), font(13).pos(Pos::new(HPos::Center, VPos::Center))))?;
     }
     for (area, group) in body.split_evenly((rows as usize, columns as usize)).iter().zip(groups) {
-        let of_group: Vec<&Row> = outcome.rows.iter().filter(|row| row.group == *group && row.place().is_some()).collect();
+        let of_group: Vec<&Row> = outcome.rows.iter().filter(|row| row.group == *group && drawn(row).is_some()).collect();
         panel(area, &of_group)?;
     }
     root.present()?;
     Ok(())
+}
+
+/// Place of a row in the chart, if it has one.
+fn drawn(row: &Row) -> Option<(f64, f64)> {
+    row.place().filter(|(_, error)| *error <= ERROR_MAX)
 }
 
 /// Title and the marks of what was varied.
@@ -68,10 +75,10 @@ fn legend(area: &Area<'_>, width: u32, outcome: &Outcome, groups: &[&str]) -> Dr
     let middle = Pos::new(HPos::Center, VPos::Center);
     let title = "Speed and accuracy: what a result costs and how far it is from the reference";
     area.draw(&Text::new(title, (px(width / 2), px(20)), font(17).pos(middle)))?;
-    let drawn = |row: &&Row| groups.contains(&row.group) && row.place().is_some();
+    let of_chart = |row: &&Row| groups.contains(&row.group) && drawn(row).is_some();
     let varied: Vec<usize> =
-        (0..VARIED.len()).filter(|&i| outcome.rows.iter().filter(drawn).any(|row| row.varied == VARIED[i])).collect();
-    let extrapolated = outcome.rows.iter().filter(drawn).any(|row| row.timing.extrapolated_from.is_some());
+        (0..VARIED.len()).filter(|&i| outcome.rows.iter().filter(of_chart).any(|row| row.varied == VARIED[i])).collect();
+    let extrapolated = outcome.rows.iter().filter(of_chart).any(|row| row.timing.extrapolated_from.is_some());
     let mut words: Vec<(Option<usize>, &str)> = varied.iter().map(|&i| (Some(i), VARIED[i])).collect();
     words.push((None, "Pareto front"));
     // Two lines, each centred.
@@ -94,6 +101,10 @@ fn legend(area: &Area<'_>, width: u32, outcome: &Outcome, groups: &[&str]) -> Dr
     let mut note = "each mark differs from the default in one choice; those on the front are named".to_owned();
     if extrapolated {
         note += "; hollow: extrapolated from measured blocks";
+    }
+    let beyond = outcome.rows.iter().filter(|row| row.place().is_some() && drawn(row).is_none()).count();
+    if beyond > 0 {
+        note += &format!("; {beyond} beyond {ERROR_MAX} % left out");
     }
     area.draw(&Text::new(note, (px(width / 2), px(68)), font(13).pos(middle)))?;
     Ok(())
