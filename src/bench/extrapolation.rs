@@ -2,7 +2,7 @@
 //!
 //! A run is made with the default solver, and its breaks are taken down. The slow solver then starts on the same plate, and at
 //! some places along the run solves one block after the other's breaks, starting from the equilibrium before: what a run with it
-//! would do at every block. All blocks between two measured ones take their mean. Only equilibrium counts, not what a run does
+//! would do at every block, without symmetry. All blocks between two measured ones take their mean. Only equilibrium counts, not what a run does
 //! beside it, so that the slow solver is rather flattered.
 
 use std::time::Instant;
@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::fatigue::ageing::AgeingBond;
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::predict::{Prediction, Recorder, Silent, run};
-use crate::solver::{Equilibrium, SolverKind};
+use crate::solver::{Equilibrium, SolverKind, Symmetry};
 use crate::state::Bonds;
 
 /// Blocks measured along a run.
@@ -82,7 +82,7 @@ impl History {
         let mut bonds = start.clone();
         let mut displacement = Vec::new();
         let started = Instant::now();
-        let mut equilibrium = Equilibrium::new(kind, body, &bonds, load);
+        let mut equilibrium = Equilibrium::new(kind, Symmetry::Off, body, &bonds, load);
         equilibrium.solve(body, &bonds, &mut displacement)?;
         let start_s = started.elapsed().as_secs_f64();
         let count = places(self.blocks.len(), (seconds / start_s) as usize);

@@ -8,7 +8,7 @@ use super::row::{Asked, Row};
 use super::scene::Found;
 use super::solvers::{Budget, whole_or_extrapolated};
 use super::speed_accuracy::{WHOLE_PLATE, with};
-use super::variant::DEFAULT;
+use super::variant::{DEFAULT, VARIED};
 use super::{Bench, Figure};
 use crate::case::Case;
 use crate::error::Result;
@@ -46,6 +46,9 @@ pub fn virkler_panel(bench: &mut Bench<'_>) -> Result<()> {
     let (found, window) = bench.time(|| whole(&default))?;
     bench.push(with(Row::new(GROUP, about, DEFAULT, default.model.solver.name(), window), &found));
 
+    let off = panel(&[WHOLE_PLATE])?;
+    let (_, unmirrored) = bench.time(|| whole(&off))?;
+    bench.push(with(Row::new(GROUP, about, VARIED[6], "symmetry off", unmirrored), &found));
     let (history, run) = History::of(&panel(&[WHOLE_PLATE])?)?;
     let known = Found { points: run.figures.points, ..found.clone() };
     let budget = Budget { blocks_s: 15.0 * bench.effort.seconds_of_blocks, whole_s: 4.0 * bench.effort.seconds_whole };
@@ -54,13 +57,12 @@ pub fn virkler_panel(bench: &mut Bench<'_>) -> Result<()> {
         let case = panel(&[&solver, WHOLE_PLATE, "fatigue.block=until_next_break"])?;
         let (other, timing) = whole_or_extrapolated(bench, &case, (&history, &known), budget, whole)?;
         bench.push(with(Row::new(GROUP, about, "solver", &format!("{kind}, every block"), timing), &other));
-        bench.figure(Figure {
-            group: GROUP,
-            quantity: format!("{kind} after every block, over the default run"),
-            value: timing.ratio / window.ratio,
-            unit: "",
-            asked: ASKED.iter().find(|(name, _)| *name == kind.name()).map(|(_, least)| Asked::AtLeast(*least)),
-        });
+        let asked = ASKED.iter().find(|(name, _)| *name == kind.name()).map(|(_, least)| Asked::AtLeast(*least));
+        for (over, by, asked) in [("the default run", window, asked), ("the default solver on the whole plate", unmirrored, None)]
+        {
+            let quantity = format!("{kind} after every block, over {over}");
+            bench.figure(Figure { group: GROUP, quantity, value: timing.ratio / by.ratio, unit: "", asked });
+        }
     }
     let controlled = panel(&["model.solver=multigrid"])?;
     let (other, timing) = bench.time(|| whole(&controlled))?;

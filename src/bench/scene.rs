@@ -207,7 +207,8 @@ pub fn displacement(case: &Case) -> Result<Found> {
     let (specimen, model) = (&case.specimen, &case.model);
     let plate = strip(specimen.width, specimen.length());
     let resolution = (model.spacing, model.horizon_ratio, model.lattice_angle);
-    let errors = uniform_tension_with(model.solver, &plate, &model.bond_law, case.material.poisson_ratio, resolution)?;
+    let errors =
+        uniform_tension_with((model.solver, model.symmetry), &plate, &model.bond_law, case.material.poisson_ratio, resolution)?;
     let error = Deviation {
         of: "displacement along the load, largest of all points",
         percent: errors.along,

@@ -3,8 +3,8 @@
 use super::scene::Scene;
 use super::speed_accuracy::WHOLE_PLATE;
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use crate::case::{Case, Symmetry};
-use crate::solver::SolverKind;
+use crate::case::Case;
+use crate::solver::{SolverKind, Symmetry};
 
 /// What is varied, in the order of the legend.
 pub const VARIED: [&str; 7] =
@@ -121,8 +121,7 @@ fn others(case: &Case) -> Vec<Variant> {
     let mut all: Vec<Variant> = corrections
         .map(|kind| Variant::new(6, format!("correction {kind}"), &[format!("model.surface_correction={kind}")]))
         .collect();
-    // As soon as there is a choice.
-    let symmetries = Symmetry::ALL.iter().filter(|_| Symmetry::ALL.len() > 1);
+    let symmetries = Symmetry::ALL.iter().filter(|kind| **kind != case.model.symmetry);
     all.extend(symmetries.map(|kind| Variant::new(6, format!("symmetry {kind}"), &[format!("model.symmetry={kind}")])));
     all
 }

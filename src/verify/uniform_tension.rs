@@ -37,15 +37,16 @@ pub fn uniform_tension(
     horizon_ratio: f64,
     angle: f64,
 ) -> Result<Errors> {
-    uniform_tension_with(SolverKind::Direct, specimen, law, poisson_ratio, (spacing, horizon_ratio, angle))
+    let by = (SolverKind::Direct, Symmetry::Auto);
+    uniform_tension_with(by, specimen, law, poisson_ratio, (spacing, horizon_ratio, angle))
 }
 
-/// [`uniform_tension`] by any solver; a lattice of `(spacing, horizon_ratio, angle)`.
+/// [`uniform_tension`] by any solver, with or without symmetry; a lattice of `(spacing, horizon_ratio, angle)`.
 ///
 /// # Errors
 /// As [`uniform_tension`].
 pub fn uniform_tension_with(
-    solver: SolverKind,
+    (solver, symmetry): (SolverKind, Symmetry),
     specimen: &Specimen,
     law: &BondLaw,
     poisson_ratio: f64,
@@ -65,11 +66,7 @@ pub fn uniform_tension_with(
     // Unit strain.
     let stress = material.youngs_modulus;
     let mut displacement = Vec::new();
-<<<<<<< HEAD
-    Equilibrium::new(SolverKind::Direct, Symmetry::Auto, &body, &bonds, stress).solve(&body, &bonds, &mut displacement)?;
-=======
-    Equilibrium::new(solver, &body, &bonds, stress).solve(&body, &bonds, &mut displacement)?;
->>>>>>> 024bffb (Benchmark: time beside error of every law, solver, spacing, horizon and block; speed-accuracy chart)
+    Equilibrium::new(solver, symmetry, &body, &bonds, stress).solve(&body, &bonds, &mut displacement)?;
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let seats: Vec<Point> = body.points.iter().map(|&place| body.lattice.position(place as usize)).collect();
     let exact: Vec<Point> = seats.iter().map(|[x, y]| [-poisson_ratio * x, *y]).collect();
