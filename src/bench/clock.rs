@@ -6,6 +6,9 @@ use crate::case::Case;
 use crate::error::Result;
 use crate::predict::{Silent, predict};
 
+/// Share of its seconds that a row has to itself, whatever the reference runs beside it take.
+const OWN_SHARE: f64 = 0.25;
+
 /// Times of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
@@ -98,7 +101,8 @@ pub(super) fn measure<T>(
         cpu += cpu_seconds() - before;
         walls.push(wall);
         ratios.push(wall / beside);
-        if walls.len() >= repeats || begun.elapsed().as_secs_f64() >= seconds {
+        let spent = begun.elapsed().as_secs_f64() >= seconds && walls.iter().sum::<f64>() >= OWN_SHARE * seconds;
+        if walls.len() >= repeats || spent {
             let timing = Timing {
                 wall_s: median(&walls),
                 cpu_s: cpu / walls.len() as f64,

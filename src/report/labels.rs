@@ -10,7 +10,7 @@ pub(super) struct Box2 {
 }
 
 /// Distances of a name from its point, px, and directions in which it is tried, best first.
-const DISTANCES: [f64; 8] = [8.0, 14.0, 24.0, 36.0, 52.0, 70.0, 92.0, 120.0];
+const DISTANCES: [f64; 8] = [10.0, 16.0, 24.0, 36.0, 52.0, 70.0, 92.0, 120.0];
 const DIRECTIONS: [[f64; 2]; 8] =
     [[1.0, 0.0], [1.0, -1.0], [1.0, 1.0], [0.0, -1.0], [0.0, 1.0], [-1.0, -1.0], [-1.0, 1.0], [-1.0, 0.0]];
 /// Room that a point needs, px.

@@ -249,5 +249,5 @@ fn mark(area: &Area<'_>, at: (i32, i32), series: usize, filled: bool) -> Drawn {
 
 /// Width of a text in a font without serifs, px: about six tenths of its size a letter.
 fn text_width(text: &str, size: u32) -> f64 {
-    0.56 * f64::from(size) * text.chars().count() as f64
+    0.62 * f64::from(size) * text.chars().count() as f64
 }
