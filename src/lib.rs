@@ -25,6 +25,7 @@ pub mod stress_intensity;
 pub mod predict;
 pub mod calibration;
 pub mod verify;
+pub mod bench;
 pub mod report;
 pub mod commands;
 

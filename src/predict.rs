@@ -7,7 +7,7 @@
 mod curve;
 mod end_of_life;
 mod handbook;
-mod memory;
+pub mod memory;
 mod outcome;
 mod overload;
 pub mod plastic_zone;
@@ -53,6 +53,8 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 
 /// Takes down what a run does, block by block, so that it can be replayed.
 pub trait Recorder {
+    /// The plate with its initial cracks, before its first equilibrium.
+    fn start(&mut self, _body: &Body, _bonds: &Bonds) {}
     /// One block: the strains its bonds aged by, the bonds it spent, and the crack length after it, m. Blocks before N = 0,
     /// in which the crack grows to its initial length, come first.
     fn block(&mut self, ageing: &[AgeingBond], spent: &[Bond], crack_length: f64);
@@ -96,6 +98,7 @@ pub fn run(
     if start::cuts_in_two(&body, &bonds, case) || set_aside(&body, &mut bonds, &body.pre_cut) == Cut::Severed {
         return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
     }
+    recorder.start(&body, &bonds);
     let mut equilibrium = Equilibrium::new(model.solver, model.symmetry, &body, &bonds, case.loading.maximum);
     let mut control = BlockControl::new(&settings.block, law.p, tips.len());
     if control.foresees() {

@@ -7,6 +7,8 @@ mod made_up_run;
 mod bad_csv;
 #[path = "interface/bad_toml.rs"]
 mod bad_toml;
+#[path = "interface/bench.rs"]
+mod bench;
 #[path = "interface/calibrate.rs"]
 mod calibrate;
 #[path = "interface/check.rs"]

@@ -11,6 +11,8 @@ mod noise;
 #[path = "support/shared.rs"]
 mod shared;
 
+#[path = "unit/bench.rs"]
+mod bench;
 #[path = "unit/block.rs"]
 mod block;
 #[path = "unit/collinear.rs"]

@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use super::console::Console;
+use crate::bench::GROUPS;
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::calibration::case::Parameter;
 use crate::calibration::columns::{CycleUnit, LengthUnit};
@@ -80,6 +81,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.extend(of_calibration.into_iter().flatten().map(words));
     all.extend(of_the_tips.into_iter().map(words));
     all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
+    all.extend(GROUPS.iter().map(|group| ("bench NAME".to_owned(), group.name.to_owned(), group.about.to_owned())));
     all
 }
 

@@ -2,6 +2,7 @@
 //!
 //! A new subcommand is its file, its `mod` and its line in the list below.
 
+pub mod bench;
 pub mod calibrate;
 pub mod check;
 pub mod export;
@@ -50,6 +51,8 @@ commands! {
     Rates: rates,
     /// Run the built-in verification: computed, reference, error and bound of every row
     Verify: verify,
+    /// Measure every solver, law and resolution side by side: time against error
+    Bench: bench,
     /// Check an input file without running it
     Check: check,
     /// List every kind of every key of the input files

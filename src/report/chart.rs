@@ -82,9 +82,9 @@ fn values(series: &[Series], pick: impl Fn(&(f64, f64)) -> f64) -> impl Iterator
 const SIZE: (u32, u32) = (900, 600);
 /// The chart library places everything on whole pixels. Drawing four times as large and shrinking by the view box keeps
 /// flat curves smooth.
-const FINE: u32 = 4;
+pub(super) const FINE: u32 = 4;
 /// Colours that differ in lightness too (Okabe and Ito 2008, safe for colour-blind readers); black is for measured points.
-const COLOURS: [RGBColor; 6] = [
+pub(super) const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -92,23 +92,30 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
 ];
-const INK: RGBColor = RGBColor(40, 40, 40);
+pub(super) const INK: RGBColor = RGBColor(40, 40, 40);
 
-fn px(length: u32) -> i32 {
+pub(super) fn px(length: u32) -> i32 {
     (length * FINE) as i32
 }
 
-fn font(size: u32) -> TextStyle<'static> {
+pub(super) fn font(size: u32) -> TextStyle<'static> {
     // The library divides sizes by 1.24 when it writes SVG.
     ("sans-serif", f64::from(size * FINE) * 1.24).into_font().color(&INK)
 }
 
 fn draw(path: &Path, title: &str, [x, y]: [Axis; 2], names: [&str; 2], series: &[Series]) -> Result<()> {
+    save(path, SIZE, |svg| draw_into(svg, title, [x, y], names, series))
+}
+
+/// Writes what `draw` draws [`FINE`] times as large into a picture of this size.
+pub(super) fn save(
+    path: &Path,
+    (width, height): (u32, u32),
+    draw: impl FnOnce(&mut String) -> std::result::Result<(), Box<dyn std::error::Error>>,
+) -> Result<()> {
     let mut svg = String::new();
     // Drawing into a string has no failure of its own; the library's error type still has to be passed on.
-    draw_into(&mut svg, title, [x, y], names, series)
-        .map_err(|error| Error::file(path, "cannot draw", std::io::Error::other(error.to_string())))?;
-    let (width, height) = SIZE;
+    draw(&mut svg).map_err(|error| Error::file(path, "cannot draw", std::io::Error::other(error.to_string())))?;
     let large = format!("width=\"{}\" height=\"{}\"", width * FINE, height * FINE);
     write_file(path, svg.replacen(&large, &format!("width=\"{width}\" height=\"{height}\""), 1).as_bytes())
 }

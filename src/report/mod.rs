@@ -2,6 +2,7 @@
 //!
 //! A run writes into an [`output::OutputFolder`], which appears under its name only once it is whole.
 
+pub mod bench;
 pub mod chart;
 pub mod csv;
 pub mod damage;
@@ -9,6 +10,7 @@ pub mod fit_use;
 pub mod json;
 pub mod output;
 pub mod residual_strength;
+pub mod speed_chart;
 pub mod specimen_picture;
 pub mod verification;
 pub mod vtk;
@@ -16,4 +18,5 @@ pub mod vtk;
 mod axis;
 mod colour;
 mod glyphs;
+mod labels;
 mod raster;

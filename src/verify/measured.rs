@@ -20,8 +20,10 @@ use crate::error::Result;
 use crate::predict::{Silent, StopReason, predict};
 use crate::units::MM;
 
-const CALIBRATION: &str = include_str!("../../calibration/al2024-t3/case.toml");
-const READINGS: &[u8] = include_bytes!("../../calibration/al2024-t3/measured/virkler_median.csv");
+/// Calibration of 2024-T3, and its readings.
+pub const CALIBRATION: &str = include_str!("../../calibration/al2024-t3/case.toml");
+/// Median of 34 panels.
+pub const READINGS: &[u8] = include_bytes!("../../calibration/al2024-t3/measured/virkler_median.csv");
 
 /// ΔK at which the rate is compared, MPa√m: there fits of rates and fits of lives meet.
 const DELTA_K: f64 = 11.4;

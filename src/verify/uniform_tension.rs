@@ -37,6 +37,21 @@ pub fn uniform_tension(
     horizon_ratio: f64,
     angle: f64,
 ) -> Result<Errors> {
+    let by = (SolverKind::Direct, Symmetry::Auto);
+    uniform_tension_with(by, specimen, law, poisson_ratio, (spacing, horizon_ratio, angle))
+}
+
+/// [`uniform_tension`] by any solver, with or without symmetry; a lattice of `(spacing, horizon_ratio, angle)`.
+///
+/// # Errors
+/// As [`uniform_tension`].
+pub fn uniform_tension_with(
+    (solver, symmetry): (SolverKind, Symmetry),
+    specimen: &Specimen,
+    law: &BondLaw,
+    poisson_ratio: f64,
+    (spacing, horizon_ratio, angle): (f64, f64, f64),
+) -> Result<Errors> {
     let material = Material {
         name: "steel".to_owned(),
         youngs_modulus: 200e9,
@@ -51,7 +66,7 @@ pub fn uniform_tension(
     // Unit strain.
     let stress = material.youngs_modulus;
     let mut displacement = Vec::new();
-    Equilibrium::new(SolverKind::Direct, Symmetry::Auto, &body, &bonds, stress).solve(&body, &bonds, &mut displacement)?;
+    Equilibrium::new(solver, symmetry, &body, &bonds, stress).solve(&body, &bonds, &mut displacement)?;
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let seats: Vec<Point> = body.points.iter().map(|&place| body.lattice.position(place as usize)).collect();
     let exact: Vec<Point> = seats.iter().map(|[x, y]| [-poisson_ratio * x, *y]).collect();

@@ -1,0 +1,180 @@
+//! What a run would take with a solver too slow to run it whole.
+//!
+//! A run is made with the default solver, and its breaks are taken down. The slow solver then starts on the same plate, and at
+//! some places along the run solves one block after the other's breaks, starting from the equilibrium before: what a run with it
+//! would do at every block, without symmetry. All blocks between two measured ones take their mean. Only equilibrium counts, not what a run does
+//! beside it, so that the slow solver is rather flattered.
+
+use std::time::Instant;
+
+use crate::body::{Body, Bond};
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::fatigue::ageing::AgeingBond;
+use crate::fatigue::pieces::{Cut, set_aside};
+use crate::predict::{Prediction, Recorder, Silent, run};
+use crate::solver::{Equilibrium, SolverKind, Symmetry};
+use crate::state::Bonds;
+
+/// Blocks measured along a run.
+pub const BLOCKS: usize = 20;
+/// Least number of blocks, however slow they are.
+const BLOCKS_LEAST: usize = 5;
+
+/// The breaks of a run, block by block.
+#[derive(Debug, Default)]
+pub struct History {
+    plate: Option<(Body, Bonds)>,
+    /// Blocks in which something broke.
+    blocks: Vec<Vec<Bond>>,
+}
+
+impl Recorder for History {
+    fn start(&mut self, body: &Body, bonds: &Bonds) {
+        self.plate = Some((body.clone(), bonds.clone()));
+    }
+
+    fn block(&mut self, _: &[AgeingBond], spent: &[Bond], _: f64) {
+        if !spent.is_empty() {
+            self.blocks.push(spent.to_vec());
+        }
+    }
+}
+
+/// Measured blocks of a slow solver.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sampled {
+    /// Seconds of set-up and first solve.
+    pub start_s: f64,
+    /// (block, counted from 0; seconds of its solve), rising.
+    pub blocks: Vec<(usize, f64)>,
+    /// Work of the load f·u after the last of them, J.
+    pub work: f64,
+    /// Bonds broken by then.
+    pub broken_bonds: usize,
+}
+
+impl History {
+    /// Runs a case and takes down its breaks.
+    ///
+    /// # Errors
+    /// As [`crate::predict::predict`].
+    pub fn of(case: &Case) -> Result<(Self, Prediction)> {
+        let mut history = History::default();
+        let prediction = run(case, |horizon| case.fatigue_law(horizon), &mut history, &Silent)?;
+        Ok((history, prediction))
+    }
+
+    /// Blocks in which something broke: so many solves does a run take that solves after each.
+    #[must_use]
+    pub fn blocks(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Measures a solver at up to [`BLOCKS`] places, fewer where their solves, taken as long as the first one, would take more than
+    /// `seconds`; the solves that lead up to them come on top.
+    ///
+    /// # Errors
+    /// A run that broke nothing; a solver that does not converge.
+    pub fn sample(&self, kind: SolverKind, load: f64, seconds: f64) -> Result<Sampled> {
+        let (body, start) =
+            self.plate.as_ref().ok_or_else(|| Error::Mechanics("the run to be replayed has no plate".to_owned()))?;
+        let mut bonds = start.clone();
+        let mut displacement = Vec::new();
+        let started = Instant::now();
+        let mut equilibrium = Equilibrium::new(kind, Symmetry::Off, body, &bonds, load);
+        equilibrium.solve(body, &bonds, &mut displacement)?;
+        let start_s = started.elapsed().as_secs_f64();
+        let count = places(self.blocks.len(), (seconds / start_s) as usize);
+        let mut blocks = Vec::with_capacity(count.len());
+        let mut done = 0;
+        for block in count {
+            // Up to the block at one go, not measured.
+            if done < block {
+                let Some(broken) = cut(body, &mut bonds, &self.blocks[done..block].concat()) else { break };
+                equilibrium.broke(body, &bonds, &broken);
+                equilibrium.solve(body, &bonds, &mut displacement)?;
+            }
+            let Some(broken) = cut(body, &mut bonds, &self.blocks[block]) else { break };
+            let started = Instant::now();
+            equilibrium.broke(body, &bonds, &broken);
+            equilibrium.solve(body, &bonds, &mut displacement)?;
+            blocks.push((block, started.elapsed().as_secs_f64()));
+            done = block + 1;
+        }
+        let broken_bonds = self.blocks[..done].iter().map(Vec::len).sum();
+        Ok(Sampled { start_s, blocks, work: equilibrium.work(), broken_bonds })
+    }
+}
+
+/// Places of measured blocks among `blocks`: [`BLOCKS`] or as many as `affordable` in the middle of equal parts.
+fn places(blocks: usize, affordable: usize) -> Vec<usize> {
+    let count = affordable.clamp(BLOCKS_LEAST, BLOCKS).min(blocks);
+    (0..count).map(|i| (2 * i + 1) * blocks / (2 * count)).collect()
+}
+
+/// Breaks bonds and sets free pieces aside; all of them, or `None` where the plate is in two.
+fn cut(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Option<Vec<Bond>> {
+    broken.iter().for_each(|&bond| bonds.cut(body, bond));
+    match set_aside(body, bonds, broken) {
+        Cut::Severed => None,
+        Cut::Whole(aside) => Some(broken.iter().copied().chain(aside).collect()),
+    }
+}
+
+impl Sampled {
+    /// Seconds of a run of so many blocks: set-up, first solve, and the line through the measured blocks (level before the first
+    /// and after the last one) summed over all. NaN where none was measured.
+    #[must_use]
+    pub fn whole(&self, blocks: usize) -> f64 {
+        self.start_s + (0..blocks).map(|block| self.at(block)).sum::<f64>()
+    }
+
+    /// Seconds of one block.
+    fn at(&self, block: usize) -> f64 {
+        let next = self.blocks.partition_point(|(measured, _)| *measured < block);
+        match (next.checked_sub(1).and_then(|i| self.blocks.get(i)), self.blocks.get(next)) {
+            (None, None) => f64::NAN,
+            (Some((_, only)), None) | (None, Some((_, only))) => *only,
+            (Some((from, t)), Some((to, s))) => t + (s - t) * (block - from) as f64 / (to - from) as f64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sampled(blocks: &[(usize, f64)]) -> Sampled {
+        Sampled { start_s: 3.0, blocks: blocks.to_vec(), work: f64::NAN, broken_bonds: 0 }
+    }
+
+    #[test]
+    fn equal_blocks_add_up() {
+        assert!((sampled(&[(2, 0.5), (7, 0.5)]).whole(10) - 8.0).abs() < 1e-12);
+        assert_eq!(sampled(&[(4, 0.5)]).whole(0), 3.0, "a run without a break has its first solve");
+    }
+
+    #[test]
+    fn blocks_between_lie_on_the_line() {
+        // 1, 1 (level before), then 1, 2, 3 (line), then 3 (level after).
+        assert!((sampled(&[(1, 1.0), (3, 3.0)]).whole(5) - (3.0 + 1.0 + 1.0 + 2.0 + 3.0 + 3.0)).abs() < 1e-12);
+        // Time that grows linearly along the run is summed exactly when sampled in the middle of equal parts, but for the ends.
+        let line: Vec<(usize, f64)> = places(100, 20).into_iter().map(|block| (block, block as f64)).collect();
+        let exact = (0..100).sum::<usize>() as f64;
+        assert!((sampled(&line).whole(100) - 3.0 - exact).abs() < 0.01 * exact);
+    }
+
+    #[test]
+    fn nothing_measured_gives_no_number() {
+        assert!(sampled(&[]).whole(4).is_nan());
+    }
+
+    #[test]
+    fn places_are_spread_over_the_run() {
+        assert_eq!(places(100, 20), (0..20).map(|i| 2 + 5 * i).collect::<Vec<_>>());
+        assert_eq!(places(10, 0), [1, 3, 5, 7, 9]);
+        assert_eq!(places(3, 20), [0, 1, 2]);
+        assert!(places(0, 20).is_empty());
+    }
+}

@@ -1,0 +1,52 @@
+//! Pareto front of time and error: runs that no other one beats in both.
+
+use super::row::Row;
+
+/// Relative gain of error that earns a slower run its place: less is round-off between solvers that are equally exact.
+pub const GAIN: f64 = 1e-3;
+
+/// Indices of the front, fastest first: points (time, error) that are nearer to the reference than every faster one by more
+/// than [`GAIN`]. Points that are not finite have no place on it.
+#[must_use]
+pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].0.is_finite() && points[i].1.is_finite()).collect();
+    order.sort_by(|&a, &b| points[a].0.total_cmp(&points[b].0).then(points[a].1.total_cmp(&points[b].1)));
+    let mut best = f64::INFINITY;
+    order.retain(|&i| {
+        let nearer = points[i].1 < best * (1.0 - GAIN);
+        if nearer {
+            best = points[i].1;
+        }
+        nearer
+    });
+    order
+}
+
+/// Marks the rows of one group that are on its front.
+pub(super) fn mark(rows: &mut [Row]) {
+    let places: Vec<(f64, f64)> = rows.iter().map(|row| row.place().unwrap_or((f64::NAN, f64::NAN))).collect();
+    front(&places).into_iter().for_each(|i| rows[i].on_front = true);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beaten_points_are_left_out() {
+        let points = [(1.0, 3.0), (2.0, 4.0), (0.5, 8.0), (4.0, 1.0), (3.0, 1.0), (5.0, f64::NAN), (9.0, 2.0)];
+        assert_eq!(front(&points), [2, 0, 4]);
+    }
+
+    #[test]
+    fn round_off_earns_no_place() {
+        assert_eq!(front(&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-6))]), [0]);
+        assert_eq!(front(&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-2))]), [0, 1]);
+        assert_eq!(front(&[(1.0, 2.0), (2.0, 0.0), (3.0, 0.0)]), [0, 1], "no error at all earns one, but once");
+    }
+
+    #[test]
+    fn nothing_has_no_front() {
+        assert!(front(&[]).is_empty() && front(&[(f64::INFINITY, 1.0), (1.0, f64::NAN)]).is_empty());
+    }
+}

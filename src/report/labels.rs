@@ -1,0 +1,105 @@
+//! Places for the names of points in a chart, so that no name covers another one, a point or the frame.
+
+/// An upright rectangle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Box2 {
+    /// Corner of smallest coordinates.
+    pub low: [f64; 2],
+    /// Corner of largest coordinates.
+    pub high: [f64; 2],
+}
+
+/// Distances of a name from its point, px, and directions in which it is tried, best first.
+const DISTANCES: [f64; 8] = [10.0, 16.0, 24.0, 36.0, 52.0, 70.0, 92.0, 120.0];
+const DIRECTIONS: [[f64; 2]; 8] =
+    [[1.0, 0.0], [1.0, -1.0], [1.0, 1.0], [0.0, -1.0], [0.0, 1.0], [-1.0, -1.0], [-1.0, 1.0], [-1.0, 0.0]];
+/// Room that a point needs, px.
+const POINT: f64 = 6.0;
+/// Distance of the points that stand for a line, px: less than a name is high.
+const LINE_STEP: f64 = 6.0;
+
+impl Box2 {
+    /// Middle.
+    pub(super) fn centre(self) -> [f64; 2] {
+        [0, 1].map(|i| 0.5 * (self.low[i] + self.high[i]))
+    }
+
+    /// Point of the rectangle nearest to another point.
+    pub(super) fn nearest(self, to: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| to[i].clamp(self.low[i], self.high[i]))
+    }
+
+    fn overlaps(self, other: Box2) -> bool {
+        (0..2).all(|i| self.low[i] < other.high[i] && other.low[i] < self.high[i])
+    }
+
+    fn contains(self, other: Box2) -> bool {
+        (0..2).all(|i| self.low[i] <= other.low[i] && other.high[i] <= self.high[i])
+    }
+}
+
+/// Rectangles of the given sizes beside the `named` ones of `points`, inside the frame and off the `line`. Where all tried places
+/// are taken, the one that covers least is.
+pub(super) fn place_labels(
+    frame: Box2,
+    points: &[[f64; 2]],
+    line: &[[f64; 2]],
+    named: &[usize],
+    sizes: &[[f64; 2]],
+) -> Vec<Box2> {
+    let around = |p: [f64; 2], room: f64| Box2 { low: p.map(|v| v - room), high: p.map(|v| v + room) };
+    let mut taken: Vec<Box2> = points.iter().map(|p| around(*p, POINT)).collect();
+    taken.extend(line.windows(2).flat_map(|ends| along(ends[0], ends[1])).map(|p| around(p, 1.0)));
+    let mut placed = Vec::with_capacity(named.len());
+    for (&i, size) in named.iter().zip(sizes) {
+        let candidates = DISTANCES.iter().flat_map(|&distance| DIRECTIONS.iter().map(move |&way| (distance, way)));
+        let boxes: Vec<Box2> = candidates.map(|(distance, way)| beside(points[i], *size, distance, way)).collect();
+        let covered = |spot: &Box2| {
+            let outside = usize::from(!frame.contains(*spot)) * 100;
+            outside + taken.iter().filter(|other| spot.overlaps(**other)).count()
+        };
+        // The first of the least; there are always candidates.
+        let best = boxes.iter().min_by_key(|spot| covered(spot)).copied();
+        if let Some(best) = best {
+            taken.push(best);
+            placed.push(best);
+        }
+    }
+    placed
+}
+
+/// Points along a straight stretch, some pixels apart.
+fn along(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
+    let count = ((to[0] - from[0]).hypot(to[1] - from[1]) / LINE_STEP).ceil().max(1.0);
+    (0..=count as usize).map(|i| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * i as f64 / count)).collect()
+}
+
+/// A rectangle at a distance from a point.
+fn beside(point: [f64; 2], size: [f64; 2], distance: f64, way: [f64; 2]) -> Box2 {
+    let centre = [0, 1].map(|i| point[i] + way[i] * (distance + 0.5 * size[i]));
+    Box2 { low: [0, 1].map(|i| centre[i] - 0.5 * size[i]), high: [0, 1].map(|i| centre[i] + 0.5 * size[i]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_cover_nothing_where_there_is_room() {
+        let frame = Box2 { low: [0.0; 2], high: [600.0, 400.0] };
+        // A crowd of points in the middle and two at the edges.
+        let mut points: Vec<[f64; 2]> =
+            (0..12).map(|i| [280.0 + 9.0 * f64::from(i % 4), 190.0 + 9.0 * f64::from(i / 4)]).collect();
+        points.extend([[595.0, 200.0], [4.0, 397.0]]);
+        let named = [0, 3, 5, 12, 13];
+        let sizes = [[90.0, 16.0]; 5];
+        let line = [points[0], points[3], points[12]];
+        let boxes = place_labels(frame, &points, &line, &named, &sizes);
+        for (i, spot) in boxes.iter().enumerate() {
+            assert!(frame.contains(*spot), "{spot:?}");
+            let free = |p: &[f64; 2]| !spot.overlaps(Box2 { low: *p, high: *p });
+            assert!(line.windows(2).flat_map(|ends| along(ends[0], ends[1])).all(|p| free(&p)), "{spot:?} on the line");
+            assert!(points.iter().all(free) && boxes[..i].iter().all(|other| !spot.overlaps(*other)), "{spot:?}");
+        }
+    }
+}
