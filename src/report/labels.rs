@@ -52,11 +52,15 @@ pub(super) fn place_labels(
     taken.extend(line.windows(2).flat_map(|ends| along(ends[0], ends[1])).map(|p| around(p, 1.0)));
     let mut placed = Vec::with_capacity(named.len());
     for (&i, size) in named.iter().zip(sizes) {
-        let candidates = DISTANCES.iter().flat_map(|&distance| DIRECTIONS.iter().map(move |&way| (distance, way)));
-        let boxes: Vec<Box2> = candidates.map(|(distance, way)| beside(points[i], *size, distance, way)).collect();
+        let candidates = DISTANCES.iter().flat_map(|&gap| DIRECTIONS.iter().map(move |&way| (gap, way)));
+        let boxes: Vec<Box2> = candidates.map(|(gap, way)| beside(points[i], *size, gap, way)).collect();
         let covered = |spot: &Box2| {
             let outside = usize::from(!frame.contains(*spot)) * 100;
-            outside + taken.iter().filter(|other| spot.overlaps(**other)).count()
+            // A name nearer to another point would be read as that one's.
+            let way = |p: &[f64; 2]| distance(spot.nearest(*p), *p);
+            let own = way(&points[i]);
+            let misread = usize::from(points.iter().enumerate().any(|(other, p)| other != i && way(p) < own));
+            outside + misread + taken.iter().filter(|other| spot.overlaps(**other)).count()
         };
         // The first of the least; there are always candidates.
         let best = boxes.iter().min_by_key(|spot| covered(spot)).copied();
@@ -68,15 +72,19 @@ pub(super) fn place_labels(
     placed
 }
 
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
 /// Points along a straight stretch, some pixels apart.
 fn along(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
-    let count = ((to[0] - from[0]).hypot(to[1] - from[1]) / LINE_STEP).ceil().max(1.0);
+    let count = (distance(from, to) / LINE_STEP).ceil().max(1.0);
     (0..=count as usize).map(|i| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * i as f64 / count)).collect()
 }
 
 /// A rectangle at a distance from a point.
-fn beside(point: [f64; 2], size: [f64; 2], distance: f64, way: [f64; 2]) -> Box2 {
-    let centre = [0, 1].map(|i| point[i] + way[i] * (distance + 0.5 * size[i]));
+fn beside(point: [f64; 2], size: [f64; 2], gap: f64, way: [f64; 2]) -> Box2 {
+    let centre = [0, 1].map(|i| point[i] + way[i] * (gap + 0.5 * size[i]));
     Box2 { low: [0, 1].map(|i| centre[i] - 0.5 * size[i]), high: [0, 1].map(|i| centre[i] + 0.5 * size[i]) }
 }
 
