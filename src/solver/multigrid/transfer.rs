@@ -46,10 +46,11 @@ pub struct Transfer<const N: usize> {
     own: Vec<[Weights; LANES]>,
 }
 
-/// Weights of the four coarse places around a fine place.
+/// Weights of the four coarse places around a fine place: in double precision, so that the coarse operator is free of force in
+/// rigid motion.
 #[derive(Debug, Clone, Copy, Default)]
 struct Weights {
-    share: [f32; 4],
+    share: [f64; 4],
     /// Whether the fine place moves rigidly with its coarse places.
     rigid: bool,
 }
@@ -121,7 +122,7 @@ impl<const N: usize> Transfer<N> {
             if column < self.fine.columns && is_point(column, row) {
                 *weights = self.weigh([column, row], is_point, link);
                 let bilinear = self.bilinear([column, row]);
-                plain &= !weights.rigid && (0..4).all(|i| (f64::from(weights.share[i]) - bilinear[i]).abs() < 1e-6);
+                plain &= !weights.rigid && (0..4).all(|i| (weights.share[i] - bilinear[i]).abs() < 1e-12);
             } else {
                 plain = false;
             }
@@ -136,7 +137,7 @@ impl<const N: usize> Transfer<N> {
         link: &impl Fn([usize; 2], [usize; 2]) -> Link,
     ) -> Weights {
         let (corners, _) = self.corners(place);
-        let mut share = [0.0_f32; 4];
+        let mut share = [0.0; 4];
         let (mut severed, mut ghosts) = (false, [false; 4]);
         for (corner, bilinear) in self.bilinear(place).into_iter().enumerate().filter(|(_, bilinear)| *bilinear > 0.0) {
             let seat = [self.fine_seat(corners[0] + (corner & 1), 0), self.fine_seat(corners[1] + (corner >> 1), 1)];
@@ -146,13 +147,13 @@ impl<const N: usize> Transfer<N> {
             };
             severed |= found == Link::Severed;
             ghosts[corner] = found == Link::Ghost;
-            share[corner] = if found == Link::Severed { 0.0 } else { bilinear as f32 };
+            share[corner] = if found == Link::Severed { 0.0 } else { bilinear };
         }
         // A place without material cannot tell sides: it serves only away from cracks.
         if severed {
             share.iter_mut().zip(ghosts).filter(|(_, ghost)| *ghost).for_each(|(share, _)| *share = 0.0);
         }
-        let sum: f32 = share.iter().sum();
+        let sum: f64 = share.iter().sum();
         if sum > 0.0 {
             share.iter_mut().for_each(|share| *share /= sum);
         }
@@ -209,7 +210,7 @@ impl<const N: usize> Transfer<N> {
         let weights = &self.own[slot as usize][column % LANES];
         let arm = self.arm(weights, column, row);
         std::array::from_fn(|corner| {
-            (seat(corner), f64::from(weights.share[corner]), arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)))
+            (seat(corner), weights.share[corner], arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)))
         })
     }
 
@@ -251,7 +252,9 @@ impl<const N: usize> Transfer<N> {
             let mut sums = [0.0; N];
             if column < self.fine.columns {
                 let (first, arm) = (self.coarse_index(column, row), self.arm(weights, column, row));
-                for (corner, &weight) in weights.share.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+                for (corner, weight) in
+                    weights.share.map(|share| share as f32).into_iter().enumerate().filter(|(_, weight)| *weight != 0.0)
+                {
                     let at = first + (corner & 1) + (corner >> 1) * self.coarse.row_len();
                     let turn = if N == 3 { coarse[at + 2 * stride] } else { 0.0 };
                     let arm = arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)).map(|arm| arm as f32);
@@ -330,7 +333,7 @@ impl<const N: usize> Transfer<N> {
             let (first, arm) = (self.lower[column].0 as usize + self.coarse.padding, self.arm(weights, column, row));
             for right in 0..2 {
                 let corner = right + 2 * upper;
-                let weight = weights.share[corner];
+                let weight = weights.share[corner] as f32;
                 let arm = arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)).map(|arm| arm as f32);
                 out[first + right] += weight * u;
                 out[first + right + stride] += weight * v;
