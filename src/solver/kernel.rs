@@ -157,6 +157,8 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
         }
         for spring in &self.springs {
             let ([a_xx, a_xy, a_yy], [c_x, c_y, c_w]) = (spring.a, spring.c);
+            // Indices, not iterators, keep the sums in registers.
+            #[allow(clippy::needless_range_loop)]
             for block in 0..P {
                 let at = at + block * W;
                 let (plus, minus) = (at.wrapping_add_signed(spring.step), at.wrapping_add_signed(-spring.step));

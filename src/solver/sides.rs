@@ -1,6 +1,6 @@
 //! Both sides of K u = f for a body: load, held components, grips, and the linear solver that keeps them equal.
 
-use super::conjugate_gradient::{MultigridSolver, TOLERANCE};
+use super::conjugate_gradient::MultigridSolver;
 use super::direct::DirectSolver;
 use super::field::{self, Layout};
 use super::product::{Into, Product};
@@ -89,7 +89,7 @@ impl<const N: usize> Sides<N> {
         let product = Product::<N>::new(body, fixed);
         let solver: Box<dyn LinearSolver<N>> = match kind {
             SolverKind::Window => Box::new(WindowSolver::new(body, bonds, &product)),
-            SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product, TOLERANCE)),
+            SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product)),
             SolverKind::Direct => Box::new(DirectSolver::default()),
         };
         let has_fast_solves = kind == SolverKind::Window;

@@ -26,9 +26,6 @@ use update::{Term, Update};
 const AHEAD_HORIZONS: f64 = 8.0;
 /// Largest window, unknowns: its inverse then takes 72 MB.
 const UNKNOWNS_MAX: usize = 3000;
-/// Residual over load of a whole solve. Its error stays in the base of many blocks, and starting values from the window are
-/// not symmetric to the last digit: mirror twins have to agree better than the tolerance within which bonds break together.
-const TOLERANCE: f64 = 1e-11;
 /// Relative error of the work of the loads, found at a whole solve, from which a window is not used any more.
 const DRIFT_MAX: f64 = 1e-7;
 /// Springs after which the whole plate is solved and the inverse renewed.
@@ -60,7 +57,7 @@ struct Window {
 impl<const N: usize> WindowSolver<N> {
     /// Starts without a window.
     pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
-        let whole = MultigridSolver::new(body, bonds, product, TOLERANCE);
+        let whole = MultigridSolver::new(body, bonds, product);
         WindowSolver { whole, window: None, broken: Vec::new(), is_whole: false, is_off: false, work: 0.0 }
     }
 
