@@ -41,7 +41,7 @@ use super::{LinearSolver, Solved, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
-use load::HeldSprings;
+use load::GripSprings;
 use step::{Factors, Motion, Sums};
 
 /// Residual over load at which a solve ends. Its own, as usual for the method: the 1e-9 of the other solvers takes half as many
@@ -59,7 +59,7 @@ pub struct DynamicRelaxation<const N: usize> {
     /// 1/Λ of every component, m/N; 0 where nothing moves.
     mobility: Vec<f64>,
     motion: Motion,
-    held: HeldSprings<N>,
+    grips: GripSprings<N>,
     /// Displacement after a step.
     next: Vec<f64>,
 }
@@ -71,7 +71,7 @@ impl<const N: usize> DynamicRelaxation<N> {
         let mut solver = DynamicRelaxation {
             mobility: layout.zeros(),
             motion: Motion::at_rest(layout, body.lattice.rows.div_ceil(ROWS_PER_TASK), product.dilatation().is_some()),
-            held: HeldSprings::of(body, product),
+            grips: GripSprings::of(body, product),
             next: layout.zeros(),
         };
         let places: Vec<usize> = body.points.iter().map(|&place| place as usize).collect();
@@ -99,7 +99,7 @@ impl<const N: usize> DynamicRelaxation<N> {
         for iteration in 0..=ITERATIONS_MAX {
             let sums = self.motion.step(system, &self.mobility, factors, here, there);
             let residual = sums.square.sqrt();
-            if residual <= TOLERANCE * self.held.load(system, here) {
+            if residual <= TOLERANCE * self.grips.load(system, here) {
                 if iteration % 2 == 1 {
                     // `here` is the solver's own vector, `there` the one to give back.
                     there.copy_from_slice(here);
@@ -137,7 +137,8 @@ impl<const N: usize> LinearSolver<N> for DynamicRelaxation<N> {
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
-        let mut ends: Vec<usize> = broken.iter().flat_map(|&bond| [body.ends(bond).1, body.ends(bond).2]).collect();
+        let mut ends: Vec<usize> =
+            broken.iter().flat_map(|&bond| [body.ends(bond).1, body.ends(bond).2]).map(|place| body.behind(place).0).collect();
         ends.sort_unstable();
         ends.dedup();
         self.weigh(body, bonds, product, &ends);

@@ -26,7 +26,7 @@ pub(super) fn densities<const N: usize>(body: &Body, bonds: &Bonds, product: &Pr
 
 /// Diagonal block of a point, springs made stiffer by the dilatation.
 fn diagonal_block<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<N>, place: usize) -> [[f64; N]; N] {
-    let gain = |place: usize| product.dilatation().map_or(0.0, |dilatation| dilatation.gain(place).max(0.0));
+    let gain = |place: usize| product.dilatation().map_or(0.0, |dilatation| dilatation.gain(body.behind(place).0).max(0.0));
     let mut block = [[0.0; N]; N];
     for (k, &step) in body.steps.iter().enumerate() {
         for sign in [1_isize, -1] {

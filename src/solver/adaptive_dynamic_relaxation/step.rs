@@ -62,13 +62,15 @@ impl Motion {
         system: System<'_, N>,
         mobility: &[f64],
         factors: Factors,
-        here: &[f64],
+        here: &mut [f64],
         there: &mut [f64],
     ) -> Sums {
         let System { body, bonds, product, f } = system;
-        if let Some(whole) = &mut self.product {
-            product.apply(bonds, here, whole, Into::Set);
+        match &mut self.product {
+            Some(whole) => product.apply(bonds, here, whole, Into::Set),
+            None => product.mirror(here),
         }
+        let here = &*here;
         let (row_len, padding) = (product.layout().row_len(), product.layout().padding);
         let rows = padding * row_len..(padding + body.lattice.rows) * row_len;
         let task_len = row_len * ROWS_PER_TASK;

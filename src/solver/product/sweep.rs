@@ -33,7 +33,8 @@ impl<const N: usize, P: RowPass> pulp::WithSimd for Sweep<'_, N, P> {
 }
 
 impl<const N: usize> Product<N> {
-    /// Hands rows of K x to `pass` one after the other. Springs alone, and held components are not cleared.
+    /// Hands rows of K x to `pass` one after the other. Springs alone; held components are not cleared, and x holds its mirror images
+    /// already.
     pub fn sweep(&self, bonds: &Bonds, x: &[f64], rows: std::ops::Range<usize>, pass: &mut impl RowPass) {
         pulp::Arch::new().dispatch(Sweep { product: self, bonds, x, rows, pass });
     }
