@@ -8,7 +8,7 @@ use perilife::case::Case;
 use perilife::fatigue::pieces::{Cut, set_aside};
 use perilife::predict::{Silent, predict};
 use perilife::solver::field::Layout;
-use perilife::solver::{Equilibrium, SolverKind};
+use perilife::solver::{Equilibrium, SolverKind, Symmetry};
 use perilife::state::Bonds;
 
 use crate::plates::case;
@@ -299,7 +299,8 @@ fn a_floating_plate_does_not_drift_while_it_relaxes() {
         let body = body(&case);
         let mut bonds = Bonds::new(&body);
         let mut u = Vec::new();
-        let mut equilibrium = Equilibrium::new(SolverKind::AdaptiveDynamicRelaxation, &body, &bonds, case.loading.maximum);
+        let mut equilibrium =
+            Equilibrium::new(SolverKind::AdaptiveDynamicRelaxation, Symmetry::Auto, &body, &bonds, case.loading.maximum);
         let mut iterations = equilibrium.solve(&body, &bonds, &mut u).unwrap();
         let ahead: Vec<_> =
             bonds_across(&body, [17e-3, 9e-3], [25e-3, 9e-3]).into_iter().filter(|&b| bonds.is_intact(b)).collect();
