@@ -26,7 +26,7 @@ impl<const N: usize, P: RowPass> pulp::WithSimd for Sweep<'_, N, P> {
     fn with_simd<S: pulp::Simd>(self, _: S) {
         let mut kx = vec![0.0; self.product.layout.row_len()];
         for row in self.rows {
-            self.product.row(self.bonds, row, self.x, &mut kx, Into::Set);
+            self.product.double.row(self.bonds, row, self.x, &mut kx, Into::Set);
             self.pass.take(row, &kx);
         }
     }
