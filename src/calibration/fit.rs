@@ -8,7 +8,9 @@ use crate::calibration::misfit::rms_life_error;
 use crate::calibration::model::{ForwardModel, cycles_since_first};
 use crate::calibration::paris::{self, Paris};
 use crate::calibration::power_law::PowerLaw;
-use crate::calibration::search::{Constants, Found, P_MAX, P_MIN, Runs, Target, search, search_a, search_each, search_each_a};
+use crate::calibration::search::{
+    Constants, Found, P_MAX, P_MIN, Runs, Target, first_exponents, search, search_a, search_each, search_each_a,
+};
 use crate::calibration::surrogate::Surrogate;
 use crate::error::{Result, input};
 
@@ -73,7 +75,7 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
     let target = target_of(&median, task.criterion);
     let found = match task.fixed_p {
         Some(p) => search_a(model, target, checked_p(p)?)?,
-        None => search(model, target, start_of(target, task.delta_k))?,
+        None => search(model, target, first_exponents_of(task, target))?,
     };
     let Found { constants, mut runs, mut warnings } = found;
     let (_, last_run) = &runs[runs.len() - 1]; // a search makes at least one run
@@ -142,10 +144,20 @@ fn fit_each(task: &FitTask<'_>, model: &dyn ForwardModel, record: Constants, run
     Ok(fits)
 }
 
+/// Exponents of the first runs, for the median and the specimens behind it.
+fn first_exponents_of(task: &FitTask<'_>, median: Target<'_>) -> Vec<f64> {
+    let of_specimen = |curve: &MeasuredCurve| {
+        let cycles = since_first(curve);
+        start_of(Target { cycles: &cycles, lengths: &curve.crack_length, criterion: task.criterion }, task.delta_k)
+    };
+    let specimens: &[MeasuredCurve] = if task.curves.len() > 1 { task.curves } else { &[] };
+    first_exponents(start_of(median, task.delta_k), specimens.iter().map(of_specimen))
+}
+
 /// First guess of p: the Paris exponent that hand calculation with the handbook's ΔK fits to the same curve.
 fn start_of(target: Target<'_>, delta_k: &dyn Fn(f64) -> f64) -> f64 {
     let to = target.lengths.iter().copied().fold(0.0, f64::max);
-    let by_hand = PowerLaw::new(target.lengths[0], to, delta_k).and_then(|law| search(&law, target, P_START));
+    let by_hand = PowerLaw::new(target.lengths[0], to, delta_k).and_then(|law| search(&law, target, vec![P_START]));
     // A guess may fail: the search then starts from the usual exponent.
     by_hand.map_or(P_START, |found| found.constants.p)
 }

@@ -1,7 +1,8 @@
 //! Search for p: few true runs, everything between them from the surrogate.
 //!
-//! Run at a first p, minimise the misfit on the replay of that run, run again there, minimise on what the true runs
-//! interpolate, and so on until p stands still. A never needs a search ([`inverse_a`]).
+//! Run at a first p (and, where specimens scatter, at the ends of their range), minimise the misfit on the replay of that run,
+//! run again there, minimise on what the true runs interpolate, and so on until p stands still. A never needs a search
+//! ([`inverse_a`]).
 
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::brent::BrentOpt;
@@ -64,9 +65,21 @@ pub struct Target<'a> {
     pub criterion: Criterion,
 }
 
-/// Fits p (starting at `start`) and A to one curve.
-pub fn search(model: &dyn ForwardModel, target: Target<'_>, start: f64) -> Result<Found> {
-    let mut runs = vec![true_run(model, start.clamp(P_MIN, P_MAX))?];
+/// Exponents of the first runs for one curve and the specimens behind it, whose exponents are `expected`: `start`, the best guess
+/// for the curve, comes last; before it the ends of their range, where it reaches farther than a run serves. Runs apart from
+/// each other tell how cycles depend on p; close ones differ by their noise.
+#[must_use]
+pub fn first_exponents(start: f64, expected: impl Iterator<Item = f64>) -> Vec<f64> {
+    let start = start.clamp(P_MIN, P_MAX);
+    let mut exponents = beyond((start, start), expected);
+    exponents.push(start);
+    exponents
+}
+
+/// Fits p and A to one curve, from runs at `first` exponents (at least one, the best guess last) on.
+pub fn search(model: &dyn ForwardModel, target: Target<'_>, first: Vec<f64>) -> Result<Found> {
+    let runs_max = RUNS_ONE + first.len() - 1;
+    let mut runs = true_runs(model, first)?;
     let mut warnings = Vec::new();
     loop {
         let last = runs[runs.len() - 1].0;
@@ -74,8 +87,8 @@ pub fn search(model: &dyn ForwardModel, target: Target<'_>, start: f64) -> Resul
         if (p - last).abs() < P_TOLERANCE {
             break;
         }
-        if runs.len() == RUNS_ONE {
-            warnings.push(format!("p still moves by {:.4} after {RUNS_ONE} runs", (p - last).abs()));
+        if runs.len() == runs_max {
+            warnings.push(format!("p still moves by {:.4} after {runs_max} runs", (p - last).abs()));
             break;
         }
         runs.push(true_run(model, p)?);
@@ -97,23 +110,27 @@ pub fn search_a(model: &dyn ForwardModel, target: Target<'_>, p: f64) -> Result<
 /// Fits each specimen from the runs at hand, adding true runs (at most six in all) where specimens lie beyond them.
 pub fn search_each(model: &dyn ForwardModel, targets: &[Target<'_>], runs: &mut Runs) -> Result<Vec<Constants>> {
     loop {
-        let fits: Vec<Constants> = targets.iter().map(|target| on_surrogate(runs, *target)).collect::<Result<_>>()?;
-        let (low, high) = range(runs.iter().map(|(p, _)| *p));
-        let (lowest, highest) = range(fits.iter().map(|fit| fit.p));
-        let mut wanted = Vec::new();
-        if lowest < low - REACH_SPECIMEN {
-            wanted.push(lowest);
-        }
-        if highest > high + REACH_SPECIMEN {
-            wanted.push(highest);
-        }
+        let fits: Vec<Constants> = targets.par_iter().map(|target| on_surrogate(runs, *target)).collect::<Result<_>>()?;
+        let mut wanted = beyond(range(runs.iter().map(|(p, _)| *p)), fits.iter().map(|fit| fit.p));
         wanted.truncate(RUNS_ALL.saturating_sub(runs.len()));
         if wanted.is_empty() {
             return Ok(fits);
         }
-        let new: Vec<(f64, RecordedRun)> = wanted.into_par_iter().map(|p| true_run(model, p)).collect::<Result<_>>()?;
-        runs.extend(new);
+        runs.extend(true_runs(model, wanted)?);
     }
+}
+
+/// The ends of the range of some exponents that lie too far outside that of runs.
+fn beyond((low, high): (f64, f64), exponents: impl Iterator<Item = f64>) -> Vec<f64> {
+    let (lowest, highest) = range(exponents);
+    let below = (lowest < low - REACH_SPECIMEN).then_some(lowest);
+    let above = (highest > high + REACH_SPECIMEN).then_some(highest);
+    below.into_iter().chain(above).map(|p| p.clamp(P_MIN, P_MAX)).collect()
+}
+
+/// True runs side by side, in the order of their exponents.
+fn true_runs(model: &dyn ForwardModel, exponents: Vec<f64>) -> Result<Runs> {
+    exponents.into_par_iter().map(|p| true_run(model, p)).collect()
 }
 
 /// A of each target at a fixed p, from the runs at hand.

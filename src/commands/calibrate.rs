@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::console::Console;
@@ -15,6 +16,7 @@ use crate::calibration::results::{FitReport, fit_curves_csv, record};
 use crate::case::Case;
 use crate::error::{Error, Result, input};
 use crate::input::Document;
+use crate::predict::Prediction;
 use crate::report::chart::{self, Mark, Series};
 use crate::report::output::{OutputFolder, write_file};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
@@ -68,13 +70,7 @@ pub fn run(args: &Args) -> Result<()> {
         console.say(&line);
     }
 
-    // The predictions: each case with the fit, by the command `predict`, into its own folder below `--out`.
-    let mut predictions = serde_json::Map::new();
-    for document in cases {
-        let case = case_of(&document)?.with_law(law.clone()).map_err(|error| document.locate(error))?;
-        let done = predict::run_case(&case, &args.out.join(&case.name), predict::Extras::default(), console)?;
-        predictions.insert(case.name.clone(), done.result);
-    }
+    let predictions = predict_each(&cases, &law, &args.out, console)?;
     let mut object = json!(report);
     if let Some(fields) = object.as_object_mut()
         && !predictions.is_empty()
@@ -82,6 +78,34 @@ pub fn run(args: &Args) -> Result<()> {
         fields.insert("predictions".to_owned(), Value::Object(predictions));
     }
     console.object(&object)
+}
+
+/// The predictions: each case with the fit, as the command `predict` does it, into its own folder below `out`. They run side by
+/// side; what they say comes in their order.
+fn predict_each(
+    documents: &[Document],
+    law: &FittedRecord,
+    out: &Path,
+    console: &Console,
+) -> Result<serde_json::Map<String, Value>> {
+    let with_law = |document: &Document| -> Result<Case> {
+        case_of(document)?.with_law(law.clone()).map_err(|error| document.locate(error))
+    };
+    let cases: Vec<Case> = documents.iter().map(with_law).collect::<Result<_>>()?;
+    // Claimed first: a folder that cannot be written should not cost a run.
+    let folders: Vec<OutputFolder> =
+        cases.iter().map(|case| OutputFolder::create(&out.join(&case.name))).collect::<Result<_>>()?;
+    let bars = console.progress_of_each(cases.iter().map(|case| &*case.name));
+    let runs: Vec<Result<Prediction>> =
+        cases.par_iter().zip(bars).map(|(case, bar)| crate::predict::predict(case, &bar)).collect();
+    let mut predictions = serde_json::Map::new();
+    for ((case, folder), run) in cases.iter().zip(folders).zip(runs) {
+        for warning in &case.warnings {
+            console.warn(warning);
+        }
+        predictions.insert(case.name.clone(), predict::keep(case, run?, folder, console)?.result);
+    }
+    Ok(predictions)
 }
 
 /// Cases for `--predict`, read and checked but for their fatigue law, which the fit will be.

@@ -3,7 +3,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use crate::error::{Error, Result};
@@ -61,6 +61,17 @@ impl Console {
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(name.to_owned());
         RunProgress { bar }
+    }
+
+    /// A progress bar for each of several runs side by side, one below the other.
+    #[must_use]
+    pub fn progress_of_each<'a>(&self, names: impl Iterator<Item = &'a str>) -> Vec<RunProgress> {
+        let bars: Vec<RunProgress> = names.map(|name| self.progress(name)).collect();
+        if bars.iter().any(|run| !run.bar.is_hidden()) {
+            let screen = MultiProgress::new();
+            bars.iter().for_each(|run| drop(screen.add(run.bar.clone())));
+        }
+        bars
     }
 }
 

@@ -269,6 +269,12 @@ impl Dilatation {
         self.family(bonds, place) / self.gain[place]
     }
 
+    /// c Q of a place, dimensionless: by `D² ≤ Q Σ k_n (n·η)²` its dilatation stores at most this times what its normal springs
+    /// without their multipliers do.
+    pub(super) fn gain(&self, place: usize) -> f64 {
+        self.gain[place]
+    }
+
     /// Sign of κ.
     pub(super) fn sign(&self) -> f64 {
         self.gain.iter().copied().find(|gain| *gain != 0.0).map_or(1.0, f64::signum)

@@ -1,5 +1,6 @@
 //! Equilibrium of the body at maximum load.
 
+pub mod adaptive_dynamic_relaxation;
 pub mod assembly;
 pub mod conjugate_gradient;
 pub mod dilatation;
@@ -28,6 +29,7 @@ crate::kinds! {
         Window = "window": "exact updates of the plate condensed onto the points around the crack tips; multigrid for whole solves",
         Multigrid = "multigrid": "conjugate gradients on a matrix-free stencil, preconditioned by crack-aware lattice multigrid",
         Direct = "direct": "sparse Cholesky factorisation, the reference",
+        AdaptiveDynamicRelaxation = "adaptive_dynamic_relaxation": "damped motion to rest by a matrix-free stencil, the usual way of peridynamic programs; residual 1e-6",
     }
 }
 

@@ -4,6 +4,8 @@
 //! with multiplier m and lever r = |ξ|/(2Δ); θ = φ Δ is the point's rotation in units of length. Its gradient, summed
 //! over the bonds of a point, is one row of K x. Without free rotation the θ terms are absent.
 
+pub mod sweep;
+
 use rayon::prelude::*;
 
 use super::dilatation::Dilatation;

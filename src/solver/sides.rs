@@ -1,5 +1,6 @@
 //! Both sides of K u = f for a body: load, held components, grips, and the linear solver that keeps them equal.
 
+use super::adaptive_dynamic_relaxation::DynamicRelaxation;
 use super::conjugate_gradient::MultigridSolver;
 use super::direct::DirectSolver;
 use super::field::{self, Layout};
@@ -91,6 +92,7 @@ impl<const N: usize> Sides<N> {
             SolverKind::Window => Box::new(WindowSolver::new(body, bonds, &product)),
             SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product)),
             SolverKind::Direct => Box::new(DirectSolver::default()),
+            SolverKind::AdaptiveDynamicRelaxation => Box::new(DynamicRelaxation::new(body, bonds, &product)),
         };
         let has_fast_solves = kind == SolverKind::Window;
         Sides { product, solver, f, grips, u: layout.zeros(), work: 0.0, rim: None, is_foreseen: false, has_fast_solves }

@@ -1,5 +1,6 @@
 //! What a run must obey whatever its numbers: scaling with A and with load, symmetry, order, named ends, straight paths.
 
+use perilife::bond_law::BondLawKind;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::solver::SolverKind;
 use perilife::units::MM;
@@ -128,6 +129,27 @@ fn cycles_later(run: &Prediction) -> f64 {
     at(24.0) - at(19.0)
 }
 
+/// Grows the crack of a case by every solver, a solve a break: the same bonds break at the same cycles, to 1e-6 of life, and for
+/// dynamic relaxation, which ends at a residual of 1e-6 and not 1e-9 of the load, to `relaxed`.
+fn assert_same_growth(name: &str, specimen: &str, set: &[&str], relaxed: f64) {
+    let grown_by = |solver: &SolverKind| {
+        let chosen = format!("model.solver={solver}");
+        let run = grow(specimen, &[set, &[&*chosen, "fatigue.block=until_next_break"]].concat());
+        let last = run.curve.last().unwrap();
+        (*solver, run.life_cycles(), last.broken_bonds, last.crack_length, run.stop)
+    };
+    let runs: Vec<_> = SolverKind::ALL.iter().map(grown_by).collect();
+    println!("{name}: {runs:?}");
+    let (_, life, broken, length, stop) = runs[0];
+    assert!(life > 0.0 && broken > 0, "{name}: {runs:?}");
+    for &(solver, other_life, other_broken, other_length, other_stop) in &runs[1..] {
+        let bound = if solver == SolverKind::AdaptiveDynamicRelaxation { relaxed } else { 1e-6 };
+        assert!((other_life / life - 1.0).abs() < bound, "{name}: {runs:?}");
+        assert!((other_length / length - 1.0).abs() < bound, "{name}: {runs:?}");
+        assert_eq!((other_broken, other_stop), (broken, stop), "{name}, {solver}");
+    }
+}
+
 /// The window is exact: the same bonds break at the same cycles as with a solve of the whole plate per block, by any solver.
 #[test]
 fn every_solver_grows_the_same_crack() {
@@ -145,20 +167,35 @@ fn every_solver_grows_the_same_crack() {
         ("state-based", SLANT, vec!["model.bond_law=state_based", "material.poisson_ratio=0.4", "stop.crack_length_mm=26"]),
         ("state-based, low ν", PANEL, vec!["model.bond_law=state_based", "material.poisson_ratio=0", "stop.crack_length_mm=18"]),
     ] {
-        let grown_by = |solver: &SolverKind| {
-            let solver = format!("model.solver={solver}");
-            let mut all = set.clone();
-            all.extend([&*solver, "fatigue.block=until_next_break"]);
-            let run = grow(specimen, &all);
-            let last = run.curve.last().unwrap();
-            (run.life_cycles(), last.broken_bonds, last.crack_length, run.stop)
+        // Two bonds whose spending agrees to 1e-5 may break in the other order before N = 0, which then is a bond earlier or later:
+        // reached 1.2e-3 (state-based).
+        assert_same_growth(name, specimen, &set, 2e-3);
+    }
+}
+
+/// Every solver with every bond law on every small case: life equal to 1e-6, with dynamic relaxation to its tolerance.
+#[test]
+fn every_solver_grows_the_same_crack_by_every_law() {
+    for kind in BondLawKind::ALL {
+        let law = format!("model.bond_law={kind}");
+        let ratio = if *kind == BondLawKind::BondBased {
+            "material.poisson_ratio=0.3333333333333333"
+        } else {
+            "material.poisson_ratio=0.3"
         };
-        let lives: Vec<_> = SolverKind::ALL.iter().map(grown_by).collect();
-        println!("{name}: {lives:?}");
-        for (life, broken, length, stop) in &lives[1..] {
-            assert!((life / lives[0].0 - 1.0).abs() < 1e-6, "{name}: {lives:?}");
-            assert!((length / lives[0].2 - 1.0).abs() < 1e-6, "{name}: {lives:?}");
-            assert_eq!((broken, stop), (&lives[0].1, &lives[0].3), "{name}");
+        for (name, specimen, stop) in [
+            ("middle tension", PANEL, "stop.crack_length_mm=16"),
+            ("compact", COMPACT, "stop.crack_length_mm=24"),
+            ("single edge", EDGE, "stop.crack_length_mm=16"),
+            ("double edge", DOUBLE, "stop.crack_length_mm=16"),
+            ("hole", HOLE, "stop.crack_length_mm=18"),
+            ("slant", SLANT, "stop.crack_length_mm=26"),
+            ("two cracks", TWO, "stop.crack_length_mm=36"),
+        ] {
+            // Coarse, so that the direct solver takes milliseconds; no growth before N = 0, so that all of it counts. Strains of
+            // dynamic relaxation are right to 1e-5, cycles to p times that.
+            let set = [&*law, ratio, stop, "model.spacing_mm=3", "fatigue.precrack=none"];
+            assert_same_growth(&format!("{name}, {kind}"), specimen, &set, 3e-5);
         }
     }
 }
