@@ -61,13 +61,13 @@ pub fn condense<const M: usize, A: Assembly<M>>(
         condenser.hold(&mut sum.matrix, at, place);
     }
     pins.iter().for_each(|&index| sum.matrix.hold(index));
-    let (order, par) = (sum.matrix.order, parallelism(sum.matrix.order));
+    let order = sum.matrix.order;
     let mut factors = sum.matrix.as_mut();
     condenser.factorise(factors.rb_mut())?;
     let mut inverse = Mat::zeros(order, order);
-    let mut memory = MemBuffer::new(ldlt::inverse::inverse_scratch::<f64>(order, par));
+    let mut memory = MemBuffer::new(ldlt::inverse::inverse_scratch::<f64>(order, Par::Seq));
     let factors = factors.rb();
-    ldlt::inverse::inverse(inverse.as_mut(), factors, factors.diagonal(), par, MemStack::new(&mut memory));
+    ldlt::inverse::inverse(inverse.as_mut(), factors, factors.diagonal(), Par::Seq, MemStack::new(&mut memory));
     complete_upper(&mut inverse);
     Some(Condensed { places: window.to_vec(), inverse })
 }
@@ -119,15 +119,7 @@ pub(super) fn complete_upper(matrix: &mut Mat<f64>) {
     }
 }
 
-/// Order of a matrix from which two threads share the work on it.
-const SHARED_ORDER: usize = 600;
-
-/// How to work on a dense matrix: whoever shares the work, the sums are the same.
-pub(super) fn parallelism(order: usize) -> Par {
-    if order >= SHARED_ORDER { Par::rayon(0) } else { Par::Seq }
-}
-
-/// A square matrix, column by column. Its zeros come from the operating system untouched.
+/// A square matrix, column by column.
 struct Square {
     order: usize,
     values: Vec<f64>,
@@ -135,7 +127,10 @@ struct Square {
 
 impl Square {
     fn zeros(order: usize) -> Self {
-        Square { order, values: vec![0.0; order * order] }
+        // Zeros that are written: pages that are only read before a sum goes into them would be mapped twice, and every core told.
+        let mut values = Vec::with_capacity(order * order);
+        values.resize(order * order, 0.0);
+        Square { order, values }
     }
 
     fn as_mut(&mut self) -> MatMut<'_, f64> {
@@ -356,7 +351,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
 
     /// Factors L D Lᵀ in the lower triangle, D on the diagonal; `None` where a pivot has not the sign it should.
     fn factorise(&self, mut matrix: MatMut<'_, f64>) -> Option<()> {
-        let (order, par) = (matrix.nrows(), parallelism(matrix.nrows()));
+        let (order, par) = (matrix.nrows(), Par::Seq);
         let mut memory = MemBuffer::new(ldlt::factor::cholesky_in_place_scratch::<f64>(order, par, faer::Spec::default()));
         let regularization = ldlt::factor::LdltRegularization::default();
         let stack = MemStack::new(&mut memory);
@@ -367,11 +362,10 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
 
     /// Eliminates the first `count` unknowns: what is left stands in the lower triangle after them.
     fn eliminate_first(&self, matrix: &mut Square, count: usize) -> Option<()> {
-        let par = parallelism(matrix.order);
         let (mut first, _, mut coupling, mut left) = matrix.as_mut().split_at_mut(count, count);
         self.factorise(first.rb_mut())?;
         // C L⁻ᵀ, and the same times D⁻¹.
-        solve_unit_lower_triangular_in_place(first.rb(), coupling.rb_mut().transpose_mut(), par);
+        solve_unit_lower_triangular_in_place(first.rb(), coupling.rb_mut().transpose_mut(), Par::Seq);
         let mut scaled = coupling.to_owned();
         for j in 0..count {
             let pivot = first[(j, j)];
@@ -386,7 +380,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
             scaled.transpose(),
             BlockStructure::Rectangular,
             -1.0,
-            par,
+            Par::Seq,
         );
         Some(())
     }

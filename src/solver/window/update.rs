@@ -12,9 +12,9 @@
 
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
-use faer::{Accum, Mat};
+use faer::{Accum, Mat, Par};
 
-use super::condense::{complete_upper, parallelism};
+use super::condense::complete_upper;
 
 /// Pivot of C below which the window is about to lose a part of itself.
 const PIVOT_MIN: f64 = 1e-9;
@@ -118,8 +118,7 @@ impl Update {
             }
         }
         let factor = Mat::from_fn(rank, rank, |i, j| if i > j { self.rows[i][j] } else { 0.0 });
-        let par = parallelism(order);
-        solve_unit_lower_triangular_in_place(factor.as_ref(), reduced.as_mut(), par);
+        solve_unit_lower_triangular_in_place(factor.as_ref(), reduced.as_mut(), Par::Seq);
         let mut scaled = reduced.clone();
         for j in 0..order {
             scaled.col_as_slice_mut(j).iter_mut().zip(&self.pivots).for_each(|(value, pivot)| *value /= pivot);
@@ -133,7 +132,7 @@ impl Update {
             scaled.as_ref(),
             BlockStructure::Rectangular,
             1.0,
-            par,
+            Par::Seq,
         );
         complete_upper(inverse);
         *self = Update::default();
