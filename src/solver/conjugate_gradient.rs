@@ -57,15 +57,17 @@ impl<const N: usize> MultigridSolver<N> {
             return Some(0);
         }
         let rigid = RigidMotion::of(body, bonds, layout);
-        let mut rz_last = 0.0;
+        // r·z and the step of the last iteration.
+        let mut last: Option<(f64, f64)> = None;
         for iteration in 1..=ITERATIONS_MAX {
             let z = self.multigrid.precondition(bonds, product, &self.r);
             if let Some(rigid) = &rigid {
                 rigid.take_off(z);
             }
             let rz = dot(&layout, &self.r, z);
-            let beta = if iteration == 1 { 0.0 } else { rz / rz_last };
-            rz_last = rz;
+            // z·(r - r_last) / (r·z)_last, with r - r_last = -α q: a preconditioner in single precision is not the same linear
+            // operator every time (Notay 2000, SIAM J. Sci. Comput. 22:1444).
+            let beta = last.map_or(0.0, |(rz_last, alpha)| -alpha * dot(&layout, &self.q, z) / rz_last);
             update(&mut self.p, z, |p, z| z + beta * p);
             product.apply(bonds, &mut self.p, &mut self.q, Into::Set);
             let curvature = dot(&layout, &self.p, &self.q);
@@ -74,6 +76,7 @@ impl<const N: usize> MultigridSolver<N> {
                 return None;
             }
             let alpha = rz / curvature;
+            last = Some((rz, alpha));
             update(u, &self.p, |u, p| u + alpha * p);
             update(&mut self.r, &self.q, |r, q| r - alpha * q);
             if dot(&layout, &self.r, &self.r).sqrt() <= target {

@@ -208,7 +208,7 @@ fn what_is_planned_is_said_to_be_planned() {
     let planned = [
         ("model.method", "auto"),
         ("model.bond_law", "correspondence"),
-        ("model.solver", "adaptive_dynamic_relaxation"),
+        ("model.solver", "velocity_verlet"),
         ("fatigue.failure", "energy"),
         ("loading.kind", "velocity"),
     ];
