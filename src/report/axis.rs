@@ -121,7 +121,7 @@ fn tick_text(value: f64, largest: f64, decimals: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    if !(2e-2..0.999e7).contains(&size) {
+    if !(9e-3..0.999e7).contains(&size) {
         let text = format!("{value:.6e}");
         let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
         let mantissa = trimmed(mantissa);
