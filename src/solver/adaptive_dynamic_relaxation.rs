@@ -7,7 +7,7 @@
 //! u(n+1) = u(n) + u̇(n+½)
 //! ```
 //!
-//! with a fictitious density Λ for which that is stable ([`density`]) and the damping that is critical for the slowest mode in
+//! with a fictitious density Λ for which that is stable (`density`) and the damping that is critical for the slowest mode in
 //! motion, c = 2 ω. Kilic and Madenci estimate ω² by `uᵀ k u / uᵀ u` with a diagonal stiffness `k = ΔF / Λ u̇` from the change of F
 //! over a step. That change is K u̇ itself, so `ω² = u̇ᵀ Λ⁻¹ K u̇ / u̇ᵀ u̇` needs no more and lets the motion, not the shape, say
 //! which modes are left. Such a quotient lies above the lowest eigenvalue; the damping is taken lower by a fixed factor.

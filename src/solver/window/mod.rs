@@ -22,8 +22,10 @@ use crate::state::Bonds;
 use condense::{Condensed, condense};
 use update::{Term, Update};
 
-/// Length of the window ahead of a tip, in horizons.
+/// Least length of the window ahead of a tip, in horizons.
 const AHEAD_HORIZONS: f64 = 8.0;
+/// Unknowns below which a window reaches twice as far: it then has to move half as often, at hardly any cost for a break.
+const UNKNOWNS_SMALL: usize = 600;
 /// Largest window, unknowns: its inverse then takes 72 MB.
 const UNKNOWNS_MAX: usize = 3000;
 /// Relative error of the work of the loads, found at a whole solve, from which a window is not used any more.
@@ -90,9 +92,19 @@ impl<const N: usize> WindowSolver<N> {
         if self.is_off || watched.len() * width > UNKNOWNS_MAX {
             return None;
         }
-        let places = points_around(body, bonds, tips, watched, AHEAD_HORIZONS);
+        let mut ahead = AHEAD_HORIZONS;
+        let mut places = points_around(body, bonds, tips, watched, ahead);
         if places.is_empty() || width * places.len() > UNKNOWNS_MAX {
             return None;
+        }
+        while width * places.len() < UNKNOWNS_SMALL {
+            ahead *= 2.0;
+            let farther = points_around(body, bonds, tips, watched, ahead);
+            // Nothing is left ahead, or more than pays.
+            if farther.len() == places.len() || width * farther.len() > 2 * UNKNOWNS_SMALL {
+                break;
+            }
+            places = farther;
         }
         let pins = pins(body, bonds, &places, width);
         let condensed = match product.dilatation() {
