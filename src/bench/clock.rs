@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::calibration::median::median;
 use crate::case::Case;
 use crate::error::Result;
 use crate::predict::{Silent, predict};
@@ -129,19 +130,6 @@ impl Timing {
     }
 }
 
-/// Median; the mean of the two in the middle for an even count, NaN for none.
-#[must_use]
-pub fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    match sorted.len() {
-        0 => f64::NAN,
-        odd if odd % 2 == 1 => sorted[middle],
-        _ => 0.5 * (sorted[middle - 1] + sorted[middle]),
-    }
-}
-
 /// Processor time of the process, all threads, s; NaN where the system does not tell (it is read from `/proc`, in ticks of
 /// 1/100 s).
 #[must_use]
@@ -156,13 +144,6 @@ pub fn cpu_seconds() -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_median_is_the_middle() {
-        assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
-        assert!(median(&[]).is_nan());
-    }
 
     #[test]
     fn processor_time_never_falls() {

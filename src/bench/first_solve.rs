@@ -5,12 +5,13 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::clock::{Timing, cpu_seconds, median};
+use super::clock::{Timing, cpu_seconds};
 use super::exponent::growth_exponent;
 use super::row::{Asked, Row};
 use super::{Bench, Figure};
 use crate::body::Body;
 use crate::bond_law::BondLawKind;
+use crate::calibration::median::median;
 use crate::case::Case;
 use crate::error::Result;
 use crate::predict::memory;

@@ -1,9 +1,10 @@
 //! A run with another solver: whole, or extrapolated where that would take too long.
 
 use super::Bench;
-use super::clock::{Timing, median};
+use super::clock::Timing;
 use super::extrapolation::History;
 use super::scene::Found;
+use crate::calibration::median::median;
 use crate::case::Case;
 use crate::error::Result;
 
