@@ -130,7 +130,7 @@ fn cycles_later(run: &Prediction) -> f64 {
 }
 
 /// Grows the crack of a case by every solver, a solve a break: the same bonds break at the same cycles, to 1e-6 of life, and for
-/// dynamic relaxation, which ends at a residual of 1e-6 and not 1e-9 of the load, to `relaxed`.
+/// dynamic relaxation, which ends at a residual of 1e-6 and not 1e-11 of the load, to `relaxed`.
 fn assert_same_growth(name: &str, specimen: &str, set: &[&str], relaxed: f64) {
     let grown_by = |solver: &SolverKind| {
         let chosen = format!("model.solver={solver}");
@@ -168,8 +168,8 @@ fn every_solver_grows_the_same_crack() {
         ("state-based, low ν", PANEL, vec!["model.bond_law=state_based", "material.poisson_ratio=0", "stop.crack_length_mm=18"]),
     ] {
         // Two bonds whose spending agrees to 1e-5 may break in the other order before N = 0, which then is a bond earlier or later:
-        // reached 1.2e-3 (state-based).
-        assert_same_growth(name, specimen, &set, 2e-3);
+        // reached 1.2e-3 where the law is state-based.
+        assert_same_growth(name, specimen, &set, if name == "state-based" { 2e-3 } else { 1e-4 });
     }
 }
 
