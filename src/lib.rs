@@ -23,6 +23,7 @@ pub mod fatigue;
 pub mod case;
 pub mod stress_intensity;
 pub mod predict;
+pub mod fracture;
 pub mod calibration;
 pub mod verify;
 pub mod bench;

@@ -21,6 +21,8 @@ use std::time::Instant;
 
 pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 
+pub use snapshot::grid;
+
 use crate::body::lattice::fitting_spacing;
 use crate::body::{Body, Bond};
 use crate::case::{Case, Method};

@@ -38,6 +38,11 @@ pub const INTENSITY: Quantity = Quantity { what: "a stress intensity", unit: "MP
 /// A fracture energy.
 pub const FRACTURE_ENERGY: Quantity = Quantity { what: "an energy", unit: "J/m²", low: 1e-6, high: 1e12, si: 1.0 };
 
+/// A density.
+pub const DENSITY: Quantity = Quantity { what: "a density", unit: "kg/m³", low: 1e-3, high: 1e6, si: 1.0 };
+/// A time.
+pub const TIME: Quantity = Quantity { what: "a time", unit: "s", low: 1e-15, high: 1e6, si: 1.0 };
+
 /// A plain number within bounds.
 #[must_use]
 pub const fn number(what: &'static str, low: f64, high: f64) -> Quantity {

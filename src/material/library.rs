@@ -47,6 +47,10 @@ pub struct MaterialFile {
     pub toughness_mpa_sqrt_m: Option<Property>,
     /// Fracture energy, J/m².
     pub fracture_energy_j_m2: Option<Property>,
+    /// Density, kg/m³.
+    pub density_kg_m3: Option<Property>,
+    /// Tensile strength, MPa.
+    pub tensile_strength_mpa: Option<Property>,
 }
 
 /// Names of the built-in materials, sorted.

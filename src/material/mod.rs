@@ -30,6 +30,10 @@ pub struct Material {
     pub toughness: Option<f64>,
     /// Fracture energy G_c, J/m².
     pub fracture_energy: Option<f64>,
+    /// Density ρ, kg/m³.
+    pub density: Option<f64>,
+    /// Tensile strength f_t, Pa.
+    pub tensile_strength: Option<f64>,
 }
 
 impl Material {

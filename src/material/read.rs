@@ -8,7 +8,7 @@ use toml::Value;
 use super::library::{self, Property};
 use super::{Material, Plane};
 use crate::error::{Result, input_missing};
-use crate::input::{FRACTURE_ENERGY, INTENSITY, MODULUS, Quantity, STRESS, number, slice};
+use crate::input::{DENSITY, FRACTURE_ENERGY, INTENSITY, MODULUS, Quantity, STRESS, number, slice};
 
 /// Keys of `[material]`.
 #[derive(Deserialize)]
@@ -20,6 +20,8 @@ struct Input {
     yield_strength_mpa: Option<f64>,
     toughness_mpa_sqrt_m: Option<f64>,
     fracture_energy_j_m2: Option<f64>,
+    density_kg_m3: Option<f64>,
+    tensile_strength_mpa: Option<f64>,
     plane: Option<Plane>,
 }
 
@@ -60,6 +62,13 @@ pub fn from_value(value: &Value, base_dir: &Path, warnings: &mut Vec<String>) ->
         file.and_then(|file| file.fracture_energy_j_m2.as_ref()),
         FRACTURE_ENERGY,
     )?;
+    let density = pick("density_kg_m3", input.density_kg_m3, file.and_then(|file| file.density_kg_m3.as_ref()), DENSITY)?;
+    let tensile_strength = pick(
+        "tensile_strength_mpa",
+        input.tensile_strength_mpa,
+        file.and_then(|file| file.tensile_strength_mpa.as_ref()),
+        STRESS,
+    )?;
 
     let missing = |key: &str| {
         let remedy = format!("give it, or the name of a material: {}", library::names().join(", "));
@@ -72,6 +81,8 @@ pub fn from_value(value: &Value, base_dir: &Path, warnings: &mut Vec<String>) ->
         yield_strength,
         toughness,
         fracture_energy,
+        density,
+        tensile_strength,
         name,
     })
 }

@@ -60,6 +60,8 @@ pub fn uniform_tension_with(
         yield_strength: None,
         toughness: None,
         fracture_energy: None,
+        density: None,
+        tensile_strength: None,
     };
     let body = Body::build(specimen, &material, law, spacing, horizon_ratio, angle)?;
     let bonds = Bonds::new(&body);

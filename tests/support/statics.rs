@@ -42,6 +42,8 @@ pub fn material(kind: BondLawKind, plane: Plane) -> Material {
         yield_strength: None,
         toughness: None,
         fracture_energy: None,
+        density: None,
+        tensile_strength: None,
     }
 }
 

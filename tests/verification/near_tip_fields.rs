@@ -20,6 +20,8 @@ fn elasticity(plane: Plane) -> Elasticity {
         yield_strength: None,
         toughness: None,
         fracture_energy: None,
+        density: None,
+        tensile_strength: None,
     })
 }
 

@@ -1,0 +1,232 @@
+//! Motion in time by velocity Verlet (Swope, Andersen, Berens and Wilson 1982; in the half-step form):
+//!
+//! ```text
+//! v(n+1/2) = v(n) + Δt/2 a(n)      u(n+1) = u(n) + Δt v(n+1/2)
+//! a(n+1) = (L(u(n+1)) + b) / ρ     v(n+1) = v(n+1/2) + Δt/2 a(n+1)
+//! ```
+//!
+//! The step is stable below `2/ω`, ω² the largest eigenvalue of stiffness over mass, bounded point by point (Gershgorin).
+//! Free rotations get the inertia at which they are exactly as fast as the displacements: they have no part in the motion
+//! that is asked for, and shall not shorten the step.
+
+use rayon::prelude::*;
+
+use super::bonds::BondState;
+use super::boundary::{Boundary, Held};
+use super::interaction::{Damaging, Interaction, Reaction};
+use super::log::Log;
+use super::net::Net;
+use super::outcome::{HistoryRow, SceneEnd};
+use super::{SceneObserver, SceneProgress};
+use crate::error::{Error, Result, input};
+
+/// Share of the stability bound that the program's own step takes.
+const SAFETY: f64 = 0.9;
+/// Rows of the history at the most; with more steps every so many-th is kept.
+const ROWS: usize = 4000;
+/// Steps between two looks at the energy: a blow-up is found within 10.
+const WATCH: usize = 5;
+/// Energy from nowhere over the largest energy so far at which the motion counts as blown up.
+const FROM_NOWHERE: f64 = 0.5;
+
+/// State of the motion: displacement, velocity, force of the bonds; layout of [`Interaction`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Displacement, m.
+    pub u: Vec<f64>,
+    /// Velocity, m/s.
+    pub v: Vec<f64>,
+    /// Force of the bonds, N.
+    pub force: Vec<f64>,
+}
+
+/// Masses of all unknowns, kg: `ρ V` of the displacements; rotations as said above.
+#[must_use]
+pub fn masses(net: &Net, density: f64, bound: &[[f64; 2]]) -> Vec<f64> {
+    let translations = || net.volumes.iter().map(|volume| density * volume);
+    let fastest = translations().zip(bound).map(|(mass, bound)| bound[0] / mass).fold(0.0, f64::max);
+    let unknowns = net.unknowns;
+    let of_point = |(mass, bound): (f64, &[f64; 2])| {
+        let mut masses = [mass, mass, bound[1] / fastest];
+        if bound[1] == 0.0 {
+            masses[2] = mass;
+        }
+        masses.into_iter().take(unknowns)
+    };
+    translations().zip(bound).flat_map(of_point).collect()
+}
+
+/// Largest stable time step, s.
+#[must_use]
+pub fn stable_step(net: &Net, density: f64, bound: &[[f64; 2]]) -> f64 {
+    let fastest = net.volumes.iter().zip(bound).map(|(volume, bound)| bound[0] / (density * volume)).fold(0.0, f64::max);
+    2.0 / fastest.sqrt()
+}
+
+/// The time step: the one asked for, or the program's own.
+///
+/// # Errors
+/// A step above the stable one.
+pub fn time_step(asked: Option<f64>, stable: f64) -> Result<f64> {
+    match asked {
+        Some(step) if step > stable => {
+            let problem = format!("is above the stable step of this body, {stable:.4e} s");
+            Err(input("loading.time_step_s", step, problem, "give a smaller one, or leave it out"))
+        }
+        Some(step) => Ok(step),
+        None => Ok(SAFETY * stable),
+    }
+}
+
+/// A motion to be followed.
+pub struct Run<'a> {
+    /// Loads.
+    pub boundary: &'a Boundary,
+    /// Masses of all unknowns, kg.
+    pub masses: &'a [f64],
+    /// Time step, s.
+    pub step: f64,
+    /// Steps.
+    pub steps: usize,
+}
+
+impl Run<'_> {
+    /// Follows the motion from rest; returns why it ended, the last state, and the evaluations of the forces.
+    ///
+    /// # Errors
+    /// A run that was cancelled.
+    pub fn follow(
+        &self,
+        interaction: &mut dyn Interaction,
+        bonds: &mut BondState,
+        log: &mut Log<'_>,
+        observer: &dyn SceneObserver,
+    ) -> Result<(SceneEnd, Motion, usize)> {
+        let unknowns = interaction.unknowns();
+        let size = self.masses.len();
+        let mut motion = Motion { u: vec![0.0; size], v: vec![0.0; size], force: vec![0.0; size] };
+        let external = self.external(unknowns);
+        let held: Vec<(usize, Held)> =
+            self.boundary.held.iter().map(|held| (held.point as usize * unknowns + held.component, *held)).collect();
+        for (i, held) in &held {
+            motion.v[*i] = self.boundary.motion_at(held.motion, 0.0).1;
+        }
+        let mut work = self.kinetic(&motion.v);
+        let mut fracture = 0.0;
+        let mut largest: f64 = 0.0;
+        interaction.react(&motion.u, bonds, Damaging::Frozen, &mut motion.force);
+        let stride = self.steps.div_ceil(ROWS).max(1);
+        let mut end = SceneEnd::Done;
+        for step in 1..=self.steps {
+            let (before, time) = ((step - 1) as f64 * self.step, step as f64 * self.step);
+            self.drift(&mut motion, &external, self.boundary.level(before));
+            let mut driven = 0.0;
+            let moved: Vec<f64> = held
+                .iter()
+                .map(|(i, held)| {
+                    let at = self.boundary.motion_at(held.motion, time).0;
+                    let moved = at - self.boundary.motion_at(held.motion, before).0;
+                    motion.u[*i] = at;
+                    // Half of the work of the force that holds the point; the other half with the new force.
+                    driven -= 0.5 * motion.force[*i] * moved;
+                    moved
+                })
+                .collect();
+            let level = 0.5 * (self.boundary.level(before) + self.boundary.level(time));
+            let pushed = self.pushed(&external, &motion.v, level);
+            let reaction = interaction.react(&motion.u, bonds, Damaging::Allowed, &mut motion.force);
+            self.kick(&mut motion, &external, self.boundary.level(time));
+            for ((i, held), moved) in held.iter().zip(&moved) {
+                let (was, is) = (self.boundary.motion_at(held.motion, before).1, self.boundary.motion_at(held.motion, time).1);
+                motion.v[*i] = is;
+                // What holds the point also brings its own mass into motion.
+                driven += 0.5 * self.masses[*i] * (is * is - was * was) - 0.5 * motion.force[*i] * moved;
+            }
+            work += driven + pushed;
+            fracture += reaction.released;
+            log.broke(step, reaction.broken);
+            let look = step % WATCH == 0 || step % stride == 0 || step == self.steps;
+            if look {
+                let row = self.row(step, &motion, &reaction, (fracture, work), unknowns);
+                largest = largest.max(row.kinetic.max(row.strain).max(row.work.abs()));
+                let nowhere = (row.kinetic + row.strain + row.fracture - row.work).abs();
+                // A negated comparison, so that NaN counts as blown up.
+                if !(nowhere <= FROM_NOWHERE * largest || largest == 0.0) {
+                    end = SceneEnd::Unstable;
+                    break;
+                }
+                if step % stride == 0 || step == self.steps {
+                    log.row(row, &motion.u, bonds);
+                    if !observer.step_done(&SceneProgress { share: step as f64 / self.steps as f64 }) {
+                        return Err(Error::Mechanics("the run was cancelled".to_owned()));
+                    }
+                }
+            }
+        }
+        let evaluations = self.steps + 1;
+        Ok((end, motion, evaluations))
+    }
+
+    /// Forces of the loads at full level on all unknowns, N.
+    fn external(&self, unknowns: usize) -> Vec<f64> {
+        let mut external = vec![0.0; self.masses.len()];
+        for &(point, force) in &self.boundary.forces {
+            external[point as usize * unknowns] += force[0];
+            external[point as usize * unknowns + 1] += force[1];
+        }
+        external
+    }
+
+    /// First half: velocity to the half step, displacement to the new step.
+    fn drift(&self, motion: &mut Motion, external: &[f64], level: f64) {
+        let (step, half) = (self.step, 0.5 * self.step);
+        let force = &motion.force;
+        motion.u.par_iter_mut().with_min_len(LEAST).zip(&mut motion.v).enumerate().for_each(|(i, (u, v))| {
+            *v += half * (force[i] + level * external[i]) / self.masses[i];
+            *u += step * *v;
+        });
+    }
+
+    /// Second half: velocity to the new step.
+    fn kick(&self, motion: &mut Motion, external: &[f64], level: f64) {
+        let half = 0.5 * self.step;
+        let force = &motion.force;
+        motion.v.par_iter_mut().with_min_len(LEAST).enumerate().for_each(|(i, v)| {
+            *v += half * (force[i] + level * external[i]) / self.masses[i];
+        });
+    }
+
+    /// Work of the given forces over a step with these half-step velocities, J.
+    fn pushed(&self, external: &[f64], v: &[f64], level: f64) -> f64 {
+        let power: f64 = external.iter().zip(v).filter(|(f, _)| **f != 0.0).map(|(f, v)| f * v).sum();
+        level * power * self.step
+    }
+
+    fn kinetic(&self, v: &[f64]) -> f64 {
+        let parts: Vec<f64> = v
+            .par_chunks(LEAST)
+            .zip(self.masses.par_chunks(LEAST))
+            .map(|(v, m)| v.iter().zip(m).map(|(v, m)| 0.5 * m * v * v).sum())
+            .collect();
+        parts.iter().sum()
+    }
+
+    fn row(&self, step: usize, motion: &Motion, reaction: &Reaction, sums: (f64, f64), unknowns: usize) -> HistoryRow {
+        let time = step as f64 * self.step;
+        let (displacement, load) = self.boundary.measure(unknowns, self.boundary.level(time), &motion.u, &motion.force);
+        HistoryRow {
+            step,
+            time,
+            displacement,
+            load,
+            broken_bonds: 0,
+            kinetic: self.kinetic(&motion.v),
+            strain: reaction.strain,
+            fracture: sums.0,
+            work: sums.1,
+        }
+    }
+}
+
+/// Unknowns a task works through at the least.
+const LEAST: usize = 8192;

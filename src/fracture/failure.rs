@@ -1,0 +1,116 @@
+//! When a bond is damaged: the limits that follow from strength and fracture energy, and what they do to a bond.
+
+use super::scene::{DamageLaw, Scene, Softening};
+use crate::bond_law::stencil::Stencil;
+use crate::error::{Result, input_missing};
+
+/// A bond's measures at which laws look: stretch s and shear angle γ, and the ratio k_t / k_n of its springs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measures {
+    /// Stretch s.
+    pub stretch: f64,
+    /// Shear angle γ.
+    pub shear: f64,
+    /// Tangential over normal spring.
+    pub ratio: f64,
+}
+
+/// Law of damage with its limits.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Failure {
+    /// Bonds stay whole.
+    Never,
+    /// Broken at `s ≥ s_c`, the critical stretch of the owner.
+    Stretch(Vec<f64>),
+    /// Broken at `s² + (k_t/k_n) γ² ≥ s_c²`, s > 0, with the critical stretch of the owner: on the stretch form with a constant
+    /// kernel this is `(c_n s² + c_t γ²)/2 ≥ w_c0` (source 002, equation 24), in tension only.
+    Energy(Vec<f64>),
+    /// Exponential softening.
+    Softening(Softening),
+}
+
+impl Failure {
+    /// The law of a scene on the bonds of so many points (`principal_stress` belongs to correspondence); `critical` is the
+    /// critical stretch of every point from its fracture energy, or `None` without one.
+    ///
+    /// # Errors
+    /// A missing fracture energy or missing constants.
+    pub fn of(scene: &Scene, points: usize, critical: Option<Vec<f64>>) -> Result<Failure> {
+        let limits = || {
+            let given = scene.damage.stretch.map(|stretch| vec![stretch; points]);
+            given.or(critical.clone()).ok_or_else(|| {
+                input_missing(
+                    "material.fracture_energy_j_m2",
+                    "is missing: the critical stretch follows from it",
+                    "give it, or damage.critical_stretch",
+                )
+            })
+        };
+        match scene.damage.law {
+            DamageLaw::None | DamageLaw::PrincipalStress => Ok(Failure::Never),
+            DamageLaw::CriticalStretch => Ok(Failure::Stretch(limits()?)),
+            DamageLaw::CriticalEnergy => Ok(Failure::Energy(limits()?)),
+            DamageLaw::NonlinearTwoParameter => scene.damage.nonlinear.map(Failure::Softening).ok_or_else(|| {
+                input_missing(
+                    "damage.elastic_stretch",
+                    "is missing: the nonlinear law has no limits",
+                    "give elastic_stretch, peak_stretch and final_stretch, or material.yield_strength_mpa and tensile_strength_mpa",
+                )
+            }),
+        }
+    }
+
+    /// Share of its stiffness that a bond of an owner has at these measures, and its history; never more than before.
+    #[inline(always)]
+    #[must_use]
+    pub fn share(&self, owner: u32, at: Measures, share: f64, peak: &mut f64) -> f64 {
+        match self {
+            Failure::Never => share,
+            Failure::Stretch(limits) => {
+                if at.stretch >= limits[owner as usize] {
+                    0.0
+                } else {
+                    share
+                }
+            }
+            Failure::Energy(limits) => {
+                let limit = limits[owner as usize];
+                let reached = at.stretch > 0.0 && at.stretch * at.stretch + at.ratio * at.shear * at.shear >= limit * limit;
+                if reached { 0.0 } else { share }
+            }
+            Failure::Softening(law) => {
+                if at.stretch <= *peak {
+                    return share;
+                }
+                *peak = at.stretch;
+                law.share(at.stretch).min(share)
+            }
+        }
+    }
+}
+
+impl Softening {
+    /// Share of the stiffness 1 - D at a stretch never reached before: `D = 0` up to s_et, `1 - exp(-(s - s_et)/s_nt)` up to s_t,
+    /// 1 beyond (source 000, equation 19). With the continuous form the force is largest at s_nt. As printed, equations (20)
+    /// and (21) multiply by D itself between s_et and s_nt, so that the force drops to zero just above s_et.
+    #[must_use]
+    pub fn share(&self, stretch: f64) -> f64 {
+        if stretch <= self.elastic {
+            1.0
+        } else if stretch > self.last {
+            0.0
+        } else {
+            let left = (-(stretch - self.elastic) / self.peak).exp();
+            if self.printed && stretch <= self.peak { 1.0 - left } else { left }
+        }
+    }
+}
+
+/// Critical stretch of a fracture energy on a lattice, from the bonds that a crack between two rows cuts:
+/// `G_c h Δ = ½ s_c² Σ |dy| k_n |ξ|²` over the half stencil. In the limit of many points it is `√(4 π G_c / (9 E δ))` for
+/// the bond-based law in plane stress (Silling and Askari 2005 in the plane).
+#[must_use]
+pub fn critical_stretch(stencil: &Stencil, fracture_energy: f64, thickness: f64) -> f64 {
+    let cut: f64 = stencil.bonds.iter().map(|bond| f64::from(bond.dy.abs()) * bond.k_n * bond.length * bond.length).sum();
+    (2.0 * fracture_energy * thickness * stencil.spacing / cut).sqrt()
+}

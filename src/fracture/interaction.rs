@@ -1,0 +1,38 @@
+//! What a method has to supply: forces of the points for a displacement, and which bonds that damages.
+
+use super::bonds::BondState;
+
+/// What one evaluation of the forces found.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Reaction {
+    /// Strain energy, J.
+    pub strain: f64,
+    /// Energy that damage has taken in this evaluation, J.
+    pub released: f64,
+    /// Bonds that broke in this evaluation.
+    pub broken: usize,
+    /// Largest growth of a bond's damage in this evaluation, 0 to 1.
+    pub damaged: f64,
+}
+
+/// Whether an evaluation of the forces may damage bonds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Damaging {
+    /// Bonds keep their state.
+    Frozen,
+    /// Bonds beyond their limits are damaged first.
+    Allowed,
+}
+
+/// Forces between points. Displacements and forces are `[x, y]` or `[x, y, θ]` a point, point by point, m and N.
+pub trait Interaction: Send {
+    /// Unknowns of a point, 2 or 3.
+    fn unknowns(&self) -> usize;
+
+    /// Writes the internal forces -dW/du at displacement `u` into `force`, after damage by `u` where that is allowed.
+    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction;
+
+    /// Upper bound of the largest eigenvalue of every point's rows of the stiffness (Gershgorin), N/m, for displacements and, with
+    /// three unknowns, for the rotation: what density and time step of explicit motion follow from.
+    fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]>;
+}

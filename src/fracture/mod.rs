@@ -1,0 +1,137 @@
+//! Fracture scenes: static, quasi-static and dynamic loading of cracked plates, without cycles.
+//!
+//! A scene is points and bonds ([`net`]), forces between them with damage ([`interaction`]), loads ([`boundary`]) and a
+//! procedure. What changes is the state of the bonds ([`bonds`], written by the interaction) and the motion (written by the
+//! procedure).
+
+pub mod bonds;
+pub mod boundary;
+pub mod dynamics;
+pub mod failure;
+pub mod fronts;
+pub mod interaction;
+mod log;
+pub mod net;
+pub mod outcome;
+pub mod pieces;
+pub mod scene;
+pub mod springs;
+
+use std::time::Instant;
+
+pub use outcome::{Fracture, SceneEnd};
+pub use scene::Scene;
+
+use crate::body::Body;
+use crate::bond_law::stencil::{Stencil, spring_material};
+use crate::error::{Error, Result, input};
+use crate::predict::memory;
+use bonds::BondState;
+use boundary::Boundary;
+use failure::{Failure, critical_stretch};
+use interaction::Interaction;
+use log::Log;
+use net::Net;
+use outcome::SceneFigures;
+use scene::{Arrangement, Procedure, SceneLaw};
+use springs::Springs;
+
+/// What a scene reports while it goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneProgress {
+    /// Share of the steps done, 0 to 1.
+    pub share: f64,
+}
+
+/// Receives progress of a scene; returning `false` asks it to stop.
+pub trait SceneObserver: Sync {
+    /// Called after every recorded step.
+    fn step_done(&self, progress: &SceneProgress) -> bool;
+}
+
+impl SceneObserver for crate::predict::Silent {
+    fn step_done(&self, _progress: &SceneProgress) -> bool {
+        true
+    }
+}
+
+/// Runs a scene.
+///
+/// # Errors
+/// Wrong input that shows only now, choices that do not go together, a run that was cancelled.
+pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
+    let started = Instant::now();
+    let net = build(scene)?;
+    let boundary = Boundary::of(scene, &net)?;
+    let mut bonds = BondState::new(&net, &boundary.no_fail);
+    let mut interaction = interact(scene, &net)?;
+    let mut fracture = match scene.procedure {
+        Procedure::Dynamic { duration, time_step } => {
+            let density = scene.material.density.ok_or_else(|| {
+                crate::error::input_missing("material.density_kg_m3", "is missing: motion needs mass", "give it")
+            })?;
+            let bound = interaction.stiffness_bound(&bonds);
+            let step = dynamics::time_step(time_step, dynamics::stable_step(&net, density, &bound))?;
+            let masses = dynamics::masses(&net, density, &bound);
+            let steps = (duration / step).round().max(1.0) as usize;
+            let run = dynamics::Run { boundary: &boundary, masses: &masses, step, steps };
+            let mut log = Log::new(scene, &net, &boundary, steps);
+            let (end, motion, evaluations) = run.follow(interaction.as_mut(), &mut bonds, &mut log, observer)?;
+            let figures = SceneFigures { evaluations, time_step: step, ..SceneFigures::default() };
+            log.close(end, &motion.u, &bonds, figures)
+        }
+        Procedure::Static | Procedure::QuasiStatic { .. } => {
+            return Err(Error::Mechanics("scenes without time are not built yet".to_owned()));
+        }
+    };
+    fracture.figures.wall_s = started.elapsed().as_secs_f64();
+    fracture.figures.memory_mb = memory::peak_mb();
+    Ok(fracture)
+}
+
+/// Points and bonds of a scene.
+fn build(scene: &Scene) -> Result<Net> {
+    let model = &scene.model;
+    match (model.law, model.arrangement) {
+        (SceneLaw::Bonds(law), Arrangement::Lattice) => {
+            let body =
+                Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
+            Ok(Net::of_body(&body))
+        }
+        (_, arrangement) => {
+            Err(input("model.discretisation", format!("\"{arrangement}\""), "is not built yet", "use \"lattice\""))
+        }
+    }
+}
+
+/// Forces between the points of a scene.
+fn interact<'n>(scene: &Scene, net: &'n Net) -> Result<Box<dyn Interaction + 'n>> {
+    match scene.model.law {
+        SceneLaw::Bonds(law) => {
+            let critical = scene.material.fracture_energy.map(|energy| {
+                let at = |spacing: f64| -> Result<f64> {
+                    let thickness = scene.specimen.thickness;
+                    let material = spring_material(&law, &scene.material);
+                    let stencil = Stencil::new(&law, &material, spacing, scene.model.horizon_ratio, thickness)?;
+                    Ok(critical_stretch(&stencil, energy, thickness))
+                };
+                // Few levels, many points.
+                let mut known: Vec<(f64, f64)> = Vec::new();
+                let of_point = |&spacing: &f64| match known.iter().find(|(of, _)| *of == spacing) {
+                    Some((_, stretch)) => Ok(*stretch),
+                    None => {
+                        let stretch = at(spacing)?;
+                        known.push((spacing, stretch));
+                        Ok(stretch)
+                    }
+                };
+                net.spacings.iter().map(of_point).collect::<Result<Vec<f64>>>()
+            });
+            let failure = Failure::of(scene, net.len(), critical.transpose()?)?;
+            Ok(Box::new(Springs::new(net, failure, scene.model.finite)))
+        }
+        SceneLaw::Correspondence { .. } => {
+            Err(input("model.bond_law", "\"correspondence\"", "is not built yet", "use a law of bonds"))
+        }
+    }
+}

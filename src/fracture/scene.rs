@@ -1,0 +1,252 @@
+//! What a fracture scene is: plate, material, model, loads, damage, procedure. Fixed once read; SI inside.
+
+use crate::bond_law::BondLaw;
+use crate::material::Material;
+use crate::specimen::{Edge, Point, Specimen};
+
+crate::kinds! {
+    /// How points lie and reach each other.
+    pub enum Arrangement for "model.discretisation" {
+        Lattice = "lattice": "square lattice of one spacing",
+        DualHorizon = "dual_horizon": "points of several levels, each split in four, with horizon and dual horizon (Ren et al. 2016); fracture scenes",
+        VariableHorizon = "variable_horizon": "the same points without the dual horizon: shows the ghost forces that the dual horizon removes; fracture scenes",
+    }
+}
+
+crate::kinds! {
+    /// Laws that act on a point's whole neighbourhood, beside the bond laws.
+    pub enum PointLaw for "model.bond_law" {
+        Correspondence = "correspondence": "non-ordinary state-based: deformation gradient, Green strain, first Piola-Kirchhoff stress (Silling et al. 2007); fracture scenes",
+    }
+}
+
+crate::kinds! {
+    /// What keeps a correspondence law from its zero-energy modes.
+    pub enum ZeroEnergyControl for "model.zero_energy_control" {
+        None = "none": "nothing: checkerboard motions cost no energy",
+        Spring = "spring": "springs on the whole relative displacement (Breitenfeld et al. 2014): they stiffen uniform strain too",
+        Silling = "silling": "springs on the part of the relative displacement that is not uniform (Silling 2017)",
+    }
+}
+
+crate::kinds! {
+    /// Solvers of fracture scenes.
+    pub enum SceneSolver for "model.solver" {
+        VelocityVerlet = "velocity_verlet": "explicit motion in time; fracture scenes with duration_s",
+        AdaptiveDynamicRelaxation = "adaptive_dynamic_relaxation": "damped motion to rest in every load step",
+        Secant = "secant": "secant stiffness by sparse Cholesky in every load step, controlled by dissipation where the load falls; bond laws; fracture scenes",
+    }
+}
+
+crate::kinds! {
+    /// Laws of damage and failure of a bond.
+    pub enum DamageLaw for "damage.law" {
+        None = "none": "bonds stay whole",
+        NonlinearTwoParameter = "nonlinear_two_parameter": "exponential softening from the elastic limit on, broken at the final stretch (source 000, equation 19)",
+        CriticalStretch = "critical_stretch": "broken at the critical stretch of the fracture energy",
+        CriticalEnergy = "critical_energy": "broken at the critical energy of the fracture energy, normal and tangential together, in tension only",
+        PrincipalStress = "principal_stress": "broken where the mean first principal stress of both ends reaches the tensile strength (correspondence)",
+    }
+}
+
+crate::kinds! {
+    /// Where broken bonds enter a correspondence law.
+    pub enum DamageEntry for "damage.enters" {
+        Force = "force": "in the force of the bond only: stress of the point is not released",
+        Influence = "influence": "in the influence function, hence in shape tensor and deformation gradient too",
+    }
+}
+
+/// Law between displacement and force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SceneLaw {
+    /// Springs in every bond.
+    Bonds(BondLaw),
+    /// Correspondence, with its zero-energy control and that control's factor: H of `silling` (no unit), c_I of `spring` (N/m⁷).
+    Correspondence {
+        /// Control.
+        control: ZeroEnergyControl,
+        /// Its factor.
+        factor: f64,
+    },
+}
+
+/// Points and law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneModel {
+    /// Law.
+    pub law: SceneLaw,
+    /// True stretch and direction of the deformed bond instead of the linearised ones (bond-based law, explicit motion).
+    pub finite: bool,
+    /// Spacing asked for, m (of the coarsest level).
+    pub spacing: f64,
+    /// Horizon over spacing.
+    pub horizon_ratio: f64,
+    /// Angle of the lattice rows against x, rad.
+    pub lattice_angle: f64,
+    /// Arrangement of the points.
+    pub arrangement: Arrangement,
+    /// Solver.
+    pub solver: SceneSolver,
+}
+
+/// Points that a load or support takes hold of.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Region {
+    /// Points within `depth` of a side, at least one row, m.
+    Edge {
+        /// Side.
+        edge: Edge,
+        /// Depth, m.
+        depth: f64,
+        /// Part of the side: coordinates along it, m; infinite where it has no end.
+        range: [f64; 2],
+    },
+    /// Points in an upright box.
+    Box {
+        /// Lower left corner, m.
+        low: Point,
+        /// Upper right corner, m.
+        high: Point,
+    },
+}
+
+/// What a load does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Action {
+    /// Force per area of the cut edge, Pa, in plate axes.
+    Traction(Point),
+    /// Displacement at the end of the steps (or of the ramp), m; `None` leaves a component free.
+    Displacement([Option<f64>; 2]),
+    /// Velocity, m/s; `None` leaves a component free.
+    Velocity([Option<f64>; 2]),
+    /// A rigid plate without friction that moves against the body by so much at the end of the steps, m, along this axis vector.
+    Platen(Point),
+}
+
+/// A load of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drive {
+    /// Where.
+    pub region: Region,
+    /// What.
+    pub action: Action,
+    /// Time over which it rises linearly in a dynamic scene, s; 0 = at once.
+    pub ramp: f64,
+}
+
+/// A support of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hold {
+    /// Where.
+    pub region: Region,
+    /// Components held at zero.
+    pub components: [bool; 2],
+}
+
+/// How the scene is worked through.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Procedure {
+    /// One equilibrium at full load.
+    Static,
+    /// The load grows in so many steps.
+    QuasiStatic {
+        /// Load steps.
+        steps: usize,
+    },
+    /// Motion in time.
+    Dynamic {
+        /// Duration, s.
+        duration: f64,
+        /// Time step, s; the program's choice where it is left out.
+        time_step: Option<f64>,
+    },
+}
+
+/// Damage of the bonds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damage {
+    /// Law.
+    pub law: DamageLaw,
+    /// Where it enters (correspondence).
+    pub enters: DamageEntry,
+    /// Critical stretch if it is given instead of the fracture energy.
+    pub stretch: Option<f64>,
+    /// Constants of the nonlinear law.
+    pub nonlinear: Option<Softening>,
+    /// Tensile strength f_t, Pa.
+    pub tensile_strength: Option<f64>,
+}
+
+/// Constants of the nonlinear law, stretches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Softening {
+    /// End of the linear part, s_et.
+    pub elastic: f64,
+    /// Stretch at the largest force, s_nt.
+    pub peak: f64,
+    /// Stretch at which the bond breaks, s_t.
+    pub last: f64,
+    /// The law as printed, which lets the force drop between s_et and s_nt, instead of the continuous one.
+    pub printed: bool,
+}
+
+/// Where finer points lie (`dual_horizon`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refinement {
+    /// Regions with the number of times their points are split in four.
+    pub regions: Vec<(RefinedRegion, usize)>,
+}
+
+/// A region of finer points.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RefinedRegion {
+    /// An upright box, m.
+    Box {
+        /// Lower left corner, m.
+        low: Point,
+        /// Upper right corner, m.
+        high: Point,
+    },
+    /// Points within half a width of a line, m.
+    Band {
+        /// One end, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// Whole width, m.
+        width: f64,
+    },
+    /// Points within so many metres of every crack and notch, levels graded outwards.
+    AroundFlaws {
+        /// Distance, m.
+        distance: f64,
+    },
+}
+
+/// A checked fracture scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// File stem.
+    pub name: String,
+    /// Plate with its cracks, micro cracks among them. Its loads are the tractions of `drives`, in Pa at full load.
+    pub specimen: Specimen,
+    /// Material.
+    pub material: Material,
+    /// Points and law.
+    pub model: SceneModel,
+    /// Loads.
+    pub drives: Vec<Drive>,
+    /// Supports.
+    pub holds: Vec<Hold>,
+    /// Damage.
+    pub damage: Damage,
+    /// Procedure.
+    pub procedure: Procedure,
+    /// Refinement, for arrangements of several levels.
+    pub refinement: Option<Refinement>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// The input as given; echoed in `result.json`.
+    pub echo: serde_json::Value,
+}

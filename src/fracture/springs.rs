@@ -1,0 +1,183 @@
+//! Forces of springs in every bond of a net: the list kernel, for any arrangement of points.
+//!
+//! A bond ξ with relative displacement η has `e_n = η·n`, `e_t = η·t - r (θ + θ')`, stretch `s = e_n/|ξ|`, shear angle
+//! `γ = e_t/|ξ|`, energy `½ (1-D) (k_n e_n² + k_t e_t²)`. With true stretch `e_n = |ξ + η| - |ξ|` along the deformed bond.
+//! Forces are worked out bond by bond, then gathered point by point, both in parallel and always in the same order.
+
+use rayon::prelude::*;
+
+use super::bonds::BondState;
+use super::failure::{Failure, Measures};
+use super::interaction::{Damaging, Interaction, Reaction};
+use super::net::{Net, NetBond};
+
+/// Bonds or points that one task works through.
+const TASK: usize = 4096;
+
+/// Springs of a net.
+pub struct Springs<'n> {
+    net: &'n Net,
+    failure: Failure,
+    finite: bool,
+    /// Force on the owner of every bond, and the couple on both ends (zero with two unknowns).
+    pulls: Vec<[f64; 3]>,
+}
+
+impl<'n> Springs<'n> {
+    /// Springs with their law of damage; `finite` for true stretch, which needs two unknowns and no tangential springs.
+    #[must_use]
+    pub fn new(net: &'n Net, failure: Failure, finite: bool) -> Self {
+        Springs { net, failure, finite, pulls: vec![[0.0; 3]; net.bonds.len()] }
+    }
+
+    /// Displacement differences of a bond: normal part, tangential part, unit vector of the pull.
+    #[inline(always)]
+    fn strain<const FINITE: bool, const N: usize>(bond: &NetBond, u: &[f64]) -> (f64, f64, [f64; 2]) {
+        let (a, b) = (bond.from as usize * N, bond.to as usize * N);
+        let eta = [u[b] - u[a], u[b + 1] - u[a + 1]];
+        let n = bond.normal;
+        if FINITE {
+            let y = [bond.length * n[0] + eta[0], bond.length * n[1] + eta[1]];
+            let length = (y[0] * y[0] + y[1] * y[1]).sqrt();
+            return (length - bond.length, 0.0, [y[0] / length, y[1] / length]);
+        }
+        let mut e_t = eta[1] * n[0] - eta[0] * n[1];
+        if N == 3 {
+            e_t -= bond.lever * (u[a + 2] + u[b + 2]);
+        }
+        (eta[0] * n[0] + eta[1] * n[1], e_t, n)
+    }
+
+    /// Forces of the bonds `first..` of one task.
+    fn pull<const FINITE: bool, const N: usize>(&self, u: &[f64], damaging: Damaging, task: Task<'_>) -> Reaction {
+        let mut reaction = Reaction::default();
+        let bonds = &self.net.bonds[task.first..task.first + task.pulls.len()];
+        for (i, bond) in bonds.iter().enumerate() {
+            let before = task.share[i];
+            if before == 0.0 {
+                task.pulls[i] = [0.0; 3];
+                continue;
+            }
+            let (e_n, e_t, n) = Self::strain::<FINITE, N>(bond, u);
+            let energy = 0.5 * (bond.k_n * e_n * e_n + bond.k_t * e_t * e_t);
+            if damaging == Damaging::Allowed && task.may_fail[i] {
+                let at = Measures { stretch: e_n / bond.length, shear: e_t / bond.length, ratio: bond.k_t / bond.k_n };
+                let after = self.failure.share(bond.from, at, before, &mut task.peak[i]);
+                if after != before {
+                    task.share[i] = after;
+                    reaction.released += (before - after) * energy;
+                    reaction.damaged = reaction.damaged.max(before - after);
+                    reaction.broken += usize::from(after == 0.0);
+                }
+            }
+            let share = task.share[i];
+            reaction.strain += share * energy;
+            let (normal, tangential) = (share * bond.k_n * e_n, share * bond.k_t * e_t);
+            task.pulls[i] = [
+                normal * n[0] - tangential * n[1],
+                normal * n[1] + tangential * n[0],
+                if N == 3 { tangential * bond.lever } else { 0.0 },
+            ];
+        }
+        reaction
+    }
+
+    fn pull_all<const FINITE: bool, const N: usize>(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging) -> Reaction {
+        let mut pulls = std::mem::take(&mut self.pulls);
+        let tasks = pulls
+            .par_chunks_mut(TASK)
+            .zip(bonds.share.par_chunks_mut(TASK))
+            .zip(bonds.peak.par_chunks_mut(TASK))
+            .zip(bonds.may_fail.par_chunks(TASK))
+            .enumerate()
+            .map(|(i, (((pulls, share), peak), may_fail))| Task { first: i * TASK, pulls, share, peak, may_fail });
+        let parts: Vec<Reaction> = tasks.map(|task| self.pull::<FINITE, N>(u, damaging, task)).collect();
+        self.pulls = pulls;
+        parts.into_iter().fold(Reaction::default(), Reaction::and)
+    }
+
+    fn gather<const N: usize>(&self, force: &mut [f64]) {
+        force.par_chunks_mut(TASK * N).enumerate().for_each(|(task, force)| {
+            for (i, force) in force.chunks_exact_mut(N).enumerate() {
+                let point = task * TASK + i;
+                let mut sum = [0.0; 3];
+                for &entry in &self.net.entries[self.net.starts[point] as usize..self.net.starts[point + 1] as usize] {
+                    let pull = &self.pulls[(entry / 2) as usize];
+                    let sign = if entry % 2 == 0 { 1.0 } else { -1.0 };
+                    sum = [sum[0] + sign * pull[0], sum[1] + sign * pull[1], sum[2] + pull[2]];
+                }
+                force.copy_from_slice(&sum[..N]);
+            }
+        });
+    }
+}
+
+/// A stretch of bonds with their state.
+struct Task<'t> {
+    first: usize,
+    pulls: &'t mut [[f64; 3]],
+    share: &'t mut [f64],
+    peak: &'t mut [f64],
+    may_fail: &'t [bool],
+}
+
+impl Reaction {
+    /// Both together.
+    #[must_use]
+    pub fn and(self, other: Reaction) -> Reaction {
+        Reaction {
+            strain: self.strain + other.strain,
+            released: self.released + other.released,
+            broken: self.broken + other.broken,
+            damaged: self.damaged.max(other.damaged),
+        }
+    }
+}
+
+impl Interaction for Springs<'_> {
+    fn unknowns(&self) -> usize {
+        self.net.unknowns
+    }
+
+    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
+        match (self.finite, self.net.unknowns) {
+            (true, _) => {
+                let reaction = self.pull_all::<true, 2>(u, bonds, damaging);
+                self.gather::<2>(force);
+                reaction
+            }
+            (false, 2) => {
+                let reaction = self.pull_all::<false, 2>(u, bonds, damaging);
+                self.gather::<2>(force);
+                reaction
+            }
+            (false, _) => {
+                let reaction = self.pull_all::<false, 3>(u, bonds, damaging);
+                self.gather::<3>(force);
+                reaction
+            }
+        }
+    }
+
+    /// Blocks of displacement and rotation apart: `λ(K_ii) + Σ |K_ij|`, both at the most `Σ max(k_n, k_t)`; for the rotation
+    /// `Σ 2 k_t r²`, and the coupling `Σ 2 k_t r` shared out half by half.
+    fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {
+        let of_point = |point: usize| {
+            let (mut xx, mut xy, mut yy, mut beside, mut turn, mut couple) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+            for (b, ..) in self.net.bonds_of(point) {
+                let (bond, share) = (&self.net.bonds[b], bonds.share[b]);
+                let (n, t) = (bond.normal, bond.tangent());
+                let (k_n, k_t) = (share * bond.k_n, share * bond.k_t);
+                xx += k_n * n[0] * n[0] + k_t * t[0] * t[0];
+                xy += k_n * n[0] * n[1] + k_t * t[0] * t[1];
+                yy += k_n * n[1] * n[1] + k_t * t[1] * t[1];
+                beside += k_n.max(k_t);
+                turn += 2.0 * k_t * bond.lever * bond.lever;
+                couple += 2.0 * k_t * bond.lever;
+            }
+            let largest = 0.5 * (xx + yy) + (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt();
+            if self.net.unknowns == 3 { [largest + beside + couple, turn + couple] } else { [largest + beside, 0.0] }
+        };
+        (0..self.net.len()).into_par_iter().map(of_point).collect()
+    }
+}
