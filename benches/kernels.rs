@@ -9,6 +9,12 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use perilife::body::Body;
 use perilife::case::Case;
+use perilife::fracture::bonds::BondState;
+use perilife::fracture::failure::Failure;
+use perilife::fracture::interaction::{Damaging, Interaction};
+use perilife::fracture::lattice_springs::LatticeSprings;
+use perilife::fracture::net::Net;
+use perilife::fracture::springs::Springs;
 use perilife::solver::field::{Layout, dot};
 use perilife::solver::multigrid::Multigrid;
 use perilife::solver::product::{Into, Product};
@@ -64,10 +70,11 @@ impl<const N: usize> Scene<N> {
 fn body(law: &str) -> Body {
     let width = (POINTS / 2.0).sqrt().round();
     let nu = if law == "bond_based" { 1.0 / 3.0 } else { 0.3 };
+    let (law, rotation) = law.strip_suffix("_resisted").map_or((law, "free"), |law| (law, "resisted"));
     let text = format!(
         "[specimen]\nkind=\"middle_tension\"\nwidth_mm={width}\nlength_mm={}\nthickness_mm=2\ncrack_length_mm={}\n\
          [material]\nyoungs_modulus_gpa=72\npoisson_ratio={nu}\nplane=\"stress\"\n[loading]\nstress_max_mpa=70\nstress_ratio=0.1\n\
-         [model]\nbond_law=\"{law}\"\nspacing_mm=1\n[fatigue]\na=1e4\np=3\nhorizon_mm=3.015\n",
+         [model]\nbond_law=\"{law}\"\nrotation=\"{rotation}\"\nspacing_mm=1\n[fatigue]\na=1e4\np=3\nhorizon_mm=3.015\n",
         2.0 * width,
         width / 5.0
     );
@@ -150,3 +157,43 @@ macro_rules! kernels {
 
 kernels!(two_unknowns, two, "bond_based");
 kernels!(three_unknowns, three, "two_parameter");
+
+/// Forces of explicit motion, damage included: true stretch of the bond-based law and small strain of both springs, by the
+/// lattice kernel and by the list of bonds.
+mod forces {
+    use super::*;
+
+    fn forces(bencher: Bencher, finite: bool, list: bool) {
+        let body = super::body(if finite { "bond_based" } else { "one_bond_two_parameter_resisted" });
+        let net = Net::of_body(&body);
+        let mut bonds = BondState::new(&net, &vec![false; net.len()]);
+        let failure = Failure::Stretch(vec![0.02; net.len()]);
+        let u: Vec<f64> = (0..2 * net.len()).map(|i| ((i * 7) % 1013) as f64 * 1e-9).collect();
+        let mut force = vec![0.0; u.len()];
+        let mut fast = LatticeSprings::new(&net, &body, &bonds, &failure, finite).expect("two unknowns, one limit");
+        let mut slow = Springs::new(&net, failure, finite);
+        let interaction: &mut dyn Interaction = if list { &mut slow } else { &mut fast };
+        let items = ItemsCount::new(2 * net.bonds.len());
+        bencher.counter(items).bench_local(|| interaction.react(black_box(&u), &mut bonds, Damaging::Allowed, &mut force));
+    }
+
+    #[divan::bench(sample_count = SAMPLES)]
+    fn true_stretch_lattice(bencher: Bencher) {
+        forces(bencher, true, false);
+    }
+
+    #[divan::bench(sample_count = SAMPLES)]
+    fn true_stretch_list(bencher: Bencher) {
+        forces(bencher, true, true);
+    }
+
+    #[divan::bench(sample_count = SAMPLES)]
+    fn small_strain_lattice(bencher: Bencher) {
+        forces(bencher, false, false);
+    }
+
+    #[divan::bench(sample_count = SAMPLES)]
+    fn small_strain_list(bencher: Bencher) {
+        forces(bencher, false, true);
+    }
+}

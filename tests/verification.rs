@@ -9,6 +9,11 @@ mod noise;
 #[path = "support/statics.rs"]
 mod statics;
 
+#[path = "support/scenes.rs"]
+mod scenes;
+
+#[path = "verification/dynamics.rs"]
+mod dynamics;
 #[path = "verification/elasticity.rs"]
 mod elasticity;
 #[path = "verification/tension_plate.rs"]

@@ -10,6 +10,7 @@ pub mod dynamics;
 pub mod failure;
 pub mod fronts;
 pub mod interaction;
+pub mod lattice_springs;
 mod log;
 pub mod net;
 pub mod outcome;
@@ -30,6 +31,7 @@ use bonds::BondState;
 use boundary::Boundary;
 use failure::{Failure, critical_stretch};
 use interaction::Interaction;
+use lattice_springs::LatticeSprings;
 use log::Log;
 use net::Net;
 use outcome::SceneFigures;
@@ -61,10 +63,10 @@ impl SceneObserver for crate::predict::Silent {
 /// Wrong input that shows only now, choices that do not go together, a run that was cancelled.
 pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
     let started = Instant::now();
-    let net = build(scene)?;
+    let (net, body) = build(scene)?;
     let boundary = Boundary::of(scene, &net)?;
     let mut bonds = BondState::new(&net, &boundary.no_fail);
-    let mut interaction = interact(scene, &net)?;
+    let mut interaction = interact(scene, &net, body.as_ref(), &bonds)?;
     let mut fracture = match scene.procedure {
         Procedure::Dynamic { duration, time_step } => {
             let density = scene.material.density.ok_or_else(|| {
@@ -89,14 +91,14 @@ pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
     Ok(fracture)
 }
 
-/// Points and bonds of a scene.
-fn build(scene: &Scene) -> Result<Net> {
+/// Points and bonds of a scene, and the lattice body behind them if there is one.
+fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
     let model = &scene.model;
     match (model.law, model.arrangement) {
         (SceneLaw::Bonds(law), Arrangement::Lattice) => {
             let body =
                 Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
-            Ok(Net::of_body(&body))
+            Ok((Net::of_body(&body), Some(body)))
         }
         (_, arrangement) => {
             Err(input("model.discretisation", format!("\"{arrangement}\""), "is not built yet", "use \"lattice\""))
@@ -105,7 +107,7 @@ fn build(scene: &Scene) -> Result<Net> {
 }
 
 /// Forces between the points of a scene.
-fn interact<'n>(scene: &Scene, net: &'n Net) -> Result<Box<dyn Interaction + 'n>> {
+fn interact<'n>(scene: &Scene, net: &'n Net, body: Option<&Body>, bonds: &BondState) -> Result<Box<dyn Interaction + 'n>> {
     match scene.model.law {
         SceneLaw::Bonds(law) => {
             let critical = scene.material.fracture_energy.map(|energy| {
@@ -128,7 +130,12 @@ fn interact<'n>(scene: &Scene, net: &'n Net) -> Result<Box<dyn Interaction + 'n>
                 net.spacings.iter().map(of_point).collect::<Result<Vec<f64>>>()
             });
             let failure = Failure::of(scene, net.len(), critical.transpose()?)?;
-            Ok(Box::new(Springs::new(net, failure, scene.model.finite)))
+            let finite = scene.model.finite;
+            let fast = body.and_then(|body| LatticeSprings::new(net, body, bonds, &failure, finite));
+            Ok(match fast {
+                Some(fast) => Box::new(fast),
+                None => Box::new(Springs::new(net, failure, finite)),
+            })
         }
         SceneLaw::Correspondence { .. } => {
             Err(input("model.bond_law", "\"correspondence\"", "is not built yet", "use a law of bonds"))

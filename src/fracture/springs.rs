@@ -159,25 +159,30 @@ impl Interaction for Springs<'_> {
         }
     }
 
-    /// Blocks of displacement and rotation apart: `λ(K_ii) + Σ |K_ij|`, both at the most `Σ max(k_n, k_t)`; for the rotation
-    /// `Σ 2 k_t r²`, and the coupling `Σ 2 k_t r` shared out half by half.
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {
-        let of_point = |point: usize| {
-            let (mut xx, mut xy, mut yy, mut beside, mut turn, mut couple) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-            for (b, ..) in self.net.bonds_of(point) {
-                let (bond, share) = (&self.net.bonds[b], bonds.share[b]);
-                let (n, t) = (bond.normal, bond.tangent());
-                let (k_n, k_t) = (share * bond.k_n, share * bond.k_t);
-                xx += k_n * n[0] * n[0] + k_t * t[0] * t[0];
-                xy += k_n * n[0] * n[1] + k_t * t[0] * t[1];
-                yy += k_n * n[1] * n[1] + k_t * t[1] * t[1];
-                beside += k_n.max(k_t);
-                turn += 2.0 * k_t * bond.lever * bond.lever;
-                couple += 2.0 * k_t * bond.lever;
-            }
-            let largest = 0.5 * (xx + yy) + (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt();
-            if self.net.unknowns == 3 { [largest + beside + couple, turn + couple] } else { [largest + beside, 0.0] }
-        };
-        (0..self.net.len()).into_par_iter().map(of_point).collect()
+        stiffness_bound(self.net, bonds)
     }
+}
+
+/// Blocks of displacement and rotation apart: `λ(K_ii) + Σ |K_ij|`, both at the most `Σ max(k_n, k_t)`; for the rotation
+/// `Σ 2 k_t r²`, and the coupling `Σ 2 k_t r` shared out half by half.
+#[must_use]
+pub fn stiffness_bound(net: &Net, bonds: &BondState) -> Vec<[f64; 2]> {
+    let of_point = |point: usize| {
+        let (mut xx, mut xy, mut yy, mut beside, mut turn, mut couple) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        for (b, ..) in net.bonds_of(point) {
+            let (bond, share) = (&net.bonds[b], bonds.share[b]);
+            let (n, t) = (bond.normal, bond.tangent());
+            let (k_n, k_t) = (share * bond.k_n, share * bond.k_t);
+            xx += k_n * n[0] * n[0] + k_t * t[0] * t[0];
+            xy += k_n * n[0] * n[1] + k_t * t[0] * t[1];
+            yy += k_n * n[1] * n[1] + k_t * t[1] * t[1];
+            beside += k_n.max(k_t);
+            turn += 2.0 * k_t * bond.lever * bond.lever;
+            couple += 2.0 * k_t * bond.lever;
+        }
+        let largest = 0.5 * (xx + yy) + (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt();
+        if net.unknowns == 3 { [largest + beside + couple, turn + couple] } else { [largest + beside, 0.0] }
+    };
+    (0..net.len()).into_par_iter().map(of_point).collect()
 }

@@ -1,0 +1,363 @@
+//! Forces of springs on a lattice: the same as [`super::springs`], many times faster.
+//!
+//! On a lattice the bond k of a point is the same vector everywhere, so rows are worked through in blocks of neighbouring
+//! points and every pair once. A task takes a band of rows and adds the pulls of its bonds into rows of its own, those above
+//! the band included; overlapping rows are added afterwards in the order of the bands, so that the sums do not depend on the
+//! number of threads. For laws without history and two unknowns a point; all else goes by the list of bonds.
+
+use rayon::prelude::*;
+
+use super::bonds::BondState;
+use super::failure::Failure;
+use super::interaction::{Damaging, Interaction, Reaction};
+use super::net::Net;
+use super::springs::stiffness_bound;
+use crate::body::Body;
+use crate::body::lattice::{LANES, Lattice};
+
+/// Rows of a band.
+const BAND: usize = 16;
+
+/// A value for each of [`LANES`] neighbouring places.
+type Lanes = [f64; LANES];
+
+/// One stencil bond.
+#[derive(Debug, Clone, Copy)]
+struct Spring {
+    /// Distance in memory to the other end.
+    step: usize,
+    /// Bond vector in lattice axes, m.
+    xi: [f64; 2],
+    length: f64,
+    normal: [f64; 2],
+    k_n: f64,
+    k_t: f64,
+}
+
+/// When a bond breaks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Limit {
+    Never,
+    Stretch(f64),
+    Energy(f64),
+}
+
+/// Springs of a lattice body.
+pub struct LatticeSprings<'n> {
+    net: &'n Net,
+    lattice: Lattice,
+    springs: Vec<Spring>,
+    limit: Limit,
+    finite: bool,
+    /// Memory index of every point, and the first point of every row.
+    places: Vec<u32>,
+    row_starts: Vec<usize>,
+    /// Stiffness multiplier of the bonds, row by row, in a row bond by bond; 0 absent or broken.
+    carry: Vec<f32>,
+    /// Number of the bond in the net; at the same index.
+    numbers: Vec<u32>,
+    may_fail: Vec<bool>,
+    /// Displacement over the places, lattice axes.
+    u: [Vec<f64>; 2],
+    bands: Vec<Band>,
+}
+
+/// Pulls on the rows of a band and those above it that its bonds reach.
+struct Band {
+    pull: [Vec<f64>; 2],
+    reaction: Reaction,
+    broken: Vec<u32>,
+}
+
+impl<'n> LatticeSprings<'n> {
+    /// Springs of a body, if its law can be worked through this way: two unknowns a point, one limit without history.
+    #[must_use]
+    pub fn new(net: &'n Net, body: &Body, bonds: &BondState, failure: &Failure, finite: bool) -> Option<Self> {
+        let uniform = |limits: &[f64]| limits.first().copied().filter(|first| limits.iter().all(|limit| limit == first));
+        let limit = match failure {
+            Failure::Never => Limit::Never,
+            Failure::Stretch(limits) => Limit::Stretch(uniform(limits)?),
+            Failure::Energy(limits) => Limit::Energy(uniform(limits)?),
+            Failure::Softening(_) => return None,
+        };
+        if net.unknowns != 2 || body.stencil.dilatation != 0.0 {
+            return None;
+        }
+        let lattice = body.lattice.clone();
+        let spring = |bond: &crate::bond_law::stencil::StencilBond| Spring {
+            // Never negative: a bond is owned by its lower end, or along a row by the left one.
+            step: lattice.step(bond.dx, bond.dy) as usize,
+            xi: bond.normal.map(|n| n * bond.length),
+            length: bond.length,
+            normal: bond.normal,
+            k_n: bond.k_n,
+            k_t: bond.k_t,
+        };
+        let springs: Vec<Spring> = body.stencil.bonds.iter().map(spring).collect();
+        let (kinds, stride) = (springs.len(), lattice.stride);
+        let mut carry = vec![0.0_f32; lattice.rows * kinds * stride];
+        let mut numbers = vec![u32::MAX; carry.len()];
+        let mut number = 0;
+        let mut row_starts = vec![0; lattice.rows + 1];
+        for &place in &body.points {
+            let (column, row) = lattice.column_row(place as usize);
+            row_starts[row + 1] += 1;
+            // The order in which the net numbers its bonds.
+            for k in 0..kinds {
+                let multiplier = body.multiplier[k * body.places() + place as usize];
+                if multiplier > 0.0 {
+                    let at = (row * kinds + k) * stride + column + lattice.padding;
+                    carry[at] = if bonds.share[number as usize] > 0.0 { multiplier } else { 0.0 };
+                    numbers[at] = number;
+                    number += 1;
+                }
+            }
+        }
+        for row in 0..lattice.rows {
+            row_starts[row + 1] += row_starts[row];
+        }
+        let rows = BAND + body.stencil.reach;
+        let band = || Band {
+            // One block more than the rows, so that whole blocks can be read and written at their end.
+            pull: [0, 1].map(|_| vec![0.0; rows * stride + LANES]),
+            reaction: Reaction::default(),
+            broken: Vec::new(),
+        };
+        let bands = (0..lattice.rows.div_ceil(BAND)).map(|_| band()).collect();
+        let u = [0, 1].map(|_| vec![0.0; lattice.places()]);
+        let (places, may_fail) = (body.points.clone(), bonds.may_fail.clone());
+        Some(LatticeSprings { net, lattice, springs, limit, finite, places, row_starts, carry, numbers, may_fail, u, bands })
+    }
+
+    /// Puts the displacement of the points on the places, in lattice axes.
+    fn spread(&mut self, u: &[f64]) {
+        let (lattice, starts, places) = (&self.lattice, &self.row_starts, &self.places);
+        let first = lattice.padding * lattice.stride;
+        let [x, y] = &mut self.u;
+        let rows = x[first..].par_chunks_mut(lattice.stride).zip(y[first..].par_chunks_mut(lattice.stride));
+        rows.take(lattice.rows).with_min_len(BAND).enumerate().for_each(|(row, (x, y))| {
+            let start = first + row * lattice.stride;
+            for point in starts[row]..starts[row + 1] {
+                let along = lattice.to_axes([u[2 * point], u[2 * point + 1]]);
+                let place = places[point] as usize - start;
+                (x[place], y[place]) = (along[0], along[1]);
+            }
+        });
+    }
+
+    /// Adds the pulls of all bands into the forces of the points, in plate axes.
+    fn collect(&self, force: &mut [f64]) {
+        let lattice = &self.lattice;
+        let mut rows: Vec<&mut [f64]> = Vec::with_capacity(lattice.rows);
+        let mut rest = force;
+        for row in 0..lattice.rows {
+            let (own, others) = rest.split_at_mut(2 * (self.row_starts[row + 1] - self.row_starts[row]));
+            rows.push(own);
+            rest = others;
+        }
+        rows.into_par_iter().with_min_len(BAND).enumerate().for_each(|(row, out)| {
+            let (band, inside) = (row / BAND, row % BAND);
+            let reach = self.bands[0].pull[0].len() / lattice.stride - BAND;
+            let start = (row + lattice.padding) * lattice.stride;
+            for (point, out) in (self.row_starts[row]..).zip(out.chunks_exact_mut(2)) {
+                let column = self.places[point] as usize - start;
+                let at = inside * lattice.stride + column;
+                let mut sum = [0, 1].map(|c| self.bands[band].pull[c][at]);
+                if inside < reach && band > 0 {
+                    let above = (BAND + inside) * lattice.stride + column;
+                    sum = [0, 1].map(|c| sum[c] + self.bands[band - 1].pull[c][above]);
+                }
+                out.copy_from_slice(&lattice.from_axes(sum));
+            }
+        });
+    }
+}
+
+/// Work of one band, compiled for every vector width and run with the widest the processor has.
+struct BandWork<'a> {
+    lattice: &'a Lattice,
+    springs: &'a [Spring],
+    limit: Limit,
+    finite: bool,
+    u: &'a [Vec<f64>; 2],
+    numbers: &'a [u32],
+    may_fail: &'a [bool],
+    first: usize,
+    carry: &'a mut [f32],
+    band: &'a mut Band,
+}
+
+impl pulp::WithSimd for BandWork<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        match (self.finite, self.limit) {
+            (true, Limit::Never) => self.rows::<true, 0>(),
+            (true, Limit::Stretch(_)) => self.rows::<true, 1>(),
+            (true, Limit::Energy(_)) => self.rows::<true, 2>(),
+            (false, Limit::Never) => self.rows::<false, 0>(),
+            (false, Limit::Stretch(_)) => self.rows::<false, 1>(),
+            (false, Limit::Energy(_)) => self.rows::<false, 2>(),
+        }
+    }
+}
+
+impl BandWork<'_> {
+    /// `LAW`: 0 no limit, 1 stretch, 2 energy.
+    #[inline(always)]
+    fn rows<const FINITE: bool, const LAW: u8>(self) {
+        let Lattice { stride, padding, columns, .. } = *self.lattice;
+        let kinds = self.springs.len();
+        let critical = match self.limit {
+            Limit::Never => f64::INFINITY,
+            Limit::Stretch(limit) | Limit::Energy(limit) => limit,
+        };
+        let Band { pull: [pull_x, pull_y], reaction, broken } = self.band;
+        pull_x.fill(0.0);
+        pull_y.fill(0.0);
+        broken.clear();
+        let mut strain: Lanes = [0.0; LANES];
+        let mut released = 0.0;
+        for (row, carry) in self.carry.chunks_exact_mut(kinds * stride).enumerate() {
+            let place = (self.first + row + padding) * stride + padding;
+            for column in (0..columns).step_by(LANES) {
+                let (at, out) = (place + column, row * stride + padding + column);
+                let (here_x, here_y) = (load(&self.u[0], at), load(&self.u[1], at));
+                let (mut sum_x, mut sum_y): (Lanes, Lanes) = ([0.0; LANES], [0.0; LANES]);
+                for (k, spring) in self.springs.iter().enumerate() {
+                    let shares = k * stride + padding + column;
+                    let there_x = load(&self.u[0], at + spring.step);
+                    let there_y = load(&self.u[1], at + spring.step);
+                    let (mut share, mut e_n, mut e_t): (Lanes, Lanes, Lanes) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+                    let (mut n_x, mut n_y) = ([spring.normal[0]; LANES], [spring.normal[1]; LANES]);
+                    for lane in 0..LANES {
+                        share[lane] = f64::from(carry[shares + lane]);
+                        let (eta_x, eta_y) = (there_x[lane] - here_x[lane], there_y[lane] - here_y[lane]);
+                        if FINITE {
+                            let (y_x, y_y) = (spring.xi[0] + eta_x, spring.xi[1] + eta_y);
+                            let length = (y_x * y_x + y_y * y_y).sqrt();
+                            let inverse = 1.0 / length;
+                            e_n[lane] = length - spring.length;
+                            (n_x[lane], n_y[lane]) = (y_x * inverse, y_y * inverse);
+                        } else {
+                            e_n[lane] = eta_x * spring.normal[0] + eta_y * spring.normal[1];
+                            e_t[lane] = eta_y * spring.normal[0] - eta_x * spring.normal[1];
+                        }
+                    }
+                    if LAW > 0 {
+                        let limit = critical * spring.length;
+                        let ratio = spring.k_t / spring.k_n;
+                        let mut beyond: Lanes = [0.0; LANES];
+                        for lane in 0..LANES {
+                            let measure = if LAW == 1 {
+                                e_n[lane] - limit
+                            } else {
+                                let square = e_n[lane] * e_n[lane] + ratio * e_t[lane] * e_t[lane] - limit * limit;
+                                if e_n[lane] > 0.0 { square } else { -1.0 }
+                            };
+                            beyond[lane] = if share[lane] > 0.0 { measure } else { -1.0 };
+                        }
+                        if largest(&beyond) >= 0.0 {
+                            for lane in 0..LANES {
+                                let (e_n, e_t) = (e_n[lane], e_t[lane]);
+                                let reached = if LAW == 1 {
+                                    e_n >= limit
+                                } else {
+                                    e_n > 0.0 && e_n * e_n + ratio * e_t * e_t >= limit * limit
+                                };
+                                let number = self.numbers[((self.first + row) * kinds * stride) + shares + lane];
+                                if reached && share[lane] > 0.0 && self.may_fail[number as usize] {
+                                    released += 0.5 * share[lane] * (spring.k_n * e_n * e_n + spring.k_t * e_t * e_t);
+                                    broken.push(number);
+                                    carry[shares + lane] = 0.0;
+                                    share[lane] = 0.0;
+                                }
+                            }
+                        }
+                    }
+                    let (mut f_x, mut f_y): (Lanes, Lanes) = ([0.0; LANES], [0.0; LANES]);
+                    for lane in 0..LANES {
+                        let normal = share[lane] * spring.k_n * e_n[lane];
+                        let mut energy = normal * e_n[lane];
+                        (f_x[lane], f_y[lane]) = (normal * n_x[lane], normal * n_y[lane]);
+                        if !FINITE {
+                            let tangential = share[lane] * spring.k_t * e_t[lane];
+                            energy += tangential * e_t[lane];
+                            f_x[lane] -= tangential * spring.normal[1];
+                            f_y[lane] += tangential * spring.normal[0];
+                        }
+                        strain[lane] += energy;
+                        sum_x[lane] += f_x[lane];
+                        sum_y[lane] += f_y[lane];
+                    }
+                    subtract(pull_x, out + spring.step, &f_x);
+                    subtract(pull_y, out + spring.step, &f_y);
+                }
+                for (pull, sum) in [(&mut *pull_x, &sum_x), (&mut *pull_y, &sum_y)] {
+                    let target = &mut pull[out..out + LANES];
+                    for lane in 0..LANES {
+                        target[lane] += sum[lane];
+                    }
+                }
+            }
+        }
+        *reaction = Reaction {
+            strain: 0.5 * strain.iter().sum::<f64>(),
+            released,
+            broken: broken.len(),
+            damaged: if broken.is_empty() { 0.0 } else { 1.0 },
+        };
+    }
+}
+
+#[inline(always)]
+fn load(x: &[f64], at: usize) -> Lanes {
+    let mut lanes = [0.0; LANES];
+    lanes.copy_from_slice(&x[at..at + LANES]);
+    lanes
+}
+
+/// Largest of the lanes, halved again and again so that it stays in vectors.
+#[inline(always)]
+fn largest(lanes: &Lanes) -> f64 {
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let four: [f64; 4] = std::array::from_fn(|i| larger(lanes[i], lanes[i + 4]));
+    let two: [f64; 2] = std::array::from_fn(|i| larger(four[i], four[i + 2]));
+    larger(two[0], two[1])
+}
+
+#[inline(always)]
+fn subtract(pull: &mut [f64], at: usize, f: &Lanes) {
+    let target = &mut pull[at..at + LANES];
+    for lane in 0..LANES {
+        target[lane] -= f[lane];
+    }
+}
+
+impl Interaction for LatticeSprings<'_> {
+    fn unknowns(&self) -> usize {
+        2
+    }
+
+    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
+        self.spread(u);
+        let limit = if damaging == Damaging::Allowed { self.limit } else { Limit::Never };
+        let (lattice, springs, finite) = (&self.lattice, &self.springs[..], self.finite);
+        let (u, numbers, may_fail) = (&self.u, &self.numbers[..], &self.may_fail[..]);
+        let arch = pulp::Arch::new();
+        let carries = self.carry.par_chunks_mut(BAND * springs.len() * lattice.stride);
+        carries.zip(&mut self.bands).enumerate().for_each(|(i, (carry, band))| {
+            arch.dispatch(BandWork { lattice, springs, limit, finite, u, numbers, may_fail, first: i * BAND, carry, band });
+        });
+        self.collect(force);
+        for band in &self.bands {
+            band.broken.iter().for_each(|&bond| bonds.share[bond as usize] = 0.0);
+        }
+        self.bands.iter().map(|band| band.reaction).fold(Reaction::default(), Reaction::and)
+    }
+
+    fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {
+        stiffness_bound(self.net, bonds)
+    }
+}
