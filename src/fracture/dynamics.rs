@@ -20,8 +20,9 @@ use super::outcome::{HistoryRow, SceneEnd};
 use super::{SceneObserver, SceneProgress};
 use crate::error::{Error, Result, input};
 
-/// Share of the stability bound that the program's own step takes.
-const SAFETY: f64 = 0.9;
+/// Share of the stability bound that the program's own step takes. The energy of velocity Verlet wavers with the square of the
+/// step: a plate torn in two (50 mm, spacing 1 mm, 8 m/s) has 0.51 % of the work astray for a moment at 0.9, less here.
+const SAFETY: f64 = 0.7;
 /// Rows of the history at the most; with more steps every so many-th is kept.
 const ROWS: usize = 4000;
 /// Steps between two looks at the energy: a blow-up is found within 10.

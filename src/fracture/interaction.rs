@@ -7,7 +7,10 @@ use super::bonds::BondState;
 pub struct Reaction {
     /// Strain energy, J.
     pub strain: f64,
-    /// Energy that damage has taken in this evaluation, J.
+    /// Energy that damage has taken in this evaluation, J: `½ (d' - d) (k_n e_n e_n' + k_t e_t e_t')` of every bond, with its share
+    /// d and its strains at the evaluation before and at this one. That is what is missing from its work, by the trapezoidal
+    /// rule, over the way between them; the energy at this displacement alone would count the way after the break, a fifth
+    /// too much where a crack runs through a bond in a few time steps.
     pub released: f64,
     /// Bonds that broke in this evaluation.
     pub broken: usize,

@@ -34,6 +34,19 @@ struct Spring {
     k_t: f64,
 }
 
+impl Spring {
+    /// Normal and tangential strain of the bond of a place, one at a time.
+    fn strain<const FINITE: bool>(&self, u: &[Vec<f64>; 2], place: usize) -> (f64, f64) {
+        let eta = [0, 1].map(|c| u[c][place + self.step] - u[c][place]);
+        let n = self.normal;
+        if FINITE {
+            ((self.xi[0] + eta[0]).hypot(self.xi[1] + eta[1]) - self.length, 0.0)
+        } else {
+            (eta[0] * n[0] + eta[1] * n[1], eta[1] * n[0] - eta[0] * n[1])
+        }
+    }
+}
+
 /// When a bond breaks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Limit {
@@ -57,8 +70,9 @@ pub struct LatticeSprings<'n> {
     /// Number of the bond in the net; at the same index.
     numbers: Vec<u32>,
     may_fail: Vec<bool>,
-    /// Displacement over the places, lattice axes.
+    /// Displacement over the places, lattice axes, and that of the last evaluation.
     u: [Vec<f64>; 2],
+    last: [Vec<f64>; 2],
     bands: Vec<Band>,
 }
 
@@ -125,8 +139,23 @@ impl<'n> LatticeSprings<'n> {
         };
         let bands = (0..lattice.rows.div_ceil(BAND)).map(|_| band()).collect();
         let u = [0, 1].map(|_| vec![0.0; lattice.places()]);
+        let last = u.clone();
         let (places, may_fail) = (body.points.clone(), bonds.may_fail.clone());
-        Some(LatticeSprings { net, lattice, springs, limit, finite, places, row_starts, carry, numbers, may_fail, u, bands })
+        Some(LatticeSprings {
+            net,
+            lattice,
+            springs,
+            limit,
+            finite,
+            places,
+            row_starts,
+            carry,
+            numbers,
+            may_fail,
+            u,
+            last,
+            bands,
+        })
     }
 
     /// Puts the displacement of the points on the places, in lattice axes.
@@ -180,6 +209,7 @@ struct BandWork<'a> {
     limit: Limit,
     finite: bool,
     u: &'a [Vec<f64>; 2],
+    last: &'a [Vec<f64>; 2],
     numbers: &'a [u32],
     may_fail: &'a [bool],
     first: usize,
@@ -268,7 +298,8 @@ impl BandWork<'_> {
                                 };
                                 let number = self.numbers[((self.first + row) * kinds * stride) + shares + lane];
                                 if reached && share[lane] > 0.0 && self.may_fail[number as usize] {
-                                    released += 0.5 * share[lane] * (spring.k_n * e_n * e_n + spring.k_t * e_t * e_t);
+                                    let (l_n, l_t) = spring.strain::<FINITE>(self.last, at + lane);
+                                    released += 0.5 * share[lane] * (spring.k_n * e_n * l_n + spring.k_t * e_t * l_t);
                                     broken.push(number);
                                     carry[shares + lane] = 0.0;
                                     share[lane] = 0.0;
@@ -341,14 +372,16 @@ impl Interaction for LatticeSprings<'_> {
     }
 
     fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
+        std::mem::swap(&mut self.u, &mut self.last);
         self.spread(u);
         let limit = if damaging == Damaging::Allowed { self.limit } else { Limit::Never };
         let (lattice, springs, finite) = (&self.lattice, &self.springs[..], self.finite);
-        let (u, numbers, may_fail) = (&self.u, &self.numbers[..], &self.may_fail[..]);
+        let (u, last) = (&self.u, &self.last);
+        let (numbers, may_fail) = (&self.numbers[..], &self.may_fail[..]);
         let arch = pulp::Arch::new();
         let carries = self.carry.par_chunks_mut(BAND * springs.len() * lattice.stride);
         carries.zip(&mut self.bands).enumerate().for_each(|(i, (carry, band))| {
-            arch.dispatch(BandWork { lattice, springs, limit, finite, u, numbers, may_fail, first: i * BAND, carry, band });
+            arch.dispatch(BandWork { lattice, springs, limit, finite, u, last, numbers, may_fail, first: i * BAND, carry, band });
         });
         self.collect(force);
         for band in &self.bands {

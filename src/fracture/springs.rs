@@ -21,13 +21,15 @@ pub struct Springs<'n> {
     finite: bool,
     /// Force on the owner of every bond, and the couple on both ends (zero with two unknowns).
     pulls: Vec<[f64; 3]>,
+    /// Displacement at the last evaluation.
+    last: Vec<f64>,
 }
 
 impl<'n> Springs<'n> {
     /// Springs with their law of damage; `finite` for true stretch, which needs two unknowns and no tangential springs.
     #[must_use]
     pub fn new(net: &'n Net, failure: Failure, finite: bool) -> Self {
-        Springs { net, failure, finite, pulls: vec![[0.0; 3]; net.bonds.len()] }
+        Springs { net, failure, finite, pulls: vec![[0.0; 3]; net.bonds.len()], last: vec![0.0; net.unknowns * net.len()] }
     }
 
     /// Displacement differences of a bond: normal part, tangential part, unit vector of the pull.
@@ -65,7 +67,8 @@ impl<'n> Springs<'n> {
                 let after = self.failure.share(bond.from, at, before, &mut task.peak[i]);
                 if after != before {
                     task.share[i] = after;
-                    reaction.released += (before - after) * energy;
+                    let (l_n, l_t, _) = Self::strain::<FINITE, N>(bond, &self.last);
+                    reaction.released += 0.5 * (before - after) * (bond.k_n * e_n * l_n + bond.k_t * e_t * l_t);
                     reaction.damaged = reaction.damaged.max(before - after);
                     reaction.broken += usize::from(after == 0.0);
                 }
@@ -140,7 +143,7 @@ impl Interaction for Springs<'_> {
     }
 
     fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
-        match (self.finite, self.net.unknowns) {
+        let reaction = match (self.finite, self.net.unknowns) {
             (true, _) => {
                 let reaction = self.pull_all::<true, 2>(u, bonds, damaging);
                 self.gather::<2>(force);
@@ -156,7 +159,9 @@ impl Interaction for Springs<'_> {
                 self.gather::<3>(force);
                 reaction
             }
-        }
+        };
+        self.last.copy_from_slice(u);
+        reaction
     }
 
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {

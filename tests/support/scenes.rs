@@ -6,7 +6,7 @@ use perilife::fracture::scene::{
     Action, Arrangement, Damage, DamageEntry, DamageLaw, Drive, Procedure, Region, SceneLaw, SceneModel, SceneSolver,
 };
 use perilife::material::{Material, Plane};
-use perilife::specimen::{Crack, Edge, Specimen, TipSeed, from_value};
+use perilife::specimen::{Edge, Specimen, from_value};
 
 /// Steel of source 002, example 3.
 pub fn steel(poisson_ratio: f64) -> Material {
@@ -34,7 +34,7 @@ pub fn square(side: f64, crack: f64) -> Specimen {
     specimen.loads.clear();
     specimen.supports.clear();
     assert_eq!((specimen.cracks.len(), specimen.tips.len()), (1, 2));
-    let _: (&Vec<Crack>, &Vec<TipSeed>) = (&specimen.cracks, &specimen.tips);
+
     specimen
 }
 

@@ -78,17 +78,10 @@ fn energy_is_kept_while_a_plate_is_torn() {
         (BondLawKind::OneBondTwoParameter, Rotation::Resisted, DamageLaw::CriticalEnergy, false),
         (BondLawKind::TwoParameter, Rotation::Free, DamageLaw::CriticalEnergy, false),
     ] {
-        let mut scene = pulled(law(kind, rotation), damage, 1e-3, 20.0, 40e-6);
+        let mut scene = pulled(law(kind, rotation), damage, 1e-3, 8.0, 80e-6);
         scene.model.finite = finite;
         let run = fracture::run(&scene, &Silent).unwrap();
         assert_eq!(run.end, SceneEnd::Done, "{kind}");
-        eprintln!("{kind} dt {:.3e} steps {}", run.figures.time_step, run.history.len());
-        for row in run.history.iter().step_by(20) {
-            eprintln!("{row:?}");
-        }
-        for p in run.path.iter().take(30) {
-            eprintln!("{p:?}");
-        }
         assert!(
             run.separated_step.is_some(),
             "{kind}: {} bonds broke, onset {:?}",
@@ -96,6 +89,7 @@ fn energy_is_kept_while_a_plate_is_torn() {
             run.onset_step
         );
         let largest = run.history.iter().fold(0.0, |m: f64, row| m.max(row.work));
+        let worst = run.history.iter().map(|r| (r.kinetic + r.strain + r.fracture - r.work).abs() / largest).fold(0.0, f64::max);
         for row in &run.history {
             let lost = (row.kinetic + row.strain + row.fracture - row.work).abs() / largest;
             assert!(lost < 5e-3, "{kind}: {lost:.2e} of the energy is lost at step {}", row.step);
@@ -117,7 +111,7 @@ fn energy_is_kept_while_a_plate_is_torn() {
 fn stable_step_is_the_bound() {
     let mut scene = pulled(law(BondLawKind::BondBased, Rotation::Resisted), DamageLaw::None, 1e-3, 1.0, 20e-6);
     let own = fracture::run(&scene, &Silent).unwrap();
-    let stable = own.figures.time_step / 0.9;
+    let stable = own.figures.time_step / 0.7;
     for (share, fine) in [(0.999, true), (1.001, false)] {
         scene.procedure = Procedure::Dynamic { duration: 20e-6, time_step: Some(share * stable) };
         let run = fracture::run(&scene, &Silent);
