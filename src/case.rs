@@ -4,7 +4,7 @@ mod choices;
 mod fatigue;
 mod law;
 mod law_source;
-mod model;
+pub mod model;
 mod read;
 
 pub use choices::{Choices, Discretisation, Failure, Method};

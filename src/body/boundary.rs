@@ -57,6 +57,7 @@ impl Boundary {
                     boundary.floating = false;
                     boundary.clamped = end_blocks(specimen, lattice, points, stencil.horizon).collect();
                 }
+                Support::Elsewhere => boundary.floating = false,
                 Support::RigidEnds => {
                     boundary.rigid = end_blocks(specimen, lattice, points, stencil.horizon).map(|(p, _)| p).collect()
                 }

@@ -48,7 +48,7 @@ pub(super) fn from_value(value: &Value, specimen: &Specimen, material: &Material
     choices.horizon_ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
     let spacing = match LENGTH.read_optional("model.spacing_mm", input.spacing_mm)? {
         Some(spacing) => spacing,
-        None => (specimen.smallest_flaw() / 9.0).min(specimen.width / 100.0),
+        None => default_spacing(specimen),
     };
     match method {
         Method::Peridynamics => check_spacing(spacing, specimen)?,
@@ -83,8 +83,17 @@ fn check_formula(specimen: &Specimen) -> Result<()> {
     Err(input("model.method", "\"handbook\"", problem, remedy))
 }
 
+/// Spacing where an input file says nothing: a ninth of the smallest flaw, a hundredth of the width at the most.
+#[must_use]
+pub fn default_spacing(specimen: &Specimen) -> f64 {
+    (specimen.smallest_flaw() / 9.0).min(specimen.width / 100.0)
+}
+
 /// The spacing resolves crack and plate, and the number of points can be held.
-fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
+///
+/// # Errors
+/// `Error::Input` on `model.spacing_mm`.
+pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
     const KEY: &str = "model.spacing_mm";
     let (given, flaw) = (round_mm(spacing), specimen.smallest_flaw());
     if spacing > flaw {
@@ -106,7 +115,8 @@ fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
 }
 
 /// Metres as mm, rounded to six digits for messages.
-pub(super) fn round_mm(metres: f64) -> f64 {
+#[must_use]
+pub fn round_mm(metres: f64) -> f64 {
     (metres / MM * 1e6).round() / 1e6
 }
 

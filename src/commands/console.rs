@@ -7,6 +7,7 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use crate::error::{Error, Result};
+use crate::fracture::{SceneObserver, SceneProgress};
 use crate::predict::{Observer, Progress};
 use crate::units::MM;
 
@@ -96,6 +97,14 @@ impl Observer for RunProgress {
     fn block_done(&self, progress: &Progress) -> bool {
         let share = if progress.share.is_finite() { progress.share.clamp(0.0, 1.0) } else { 0.0 };
         self.bar.set_message(format!("N = {:.4e}, a = {:.2} mm", progress.cycles, progress.crack_length / MM));
+        self.bar.set_position((share * STEPS as f64) as u64);
+        true
+    }
+}
+
+impl SceneObserver for RunProgress {
+    fn step_done(&self, progress: &SceneProgress) -> bool {
+        let share = if progress.share.is_finite() { progress.share.clamp(0.0, 1.0) } else { 0.0 };
         self.bar.set_position((share * STEPS as f64) as u64);
         true
     }

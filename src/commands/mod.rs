@@ -6,6 +6,7 @@ pub mod bench;
 pub mod calibrate;
 pub mod check;
 pub mod export;
+pub mod fracture;
 pub mod list;
 pub mod predict;
 pub mod rates;
@@ -41,6 +42,8 @@ macro_rules! commands {
 commands! {
     /// Predict crack growth: run a case, write its a-N curve and pictures
     Predict: predict,
+    /// Run a fracture scene without cycles: static, load steps or motion in time
+    Fracture: fracture,
     /// Fit the fatigue law to measured a-N curves
     Calibrate: calibrate,
     /// Resample the a-N curve of a finished run

@@ -13,7 +13,7 @@ use crate::predict::{Prediction, StopReason};
 use crate::report;
 use crate::report::chart::{self, Mark, Series};
 use crate::report::csv::{self, Row};
-use crate::report::damage::DamagePicture;
+use crate::report::damage::{DamagePicture, cycles_and_length};
 use crate::report::output::{OutputFolder, write_file};
 use crate::report::{fit_use, json, vtk};
 use crate::specimen::Point;
@@ -174,7 +174,8 @@ fn write_run(folder: &Path, case: &Case, prediction: &Prediction, result: &Value
         .map(|path| path.into_iter().map(|(_, position)| position).collect())
         .collect();
     if let Some(snapshot) = prediction.snapshots.last() {
-        DamagePicture { grid: &prediction.grid, snapshot, cracks: &case.specimen.cracks, paths: &paths }
+        let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
+        DamagePicture { grid: &prediction.grid, snapshot, cracks, paths: &paths, caption: &caption }
             .write(&folder.join("damage.png"))?;
     }
     if prediction.snapshots.is_empty() {

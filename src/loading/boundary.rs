@@ -238,7 +238,35 @@ fn check_balance(specimen: &Specimen, by_pins: bool) -> Result<()> {
         }
     }
     turned |= specimen.supports.len() > 1;
-    let (mut force, mut moment, mut scale) = ([0.0; 2], 0.0, 0.0_f64);
+    let Imbalance { force, moment } = imbalance(specimen);
+    let key = if by_pins { "loading.pins" } else { "loading.edges" };
+    for (i, axis) in ["x", "y"].iter().enumerate() {
+        if !held[i] && force[i] {
+            let problem = format!("is not in equilibrium: the loads leave a force along {axis} that no support takes up");
+            return Err(input_missing(key, problem, "load opposite sides or pins alike, or hold a side in [supports]"));
+        }
+    }
+    // A force held along one axis only is taken up on a line somewhere: its moment is then not asked for.
+    if !turned && !held[0] && !held[1] && moment {
+        let problem = "is not in equilibrium: the loads turn the plate and no support takes that up";
+        return Err(input_missing(key, problem, "let opposite forces share one line, or hold a side in [supports]"));
+    }
+    Ok(())
+}
+
+/// What the loads of a specimen leave over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Imbalance {
+    /// Whether a force along x or y is left.
+    pub force: [bool; 2],
+    /// Whether they turn the plate about the origin.
+    pub moment: bool,
+}
+
+/// What the loads of a specimen leave over, beyond round-off.
+#[must_use]
+pub fn imbalance(specimen: &Specimen) -> Imbalance {
+    let (mut force, mut moment, mut scale) = ([0.0; 2], 0.0_f64, 0.0_f64);
     for load in &specimen.loads {
         let (place, f) = resultant(load, specimen);
         force = [force[0] + f[0], force[1] + f[1]];
@@ -246,19 +274,7 @@ fn check_balance(specimen: &Specimen, by_pins: bool) -> Result<()> {
         scale = scale.max(f[0].hypot(f[1]));
     }
     let reach = specimen.gross_width.max(specimen.length());
-    let key = if by_pins { "loading.pins" } else { "loading.edges" };
-    for (i, axis) in ["x", "y"].iter().enumerate() {
-        if !held[i] && force[i].abs() > 1e-6 * scale {
-            let problem = format!("is not in equilibrium: the loads leave a force along {axis} that no support takes up");
-            return Err(input_missing(key, problem, "load opposite sides or pins alike, or hold a side in [supports]"));
-        }
-    }
-    // A force held along one axis only is taken up on a line somewhere: its moment is then not asked for.
-    if !turned && !held[0] && !held[1] && moment.abs() > 1e-6 * scale * reach {
-        let problem = "is not in equilibrium: the loads turn the plate and no support takes that up";
-        return Err(input_missing(key, problem, "let opposite forces share one line, or hold a side in [supports]"));
-    }
-    Ok(())
+    Imbalance { force: force.map(|f: f64| f.abs() > 1e-6 * scale), moment: moment.abs() > 1e-6 * scale * reach }
 }
 
 /// Place and force of a load per unit of nominal load (tractions per metre of thickness, which all share).

@@ -3,6 +3,7 @@
 mod boundary;
 mod read;
 
+pub use boundary::{Imbalance, imbalance};
 pub use read::from_values;
 
 crate::kinds! {

@@ -29,10 +29,19 @@ pub struct DamagePicture<'a> {
     pub grid: &'a PointGrid,
     /// State of the plate.
     pub snapshot: &'a Snapshot,
-    /// Cracks before N = 0.
+    /// Cracks of the start.
     pub cracks: &'a [Crack],
     /// Path of every tip, m.
     pub paths: &'a [Vec<Point>],
+    /// Words below the legend: when this is.
+    pub caption: &'a [String],
+}
+
+/// The caption of a snapshot of cycles.
+#[must_use]
+pub fn cycles_and_length(snapshot: &Snapshot) -> [String; 2] {
+    let cycles = super::axis::grouped(&format!("{:.0}", snapshot.cycles), " ");
+    [format!("N = {cycles} cycles"), format!("crack length {:.2} mm", snapshot.crack_length / MM)]
 }
 
 impl DamagePicture<'_> {
@@ -105,9 +114,10 @@ impl DamagePicture<'_> {
         }
         say(canvas, &name, length + 12, y - 6);
         y += 34;
-        let cycles = super::axis::grouped(&format!("{:.0}", self.snapshot.cycles), " ");
-        say(canvas, &format!("N = {cycles} cycles"), 0, y);
-        say(canvas, &format!("crack length {:.2} mm", self.snapshot.crack_length / MM), 0, y + 26);
+        for line in self.caption {
+            say(canvas, line, 0, y);
+            y += 26;
+        }
     }
 }
 

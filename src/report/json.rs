@@ -187,6 +187,6 @@ fn law(case: &Case, prediction: &Prediction) -> Value {
 }
 
 /// Hides the last digits of a double, which a unit conversion may have disturbed.
-fn clean(value: f64) -> f64 {
+pub(super) fn clean(value: f64) -> f64 {
     format!("{value:.14e}").parse().unwrap_or(value)
 }

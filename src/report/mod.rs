@@ -7,6 +7,7 @@ pub mod chart;
 pub mod csv;
 pub mod damage;
 pub mod fit_use;
+pub mod fracture;
 pub mod json;
 pub mod output;
 pub mod residual_strength;

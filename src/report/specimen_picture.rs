@@ -161,6 +161,7 @@ fn draw_supports(sketch: &mut Sketch, specimen: &Specimen) {
                 let [px, py] = sketch.place(*right);
                 sketch.text([px + 12.0, py + 14.0], held, "start", 12, HELD);
             }
+            Support::Elsewhere => {}
             Support::ClampedEnds | Support::RigidEnds => {
                 let words =
                     if *support == Support::ClampedEnds { "rigid grip, cannot rotate" } else { "rigid grip, turns on a pin" };

@@ -15,7 +15,7 @@ mod plate;
 mod read;
 
 pub use edge::{Component, Edge};
-pub use read::{PART_THROUGH, from_value};
+pub use read::{PART_THROUGH, from_value, plate_from_value};
 
 /// A point of the plate, metres.
 pub type Point = [f64; 2];
@@ -131,6 +131,9 @@ pub enum Support {
     ClampedEnds,
     /// Both ends move as rigid blocks that may rotate (pinned grips): end rows are made stiff, load is uniform over them.
     RigidEnds,
+    /// What the body does not know of takes up the loads, so that they need not balance: supports and driven points of a fracture
+    /// scene, or inertia.
+    Elsewhere,
 }
 
 /// How crack length is read, see [`Specimen::crack_length`].

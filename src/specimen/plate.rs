@@ -3,7 +3,7 @@
 //! ```toml
 //! [specimen]
 //! kind = "plate"
-//! width_mm = 100.0              # with length_mm: a rectangle centred on 0; or outline_mm = [[x, y], ...]
+//! width_mm = 100.0              # with length_mm: a rectangle centred on 0; or outline_mm = [[x, y], ...]; or diameter_mm: a disc about 0
 //! length_mm = 300.0
 //! thickness_mm = 2.0
 //! holes = [{ x_mm = 20.0, y_mm = 0.0, diameter_mm = 8.0 }]
@@ -36,6 +36,7 @@ struct Input {
     outline_mm: Option<Vec<Value>>,
     width_mm: Option<f64>,
     length_mm: Option<f64>,
+    diameter_mm: Option<f64>,
     thickness_mm: f64,
     #[serde(default)]
     holes: Vec<Value>,
@@ -84,14 +85,6 @@ pub(super) fn from_value(value: &Value) -> Result<Specimen> {
         let (from, to) = ends(path, item.from_mm, item.to_mm)?;
         Ok(Crack { from, to })
     })?;
-    if cracks.is_empty() && slots.is_empty() {
-        return Err(input_missing(
-            "specimen.cracks",
-            "is missing, and there is no notch either: nothing can grow",
-            "give cracks or notches",
-        ));
-    }
-
     let [low, high] = bounding_box(&outline);
     let (width, length) = (high[0] - low[0], high[1] - low[1]);
     let mut specimen = Specimen {
@@ -117,9 +110,22 @@ fn common_height(cracks: &[Crack]) -> Option<f64> {
 
 /// Outline, counter-clockwise and simple.
 fn outline(input: &Input) -> Result<Vec<Point>> {
+    if let Some(diameter) = input.diameter_mm {
+        if input.outline_mm.is_some() || input.width_mm.is_some() || input.length_mm.is_some() {
+            let problem = "stands beside outline_mm, width_mm or length_mm";
+            return Err(crate::error::input(
+                "specimen.diameter_mm",
+                diameter,
+                problem,
+                "give one of outline, rectangle and diameter",
+            ));
+        }
+        return Ok(disc(LENGTH.read("specimen.diameter_mm", diameter)? / 2.0));
+    }
     let Some(corners) = &input.outline_mm else {
         let need = |key: &str, value: Option<f64>| {
-            let value = value.ok_or_else(|| input_missing(key, "is missing", "give width_mm and length_mm, or outline_mm"))?;
+            let value = value
+                .ok_or_else(|| input_missing(key, "is missing", "give width_mm and length_mm, or outline_mm, or diameter_mm"))?;
             LENGTH.read(key, value)
         };
         let (x, y) = (need("specimen.width_mm", input.width_mm)? / 2.0, need("specimen.length_mm", input.length_mm)? / 2.0);
@@ -133,6 +139,27 @@ fn outline(input: &Input) -> Result<Vec<Point>> {
         ));
     }
     polygon(corners)
+}
+
+/// Sides of the polygon that stands for a circle: its area is 5e-5 too small.
+const DISC_SIDES: usize = 360;
+
+/// A disc about the origin as a polygon with its corners on the circle, counter-clockwise, with a flat side at top, bottom, left
+/// and right. Built from one eighth, so that it is its own mirror image to the last bit.
+fn disc(radius: f64) -> Vec<Point> {
+    let quarter = DISC_SIDES / 4;
+    let corner = |k: usize| {
+        let (first, swapped) = if 2 * k < quarter { (k, false) } else { (quarter - 1 - k, true) };
+        let (sin, cos) = (std::f64::consts::TAU * (first as f64 + 0.5) / DISC_SIDES as f64).sin_cos();
+        if swapped { [radius * sin, radius * cos] } else { [radius * cos, radius * sin] }
+    };
+    let turned = |[x, y]: Point, quarters: usize| match quarters {
+        0 => [x, y],
+        1 => [-y, x],
+        2 => [-x, -y],
+        _ => [y, -x],
+    };
+    (0..4).flat_map(|quarters| (0..quarter).map(move |k| turned(corner(k), quarters))).collect()
 }
 
 fn polygon(corners: &[Value]) -> Result<Vec<Point>> {

@@ -37,8 +37,19 @@ impl SpecimenKind {
     }
 }
 
-/// Reads `[specimen]`. The standard kinds come with their loads; a `plate` is loaded by `[loading]`.
+/// Reads `[specimen]` of a case, in which something must be able to grow. The standard kinds come with their loads; a `plate` is
+/// loaded by `[loading]`.
 pub fn from_value(value: &Value) -> Result<Specimen> {
+    let specimen = plate_from_value(value)?;
+    if specimen.cracks.is_empty() && specimen.slots.is_empty() {
+        let problem = "is missing, and there is no notch either: nothing can grow";
+        return Err(input_missing("specimen.cracks", problem, "give cracks or notches"));
+    }
+    Ok(specimen)
+}
+
+/// Reads `[specimen]` of a fracture scene, which may be a plate without cracks or notches.
+pub fn plate_from_value(value: &Value) -> Result<Specimen> {
     let table = table_of(value, "specimen")?;
     let kind = match table.get("kind") {
         None => {

@@ -3,7 +3,7 @@
 use std::fs;
 
 use perilife::report::chart::{self, Mark, Series};
-use perilife::report::damage::DamagePicture;
+use perilife::report::damage::{DamagePicture, cycles_and_length};
 use perilife::report::{csv, vtk};
 use perilife::specimen::Point;
 use tempfile::tempdir;
@@ -64,7 +64,10 @@ fn the_damage_picture_shows_plate_crack_and_scale() {
         let paths: Vec<Vec<Point>> =
             csv::paths(&run, &cracks).into_iter().map(|path| path.into_iter().map(|(_, p)| p).collect()).collect();
         let file = dir.path().join("damage.png");
-        DamagePicture { grid: &run.grid, snapshot: &run.snapshots[2], cracks: &cracks, paths: &paths }.write(&file).unwrap();
+        let caption = cycles_and_length(&run.snapshots[2]);
+        DamagePicture { grid: &run.grid, snapshot: &run.snapshots[2], cracks: &cracks, paths: &paths, caption: &caption }
+            .write(&file)
+            .unwrap();
         let mut reader = png::Decoder::new(std::io::BufReader::new(fs::File::open(&file).unwrap())).read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut pixels).unwrap();

@@ -45,6 +45,7 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     let held = match specimen.supports.first() {
         None => "nothing held, loads in equilibrium",
         Some(Support::Fixed { .. }) => "held as [supports] says",
+        Some(Support::Elsewhere) => "held outside the plate",
         Some(Support::ClampedEnds) => "rigid ends that cannot rotate",
         Some(Support::RigidEnds) => "rigid ends that rotate about pins",
     };

@@ -1,0 +1,85 @@
+//! `perilife fracture`: a scene without cycles to its histories, crack paths, pictures and ParaView files.
+
+use std::path::{Path, PathBuf};
+
+use super::console::Console;
+use crate::error::{Error, Result};
+use crate::fracture::scene::Procedure;
+use crate::fracture::{self, Fracture, Scene, SceneEnd};
+use crate::report::fracture as report;
+use crate::report::output::OutputFolder;
+use crate::units::{KN, MM};
+
+/// Arguments of `perilife fracture`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Scene file
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Folder for the results; replaced if an earlier run made it
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: PathBuf,
+    /// Override a key of the scene (repeatable), e.g. --set model.spacing_mm=0.5
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
+    pub set: Vec<String>,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// Runs `perilife fracture`.
+///
+/// # Errors
+/// Wrong input; files that cannot be read or written; [`Error::Mechanics`] where the scene ended without convergence or blew up,
+/// whose histories are written all the same.
+pub fn run(args: &Args) -> Result<()> {
+    let scene = Scene::from_file(&args.case, &args.set)?;
+    // Claimed first: a folder that cannot be written should not cost a run.
+    let folder = OutputFolder::create(&args.out)?;
+    for warning in &scene.warnings {
+        args.console.warn(warning);
+    }
+    let fracture = fracture::run(&scene, &args.console.progress(&scene.name))?;
+    for warning in &fracture.warnings {
+        args.console.warn(warning);
+    }
+    let result = report::result(&scene, &fracture);
+    report::write(folder.path(), &scene, &fracture, &result)?;
+    folder.finish()?;
+    for line in summary(&scene, &fracture, &args.out) {
+        args.console.say(&line);
+    }
+    args.console.object(&result)?;
+    match fracture.end {
+        SceneEnd::Done | SceneEnd::Separated => Ok(()),
+        SceneEnd::NoConvergence | SceneEnd::Unstable => {
+            let (end, out) = (fracture.end, args.out.display());
+            Err(Error::Mechanics(format!("{}: {end}: {}, in {out}", scene.name, end.meaning())))
+        }
+    }
+}
+
+fn summary(scene: &Scene, fracture: &Fracture, out: &Path) -> Vec<String> {
+    let last = fracture.history.last().copied().unwrap_or_default();
+    let figures = &fracture.figures;
+    let when = |step: Option<usize>| match step {
+        None => "never".to_owned(),
+        Some(step) if figures.time_step > 0.0 => format!("step {step}, {:.3} µs", step as f64 * figures.time_step * 1e6),
+        Some(step) => format!("step {step}"),
+    };
+    let way = match scene.procedure {
+        Procedure::Static => "one static solve".to_owned(),
+        Procedure::QuasiStatic { .. } => format!("{} load steps", last.step),
+        Procedure::Dynamic { .. } => format!("{} time steps of {:.4} µs", last.step, figures.time_step * 1e6),
+    };
+    vec![
+        format!("{}: peak load {:.4} kN", scene.name, fracture.peak_load() / KN),
+        format!("  stopped        {}: {}", fracture.end, fracture.end.meaning()),
+        format!("  displacement   {:.6} mm at the end, load {:.4} kN", last.displacement / MM, last.load / KN),
+        format!("  first break    {}", when(fracture.onset_step)),
+        format!("  separated      {}", when(fracture.separated_step)),
+        format!("  broken         {} of {} bonds", last.broken_bonds, figures.bonds),
+        format!("  computed       {} points, {way}, {:.1} s", figures.points, figures.wall_s),
+        format!("  results        {}", out.display()),
+    ]
+}

@@ -1,0 +1,136 @@
+//! A scene file to a checked [`Scene`]: each section is read by itself, then they are checked against each other.
+
+mod checks;
+mod damage;
+mod loading;
+mod micro_cracks;
+mod model;
+mod refinement;
+mod region;
+mod supports;
+
+pub use loading::{LoadKind, Transverse};
+pub use model::Kinematics;
+
+use std::path::Path;
+
+use toml::{Table, Value};
+
+use super::scene::{Scene, SceneLaw};
+use crate::error::{Result, input, input_missing};
+use crate::input::{Document, shorten, value_at};
+use crate::{material, specimen};
+
+/// Sections of a scene file.
+pub const SECTIONS: &[&str] = &["specimen", "material", "model", "loading", "supports", "damage", "refinement", "micro_cracks"];
+
+/// Sections that only a scene file has.
+pub const SCENE_SECTIONS: &[&str] = &["damage", "refinement", "micro_cracks"];
+
+impl Scene {
+    /// Reads a scene file; `overrides` are `section.key=value`.
+    ///
+    /// # Errors
+    /// Wrong input, or a file that cannot be read.
+    pub fn from_file(path: &Path, overrides: &[String]) -> Result<Self> {
+        Self::from_document(&Document::read(path, overrides)?)
+    }
+
+    /// Reads a scene from text; relative paths in it start from `base_dir`.
+    ///
+    /// # Errors
+    /// Wrong input.
+    pub fn from_toml(text: &str, name: &str, base_dir: &Path, overrides: &[String]) -> Result<Self> {
+        Self::from_document(&Document::parse(text, name, base_dir, overrides)?)
+    }
+
+    /// Reads a scene from a parsed document, which gives errors their line.
+    ///
+    /// # Errors
+    /// Wrong input.
+    pub fn from_document(document: &Document) -> Result<Self> {
+        read(&document.table, &document.name, &document.base_dir).map_err(|error| document.locate(error))
+    }
+}
+
+/// Whether a file describes a fracture scene rather than a fatigue case: by a section or a kind of loading that only scenes
+/// have.
+#[must_use]
+pub fn is_scene(table: &Table) -> bool {
+    let kind = table.get("loading").and_then(|loading| value_at(loading, "kind")).and_then(Value::as_str);
+    SCENE_SECTIONS.iter().any(|section| table.contains_key(*section))
+        || table.get("loading").and_then(Value::as_table).is_some_and(|loading| loading.contains_key("parts"))
+        || kind.is_some_and(|kind| kind.parse::<LoadKind>().is_ok())
+}
+
+fn read(table: &Table, name: &str, base_dir: &Path) -> Result<Scene> {
+    check_sections(table)?;
+    let echo =
+        serde_json::to_value(table).map_err(|error| input_missing("scene", error.to_string(), "write it as plain TOML"))?;
+    let empty = Value::Table(Table::new());
+    let required = |section: &str| {
+        table.get(section).ok_or_else(|| input_missing(section, "is missing", format!("write a section [{section}]")))
+    };
+    let optional = |section: &str| table.get(section).unwrap_or(&empty);
+
+    let mut warnings = Vec::new();
+    let mut specimen = specimen::plate_from_value(required("specimen")?)?;
+    // The standard kinds serve as geometry: their loads and grips belong to fatigue tests.
+    specimen.loads.clear();
+    specimen.supports.clear();
+    let material = material::from_value(required("material")?, base_dir, &mut warnings)?;
+    let loading = loading::from_value(required("loading")?, &mut specimen)?;
+    let holds = supports::from_value(optional("supports"), &specimen)?;
+    let model = model::from_value(optional("model"), &specimen, &material, &loading.procedure)?;
+    let damage = damage::from_value(optional("damage"), &material)?;
+    let refinement = table.get("refinement").map(|value| refinement::from_value(value, &specimen)).transpose()?;
+    if table.contains_key("damage") && !matches!(model.law, SceneLaw::Correspondence { .. }) {
+        damage::refuse_entry(optional("damage"))?;
+    }
+    let mut scene = Scene {
+        name: name.to_owned(),
+        specimen,
+        material,
+        model,
+        drives: loading.drives,
+        holds,
+        damage,
+        procedure: loading.procedure,
+        refinement,
+        warnings,
+        echo,
+    };
+    checks::check(&scene)?;
+    checks::settle_balance(&mut scene)?;
+    if let Some(value) = table.get("micro_cracks") {
+        micro_cracks::put_in(value, &mut scene)?;
+    }
+    let lines = checks::lines(&scene);
+    scene.warnings.extend(lines);
+    Ok(scene)
+}
+
+/// Only known sections, each a table.
+fn check_sections(table: &Table) -> Result<()> {
+    for (name, value) in table {
+        match name.as_str() {
+            known if SECTIONS.contains(&known) => {}
+            "fatigue" | "stop" => {
+                let problem = "belongs to a fatigue case, not to a fracture scene, which has no cycles";
+                return Err(input(name, shorten(value), problem, "remove the section, or run `perilife predict`"));
+            }
+            "measured" | "fit" => {
+                let problem = "belongs to a calibration file, not to a fracture scene";
+                return Err(input(name, shorten(value), problem, "run `perilife calibrate` on it, or remove the section"));
+            }
+            _ => {
+                let what = if value.is_table() { "is not a known section" } else { "stands in no section" };
+                return Err(input(name, shorten(value), what, format!("known sections: {}", SECTIONS.join(", "))));
+            }
+        }
+        if !value.is_table() {
+            return Err(input(name, shorten(value), "is not a section", format!("write [{name}] and its keys below")));
+        }
+    }
+    Ok(())
+}

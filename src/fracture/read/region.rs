@@ -1,0 +1,115 @@
+//! Where a load or a support takes hold: a side of the plate, or an upright box.
+
+use serde::Deserialize;
+use toml::Value;
+
+use crate::error::{Result, input, input_missing};
+use crate::fracture::scene::Region;
+use crate::input::{number, point, slice};
+use crate::specimen::geometry::{along, bounding_box};
+use crate::specimen::{Edge, Point, Specimen};
+use crate::units::MM;
+
+/// Keys of an upright box.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BoxInput {
+    from_mm: [f64; 2],
+    to_mm: [f64; 2],
+}
+
+/// Reads `{ from_mm = [x, y], to_mm = [x, y] }`, two opposite corners of a box that meets the plate.
+pub fn box_from_value(value: &Value, path: &str, specimen: &Specimen) -> Result<Region> {
+    let input: BoxInput = slice(value, path)?;
+    let (low, high) = corners(path, [input.from_mm, input.to_mm], specimen)?;
+    Ok(Region::Box { low, high })
+}
+
+/// Lower left and upper right corner of a box given by two opposite corners in mm, which meets the plate.
+pub fn corners(path: &str, [from, to]: [[f64; 2]; 2], specimen: &Specimen) -> Result<(Point, Point)> {
+    let (from, to) = (point(path, from)?, point(path, to)?);
+    let low = [from[0].min(to[0]), from[1].min(to[1])];
+    let high = [from[0].max(to[0]), from[1].max(to[1])];
+    if low[0] == high[0] || low[1] == high[1] {
+        return Err(input_missing(path, "encloses no area", "give two opposite corners of a box"));
+    }
+    let [plate_low, plate_high] = bounding_box(&specimen.outline);
+    if !overlap(low, high, plate_low, plate_high) {
+        let problem = format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
+        return Err(input_missing(path, problem, "move it onto the plate"));
+    }
+    Ok((low, high))
+}
+
+/// A point in words.
+pub fn words(p: Point) -> String {
+    let round = |metres: f64| (metres / MM * 1e6).round() / 1e6;
+    format!("({}, {}) mm", round(p[0]), round(p[1]))
+}
+
+/// Whether two boxes share an area.
+pub fn overlap(low: Point, high: Point, other_low: Point, other_high: Point) -> bool {
+    (0..2).all(|i| low[i] < other_high[i] && other_low[i] < high[i])
+}
+
+/// A side with the depth of the hold and, where it is not the whole side, the part of it.
+pub fn edge(edge: Edge, key: &str, depth: (&str, f64), range: (&str, Option<[f64; 2]>), specimen: &Specimen) -> Result<Region> {
+    if edge.stretches(specimen).is_empty() {
+        let remedy = "an edge is what lies on the bounding box of the outline; take a region";
+        return Err(input(key, edge, "is no straight side of this outline", remedy));
+    }
+    let [low, high] = bounding_box(&specimen.outline);
+    let across = usize::from(edge.normal()[0] == 0.0);
+    let metres = number("a depth in mm", 0.0, 1e5).read(depth.0, depth.1)? * MM;
+    if metres >= (high[across] - low[across]) / 2.0 {
+        return Err(input(depth.0, depth.1, "takes hold of half the plate or more", "give a smaller depth"));
+    }
+    let part = match range.1 {
+        None => [f64::NEG_INFINITY, f64::INFINITY],
+        Some(given) => {
+            let [from, to] = point(range.0, given)?;
+            let shown = format!("[{}, {}]", given[0], given[1]);
+            if from >= to {
+                return Err(input(range.0, shown, "does not rise", "give [from, to] along the side"));
+            }
+            if to <= low[1 - across] || from >= high[1 - across] {
+                let name = if across == 1 { "x" } else { "y" };
+                let remedy = format!("give coordinates {name} between {} and {} mm", low[1 - across] / MM, high[1 - across] / MM);
+                return Err(input(range.0, shown, "lies beside the plate", remedy));
+            }
+            [from, to]
+        }
+    };
+    Ok(Region::Edge { edge, depth: metres, range: part })
+}
+
+/// The stretches of a side within a part of it.
+pub fn stretches_within(edge: Edge, range: [f64; 2], specimen: &Specimen) -> Vec<(Point, Point)> {
+    let axis = usize::from(edge.normal()[0] != 0.0);
+    let clipped = |(a, b): (Point, Point)| {
+        let share = |at: f64| ((at - a[axis]) / (b[axis] - a[axis])).clamp(0.0, 1.0);
+        let (first, second) = (share(range[0]), share(range[1]));
+        let (from, to) = (first.min(second), first.max(second));
+        (to > from).then(|| (along(a, b, from), along(a, b, to)))
+    };
+    edge.stretches(specimen).into_iter().filter_map(clipped).collect()
+}
+
+/// The box around a region: for a side, so deep as it holds and one `row` at the least.
+pub fn around(region: &Region, row: f64, specimen: &Specimen) -> (Point, Point) {
+    match *region {
+        Region::Box { low, high } => (low, high),
+        Region::Edge { edge, depth, range } => {
+            let [mut low, mut high] = bounding_box(&specimen.outline);
+            let across = usize::from(edge.normal()[0] == 0.0);
+            let depth = depth.max(row);
+            match edge {
+                Edge::Top | Edge::Right => low[across] = high[across] - depth,
+                Edge::Bottom | Edge::Left => high[across] = low[across] + depth,
+            }
+            low[1 - across] = low[1 - across].max(range[0]);
+            high[1 - across] = high[1 - across].min(range[1]);
+            (low, high)
+        }
+    }
+}

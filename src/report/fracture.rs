@@ -1,0 +1,131 @@
+//! Results of a fracture scene: `history.csv`, `crack_path.csv`, `result.json`, charts and the damaged plate.
+
+mod json;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+pub use json::result;
+
+use super::chart::{self, Mark, Series};
+use super::csv::{exact, number};
+use super::damage::DamagePicture;
+use super::output::write_file;
+use super::vtk;
+use crate::error::{Error, Result};
+use crate::fracture::outcome::HistoryRow;
+use crate::fracture::scene::Procedure;
+use crate::fracture::{Fracture, Scene};
+use crate::predict::Snapshot;
+use crate::specimen::Point;
+use crate::units::{KN, MM};
+
+/// Columns of `history.csv`.
+pub const HISTORY_COLUMNS: &str = "step,time_s,displacement_mm,load_n,broken_bonds,kinetic_j,strain_j,fracture_j,work_j";
+/// Columns of `crack_path.csv`.
+pub const PATH_COLUMNS: &str = "tip,step,time_s,x_mm,y_mm,damage";
+
+/// `history.csv`: one row a recorded step.
+#[must_use]
+pub fn history(fracture: &Fracture) -> String {
+    let mut text = format!("{HISTORY_COLUMNS}\n");
+    for row in &fracture.history {
+        let energies = [row.kinetic, row.strain, row.fracture, row.work].map(number).join(",");
+        let (time, displacement, load) = (exact(row.time), number(row.displacement / MM), number(row.load));
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{},{time},{displacement},{load},{},{energies}", row.step, row.broken_bonds);
+    }
+    text
+}
+
+/// `crack_path.csv`: where every crack front stood, in the order of time.
+#[must_use]
+pub fn crack_path(fracture: &Fracture) -> String {
+    let mut text = format!("{PATH_COLUMNS}\n");
+    for point in &fracture.path {
+        let [x, y] = point.position.map(|metres| number(metres / MM));
+        let _ = writeln!(text, "{},{},{},{x},{y},{}", point.tip, point.step, exact(point.time), number(point.damage));
+    }
+    text
+}
+
+/// Writes all files of a scene into `folder`.
+///
+/// # Errors
+/// [`Error::File`] if one cannot be written.
+pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &serde_json::Value) -> Result<()> {
+    write_file(&folder.join("history.csv"), history(fracture).as_bytes())?;
+    write_file(&folder.join("crack_path.csv"), crack_path(fracture).as_bytes())?;
+    write_file(&folder.join(super::json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
+    draw_charts(folder, scene, fracture)?;
+    draw_plate(folder, scene, fracture)?;
+    if fracture.snapshots.is_empty() {
+        return Ok(());
+    }
+    let paraview = folder.join("paraview");
+    std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
+    vtk::write_series(&paraview, &fracture.grid, &fracture.snapshots)
+}
+
+/// Load and broken bonds over displacement; in time also load, broken bonds and energies over time.
+fn draw_charts(folder: &Path, scene: &Scene, fracture: &Fracture) -> Result<()> {
+    const MOVED: &str = "Displacement of the loads, mm";
+    const TIME: &str = "Time, µs";
+    let line = |name: &str, x: fn(&HistoryRow) -> f64, y: fn(&HistoryRow) -> f64| Series {
+        name: name.to_owned(),
+        mark: Mark::Line,
+        points: fracture.history.iter().map(|row| (x(row), y(row))).collect(),
+    };
+    let moved = |row: &HistoryRow| row.displacement / MM;
+    let time = |row: &HistoryRow| row.time * 1e6;
+    let load = |row: &HistoryRow| row.load / KN;
+    let broken = |row: &HistoryRow| row.broken_bonds as f64;
+    let chart = |file: &str, what: &str, names: [&str; 2], series: &[Series]| {
+        chart::linear(&folder.join(file), &format!("{}: {what}", scene.name), names, series)
+    };
+    chart("load_displacement.svg", "load over displacement", [MOVED, "Load, kN"], &[line("load", moved, load)])?;
+    if !matches!(scene.procedure, Procedure::Dynamic { .. }) {
+        let names = [MOVED, "Broken bonds"];
+        return chart("broken_bonds.svg", "broken bonds over displacement", names, &[line("broken bonds", moved, broken)]);
+    }
+    chart("broken_bonds.svg", "broken bonds over time", [TIME, "Broken bonds"], &[line("broken bonds", time, broken)])?;
+    chart("load_time.svg", "load over time", [TIME, "Load, kN"], &[line("load", time, load)])?;
+    let energies = [
+        line("kinetic", time, |row| row.kinetic),
+        line("strain", time, |row| row.strain),
+        line("fracture", time, |row| row.fracture),
+        Series { mark: Mark::Dashes, ..line("work of the loads", time, |row| row.work) },
+    ];
+    chart("energies.svg", "energies over time", [TIME, "Energy, J"], &energies)
+}
+
+/// `damage_first.png` and `damage.png`: the plate at the start and at the end.
+fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture) -> Result<()> {
+    let paths = paths(fracture);
+    let none = Vec::new();
+    let first = fracture.snapshots.first().map(|snapshot| ("damage_first.png", snapshot, &none));
+    let last = fracture.snapshots.last().map(|snapshot| ("damage.png", snapshot, &paths));
+    for (file, snapshot, paths) in first.into_iter().chain(last) {
+        let caption = caption(scene, snapshot);
+        let picture = DamagePicture { grid: &fracture.grid, snapshot, cracks: &scene.specimen.cracks, paths, caption: &caption };
+        picture.write(&folder.join(file))?;
+    }
+    Ok(())
+}
+
+/// When a snapshot was taken.
+fn caption(scene: &Scene, snapshot: &Snapshot) -> Vec<String> {
+    match scene.procedure {
+        Procedure::Static => vec!["static".to_owned()],
+        Procedure::QuasiStatic { steps } => vec![format!("step {:.0} of {steps}", snapshot.cycles)],
+        Procedure::Dynamic { .. } => vec![format!("time {:.3} µs", snapshot.cycles * 1e6)],
+    }
+}
+
+/// Path of every front, m.
+fn paths(fracture: &Fracture) -> Vec<Vec<Point>> {
+    let count = fracture.path.iter().map(|point| point.tip + 1).max().unwrap_or(0);
+    let mut paths = vec![Vec::new(); count];
+    fracture.path.iter().for_each(|point| paths[point.tip].push(point.position));
+    paths
+}

@@ -1,0 +1,162 @@
+//! `result.json` of a fracture scene.
+
+use serde_json::{Map, Value, json};
+
+use crate::fracture::outcome::PathPoint;
+use crate::fracture::scene::{Action, Procedure, Scene, SceneLaw};
+use crate::fracture::{Fracture, SceneEnd};
+use crate::report::json::clean;
+use crate::units::MM;
+
+/// The whole object. A figure that does not exist is `null`.
+#[must_use]
+pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
+    let figures = &fracture.figures;
+    let peak = fracture.history.iter().max_by(|a, b| a.load.total_cmp(&b.load));
+    let warnings: Vec<&String> = scene.warnings.iter().chain(&fracture.warnings).collect();
+    json!({
+        "name": scene.name,
+        "stop_reason": fracture.end.name(),
+        "stop_meaning": fracture.end.meaning(),
+        "converged": !matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable),
+        "peak_load_n": finite(fracture.peak_load()),
+        "peak_step": peak.map(|row| row.step),
+        "peak_displacement_mm": peak.and_then(|row| finite(row.displacement / MM)),
+        "onset_step": fracture.onset_step,
+        "onset_time_s": fracture.onset_step.and_then(|step| time_of(step, fracture)),
+        "separated_step": fracture.separated_step,
+        "separated_time_s": fracture.separated_step.and_then(|step| time_of(step, fracture)),
+        "broken_bonds": fracture.history.last().map(|row| row.broken_bonds),
+        "energy_balance_error": energy_error(fracture),
+        "fronts": fronts(fracture),
+        "points": figures.points,
+        "bonds": figures.bonds,
+        "steps": fracture.history.last().map(|row| row.step),
+        "evaluations": figures.evaluations,
+        "time_step_s": (figures.time_step > 0.0).then_some(figures.time_step),
+        "wall_s": figures.wall_s,
+        "memory_mb": figures.memory_mb,
+        "loading": loading(scene),
+        "model": model(scene, fracture),
+        "damage": damage(scene),
+        "warnings": warnings,
+        "version": env!("CARGO_PKG_VERSION"),
+        "case": scene.echo,
+    })
+}
+
+/// JSON has no NaN.
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then(|| clean(value))
+}
+
+/// Time of a step where there is time.
+fn time_of(step: usize, fracture: &Fracture) -> Option<f64> {
+    (fracture.figures.time_step > 0.0).then(|| clean(step as f64 * fracture.figures.time_step))
+}
+
+/// Largest of |kinetic + strain + fracture - work| over the largest energy of the history.
+fn energy_error(fracture: &Fracture) -> Option<f64> {
+    let rows = || fracture.history.iter();
+    let largest = rows().map(|row| row.kinetic.max(row.strain).max(row.work.abs())).fold(0.0, f64::max);
+    let left = rows().map(|row| (row.kinetic + row.strain + row.fracture - row.work).abs()).fold(0.0, f64::max);
+    (largest > 0.0).then(|| left / largest).filter(|error| error.is_finite())
+}
+
+/// Where every crack front stands at the end.
+fn fronts(fracture: &Fracture) -> Value {
+    let count = fracture.path.iter().map(|point| point.tip + 1).max().unwrap_or(0);
+    let last = |tip: usize| fracture.path.iter().rev().find(|point| point.tip == tip);
+    let words = |point: &PathPoint| {
+        json!({
+            "tip": point.tip, "step": point.step, "time_s": point.time,
+            "x_mm": clean(point.position[0] / MM), "y_mm": clean(point.position[1] / MM), "damage": clean(point.damage),
+        })
+    };
+    (0..count).filter_map(last).map(words).collect()
+}
+
+fn loading(scene: &Scene) -> Value {
+    let kinds: Vec<&str> = scene
+        .drives
+        .iter()
+        .map(|drive| match drive.action {
+            Action::Traction(_) => "traction",
+            Action::Displacement(_) => "displacement",
+            Action::Velocity(_) => "velocity",
+            Action::Platen(_) => "platens",
+        })
+        .collect();
+    match scene.procedure {
+        Procedure::Static => json!({ "procedure": "static", "kinds": kinds }),
+        Procedure::QuasiStatic { steps } => json!({ "procedure": "quasi_static", "steps": steps, "kinds": kinds }),
+        Procedure::Dynamic { duration, .. } => json!({ "procedure": "dynamic", "duration_s": duration, "kinds": kinds }),
+    }
+}
+
+/// The model that ran: every choice with its value, and under `why` whether the file asked for it or the program chose it.
+fn model(scene: &Scene, fracture: &Fracture) -> Value {
+    let model = &scene.model;
+    let mut object = Map::new();
+    let mut put = |key: &str, value: Value| object.insert(key.to_owned(), value);
+    match model.law {
+        SceneLaw::Bonds(law) => {
+            put("bond_law", law.kind.name().into());
+            put("kernel", law.kernel.name().into());
+            put("rotation", law.rotation.name().into());
+            put("surface_correction", law.surface_correction.name().into());
+            put("kinematics", if model.finite { "finite" } else { "small" }.into());
+        }
+        SceneLaw::Correspondence { control, factor } => {
+            put("bond_law", "correspondence".into());
+            put("zero_energy_control", control.name().into());
+            put("zero_energy_factor", factor.into());
+        }
+    }
+    put("discretisation", model.arrangement.name().into());
+    put("spacing_mm", clean(model.spacing / MM).into());
+    put("finest_spacing_mm", clean(fracture.grid.spacing / MM).into());
+    put("horizon_ratio", model.horizon_ratio.into());
+    put("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into());
+    put("solver", model.solver.name().into());
+    let given = scene.echo.get("model");
+    let why = |(key, _): (&String, &Value)| {
+        let chosen = given.is_some_and(|model| model.get(key).is_some());
+        (key.clone(), Value::from(if chosen { "given in the file" } else { reason(key) }))
+    };
+    let why: Map<String, Value> = object.iter().filter(|(key, _)| *key != "finest_spacing_mm").map(why).collect();
+    object.insert("why".to_owned(), why.into());
+    object.into()
+}
+
+/// Why the program takes what it takes where the file leaves a choice open.
+fn reason(key: &str) -> &'static str {
+    match key {
+        "bond_law" => "default: takes Poisson's ratio from the material instead of fixing it",
+        "kernel" => "default: that of the law's literature",
+        "rotation" => "default: as the law is printed",
+        "surface_correction" => "default: that of the literature",
+        "kinematics" => "default: strains are small",
+        "zero_energy_control" => "default: leaves uniform strain alone",
+        "zero_energy_factor" => "default: 1",
+        "spacing_mm" => "default: the smaller of crack length / 9 and width / 100",
+        "horizon_ratio" => "default: 3.015, three neighbours in every lattice direction",
+        "lattice_angle_deg" => "default: lattice rows along x",
+        "discretisation" => "default: one spacing",
+        _ => "default: that of the procedure",
+    }
+}
+
+fn damage(scene: &Scene) -> Value {
+    let damage = &scene.damage;
+    let by_points = matches!(scene.model.law, SceneLaw::Correspondence { .. });
+    json!({
+        "law": damage.law.name(),
+        "enters": by_points.then(|| damage.enters.name()),
+        "critical_stretch": damage.stretch,
+        "elastic_stretch": damage.nonlinear.map(|law| law.elastic),
+        "peak_stretch": damage.nonlinear.map(|law| law.peak),
+        "final_stretch": damage.nonlinear.map(|law| law.last),
+        "printed_law": damage.nonlinear.map(|law| law.printed),
+    })
+}
