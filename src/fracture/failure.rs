@@ -5,10 +5,15 @@ use crate::bond_law::stencil::Stencil;
 use crate::error::{Result, input_missing};
 
 /// A bond's measures at which laws look: stretch s and shear angle γ, and the ratio k_t / k_n of its springs.
+///
+/// Whether a bond is longer than it was is asked of its true length: in linear measures debris that has crossed to the other
+/// side of a crack counts as compressed, and would hang on to it for ever.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measures {
     /// Stretch s.
     pub stretch: f64,
+    /// True length over that at rest, squared, less 1: `|ξ + η|²/|ξ|² - 1`.
+    pub elongation: f64,
     /// Shear angle γ.
     pub shear: f64,
     /// Tangential over normal spring.
@@ -20,9 +25,9 @@ pub struct Measures {
 pub enum Failure {
     /// Bonds stay whole.
     Never,
-    /// Broken at `s ≥ s_c`, the critical stretch of the owner.
+    /// Broken at the critical stretch s_c of the owner, true length.
     Stretch(Vec<f64>),
-    /// Broken at `s² + (k_t/k_n) γ² ≥ s_c²`, s > 0, with the critical stretch of the owner: on the stretch form with a constant
+    /// Broken at `s² + (k_t/k_n) γ² ≥ s_c²`, longer than at rest, with the critical stretch of the owner: on the stretch form with a constant
     /// kernel this is `(c_n s² + c_t γ²)/2 ≥ w_c0` (source 002, equation 24), in tension only.
     Energy(Vec<f64>),
     /// Exponential softening.
@@ -67,15 +72,12 @@ impl Failure {
         match self {
             Failure::Never => share,
             Failure::Stretch(limits) => {
-                if at.stretch >= limits[owner as usize] {
-                    0.0
-                } else {
-                    share
-                }
+                let limit = limits[owner as usize];
+                if at.elongation >= limit * (2.0 + limit) { 0.0 } else { share }
             }
             Failure::Energy(limits) => {
                 let limit = limits[owner as usize];
-                let reached = at.stretch > 0.0 && at.stretch * at.stretch + at.ratio * at.shear * at.shear >= limit * limit;
+                let reached = at.elongation > 0.0 && at.stretch * at.stretch + at.ratio * at.shear * at.shear >= limit * limit;
                 if reached { 0.0 } else { share }
             }
             Failure::Softening(law) => {

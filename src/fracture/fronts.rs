@@ -1,27 +1,62 @@
-//! Crack fronts of a scene: points that have lost enough of their bonds, joined to the front they lie next to.
+//! Crack fronts of a scene: points that have lost enough of their bonds, joined to the front they lie ahead of.
 //!
 //! A straight crack between two rows takes at most 11 of 28 bonds of a point (0.393) at a horizon ratio of 3.015, so a point
-//! counts as cracked from a damage of 0.35 on. A front stands at the newly cracked point farthest from where it stood;
-//! cracked points that lie near no front begin a new one.
+//! counts as cracked from a damage of 0.35 on. A front moves to the cracked point farthest ahead of it; a crack that grows
+//! wider behind its front moves nothing. Points cracked away from every front and its way begin a new one: a branch, or a crack
+//! from a place where there was none.
 
 use super::net::Net;
 use super::outcome::PathPoint;
-use crate::specimen::geometry::distance;
+use crate::specimen::geometry::{direction, distance};
 use crate::specimen::{Point, Specimen};
 
 /// Damage from which a point is cracked.
 pub const CRACKED: f64 = 0.35;
-/// Distance in horizons within which a cracked point belongs to a front.
+/// Distance in horizons within which a cracked point belongs to a front or to its way.
 const REACH: f64 = 2.0;
+/// Distance in spacings that a point has to lie ahead of a front to move it.
+const AHEAD: f64 = 0.25;
 
-/// Fronts on their way.
+/// A crack front on its way.
+struct Front {
+    at: Point,
+    /// Unit vector of growth over the last horizon; zero before there was any.
+    direction: Point,
+    way: Vec<Point>,
+}
+
+impl Front {
+    /// How far a point lies ahead, m; `None` if it belongs to another place.
+    fn ahead(&self, point: Point, spacing: f64, horizon: f64) -> Option<f64> {
+        let away = distance(point, self.at);
+        let step = [point[0] - self.at[0], point[1] - self.at[1]];
+        let forward = if self.direction == [0.0; 2] { away } else { step[0] * self.direction[0] + step[1] * self.direction[1] };
+        (away <= REACH * horizon && forward > AHEAD * spacing).then_some(forward)
+    }
+
+    fn passes(&self, point: Point, horizon: f64) -> bool {
+        self.way.iter().any(|&at| distance(point, at) <= REACH * horizon)
+    }
+
+    fn move_to(&mut self, point: Point, horizon: f64) {
+        self.at = point;
+        self.way.push(point);
+        let back = self.way.iter().rev().find(|&&at| distance(at, point) >= horizon).or(self.way.first());
+        let since = back.map_or([0.0; 2], |&back| direction(back, point));
+        if since != [0.0; 2] {
+            self.direction = since;
+        }
+    }
+}
+
+/// All fronts, and what they did.
 pub struct Fronts<'n> {
     net: &'n Net,
     cracked: Vec<bool>,
-    places: Vec<Point>,
+    fronts: Vec<Front>,
     /// Whether the points cracked at the start were taken down.
     begun: bool,
-    /// What was taken down so far.
+    /// Where fronts stood, in the order of time.
     pub path: Vec<PathPoint>,
 }
 
@@ -29,41 +64,53 @@ impl<'n> Fronts<'n> {
     /// Fronts at the tips of the specimen.
     #[must_use]
     pub fn new(specimen: &Specimen, net: &'n Net) -> Self {
-        let places: Vec<Point> = specimen.tips.iter().map(|tip| tip.position).collect();
-        let start = |(tip, &position): (usize, &Point)| PathPoint { tip, step: 0, time: 0.0, position, damage: 0.0 };
-        let path = places.iter().enumerate().map(start).collect();
-        Fronts { net, cracked: vec![false; net.len()], places, begun: false, path }
+        let front =
+            |tip: &crate::specimen::TipSeed| Front { at: tip.position, direction: tip.direction, way: vec![tip.position] };
+        let fronts: Vec<Front> = specimen.tips.iter().map(front).collect();
+        let start = |(tip, front): (usize, &Front)| PathPoint { tip, step: 0, time: 0.0, position: front.at, damage: 0.0 };
+        let path = fronts.iter().enumerate().map(start).collect();
+        Fronts { net, cracked: vec![false; net.len()], fronts, begun: false, path }
     }
 
     /// Takes down where the fronts stand with this damage of the points.
     pub fn advance(&mut self, step: usize, time: f64, damage: &[f64]) {
-        let new: Vec<usize> = (0..damage.len()).filter(|&i| damage[i] >= CRACKED && !self.cracked[i]).collect();
-        new.iter().for_each(|&i| self.cracked[i] = true);
+        let mut left: Vec<usize> = (0..damage.len()).filter(|&i| damage[i] >= CRACKED && !self.cracked[i]).collect();
+        left.iter().for_each(|&i| self.cracked[i] = true);
         if !std::mem::replace(&mut self.begun, true) {
             return;
         }
-        let mut left = new;
-        // A front may run through several points in one step: it takes what is near until nothing is.
+        // A front may run through several points in one step: it goes on until nothing lies ahead of any.
         while !left.is_empty() {
-            let mut moved = Vec::new();
-            for tip in 0..self.places.len() {
-                let at = self.places[tip];
-                let near = |&&i: &&usize| distance(self.net.positions[i], at) <= REACH * self.net.horizons[i];
-                let farthest = left.iter().filter(near).map(|&i| (distance(self.net.positions[i], at), i));
-                let Some((_, i)) = farthest.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
-                moved.push((tip, i));
-                left.retain(|j| distance(self.net.positions[*j], at) > REACH * self.net.horizons[*j]);
-            }
-            if moved.is_empty() {
-                let i = left[0];
-                self.places.push(self.net.positions[i]);
-                moved.push((self.places.len() - 1, i));
-                left.remove(0);
-            }
-            for (tip, i) in moved {
-                self.places[tip] = self.net.positions[i];
+            let moves = self.moves(&left);
+            for &(tip, i) in &moves {
+                self.fronts[tip].move_to(self.net.positions[i], self.net.horizons[i]);
                 self.path.push(PathPoint { tip, step, time, position: self.net.positions[i], damage: damage[i] });
             }
+            if moves.is_empty() {
+                let seen =
+                    |i: &usize| self.fronts.iter().any(|front| front.passes(self.net.positions[*i], self.net.horizons[*i]));
+                let Some(first) = left.iter().copied().find(|i| !seen(i)) else { break };
+                let position = self.net.positions[first];
+                self.path.push(PathPoint { tip: self.fronts.len(), step, time, position, damage: damage[first] });
+                self.fronts.push(Front { at: position, direction: [0.0; 2], way: vec![position] });
+                left.retain(|&i| i != first);
+            }
         }
+    }
+
+    /// The point farthest ahead of every front that has one; a point counts for the front nearest to it.
+    fn moves(&self, points: &[usize]) -> Vec<(usize, usize)> {
+        let mut best: Vec<Option<(f64, usize)>> = vec![None; self.fronts.len()];
+        for &i in points {
+            let (at, spacing, horizon) = (self.net.positions[i], self.net.spacings[i], self.net.horizons[i]);
+            let near = self.fronts.iter().enumerate().filter_map(|(tip, front)| Some((tip, front.ahead(at, spacing, horizon)?)));
+            let nearest = near.min_by(|a, b| distance(self.fronts[a.0].at, at).total_cmp(&distance(self.fronts[b.0].at, at)));
+            if let Some((tip, forward)) = nearest
+                && best[tip].is_none_or(|(most, _)| forward > most)
+            {
+                best[tip] = Some((forward, i));
+            }
+        }
+        best.iter().enumerate().filter_map(|(tip, best)| best.map(|(_, i)| (tip, i))).collect()
     }
 }

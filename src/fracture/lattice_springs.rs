@@ -277,27 +277,26 @@ impl BandWork<'_> {
                     }
                     if LAW > 0 {
                         let limit = critical * spring.length;
-                        let ratio = spring.k_t / spring.k_n;
+                        let (ratio, longest) =
+                            (spring.k_t / spring.k_n, critical * (2.0 + critical) * spring.length * spring.length);
                         let mut beyond: Lanes = [0.0; LANES];
                         for lane in 0..LANES {
+                            let (e_n, e_t) = (e_n[lane], e_t[lane]);
+                            // True length squared, less that at rest.
+                            let longer = e_n * (2.0 * spring.length + e_n) + e_t * e_t;
                             let measure = if LAW == 1 {
-                                e_n[lane] - limit
+                                longer - longest
                             } else {
-                                let square = e_n[lane] * e_n[lane] + ratio * e_t[lane] * e_t[lane] - limit * limit;
-                                if e_n[lane] > 0.0 { square } else { -1.0 }
+                                let square = e_n * e_n + ratio * e_t * e_t - limit * limit;
+                                if longer > 0.0 { square } else { -1.0 }
                             };
                             beyond[lane] = if share[lane] > 0.0 { measure } else { -1.0 };
                         }
                         if largest(&beyond) >= 0.0 {
                             for lane in 0..LANES {
                                 let (e_n, e_t) = (e_n[lane], e_t[lane]);
-                                let reached = if LAW == 1 {
-                                    e_n >= limit
-                                } else {
-                                    e_n > 0.0 && e_n * e_n + ratio * e_t * e_t >= limit * limit
-                                };
                                 let number = self.numbers[((self.first + row) * kinds * stride) + shares + lane];
-                                if reached && share[lane] > 0.0 && self.may_fail[number as usize] {
+                                if beyond[lane] >= 0.0 && self.may_fail[number as usize] {
                                     let (l_n, l_t) = spring.strain::<FINITE>(self.last, at + lane);
                                     released += 0.5 * share[lane] * (spring.k_n * e_n * l_n + spring.k_t * e_t * l_t);
                                     broken.push(number);

@@ -11,6 +11,8 @@ use crate::predict::Snapshot;
 
 /// Snapshots of a run beside the first.
 const SNAPSHOTS: usize = 20;
+/// Looks at crack fronts and at separation in a run at the most: each costs as much as an evaluation of the forces.
+const LOOKS: usize = 400;
 
 /// Collects the outcome of a run.
 pub struct Log<'a> {
@@ -26,6 +28,7 @@ pub struct Log<'a> {
     /// Broken bonds when separation was last asked for.
     asked: usize,
     next_picture: usize,
+    next_look: usize,
 }
 
 impl<'a> Log<'a> {
@@ -44,6 +47,7 @@ impl<'a> Log<'a> {
             broken: 0,
             asked: 0,
             next_picture: 0,
+            next_look: 0,
         }
     }
 
@@ -71,7 +75,9 @@ impl<'a> Log<'a> {
     pub fn row(&mut self, mut row: HistoryRow, u: &[f64], bonds: &BondState) {
         row.broken_bonds = self.broken;
         let picture = row.step >= self.next_picture;
-        if self.broken > self.asked || picture {
+        let last = row.step == self.steps;
+        if picture || (self.broken > self.asked && (last || row.step >= self.next_look)) {
+            self.next_look = row.step + self.steps / LOOKS;
             let damage = bonds.damage(self.net);
             self.fronts.advance(row.step, row.time, &damage);
             if self.broken > self.asked && self.separated.is_none() && is_separated(self.net, self.boundary, bonds) {

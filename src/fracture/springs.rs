@@ -50,6 +50,15 @@ impl<'n> Springs<'n> {
         (eta[0] * n[0] + eta[1] * n[1], e_t, n)
     }
 
+    /// `|ξ + η|²/|ξ|² - 1`.
+    #[inline(always)]
+    fn elongation<const N: usize>(bond: &NetBond, u: &[f64]) -> f64 {
+        let (a, b) = (bond.from as usize * N, bond.to as usize * N);
+        let eta = [u[b] - u[a], u[b + 1] - u[a + 1]];
+        let along = eta[0] * bond.normal[0] + eta[1] * bond.normal[1];
+        (2.0 * along * bond.length + eta[0] * eta[0] + eta[1] * eta[1]) / (bond.length * bond.length)
+    }
+
     /// Forces of the bonds `first..` of one task.
     fn pull<const FINITE: bool, const N: usize>(&self, u: &[f64], damaging: Damaging, task: Task<'_>) -> Reaction {
         let mut reaction = Reaction::default();
@@ -63,7 +72,12 @@ impl<'n> Springs<'n> {
             let (e_n, e_t, n) = Self::strain::<FINITE, N>(bond, u);
             let energy = 0.5 * (bond.k_n * e_n * e_n + bond.k_t * e_t * e_t);
             if damaging == Damaging::Allowed && task.may_fail[i] {
-                let at = Measures { stretch: e_n / bond.length, shear: e_t / bond.length, ratio: bond.k_t / bond.k_n };
+                let at = Measures {
+                    stretch: e_n / bond.length,
+                    elongation: Self::elongation::<N>(bond, u),
+                    shear: e_t / bond.length,
+                    ratio: bond.k_t / bond.k_n,
+                };
                 let after = self.failure.share(bond.from, at, before, &mut task.peak[i]);
                 if after != before {
                     task.share[i] = after;
