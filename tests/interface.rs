@@ -17,6 +17,10 @@ mod check;
 mod cli;
 #[path = "interface/export.rs"]
 mod export;
+#[path = "interface/bad_scenes.rs"]
+mod bad_scenes;
+#[path = "interface/fracture.rs"]
+mod fracture;
 #[path = "interface/hand_calculation.rs"]
 mod hand_calculation;
 #[path = "interface/sif.rs"]

@@ -64,6 +64,10 @@ mod specimen;
 #[cfg(feature = "tables")]
 #[path = "unit/tables.rs"]
 mod tables;
+#[path = "unit/scene.rs"]
+mod scene;
+#[path = "unit/micro_cracks.rs"]
+mod micro_cracks;
 #[path = "unit/verification_table.rs"]
 mod verification_table;
 #[path = "unit/length_average.rs"]

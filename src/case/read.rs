@@ -119,12 +119,8 @@ fn check_sections(table: &Table) -> Result<()> {
                 return Err(input(name, shorten(value), problem, "run `perilife calibrate` on it, or remove the section"));
             }
             "damage" | "refinement" | "micro_cracks" => {
-                return Err(input(
-                    name,
-                    shorten(value),
-                    "belongs to fracture scenes, which are not built yet",
-                    "remove the section",
-                ));
+                let problem = "belongs to a fracture scene, not to a fatigue case";
+                return Err(input(name, shorten(value), problem, "run `perilife fracture` on it, or remove the section"));
             }
             _ => {
                 let what = if value.is_table() { "is not a known section" } else { "stands in no section" };

@@ -1,26 +1,31 @@
 //! `perilife check`: is this input file right, and what would be run?
 
 mod preview;
+mod scene;
 mod understood;
 
 use std::path::PathBuf;
 
+use serde_json::map::Entry;
 use serde_json::{Map, Value, json};
 
 use self::preview::preview;
+use self::scene::{scene_lines, words_of_loads};
 use self::understood::{Line, case_lines, curves_line};
 use super::console::Console;
 use crate::calibration::case::CalibrationCase;
 use crate::case::Case;
 use crate::error::Result;
+use crate::fracture::Scene;
+use crate::fracture::read::is_scene;
 use crate::input::Document;
 use crate::report::output::write_file;
-use crate::report::specimen_picture::specimen_svg;
+use crate::report::specimen_picture::{scene_svg, specimen_svg};
 
 /// Arguments of `perilife check`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// Case or calibration file
+    /// Case, calibration file or fracture scene
     #[arg(value_name = "FILE.toml")]
     pub file: PathBuf,
     /// Draw specimen, crack, loads and supports into this SVG file
@@ -37,9 +42,11 @@ pub struct Args {
 /// What a file asks for, checked.
 struct Checked {
     kind: &'static str,
-    case: Case,
+    name: String,
     lines: Vec<Line>,
     warnings: Vec<String>,
+    drawing: String,
+    echo: Value,
 }
 
 /// Checks the file, prints what was understood and draws the picture.
@@ -47,9 +54,9 @@ struct Checked {
 /// # Errors
 /// Wrong input, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
-    let Checked { kind, case, lines, warnings } = checked(args)?;
+    let Checked { kind, name, lines, warnings, drawing, echo } = checked(args)?;
     if let Some(path) = &args.picture {
-        write_file(path, specimen_svg(&case).as_bytes())?;
+        write_file(path, drawing.as_bytes())?;
     }
     for warning in &warnings {
         args.console.warn(warning);
@@ -58,16 +65,29 @@ pub fn run(args: &Args) -> Result<()> {
         args.console.say(&format!("{:<12} {}", line.what, line.value));
     }
     args.console.say(&format!("{:<12} no errors", "check"));
-    let lines: Map<String, Value> = lines.into_iter().map(|line| (line.what.replace(' ', "_"), line.value.into())).collect();
+    let mut understood: Map<String, Value> = Map::new();
+    for line in lines {
+        // A scene has several loads and supports.
+        match understood.entry(line.what.replace(' ', "_")) {
+            Entry::Vacant(place) => drop(place.insert(line.value.into())),
+            Entry::Occupied(mut place) => {
+                let both = format!("{}; {}", place.get().as_str().unwrap_or_default(), line.value);
+                place.insert(both.into());
+            }
+        }
+    }
     args.console.object(&json!({
-        "ok": true, "kind": kind, "name": case.name, "understood": lines, "warnings": warnings, "case": case.echo
+        "ok": true, "kind": kind, "name": name, "understood": understood, "warnings": warnings, "case": echo
     }))
 }
 
-/// Reads the file as what it is: a calibration with the curves it names, or a case. The body is built as well where that
+/// Reads the file as what it is: a calibration with the curves it names, a fracture scene, or a case. The body is built as well where that
 /// is quick, since only then some troubles show.
 fn checked(args: &Args) -> Result<Checked> {
     let document = Document::read(&args.file, &args.set)?;
+    if is_scene(&document.table) {
+        return checked_scene(&document);
+    }
     let is_calibration = document.table.contains_key("measured") || document.table.contains_key("fit");
     let (kind, case, mut warnings, curves) = if is_calibration {
         let CalibrationCase { case, curves, warnings, .. } = CalibrationCase::from_file(&args.file, &args.set)?;
@@ -83,7 +103,14 @@ fn checked(args: &Args) -> Result<Checked> {
     if !curves.is_empty() {
         lines.insert(0, curves_line(&curves));
     }
-    Ok(Checked { kind, case, lines, warnings })
+    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing: specimen_svg(&case), echo: case.echo })
+}
+
+fn checked_scene(document: &Document) -> Result<Checked> {
+    let scene = Scene::from_document(document)?;
+    let lines = scene_lines(&scene).map_err(|error| document.locate(error))?;
+    let drawing = scene_svg(&scene, &words_of_loads(&scene));
+    Ok(Checked { kind: "fracture", name: scene.name, lines, warnings: scene.warnings, drawing, echo: scene.echo })
 }
 
 #[cfg(test)]
@@ -96,9 +123,15 @@ mod tests {
     #[test]
     fn shipped_cases_pass() {
         let folder = tempfile::tempdir().unwrap();
-        for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/data/cases")).unwrap() {
+        let files = ["/data/cases", "/data/cases/fracture"].into_iter().filter_map(|below| {
+            Some(std::fs::read_dir(format!("{}{below}", env!("CARGO_MANIFEST_DIR"))).ok()?.map(|entry| entry.unwrap().path()))
+        });
+        let is_toml = |file: &PathBuf| file.extension().is_some_and(|extension| extension == "toml");
+        let files: Vec<PathBuf> = files.flatten().filter(is_toml).collect();
+        assert!(files.len() > 2);
+        for file in files {
             let picture = folder.path().join("picture.svg");
-            let args = Args { file: entry.unwrap().path(), picture: Some(picture.clone()), set: vec![], console: QUIET };
+            let args = Args { file, picture: Some(picture.clone()), set: vec![], console: QUIET };
             run(&args).unwrap();
             assert!(std::fs::read_to_string(&picture).unwrap().ends_with("</svg>\n"));
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);

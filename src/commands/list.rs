@@ -14,6 +14,9 @@ use crate::error::Result;
 use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::lattice_direction::LatticeDirection;
 use crate::fatigue::{Ageing, BlockKind, Precrack};
+use crate::fracture::SceneEnd;
+use crate::fracture::read::{Kinematics, LoadKind, Transverse};
+use crate::fracture::scene::{Arrangement, DamageEntry, DamageLaw, PointLaw, SceneSolver, ZeroEnergyControl};
 use crate::kinds::KindLine;
 use crate::loading::LoadingKind;
 use crate::material::{Plane, library};
@@ -40,18 +43,27 @@ pub fn lines() -> Vec<(String, String, String)> {
         Ends::lines(),
         Plane::lines(),
         LoadingKind::lines(),
+        LoadKind::lines(),
         Edge::lines(),
+        Transverse::lines(),
         Component::lines(),
     ];
     let of_the_model = [
         Method::lines(),
         BondLawKind::lines(),
+        PointLaw::lines(),
+        ZeroEnergyControl::lines(),
         Kernel::lines(),
         Rotation::lines(),
         SurfaceCorrection::lines(),
+        Kinematics::lines(),
         Discretisation::lines(),
+        beside(&Discretisation::lines(), Arrangement::lines()),
         Symmetry::lines(),
         SolverKind::lines(),
+        beside(&SolverKind::lines(), SceneSolver::lines()),
+        DamageLaw::lines(),
+        DamageEntry::lines(),
         Ageing::lines(),
         LatticeDirection::lines(),
         FiniteHorizon::lines(),
@@ -66,6 +78,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         CycleUnit::lines(),
         RateMethod::lines(),
         StopReason::lines(),
+        beside(&StopReason::lines(), SceneEnd::lines()),
     ];
     let of_the_tips = StressIntensityMethod::lines();
     let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
@@ -83,6 +96,11 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
     all.extend(GROUPS.iter().map(|group| ("bench NAME".to_owned(), group.name.to_owned(), group.about.to_owned())));
     all
+}
+
+/// The lines of a second choice for a key that do not stand in the first one already.
+fn beside(first: &[KindLine], second: Vec<KindLine>) -> Vec<KindLine> {
+    second.into_iter().filter(|line| first.iter().all(|known| (known.key, known.name) != (line.key, line.name))).collect()
 }
 
 /// Prints the list in aligned columns, or as JSON.

@@ -15,6 +15,7 @@ mod log;
 pub mod net;
 pub mod outcome;
 pub mod pieces;
+pub mod preview;
 pub mod read;
 pub mod scene;
 pub mod springs;

@@ -11,7 +11,7 @@ mod slice;
 pub use document::Document;
 pub use quantity::*;
 pub(crate) use slice::shorten;
-pub use slice::{PLANNED, slice, table_of, value_at};
+pub use slice::{OF_SCENES, PLANNED, slice, table_of, value_at};
 
 /// Reads a whole text file; bytes that are not UTF-8 are wrong input, everything else is trouble with the file.
 pub fn read_text(path: &std::path::Path) -> crate::Result<String> {

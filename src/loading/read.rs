@@ -29,6 +29,13 @@ const BARE: &[&str] = &[
 
 const MAGNITUDES: &str = "stress_max_mpa, stress_range_mpa, force_max_n, force_range_n, force_max_kn, force_range_kn";
 
+/// The kind alone.
+#[derive(Deserialize)]
+struct KindInput {
+    #[serde(rename = "kind")]
+    _kind: LoadingKind,
+}
+
 /// Keys of `[loading]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -49,6 +56,11 @@ pub(super) struct Input {
 
 /// Reads `[loading]` and `[supports]`, puts loads and supports of a `plate` on `specimen`, and gives the cycles.
 pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Specimen) -> Result<Loading> {
+    if let Some(kind) = table_of(loading, "loading")?.get("kind") {
+        // First, so that a load of a fracture scene is told where it belongs.
+        let only = toml::Table::from_iter([("kind".to_owned(), kind.clone())]);
+        slice::<KindInput>(&Value::Table(only), "loading")?;
+    }
     refuse_by_name(loading)?;
     let input: Input = slice(loading, "loading")?;
     let ratio = read_ratio(input.stress_ratio)?;

@@ -1,7 +1,9 @@
 //! The specimen of a case as a drawing to scale: outline, holes, slots, cracks, loads, supports, sizes in mm.
 
+mod scene;
 mod sketch;
 
+pub use scene::scene_svg;
 use sketch::{CRACK, EDGE, HELD, LOAD, PLATE, Sketch, WORDS};
 
 use crate::case::Case;
@@ -22,7 +24,11 @@ const ARROW: f64 = 38.0;
 /// is held.
 #[must_use]
 pub fn specimen_svg(case: &Case) -> String {
-    let specimen = &case.specimen;
+    drawing(&case.name, &load_words(case), &case.specimen, |_| {})
+}
+
+/// The drawing with a title, the loads in words, and what `more` adds on the bare plate.
+fn drawing(name: &str, loads: &str, specimen: &Specimen, more: impl FnOnce(&mut Sketch)) -> String {
     let [low, high] = bounding_box(&specimen.outline);
     let size = [high[0] - low[0], high[1] - low[1]];
     let scale = (PLATE_MAX[0] / size[0]).min(PLATE_MAX[1] / size[1]);
@@ -35,8 +41,8 @@ pub fn specimen_svg(case: &Case) -> String {
     let plate_height = MARGIN[2] + MARGIN[3] + size[1] * scale;
     let height = plate_height + 21.0 * rows.len() as f64;
 
-    sketch.text([width / 2.0, 30.0], &format!("{} ({})", case.name, specimen.kind), "middle", 18, EDGE);
-    sketch.text([width / 2.0, 52.0], &load_words(case), "middle", 13, LOAD);
+    sketch.text([width / 2.0, 30.0], &format!("{name} ({})", specimen.kind), "middle", 18, EDGE);
+    sketch.text([width / 2.0, 52.0], loads, "middle", 13, LOAD);
     sketch.polygon(&specimen.outline, PLATE, EDGE);
     for hole in &specimen.holes {
         sketch.circle(hole.centre, hole.radius, "white", EDGE);
@@ -47,6 +53,7 @@ pub fn specimen_svg(case: &Case) -> String {
         sketch.slot(&slot.corners());
     }
     draw_supports(&mut sketch, specimen);
+    more(&mut sketch);
     draw_cracks(&mut sketch, specimen);
     draw_loads(&mut sketch, specimen);
     draw_sizes(&mut sketch, specimen, [low, high]);

@@ -78,7 +78,7 @@ const BAD: &[Bad] = &[
     panel("[specimen]", "colour = 3\n[specimen]", &[":1:", "colour", "no section"]),
     panel("[specimen]", "stop = 3\n[specimen]", &["not TOML", "duplicate"]),
     panel("[stop]", "[measured]\nfiles = [\"a.csv\"]\n[stop]", &[":18:", "measured", "calibrate"]),
-    panel("[stop]", "[refinement]\nlevel = 2\n[stop]", &["refinement", "not built yet"]),
+    panel("[stop]", "[refinement]\nlevel = 2\n[stop]", &["refinement", "fracture scene", "perilife fracture"]),
     panel("width_mm = 152.4", "width_mm = 152.4 mm", &[":3:", "not TOML"]),
     panel("width_mm = 152.4", "width_mm = 152.4\nwidth_mm = 3", &[":4:", "not TOML", "each key once"]),
     panel("[material]", "[material", &[":7:", "not TOML"]),
@@ -201,7 +201,7 @@ const BAD: &[Bad] = &[
     panel("spacing_mm = 1.0", "spacing_mm = 0.001", &["model.spacing_mm", "points", "or more"]),
     panel("spacing_mm = 1.0", "horizon_ratio = 0.5", &["model.horizon_ratio", "between 1.5 and"]),
     panel("spacing_mm = 1.0", "bond_law = \"springs\"", &["model.bond_law", "springs", "bond_based, two_parameter"]),
-    panel("spacing_mm = 1.0", "bond_law = \"correspondence\"", &["model.bond_law", "not built yet"]),
+    panel("spacing_mm = 1.0", "bond_law = \"correspondence\"", &["model.bond_law", "fracture scenes", "perilife fracture"]),
     panel(
         "spacing_mm = 1.0",
         "bond_law = \"state_based\"\nsurface_correction = \"balanced\"",
@@ -311,7 +311,7 @@ fn missing_and_unreadable_files_are_file_errors() {
 }
 
 /// Values a user could write, or not.
-fn any_value() -> impl Strategy<Value = String> {
+pub fn any_value() -> impl Strategy<Value = String> {
     let leaf = prop_oneof![
         prop::num::f64::ANY.prop_map(|x| if x.is_nan() {
             "nan".to_owned()

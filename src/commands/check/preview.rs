@@ -71,7 +71,7 @@ fn points_line(case: &Case, count: &str, spacing: f64) -> String {
 }
 
 /// What a run would end with as mechanics is, seen before any run, input that has to change.
-fn as_input(error: Error) -> Error {
+pub(super) fn as_input(error: Error) -> Error {
     match error {
         Error::Mechanics(problem) => Error::Input(Box::new(InputError { problem, ..InputError::default() })),
         other => other,

@@ -2,6 +2,7 @@
 
 mod checks;
 mod damage;
+mod load;
 mod loading;
 mod micro_cracks;
 mod model;
@@ -9,8 +10,9 @@ mod refinement;
 mod region;
 mod supports;
 
-pub use loading::{LoadKind, Transverse};
+pub use load::{LoadKind, Transverse};
 pub use model::Kinematics;
+pub use region::around;
 
 use std::path::Path;
 

@@ -15,7 +15,7 @@ use crate::specimen::Specimen;
 crate::kinds! {
     /// Measures of deformation of a bond.
     pub enum Kinematics for "model.kinematics" {
-        Small = "small": "stretch and direction of a bond linear in the displacements",
+        Small = "small": "stretch and direction of a bond linear in the displacements; fracture scenes",
         Finite = "finite": "true stretch along the deformed bond; bond_based by velocity_verlet or adaptive_dynamic_relaxation; fracture scenes",
     }
 }

@@ -95,7 +95,8 @@ pub fn stretches_within(edge: Edge, range: [f64; 2], specimen: &Specimen) -> Vec
     edge.stretches(specimen).into_iter().filter_map(clipped).collect()
 }
 
-/// The box around a region: for a side, so deep as it holds and one `row` at the least.
+/// The box around a region, m: for a side, so deep as it holds and one `row` at the least.
+#[must_use]
 pub fn around(region: &Region, row: f64, specimen: &Specimen) -> (Point, Point) {
     match *region {
         Region::Box { low, high } => (low, high),

@@ -1,0 +1,176 @@
+//! What `perilife check` has understood of a fracture scene, in words.
+
+use super::preview::as_input;
+use super::understood::{Line, short};
+use crate::error::Result;
+use crate::fracture::Scene;
+use crate::fracture::preview::{Preview, preview};
+use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure, Refinement, Region, SceneLaw};
+use crate::units::{GPA, MM, MPA};
+
+/// Points up to which points and bonds are built; below a second.
+const POINTS_BUILT: f64 = 1e5;
+
+/// One line for each thing understood; points and bonds are built where that is quick, since only then some troubles show.
+pub(super) fn scene_lines(scene: &Scene) -> Result<Vec<Line>> {
+    let about = scene.specimen.area() / scene.model.spacing.powi(2);
+    let built = (about <= POINTS_BUILT).then(|| preview(scene).map_err(as_input)).transpose()?;
+    let specimen = &scene.specimen;
+    let micro = scene.echo.get("micro_cracks").and_then(|section| section.get("count")).and_then(serde_json::Value::as_u64);
+    let cracks = specimen.cracks.len() - micro.unwrap_or(0) as usize;
+    let micro_words = micro.map_or_else(String::new, |count| format!(", {count} micro cracks"));
+    let mut lines = vec![
+        line(
+            "specimen",
+            format!(
+                "{} {} mm wide, {} mm long, {} mm thick",
+                specimen.kind,
+                mm(specimen.width),
+                mm(specimen.length()),
+                mm(specimen.thickness)
+            ),
+        ),
+        line(
+            "flaws",
+            format!(
+                "{cracks} cracks, {} slots, {} holes, {} tips{micro_words}",
+                specimen.slots.len(),
+                specimen.holes.len(),
+                specimen.tips.len()
+            ),
+        ),
+        line(
+            "material",
+            format!(
+                "{}: E {} GPa, nu {}, plane {}",
+                scene.material.name,
+                short(scene.material.youngs_modulus / GPA),
+                scene.material.poisson_ratio,
+                scene.material.plane
+            ),
+        ),
+        line("law", law_words(scene)),
+        line("points", points_words(scene, about, built.as_ref())),
+        line("procedure", procedure_words(scene)),
+    ];
+    lines.extend(scene.drives.iter().map(|drive| line("load", drive_words(drive))));
+    lines.extend(scene.holds.iter().map(|hold| line("support", hold_words(hold))));
+    lines.extend(scene.refinement.as_ref().map(|refinement| line("refinement", refinement_words(refinement))));
+    lines.push(line("damage", damage_words(scene)));
+    Ok(lines)
+}
+
+fn line(what: &'static str, value: String) -> Line {
+    Line { what, value }
+}
+
+fn mm(metres: f64) -> String {
+    short(metres / MM)
+}
+
+fn law_words(scene: &Scene) -> String {
+    let kinematics = if scene.model.finite { ", true stretch" } else { "" };
+    match scene.model.law {
+        SceneLaw::Bonds(law) => {
+            format!(
+                "{}, kernel {}, rotation {}, surface correction {}{kinematics}",
+                law.kind, law.kernel, law.rotation, law.surface_correction
+            )
+        }
+        SceneLaw::Correspondence { control, factor } => format!("correspondence, zero-energy control {control}, factor {factor}"),
+    }
+}
+
+fn points_words(scene: &Scene, about: f64, built: Option<&Preview>) -> String {
+    let model = &scene.model;
+    let asked = format!("horizon ratio {}, {}", model.horizon_ratio, model.arrangement);
+    let Some(built) = built else { return format!("about {about:.0} at spacing {} mm, {asked}", mm(model.spacing)) };
+    let [fine, coarse] = built.spacings.map(mm);
+    let spacing = if fine == coarse { fine } else { format!("{fine} to {coarse}") };
+    format!(
+        "{} and {} bonds, {} of them cut by the initial cracks, at spacing {spacing} mm, {asked}",
+        built.points, built.bonds, built.cut
+    )
+}
+
+fn procedure_words(scene: &Scene) -> String {
+    let solver = scene.model.solver;
+    match scene.procedure {
+        Procedure::Static => format!("one equilibrium at full load, solver {solver}"),
+        Procedure::QuasiStatic { steps } => format!("{steps} load steps, solver {solver}"),
+        Procedure::Dynamic { duration, time_step } => {
+            let step = time_step.map_or_else(|| "its own time step".to_owned(), |step| format!("time step {step:e} s"));
+            format!("motion over {duration:e} s, {step}, solver {solver}")
+        }
+    }
+}
+
+/// The loads of a scene in one line.
+pub(super) fn words_of_loads(scene: &Scene) -> String {
+    let words: Vec<String> = scene.drives.iter().take(3).map(drive_words).collect();
+    let more = scene.drives.len().saturating_sub(3);
+    if more > 0 { format!("{}; and {more} more", words.join("; ")) } else { words.join("; ") }
+}
+
+fn drive_words(drive: &Drive) -> String {
+    let pair = |[x, y]: [f64; 2], unit: f64| format!("({}, {})", short(x / unit), short(y / unit));
+    let components = |components: [Option<f64>; 2]| {
+        let one = |value: Option<f64>| value.map_or_else(|| "free".to_owned(), mm);
+        format!("({}, {})", one(components[0]), one(components[1]))
+    };
+    let what = match drive.action {
+        Action::Traction(traction) => format!("traction {} MPa", pair(traction, MPA)),
+        Action::Displacement(values) => format!("displacement {} mm", components(values)),
+        Action::Velocity(values) => format!("velocity {} mm/s", components(values)),
+        Action::Platen(motion) => format!("platen moving {} mm", pair(motion, MM)),
+    };
+    let ramp = if drive.ramp > 0.0 { format!(", rising over {:e} s", drive.ramp) } else { String::new() };
+    format!("{what} on {}{ramp}", region_words(&drive.region))
+}
+
+fn hold_words(hold: &Hold) -> String {
+    let held = match hold.components {
+        [true, true] => "x and y",
+        [true, false] => "x",
+        _ => "y",
+    };
+    format!("{held} held on {}", region_words(&hold.region))
+}
+
+fn region_words(region: &Region) -> String {
+    match region {
+        Region::Edge { edge, depth, range } => {
+            let depth = if *depth > 0.0 { format!(", {} mm deep", mm(*depth)) } else { String::new() };
+            let part =
+                if range[0].is_finite() { format!(" from {} to {} mm", mm(range[0]), mm(range[1])) } else { String::new() };
+            format!("{edge}{part}{depth}")
+        }
+        Region::Box { low, high } => {
+            format!("the box ({}, {}) to ({}, {}) mm", mm(low[0]), mm(low[1]), mm(high[0]), mm(high[1]))
+        }
+    }
+}
+
+fn refinement_words(refinement: &Refinement) -> String {
+    let levels = refinement.regions.iter().map(|(_, levels)| *levels).max().unwrap_or(0);
+    format!("{} regions, up to {levels} levels", refinement.regions.len())
+}
+
+fn damage_words(scene: &Scene) -> String {
+    let damage = &scene.damage;
+    let limit = match (damage.law, damage.stretch, scene.material.fracture_energy) {
+        (DamageLaw::CriticalStretch | DamageLaw::CriticalEnergy, Some(stretch), _) => format!(", critical stretch {stretch}"),
+        (DamageLaw::CriticalStretch | DamageLaw::CriticalEnergy, None, Some(energy)) => {
+            format!(", fracture energy {energy} J/m²")
+        }
+        (DamageLaw::PrincipalStress, ..) => {
+            format!(", tensile strength {} MPa", short(damage.tensile_strength.unwrap_or(f64::NAN) / MPA))
+        }
+        (DamageLaw::NonlinearTwoParameter, ..) => damage.nonlinear.map_or_else(String::new, |law| {
+            let printed = if law.printed { ", as printed" } else { "" };
+            format!(", stretches {:.6}, {:.6}, {:.6}{printed}", law.elastic, law.peak, law.last)
+        }),
+        _ => String::new(),
+    };
+    format!("{}{limit}", damage.law)
+}

@@ -1,0 +1,42 @@
+//! The points and bonds that a run would compute, looked at before anything moves.
+
+use super::boundary::Boundary;
+use super::scene::Scene;
+use crate::error::Result;
+
+/// What the discretisation makes of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preview {
+    /// Points.
+    pub points: usize,
+    /// Bonds.
+    pub bonds: usize,
+    /// Bonds that the initial cracks cut.
+    pub cut: usize,
+    /// Smallest and largest horizon, m.
+    pub horizons: [f64; 2],
+    /// Smallest and largest spacing, m.
+    pub spacings: [f64; 2],
+    /// Points of every load, in the order of the scene.
+    pub loaded: Vec<usize>,
+}
+
+/// Builds points, bonds, loads and supports of a scene.
+///
+/// # Errors
+/// What a run would find wrong before it starts.
+pub fn preview(scene: &Scene) -> Result<Preview> {
+    let (net, _) = super::build(scene)?;
+    let boundary = Boundary::of(scene, &net)?;
+    let range = |values: &[f64]| {
+        values.iter().fold([f64::INFINITY, 0.0], |[low, high], &value| [f64::min(low, value), f64::max(high, value)])
+    };
+    Ok(Preview {
+        points: net.len(),
+        bonds: net.bonds.len(),
+        cut: net.pre_cut.len(),
+        horizons: range(&net.horizons),
+        spacings: range(&net.spacings),
+        loaded: boundary.groups.iter().map(|group| group.points.len()).collect(),
+    })
+}

@@ -1,0 +1,191 @@
+//! `perilife fracture` from file to files.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use tempfile::{TempDir, tempdir};
+
+use crate::cli::{assert_refused, perilife, texts};
+
+/// A plate torn apart in time, small enough for a tenth of a second.
+const SCENE: &str = r#"[specimen]
+kind = "plate"
+width_mm = 20
+length_mm = 20
+thickness_mm = 1
+cracks = [{ from_mm = [-10, 0], to_mm = [0, 0] }]
+[material]
+youngs_modulus_gpa = 65
+poisson_ratio = 0.2
+density_kg_m3 = 2235
+fracture_energy_j_m2 = 204
+[model]
+bond_law = "one_bond_two_parameter"
+spacing_mm = 1
+[loading]
+kind = "velocity"
+velocity_mm_s = 5000
+edges = ["top", "bottom"]
+transverse = "held"
+duration_s = 2e-5
+[damage]
+law = "critical_energy"
+"#;
+
+fn folder() -> TempDir {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("torn.toml"), SCENE).unwrap();
+    dir
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn a_scene_writes_what_it_promises() {
+    let dir = folder();
+    let output = perilife(dir.path(), &["fracture", "torn.toml", "--out", "out/run", "--json"]);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let printed: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");
+    let run = dir.path().join("out/run");
+    let written = json(&run.join("result.json"));
+    assert_eq!(printed, written);
+    let charts = ["load_displacement.svg", "load_time.svg", "energies.svg", "broken_bonds.svg"];
+    for file in ["damage_first.png", "damage.png", "paraview/run.pvd"].iter().chain(&charts) {
+        assert!(run.join(file).is_file(), "{file}");
+    }
+    for file in charts {
+        assert!(!fs::read_to_string(run.join(file)).unwrap().contains("NaN"), "{file}");
+    }
+    // The keys that are promised, and what a plate that is torn in two must say.
+    for key in ["peak_load_n", "onset_step", "separated_step", "stop_reason", "points", "wall_s"] {
+        assert!(!written[key].is_null(), "{key}");
+    }
+    assert_eq!((&written["points"], &written["name"]), (&400.into(), &"torn".into()));
+    assert_eq!(written["model"]["kernel"], "constant");
+    assert_eq!(written["model"]["why"]["kernel"], "default: that of the law's literature");
+    assert_eq!(written["model"]["why"]["spacing_mm"], "given in the file");
+    assert_eq!(written["case"]["loading"]["velocity_mm_s"], 5000);
+    assert!(written["onset_step"].as_u64() < written["separated_step"].as_u64());
+    assert!(written["fronts"][0]["x_mm"].as_f64().unwrap() > 0.0, "the crack grew: {}", written["fronts"]);
+}
+
+/// Columns as promised, at least ten digits, steps and time that rise, and the sums that stand in `result.json`.
+#[test]
+fn tables_hold_the_histories() {
+    let dir = folder();
+    assert_eq!(perilife(dir.path(), &["fracture", "torn.toml", "--out", "run", "--quiet"]).status.code(), Some(0));
+    let run = dir.path().join("run");
+    let history = fs::read_to_string(run.join("history.csv")).unwrap();
+    let mut lines = history.lines();
+    assert_eq!(lines.next(), Some("step,time_s,displacement_mm,load_n,broken_bonds,kinetic_j,strain_j,fracture_j,work_j"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let number = |text: &str| text.parse::<f64>().unwrap_or_else(|_| panic!("{text}"));
+    assert!(rows.len() > 50 && rows.iter().all(|row| row.len() == 9));
+    let digits = |text: &str| {
+        text.split('e').next().unwrap().trim_start_matches(['-', '0', '.']).chars().filter(char::is_ascii_digit).count()
+    };
+    for row in &rows {
+        for column in [1, 2, 3, 5, 6, 7, 8] {
+            assert!(number(row[column]) == 0.0 || digits(row[column]) >= 10, "{}", row[column]);
+        }
+    }
+    for pair in rows.windows(2) {
+        assert!(number(pair[0][0]) < number(pair[1][0]) && number(pair[0][1]) < number(pair[1][1]));
+        assert!(number(pair[0][4]) <= number(pair[1][4]), "broken bonds never fall");
+    }
+    // Both sides at 5000 mm/s over 20 µs: 0.2 mm, to the last time step.
+    let last = rows.last().unwrap();
+    assert!((number(last[2]) - 1e4 * number(last[1])).abs() < 1e-9 && (number(last[1]) - 2e-5).abs() < 2e-7);
+    let result = json(&run.join("result.json"));
+    let peak = rows.iter().map(|row| number(row[3])).fold(0.0, f64::max);
+    assert!((result["peak_load_n"].as_f64().unwrap() - peak).abs() < 1e-9 * peak);
+    assert_eq!(result["broken_bonds"].as_f64(), Some(number(last[4])));
+
+    let path = fs::read_to_string(run.join("crack_path.csv")).unwrap();
+    let mut lines = path.lines();
+    assert_eq!(lines.next(), Some("tip,step,time_s,x_mm,y_mm,damage"));
+    assert!(lines.next().unwrap().starts_with("0,0,0,0,0,"), "the tip of the start: {path}");
+    assert!(lines.all(|line| line.split(',').skip(1).all(|field| field.parse::<f64>().is_ok())));
+}
+
+#[test]
+fn keys_are_overridden_and_the_folder_replaced() {
+    let dir = folder();
+    let call = |set: &str| perilife(dir.path(), &["fracture", "torn.toml", "--out", "run", "--set", set]);
+    let (stdout, _) = texts(&call("loading.duration_s=1e-6"));
+    for words in ["peak load", "done", "separated      never", "400 points", "results        run"] {
+        assert!(stdout.contains(words), "{words} in {stdout}");
+    }
+    assert!(json(&dir.path().join("run/result.json"))["separated_step"].is_null());
+    assert_eq!(call("model.spacing_mm=2").status.code(), Some(0));
+    assert_eq!(json(&dir.path().join("run/result.json"))["points"], 100);
+    assert_refused(&call("model.spacing_mm=nan"), 2, &["torn.toml", "model.spacing_mm", "--set"]);
+    assert_eq!(json(&dir.path().join("run/result.json"))["points"], 100, "the earlier result stands");
+    fs::create_dir(dir.path().join("thesis")).unwrap();
+    fs::write(dir.path().join("thesis/chapter"), "years of work").unwrap();
+    let output = perilife(dir.path(), &["fracture", "torn.toml", "--out", "thesis"]);
+    assert_refused(&output, 2, &["--out = thesis", "did not make"]);
+    assert_refused(&perilife(dir.path(), &["fracture", "no.toml", "--out", "a"]), 4, &["no.toml: cannot read"]);
+    assert!(!dir.path().join("a").exists());
+}
+
+/// A time step above the stable one shows only once points and bonds stand; it is wrong input all the same.
+#[test]
+fn an_unstable_time_step_is_refused() {
+    let dir = folder();
+    let output = perilife(dir.path(), &["fracture", "torn.toml", "--out", "run", "--set", "loading.time_step_s=1e-6"]);
+    assert_refused(&output, 2, &["loading.time_step_s", "stable step"]);
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "nothing stays behind");
+}
+
+#[test]
+fn check_understands_a_scene() {
+    let dir = folder();
+    let output = perilife(dir.path(), &["check", "torn.toml", "--picture", "p.svg"]);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    for words in [
+        "1 cracks, 0 slots, 0 holes, 1 tips",
+        "one_bond_two_parameter, kernel constant, rotation resisted",
+        "400 and",
+        "motion over 2e-5 s",
+        "velocity (0, 5000) mm/s on top",
+        "velocity (0, -5000) mm/s on bottom",
+        "critical_energy, fracture energy 204 J/m²",
+        "no errors",
+    ] {
+        assert!(stdout.contains(words), "{words} in {stdout}");
+    }
+    let picture = fs::read_to_string(dir.path().join("p.svg")).unwrap();
+    assert!(picture.starts_with("<svg") && picture.contains("velocity (0, 5000) mm/s on top") && !picture.contains("NaN"));
+    let (stdout, _) = texts(&perilife(dir.path(), &["check", "torn.toml", "--json"]));
+    let object: Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!((&object["ok"], &object["kind"]), (&true.into(), &"fracture".into()));
+    assert!(object["understood"]["load"].as_str().unwrap().contains("on top; velocity"));
+    // Without cracks and with a support that meets no point of a coarse lattice.
+    let set = "supports.pin={ from_mm = [5.9, 5.9], to_mm = [6.1, 6.1], fix = [\"x\"] }";
+    assert_eq!(perilife(dir.path(), &["check", "torn.toml", "--set", set]).status.code(), Some(0));
+}
+
+#[test]
+fn list_names_what_scenes_know() {
+    let (stdout, _) = texts(&perilife(Path::new("."), &["list"]));
+    for (key, name) in [
+        ("loading.kind", "platens"),
+        ("model.bond_law", "correspondence"),
+        ("model.discretisation", "dual_horizon"),
+        ("model.solver", "velocity_verlet"),
+        ("model.zero_energy_control", "silling"),
+        ("model.kinematics", "finite"),
+        ("damage.law", "nonlinear_two_parameter"),
+        ("damage.enters", "influence"),
+        ("loading.transverse", "held"),
+    ] {
+        let found = stdout.lines().filter(|line| line.split_whitespace().take(2).eq([key, name])).count();
+        assert_eq!(found, 1, "{key} {name}");
+    }
+}
