@@ -9,6 +9,8 @@
 //! Where the line runs through a row of points, each bond along it belongs half to either side, a point of it keeps the bonds to
 //! its own side alone, and its motion across the line and its rotation are held at zero.
 
+use rayon::prelude::*;
+
 use super::boundary::Boundary;
 use super::lattice::{LANES, Lattice};
 use super::{Body, Bond};
@@ -86,9 +88,11 @@ impl Mirror {
             let has_middle = count % 2 == 0 || body.stencil.dilatation == 0.0;
             let line = if count % 2 == 0 { Line::Between } else { Line::Through };
             let intact = |bond: usize| multiplier[bond] > 0.0;
-            let keeps = |reflection: Reflection| {
-                reflection.keeps(body) && reflection.keeps_bonds(body, |bond, image| intact(bond) == intact(image))
+            let alike = |bond: usize, image: usize| {
+                let [here, there] = [bond, image].map(|bond| f64::from(body.multiplier[bond]));
+                close(here, there, here) && intact(bond) == intact(image)
             };
+            let keeps = |reflection: Reflection| reflection.keeps(body) && reflection.keeps_bonds(body, alike);
             (is_wide && has_middle && keeps(Reflection::new(body, axis))).then_some(line)
         });
         Mirror { lines }
@@ -130,7 +134,11 @@ impl Reflection {
     /// Image of a place.
     #[must_use]
     pub fn place(&self, place: usize) -> usize {
-        let (column, row) = (place % self.stride, place / self.stride);
+        self.seat([place % self.stride, place / self.stride])
+    }
+
+    /// Image of the place with this padded column and row.
+    fn seat(&self, [column, row]: [usize; 2]) -> usize {
         if self.axis == 0 { row * self.stride + self.ends - column } else { (self.ends - row) * self.stride + column }
     }
 
@@ -142,26 +150,32 @@ impl Reflection {
         (image * self.places + self.place(if swaps { to } else { from })) as Bond
     }
 
-    /// Whether a plate is its own image.
+    /// Whether the points, loads and supports of a plate are their own image.
     fn keeps(&self, body: &Body) -> bool {
         let boundary = &body.boundary;
         let points = body.points.iter().all(|&place| body.is_point[self.place(place as usize)]);
         points
-            && self.keeps_bonds(body, |a, b| {
-                close(f64::from(body.multiplier[a]), f64::from(body.multiplier[b]), f64::from(body.multiplier[a]))
-            })
             && self.keeps_vectors(&boundary.forces)
             && self.keeps_scalars(&boundary.couples)
             && self.keeps_supports(body)
     }
 
     /// Whether `same(bond, image)` for every bond of the plate.
-    fn keeps_bonds(&self, body: &Body, same: impl Fn(usize, usize) -> bool) -> bool {
-        let of_point = |place: usize| {
-            (0..body.steps.len()).map(move |k| k * self.places + place).filter(|&bond| body.multiplier[bond] > 0.0)
-        };
-        let mut bonds = body.points.iter().flat_map(|&place| of_point(place as usize));
-        bonds.all(|bond| same(bond, self.bond(body, bond as Bond) as usize))
+    fn keeps_bonds(&self, body: &Body, same: impl Fn(usize, usize) -> bool + Sync) -> bool {
+        let lattice = &body.lattice;
+        (0..body.steps.len()).into_par_iter().all(|k| {
+            let (image, swaps) = self.bonds[k];
+            let step = if swaps { [body.stencil.bonds[k].dx, body.stencil.bonds[k].dy] } else { [0; 2] };
+            // Bonds reach no farther than the padding is wide.
+            let seat = |at: usize, step: i32| (at + lattice.padding).wrapping_add_signed(step as isize);
+            (0..lattice.rows).all(|row| {
+                let first = k * self.places + lattice.place(0, row);
+                (0..lattice.columns).filter(|column| body.multiplier[first + column] > 0.0).all(|column| {
+                    let end = [seat(column, step[0]), seat(row, step[1])];
+                    same(first + column, image * self.places + self.seat(end))
+                })
+            })
+        })
     }
 
     fn keeps_vectors(&self, vectors: &[(u32, [f64; 2])]) -> bool {
@@ -281,19 +295,23 @@ impl Part {
 
     /// Places of the plate that a point of the part stands for, itself among them, with how each is mirrored.
     #[must_use]
-    pub fn images(&self, whole: &Body, place: usize) -> Vec<(usize, Flips)> {
-        let mut images = vec![(self.place_in(whole, place), [false; 2])];
+    pub fn images(&self, whole: &Body, place: usize) -> impl Iterator<Item = (usize, Flips)> + use<> {
+        self.orbit((self.place_in(whole, place), [false; 2]), |reflection, (place, mut flips)| {
+            flips[reflection.axis] = true;
+            (reflection.place(place), flips)
+        })
+    }
+
+    /// Something of the plate and its mirror images.
+    fn orbit<T: Copy>(&self, one: T, reflect: impl Fn(&Reflection, T) -> T) -> std::iter::Take<std::array::IntoIter<T, 4>> {
+        let (mut images, mut count) = ([one; 4], 1);
         for reflection in &self.reflections {
-            let mirrored: Vec<(usize, Flips)> = images
-                .iter()
-                .map(|&(place, mut flips)| {
-                    flips[reflection.axis] = true;
-                    (reflection.place(place), flips)
-                })
-                .collect();
-            images.extend(mirrored);
+            for i in 0..count {
+                images[count + i] = reflect(reflection, images[i]);
+            }
+            count *= 2;
         }
-        images
+        images.into_iter().take(count)
     }
 
     /// The part's bond that stands for a bond of the plate: of the same place where that has a point of the part at one end. A bond
@@ -317,12 +335,8 @@ impl Part {
             .iter()
             .filter_map(|&bond| {
                 // Every bond has an image with an end in the part.
-                let mut images = vec![bond];
-                for reflection in &self.reflections {
-                    let mirrored: Vec<Bond> = images.iter().map(|&image| reflection.bond(whole, image)).collect();
-                    images.extend(mirrored);
-                }
-                images.into_iter().filter_map(|image| self.bond(whole, image)).min()
+                let images = self.orbit(bond, |reflection, bond| reflection.bond(whole, bond));
+                images.filter_map(|image| self.bond(whole, image)).min()
             })
             .collect();
         found.sort_unstable();

@@ -8,6 +8,7 @@ use crate::body::{Body, Bond};
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::field::Layout;
+use crate::specimen::Point;
 use crate::specimen::geometry::distance;
 use crate::state::Bonds;
 
@@ -61,7 +62,7 @@ pub fn candidates(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &Fati
             let radius = settings.zone_radius_horizons * body.horizon();
             let active = tips.iter().filter(|tip| tip.is_active());
             active
-                .flat_map(|tip| in_zone(body, tip, radius).into_iter().chain(tip.bridges.iter().copied()))
+                .flat_map(|tip| in_zone(body, bonds, tip, radius).into_iter().chain(tip.bridges.iter().copied()))
                 .filter(|&bond| may_fail(bond))
                 .collect()
         }
@@ -71,20 +72,30 @@ pub fn candidates(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &Fati
     found
 }
 
-/// Bonds of the zone of a tip.
-fn in_zone(body: &Body, tip: &CrackTip, radius: f64) -> Vec<Bond> {
+/// Bonds of the zone of a tip; of those that bridge its wake the intact ones.
+fn in_zone(body: &Body, bonds: &Bonds, tip: &CrackTip, radius: f64) -> Vec<Bond> {
     let (lattice, places) = (&body.lattice, body.places());
     let radius = radius * (1.0 + ROUND_OFF);
     let reach = radius + 0.5 * body.horizon();
     let behind = tip.wake.first().copied().unwrap_or(tip.position);
+    // Half of every bond, and what its ends may be beyond the box of the wake without touching it.
+    let halves: Vec<Point> = body.stencil.bonds.iter().map(|b| lattice.from_axes(b.normal.map(|n| 0.5 * b.length * n))).collect();
+    let margin = ROUND_OFF * body.horizon();
+    let box_end = |pick: fn(f64, f64) -> f64| [0, 1].map(|i| tip.wake.iter().map(|at| at[i]).fold(tip.position[i], pick));
+    let (low, high) = (box_end(f64::min), box_end(f64::max));
+    let may_bridge = |middle: Point, half: Point| {
+        (0..2).all(|i| middle[i] + half[i].abs() + margin >= low[i] && middle[i] - half[i].abs() - margin <= high[i])
+    };
     let mut found = Vec::new();
     for place in places_near(body, behind, tip.position, reach) {
         let from = lattice.position(place);
-        for (k, &step) in body.steps.iter().enumerate() {
-            let to = lattice.position(place.wrapping_add_signed(step));
-            let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
-            if distance(middle, tip.position) <= radius || tip.is_bridge(from, to) {
-                found.push((k * places + place) as Bond);
+        for (k, half) in halves.iter().enumerate() {
+            let bond = (k * places + place) as Bond;
+            let middle = [from[0] + half[0], from[1] + half[1]];
+            let [x, y] = [0, 1].map(|i| middle[i] - tip.position[i]);
+            let is_bridge = || tip.is_bridge(from, lattice.position(place.wrapping_add_signed(body.steps[k])));
+            if x * x + y * y <= radius * radius || may_bridge(middle, *half) && bonds.is_intact(bond) && is_bridge() {
+                found.push(bond);
             }
         }
     }

@@ -40,9 +40,11 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
     if loose && !loads_are_connected(body, bonds) {
         return Cut::Severed;
     }
+    // Points that are known to hang together.
+    let mut together = HashSet::new();
     for &bond in broken {
         let (_, a, b) = body.ends(bond);
-        let Some(piece) = cut_off(body, bonds, a, b) else { continue };
+        let Some(piece) = cut_off(body, bonds, a, b, &mut together) else { continue };
         let loaded = |p: &usize| is_loaded(body, *p);
         let inside = piece.iter().any(loaded);
         let outside = body
@@ -54,6 +56,7 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
             return Cut::Severed;
         }
         if !inside {
+            together.clear();
             let mut members: Vec<usize> = piece.into_iter().collect();
             members.sort_unstable();
             for place in members {
@@ -109,19 +112,30 @@ fn intact_bonds(body: &Body, bonds: &Bonds, place: usize) -> Vec<(Bond, usize)> 
     found
 }
 
-/// The piece around `a` or `b` that has lost contact with the other, if any; pieces without bonds do not count.
-fn cut_off(body: &Body, bonds: &Bonds, a: usize, b: usize) -> Option<HashSet<usize>> {
+/// The piece around `a` or `b` that has lost contact with the other, if any; pieces without bonds do not count. Points found to
+/// hang `together` are remembered: along a crack one way around its tip will do for all its bonds.
+fn cut_off(body: &Body, bonds: &Bonds, a: usize, b: usize, together: &mut HashSet<usize>) -> Option<HashSet<usize>> {
     let mut seen = [HashSet::from([a]), HashSet::from([b])];
     let mut front = [vec![a], vec![b]];
+    let mut is_known = [a, b].map(|end| together.contains(&end));
     loop {
+        if is_known == [true, true] {
+            together.extend(seen.iter().flatten());
+            return None;
+        }
         let side = usize::from(front[1].len() < front[0].len());
         let mut next = Vec::new();
         for place in std::mem::take(&mut front[side]) {
             for (_, other) in intact_bonds(body, bonds, place) {
                 if seen[1 - side].contains(&other) {
+                    if is_known == [false, false] {
+                        together.clear();
+                    }
+                    together.extend(seen.iter().flatten());
                     return None;
                 }
                 if seen[side].insert(other) {
+                    is_known[side] |= together.contains(&other);
                     next.push(other);
                 }
             }

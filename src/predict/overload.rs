@@ -1,7 +1,5 @@
 //! Bonds that break by overload, not by fatigue.
 
-use rayon::prelude::*;
-
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::fatigue::ageing::stretch;
@@ -9,6 +7,8 @@ use crate::solver::Equilibrium;
 use crate::solver::field::Layout;
 use crate::state::Bonds;
 
+/// Relative difference of sums that are equal but for round-off.
+const ROUND_OFF: f64 = 1e-9;
 /// Share of the critical stretch at which bonds away from the tips are watched after every break.
 const WATCHED_SHARE: f64 = 0.5;
 
@@ -60,18 +60,36 @@ fn stretched_beyond(
     bonds: &Bonds,
     displacement: &[f64],
     owners: &[u32],
-    counts: impl Fn(usize) -> bool + Sync,
+    counts: impl Fn(usize) -> bool,
 ) -> Vec<(Bond, f64)> {
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let places = body.places();
-    let of_stencil = |k: usize| {
-        let counts = &counts;
-        let owned = owners.iter().map(move |&place| (k * places + place as usize) as Bond);
-        owned.filter(move |&bond| bonds.is_intact(bond) && counts(body.ends(bond).2))
-    };
-    let stretched = |bond: Bond| (bond, stretch(body, &layout, displacement, bond));
-    (0..body.steps.len())
-        .into_par_iter()
-        .flat_map_iter(|k| of_stencil(k).map(stretched).filter(|&(bond, s)| s > limit && body.can_fail(bond)))
-        .collect()
+    let mut beyond = Vec::new();
+    for (k, spring) in body.stencil.bonds.iter().enumerate() {
+        // Hardly ever is one stretched so far: runs of neighbours are looked at as a whole first.
+        let opening_least = limit * spring.length * (1.0 - ROUND_OFF);
+        for run in owners.chunk_by(|a, b| a + 1 == *b) {
+            let first = run[0] as usize;
+            let from = layout.index(first);
+            let to = from.wrapping_add_signed(layout.step(spring.dx, spring.dy));
+            let component = |at: usize, c: usize| &displacement[at + c * layout.stride..][..run.len()];
+            let ends = [component(from, 0), component(to, 0), component(from, 1), component(to, 1)];
+            if !reaches(ends, spring.normal, opening_least) {
+                continue;
+            }
+            let owned = run.iter().map(|&place| (k * places + place as usize) as Bond);
+            let stretched = owned.map(|bond| (bond, stretch(body, &layout, displacement, bond)));
+            beyond.extend(stretched.filter(|&(bond, s)| {
+                s > limit && bonds.is_intact(bond) && counts(body.ends(bond).2) && body.can_fail(bond)
+            }));
+        }
+    }
+    beyond
+}
+
+/// Whether one of a run of bonds opens by more than `least` along its normal, intact or not; both components of both ends.
+fn reaches([x_from, x_to, y_from, y_to]: [&[f64]; 4], normal: [f64; 2], least: f64) -> bool {
+    let along_x = x_from.iter().zip(x_to).map(|(from, to)| normal[0] * (to - from));
+    let along_y = y_from.iter().zip(y_to).map(|(from, to)| normal[1] * (to - from));
+    along_x.zip(along_y).fold(false, |found, (x, y)| found | (x + y > least))
 }

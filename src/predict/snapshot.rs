@@ -3,6 +3,7 @@
 use super::curve::Row;
 use super::{CurvePoint, PointGrid, Snapshot};
 use crate::body::Body;
+use crate::body::lattice::LANES;
 use crate::solver::field::Layout;
 use crate::state::Bonds;
 
@@ -58,6 +59,10 @@ fn take(body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) -> Snapshot
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let places = body.places();
     let damage = |place: usize| {
+        let (column, row) = body.lattice.column_row(place);
+        if bonds.chunk_is_regular(row, column / LANES) {
+            return 0.0;
+        }
         let [mut whole, mut intact] = [0_u32; 2];
         for (k, &step) in body.steps.iter().enumerate() {
             for owner in [place, place.wrapping_add_signed(-step)] {

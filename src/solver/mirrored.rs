@@ -27,11 +27,21 @@ pub(super) struct Mirrored {
     window: Option<Vec<u32>>,
     /// What the window is made of: the part's points.
     window_of_part: Vec<u32>,
+    /// The unknowns of the window's points and what they are in the part.
+    copies: Vec<Copied>,
     /// Whether bonds broke on one side only: then `inner` works on the whole plate.
     is_lost: bool,
     kind: SolverKind,
     load: f64,
     foresees: bool,
+}
+
+/// An unknown of the plate that is, but for its sign, one of the part.
+#[derive(Clone, Copy)]
+struct Copied {
+    from: u32,
+    to: u32,
+    sign: f64,
 }
 
 impl Mirrored {
@@ -40,7 +50,7 @@ impl Mirrored {
         let part = Part::of(body, Mirror::of(body, &bonds.multiplier))?;
         let bonds = Bonds::with_multipliers(&part.body, part.multiplier(body, &bonds.multiplier));
         let inner = sides::balance(kind, &part.body, &bonds, load);
-        let (displacement, window_of_part) = (Vec::new(), Vec::new());
+        let (displacement, window_of_part, copies) = (Vec::new(), Vec::new(), Vec::new());
         Some(Mirrored {
             part,
             bonds,
@@ -48,6 +58,7 @@ impl Mirrored {
             displacement,
             window: None,
             window_of_part,
+            copies,
             is_lost: false,
             kind,
             load,
@@ -59,7 +70,7 @@ impl Mirrored {
     fn unfold(&mut self, whole: &Body, displacement: &mut Vec<f64>) {
         let part = &self.part;
         match self.inner.window() {
-            None => self.window = None,
+            None => (self.window, self.window_of_part) = (None, Vec::new()),
             Some(places) if self.window.is_some() && self.window_of_part == places => {}
             Some(places) => {
                 let all = places.iter().flat_map(|&place| part.images(whole, place as usize));
@@ -68,19 +79,32 @@ impl Mirrored {
                 window.dedup();
                 self.window = Some(window);
                 self.window_of_part = places.to_vec();
+                self.copies.clear();
+                for_copies(part, whole, places, |copied| self.copies.push(copied));
             }
         }
-        let unknowns = whole.stencil.unknowns;
-        let (from, to) = (Layout::of(&part.body.lattice, unknowns), Layout::of(&whole.lattice, unknowns));
-        displacement.resize(to.len(), 0.0);
-        let places = self.inner.window().filter(|_| !self.inner.is_whole()).unwrap_or(&part.body.points);
-        for &place in places {
-            let source = from.index(place as usize);
-            for (image, flips) in part.images(whole, place as usize) {
-                let target = to.index(image);
-                for (c, sign) in signs(flips).into_iter().take(unknowns).enumerate() {
-                    displacement[target + c * to.stride] = sign * self.displacement[source + c * from.stride];
-                }
+        displacement.resize(Layout::of(&whole.lattice, whole.stencil.unknowns).len(), 0.0);
+        let source = &self.displacement;
+        let mut copy = |Copied { from, to, sign }: Copied| displacement[to as usize] = sign * source[from as usize];
+        if self.window.is_some() && !self.inner.is_whole() {
+            self.copies.iter().for_each(|&copied| copy(copied));
+        } else {
+            for_copies(part, whole, &part.body.points, copy);
+        }
+    }
+}
+
+/// Calls `take` for every unknown of the plate that stands for one of these points of its part.
+fn for_copies(part: &Part, whole: &Body, places: &[u32], mut take: impl FnMut(Copied)) {
+    let unknowns = whole.stencil.unknowns;
+    let (from, to) = (Layout::of(&part.body.lattice, unknowns), Layout::of(&whole.lattice, unknowns));
+    for &place in places {
+        let source = from.index(place as usize);
+        for (image, flips) in part.images(whole, place as usize) {
+            let target = to.index(image);
+            for (c, sign) in signs(flips).into_iter().take(unknowns).enumerate() {
+                let [from, to] = [source + c * from.stride, target + c * to.stride].map(|index| index as u32);
+                take(Copied { from, to, sign });
             }
         }
     }
@@ -129,8 +153,13 @@ impl Balance for Mirrored {
             return self.inner.reach(body, bonds, watched, tips, displacement);
         }
         let watched = self.part.bonds(body, watched);
+        let before = (self.inner.is_whole(), self.inner.is_foreseen());
         let iterations = self.inner.reach(&self.part.body, &self.bonds, &watched, tips, &mut self.displacement)?;
-        self.unfold(body, displacement);
+        let is_solved = iterations > 0 || before != (self.inner.is_whole(), self.inner.is_foreseen());
+        let has_moved = self.inner.window().unwrap_or_default() != self.window_of_part;
+        if is_solved || has_moved || displacement.is_empty() {
+            self.unfold(body, displacement);
+        }
         Ok(iterations)
     }
 

@@ -121,8 +121,17 @@ impl<const N: usize> Sides<N> {
     fn give(&mut self, body: &Body, bonds: &Bonds, work: f64, displacement: &mut Vec<f64>) {
         let copies = body.mirror.copies() as f64;
         let Some(grips) = &mut self.grips else {
-            displacement.clone_from(&self.u);
             self.work = copies * work;
+            // Between whole solves nothing moves outside the window.
+            let places = self.window().filter(|_| !self.is_whole() && displacement.len() == self.u.len());
+            let Some(places) = places else {
+                displacement.clone_from(&self.u);
+                return;
+            };
+            let layout = self.product.layout();
+            for first in places.iter().map(|&place| layout.index(place as usize)) {
+                (0..N).map(|c| first + c * layout.stride).for_each(|index| displacement[index] = self.u[index]);
+            }
             return;
         };
         displacement.clone_from(&grips.field);

@@ -5,12 +5,15 @@
 //! as wide as the bonds reach, both halves are condensed onto their surroundings, and the separator is eliminated from
 //! their sum. Only the dense matrices of the branch at hand are in memory; window points are never eliminated.
 
+use std::sync::{Mutex, PoisonError};
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt;
+use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, Mat, MatMut, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use crate::body::Body;
 use crate::solver::assembly::{Assembly, for_joints};
@@ -20,6 +23,8 @@ use crate::state::Bonds;
 const LEAF: usize = 64;
 /// Lattice places of a rectangle whose halves are worth two threads.
 const FORK: usize = 1024;
+/// Products of numbers in an operation on matrices whose halves are worth two threads.
+const FORK_PRODUCTS: usize = 1 << 25;
 
 /// The inverse of the condensed stiffness: displacement of the window's points under forces on them.
 #[derive(Debug)]
@@ -50,12 +55,12 @@ pub fn condense<const M: usize, A: Assembly<M>>(
     for place in body.points.iter().map(|&place| place as usize) {
         ground[place] = !kept[place] && (0..M).all(|c| assembly.is_held(place, c));
     }
-    let condenser = Condenser { body, bonds, assembly, kept, ground };
+    let condenser = Condenser { body, bonds, assembly, kept, ground, pool: Pool::default() };
     let rest = condenser.eliminate(condenser.rectangle())?;
 
     // What is left couples window points only; bonds among them come in now.
-    let mut sum = Front::<M>::zeros(window, &[]);
-    sum.add(rest);
+    let mut sum = condenser.front(window, &[]);
+    sum.add(&rest);
     condenser.assemble(&mut sum, window, &|other| condenser.kept[other] || condenser.ground[other]);
     for (at, &place) in window.iter().enumerate() {
         condenser.hold(&mut sum.matrix, at, place);
@@ -119,22 +124,43 @@ pub(super) fn complete_upper(matrix: &mut Mat<f64>) {
     }
 }
 
-/// A square matrix, column by column.
+/// Memory of matrices that are done with, for others to come: new pages would cost more than what is computed in them.
+#[derive(Default)]
+struct Pool {
+    free: Mutex<Vec<Vec<f64>>>,
+}
+
+impl Pool {
+    /// Memory for at least so many numbers, with anything in it: the smallest that is free.
+    fn take(&self, length: usize) -> Vec<f64> {
+        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let fitting = (0..free.len()).filter(|&i| free[i].len() >= length).min_by_key(|&i| free[i].len());
+        let found = fitting.map(|i| free.swap_remove(i));
+        drop(free);
+        found.unwrap_or_else(|| vec![0.0; length])
+    }
+
+    fn give(&self, memory: Vec<f64>) {
+        self.free.lock().unwrap_or_else(PoisonError::into_inner).push(memory);
+    }
+}
+
+/// The lower triangle of a square matrix, column by column; above it stands anything.
 struct Square {
     order: usize,
     values: Vec<f64>,
 }
 
 impl Square {
-    fn zeros(order: usize) -> Self {
-        // Zeros that are written: pages that are only read before a sum goes into them would be mapped twice, and every core told.
-        let mut values = Vec::with_capacity(order * order);
-        values.resize(order * order, 0.0);
-        Square { order, values }
+    /// Zero, in memory of at least `order`² numbers.
+    fn zeros(order: usize, memory: Vec<f64>) -> Self {
+        let mut zeros = Square { order, values: memory };
+        (0..order).for_each(|column| zeros.column_mut(column)[column..].fill(0.0));
+        zeros
     }
 
     fn as_mut(&mut self) -> MatMut<'_, f64> {
-        MatMut::from_column_major_slice_mut(&mut self.values, self.order, self.order)
+        MatMut::from_column_major_slice_mut(&mut self.values[..self.order * self.order], self.order, self.order)
     }
 
     fn column(&self, column: usize) -> &[f64] {
@@ -177,12 +203,6 @@ struct Front<const N: usize> {
 }
 
 impl<const N: usize> Front<N> {
-    fn zeros(inner: &[u32], outer: &[u32]) -> Self {
-        let points = [inner, outer].concat();
-        let order = N * points.len();
-        Front { points, inner: inner.len(), matrix: Square::zeros(order) }
-    }
-
     /// Where a point stands.
     fn at(&self, place: u32) -> usize {
         let (inner, outer) = self.points.split_at(self.inner);
@@ -192,7 +212,7 @@ impl<const N: usize> Front<N> {
     }
 
     /// Adds what is left of another matrix, over some of the same points.
-    fn add(&mut self, other: Front<N>) {
+    fn add(&mut self, other: &Front<N>) {
         let left = other.points[other.inner..].iter().map(|&place| N * self.at(place));
         let to: Vec<usize> = left.flat_map(|first| first..first + N).collect();
         let done = N * other.inner;
@@ -228,6 +248,7 @@ struct Condenser<'a, const M: usize, A: Assembly<M>> {
     kept: Vec<bool>,
     /// Points held in all components, the window's not counted.
     ground: Vec<bool>,
+    pool: Pool,
 }
 
 impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
@@ -274,14 +295,24 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         outer.dedup();
         outer.retain(|place| inner.binary_search(place).is_err());
 
-        let mut front = Front::<M>::zeros(&inner, &outer);
-        below.into_iter().for_each(|child| front.add(child));
+        let mut front = self.front(&inner, &outer);
+        for child in below {
+            front.add(&child);
+            self.pool.give(child.matrix.values);
+        }
         self.assemble(&mut front, &inner, &|other| self.ground[other] || !done(other));
         for (at, &place) in inner.iter().enumerate() {
             self.hold(&mut front.matrix, at, place);
         }
         self.eliminate_first(&mut front.matrix, M * inner.len())?;
         Some(front)
+    }
+
+    /// A front without stiffness.
+    fn front(&self, inner: &[u32], outer: &[u32]) -> Front<M> {
+        let points = [inner, outer].concat();
+        let order = M * points.len();
+        Front { points, inner: inner.len(), matrix: Square::zeros(order, self.pool.take(order * order)) }
     }
 
     /// Points of a rectangle outside the window that have a bond.
@@ -362,26 +393,46 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
 
     /// Eliminates the first `count` unknowns: what is left stands in the lower triangle after them.
     fn eliminate_first(&self, matrix: &mut Square, count: usize) -> Option<()> {
-        let (mut first, _, mut coupling, mut left) = matrix.as_mut().split_at_mut(count, count);
+        let (mut first, _, mut coupling, left) = matrix.as_mut().split_at_mut(count, count);
         self.factorise(first.rb_mut())?;
         // C L⁻ᵀ, and the same times D⁻¹.
-        solve_unit_lower_triangular_in_place(first.rb(), coupling.rb_mut().transpose_mut(), Par::Seq);
-        let mut scaled = coupling.to_owned();
+        solve_rows(first.rb(), coupling.rb_mut());
+        let rows = coupling.nrows();
+        let mut memory = self.pool.take(rows * count);
+        let mut scaled = MatMut::from_column_major_slice_mut(&mut memory[..rows * count], rows, count);
         for j in 0..count {
             let pivot = first[(j, j)];
-            scaled.col_as_slice_mut(j).iter_mut().for_each(|value| *value /= pivot);
+            let column = coupling.rb().col(j).iter();
+            scaled.rb_mut().col_mut(j).iter_mut().zip(column).for_each(|(scaled, value)| *scaled = value / pivot);
         }
-        triangular::matmul(
-            left.rb_mut(),
-            BlockStructure::TriangularLower,
-            Accum::Add,
-            coupling.rb(),
-            BlockStructure::Rectangular,
-            scaled.transpose(),
-            BlockStructure::Rectangular,
-            -1.0,
-            Par::Seq,
-        );
+        subtract_product(left, coupling.rb(), scaled.rb());
+        self.pool.give(memory);
         Some(())
     }
+}
+
+/// rows = rows L⁻ᵀ for a unit lower triangle L. Parts for two threads are the same however many there are.
+fn solve_rows(lower: MatRef<'_, f64>, rows: MatMut<'_, f64>) {
+    if rows.nrows() * lower.nrows() * lower.nrows() < FORK_PRODUCTS {
+        return solve_unit_lower_triangular_in_place(lower, rows.transpose_mut(), Par::Seq);
+    }
+    let half = rows.nrows() / 2;
+    let (above, below) = rows.split_at_row_mut(half);
+    rayon::join(|| solve_rows(lower, above), || solve_rows(lower, below));
+}
+
+/// Lower triangle of `left` -= that of a bᵀ.
+fn subtract_product(left: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    let order = left.nrows();
+    if order * order * a.ncols() < FORK_PRODUCTS {
+        let (lower, full) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
+        return triangular::matmul(left, lower, Accum::Add, a, full, b.transpose(), full, -1.0, Par::Seq);
+    }
+    let half = order / 2;
+    let (above, _, beside, below) = left.split_at_mut(half, half);
+    let ((a_above, a_below), (b_above, b_below)) = (a.split_at_row(half), b.split_at_row(half));
+    let triangles = || {
+        rayon::join(|| subtract_product(above, a_above, b_above), || subtract_product(below, a_below, b_below));
+    };
+    rayon::join(|| matmul(beside, Accum::Add, a_below, b_above.transpose(), -1.0, Par::Seq), triangles);
 }
