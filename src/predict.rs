@@ -120,8 +120,9 @@ pub fn run(
         let counting = start.is_over(&tips);
         if counting && track.begin() {
             tips.iter_mut().for_each(CrackTip::leave_rails);
-            iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
-            album.open(&body, &bonds, &displacement, track.last());
+            let (picture, more) = equilibrium.picture(&body, &bonds)?;
+            iterations += more;
+            album.open(&body, &bonds, &picture, track.last());
         }
 
         // Which bonds age, and by how much strain a cycle.
@@ -197,8 +198,9 @@ pub fn run(
         track.record(start.records(&tips), broken_bonds, work, equilibrium.is_foreseen() && outcome.is_none());
         recorder.block(&ageing, &spent, track.last().crack_length);
         if counting && album.is_due(track.last()) && outcome.is_none() && !equilibrium.is_foreseen() {
-            iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
-            album.look(&body, &bonds, &displacement, track.last());
+            let (picture, more) = equilibrium.picture(&body, &bonds)?;
+            iterations += more;
+            album.look(&body, &bonds, &picture, track.last());
         }
         let going_on = observer.block_done(&track.progress(case));
         if let Some(reason) = outcome.or_else(|| stop::after_block(case, end, &track)) {

@@ -47,10 +47,45 @@ impl<const N: usize> MultigridSolver<N> {
         }
     }
 
-    fn iterate(&mut self, system: System<'_, N>, u: &mut [f64]) -> Option<usize> {
+    /// Solves to a residual over load.
+    ///
+    /// # Errors
+    /// The iteration does not converge.
+    pub(super) fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        let System { body, bonds, product, f } = system;
+        if self.stale {
+            self.multigrid = Multigrid::new(body, bonds, product);
+            self.stale = false;
+            self.broken_since = 0;
+            self.fresh_iterations = None;
+        }
+        let mut spent = self.iterate(tolerance, system, u);
+        if spent.is_none() && self.broken_since > 0 {
+            // The hierarchy belongs to an older crack: try once more with a new one, from rest.
+            self.multigrid = Multigrid::new(body, bonds, product);
+            self.broken_since = 0;
+            u.fill(0.0);
+            spent = self.iterate(tolerance, system, u);
+        }
+        let spent = spent.ok_or_else(|| {
+            Error::Mechanics(format!(
+                "the equilibrium solver did not converge to {tolerance:e} within {ITERATIONS_MAX} iterations"
+            ))
+        })?;
+        tracing::debug!(iterations = spent, broken_since_setup = self.broken_since, "equilibrium");
+        // Rougher solves say nothing about how good the hierarchy still is.
+        let is_slow = tolerance <= TOLERANCE && {
+            let fresh = *self.fresh_iterations.get_or_insert(spent);
+            self.broken_since > 0 && spent > fresh + ITERATIONS_SLACK
+        };
+        self.stale = is_slow || self.broken_since > STENCILS_PER_REBUILD * body.steps.len();
+        Ok(Solved { iterations: spent, work: dot(product.layout(), f, u) })
+    }
+
+    fn iterate(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Option<usize> {
         let System { body, bonds, product, f } = system;
         let layout = *product.layout();
-        let target = TOLERANCE * dot(&layout, f, f).sqrt();
+        let target = tolerance * dot(&layout, f, f).sqrt();
         self.r.copy_from_slice(f);
         product.apply(bonds, u, &mut self.r, Into::Subtract);
         if dot(&layout, &self.r, &self.r).sqrt() <= target {
@@ -98,32 +133,7 @@ fn update<T: Copy + Sync + std::convert::Into<f64>>(v: &mut [f64], w: &[T], new:
 
 impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        let System { body, bonds, product, f } = system;
-        if self.stale {
-            self.multigrid = Multigrid::new(body, bonds, product);
-            self.stale = false;
-            self.broken_since = 0;
-            self.fresh_iterations = None;
-        }
-        let mut spent = self.iterate(system, u);
-        if spent.is_none() && self.broken_since > 0 {
-            // The hierarchy belongs to an older crack: try once more with a new one, from rest.
-            self.multigrid = Multigrid::new(body, bonds, product);
-            self.broken_since = 0;
-            u.fill(0.0);
-            spent = self.iterate(system, u);
-        }
-        let spent = spent.ok_or_else(|| {
-            Error::Mechanics(format!(
-                "the equilibrium solver did not converge to {:e} within {ITERATIONS_MAX} iterations",
-                TOLERANCE
-            ))
-        })?;
-        tracing::debug!(iterations = spent, broken_since_setup = self.broken_since, "equilibrium");
-        let fresh = *self.fresh_iterations.get_or_insert(spent);
-        self.stale = self.broken_since > STENCILS_PER_REBUILD * body.steps.len()
-            || (self.broken_since > 0 && spent > fresh + ITERATIONS_SLACK);
-        Ok(Solved { iterations: spent, work: dot(product.layout(), f, u) })
+        self.solve_to(TOLERANCE, system, u)
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {

@@ -175,6 +175,17 @@ impl Balance for Mirrored {
         Ok(iterations)
     }
 
+    fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)> {
+        if self.is_lost {
+            return self.inner.picture(body, bonds);
+        }
+        let (source, iterations) = self.inner.picture(&self.part.body, &self.bonds)?;
+        let mut picture = Layout::of(&body.lattice, body.stencil.unknowns).zeros();
+        let copy = |Copied { from, to, sign }: Copied| picture[to as usize] = sign * source[from as usize];
+        for_copies(&self.part, body, &self.part.body.points, copy);
+        Ok((picture, iterations))
+    }
+
     fn get_ready_to_foresee(&mut self) {
         self.foresees = true;
         self.inner.get_ready_to_foresee();

@@ -87,6 +87,10 @@ trait LinearSolver<const N: usize>: Send {
     fn complete(&mut self, _: System<'_, N>, _u: &mut [f64]) -> Result<usize> {
         Ok(0)
     }
+    /// `u` everywhere, as right as pictures need it, and the iterations; `None` where `u` itself is. Nothing else changes.
+    fn picture(&mut self, _: System<'_, N>, _u: &[f64]) -> Result<Option<(Vec<f64>, usize)>> {
+        Ok(None)
+    }
     /// Whether `u` is right everywhere.
     fn is_whole(&self) -> bool {
         true
@@ -121,6 +125,7 @@ trait Balance: Send {
         displacement: &mut Vec<f64>,
     ) -> Result<usize>;
     fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
+    fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)>;
     fn get_ready_to_foresee(&mut self);
     fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool;
     fn is_foreseen(&self) -> bool;
@@ -188,6 +193,15 @@ impl Equilibrium {
     /// As [`Equilibrium::solve`].
     pub fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
         in_pool(|| self.inner.complete(body, bonds, displacement))
+    }
+
+    /// The displacement everywhere for a picture, solved for to a residual of 1e-6 of the load where it is not known, and the
+    /// iterations. What the run goes on with stays as it is, so that a run does not depend on its pictures.
+    ///
+    /// # Errors
+    /// As [`Equilibrium::solve`].
+    pub fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)> {
+        in_pool(|| self.inner.picture(body, bonds))
     }
 
     /// Lets [`Equilibrium::foresee`] stand in for solves from now on, where a solve takes long: the window's solver needs no

@@ -37,6 +37,8 @@ struct Grips {
     drag: Vec<f64>,
     /// Energy of the field with its free components, plus the work of the drag, J x 2: no break away from the grips changes it.
     constant: f64,
+    /// What the field is multiplied with for the load.
+    scale: f64,
 }
 
 /// Load, supports and linear solver of a body under `load` times its unit load.
@@ -70,7 +72,7 @@ impl<const N: usize> Sides<N> {
                 field[at] = side * up[0] * body.lattice.spacing;
                 field[at + layout.stride] = side * up[1] * body.lattice.spacing;
             }
-            Grips { field, force: load * body.boundary.force_through(), drag: Vec::new(), constant: f64::NAN }
+            Grips { field, force: load * body.boundary.force_through(), drag: Vec::new(), constant: f64::NAN, scale: 1.0 }
         });
         if grips.is_none() {
             for &(place, force) in &body.boundary.forces {
@@ -148,6 +150,7 @@ impl<const N: usize> Sides<N> {
         let reaction = energy / (2.0 * body.lattice.spacing);
         let scale = if reaction > 0.0 { grips.force / reaction } else { 0.0 };
         displacement.iter_mut().for_each(|d| *d *= scale);
+        grips.scale = scale;
         self.work = energy * scale * scale;
     }
 }
@@ -230,6 +233,15 @@ impl<const N: usize> Balance for Sides<N> {
         let work = field::dot(system.product.layout(), system.f, u);
         self.give(body, bonds, work, displacement);
         Ok(iterations)
+    }
+
+    fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)> {
+        let (solver, system, u, _) = self.parts(body, bonds);
+        let (mut picture, iterations) = solver.picture(system, u)?.unwrap_or_else(|| (u.to_vec(), 0));
+        if let Some(Grips { field, scale, .. }) = &self.grips {
+            picture.iter_mut().zip(field).for_each(|(u, g)| *u = scale * (g + *u));
+        }
+        Ok((picture, iterations))
     }
 
     fn points(&self, body: &Body) -> usize {

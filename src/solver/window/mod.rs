@@ -30,8 +30,12 @@ const UNKNOWNS_SMALL: usize = 600;
 const UNKNOWNS_MAX: usize = 3000;
 /// Relative error of the work of the loads, found at a whole solve, from which a window is not used any more.
 const DRIFT_MAX: f64 = 1e-7;
-/// Springs after which the whole plate is solved and the inverse renewed.
+/// Springs after which the whole plate is solved.
 const RANK_MAX: usize = 256;
+/// Springs after which they are put into the inverse.
+const RANK_FOLD: usize = 128;
+/// Residual over load of a displacement for a picture.
+const PICTURE_TOLERANCE: f64 = 1e-6;
 
 /// Multigrid for whole solves, a condensed window between them.
 pub struct WindowSolver<const N: usize> {
@@ -44,6 +48,8 @@ pub struct WindowSolver<const N: usize> {
     is_off: bool,
     /// Work f·u at the last solve.
     work: f64,
+    /// The last displacement for a picture since the last whole solve.
+    picture: Option<Vec<f64>>,
 }
 
 /// A window with what broke since it was condensed.
@@ -54,13 +60,15 @@ struct Window {
     /// Work f·u then.
     base_work: f64,
     update: Update,
+    /// Springs taken in since the last whole solve.
+    springs: usize,
 }
 
 impl<const N: usize> WindowSolver<N> {
     /// Starts without a window.
     pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
         let whole = MultigridSolver::new(body, bonds, product);
-        WindowSolver { whole, window: None, broken: Vec::new(), is_whole: false, is_off: false, work: 0.0 }
+        WindowSolver { whole, window: None, broken: Vec::new(), is_whole: false, is_off: false, work: 0.0, picture: None }
     }
 
     /// Solves the whole plate; a window that is up to date takes its new base from it.
@@ -70,6 +78,7 @@ impl<const N: usize> WindowSolver<N> {
             Ok(solved) => solved,
             Err(_) => DirectSolver::default().solve(system, u)?,
         };
+        self.picture = None;
         // The work of the loads by the window's account against that by the whole system: the error of the window in energy.
         let drift = (self.work / solved.work - 1.0).abs();
         tracing::debug!(drift, "whole plate solved");
@@ -130,7 +139,10 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
             } else {
                 self.is_whole = false;
                 self.work = window.move_points(system.product, u);
-                if window.update.rank() <= RANK_MAX {
+                if window.springs <= RANK_MAX {
+                    if window.update.rank() > RANK_FOLD {
+                        window.fold();
+                    }
                     return Ok(Solved { iterations: 0, work: self.work });
                 }
             }
@@ -156,6 +168,25 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
         if self.is_whole { Ok(0) } else { Ok(self.solve_whole(system, u)?.iterations) }
     }
 
+    fn picture(&mut self, system: System<'_, N>, u: &[f64]) -> Result<Option<(Vec<f64>, usize)>> {
+        if self.is_whole {
+            return Ok(None);
+        }
+        let mut picture = self.picture.take().unwrap_or_else(|| u.to_vec());
+        if let Some(window) = &self.window {
+            let layout = system.product.layout();
+            for first in window.condensed.places.iter().map(|&place| layout.index(place as usize)) {
+                (0..N).map(|c| first + c * layout.stride).for_each(|index| picture[index] = u[index]);
+            }
+        }
+        let solved = match self.whole.solve_to(PICTURE_TOLERANCE, system, &mut picture) {
+            Ok(solved) => solved,
+            Err(_) => DirectSolver::default().solve(system, &mut picture)?,
+        };
+        self.picture = Some(picture.clone());
+        Ok(Some((picture, solved.iterations)))
+    }
+
     fn is_whole(&self) -> bool {
         self.is_whole
     }
@@ -169,7 +200,7 @@ impl Window {
     /// A window on a plate in equilibrium.
     fn new<const N: usize>(condensed: Condensed, system: System<'_, N>, u: &[f64], work: f64) -> Self {
         let base = unknowns(system, u, &condensed.places);
-        Window { condensed, base, base_work: work, update: Update::default() }
+        Window { condensed, base, base_work: work, update: Update::default(), springs: 0 }
     }
 
     /// Starts anew from a plate in equilibrium, all breaks taken in.
@@ -177,6 +208,15 @@ impl Window {
         self.update.fold(&mut self.condensed.inverse);
         self.base = unknowns(system, u, &self.condensed.places);
         self.base_work = work;
+        self.springs = 0;
+    }
+
+    /// Puts all breaks into the inverse and starts from the displacement after them.
+    fn fold(&mut self) {
+        let (displacement, gain) = self.update.displacement(&self.condensed.inverse, &self.base);
+        self.update.fold(&mut self.condensed.inverse);
+        self.base = displacement;
+        self.base_work += gain;
     }
 
     /// Moves the window's points to where the breaks let them go; the work of the loads then.
@@ -202,8 +242,9 @@ impl Window {
                 // Half of a bond between a point and its own image belongs to the part.
                 terms.iter_mut().flat_map(|term| &mut term.vector).for_each(|(_, value)| *value *= 0.5_f64.sqrt());
             }
-            let mut terms = terms.into_iter().filter(|term| !term.vector.is_empty());
-            terms.all(|term| self.update.add(&self.condensed.inverse, &self.base, term))
+            terms.retain(|term| !term.vector.is_empty());
+            self.springs += terms.len();
+            terms.into_iter().all(|term| self.update.add(&self.condensed.inverse, &self.base, term))
         })
     }
 
