@@ -18,7 +18,9 @@ const TOLERANCE: f64 = 1e-11;
 const ITERATIONS_MAX: usize = 400;
 /// Iterations above those of a fresh hierarchy at which it is rebuilt.
 const ITERATIONS_SLACK: usize = 3;
-/// Broken bonds, in stencils, after which the hierarchy is rebuilt in any case.
+/// The same where solves are few: to build it takes as long as a dozen iterations.
+const ITERATIONS_SLACK_FEW: usize = 12;
+/// Broken bonds, in stencils, after which the hierarchy is rebuilt in any case, where solves are many.
 const STENCILS_PER_REBUILD: usize = 12;
 
 /// Multigrid-preconditioned conjugate gradients with the hierarchy kept between solves.
@@ -27,6 +29,8 @@ pub struct MultigridSolver<const N: usize> {
     fresh_iterations: Option<usize>,
     broken_since: usize,
     stale: bool,
+    /// Iterations above those of a fresh hierarchy at which it is rebuilt.
+    slack: usize,
     r: Vec<f64>,
     p: Vec<f64>,
     q: Vec<f64>,
@@ -41,19 +45,26 @@ impl<const N: usize> MultigridSolver<N> {
             fresh_iterations: None,
             broken_since: 0,
             stale: false,
+            slack: ITERATIONS_SLACK,
             r: layout.zeros(),
             p: layout.zeros(),
             q: layout.zeros(),
         }
     }
 
-    /// Solves to a residual over load.
+    /// The same for solves between which many bonds break.
+    pub fn for_few_solves(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
+        MultigridSolver { slack: ITERATIONS_SLACK_FEW, ..MultigridSolver::new(body, bonds, product) }
+    }
+
+    /// Solves to a residual over load. A rough solve makes do with the hierarchy that is there.
     ///
     /// # Errors
     /// The iteration does not converge.
     pub(super) fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let System { body, bonds, product, f } = system;
-        if self.stale {
+        let is_rough = tolerance > TOLERANCE;
+        if self.stale && !is_rough {
             self.multigrid = Multigrid::new(body, bonds, product);
             self.stale = false;
             self.broken_since = 0;
@@ -73,12 +84,12 @@ impl<const N: usize> MultigridSolver<N> {
             ))
         })?;
         tracing::debug!(iterations = spent, broken_since_setup = self.broken_since, "equilibrium");
-        // Rougher solves say nothing about how good the hierarchy still is.
-        let is_slow = tolerance <= TOLERANCE && {
+        let is_slow = !is_rough && {
             let fresh = *self.fresh_iterations.get_or_insert(spent);
-            self.broken_since > 0 && spent > fresh + ITERATIONS_SLACK
+            self.broken_since > 0 && spent > fresh + self.slack
         };
-        self.stale = is_slow || self.broken_since > STENCILS_PER_REBUILD * body.steps.len();
+        let is_old = self.slack == ITERATIONS_SLACK && self.broken_since > STENCILS_PER_REBUILD * body.steps.len();
+        self.stale = is_slow || is_old;
         Ok(Solved { iterations: spent, work: dot(product.layout(), f, u) })
     }
 

@@ -195,7 +195,7 @@ impl Equilibrium {
         in_pool(|| self.inner.complete(body, bonds, displacement))
     }
 
-    /// The displacement everywhere for a picture, solved for to a residual of 1e-6 of the load where it is not known, and the
+    /// The displacement everywhere for a picture, solved for to a residual of 1e-4 of the load where it is not known, and the
     /// iterations. What the run goes on with stays as it is, so that a run does not depend on its pictures.
     ///
     /// # Errors

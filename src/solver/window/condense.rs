@@ -131,8 +131,10 @@ struct Pool {
 }
 
 impl Pool {
-    /// Memory for at least so many numbers, with anything in it: the smallest that is free.
+    /// Memory for at least so many numbers, with anything in it: the smallest that is free. Sizes are powers of two, so that
+    /// much fits again; what is not written to takes no memory.
     fn take(&self, length: usize) -> Vec<f64> {
+        let length = length.next_power_of_two();
         let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
         let fitting = (0..free.len()).filter(|&i| free[i].len() >= length).min_by_key(|&i| free[i].len());
         let found = fitting.map(|i| free.swap_remove(i));

@@ -35,7 +35,7 @@ const RANK_MAX: usize = 256;
 /// Springs after which they are put into the inverse.
 const RANK_FOLD: usize = 128;
 /// Residual over load of a displacement for a picture.
-const PICTURE_TOLERANCE: f64 = 1e-6;
+const PICTURE_TOLERANCE: f64 = 1e-4;
 
 /// Multigrid for whole solves, a condensed window between them.
 pub struct WindowSolver<const N: usize> {
@@ -67,7 +67,7 @@ struct Window {
 impl<const N: usize> WindowSolver<N> {
     /// Starts without a window.
     pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
-        let whole = MultigridSolver::new(body, bonds, product);
+        let whole = MultigridSolver::for_few_solves(body, bonds, product);
         WindowSolver { whole, window: None, broken: Vec::new(), is_whole: false, is_off: false, work: 0.0, picture: None }
     }
 
