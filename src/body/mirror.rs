@@ -154,10 +154,7 @@ impl Reflection {
     fn keeps(&self, body: &Body) -> bool {
         let boundary = &body.boundary;
         let points = body.points.iter().all(|&place| body.is_point[self.place(place as usize)]);
-        points
-            && self.keeps_vectors(&boundary.forces)
-            && self.keeps_scalars(&boundary.couples)
-            && self.keeps_supports(body)
+        points && self.keeps_vectors(&boundary.forces) && self.keeps_scalars(&boundary.couples) && self.keeps_supports(body)
     }
 
     /// Whether `same(bond, image)` for every bond of the plate.

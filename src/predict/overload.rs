@@ -79,9 +79,10 @@ fn stretched_beyond(
             }
             let owned = run.iter().map(|&place| (k * places + place as usize) as Bond);
             let stretched = owned.map(|bond| (bond, stretch(body, &layout, displacement, bond)));
-            beyond.extend(stretched.filter(|&(bond, s)| {
-                s > limit && bonds.is_intact(bond) && counts(body.ends(bond).2) && body.can_fail(bond)
-            }));
+            beyond.extend(
+                stretched
+                    .filter(|&(bond, s)| s > limit && bonds.is_intact(bond) && counts(body.ends(bond).2) && body.can_fail(bond)),
+            );
         }
     }
     beyond

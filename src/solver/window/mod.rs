@@ -31,7 +31,7 @@ const UNKNOWNS_MAX: usize = 3000;
 /// Relative error of the work of the loads, found at a whole solve, from which a window is not used any more.
 const DRIFT_MAX: f64 = 1e-7;
 /// Springs after which the whole plate is solved.
-const RANK_MAX: usize = 256;
+const RANK_MAX: usize = 512;
 /// Springs after which they are put into the inverse.
 const RANK_FOLD: usize = 128;
 /// Residual over load of a displacement for a picture.
