@@ -291,7 +291,6 @@ impl Part {
     }
 
     /// Places of the plate that a point of the part stands for, itself among them, with how each is mirrored.
-    #[must_use]
     pub fn images(&self, whole: &Body, place: usize) -> impl Iterator<Item = (usize, Flips)> + use<> {
         self.orbit((self.place_in(whole, place), [false; 2]), |reflection, (place, mut flips)| {
             flips[reflection.axis] = true;
