@@ -5,6 +5,8 @@ mod shared;
 
 #[path = "validation/examples.rs"]
 mod examples;
+#[path = "validation/fracture_scenes.rs"]
+mod fracture_scenes;
 #[path = "validation/fit_engine.rs"]
 mod fit_engine;
 #[path = "validation/fit_virkler.rs"]

@@ -26,16 +26,16 @@ struct Front {
 }
 
 impl Front {
-    /// How far a point lies ahead, m; `None` if it belongs to another place.
+    /// How far a point lies ahead, m; `None` where it is out of reach, behind, or farther aside than ahead by more than a spacing.
     fn ahead(&self, point: Point, spacing: f64, horizon: f64) -> Option<f64> {
         let away = distance(point, self.at);
         let step = [point[0] - self.at[0], point[1] - self.at[1]];
-        let forward = if self.direction == [0.0; 2] { away } else { step[0] * self.direction[0] + step[1] * self.direction[1] };
-        (away <= REACH * horizon && forward > AHEAD * spacing).then_some(forward)
-    }
-
-    fn passes(&self, point: Point, horizon: f64) -> bool {
-        self.way.iter().any(|&at| distance(point, at) <= REACH * horizon)
+        let [x, y] = self.direction;
+        if self.direction == [0.0; 2] {
+            return (away <= REACH * horizon).then_some(away);
+        }
+        let (forward, aside) = (step[0] * x + step[1] * y, (step[1] * x - step[0] * y).abs());
+        (away <= REACH * horizon && forward > AHEAD * spacing && aside <= forward + spacing).then_some(forward)
     }
 
     fn move_to(&mut self, point: Point, horizon: f64) {
@@ -87,15 +87,28 @@ impl<'n> Fronts<'n> {
                 self.path.push(PathPoint { tip, step, time, position: self.net.positions[i], damage: damage[i] });
             }
             if moves.is_empty() {
-                let seen =
-                    |i: &usize| self.fronts.iter().any(|front| front.passes(self.net.positions[*i], self.net.horizons[*i]));
-                let Some(first) = left.iter().copied().find(|i| !seen(i)) else { break };
-                let position = self.net.positions[first];
+                let Some((first, front)) = self.new_front(&left) else { break };
+                let position = front.at;
                 self.path.push(PathPoint { tip: self.fronts.len(), step, time, position, damage: damage[first] });
-                self.fronts.push(Front { at: position, direction: [0.0; 2], way: vec![position] });
+                self.fronts.push(front);
                 left.retain(|&i| i != first);
             }
         }
+    }
+
+    /// A front at that of the points away from all fronts and ways that lies nearest to one; a branch points away from where it
+    /// came off, a crack far from all others anywhere.
+    fn new_front(&self, points: &[usize]) -> Option<(usize, Front)> {
+        let off = |&i: &usize| {
+            let (at, horizon) = (self.net.positions[i], self.net.horizons[i]);
+            let ways = self.fronts.iter().flat_map(|front| &front.way);
+            let from = ways.min_by(|a, b| distance(**a, at).total_cmp(&distance(**b, at)));
+            let away = from.map_or(f64::INFINITY, |&from| distance(from, at));
+            let start = from.filter(|_| away <= 2.0 * REACH * horizon).map_or([0.0; 2], |&from| direction(from, at));
+            (away > REACH * horizon).then_some((away, i, Front { at, direction: start, way: vec![at] }))
+        };
+        let nearest = points.iter().filter_map(off).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some((nearest.1, nearest.2))
     }
 
     /// The point farthest ahead of every front that has one; a point counts for the front nearest to it.
