@@ -18,6 +18,7 @@
 //!
 //! [`NetBond::lever`]: super::net::NetBond::lever
 
+mod balanced;
 pub mod levels;
 mod links;
 mod loads;
@@ -26,16 +27,19 @@ mod surface;
 
 use super::net::{Net, NetBond};
 use super::scene::{Action, Arrangement, Scene};
+use crate::body::balanced::load_rows;
 use crate::body::lattice::Lattice;
+use crate::body::obstacles::Obstacles;
 use crate::body::pre_crack::cutting_line;
 use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::bond_law::{BondLaw, BondLawKind, SurfaceCorrection};
 use crate::error::{Result, input};
 use crate::predict::PointGrid;
-use crate::specimen::Crack;
 use crate::specimen::geometry::segments_touch;
+use crate::specimen::{Crack, Point};
 use levels::Levels;
 use links::Linking;
+use loads::Sharing;
 use regions::Area;
 
 /// Points and bonds of a scene with a law of bonds.
@@ -47,6 +51,10 @@ pub fn net(scene: &Scene, law: &BondLaw) -> Result<Net> {
     if law.kind == BondLawKind::StateBased {
         let problem = format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
         return Err(input("model.bond_law", format!("\"{}\"", law.kind), problem, "use a bond-based or two-parameter law"));
+    }
+    if model.arrangement == Arrangement::VariableHorizon && law.surface_correction == SurfaceCorrection::Balanced {
+        let problem = format!("balances springs that pull both ends, and \"{}\" has others", model.arrangement);
+        return Err(input("model.surface_correction", "\"balanced\"", problem, "use \"none\" or \"volume_and_surface\""));
     }
     let padding = 0;
     let lattice = Lattice::over(specimen, model.spacing, model.lattice_angle, padding)?;
@@ -63,6 +71,12 @@ pub fn net(scene: &Scene, law: &BondLaw) -> Result<Net> {
     bonds.extend(linking.across_levels());
     let of_level = |of: fn(&Stencil) -> f64| levels.leaves.iter().map(|leaf| of(&stencils[leaf.level])).collect::<Vec<f64>>();
     let finest = levels.lattices[levels.lattices.len() - 1].spacing;
+    let consistent = (law.surface_correction == SurfaceCorrection::Balanced).then(|| {
+        let walls = &stencils[stencils.len() - 1];
+        (Obstacles::of(specimen, walls.spacing, stencils[0].horizon), load_rows(&stencils[0]))
+    });
+    let sharing = Sharing::new(&levels, &positions, consistent);
+    let forces = loads::forces(specimen, &sharing, is_floating(scene))?;
     let mut net = Net {
         pre_cut: cut_by(&specimen.cracks, &bonds, &positions, finest),
         volumes: of_level(|stencil| stencil.spacing * stencil.spacing).into_iter().map(|a| a * specimen.thickness).collect(),
@@ -72,17 +86,22 @@ pub fn net(scene: &Scene, law: &BondLaw) -> Result<Net> {
         owner_only: model.arrangement == Arrangement::VariableHorizon,
         unknowns: stencils[0].unknowns,
         rotation_length: stencils[0].spacing,
-        forces: loads::forces(specimen, &levels, &positions, is_floating(scene))?,
+        forces,
         grid: grid(&levels),
         warnings: warnings(&levels),
         entries: Vec::new(),
         starts: Vec::new(),
-        positions,
+        positions: positions.clone(),
         bonds,
     }
     .linked();
-    if law.surface_correction == SurfaceCorrection::VolumeAndSurface {
-        surface::volume_and_surface(&mut net, plane_stiffness(&spring_material(law, &scene.material))[0]);
+    match law.surface_correction {
+        SurfaceCorrection::None => {}
+        SurfaceCorrection::VolumeAndSurface => {
+            let c11 = plane_stiffness(&spring_material(law, &scene.material))[0];
+            surface::volume_and_surface(&mut net, &levels.lattices[0], c11);
+        }
+        SurfaceCorrection::Balanced => balanced::balance(&mut net, specimen, &levels, &stencils, &sharing)?,
     }
     Ok(net)
 }
@@ -93,7 +112,7 @@ fn is_floating(scene: &Scene) -> bool {
 }
 
 /// Bonds that cracks cut, ascending.
-fn cut_by(cracks: &[Crack], bonds: &[NetBond], positions: &[crate::specimen::Point], spacing: f64) -> Vec<u32> {
+fn cut_by(cracks: &[Crack], bonds: &[NetBond], positions: &[Point], spacing: f64) -> Vec<u32> {
     let lines: Vec<_> = cracks.iter().map(|crack| cutting_line(spacing, crack.from, crack.to)).collect();
     let is_cut = |bond: &NetBond| {
         let (a, b) = (positions[bond.from as usize], positions[bond.to as usize]);
