@@ -60,9 +60,8 @@ pub fn net(scene: &Scene, law: &BondLaw) -> Result<Net> {
     let lattice = Lattice::over(specimen, model.spacing, model.lattice_angle, padding)?;
     let areas = Area::all(specimen, scene.refinement.as_ref(), model.horizon_ratio)?;
     let levels = Levels::over(specimen, lattice, &areas, model.horizon_ratio)?;
-    let stencil = |lattice: &Lattice| {
-        Stencil::new(law, &scene.material, lattice.spacing, model.horizon_ratio, specimen.thickness)
-    };
+    let stencil =
+        |lattice: &Lattice| Stencil::new(law, &scene.material, lattice.spacing, model.horizon_ratio, specimen.thickness);
     let stencils = levels.lattices.iter().map(stencil).collect::<Result<Vec<Stencil>>>()?;
     let positions: Vec<_> = levels.leaves.iter().map(|&leaf| levels.position(leaf)).collect();
     let linking = Linking::new(specimen, &levels, &stencils, &positions, model.arrangement);
@@ -108,7 +107,9 @@ pub fn net(scene: &Scene, law: &BondLaw) -> Result<Net> {
 
 /// Whether nothing holds the plate, so that its loads must balance.
 fn is_floating(scene: &Scene) -> bool {
-    scene.holds.is_empty() && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_)))
+    scene.specimen.supports.is_empty()
+        && scene.holds.is_empty()
+        && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_)))
 }
 
 /// Bonds that cracks cut, ascending.

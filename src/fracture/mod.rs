@@ -107,7 +107,9 @@ pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
                 Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
             Ok((Net::of_body(&body), Some(body)))
         }
-        (SceneLaw::Bonds(law), Arrangement::DualHorizon | Arrangement::VariableHorizon) => Ok((dual_horizon::net(scene, &law)?, None)),
+        (SceneLaw::Bonds(law), Arrangement::DualHorizon | Arrangement::VariableHorizon) => {
+            Ok((dual_horizon::net(scene, &law)?, None))
+        }
         (_, arrangement) => {
             Err(input("model.discretisation", format!("\"{arrangement}\""), "is not built yet", "use \"lattice\""))
         }

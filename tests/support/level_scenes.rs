@@ -5,15 +5,12 @@ use perilife::fracture::bonds::BondState;
 use perilife::fracture::failure::Failure;
 use perilife::fracture::interaction::{Damaging, Interaction};
 use perilife::fracture::net::Net;
-use perilife::fracture::scene::{
-    Action, Arrangement, Damage, DamageEntry, DamageLaw, Drive, Procedure, RefinedRegion, Refinement, Region, Scene, SceneLaw,
-    SceneModel, SceneSolver,
-};
+use perilife::fracture::scene::{Arrangement, DamageLaw, RefinedRegion, Refinement, Scene};
 use perilife::fracture::springs::Springs;
 use perilife::material::{Material, Plane};
-use perilife::specimen::{self, Edge, Point};
+use perilife::specimen::{self, Point};
 
-use crate::statics;
+use crate::{scenes, statics};
 
 /// The published bond-based law: constant kernel on the stretch.
 pub const BOND_BASED: BondLaw = BondLaw {
@@ -25,49 +22,24 @@ pub const BOND_BASED: BondLaw = BondLaw {
 
 /// A plate of `[specimen]` keys beside `kind = "plate"`, without loads; nothing breaks.
 pub fn plate(keys: &str, law: BondLaw, spacing: f64, regions: &[(RefinedRegion, usize)]) -> Scene {
-    let value: toml::Value = format!("kind = \"plate\"\nthickness_mm = 2.0\n{keys}").parse::<toml::Table>().unwrap().into();
-    Scene {
-        name: "plate".to_owned(),
-        specimen: specimen::from_value(&value).unwrap(),
-        material: Material {
-            density: Some(8000.0),
-            fracture_energy: Some(5e3),
-            ..statics::material(law.kind, Plane::Stress)
-        },
-        model: SceneModel {
-            law: SceneLaw::Bonds(law),
-            finite: false,
-            spacing,
-            horizon_ratio: 3.015,
-            lattice_angle: 0.0,
-            arrangement: Arrangement::DualHorizon,
-            solver: SceneSolver::VelocityVerlet,
-        },
-        drives: Vec::new(),
-        holds: Vec::new(),
-        damage: Damage {
-            law: DamageLaw::None,
-            enters: DamageEntry::Influence,
-            stretch: None,
-            nonlinear: None,
-            tensile_strength: None,
-        },
-        procedure: Procedure::Static,
-        refinement: Some(Refinement { regions: regions.to_vec() }),
-        warnings: Vec::new(),
-        echo: serde_json::Value::Null,
-    }
+    let text = format!("kind = \"plate\"\nthickness_mm = 2.0\n{keys}");
+    let mut scene = scenes::pulled(law, DamageLaw::None, spacing, 1.0, 1e-6);
+    scene.specimen = specimen::from_value(&toml::Value::Table(text.parse().unwrap())).unwrap();
+    scene.material = Material { density: Some(8000.0), fracture_energy: Some(5e3), ..statics::material(law.kind, Plane::Stress) };
+    scene.drives.clear();
+    refined(scene, regions)
+}
+
+/// The scene on a dual horizon with these regions.
+pub fn refined(mut scene: Scene, regions: &[(RefinedRegion, usize)]) -> Scene {
+    scene.model.arrangement = Arrangement::DualHorizon;
+    scene.refinement = Some(Refinement { regions: regions.to_vec() });
+    scene
 }
 
 /// An upright box, m.
 pub fn a_box(low: Point, high: Point) -> RefinedRegion {
     RefinedRegion::Box { low, high }
-}
-
-/// Velocity across an edge, m/s, that rises over a time, s.
-pub fn pulled(edge: Edge, velocity: [Option<f64>; 2], ramp: f64) -> Drive {
-    let region = Region::Edge { edge, depth: 0.0, range: [f64::NEG_INFINITY, f64::INFINITY] };
-    Drive { region, action: Action::Velocity(velocity), ramp }
 }
 
 /// Forces of whole springs at a displacement, N.

@@ -109,7 +109,8 @@ fn pairs(net: &Net, levels: &Levels, stencil: &Stencil, finest: f64) -> BTreeMap
         let ends = if turned { (bond.to, bond.from) } else { (bond.from, bond.to) };
         let normal = levels.lattices[0].to_axes(if turned { bond.normal.map(|n| -n) } else { bond.normal });
         let own = gain(bond.k_n / s22, bond.length / finest, normal);
-        let pair = pairs.entry(ends).or_insert(Pair { bonds: Vec::new(), gain: BondGain { at_owner: [0.0; 6], at_other: [0.0; 6] } });
+        let pair =
+            pairs.entry(ends).or_insert(Pair { bonds: Vec::new(), gain: BondGain { at_owner: [0.0; 6], at_other: [0.0; 6] } });
         pair.bonds.push(b as u32);
         pair.gain.at_owner.iter_mut().zip(own.at_owner).for_each(|(sum, g)| *sum += g);
         pair.gain.at_other.iter_mut().zip(own.at_other).for_each(|(sum, g)| *sum += g);

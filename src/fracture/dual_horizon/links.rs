@@ -109,8 +109,7 @@ impl<'a> Linking<'a> {
                 let step = [0, 1].map(|axis| (there[axis] - here[axis]) as f64);
                 let steps = step[0].hypot(step[1]);
                 let (length, normal) = (steps * half, step.map(|s| s / steps));
-                if length > stencil.horizon * (1.0 + ROUND_OFF)
-                    || (near && walls.block(self.positions[i], self.positions[other]))
+                if length > stencil.horizon * (1.0 + ROUND_OFF) || (near && walls.block(self.positions[i], self.positions[other]))
                 {
                     continue;
                 }

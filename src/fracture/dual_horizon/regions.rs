@@ -29,7 +29,8 @@ impl<'s> Area<'s> {
     /// Levels out of range, areas outside the plate, horizons that do not overlap where levels meet.
     pub fn all(specimen: &'s Specimen, refinement: Option<&'s Refinement>, ratio: f64) -> Result<Vec<Area<'s>>> {
         let regions = refinement.map_or(&[][..], |refinement| &refinement.regions);
-        let area = |(index, (region, levels)): (usize, &'s (RefinedRegion, usize))| Area { specimen, region, levels: *levels, index };
+        let area =
+            |(index, (region, levels)): (usize, &'s (RefinedRegion, usize))| Area { specimen, region, levels: *levels, index };
         let areas: Vec<Area> = regions.iter().enumerate().map(area).collect();
         for area in &areas {
             area.check(ratio)?;
