@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use perilife::bond_law::stencil::Stencil;
-use perilife::bond_law::{BondLaw, BondLawKind, Rotation, SurfaceCorrection};
+use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use perilife::fracture::failure::critical_stretch;
 use perilife::fracture::fronts::CRACKED;
 use perilife::fracture::net::Net;
@@ -41,6 +41,12 @@ fn graded() -> [(RefinedRegion, usize); 2] {
     [(RefinedRegion::AroundFlaws { distance: 3e-3 }, 2), (a_box([-20e-3, -25e-3], [20e-3, -18e-3]), 1)]
 }
 
+/// The same but of the balanced ones one a law: they take a second each.
+fn laws_in_seconds() -> impl Iterator<Item = BondLaw> {
+    let one = |law: &BondLaw| law.kernel == Kernel::Conical && law.rotation == Rotation::Resisted;
+    laws().filter(move |law| law.surface_correction != SurfaceCorrection::Balanced || one(law))
+}
+
 /// Largest difference over the largest value.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
@@ -50,8 +56,9 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn equal_horizons_give_the_ordinary_net() {
-    for law in laws() {
-        for angle in [0.0, 0.3] {
+    for law in laws_in_seconds() {
+        let balanced = law.surface_correction == SurfaceCorrection::Balanced;
+        for angle in [0.0, 0.3].into_iter().filter(|&angle| !balanced || angle > 0.0) {
             let mut scene = plate(FLAWED, law, 2e-3, &[]);
             scene.model.lattice_angle = angle;
             let dual = fracture::build(&scene).unwrap().0;
@@ -70,7 +77,7 @@ fn equal_horizons_give_the_ordinary_net() {
 
 #[test]
 fn momentum_and_angular_momentum_are_exact() {
-    for law in laws() {
+    for law in laws_in_seconds() {
         let net = fracture::build(&plate(FLAWED, law, 2e-3, &graded())).unwrap().0;
         let levels = net.spacings.iter().fold([0; 3], |mut n, s| {
             n[(2e-3 / s).log2().round() as usize] += 1;
