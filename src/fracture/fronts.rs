@@ -86,7 +86,8 @@ impl<'n> Fronts<'n> {
     pub fn new(specimen: &Specimen, net: &'n Net, threshold: f64) -> Self {
         let front = |tip: &crate::specimen::TipSeed| Front::starting(tip.position, tip.direction, 0.0);
         let fronts: Vec<Front> = specimen.tips.iter().map(front).collect();
-        let start = |(tip, front): (usize, &Front)| PathPoint { tip, step: 0, time: 0.0, position: front.at, damage: 0.0, speed: 0.0 };
+        let start =
+            |(tip, front): (usize, &Front)| PathPoint { tip, step: 0, time: 0.0, position: front.at, damage: 0.0, speed: 0.0 };
         let path = fronts.iter().enumerate().map(start).collect();
         Fronts { net, threshold, cracked: vec![false; net.len()], fronts, begun: false, path }
     }
