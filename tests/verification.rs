@@ -8,6 +8,8 @@ mod plates;
 mod noise;
 #[path = "support/statics.rs"]
 mod statics;
+#[path = "support/level_scenes.rs"]
+mod level_scenes;
 
 #[path = "support/scenes.rs"]
 mod scenes;
@@ -42,3 +44,5 @@ mod round_trip;
 mod crack_length;
 #[path = "verification/hand_calculation.rs"]
 mod hand_calculation;
+#[path = "verification/dual_horizon.rs"]
+mod dual_horizon;

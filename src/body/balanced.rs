@@ -30,15 +30,15 @@ use least_squares::{BondGain, Gain, Link, Problem};
 
 /// Rows whose bonds change behind the points that miss a neighbour: ahead of the end of a slot there are fewer bonds than
 /// equations otherwise.
-const ROWS_MORE: usize = 1;
+pub(crate) const ROWS_MORE: usize = 1;
 /// Rows whose bonds change at least; short horizons have fewer bonds than equations otherwise.
-const ROWS_LEAST: usize = 3;
+pub(crate) const ROWS_LEAST: usize = 3;
 /// Bounds of a multiplier.
-const BOUNDS: [f64; 2] = [0.2, 5.0];
+pub(crate) const BOUNDS: [f64; 2] = [0.2, 5.0];
 
 /// Rows of points that a consistent load reaches: the fewer, the more the last row takes. Stencils with no more bonds than a
 /// point has equations cannot pass the load on from a third row.
-pub(super) fn load_rows(stencil: &Stencil) -> usize {
+pub(crate) fn load_rows(stencil: &Stencil) -> usize {
     if stencil.bonds.len() > least_squares::EQUATIONS { stencil.reach.max(ROWS_LEAST) } else { 2 }
 }
 
@@ -82,8 +82,7 @@ pub(super) fn balance(body: &mut Body, rim: &[Facet], sharing: &Sharing) -> Resu
     let missing: Vec<Gain> = members
         .iter()
         .map(|&place| {
-            let [ax, ay] = areas[place];
-            let mut left = [-3.0 * ax, -ay, -ax, -3.0 * ay, 0.0, 0.0];
+            let mut left = asked(areas[place]);
             for (k, gain) in stencil_gains.iter().enumerate() {
                 let behind = place.wrapping_add_signed(-body.steps[k]);
                 for (owner, own) in [(place, gain.at_owner), (behind, gain.at_other)] {
@@ -112,17 +111,25 @@ fn gains(body: &Body) -> Vec<BondGain> {
     let spacing = body.lattice.spacing;
     let s22: f64 =
         body.stencil.bonds.iter().map(|bond| bond.k_n * (bond.length / spacing * bond.normal[0] * bond.normal[1]).powi(2)).sum();
-    let of_bond = |bond: &StencilBond| {
-        let ([x, y], r) = (bond.normal, bond.length / spacing);
-        let force = bond.k_n * r / s22;
-        let turn = force * r;
-        let gain = |sign: f64| {
-            let f = sign * force;
-            [f * x * x * x, f * x * x * y, f * x * y * y, f * y * y * y, turn * x * y, 0.5 * turn * (x * x - y * y)]
-        };
-        BondGain { at_owner: gain(1.0), at_other: gain(-1.0) }
-    };
+    let of_bond = |bond: &StencilBond| gain(bond.k_n / s22, bond.length / spacing, bond.normal);
     body.stencil.bonds.iter().map(of_bond).collect()
+}
+
+/// Share of a bond in the equations of its two ends: spring over S₂₂, length, direction from the owner in lattice axes.
+pub(crate) fn gain(spring: f64, length: f64, [x, y]: [f64; 2]) -> BondGain {
+    let force = spring * length;
+    let turn = force * length;
+    let at = |sign: f64| {
+        let f = sign * force;
+        [f * x * x * x, f * x * x * y, f * x * y * y, f * y * y * y, turn * x * y, 0.5 * turn * (x * x - y * y)]
+    };
+    BondGain { at_owner: at(1.0), at_other: at(-1.0) }
+}
+
+/// What the continuum asks of the equations of a point that stands for this rim.
+pub(crate) fn asked(area: [f64; 2]) -> Gain {
+    let [ax, ay] = area;
+    [-3.0 * ax, -ay, -ax, -3.0 * ay, 0.0, 0.0]
 }
 
 /// Rim that every place stands for: Σ share × length × normal, in lattice axes and spacings.

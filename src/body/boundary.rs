@@ -96,36 +96,13 @@ impl Boundary {
         if !self.floating {
             return Ok(());
         }
-        let scale: f64 = self.forces.iter().map(|(_, f)| f[0].abs() + f[1].abs()).sum();
-        if scale == 0.0 {
-            return Ok(());
-        }
-        let seat = |place: u32| {
+        let seat = |&(place, force): &(u32, Point)| {
             let (column, row) = lattice.column_row(place as usize);
-            [column as f64, row as f64]
+            ([column as f64, row as f64], force)
         };
-        let count = self.forces.len() as f64;
-        let mean = self.forces.iter().fold([0.0; 2], |m, &(p, _)| [m[0] + seat(p)[0] / count, m[1] + seat(p)[1] / count]);
-        let arm = |p: u32| [seat(p)[0] - mean[0], seat(p)[1] - mean[1]];
-        let couples: f64 = self.couples.iter().map(|c| c.1).sum();
-        let (mut resultant, mut moment, mut inertia) = ([0.0; 2], couples, 0.0);
-        for &(p, f) in &self.forces {
-            let r = arm(p);
-            resultant = [resultant[0] + f[0], resultant[1] + f[1]];
-            moment += r[0] * f[1] - r[1] * f[0];
-            inertia += r[0] * r[0] + r[1] * r[1];
-        }
-        let lever = (inertia / count).sqrt();
-        if resultant[0].hypot(resultant[1]) > 0.02 * scale || moment.abs() > 0.02 * scale * lever {
-            return Err(Error::Mechanics(
-                "the loads are not in equilibrium and nothing holds the plate; give [supports] or loads that balance".to_owned(),
-            ));
-        }
-        for (p, f) in &mut self.forces {
-            let r = arm(*p);
-            f[0] -= resultant[0] / count - moment / inertia * r[1];
-            f[1] -= resultant[1] / count + moment / inertia * r[0];
-        }
+        let mut seated: Vec<(Point, Point)> = self.forces.iter().map(seat).collect();
+        balance(&mut seated, self.couples.iter().map(|c| c.1).sum())?;
+        self.forces.iter_mut().zip(seated).for_each(|(force, (_, balanced))| force.1 = balanced);
         Ok(())
     }
 
@@ -190,6 +167,40 @@ impl Boundary {
     }
 }
 
+/// Changes forces on seats by the smallest amounts (least squares) after which their resultant and their moment, that of couples
+/// included, vanish.
+///
+/// # Errors
+/// Forces far out of balance.
+pub(crate) fn balance(seated: &mut [(Point, Point)], couples: f64) -> Result<()> {
+    let scale: f64 = seated.iter().map(|(_, f)| f[0].abs() + f[1].abs()).sum();
+    if scale == 0.0 {
+        return Ok(());
+    }
+    let count = seated.len() as f64;
+    let mean = seated.iter().fold([0.0; 2], |m, (seat, _)| [m[0] + seat[0] / count, m[1] + seat[1] / count]);
+    let arm = |seat: Point| [seat[0] - mean[0], seat[1] - mean[1]];
+    let (mut resultant, mut moment, mut inertia) = ([0.0; 2], couples, 0.0);
+    for &(seat, f) in seated.iter() {
+        let r = arm(seat);
+        resultant = [resultant[0] + f[0], resultant[1] + f[1]];
+        moment += r[0] * f[1] - r[1] * f[0];
+        inertia += r[0] * r[0] + r[1] * r[1];
+    }
+    let lever = (inertia / count).sqrt();
+    if resultant[0].hypot(resultant[1]) > 0.02 * scale || moment.abs() > 0.02 * scale * lever {
+        return Err(Error::Mechanics(
+            "the loads are not in equilibrium and nothing holds the plate; give [supports] or loads that balance".to_owned(),
+        ));
+    }
+    for (seat, f) in seated.iter_mut() {
+        let r = arm(*seat);
+        f[0] -= resultant[0] / count - moment / inertia * r[1];
+        f[1] -= resultant[1] / count + moment / inertia * r[0];
+    }
+    Ok(())
+}
+
 /// Components of the lattice axes that are held when plate components are; a turned lattice holds both.
 fn held(lattice: &Lattice, x: bool, y: bool) -> [bool; 3] {
     if lattice.axis[1] == 0.0 { [x, y, false] } else { [x || y, x || y, false] }
@@ -217,7 +228,7 @@ fn end_blocks<'a>(
 
 /// A piece of the rim and the force on it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct LoadPiece {
+pub(crate) struct LoadPiece {
     /// Where it acts; the normal points out of the material.
     pub facet: Facet,
     /// Force in plate axes at unit nominal load, N.
@@ -225,7 +236,7 @@ pub(super) struct LoadPiece {
 }
 
 /// The loads of a specimen in short pieces.
-pub(super) fn load_pieces(specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
+pub(crate) fn load_pieces(specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
     let outward = |facet: Facet| if specimen.contains(behind(&facet, spacing)) { facet } else { turned_over(facet) };
     let mut pieces = Vec::new();
     for load in &specimen.loads {

@@ -61,6 +61,6 @@ pub(super) fn turned_over(facet: Facet) -> Facet {
 }
 
 /// A point just behind a piece, in the material if the piece bounds any.
-pub(super) fn behind(facet: &Facet, spacing: f64) -> Point {
+pub(crate) fn behind(facet: &Facet, spacing: f64) -> Point {
     [0, 1].map(|i| facet.at[i] - BEHIND * spacing * facet.normal[i])
 }

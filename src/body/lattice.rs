@@ -96,6 +96,14 @@ impl Lattice {
         Ok(Lattice { columns, rows, spacing, origin, axis: [angle.cos(), angle.sin()], padding, stride })
     }
 
+    /// The lattice of half the spacing whose places are the four parts of every place, at ± a quarter of the spacing.
+    #[must_use]
+    pub fn halved(&self) -> Lattice {
+        let (columns, rows) = (2 * self.columns, 2 * self.rows);
+        let stride = columns.next_multiple_of(LANES) + 2 * self.padding;
+        Lattice { columns, rows, spacing: 0.5 * self.spacing, origin: self.position_of(-0.25, -0.25), stride, ..self.clone() }
+    }
+
     /// Length of an array over all places, padding included.
     #[must_use]
     pub fn places(&self) -> usize {

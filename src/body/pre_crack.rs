@@ -19,9 +19,22 @@ pub fn bonds_cut_by(body: &Body, cracks: &[Crack]) -> Vec<Bond> {
 /// How far a crack from `a` to `b` is shifted, to its left, before bonds are cut, m.
 #[must_use]
 pub fn tie_break(body: &Body, a: Point, b: Point) -> Point {
+    aside(body.lattice.spacing, a, b)
+}
+
+fn aside(spacing: f64, a: Point, b: Point) -> Point {
     let [x, y] = direction(a, b);
-    let shift = TIE_BREAK * body.lattice.spacing;
+    let shift = TIE_BREAK * spacing;
     [-y * shift, x * shift]
+}
+
+/// Ends of the line that cuts bonds for a crack from `a` to `b` on points of a spacing, m: shifted aside, and longer by ten times
+/// that shift, so that a bond through an end of the crack is cut at both ends alike.
+#[must_use]
+pub fn cutting_line(spacing: f64, a: Point, b: Point) -> [Point; 2] {
+    let aside = aside(spacing, a, b);
+    let (x, y) = (10.0 * aside[1], -10.0 * aside[0]);
+    [[a[0] + aside[0] - x, a[1] + aside[1] - y], [b[0] + aside[0] + x, b[1] + aside[1] + y]]
 }
 
 /// Bonds that cross the segment from `a` to `b`.
@@ -31,10 +44,7 @@ pub fn bonds_across(body: &Body, a: Point, b: Point) -> Vec<Bond> {
     if distance(a, b) == 0.0 {
         return Vec::new();
     }
-    let aside = tie_break(body, a, b);
-    // Longer by ten times the sideways shift, so that a bond through an end of the crack is cut at both ends alike.
-    let (x, y) = (10.0 * aside[1], -10.0 * aside[0]);
-    let (a, b) = ([a[0] + aside[0] - x, a[1] + aside[1] - y], [b[0] + aside[0] + x, b[1] + aside[1] + y]);
+    let [a, b] = cutting_line(lattice.spacing, a, b);
     let mut cut = Vec::new();
     for place in places_near(body, a, b, body.horizon()) {
         let here = lattice.position(place);

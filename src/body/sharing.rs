@@ -12,9 +12,9 @@ use super::obstacles::Obstacles;
 use crate::specimen::Point;
 
 /// Factor by which the region is widened while its points do not determine a linear field.
-const WIDEN: f64 = 1.15;
+pub(crate) const WIDEN: f64 = 1.15;
 /// Widenings after which the nearest point has to do: the material there is a single row or point.
-const WIDENINGS: usize = 8;
+pub(crate) const WIDENINGS: usize = 8;
 /// Least determinant of the moment matrix over the product of its diagonal: below, the points lie almost on a line.
 const LEAST_DETERMINANT: f64 = 1e-3;
 /// Spacings within which a nearest point is searched.
@@ -86,31 +86,48 @@ impl<'a> Sharing<'a> {
         let (deep, wide) = (widen * (rows + 0.5), widen);
         let from = behind(facet, lattice.spacing);
         let near = obstacles.near(from);
-        let mut found = Vec::new();
-        for (c, r, place) in self.points_within(facet.at, deep.hypot(wide)) {
-            let (dx, dy) = (c as f64 - column, r as f64 - row);
-            let (x, y) = ((dx * n[0] + dy * n[1]) / deep, (dy * n[0] - dx * n[1]) / wide);
-            let weight = (1.0 - x * x).max(0.0) * (1.0 - y * y).max(0.0);
-            if weight > 0.0 && !(near && obstacles.block(from, lattice.position(place))) {
-                found.push((place as u32, weight, x, y));
-            }
-        }
-        let mut g = [0.0; 6];
-        for &(_, w, x, y) in &found {
-            for (sum, term) in g.iter_mut().zip([1.0, x, y, x * x, x * y, y * y]) {
-                *sum += w * term;
-            }
-        }
-        // Share = w (1, x, y) G⁻¹ (1, 0, 0)ᵀ: the first row of cofactors.
-        let [g00, g01, g02, g11, g12, g22] = g;
-        let cofactors = [g11 * g22 - g12 * g12, g12 * g02 - g01 * g22, g01 * g12 - g11 * g02];
-        let determinant = g00 * cofactors[0] + g01 * cofactors[1] + g02 * cofactors[2];
-        if determinant.is_nan() || determinant <= LEAST_DETERMINANT * g00 * g11 * g22 {
-            return None;
-        }
-        let share = |&(place, w, x, y): &(u32, f64, f64, f64)| {
-            (place, w * (cofactors[0] + cofactors[1] * x + cofactors[2] * y) / determinant)
-        };
-        Some(found.iter().map(share).collect())
+        let candidates = self
+            .points_within(facet.at, deep.hypot(wide))
+            .map(|(c, r, place)| (place as u32, [c as f64 - column, r as f64 - row], 1.0));
+        let sees = |place: u32| !(near && obstacles.block(from, lattice.position(place as usize)));
+        linear_shares(n, deep, wide, candidates, sees)
     }
+}
+
+/// Shares of a force by moving least squares of first order over candidates (point, way to it from the force, weight): those that
+/// the force sees within a box behind the rim, `deep` against the normal and `wide` to either side, lengths in any one unit.
+/// `None` if they do not determine a linear field.
+pub(crate) fn linear_shares(
+    normal: Point,
+    deep: f64,
+    wide: f64,
+    candidates: impl Iterator<Item = (u32, Point, f64)>,
+    sees: impl Fn(u32) -> bool,
+) -> Option<Vec<(u32, f64)>> {
+    let n = normal;
+    let mut found = Vec::new();
+    for (point, [dx, dy], scale) in candidates {
+        let (x, y) = ((dx * n[0] + dy * n[1]) / deep, (dy * n[0] - dx * n[1]) / wide);
+        let weight = scale * (1.0 - x * x).max(0.0) * (1.0 - y * y).max(0.0);
+        if weight > 0.0 && sees(point) {
+            found.push((point, weight, x, y));
+        }
+    }
+    let mut g = [0.0; 6];
+    for &(_, w, x, y) in &found {
+        for (sum, term) in g.iter_mut().zip([1.0, x, y, x * x, x * y, y * y]) {
+            *sum += w * term;
+        }
+    }
+    // Share = w (1, x, y) G⁻¹ (1, 0, 0)ᵀ: the first row of cofactors.
+    let [g00, g01, g02, g11, g12, g22] = g;
+    let cofactors = [g11 * g22 - g12 * g12, g12 * g02 - g01 * g22, g01 * g12 - g11 * g02];
+    let determinant = g00 * cofactors[0] + g01 * cofactors[1] + g02 * cofactors[2];
+    if determinant.is_nan() || determinant <= LEAST_DETERMINANT * g00 * g11 * g22 {
+        return None;
+    }
+    let share = |&(point, w, x, y): &(u32, f64, f64, f64)| {
+        (point, w * (cofactors[0] + cofactors[1] * x + cofactors[2] * y) / determinant)
+    };
+    Some(found.iter().map(share).collect())
 }

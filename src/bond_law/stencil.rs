@@ -65,6 +65,18 @@ pub struct Stencil {
     pub unknowns: usize,
     /// Modulus of dilatation times point volume, κ V, J; zero for laws of springs alone.
     pub dilatation: f64,
+    /// What the springs of other bond vectors follow from.
+    field: SpringField,
+}
+
+/// Springs as a function of the bond vector: `k = c q(ξ)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct SpringField {
+    law: BondLaw,
+    /// (c_n, c_t) over weight.
+    moduli: [f64; 2],
+    /// Relative change of a weight over [`excess`] that makes the lattice isotropic.
+    tilt: f64,
 }
 
 /// Elastic constants C11 and C12 of the plane state, Pa.
@@ -177,10 +189,11 @@ impl Stencil {
         shape.retain(|_| *kept.next().unwrap_or(&false));
         weight.retain(|&w| w > least);
         let volume = spacing * spacing * thickness;
+        let mut tilt = 0.0;
         let (c_n, c_t) = match law.surface_correction {
             SurfaceCorrection::VolumeAndSurface => integral_moduli(law, material, horizon, volume, thickness),
             SurfaceCorrection::None | SurfaceCorrection::Balanced => {
-                make_isotropic(&shape, &mut weight);
+                tilt = make_isotropic(&shape, &mut weight);
                 lattice_moduli(law, material, &shape, &weight, volume)
             }
         };
@@ -191,11 +204,21 @@ impl Stencil {
             bond.k_n = c_n * q;
             bond.k_t = c_t * q;
         }
-        Ok(Stencil { bonds: shape, spacing, horizon, reach, unknowns, dilatation })
+        let field = SpringField { law: *law, moduli: [c_n, c_t], tilt };
+        Ok(Stencil { bonds: shape, spacing, horizon, reach, unknowns, dilatation, field })
     }
 }
 
 impl Stencil {
+    /// Normal and tangential spring of a bond to a cell of another width, N/m, as if both ends had the volume of this lattice's
+    /// points; `normal` in lattice axes. Continues the stencil: its own bonds have these springs at `width = spacing`.
+    #[must_use]
+    pub fn spring(&self, length: f64, normal: [f64; 2], width: f64) -> [f64; 2] {
+        let SpringField { law, moduli, tilt } = &self.field;
+        let weight = profile(law, length, self.horizon).max(0.0) * partial_volume(length, self.horizon, width);
+        moduli.map(|c| c * weight * (1.0 - tilt * excess(length, normal)).max(0.0))
+    }
+
     /// Whether a rigid rotation costs energy: tangential springs between points that do not turn.
     #[must_use]
     pub fn resists_rotation(&self) -> bool {
@@ -244,20 +267,20 @@ fn moments(shape: &[StencilBond], weight: &[f64]) -> [f64; 2] {
     })
 }
 
-/// Moves the weights by the smallest relative amounts that make S₄ = 3 S₂₂.
-fn make_isotropic(shape: &[StencilBond], weight: &mut [f64]) {
-    let excess = |bond: &StencilBond| {
-        let [nx, ny] = bond.normal;
-        // Averaged over x and y so that the moved weights keep the symmetry of the square.
-        bond.length * bond.length * (0.5 * (nx.powi(4) + ny.powi(4)) - 3.0 * nx * nx * ny * ny)
-    };
-    let total: f64 = shape.iter().zip(weight.iter()).map(|(bond, q)| q * excess(bond)).sum();
-    let square: f64 = shape.iter().zip(weight.iter()).map(|(bond, q)| q * excess(bond).powi(2)).sum();
-    if square > 0.0 {
-        for (bond, q) in shape.iter().zip(weight.iter_mut()) {
-            *q *= (1.0 - total / square * excess(bond)).max(0.0);
-        }
+/// Share of a bond in S₄ - 3 S₂₂ over its weight, averaged over x and y so that moved weights keep the symmetry of the square.
+fn excess(length: f64, [nx, ny]: [f64; 2]) -> f64 {
+    length * length * (0.5 * (nx.powi(4) + ny.powi(4)) - 3.0 * nx * nx * ny * ny)
+}
+
+/// Moves the weights by the smallest relative amounts that make S₄ = 3 S₂₂; returns the amount over [`excess`].
+fn make_isotropic(shape: &[StencilBond], weight: &mut [f64]) -> f64 {
+    let total: f64 = shape.iter().zip(weight.iter()).map(|(bond, q)| q * excess(bond.length, bond.normal)).sum();
+    let square: f64 = shape.iter().zip(weight.iter()).map(|(bond, q)| q * excess(bond.length, bond.normal).powi(2)).sum();
+    let tilt = if square > 0.0 { total / square } else { 0.0 };
+    for (bond, q) in shape.iter().zip(weight.iter_mut()) {
+        *q *= (1.0 - tilt * excess(bond.length, bond.normal)).max(0.0);
     }
+    tilt
 }
 
 /// The material that the springs of a law stand for: all of it for a two-parameter law; with E and the law's own ν for a

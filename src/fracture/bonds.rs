@@ -31,7 +31,7 @@ impl BondState {
     pub fn damage(&self, net: &Net) -> Vec<f64> {
         let of_point = |i: usize| {
             let (mut whole, mut intact) = (0.0, 0.0);
-            for (b, other, _) in net.bonds_of(i).filter(|&(.., owned)| owned || net.pairs) {
+            for (b, other) in net.family_of(i) {
                 whole += net.volumes[other];
                 intact += if self.share[b] > 0.0 { net.volumes[other] } else { 0.0 };
             }

@@ -133,10 +133,14 @@ impl Boundary {
     }
 
     /// Displacement of the loads along their direction, summed, and their mean force; `pull` is what the points' bonds do to them.
+    /// Where some loads are prescribed motions, given forces beside them do not count.
     #[must_use]
     pub fn measure(&self, unknowns: usize, level: f64, u: &[f64], pull: &[f64]) -> (f64, f64) {
         let (mut displacement, mut load) = (0.0, 0.0);
-        for group in &self.groups {
+        let moving = |group: &&Group| group.direction != [0.0, 0.0];
+        let driven = self.groups.iter().filter(moving).any(|group| group.force.is_none());
+        let counted = || self.groups.iter().filter(moving).filter(|group| group.force.is_none() || !driven);
+        for group in counted() {
             let along = |values: &[f64]| -> f64 {
                 let at = |&p: &u32| p as usize * unknowns;
                 group.points.iter().map(at).map(|i| values[i] * group.direction[0] + values[i + 1] * group.direction[1]).sum()
@@ -145,8 +149,7 @@ impl Boundary {
             // A driven point is held against the pull of its bonds.
             load += group.force.map_or_else(|| -along(pull), |force| level * force);
         }
-        let moved = self.groups.iter().filter(|group| group.direction != [0.0, 0.0]).count().max(1);
-        (displacement, load / moved as f64)
+        (displacement, load / counted().count().max(1) as f64)
     }
 }
 

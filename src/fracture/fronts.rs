@@ -12,6 +12,9 @@ use crate::specimen::{Point, Specimen};
 
 /// Damage from which a point is cracked.
 pub const CRACKED: f64 = 0.35;
+/// Damage at which sources log place, time and speed of cracking (source 004). A straight crack along the rows never gets there;
+/// one that turns or kinks does.
+pub const LOGGED: f64 = 0.5;
 /// Distance in horizons within which a cracked point belongs to a front or to its way.
 const REACH: f64 = 2.0;
 /// Distance in spacings that a point has to lie ahead of a front to move it.
@@ -23,6 +26,10 @@ struct Front {
     /// Unit vector of growth over the last horizon; zero before there was any.
     direction: Point,
     way: Vec<Point>,
+    /// When it came here, s.
+    time: f64,
+    /// Where it stood at the last earlier time, and when it came there.
+    before: (Point, f64),
 }
 
 impl Front {
@@ -38,7 +45,17 @@ impl Front {
         (away <= REACH * horizon && forward > AHEAD * spacing && aside <= forward + spacing).then_some(forward)
     }
 
-    fn move_to(&mut self, point: Point, horizon: f64) {
+    fn starting(at: Point, direction: Point, time: f64) -> Self {
+        Front { at, direction, way: vec![at], time, before: (at, time) }
+    }
+
+    /// Moves on; returns the speed, m/s, 0 where no time has passed.
+    fn move_to(&mut self, point: Point, horizon: f64, time: f64) -> f64 {
+        if time > self.time {
+            (self.before, self.time) = ((self.at, self.time), time);
+        }
+        let (from, since) = self.before;
+        let speed = if time > since { distance(from, point) / (time - since) } else { 0.0 };
         self.at = point;
         self.way.push(point);
         let back = self.way.iter().rev().find(|&&at| distance(at, point) >= horizon).or(self.way.first());
@@ -46,12 +63,15 @@ impl Front {
         if since != [0.0; 2] {
             self.direction = since;
         }
+        speed
     }
 }
 
 /// All fronts, and what they did.
 pub struct Fronts<'n> {
     net: &'n Net,
+    /// Damage from which a point is cracked.
+    threshold: f64,
     cracked: Vec<bool>,
     fronts: Vec<Front>,
     /// Whether the points cracked at the start were taken down.
@@ -61,20 +81,20 @@ pub struct Fronts<'n> {
 }
 
 impl<'n> Fronts<'n> {
-    /// Fronts at the tips of the specimen.
+    /// Fronts of points with this damage, at the tips of the specimen.
     #[must_use]
-    pub fn new(specimen: &Specimen, net: &'n Net) -> Self {
-        let front =
-            |tip: &crate::specimen::TipSeed| Front { at: tip.position, direction: tip.direction, way: vec![tip.position] };
+    pub fn new(specimen: &Specimen, net: &'n Net, threshold: f64) -> Self {
+        let front = |tip: &crate::specimen::TipSeed| Front::starting(tip.position, tip.direction, 0.0);
         let fronts: Vec<Front> = specimen.tips.iter().map(front).collect();
-        let start = |(tip, front): (usize, &Front)| PathPoint { tip, step: 0, time: 0.0, position: front.at, damage: 0.0 };
+        let start =
+            |(tip, front): (usize, &Front)| PathPoint { tip, step: 0, time: 0.0, position: front.at, damage: 0.0, speed: 0.0 };
         let path = fronts.iter().enumerate().map(start).collect();
-        Fronts { net, cracked: vec![false; net.len()], fronts, begun: false, path }
+        Fronts { net, threshold, cracked: vec![false; net.len()], fronts, begun: false, path }
     }
 
     /// Takes down where the fronts stand with this damage of the points.
     pub fn advance(&mut self, step: usize, time: f64, damage: &[f64]) {
-        let mut left: Vec<usize> = (0..damage.len()).filter(|&i| damage[i] >= CRACKED && !self.cracked[i]).collect();
+        let mut left: Vec<usize> = (0..damage.len()).filter(|&i| damage[i] >= self.threshold && !self.cracked[i]).collect();
         left.iter().for_each(|&i| self.cracked[i] = true);
         if !std::mem::replace(&mut self.begun, true) {
             return;
@@ -83,13 +103,14 @@ impl<'n> Fronts<'n> {
         while !left.is_empty() {
             let moves = self.moves(&left);
             for &(tip, i) in &moves {
-                self.fronts[tip].move_to(self.net.positions[i], self.net.horizons[i]);
-                self.path.push(PathPoint { tip, step, time, position: self.net.positions[i], damage: damage[i] });
+                let position = self.net.positions[i];
+                let speed = self.fronts[tip].move_to(position, self.net.horizons[i], time);
+                self.path.push(PathPoint { tip, step, time, position, damage: damage[i], speed });
             }
             if moves.is_empty() {
-                let Some((first, front)) = self.new_front(&left) else { break };
+                let Some((first, front)) = self.new_front(&left, time) else { break };
                 let position = front.at;
-                self.path.push(PathPoint { tip: self.fronts.len(), step, time, position, damage: damage[first] });
+                self.path.push(PathPoint { tip: self.fronts.len(), step, time, position, damage: damage[first], speed: 0.0 });
                 self.fronts.push(front);
                 left.retain(|&i| i != first);
             }
@@ -98,14 +119,14 @@ impl<'n> Fronts<'n> {
 
     /// A front at that of the points away from all fronts and ways that lies nearest to one; a branch points away from where it
     /// came off, a crack far from all others anywhere.
-    fn new_front(&self, points: &[usize]) -> Option<(usize, Front)> {
+    fn new_front(&self, points: &[usize], time: f64) -> Option<(usize, Front)> {
         let off = |&i: &usize| {
             let (at, horizon) = (self.net.positions[i], self.net.horizons[i]);
             let ways = self.fronts.iter().flat_map(|front| &front.way);
             let from = ways.min_by(|a, b| distance(**a, at).total_cmp(&distance(**b, at)));
             let away = from.map_or(f64::INFINITY, |&from| distance(from, at));
             let start = from.filter(|_| away <= 2.0 * REACH * horizon).map_or([0.0; 2], |&from| direction(from, at));
-            (away > REACH * horizon).then_some((away, i, Front { at, direction: start, way: vec![at] }))
+            (away > REACH * horizon).then_some((away, i, Front::starting(at, start, time)))
         };
         let nearest = points.iter().filter_map(off).min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some((nearest.1, nearest.2))

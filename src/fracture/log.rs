@@ -2,7 +2,7 @@
 
 use super::bonds::BondState;
 use super::boundary::Boundary;
-use super::fronts::Fronts;
+use super::fronts::{CRACKED, Fronts, LOGGED};
 use super::net::Net;
 use super::outcome::{Fracture, HistoryRow, SceneEnd, SceneFigures};
 use super::pieces::is_separated;
@@ -21,6 +21,7 @@ pub struct Log<'a> {
     steps: usize,
     history: Vec<HistoryRow>,
     fronts: Fronts<'a>,
+    cracking: Fronts<'a>,
     snapshots: Vec<Snapshot>,
     onset: Option<usize>,
     separated: Option<usize>,
@@ -40,7 +41,8 @@ impl<'a> Log<'a> {
             boundary,
             steps,
             history: Vec::new(),
-            fronts: Fronts::new(&scene.specimen, net),
+            fronts: Fronts::new(&scene.specimen, net, CRACKED),
+            cracking: Fronts::new(&scene.specimen, net, LOGGED),
             snapshots: Vec::new(),
             onset: None,
             separated: None,
@@ -80,6 +82,7 @@ impl<'a> Log<'a> {
             self.next_look = row.step + self.steps / LOOKS;
             let damage = bonds.damage(self.net);
             self.fronts.advance(row.step, row.time, &damage);
+            self.cracking.advance(row.step, row.time, &damage);
             if self.broken > self.asked && self.separated.is_none() && is_separated(self.net, self.boundary, bonds) {
                 self.separated = Some(row.step);
             }
@@ -112,6 +115,7 @@ impl<'a> Log<'a> {
         Fracture {
             history: self.history,
             path: self.fronts.path,
+            cracking: self.cracking.path,
             snapshots: self.snapshots,
             grid: self.net.grid.clone(),
             end,

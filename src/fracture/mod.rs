@@ -6,6 +6,7 @@
 
 pub mod bonds;
 pub mod boundary;
+pub mod dual_horizon;
 pub mod dynamics;
 pub mod failure;
 pub mod fronts;
@@ -88,19 +89,26 @@ pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
             return Err(Error::Mechanics("scenes without time are not built yet".to_owned()));
         }
     };
+    fracture.warnings.extend(net.warnings.iter().cloned());
     fracture.figures.wall_s = started.elapsed().as_secs_f64();
     fracture.figures.memory_mb = memory::peak_mb();
     Ok(fracture)
 }
 
 /// Points and bonds of a scene, and the lattice body behind them if there is one.
-fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
+///
+/// # Errors
+/// Wrong input that shows only now, choices that do not go together.
+pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
     let model = &scene.model;
     match (model.law, model.arrangement) {
         (SceneLaw::Bonds(law), Arrangement::Lattice) => {
             let body =
                 Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
             Ok((Net::of_body(&body), Some(body)))
+        }
+        (SceneLaw::Bonds(law), Arrangement::DualHorizon | Arrangement::VariableHorizon) => {
+            Ok((dual_horizon::net(scene, &law)?, None))
         }
         (_, arrangement) => {
             Err(input("model.discretisation", format!("\"{arrangement}\""), "is not built yet", "use \"lattice\""))

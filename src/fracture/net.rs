@@ -1,8 +1,9 @@
 //! Points and bonds of any arrangement: what the discretised plate of a fracture scene is, fixed once built.
 //!
 //! A bond has an owner and a partner and acts on both with opposite forces, so that momentum is exact whatever the
-//! horizons. On a lattice every pair of points is one bond; with a dual horizon a pair has up to two, each with half of the
-//! micromodulus at its owner's horizon (Ren, Zhuang, Cai and Rabczuk 2016, IJNME 108:1451).
+//! horizons. On a lattice every pair of points is one bond; with a dual horizon a pair of unequal horizons has up to two, each
+//! with half of the micromodulus at its owner's horizon (Ren, Zhuang, Cai and Rabczuk 2016, IJNME 108:1451). Two halves between
+//! equal horizons would always do the same, and are one bond.
 
 use crate::body::Body;
 use crate::predict::PointGrid;
@@ -46,15 +47,19 @@ pub struct Net {
     pub spacings: Vec<f64>,
     /// Horizon of every point, m.
     pub horizons: Vec<f64>,
-    /// Bonds, by owner.
+    /// Bonds, by owner: first those of both horizons, then those of one ([`Net::mutual`]).
     pub bonds: Vec<NetBond>,
     /// Bonds of the points, owned or not, for point i those from `starts[i]` to `starts[i + 1]`: bond times two, plus one where the
     /// point is the partner.
     pub entries: Vec<u32>,
     /// See [`Net::entries`].
     pub starts: Vec<u32>,
-    /// Whether one bond stands for both directions of a pair, so that it lies in the horizon of both ends.
-    pub pairs: bool,
+    /// So many bonds, the first, lie in the horizons of both ends and stand for both directions of a pair; the bonds behind them
+    /// lie in the owner's alone. On a lattice all are of the first sort.
+    pub mutual: usize,
+    /// Whether bonds in the owner's horizon alone pull at the owner only: the variable horizon without its dual, whose forces do
+    /// not balance and have no energy. Such bonds are no entries of their partner, so that the kernel need not ask.
+    pub owner_only: bool,
     /// Bonds that cracks cut.
     pub pre_cut: Vec<u32>,
     /// Unknowns of a point: two displacements, and where rotation is free θ = φ times [`Net::rotation_length`], m.
@@ -65,6 +70,8 @@ pub struct Net {
     pub forces: Vec<(u32, Point)>,
     /// Lattice of the pictures: the finest level where there are several.
     pub grid: PointGrid,
+    /// What the user should know.
+    pub warnings: Vec<String>,
 }
 
 impl Net {
@@ -108,7 +115,8 @@ impl Net {
             volumes: vec![volume; count],
             spacings: vec![lattice.spacing; count],
             horizons: vec![body.horizon(); count],
-            pairs: true,
+            mutual: bonds.len(),
+            owner_only: false,
             pre_cut,
             unknowns: body.stencil.unknowns,
             rotation_length: lattice.spacing,
@@ -116,6 +124,7 @@ impl Net {
             grid: crate::predict::grid(body),
             entries: Vec::new(),
             starts: Vec::new(),
+            warnings: Vec::new(),
             bonds,
         }
         .linked()
@@ -125,18 +134,21 @@ impl Net {
     #[must_use]
     pub fn linked(mut self) -> Net {
         let count = self.positions.len();
+        let acting = |b: usize, bond: &NetBond| {
+            let sides = if self.owner_only && b >= self.mutual { 1 } else { 2 };
+            [(0, bond.from), (1, bond.to)].into_iter().take(sides)
+        };
         let mut starts = vec![0_u32; count + 1];
-        for bond in &self.bonds {
-            starts[bond.from as usize + 1] += 1;
-            starts[bond.to as usize + 1] += 1;
+        for (b, bond) in self.bonds.iter().enumerate() {
+            acting(b, bond).for_each(|(_, end)| starts[end as usize + 1] += 1);
         }
         for i in 0..count {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut entries = vec![0_u32; 2 * self.bonds.len()];
+        let mut entries = vec![0_u32; starts[count] as usize];
         for (b, bond) in self.bonds.iter().enumerate() {
-            for (side, end) in [(0, bond.from), (1, bond.to)] {
+            for (side, end) in acting(b, bond) {
                 entries[next[end as usize] as usize] = 2 * b as u32 + side;
                 next[end as usize] += 1;
             }
@@ -164,5 +176,10 @@ impl Net {
             let bond = &self.bonds[b];
             (b, if owned { bond.to } else { bond.from } as usize, owned)
         })
+    }
+
+    /// Bonds in a point's own horizon with their other end.
+    pub fn family_of(&self, point: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.bonds_of(point).filter(|&(b, _, owned)| owned || b < self.mutual).map(|(b, other, _)| (b, other))
     }
 }

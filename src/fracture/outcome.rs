@@ -49,6 +49,8 @@ pub struct PathPoint {
     pub position: Point,
     /// Damage φ of the point there.
     pub damage: f64,
+    /// Speed of the front on its way there, m/s: from where and when it was taken down last; 0 without time.
+    pub speed: f64,
 }
 
 /// Figures of a scene's run.
@@ -75,6 +77,8 @@ pub struct Fracture {
     pub history: Vec<HistoryRow>,
     /// Crack fronts in the order of time.
     pub path: Vec<PathPoint>,
+    /// The same of the points whose damage has reached 0.5.
+    pub cracking: Vec<PathPoint>,
     /// States for pictures: first, some between, last. `cycles` holds the time in s, or the step.
     pub snapshots: Vec<Snapshot>,
     /// Lattice of the snapshots.

@@ -1,4 +1,4 @@
-//! Results of a fracture scene: `history.csv`, `crack_path.csv`, `result.json`, charts and the damaged plate.
+//! Results of a fracture scene: `history.csv`, `crack_path.csv`, `cracking.csv`, `result.json`, charts and the damaged plate.
 
 mod json;
 
@@ -13,7 +13,7 @@ use super::damage::DamagePicture;
 use super::output::write_file;
 use super::vtk;
 use crate::error::{Error, Result};
-use crate::fracture::outcome::HistoryRow;
+use crate::fracture::outcome::{HistoryRow, PathPoint};
 use crate::fracture::scene::Procedure;
 use crate::fracture::{Fracture, Scene};
 use crate::predict::Snapshot;
@@ -22,8 +22,8 @@ use crate::units::{KN, MM};
 
 /// Columns of `history.csv`.
 pub const HISTORY_COLUMNS: &str = "step,time_s,displacement_mm,load_n,broken_bonds,kinetic_j,strain_j,fracture_j,work_j";
-/// Columns of `crack_path.csv`.
-pub const PATH_COLUMNS: &str = "tip,step,time_s,x_mm,y_mm,damage";
+/// Columns of `crack_path.csv` and `cracking.csv`.
+pub const PATH_COLUMNS: &str = "tip,step,time_s,x_mm,y_mm,damage,speed_m_s";
 
 /// `history.csv`: one row a recorded step.
 #[must_use]
@@ -38,13 +38,15 @@ pub fn history(fracture: &Fracture) -> String {
     text
 }
 
-/// `crack_path.csv`: where every crack front stood, in the order of time.
+/// `crack_path.csv` of [`Fracture::path`] and `cracking.csv` of [`Fracture::cracking`]: where every crack front stood and how
+/// fast it came there, in the order of time.
 #[must_use]
-pub fn crack_path(fracture: &Fracture) -> String {
+pub fn crack_path(path: &[PathPoint]) -> String {
     let mut text = format!("{PATH_COLUMNS}\n");
-    for point in &fracture.path {
+    for point in path {
         let [x, y] = point.position.map(|metres| number(metres / MM));
-        let _ = writeln!(text, "{},{},{},{x},{y},{}", point.tip, point.step, exact(point.time), number(point.damage));
+        let (time, damage, speed) = (exact(point.time), number(point.damage), number(point.speed));
+        let _ = writeln!(text, "{},{},{time},{x},{y},{damage},{speed}", point.tip, point.step);
     }
     text
 }
@@ -55,7 +57,8 @@ pub fn crack_path(fracture: &Fracture) -> String {
 /// [`Error::File`] if one cannot be written.
 pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &serde_json::Value) -> Result<()> {
     write_file(&folder.join("history.csv"), history(fracture).as_bytes())?;
-    write_file(&folder.join("crack_path.csv"), crack_path(fracture).as_bytes())?;
+    write_file(&folder.join("crack_path.csv"), crack_path(&fracture.path).as_bytes())?;
+    write_file(&folder.join("cracking.csv"), crack_path(&fracture.cracking).as_bytes())?;
     write_file(&folder.join(super::json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
     draw_charts(folder, scene, fracture)?;
     draw_plate(folder, scene, fracture)?;

@@ -107,7 +107,7 @@ fn tables_hold_the_histories() {
 
     let path = fs::read_to_string(run.join("crack_path.csv")).unwrap();
     let mut lines = path.lines();
-    assert_eq!(lines.next(), Some("tip,step,time_s,x_mm,y_mm,damage"));
+    assert_eq!(lines.next(), Some("tip,step,time_s,x_mm,y_mm,damage,speed_m_s"));
     assert!(lines.next().unwrap().starts_with("0,0,0,0,0,"), "the tip of the start: {path}");
     assert!(lines.all(|line| line.split(',').skip(1).all(|field| field.parse::<f64>().is_ok())));
 }

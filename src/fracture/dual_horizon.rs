@@ -1,0 +1,150 @@
+//! Points of several levels with horizon and dual horizon: the arrangements `dual_horizon` and `variable_horizon`.
+//!
+//! Every refined point is split in four at ± a quarter of its spacing, again and again; the horizon is the same multiple of each
+//! point's own spacing. A point x pulls every x' in its horizon `H_x = {x' : |x' - x| ≤ δ_x}` with half of the micromodulus at
+//! δ_x, and is pulled by all in whose horizon it lies, the dual horizon `H'_x = {x' : x ∈ H_x'}`:
+//!
+//! ```text
+//! ρ u''(x) = Σ_{H_x} f_xx' V' - Σ_{H'_x} f_x'x V' + b
+//! ```
+//!
+//! (Ren, Zhuang, Cai and Rabczuk 2016, IJNME 108:1451; Ren, Zhuang and Rabczuk 2017, CMAME 318:762). A bond acts on both ends with
+//! opposite forces, so momentum is exact; springs lie along their bonds or act with the couple of [`NetBond::lever`], so angular
+//! momentum is exact too. Without the dual (`variable_horizon`), the full micromodulus acts on the owner alone, and a
+//! uniform strain at rest leaves a resultant: ghost forces.
+//!
+//! Uniform strain is in no equilibrium within a horizon of a change of level, dual or not: a point there sees more on one side
+//! than on the other, and the strain at rest is off by a quarter to a half. `surface_correction = "balanced"` takes that away
+//! ([`balanced`]); limits of damage know nothing of it, so changes of level belong where no crack starts.
+//!
+//! [`NetBond::lever`]: super::net::NetBond::lever
+
+mod balanced;
+pub mod levels;
+mod links;
+mod loads;
+pub mod regions;
+mod surface;
+
+use super::net::{Net, NetBond};
+use super::scene::{Action, Arrangement, Scene};
+use crate::body::balanced::load_rows;
+use crate::body::lattice::Lattice;
+use crate::body::obstacles::Obstacles;
+use crate::body::pre_crack::cutting_line;
+use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
+use crate::bond_law::{BondLaw, BondLawKind, SurfaceCorrection};
+use crate::error::{Result, input};
+use crate::predict::PointGrid;
+use crate::specimen::geometry::segments_touch;
+use crate::specimen::{Crack, Point};
+use levels::Levels;
+use links::Linking;
+use loads::Sharing;
+use regions::Area;
+
+/// Points and bonds of a scene with a law of bonds.
+///
+/// # Errors
+/// Wrong input, or choices that do not go together.
+pub fn net(scene: &Scene, law: &BondLaw) -> Result<Net> {
+    let (specimen, model) = (&scene.specimen, &scene.model);
+    if law.kind == BondLawKind::StateBased {
+        let problem = format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
+        return Err(input("model.bond_law", format!("\"{}\"", law.kind), problem, "use a bond-based or two-parameter law"));
+    }
+    if model.arrangement == Arrangement::VariableHorizon && law.surface_correction == SurfaceCorrection::Balanced {
+        let problem = format!("balances springs that pull both ends, and \"{}\" has others", model.arrangement);
+        return Err(input("model.surface_correction", "\"balanced\"", problem, "use \"none\" or \"volume_and_surface\""));
+    }
+    let padding = 0;
+    let lattice = Lattice::over(specimen, model.spacing, model.lattice_angle, padding)?;
+    let areas = Area::all(specimen, scene.refinement.as_ref(), model.horizon_ratio)?;
+    let levels = Levels::over(specimen, lattice, &areas, model.horizon_ratio)?;
+    let stencil =
+        |lattice: &Lattice| Stencil::new(law, &scene.material, lattice.spacing, model.horizon_ratio, specimen.thickness);
+    let stencils = levels.lattices.iter().map(stencil).collect::<Result<Vec<Stencil>>>()?;
+    let positions: Vec<_> = levels.leaves.iter().map(|&leaf| levels.position(leaf)).collect();
+    let linking = Linking::new(specimen, &levels, &stencils, &positions, model.arrangement);
+    let mut bonds = linking.within_levels();
+    let mutual = bonds.len();
+    bonds.extend(linking.across_levels());
+    let of_level = |of: fn(&Stencil) -> f64| levels.leaves.iter().map(|leaf| of(&stencils[leaf.level])).collect::<Vec<f64>>();
+    let finest = levels.lattices[levels.lattices.len() - 1].spacing;
+    let consistent = (law.surface_correction == SurfaceCorrection::Balanced).then(|| {
+        let walls = &stencils[stencils.len() - 1];
+        (Obstacles::of(specimen, walls.spacing, stencils[0].horizon), load_rows(&stencils[0]))
+    });
+    let sharing = Sharing::new(&levels, &positions, consistent);
+    let forces = loads::forces(specimen, &sharing, is_floating(scene))?;
+    let mut net = Net {
+        pre_cut: cut_by(&specimen.cracks, &bonds, &positions, finest),
+        volumes: of_level(|stencil| stencil.spacing * stencil.spacing).into_iter().map(|a| a * specimen.thickness).collect(),
+        spacings: of_level(|stencil| stencil.spacing),
+        horizons: of_level(|stencil| stencil.horizon),
+        mutual,
+        owner_only: model.arrangement == Arrangement::VariableHorizon,
+        unknowns: stencils[0].unknowns,
+        rotation_length: stencils[0].spacing,
+        forces,
+        grid: grid(&levels),
+        warnings: warnings(&levels),
+        entries: Vec::new(),
+        starts: Vec::new(),
+        positions: positions.clone(),
+        bonds,
+    }
+    .linked();
+    match law.surface_correction {
+        SurfaceCorrection::None => {}
+        SurfaceCorrection::VolumeAndSurface => {
+            let c11 = plane_stiffness(&spring_material(law, &scene.material))[0];
+            surface::volume_and_surface(&mut net, &levels.lattices[0], c11);
+        }
+        SurfaceCorrection::Balanced => balanced::balance(&mut net, specimen, &levels, &stencils, &sharing)?,
+    }
+    Ok(net)
+}
+
+/// Whether nothing holds the plate, so that its loads must balance.
+fn is_floating(scene: &Scene) -> bool {
+    scene.specimen.supports.is_empty()
+        && scene.holds.is_empty()
+        && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_)))
+}
+
+/// Bonds that cracks cut, ascending.
+fn cut_by(cracks: &[Crack], bonds: &[NetBond], positions: &[Point], spacing: f64) -> Vec<u32> {
+    let lines: Vec<_> = cracks.iter().map(|crack| cutting_line(spacing, crack.from, crack.to)).collect();
+    let is_cut = |bond: &NetBond| {
+        let (a, b) = (positions[bond.from as usize], positions[bond.to as usize]);
+        lines.iter().any(|&[from, to]| segments_touch(a, b, from, to))
+    };
+    (0..bonds.len()).filter(|&b| is_cut(&bonds[b])).map(|b| b as u32).collect()
+}
+
+/// The finest lattice with every coarser point on all the places of its cell.
+fn grid(levels: &Levels) -> PointGrid {
+    let lattice = &levels.lattices[levels.lattices.len() - 1];
+    let places = (0..lattice.columns * lattice.rows).map(|i| ((i % lattice.columns) as i64, (i / lattice.columns) as i64));
+    PointGrid {
+        spacing: lattice.spacing,
+        columns: lattice.columns,
+        rows: lattice.rows,
+        origin: lattice.origin,
+        angle: lattice.axis[1].atan2(lattice.axis[0]),
+        point_at: places.map(|(column, row)| levels.point_over(column, row).map(|point| point as u32)).collect(),
+    }
+}
+
+/// What was split beyond what was asked for.
+fn warnings(levels: &Levels) -> Vec<String> {
+    let more = levels.splits.iter().enumerate().filter(|(_, [_, more])| *more > 0);
+    more.map(|(level, [asked, more])| {
+        format!(
+            "refinement: {more} points of {:.4} mm were split beside the {asked} asked for, so that levels within a horizon differ by one",
+            1e3 * levels.lattices[level].spacing
+        )
+    })
+    .collect()
+}
