@@ -256,7 +256,7 @@ const BAD: &[Bad] = &[
         PULLED,
         "spacing_mm = 1",
         "spacing_mm = 1\nbond_law = \"springs\"",
-        &[":13:", "model.bond_law", "springs", "bond_based, two_parameter, one_bond_two_parameter, correspondence"],
+        &[":14:", "model.bond_law", "springs", "bond_based, two_parameter, one_bond_two_parameter, correspondence"],
     ),
     (PULLED, "spacing_mm = 1", "spacing_mm = 1\nbond_law = 3", &["model.bond_law", "text"]),
     (
