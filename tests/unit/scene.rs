@@ -148,11 +148,11 @@ fn a_diameter_gives_a_disc() {
     assert!(disc.outline.iter().all(|p| (distance(*p, [0.0, 0.0]) - 12.7e-3).abs() < 1e-15));
     let bits = |p: [f64; 2]| p.map(|x| (x + 0.0).to_bits());
     let all: std::collections::HashSet<[u64; 2]> = disc.outline.iter().map(|p| bits(*p)).collect();
-    for [x, y] in disc.outline {
+    for &[x, y] in &disc.outline {
         assert!([[-x, y], [x, -y], [y, x]].iter().all(|image| all.contains(&bits(*image))));
     }
     for edge in Edge::ALL {
-        assert_eq!(edge.stretches(&disc.clone()).len(), 1, "{edge}");
+        assert_eq!(edge.stretches(&disc).len(), 1, "{edge}");
     }
 }
 
