@@ -159,14 +159,14 @@ fn a_diameter_gives_a_disc() {
 #[test]
 fn supports_hold_sides_parts_of_sides_and_boxes() {
     let text = format!(
-        "{PLATE}{}[supports]\nbottom = {{ rows_mm = 1.5, fix = [\"x\", \"y\"] }}\nleft = {{ range_mm = [-9, -5], fix = [\"x\"] }}\n\
+        "{PLATE}{}[supports]\nbottom = {{ rows_mm = 1.5, fix = [\"x\", \"y\"] }}\nleft = {{ range_mm = [-8, -4], fix = [\"x\"] }}\n\
          pin = {{ from_mm = [5, 5], to_mm = [6, 4], fix = [\"y\"] }}",
         STEPS.replace("\"top\", \"bottom\"", "\"top\"")
     );
     let holds = read(&text, &[]).unwrap().holds;
     let regions: Vec<Region> = holds.iter().map(|hold| hold.region.clone()).collect();
     assert_eq!(regions[0], Region::Edge { edge: Edge::Bottom, depth: 1.5e-3, range: [f64::NEG_INFINITY, f64::INFINITY] });
-    assert_eq!(regions[1], Region::Edge { edge: Edge::Left, depth: 0.0, range: [-9e-3, -5e-3] });
+    assert_eq!(regions[1], Region::Edge { edge: Edge::Left, depth: 0.0, range: [-8e-3, -4e-3] });
     assert_eq!(regions[2], Region::Box { low: [5e-3, 4e-3], high: [6e-3, 5e-3] });
     assert_eq!(holds.iter().map(|hold| hold.components).collect::<Vec<_>>(), [[true, true], [true, false], [false, true]]);
 }
