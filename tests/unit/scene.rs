@@ -225,3 +225,26 @@ fn scenes_and_cases_are_told_apart() {
     assert!(is("[damage]\n") && is("[loading]\nparts = []\n") && is("[micro_cracks]\nseed = 1"));
     assert!(!is("[loading]\nkind = \"constant_amplitude\"\n") && !is("[loading]\nkind = \"bogus\"\n") && !is("loading = 3"));
 }
+
+/// The example in the documentation of the reader can be read, and holds what it shows.
+#[test]
+fn the_documented_scene_is_right() {
+    let source = include_str!("../../src/fracture/read/mod.rs");
+    let example: Vec<&str> =
+        source.lines().skip_while(|line| *line != "//! ```toml").skip(1).take_while(|line| *line != "//! ```").collect();
+    let text: String = example.iter().map(|line| format!("{}\n", line.trim_start_matches("//! "))).collect();
+    let scene = read(&text, &[]).unwrap();
+    assert_eq!((scene.drives.len(), scene.holds.len(), scene.specimen.cracks.len()), (2, 1, 61));
+}
+
+#[test]
+fn every_shipped_scene_is_right() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases/fracture");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files: Vec<_> = files.filter(|path| path.extension().is_some_and(|extension| extension == "toml")).collect();
+    assert!(files.len() > 5);
+    for path in files {
+        Scene::from_file(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+        assert!(std::fs::read_to_string(&path).unwrap().starts_with("# "), "{}: opens with its question", path.display());
+    }
+}

@@ -75,10 +75,9 @@ fn law_words(scene: &Scene) -> String {
     let kinematics = if scene.model.finite { ", true stretch" } else { "" };
     match scene.model.law {
         SceneLaw::Bonds(law) => {
-            format!(
-                "{}, kernel {}, rotation {}, surface correction {}{kinematics}",
-                law.kind, law.kernel, law.rotation, law.surface_correction
-            )
+            // One normal spring sees no rotation.
+            let rotation = if law.kind.is_two_parameter() { format!(", rotation {}", law.rotation) } else { String::new() };
+            format!("{}, kernel {}{rotation}, surface correction {}{kinematics}", law.kind, law.kernel, law.surface_correction)
         }
         SceneLaw::Correspondence { control, factor } => format!("correspondence, zero-energy control {control}, factor {factor}"),
     }
