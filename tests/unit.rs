@@ -64,6 +64,8 @@ mod specimen;
 #[cfg(feature = "tables")]
 #[path = "unit/tables.rs"]
 mod tables;
+#[path = "unit/scene_results.rs"]
+mod scene_results;
 #[path = "unit/scene.rs"]
 mod scene;
 #[path = "unit/micro_cracks.rs"]

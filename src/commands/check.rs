@@ -10,7 +10,7 @@ use serde_json::map::Entry;
 use serde_json::{Map, Value, json};
 
 use self::preview::preview;
-use self::scene::{scene_lines, words_of_loads};
+use self::scene::{scene_drawing, scene_lines};
 use self::understood::{Line, case_lines, curves_line};
 use super::console::Console;
 use crate::calibration::case::CalibrationCase;
@@ -20,7 +20,7 @@ use crate::fracture::Scene;
 use crate::fracture::read::is_scene;
 use crate::input::Document;
 use crate::report::output::write_file;
-use crate::report::specimen_picture::{scene_svg, specimen_svg};
+use crate::report::specimen_picture::specimen_svg;
 
 /// Arguments of `perilife check`.
 #[derive(clap::Args, Debug)]
@@ -109,7 +109,7 @@ fn checked(args: &Args) -> Result<Checked> {
 fn checked_scene(document: &Document) -> Result<Checked> {
     let scene = Scene::from_document(document)?;
     let lines = scene_lines(&scene).map_err(|error| document.locate(error))?;
-    let drawing = scene_svg(&scene, &words_of_loads(&scene));
+    let drawing = scene_drawing(&scene);
     Ok(Checked { kind: "fracture", name: scene.name, lines, warnings: scene.warnings, drawing, echo: scene.echo })
 }
 

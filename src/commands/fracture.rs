@@ -40,20 +40,30 @@ pub fn run(args: &Args) -> Result<()> {
         args.console.warn(warning);
     }
     let fracture = fracture::run(&scene, &args.console.progress(&scene.name))?;
+    keep(&scene, &fracture, folder, &args.console)
+}
+
+/// Writes the files of a run, puts the folder in place and prints what was found.
+///
+/// # Errors
+/// [`Error::File`] if a file cannot be written; [`Error::Mechanics`], with everything written, if the scene ended without
+/// convergence or blew up.
+pub fn keep(scene: &Scene, fracture: &Fracture, folder: OutputFolder, console: &Console) -> Result<()> {
     for warning in &fracture.warnings {
-        args.console.warn(warning);
+        console.warn(warning);
     }
-    let result = report::result(&scene, &fracture);
-    report::write(folder.path(), &scene, &fracture, &result)?;
+    let result = report::result(scene, fracture);
+    report::write(folder.path(), scene, fracture, &result)?;
+    let out = folder.name().to_owned();
     folder.finish()?;
-    for line in summary(&scene, &fracture, &args.out) {
-        args.console.say(&line);
+    for line in summary(scene, fracture, &out) {
+        console.say(&line);
     }
-    args.console.object(&result)?;
+    console.object(&result)?;
     match fracture.end {
         SceneEnd::Done | SceneEnd::Separated => Ok(()),
         SceneEnd::NoConvergence | SceneEnd::Unstable => {
-            let (end, out) = (fracture.end, args.out.display());
+            let (end, out) = (fracture.end, out.display());
             Err(Error::Mechanics(format!("{}: {end}: {}, in {out}", scene.name, end.meaning())))
         }
     }

@@ -25,11 +25,19 @@ pub const HISTORY_COLUMNS: &str = "step,time_s,displacement_mm,load_n,broken_bon
 /// Columns of `crack_path.csv` and `cracking.csv`.
 pub const PATH_COLUMNS: &str = "tip,step,time_s,x_mm,y_mm,damage,speed_m_s";
 
+/// Rows of the history that are numbers: the last ones of a motion that blew up may not be.
+fn rows(fracture: &Fracture) -> impl Iterator<Item = &HistoryRow> {
+    let finite = |row: &&HistoryRow| {
+        [row.time, row.displacement, row.load, row.kinetic, row.strain, row.fracture, row.work].iter().all(|x| x.is_finite())
+    };
+    fracture.history.iter().filter(finite)
+}
+
 /// `history.csv`: one row a recorded step.
 #[must_use]
 pub fn history(fracture: &Fracture) -> String {
     let mut text = format!("{HISTORY_COLUMNS}\n");
-    for row in &fracture.history {
+    for row in rows(fracture) {
         let energies = [row.kinetic, row.strain, row.fracture, row.work].map(number).join(",");
         let (time, displacement, load) = (exact(row.time), number(row.displacement / MM), number(row.load));
         // Writing to a String cannot fail.
@@ -61,13 +69,16 @@ pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &serde_j
     write_file(&folder.join("cracking.csv"), crack_path(&fracture.cracking).as_bytes())?;
     write_file(&folder.join(super::json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
     draw_charts(folder, scene, fracture)?;
-    draw_plate(folder, scene, fracture)?;
-    if fracture.snapshots.is_empty() {
+    // The last state of a motion that blew up is no number.
+    let finite = |snapshot: &&Snapshot| snapshot.displacement.iter().flatten().all(|u| u.is_finite());
+    let snapshots: Vec<Snapshot> = fracture.snapshots.iter().filter(finite).cloned().collect();
+    draw_plate(folder, scene, fracture, &snapshots)?;
+    if snapshots.is_empty() {
         return Ok(());
     }
     let paraview = folder.join("paraview");
     std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
-    vtk::write_series(&paraview, &fracture.grid, &fracture.snapshots)
+    vtk::write_series(&paraview, &fracture.grid, &snapshots)
 }
 
 /// Load and broken bonds over displacement; in time also load, broken bonds and energies over time.
@@ -77,7 +88,7 @@ fn draw_charts(folder: &Path, scene: &Scene, fracture: &Fracture) -> Result<()> 
     let line = |name: &str, x: fn(&HistoryRow) -> f64, y: fn(&HistoryRow) -> f64| Series {
         name: name.to_owned(),
         mark: Mark::Line,
-        points: fracture.history.iter().map(|row| (x(row), y(row))).collect(),
+        points: rows(fracture).map(|row| (x(row), y(row))).collect(),
     };
     let moved = |row: &HistoryRow| row.displacement / MM;
     let time = |row: &HistoryRow| row.time * 1e6;
@@ -103,11 +114,11 @@ fn draw_charts(folder: &Path, scene: &Scene, fracture: &Fracture) -> Result<()> 
 }
 
 /// `damage_first.png` and `damage.png`: the plate at the start and at the end.
-fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture) -> Result<()> {
+fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture, snapshots: &[Snapshot]) -> Result<()> {
     let paths = paths(fracture);
     let none = Vec::new();
-    let first = fracture.snapshots.first().map(|snapshot| ("damage_first.png", snapshot, &none));
-    let last = fracture.snapshots.last().map(|snapshot| ("damage.png", snapshot, &paths));
+    let first = snapshots.first().map(|snapshot| ("damage_first.png", snapshot, &none));
+    let last = snapshots.last().map(|snapshot| ("damage.png", snapshot, &paths));
     for (file, snapshot, paths) in first.into_iter().chain(last) {
         let caption = caption(scene, snapshot);
         let picture = DamagePicture { grid: &fracture.grid, snapshot, cracks: &scene.specimen.cracks, paths, caption: &caption };

@@ -8,7 +8,7 @@ use sketch::{CRACK, EDGE, HELD, LOAD, PLATE, Sketch, WORDS};
 
 use crate::case::Case;
 use crate::specimen::geometry::{along, bounding_box, distance};
-use crate::specimen::{Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
+use crate::specimen::{Crack, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
 use crate::units::{KN, MM, MPA};
 
 /// Room around the plate for arrows, sizes and words, pixels: left, right, top, bottom.
@@ -24,11 +24,11 @@ const ARROW: f64 = 38.0;
 /// is held.
 #[must_use]
 pub fn specimen_svg(case: &Case) -> String {
-    drawing(&case.name, &load_words(case), &case.specimen, |_| {})
+    drawing(&case.name, &load_words(case), &case.specimen, &[], |_| {})
 }
 
-/// The drawing with a title, the loads in words, and what `more` adds on the bare plate.
-fn drawing(name: &str, loads: &str, specimen: &Specimen, more: impl FnOnce(&mut Sketch)) -> String {
+/// The drawing with a title, the loads in words, lines below the others, and what `more` adds on the bare plate.
+fn drawing(name: &str, loads: &str, specimen: &Specimen, lines: &[String], more: impl FnOnce(&mut Sketch)) -> String {
     let [low, high] = bounding_box(&specimen.outline);
     let size = [high[0] - low[0], high[1] - low[1]];
     let scale = (PLATE_MAX[0] / size[0]).min(PLATE_MAX[1] / size[1]);
@@ -37,7 +37,8 @@ fn drawing(name: &str, loads: &str, specimen: &Specimen, more: impl FnOnce(&mut 
     let origin = [MARGIN[0] + side - low[0] * scale, MARGIN[2] + high[1] * scale];
     let mut sketch = Sketch::new(scale, origin);
     let width = MARGIN[0] + MARGIN[1] + 2.0 * side + size[0] * scale;
-    let rows = legend_rows(specimen);
+    let mut rows = legend_rows(specimen);
+    rows.extend_from_slice(lines);
     let plate_height = MARGIN[2] + MARGIN[3] + size[1] * scale;
     let height = plate_height + 21.0 * rows.len() as f64;
 
@@ -266,13 +267,18 @@ fn flaw_list(specimen: &Specimen) -> Vec<String> {
         let degrees = (to[1] - from[1]).atan2(to[0] - from[0]).to_degrees().rem_euclid(180.0);
         if degrees > 90.0 { degrees - 180.0 } else { degrees }
     };
-    for crack in &specimen.cracks {
+    let is_micro = |crack: &&Crack| !specimen.tips.iter().any(|tip| tip.position == crack.from || tip.position == crack.to);
+    for crack in specimen.cracks.iter().filter(|crack| !is_micro(crack)) {
         let tips = tips_at(specimen, crack.from, crack.to);
         lines.push(format!(
             "crack with {tips}: {}, {}° against x",
             mm(distance(crack.from, crack.to)),
             short(angle(crack.from, crack.to))
         ));
+    }
+    let micro: Vec<f64> = specimen.cracks.iter().filter(is_micro).map(|crack| distance(crack.from, crack.to)).collect();
+    if !micro.is_empty() {
+        lines.push(format!("{} micro cracks up to {}", micro.len(), mm(micro.iter().fold(0.0, |a, b| f64::max(a, *b)))));
     }
     for slot in &specimen.slots {
         let tips = tips_at(specimen, slot.from, slot.to);

@@ -161,7 +161,7 @@ fn check_understands_a_scene() {
         assert!(stdout.contains(words), "{words} in {stdout}");
     }
     let picture = fs::read_to_string(dir.path().join("p.svg")).unwrap();
-    assert!(picture.starts_with("<svg") && picture.contains("velocity (0, 5000) mm/s on top") && !picture.contains("NaN"));
+    assert!(picture.starts_with("<svg") && picture.contains("blue: velocity (0, 5000) mm/s on top") && !picture.contains("NaN"));
     let (stdout, _) = texts(&perilife(dir.path(), &["check", "torn.toml", "--json"]));
     let object: Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!((&object["ok"], &object["kind"]), (&true.into(), &"fracture".into()));

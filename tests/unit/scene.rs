@@ -148,25 +148,25 @@ fn a_diameter_gives_a_disc() {
     assert!(disc.outline.iter().all(|p| (distance(*p, [0.0, 0.0]) - 12.7e-3).abs() < 1e-15));
     let bits = |p: [f64; 2]| p.map(|x| (x + 0.0).to_bits());
     let all: std::collections::HashSet<[u64; 2]> = disc.outline.iter().map(|p| bits(*p)).collect();
-    for [x, y] in disc.outline {
+    for &[x, y] in &disc.outline {
         assert!([[-x, y], [x, -y], [y, x]].iter().all(|image| all.contains(&bits(*image))));
     }
     for edge in Edge::ALL {
-        assert_eq!(edge.stretches(&disc.clone()).len(), 1, "{edge}");
+        assert_eq!(edge.stretches(&disc).len(), 1, "{edge}");
     }
 }
 
 #[test]
 fn supports_hold_sides_parts_of_sides_and_boxes() {
     let text = format!(
-        "{PLATE}{}[supports]\nbottom = {{ rows_mm = 1.5, fix = [\"x\", \"y\"] }}\nleft = {{ range_mm = [-9, -5], fix = [\"x\"] }}\n\
+        "{PLATE}{}[supports]\nbottom = {{ rows_mm = 1.5, fix = [\"x\", \"y\"] }}\nleft = {{ range_mm = [-8, -4], fix = [\"x\"] }}\n\
          pin = {{ from_mm = [5, 5], to_mm = [6, 4], fix = [\"y\"] }}",
         STEPS.replace("\"top\", \"bottom\"", "\"top\"")
     );
     let holds = read(&text, &[]).unwrap().holds;
     let regions: Vec<Region> = holds.iter().map(|hold| hold.region.clone()).collect();
     assert_eq!(regions[0], Region::Edge { edge: Edge::Bottom, depth: 1.5e-3, range: [f64::NEG_INFINITY, f64::INFINITY] });
-    assert_eq!(regions[1], Region::Edge { edge: Edge::Left, depth: 0.0, range: [-9e-3, -5e-3] });
+    assert_eq!(regions[1], Region::Edge { edge: Edge::Left, depth: 0.0, range: [-8e-3, -4e-3] });
     assert_eq!(regions[2], Region::Box { low: [5e-3, 4e-3], high: [6e-3, 5e-3] });
     assert_eq!(holds.iter().map(|hold| hold.components).collect::<Vec<_>>(), [[true, true], [true, false], [false, true]]);
 }
@@ -224,4 +224,27 @@ fn scenes_and_cases_are_told_apart() {
     assert!(is(&format!("{PLATE}{STEPS}")));
     assert!(is("[damage]\n") && is("[loading]\nparts = []\n") && is("[micro_cracks]\nseed = 1"));
     assert!(!is("[loading]\nkind = \"constant_amplitude\"\n") && !is("[loading]\nkind = \"bogus\"\n") && !is("loading = 3"));
+}
+
+/// The example in the documentation of the reader can be read, and holds what it shows.
+#[test]
+fn the_documented_scene_is_right() {
+    let source = include_str!("../../src/fracture/read/mod.rs");
+    let example: Vec<&str> =
+        source.lines().skip_while(|line| *line != "//! ```toml").skip(1).take_while(|line| *line != "//! ```").collect();
+    let text: String = example.iter().map(|line| format!("{}\n", line.trim_start_matches("//! "))).collect();
+    let scene = read(&text, &[]).unwrap();
+    assert_eq!((scene.drives.len(), scene.holds.len(), scene.specimen.cracks.len()), (2, 1, 61));
+}
+
+#[test]
+fn every_shipped_scene_is_right() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases/fracture");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files: Vec<_> = files.filter(|path| path.extension().is_some_and(|extension| extension == "toml")).collect();
+    assert!(files.len() > 5);
+    for path in files {
+        Scene::from_file(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+        assert!(std::fs::read_to_string(&path).unwrap().starts_with("# "), "{}: opens with its question", path.display());
+    }
 }

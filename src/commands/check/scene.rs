@@ -6,8 +6,11 @@ use crate::error::Result;
 use crate::fracture::Scene;
 use crate::fracture::preview::{Preview, preview};
 use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure, Refinement, Region, SceneLaw};
+use crate::report::specimen_picture::scene_svg;
 use crate::units::{GPA, MM, MPA};
 
+/// Lines about loads and supports that fit below the drawing.
+const LINES_MAX: usize = 8;
 /// Points up to which points and bonds are built; below a second.
 const POINTS_BUILT: f64 = 1e5;
 
@@ -72,10 +75,9 @@ fn law_words(scene: &Scene) -> String {
     let kinematics = if scene.model.finite { ", true stretch" } else { "" };
     match scene.model.law {
         SceneLaw::Bonds(law) => {
-            format!(
-                "{}, kernel {}, rotation {}, surface correction {}{kinematics}",
-                law.kind, law.kernel, law.rotation, law.surface_correction
-            )
+            // One normal spring sees no rotation.
+            let rotation = if law.kind.is_two_parameter() { format!(", rotation {}", law.rotation) } else { String::new() };
+            format!("{}, kernel {}{rotation}, surface correction {}{kinematics}", law.kind, law.kernel, law.surface_correction)
         }
         SceneLaw::Correspondence { control, factor } => format!("correspondence, zero-energy control {control}, factor {factor}"),
     }
@@ -105,11 +107,15 @@ fn procedure_words(scene: &Scene) -> String {
     }
 }
 
-/// The loads of a scene in one line.
-pub(super) fn words_of_loads(scene: &Scene) -> String {
-    let words: Vec<String> = scene.drives.iter().take(3).map(drive_words).collect();
-    let more = scene.drives.len().saturating_sub(3);
-    if more > 0 { format!("{}; and {more} more", words.join("; ")) } else { words.join("; ") }
+/// The drawing of a scene with its loads and supports in words.
+pub(super) fn scene_drawing(scene: &Scene) -> String {
+    let loads = scene.drives.iter().map(|drive| format!("blue: {}", drive_words(drive)));
+    let holds = scene.holds.iter().map(|hold| format!("green: {}", hold_words(hold)));
+    let mut lines: Vec<String> = loads.chain(holds).collect();
+    let more = lines.len().saturating_sub(LINES_MAX);
+    lines.truncate(LINES_MAX);
+    lines.extend((more > 0).then(|| format!("and {more} more loads and supports")));
+    scene_svg(scene, &procedure_words(scene), &lines)
 }
 
 fn drive_words(drive: &Drive) -> String {

@@ -1,4 +1,36 @@
 //! A scene file to a checked [`Scene`]: each section is read by itself, then they are checked against each other.
+//!
+//! ```toml
+//! [specimen]                  # as in a case; a plate needs no crack or notch; standard kinds lend their geometry alone
+//! kind = "plate"
+//! width_mm = 50.0             # with length_mm; or outline_mm, or diameter_mm: a disc about 0
+//! length_mm = 50.0
+//! thickness_mm = 1.0
+//! cracks = [{ from_mm = [-5.0, 0.0], to_mm = [5.0, 0.0] }]
+//! [material]                  # as in a case; also density_kg_m3, fracture_energy_j_m2, tensile_strength_mpa where they are asked for
+//! youngs_modulus_gpa = 192.0
+//! poisson_ratio = 0.3
+//! density_kg_m3 = 8000.0
+//! fracture_energy_j_m2 = 83000.0
+//! [model]                     # optional
+//! bond_law = "two_parameter"  # bond_based, two_parameter, one_bond_two_parameter, correspondence
+//! kernel = "conical"          # default: conical for two_parameter, else constant
+//! spacing_mm = 0.5            # default: the smaller of crack length / 9 and width / 100
+//! [loading]                   # one load, or parts = [{ ... }, { ... }] with the keys of one load each
+//! kind = "velocity"           # traction, displacement, velocity, platens
+//! velocity_mm_s = 20000.0     # along the outward normal of the side, or along direction = [x, y]
+//! edges = ["top", "bottom"]   # with grip_mm, range_mm; or regions = [{ from_mm = [x, y], to_mm = [x, y] }]
+//! transverse = "free"         # or "held": the component across the motion
+//! duration_s = 4e-5           # motion, with time_step_s, ramp_s; or steps = load steps; neither: one equilibrium
+//! [supports]                  # sides { rows_mm, range_mm, fix } or, by any other name, boxes { from_mm, to_mm, fix }
+//! left = { range_mm = [-1.0, 1.0], fix = ["x"] }
+//! [damage]                    # optional; default law "none"
+//! law = "critical_energy"
+//! [micro_cracks]              # optional
+//! seed = 1
+//! count = 60
+//! regions = [{ from_mm = [-20.0, -10.0], to_mm = [20.0, -5.0] }]
+//! ```
 
 mod checks;
 mod damage;

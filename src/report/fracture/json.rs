@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use super::rows;
 use crate::fracture::outcome::PathPoint;
 use crate::fracture::scene::{Action, Procedure, Scene, SceneLaw};
 use crate::fracture::{Fracture, SceneEnd};
@@ -12,26 +13,27 @@ use crate::units::MM;
 #[must_use]
 pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
     let figures = &fracture.figures;
-    let peak = fracture.history.iter().max_by(|a, b| a.load.total_cmp(&b.load));
+    let peak = rows(fracture).max_by(|a, b| a.load.total_cmp(&b.load));
+    let last = rows(fracture).last();
     let warnings: Vec<&String> = scene.warnings.iter().chain(&fracture.warnings).collect();
     json!({
         "name": scene.name,
         "stop_reason": fracture.end.name(),
         "stop_meaning": fracture.end.meaning(),
         "converged": !matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable),
-        "peak_load_n": finite(fracture.peak_load()),
+        "peak_load_n": peak.map(|row| clean(row.load.max(0.0))),
         "peak_step": peak.map(|row| row.step),
-        "peak_displacement_mm": peak.and_then(|row| finite(row.displacement / MM)),
+        "peak_displacement_mm": peak.map(|row| clean(row.displacement / MM)),
         "onset_step": fracture.onset_step,
         "onset_time_s": fracture.onset_step.and_then(|step| time_of(step, fracture)),
         "separated_step": fracture.separated_step,
         "separated_time_s": fracture.separated_step.and_then(|step| time_of(step, fracture)),
-        "broken_bonds": fracture.history.last().map(|row| row.broken_bonds),
+        "broken_bonds": last.map(|row| row.broken_bonds),
         "energy_balance_error": energy_error(fracture),
         "fronts": fronts(fracture),
         "points": figures.points,
         "bonds": figures.bonds,
-        "steps": fracture.history.last().map(|row| row.step),
+        "steps": last.map(|row| row.step),
         "evaluations": figures.evaluations,
         "time_step_s": (figures.time_step > 0.0).then_some(figures.time_step),
         "wall_s": figures.wall_s,
@@ -45,11 +47,6 @@ pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
     })
 }
 
-/// JSON has no NaN.
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then(|| clean(value))
-}
-
 /// Time of a step where there is time.
 fn time_of(step: usize, fracture: &Fracture) -> Option<f64> {
     (fracture.figures.time_step > 0.0).then(|| clean(step as f64 * fracture.figures.time_step))
@@ -57,9 +54,8 @@ fn time_of(step: usize, fracture: &Fracture) -> Option<f64> {
 
 /// Largest of |kinetic + strain + fracture - work| over the largest energy of the history.
 fn energy_error(fracture: &Fracture) -> Option<f64> {
-    let rows = || fracture.history.iter();
-    let largest = rows().map(|row| row.kinetic.max(row.strain).max(row.work.abs())).fold(0.0, f64::max);
-    let left = rows().map(|row| (row.kinetic + row.strain + row.fracture - row.work).abs()).fold(0.0, f64::max);
+    let largest = rows(fracture).map(|row| row.kinetic.max(row.strain).max(row.work.abs())).fold(0.0, f64::max);
+    let left = rows(fracture).map(|row| (row.kinetic + row.strain + row.fracture - row.work).abs()).fold(0.0, f64::max);
     (largest > 0.0).then(|| left / largest).filter(|error| error.is_finite())
 }
 

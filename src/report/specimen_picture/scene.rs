@@ -12,12 +12,12 @@ const ARROW: f64 = 38.0;
 const DRIVEN_FILL: &str = "#b9cfe8";
 const HELD_FILL: &str = "#c9d19a";
 
-/// SVG text of the plate of a scene; `loads` says in words what loads it.
+/// SVG text of the plate of a scene; `procedure` says in words how it is worked through, `lines` what loads and holds it.
 ///
 /// Red: cracks. Blue: loads, with the points that are driven in a tinted box. Green: points that are held.
 #[must_use]
-pub fn scene_svg(scene: &Scene, loads: &str) -> String {
-    drawing(&scene.name, loads, &scene.specimen, |sketch| {
+pub fn scene_svg(scene: &Scene, procedure: &str, lines: &[String]) -> String {
+    drawing(&scene.name, procedure, &scene.specimen, lines, |sketch| {
         for hold in &scene.holds {
             region(sketch, &hold.region, scene, HELD_FILL, HELD);
         }
