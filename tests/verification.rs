@@ -4,6 +4,8 @@
 mod hand_cases;
 #[path = "support/plates.rs"]
 mod plates;
+#[path = "support/scene_plates.rs"]
+mod scene_plates;
 #[path = "support/noise.rs"]
 mod noise;
 #[path = "support/statics.rs"]
@@ -42,3 +44,5 @@ mod round_trip;
 mod crack_length;
 #[path = "verification/hand_calculation.rs"]
 mod hand_calculation;
+#[path = "verification/fracture_relaxation.rs"]
+mod fracture_relaxation;
