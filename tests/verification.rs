@@ -46,3 +46,5 @@ mod crack_length;
 mod hand_calculation;
 #[path = "verification/fracture_relaxation.rs"]
 mod fracture_relaxation;
+#[path = "verification/quasi_static.rs"]
+mod quasi_static;
