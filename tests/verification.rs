@@ -4,6 +4,8 @@
 mod hand_cases;
 #[path = "support/plates.rs"]
 mod plates;
+#[path = "support/scene_plates.rs"]
+mod scene_plates;
 #[path = "support/noise.rs"]
 mod noise;
 #[path = "support/statics.rs"]
@@ -46,3 +48,7 @@ mod crack_length;
 mod hand_calculation;
 #[path = "verification/dual_horizon.rs"]
 mod dual_horizon;
+#[path = "verification/fracture_relaxation.rs"]
+mod fracture_relaxation;
+#[path = "verification/quasi_static.rs"]
+mod quasi_static;

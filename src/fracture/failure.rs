@@ -85,8 +85,57 @@ impl Failure {
                     return share;
                 }
                 *peak = at.stretch;
-                law.share(at.stretch).min(share)
+                let next = law.share(at.stretch);
+                // As printed the share rises again on its way to s_nt.
+                if law.printed { next } else { next.min(share) }
             }
+        }
+    }
+
+    /// Energy that gradual damage takes when the stretch grows from the largest before to the present one, over the energy of the
+    /// whole bond at present: `∫ s² dD / s²` along the curve, whatever the size of the step, all strains of the bond having grown in
+    /// proportion. `None` for laws without a curve.
+    #[inline(always)]
+    #[must_use]
+    pub fn taken_along_curve(&self, at: Measures, after: f64, peak_before: f64) -> Option<f64> {
+        match self {
+            Failure::Softening(law) if !law.printed => {
+                Some(law.square_sum([law.share(peak_before), after]) / (at.stretch * at.stretch))
+            }
+            _ => None,
+        }
+    }
+
+    /// The measure that damage depends on, homogeneous in the displacement (linear in it, where [`Failure::share`] asks for the true
+    /// length); 0 in compression.
+    #[inline(always)]
+    #[must_use]
+    pub fn measure(&self, at: Measures) -> f64 {
+        match self {
+            Failure::Never => 0.0,
+            Failure::Stretch(_) | Failure::Softening(_) => at.stretch.max(0.0),
+            Failure::Energy(_) if at.stretch > 0.0 => (at.stretch * at.stretch + at.ratio * at.shear * at.shear).sqrt(),
+            Failure::Energy(_) => 0.0,
+        }
+    }
+
+    /// Measure at which the damage of a bond with this share grows.
+    #[inline(always)]
+    #[must_use]
+    pub fn onset(&self, owner: u32, share: f64) -> f64 {
+        match self {
+            Failure::Never => f64::INFINITY,
+            Failure::Stretch(limits) | Failure::Energy(limits) => limits[owner as usize],
+            Failure::Softening(law) => law.stretch_at(share),
+        }
+    }
+
+    /// Share down to which bonds are damaged gradually; at this share they break.
+    #[must_use]
+    pub fn last_share(&self) -> f64 {
+        match self {
+            Failure::Softening(law) => law.share(law.last),
+            _ => 1.0,
         }
     }
 }
@@ -105,6 +154,26 @@ impl Softening {
             let left = (-(stretch - self.elastic) / self.peak).exp();
             if self.printed && stretch <= self.peak { 1.0 - left } else { left }
         }
+    }
+
+    /// Stretch at which the continuous form has this share: `s = s_et - s_nt ln(1 - D)`, at the most s_t.
+    #[inline(always)]
+    #[must_use]
+    pub fn stretch_at(&self, share: f64) -> f64 {
+        (self.elastic - self.peak * share.ln()).min(self.last)
+    }
+
+    /// `∫ s² dD` along the continuous form between two shares: up to s_t it is the difference of
+    /// `-(s² + 2 s s_nt + 2 s_nt²) exp(-(s - s_et)/s_nt)`, and the rest breaks at s_t.
+    #[must_use]
+    pub fn square_sum(&self, [before, after]: [f64; 2]) -> f64 {
+        let last = self.share(self.last);
+        let curve = |share: f64| {
+            let (s, n) = (self.stretch_at(share), self.peak);
+            -(s * s + 2.0 * s * n + 2.0 * n * n) * share
+        };
+        let gradual = curve(after.max(last)) - curve(before.max(last));
+        gradual + (before.min(last) - after.min(last)) * self.last * self.last
     }
 }
 

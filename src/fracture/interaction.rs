@@ -32,6 +32,11 @@ pub trait Interaction: Send {
     /// Unknowns of a point, 2 or 3.
     fn unknowns(&self) -> usize;
 
+    /// Told of the share of the full load before forces at it are asked for, for interactions that bring loads themselves.
+    fn load_to(&mut self, level: f64) {
+        let _ = level;
+    }
+
     /// Writes the internal forces -dW/du at displacement `u` into `force`, after damage by `u` where that is allowed.
     fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction;
 

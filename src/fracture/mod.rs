@@ -17,6 +17,7 @@ pub mod net;
 pub mod outcome;
 pub mod pieces;
 pub mod preview;
+pub mod quasi_static;
 pub mod read;
 pub mod scene;
 pub mod springs;
@@ -28,7 +29,7 @@ pub use scene::Scene;
 
 use crate::body::Body;
 use crate::bond_law::stencil::{Stencil, spring_material};
-use crate::error::{Error, Result, input};
+use crate::error::{Result, input};
 use crate::predict::memory;
 use bonds::BondState;
 use boundary::Boundary;
@@ -69,7 +70,10 @@ pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
     let (net, body) = build(scene)?;
     let boundary = Boundary::of(scene, &net)?;
     let mut bonds = BondState::new(&net, &boundary.no_fail);
-    let mut interaction = interact(scene, &net, body.as_ref(), &bonds)?;
+    let failure = failure(scene, &net)?;
+    // Only explicit motion leaves the state of the bonds to the fast kernel alone.
+    let body = body.filter(|_| matches!(scene.procedure, Procedure::Dynamic { .. }));
+    let mut interaction = interact(scene, &net, body.as_ref(), &bonds, failure.as_ref())?;
     let mut fracture = match scene.procedure {
         Procedure::Dynamic { duration, time_step } => {
             let density = scene.material.density.ok_or_else(|| {
@@ -86,7 +90,7 @@ pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
             log.close(end, &motion.u, &bonds, figures)
         }
         Procedure::Static | Procedure::QuasiStatic { .. } => {
-            return Err(Error::Mechanics("scenes without time are not built yet".to_owned()));
+            quasi_static::run(scene, &net, &boundary, interaction.as_mut(), failure.as_ref(), &mut bonds, observer)?
         }
     };
     fracture.warnings.extend(net.warnings.iter().cloned());
@@ -116,38 +120,49 @@ pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
     }
 }
 
+/// Law of damage of the springs; `None` where there are none.
+fn failure(scene: &Scene, net: &Net) -> Result<Option<Failure>> {
+    let SceneLaw::Bonds(law) = scene.model.law else { return Ok(None) };
+    let critical = scene.material.fracture_energy.map(|energy| {
+        let at = |spacing: f64| -> Result<f64> {
+            let thickness = scene.specimen.thickness;
+            let material = spring_material(&law, &scene.material);
+            let stencil = Stencil::new(&law, &material, spacing, scene.model.horizon_ratio, thickness)?;
+            Ok(critical_stretch(&stencil, energy, thickness))
+        };
+        // Few levels, many points.
+        let mut known: Vec<(f64, f64)> = Vec::new();
+        let of_point = |&spacing: &f64| match known.iter().find(|(of, _)| *of == spacing) {
+            Some((_, stretch)) => Ok(*stretch),
+            None => {
+                let stretch = at(spacing)?;
+                known.push((spacing, stretch));
+                Ok(stretch)
+            }
+        };
+        net.spacings.iter().map(of_point).collect::<Result<Vec<f64>>>()
+    });
+    Failure::of(scene, net.len(), critical.transpose()?).map(Some)
+}
+
 /// Forces between the points of a scene.
-fn interact<'n>(scene: &Scene, net: &'n Net, body: Option<&Body>, bonds: &BondState) -> Result<Box<dyn Interaction + 'n>> {
-    match scene.model.law {
-        SceneLaw::Bonds(law) => {
-            let critical = scene.material.fracture_energy.map(|energy| {
-                let at = |spacing: f64| -> Result<f64> {
-                    let thickness = scene.specimen.thickness;
-                    let material = spring_material(&law, &scene.material);
-                    let stencil = Stencil::new(&law, &material, spacing, scene.model.horizon_ratio, thickness)?;
-                    Ok(critical_stretch(&stencil, energy, thickness))
-                };
-                // Few levels, many points.
-                let mut known: Vec<(f64, f64)> = Vec::new();
-                let of_point = |&spacing: &f64| match known.iter().find(|(of, _)| *of == spacing) {
-                    Some((_, stretch)) => Ok(*stretch),
-                    None => {
-                        let stretch = at(spacing)?;
-                        known.push((spacing, stretch));
-                        Ok(stretch)
-                    }
-                };
-                net.spacings.iter().map(of_point).collect::<Result<Vec<f64>>>()
-            });
-            let failure = Failure::of(scene, net.len(), critical.transpose()?)?;
+fn interact<'n>(
+    scene: &Scene,
+    net: &'n Net,
+    body: Option<&Body>,
+    bonds: &BondState,
+    failure: Option<&Failure>,
+) -> Result<Box<dyn Interaction + 'n>> {
+    match (scene.model.law, failure) {
+        (SceneLaw::Bonds(_), Some(failure)) => {
             let finite = scene.model.finite;
-            let fast = body.and_then(|body| LatticeSprings::new(net, body, bonds, &failure, finite));
+            let fast = body.and_then(|body| LatticeSprings::new(net, body, bonds, failure, finite));
             Ok(match fast {
                 Some(fast) => Box::new(fast),
-                None => Box::new(Springs::new(net, failure, finite)),
+                None => Box::new(Springs::new(net, failure.clone(), finite)),
             })
         }
-        SceneLaw::Correspondence { .. } => {
+        _ => {
             Err(input("model.bond_law", "\"correspondence\"", "is not built yet", "use a law of bonds"))
         }
     }

@@ -34,7 +34,7 @@ impl<'n> Springs<'n> {
 
     /// Displacement differences of a bond: normal part, tangential part, unit vector of the pull.
     #[inline(always)]
-    fn strain<const FINITE: bool, const N: usize>(bond: &NetBond, u: &[f64]) -> (f64, f64, [f64; 2]) {
+    pub(super) fn strain<const FINITE: bool, const N: usize>(bond: &NetBond, u: &[f64]) -> (f64, f64, [f64; 2]) {
         let (a, b) = (bond.from as usize * N, bond.to as usize * N);
         let eta = [u[b] - u[a], u[b + 1] - u[a + 1]];
         let n = bond.normal;
@@ -78,11 +78,17 @@ impl<'n> Springs<'n> {
                     shear: e_t / bond.length,
                     ratio: bond.k_t / bond.k_n,
                 };
+                let peak = task.peak[i];
                 let after = self.failure.share(bond.from, at, before, &mut task.peak[i]);
                 if after != before {
                     task.share[i] = after;
-                    let (l_n, l_t, _) = Self::strain::<FINITE, N>(bond, &self.last);
-                    reaction.released += 0.5 * (before - after) * (bond.k_n * e_n * l_n + bond.k_t * e_t * l_t);
+                    reaction.released += match self.failure.taken_along_curve(at, after, peak) {
+                        Some(share) => share * energy,
+                        None => {
+                            let (l_n, l_t, _) = Self::strain::<FINITE, N>(bond, &self.last);
+                            0.5 * (before - after) * (bond.k_n * e_n * l_n + bond.k_t * e_t * l_t)
+                        }
+                    };
                     reaction.damaged = reaction.damaged.max(before - after);
                     reaction.broken += usize::from(after == 0.0);
                 }

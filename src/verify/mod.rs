@@ -15,6 +15,7 @@ pub mod paths;
 pub mod resolution;
 pub mod scene;
 pub mod state_based;
+pub mod static_scenes;
 pub mod stress_intensity;
 pub mod table;
 pub mod tension_plate;
@@ -41,6 +42,7 @@ pub struct Topic {
 /// All topics, in the order in which a life is computed.
 pub const TOPICS: &[Topic] = &[
     Topic { name: "tension_plate", about: "displacements of a plate in uniform tension", fill: tension_plate::rows },
+    Topic { name: "static_scenes", about: "scenes without time against uniform tension and shear", fill: static_scenes::rows },
     Topic {
         name: "stress_intensity",
         about: "K_I and K_II of standard specimens, slanted cracks and two cracks, by every method",

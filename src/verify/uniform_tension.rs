@@ -102,7 +102,7 @@ pub fn uniform_tension_with(
 }
 
 /// Takes mean displacement and mean rotation off a field (least squares).
-fn without_rigid_motion(seats: &[Point], field: Vec<Point>) -> Vec<Point> {
+pub(super) fn without_rigid_motion(seats: &[Point], field: Vec<Point>) -> Vec<Point> {
     let count = seats.len() as f64;
     let mean = |points: &[Point]| points.iter().fold([0.0; 2], |m, p| [m[0] + p[0] / count, m[1] + p[1] / count]);
     let (centre, drift) = (mean(seats), mean(&field));

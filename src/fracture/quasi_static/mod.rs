@@ -1,0 +1,100 @@
+//! Scenes without time: one equilibrium, or a load that grows step by step.
+//!
+//! `adaptive_dynamic_relaxation` brings any interaction to rest, step after step, with the displacement of the loads rising
+//! ([`steps`]). `secant` follows the path of springs through falling load and displacement ([`path`]).
+
+pub mod account;
+pub mod control;
+pub mod equilibrium;
+pub mod full_load;
+pub mod path;
+pub mod relaxation;
+pub mod rigid;
+pub mod steps;
+pub mod stiffness;
+
+use super::SceneObserver;
+use super::bonds::BondState;
+use super::boundary::Boundary;
+use super::failure::Failure;
+use super::interaction::Interaction;
+use super::log::Log;
+use super::net::Net;
+use super::outcome::{Fracture, SceneFigures};
+use super::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
+use crate::error::{Result, input};
+use account::Recorder;
+use full_load::FullLoad;
+use path::{Path, Settings, Walked};
+use relaxation::Relaxation;
+
+/// Rows between two pictures of a run, times those of a run with `SNAPSHOTS` of them.
+const ROWS_EXPECTED: usize = 1000;
+/// Excess over the largest work that is told of.
+const EXCESS_TOLD: f64 = 0.005;
+
+/// Runs a scene without time on a net with its loads.
+///
+/// # Errors
+/// Choices that do not go together, loads that do not balance, a run that was cancelled.
+pub fn run(
+    scene: &Scene,
+    net: &Net,
+    boundary: &Boundary,
+    interaction: &mut dyn Interaction,
+    failure: Option<&Failure>,
+    bonds: &mut BondState,
+    observer: &dyn SceneObserver,
+) -> Result<Fracture> {
+    let full = FullLoad::of(net, boundary)?;
+    let steps = if let Procedure::QuasiStatic { steps } = scene.procedure { steps.max(1) } else { 1 };
+    let mut log = Log::new(scene, net, boundary, steps.max(if steps > 1 { ROWS_EXPECTED } else { 1 }));
+    let recorder = Recorder { log: &mut log, observer, boundary, unknowns: net.unknowns, share: 0.0 };
+    let walked = match scene.model.solver {
+        SceneSolver::AdaptiveDynamicRelaxation => {
+            steps::follow(&full, steps, &Relaxation::default(), interaction, bonds, recorder)?
+        }
+        SceneSolver::Secant => {
+            let failure = secant_law(scene, failure)?;
+            let path = Path { net, full: &full, failure, steps, settings: Settings::default() };
+            path.follow(bonds, recorder)?
+        }
+        SceneSolver::VelocityVerlet => {
+            return Err(input(
+                "model.solver",
+                "\"velocity_verlet\"",
+                "needs time, and the scene has none",
+                "give loading.duration_s, or solver = \"secant\" or \"adaptive_dynamic_relaxation\"",
+            ));
+        }
+    };
+    let Walked { end, u, account, evaluations } = walked;
+    let mut fracture = log.close(end, &u, bonds, SceneFigures { evaluations, ..SceneFigures::default() });
+    let excess = account.excess();
+    if excess.abs() > EXCESS_TOLD {
+        fracture.warnings.push(format!(
+            "{:.2} % of the work is neither strain nor fracture energy: the plate jumped, and a scene without time does not follow \
+             where that energy goes",
+            100.0 * excess
+        ));
+    }
+    Ok(fracture)
+}
+
+/// The law of damage, if the path of its springs can be followed.
+fn secant_law<'f>(scene: &Scene, failure: Option<&'f Failure>) -> Result<&'f Failure> {
+    let refuse = |problem: &str| {
+        input("model.solver", "\"secant\"", problem.to_owned(), "use solver = \"adaptive_dynamic_relaxation\"")
+    };
+    let failure = failure.filter(|_| matches!(scene.model.law, SceneLaw::Bonds(_)));
+    let Some(failure) = failure else {
+        return Err(refuse("needs springs in bonds, and the law has none"));
+    };
+    if scene.model.finite {
+        return Err(refuse("is linear in the displacement, and kinematics is \"finite\""));
+    }
+    if scene.damage.law == DamageLaw::NonlinearTwoParameter && scene.damage.nonlinear.is_some_and(|law| law.printed) {
+        return Err(refuse("needs stiffness that never comes back, and that of the printed law does"));
+    }
+    Ok(failure)
+}

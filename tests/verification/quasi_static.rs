@@ -1,0 +1,136 @@
+//! Scenes without time: the nonlinear law, both solvers, falling displacement, energies.
+
+use std::path::Path;
+
+use perilife::fracture::scene::{Procedure, SceneSolver, Softening};
+use perilife::fracture::{self, Fracture, Scene, SceneEnd};
+use perilife::predict::Silent;
+
+/// Law of Q345 with a final stretch of so many times the one of the largest force.
+fn q345(ratio: f64) -> Softening {
+    Softening { elastic: 345e6 / 203e9, peak: 572e6 / 203e9, last: ratio * 572e6 / 203e9, printed: false }
+}
+
+/// theory.md, section 1: D(s_nt) = 0.328, largest (1-D) s = 1.895e-3 at s_nt exactly, share left at s_t.
+#[test]
+fn nonlinear_law_has_the_curve_of_the_theory() {
+    let law = q345(3.0);
+    assert!((1.0 - law.share(law.peak) - 0.328).abs() < 5e-4);
+    let force = |s: f64| law.share(s) * s;
+    assert!((force(law.peak) - 1.895e-3).abs() < 5e-7);
+    for step in 1..1000 {
+        let s = law.last * f64::from(step) / 1000.0;
+        assert!(force(s) <= force(law.peak) * (1.0 + 1e-12));
+    }
+    // Continuous at the end of the linear part; its slope there is 1, just beyond it 1 - s_et/s_nt.
+    assert!((force(law.elastic * (1.0 + 1e-9)) - force(law.elastic)).abs() < 1e-11);
+    for (ratio, left) in [(2.0, 0.247), (3.0, 0.091), (5.0, 0.012)] {
+        let law = q345(ratio);
+        assert!((law.share(law.last) - left).abs() < 6e-4, "{}", law.share(law.last));
+        assert_eq!(law.share(law.last * 1.000_001), 0.0);
+        // The curve backwards, and the energy under it by a fine sum.
+        for share in [0.9, 0.5, 0.3] {
+            assert!((law.share(law.stretch_at(share)) - share).abs() < 1e-12);
+        }
+        let (mut sum, mut before) = (0.0, 1.0);
+        for i in 1..=200_000 {
+            let s = law.last * f64::from(i) / 200_000.0;
+            let after = law.share(s);
+            sum += s * s * (before - after);
+            before = after;
+        }
+        let curve = law.square_sum([1.0, law.share(law.last)]);
+        assert!((sum / curve - 1.0).abs() < 1e-4, "{sum} {curve}");
+    }
+}
+
+/// As printed, equations (20) and (21) let the force drop to 0 just above s_et and jump again at s_nt.
+#[test]
+fn printed_law_drops_where_the_source_has_it() {
+    let law = Softening { printed: true, ..q345(3.0) };
+    assert_eq!(law.share(law.elastic), 1.0);
+    assert!(law.share(law.elastic * 1.000_001) < 1e-5);
+    assert!((law.share(law.peak) - 0.328).abs() < 5e-4);
+    assert!((law.share(law.peak * 1.000_001) - 0.672).abs() < 5e-4);
+}
+
+/// A plate of 20 x `length` mm with two notches of 5 mm, points 1 mm apart, pulled at both ends.
+fn notched(length: f64, pull: f64, more: &str) -> Scene {
+    let text = format!(
+        "[specimen]\nkind = \"plate\"\nwidth_mm = 20.0\nlength_mm = {length}\nthickness_mm = 4.0\n\
+         notches = [{{ from_mm = [-10.0, 0.0], to_mm = [-5.0, 0.0], width_mm = 2.0 }}, {{ from_mm = [10.0, 0.0], to_mm = [5.0, 0.0], \
+         width_mm = 2.0 }}]\n[material]\nyoungs_modulus_gpa = 203.0\npoisson_ratio = 0.3\nyield_strength_mpa = 345.0\n\
+         tensile_strength_mpa = 572.0\n[model]\nbond_law = \"two_parameter\"\nkernel = \"conical\"\nspacing_mm = 1.0\n\
+         [loading]\nkind = \"displacement\"\nedges = [\"top\", \"bottom\"]\ndisplacement_mm = {pull}\nsteps = 100\n\
+         [damage]\nlaw = \"nonlinear_two_parameter\"\nfinal_ratio = 3.0\n{more}"
+    );
+    Scene::from_toml(&text, "notched", Path::new("."), &[]).unwrap()
+}
+
+fn run(scene: &Scene, solver: SceneSolver) -> Fracture {
+    let scene = Scene { model: perilife::fracture::scene::SceneModel { solver, ..scene.model.clone() }, ..scene.clone() };
+    fracture::run(&scene, &Silent).unwrap()
+}
+
+/// Load of a history at a displacement on its way up to the peak.
+fn load_at(history: &Fracture, displacement: f64) -> f64 {
+    let rows = &history.history;
+    let after = rows.iter().position(|row| row.displacement >= displacement).unwrap();
+    let (a, b) = (if after == 0 { Default::default() } else { rows[after - 1] }, rows[after]);
+    a.load + (b.load - a.load) * (displacement - a.displacement) / (b.displacement - a.displacement)
+}
+
+/// Before the peak both solvers give one curve, within 1e-3; the path then snaps back (the displacement falls by more than a
+/// tenth with the load), where relaxation, which only goes forward, jumps to a torn plate. The crack is the same.
+#[test]
+fn both_solvers_agree_before_the_peak_and_the_path_survives_snap_back() {
+    let scene = notched(70.0, 0.06, "");
+    let secant = run(&scene, SceneSolver::Secant);
+    assert_eq!(secant.end, SceneEnd::Separated);
+    let peak = secant.history.iter().max_by(|a, b| a.load.total_cmp(&b.load)).unwrap();
+    let after: Vec<_> = secant.history.iter().filter(|row| row.step > peak.step).collect();
+    let least = after.iter().map(|row| row.displacement).fold(f64::INFINITY, f64::min);
+    assert!(least < 0.9 * peak.displacement, "{least} {}", peak.displacement);
+    for row in &secant.history {
+        let nowhere = row.work - row.strain - row.fracture;
+        assert!(nowhere.abs() <= 5e-3 * row.work.max(1e-12), "step {}: {nowhere:e} of {:e}", row.step, row.work);
+    }
+    let relaxed = run(&scene, SceneSolver::AdaptiveDynamicRelaxation);
+    assert_eq!(relaxed.end, SceneEnd::Separated);
+    for row in relaxed.history.iter().filter(|row| row.displacement < 0.98 * peak.displacement) {
+        let other = load_at(&secant, row.displacement);
+        assert!((row.load / other - 1.0).abs() < 1e-3, "at {} m: {} and {other} N", row.displacement, row.load);
+    }
+    assert!((relaxed.peak_load() / secant.peak_load() - 1.0).abs() < 0.01);
+    // The jump is not hidden.
+    assert!(relaxed.warnings.iter().any(|warning| warning.contains("jumped")), "{:?}", relaxed.warnings);
+    let cracked = |found: &Fracture| -> Vec<bool> { found.snapshots.last().unwrap().damage.iter().map(|d| *d > 0.35).collect() };
+    assert_eq!(cracked(&secant), cracked(&relaxed));
+}
+
+/// The damage of a plate that is its own mirror image is mirrored.
+#[test]
+fn symmetric_plates_are_damaged_symmetrically() {
+    let found = run(&notched(30.0, 0.03, ""), SceneSolver::Secant);
+    let grid = &found.grid;
+    let damage = &found.snapshots.last().unwrap().damage;
+    let at = |column: usize, row: usize| grid.point_at[row * grid.columns + column].map(|p| damage[p as usize]);
+    for row in 0..grid.rows {
+        for column in 0..grid.columns {
+            let here = at(column, row);
+            assert_eq!(here, at(grid.columns - 1 - column, row));
+            assert_eq!(here, at(column, grid.rows - 1 - row));
+        }
+    }
+}
+
+#[test]
+fn loads_out_of_balance_are_refused() {
+    let text = "[specimen]\nkind = \"plate\"\nwidth_mm = 20.0\nlength_mm = 40.0\nthickness_mm = 4.0\n[material]\nyoungs_modulus_gpa = \
+                203.0\npoisson_ratio = 0.3\n[model]\nbond_law = \"two_parameter\"\nspacing_mm = 1.0\n[loading]\nkind = \"traction\"\nedges = \
+                [\"top\"]\nstress_mpa = 10.0\n";
+    let scene = Scene::from_toml(text, "pulled", Path::new("."), &[]).unwrap();
+    assert_eq!(scene.procedure, Procedure::Static);
+    let refusal = fracture::run(&scene, &Silent).unwrap_err().to_string();
+    assert!(refusal.contains("do not balance"), "{refusal}");
+}
