@@ -89,7 +89,6 @@ fn energy_is_kept_while_a_plate_is_torn() {
             run.onset_step
         );
         let largest = run.history.iter().fold(0.0, |m: f64, row| m.max(row.work));
-        let worst = run.history.iter().map(|r| (r.kinetic + r.strain + r.fracture - r.work).abs() / largest).fold(0.0, f64::max);
         for row in &run.history {
             let lost = (row.kinetic + row.strain + row.fracture - row.work).abs() / largest;
             assert!(lost < 5e-3, "{kind}: {lost:.2e} of the energy is lost at step {}", row.step);
