@@ -180,8 +180,19 @@ impl Softening {
 /// Critical stretch of a fracture energy on a lattice, from the bonds that a crack between two rows cuts:
 /// `G_c h Δ = ½ s_c² Σ |dy| k_n |ξ|²` over the half stencil. In the limit of many points it is `√(4 π G_c / (9 E δ))` for
 /// the bond-based law in plane stress (Silling and Askari 2005 in the plane).
+///
+/// Springs with the classical corrections are those of the stencil times a factor of the body that makes uniaxial strain cost
+/// what it should, `½ C₁₁ ε²`; the springs taken here are so too (`stiffness` = C₁₁ of the plane state, Pa). Without it a crack
+/// would release a fifth too much.
 #[must_use]
-pub fn critical_stretch(stencil: &Stencil, fracture_energy: f64, thickness: f64) -> f64 {
-    let cut: f64 = stencil.bonds.iter().map(|bond| f64::from(bond.dy.abs()) * bond.k_n * bond.length * bond.length).sum();
-    (2.0 * fracture_energy * thickness * stencil.spacing / cut).sqrt()
+pub fn critical_stretch(stencil: &Stencil, stiffness: f64, fracture_energy: f64, thickness: f64) -> f64 {
+    let volume = stencil.spacing * stencil.spacing * thickness;
+    let (mut cut, mut uniaxial) = (0.0, 0.0);
+    for bond in &stencil.bonds {
+        let ([n_x, n_y], square) = (bond.normal, bond.length * bond.length);
+        cut += f64::from(bond.dy.abs()) * bond.k_n * square;
+        // Mean of strain along the rows and across them.
+        uniaxial += square * (0.5 * bond.k_n * (n_x.powi(4) + n_y.powi(4)) + bond.k_t * n_x * n_x * n_y * n_y) / volume;
+    }
+    (2.0 * fracture_energy * thickness * stencil.spacing * uniaxial / (cut * stiffness)).sqrt()
 }

@@ -28,7 +28,7 @@ pub use outcome::{Fracture, SceneEnd};
 pub use scene::Scene;
 
 use crate::body::Body;
-use crate::bond_law::stencil::{Stencil, spring_material};
+use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::error::{Result, input};
 use crate::predict::memory;
 use bonds::BondState;
@@ -128,7 +128,7 @@ fn failure(scene: &Scene, net: &Net) -> Result<Option<Failure>> {
             let thickness = scene.specimen.thickness;
             let material = spring_material(&law, &scene.material);
             let stencil = Stencil::new(&law, &material, spacing, scene.model.horizon_ratio, thickness)?;
-            Ok(critical_stretch(&stencil, energy, thickness))
+            Ok(critical_stretch(&stencil, plane_stiffness(&material)[0], energy, thickness))
         };
         // Few levels, many points.
         let mut known: Vec<(f64, f64)> = Vec::new();
@@ -162,8 +162,6 @@ fn interact<'n>(
                 None => Box::new(Springs::new(net, failure.clone(), finite)),
             })
         }
-        _ => {
-            Err(input("model.bond_law", "\"correspondence\"", "is not built yet", "use a law of bonds"))
-        }
+        _ => Err(input("model.bond_law", "\"correspondence\"", "is not built yet", "use a law of bonds")),
     }
 }

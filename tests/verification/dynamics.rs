@@ -1,10 +1,11 @@
 //! Motion in time: the fast kernel against the list, energy, symmetry, waves.
 
 use perilife::body::Body;
-use perilife::bond_law::{BondLawKind, Rotation};
+use perilife::bond_law::stencil::{plane_stiffness, spring_material};
+use perilife::bond_law::{BondLaw, BondLawKind, Rotation, SurfaceCorrection};
 use perilife::fracture::bonds::BondState;
 use perilife::fracture::boundary::Boundary;
-use perilife::fracture::failure::Failure;
+use perilife::fracture::failure::{Failure, critical_stretch};
 use perilife::fracture::interaction::{Damaging, Interaction};
 use perilife::fracture::lattice_springs::LatticeSprings;
 use perilife::fracture::net::Net;
@@ -117,6 +118,29 @@ fn stable_step_is_the_bound() {
         assert_eq!(run.is_ok(), fine, "{share} of the stable step");
         if let Err(error) = run {
             assert!(error.to_string().contains("stable"), "{error}");
+        }
+    }
+}
+
+/// A crack that cuts all bonds across a line inside a plate, each at the critical stretch, takes the fracture energy: with every law
+/// and correction, the springs being those the body has.
+#[test]
+fn cut_bonds_take_the_fracture_energy() {
+    for kind in [BondLawKind::BondBased, BondLawKind::OneBondTwoParameter, BondLawKind::TwoParameter] {
+        for &surface_correction in SurfaceCorrection::ALL {
+            let bond_law = BondLaw { surface_correction, ..law(kind, Rotation::Resisted) };
+            let scene = pulled(bond_law, DamageLaw::CriticalStretch, 1e-3, 20.0, 1e-6);
+            let (net, body) = fracture::build(&scene).unwrap();
+            let (energy, thickness) = (scene.material.fracture_energy.unwrap(), scene.specimen.thickness);
+            let stiffness = plane_stiffness(&spring_material(&bond_law, &scene.material))[0];
+            let limit = critical_stretch(&body.unwrap().stencil, stiffness, energy, thickness);
+            // A horizontal line through the middle of the plate, between two rows, over ten columns far from the sides.
+            let above = |p: u32| net.positions[p as usize][1] > 10e-3;
+            let inside = |p: u32| (net.positions[p as usize][0] + 0.5e-3 - 5e-3).abs() < 5e-3;
+            let crossing = net.bonds.iter().filter(|bond| above(bond.from) != above(bond.to) && inside(bond.from));
+            let taken: f64 = crossing.map(|bond| 0.5 * bond.k_n * (limit * bond.length).powi(2)).sum();
+            let share = taken / (energy * thickness * 10e-3);
+            assert!((share - 1.0).abs() < 5e-3, "{kind} {surface_correction}: {share:.4} of the fracture energy");
         }
     }
 }

@@ -111,7 +111,8 @@ impl<'n> Control<'n> {
     /// Breaks the bonds whose limit is this level; returns them.
     pub fn break_at(&self, level: f64, bonds: &mut BondState) -> Vec<usize> {
         let at = |&b: &usize| {
-            let reached = self.failure.onset(self.net.bonds[b].from, bonds.share[b]) <= (1.0 + TOGETHER) * level * self.measure[b];
+            let reached =
+                self.failure.onset(self.net.bonds[b].from, bonds.share[b]) <= (1.0 + TOGETHER) * level * self.measure[b];
             self.measure[b] > 0.0 && !self.is_gradual(bonds.share[b]) && reached
         };
         let broken: Vec<usize> = (0..self.measure.len()).filter(at).collect();

@@ -29,8 +29,7 @@ impl FullLoad {
     /// A prescribed velocity: there is no time.
     pub fn of(net: &Net, boundary: &Boundary) -> Result<Self> {
         let size = net.len() * net.unknowns;
-        let mut full =
-            FullLoad { held: vec![false; size], motion: vec![0.0; size], external: vec![0.0; size], pins: Vec::new() };
+        let mut full = FullLoad { held: vec![false; size], motion: vec![0.0; size], external: vec![0.0; size], pins: Vec::new() };
         for held in &boundary.held {
             let Motion::Displacement(value) = held.motion else {
                 return Err(input(

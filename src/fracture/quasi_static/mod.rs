@@ -83,9 +83,8 @@ pub fn run(
 
 /// The law of damage, if the path of its springs can be followed.
 fn secant_law<'f>(scene: &Scene, failure: Option<&'f Failure>) -> Result<&'f Failure> {
-    let refuse = |problem: &str| {
-        input("model.solver", "\"secant\"", problem.to_owned(), "use solver = \"adaptive_dynamic_relaxation\"")
-    };
+    let refuse =
+        |problem: &str| input("model.solver", "\"secant\"", problem.to_owned(), "use solver = \"adaptive_dynamic_relaxation\"");
     let failure = failure.filter(|_| matches!(scene.model.law, SceneLaw::Bonds(_)));
     let Some(failure) = failure else {
         return Err(refuse("needs springs in bonds, and the law has none"));

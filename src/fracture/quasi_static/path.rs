@@ -135,7 +135,16 @@ impl Walk<'_, '_, '_> {
             }
             self.account.go(self.state(level));
             let spent = self.equilibrium.spent;
-            tracing::debug!(level, next.breaks, self.growth, self.broken, spent.solves, spent.iterations, spent.factorisations, "state");
+            tracing::debug!(
+                level,
+                next.breaks,
+                self.growth,
+                self.broken,
+                spent.solves,
+                spent.iterations,
+                spent.factorisations,
+                "state"
+            );
             let end = level >= 1.0;
             self.row(end, bonds)?;
             if end {

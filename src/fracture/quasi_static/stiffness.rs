@@ -102,9 +102,11 @@ impl<'n> Stiffness<'n> {
             let (end, component) = (i / unknowns, i % unknowns);
             (number[ends[end] as usize * unknowns + component], 3 * end + component)
         };
-        (0..2 * unknowns).flat_map(move |i| (0..2 * unknowns).map(move |j| (of(i), of(j)))).filter_map(move |((row, i), (column, j))| {
-            let inside = column <= row && row != usize::MAX;
-            inside.then(|| (row, column, bond.k_n * normal[i] * normal[j] + bond.k_t * tangential[i] * tangential[j]))
-        })
+        (0..2 * unknowns).flat_map(move |i| (0..2 * unknowns).map(move |j| (of(i), of(j)))).filter_map(
+            move |((row, i), (column, j))| {
+                let inside = column <= row && row != usize::MAX;
+                inside.then(|| (row, column, bond.k_n * normal[i] * normal[j] + bond.k_t * tangential[i] * tangential[j]))
+            },
+        )
     }
 }
