@@ -18,6 +18,13 @@ mod scenes;
 
 #[path = "verification/dynamics.rs"]
 mod dynamics;
+#[path = "support/correspondence.rs"]
+mod correspondence_bodies;
+
+#[path = "verification/correspondence.rs"]
+mod correspondence;
+#[path = "verification/disc.rs"]
+mod disc;
 #[path = "verification/elasticity.rs"]
 mod elasticity;
 #[path = "verification/tension_plate.rs"]

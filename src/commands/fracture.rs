@@ -61,7 +61,7 @@ pub fn keep(scene: &Scene, fracture: &Fracture, folder: OutputFolder, console: &
     }
     console.object(&result)?;
     match fracture.end {
-        SceneEnd::Done | SceneEnd::Separated => Ok(()),
+        SceneEnd::Done | SceneEnd::Separated | SceneEnd::LoadFallen => Ok(()),
         SceneEnd::NoConvergence | SceneEnd::Unstable => {
             let (end, out) = (fracture.end, out.display());
             Err(Error::Mechanics(format!("{}: {end}: {}, in {out}", scene.name, end.meaning())))

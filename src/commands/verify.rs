@@ -6,6 +6,7 @@ use serde_json::json;
 
 use super::console::Console;
 use crate::error::{Error, Result};
+use crate::report::disc::springs_chart;
 use crate::report::output::{OutputFolder, write_file};
 use crate::report::verification;
 use crate::verify::{self, topics};
@@ -16,7 +17,7 @@ pub struct Args {
     /// Topics to verify; all where none is given (`perilife list` names them)
     #[arg(value_name = "NAME")]
     pub names: Vec<String>,
-    /// Folder for verify.csv, verify.json and verify.md
+    /// Folder for verify.csv, verify.json, verify.md and charts
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
     /// What is printed.
@@ -43,6 +44,9 @@ pub fn run(args: &Args) -> Result<()> {
             &folder.path().join("verify.md"),
             format!("{}\n{}", verification::summary(&rows), verification::markdown(&rows)).as_bytes(),
         )?;
+        if topics.iter().any(|topic| topic.name == "pbx_disc") {
+            springs_chart(&folder.path().join("springs_on_disc.svg"))?;
+        }
         folder.finish()?;
     }
     let (failed, missed) = (rows.iter().filter(|row| row.fails()).count(), rows.iter().filter(|row| !row.ok()).count());

@@ -18,6 +18,19 @@ pub struct Reaction {
     pub damaged: f64,
 }
 
+/// Rigid bodies that an interaction moves by itself (platens), as its last evaluation found them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Driven {
+    /// Way they have gone, summed over them, m.
+    pub displacement: f64,
+    /// Mean force on them against their motion, N.
+    pub load: f64,
+    /// Work that they do per share of their whole way, J.
+    pub rate: f64,
+    /// Largest depth by which a point has passed one, m.
+    pub penetration: f64,
+}
+
 /// Whether an evaluation of the forces may damage bonds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Damaging {
@@ -43,4 +56,9 @@ pub trait Interaction: Send {
     /// Upper bound of the largest eigenvalue of every point's rows of the stiffness (Gershgorin), N/m, for displacements and, with
     /// three unknowns, for the rotation: what density and time step of explicit motion follow from.
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]>;
+
+    /// What the interaction moves by itself; `None` where there is nothing.
+    fn driven(&self) -> Option<Driven> {
+        None
+    }
 }

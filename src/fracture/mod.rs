@@ -6,6 +6,7 @@
 
 pub mod bonds;
 pub mod boundary;
+pub mod correspondence;
 pub mod dual_horizon;
 pub mod dynamics;
 pub mod failure;
@@ -16,6 +17,7 @@ mod log;
 pub mod net;
 pub mod outcome;
 pub mod pieces;
+pub mod platens;
 pub mod preview;
 pub mod quasi_static;
 pub mod read;
@@ -33,12 +35,14 @@ use crate::error::{Result, input};
 use crate::predict::memory;
 use bonds::BondState;
 use boundary::Boundary;
+use correspondence::Correspondence;
 use failure::{Failure, critical_stretch};
 use interaction::Interaction;
 use lattice_springs::LatticeSprings;
 use log::Log;
 use net::Net;
 use outcome::SceneFigures;
+use platens::{Platen, Pressed};
 use scene::{Arrangement, Procedure, SceneLaw};
 use springs::Springs;
 
@@ -106,7 +110,11 @@ pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
 pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
     let model = &scene.model;
     match (model.law, model.arrangement) {
-        (SceneLaw::Bonds(law), Arrangement::Lattice) => {
+        (law, Arrangement::Lattice) => {
+            let law = match law {
+                SceneLaw::Bonds(law) => law,
+                SceneLaw::Correspondence { .. } => correspondence::NET_LAW,
+            };
             let body =
                 Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
             Ok((Net::of_body(&body), Some(body)))
@@ -114,8 +122,9 @@ pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
         (SceneLaw::Bonds(law), Arrangement::DualHorizon | Arrangement::VariableHorizon) => {
             Ok((dual_horizon::net(scene, &law)?, None))
         }
-        (_, arrangement) => {
-            Err(input("model.discretisation", format!("\"{arrangement}\""), "is not built yet", "use \"lattice\""))
+        (SceneLaw::Correspondence { .. }, arrangement) => {
+            let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";
+            Err(input("model.discretisation", format!("\"{arrangement}\""), problem, "use \"lattice\""))
         }
     }
 }
@@ -145,8 +154,21 @@ fn failure(scene: &Scene, net: &Net) -> Result<Option<Failure>> {
     Failure::of(scene, net.len(), critical.transpose()?).map(Some)
 }
 
-/// Forces between the points of a scene.
+/// Forces on the points of a scene, those of platens among them.
 fn interact<'n>(
+    scene: &Scene,
+    net: &'n Net,
+    body: Option<&Body>,
+    bonds: &BondState,
+    failure: Option<&Failure>,
+) -> Result<Box<dyn Interaction + 'n>> {
+    let law = interact_by_law(scene, net, body, bonds, failure)?;
+    let platens = Platen::all(scene, net);
+    Ok(if platens.is_empty() { law } else { Box::new(Pressed::new(law, net, platens)) })
+}
+
+/// Forces between the points of a scene.
+fn interact_by_law<'n>(
     scene: &Scene,
     net: &'n Net,
     body: Option<&Body>,
@@ -162,6 +184,7 @@ fn interact<'n>(
                 None => Box::new(Springs::new(net, failure.clone(), finite)),
             })
         }
-        _ => Err(input("model.bond_law", "\"correspondence\"", "is not built yet", "use a law of bonds")),
+        (SceneLaw::Correspondence { control, factor }, _) => Ok(Box::new(Correspondence::new(scene, net, control, factor)?)),
+        (SceneLaw::Bonds(_), None) => Ok(Box::new(Springs::new(net, Failure::Never, scene.model.finite))),
     }
 }

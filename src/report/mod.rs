@@ -6,6 +6,7 @@ pub mod bench;
 pub mod chart;
 pub mod csv;
 pub mod damage;
+pub mod disc;
 pub mod fit_use;
 pub mod fracture;
 pub mod json;

@@ -6,6 +6,7 @@
 
 pub mod blocks;
 pub mod collinear;
+pub mod disc;
 pub mod golden;
 pub mod golden_peridynamics;
 pub mod grown;
@@ -80,6 +81,11 @@ pub const TOPICS: &[Topic] = &[
         name: "measured",
         about: "the fit to a measured panel, and its C and m by hand calculation in other specimens",
         fill: measured::all,
+    },
+    Topic {
+        name: "pbx_disc",
+        about: "correspondence: Brazilian disc between platens against Hondros, springs against zero-energy modes",
+        fill: disc::rows,
     },
     Topic { name: "life", about: "lives of whole runs against quadrature with handbook K", fill: growth::lives },
 ];

@@ -8,6 +8,7 @@ use super::super::SceneObserver;
 use super::super::SceneProgress;
 use super::super::bonds::BondState;
 use super::super::boundary::Boundary;
+use super::super::interaction::Driven;
 use super::super::log::Log;
 use super::super::outcome::HistoryRow;
 use super::full_load::FullLoad;
@@ -32,6 +33,13 @@ impl State {
     pub fn new(full: &FullLoad, level: f64, u: &[f64], force: &[f64], strain: f64) -> Self {
         let [driven, pushed] = full.works(u, force);
         State { level, driven, pushed, strain }
+    }
+
+    /// The same with the forces of rigid bodies that the interaction moves by itself.
+    #[must_use]
+    pub fn with_driven(mut self, driven: Option<Driven>) -> Self {
+        self.driven += driven.map_or(0.0, |driven| driven.rate);
+        self
     }
 
     /// The state on the ray to this one of full load.
@@ -77,9 +85,17 @@ impl Account {
     ///
     /// # Errors
     /// A run that was cancelled.
-    pub fn row(&mut self, to: &mut Recorder<'_, '_>, u: &[f64], force: &[f64], bonds: &BondState) -> Result<()> {
+    pub fn row(
+        &mut self,
+        to: &mut Recorder<'_, '_>,
+        u: &[f64],
+        force: &[f64],
+        driven: Option<Driven>,
+        bonds: &BondState,
+    ) -> Result<()> {
         self.rows += 1;
-        let (displacement, load) = to.boundary.measure(to.unknowns, self.state.level, u, force);
+        let of_points = || to.boundary.measure(to.unknowns, self.state.level, u, force);
+        let (displacement, load) = driven.map_or_else(of_points, |driven| (driven.displacement, driven.load));
         let row = HistoryRow {
             step: self.rows,
             displacement,

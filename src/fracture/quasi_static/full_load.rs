@@ -54,6 +54,11 @@ impl FullLoad {
         Ok(full)
     }
 
+    /// Lets the plate float after all: something that is not among these loads holds it.
+    pub fn release(&mut self) {
+        std::mem::take(&mut self.pins).into_iter().for_each(|at| self.held[at] = false);
+    }
+
     /// The loads as dynamic relaxation takes them.
     #[must_use]
     pub fn loads(&self) -> Loads<'_> {

@@ -46,14 +46,15 @@ pub fn run(
     bonds: &mut BondState,
     observer: &dyn SceneObserver,
 ) -> Result<Fracture> {
-    let full = FullLoad::of(net, boundary)?;
+    let mut full = FullLoad::of(net, boundary)?;
+    if interaction.driven().is_some() {
+        full.release();
+    }
     let steps = if let Procedure::QuasiStatic { steps } = scene.procedure { steps.max(1) } else { 1 };
     let mut log = Log::new(scene, net, boundary, steps.max(if steps > 1 { ROWS_EXPECTED } else { 1 }));
     let recorder = Recorder { log: &mut log, observer, boundary, unknowns: net.unknowns, share: 0.0 };
     let walked = match scene.model.solver {
-        SceneSolver::AdaptiveDynamicRelaxation => {
-            steps::follow(&full, steps, &Relaxation::default(), interaction, bonds, recorder)?
-        }
+        SceneSolver::AdaptiveDynamicRelaxation => steps::follow(&full, steps, &relaxation(scene), interaction, bonds, recorder)?,
         SceneSolver::Secant => {
             let failure = secant_law(scene, failure)?;
             let path = Path { net, full: &full, failure, steps, settings: Settings::default() };
@@ -79,6 +80,15 @@ pub fn run(
         ));
     }
     Ok(fracture)
+}
+
+/// Relaxation as the law of a scene asks for: correspondence breaks bonds by stresses that agree to some 1e-4, and its forces
+/// cost more.
+fn relaxation(scene: &Scene) -> Relaxation {
+    match scene.model.law {
+        SceneLaw::Bonds(_) => Relaxation::default(),
+        SceneLaw::Correspondence { .. } => Relaxation { tolerance: 1e-5, ..Relaxation::default() },
+    }
 }
 
 /// The law of damage, if the path of its springs can be followed.

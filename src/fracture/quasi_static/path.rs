@@ -233,6 +233,6 @@ impl Walk<'_, '_, '_> {
         (self.broken_at_row, self.level_at_row, self.load_at_row) = (self.broken, level, load);
         let on_ray = |values: &[f64]| values.iter().map(|v| level * v).collect::<Vec<f64>>();
         let (u, force) = (on_ray(&self.shape.u), on_ray(&self.shape.force));
-        self.account.row(&mut self.recorder, &u, &force, bonds)
+        self.account.row(&mut self.recorder, &u, &force, None, bonds)
     }
 }

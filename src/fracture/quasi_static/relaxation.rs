@@ -62,7 +62,9 @@ pub struct Relaxation {
     pub quiet: f64,
     /// Alternations of rest and damage after which there is no rest.
     pub passes: usize,
-    /// Load, N, that the residual is compared with at the least: for interactions that bring the load themselves (platens).
+    /// Bonds after whose break the state is handed back although it is not at rest.
+    pub broken: usize,
+    /// Load, N, that the residual is compared with at the least.
     pub least_load: f64,
 }
 
@@ -74,6 +76,7 @@ impl Default for Relaxation {
             breaking: Breaking::AtRest,
             quiet: 1e-4,
             passes: 20_000,
+            broken: usize::MAX,
             least_load: 0.0,
         }
     }
@@ -84,6 +87,8 @@ impl Default for Relaxation {
 pub enum RestEnd {
     /// At rest.
     AtRest,
+    /// So many bonds have broken that the caller wanted to hear of it; the displacement is that before the last of them.
+    Breaking,
     /// Not at rest within the iterations or passes.
     NoConvergence,
     /// The motion grew instead of coming to rest: the stiffness exceeds its bound.
@@ -131,6 +136,10 @@ impl Relaxation {
             if damage.broken == 0 && damage.damaged <= self.quiet {
                 return rested;
             }
+            if rested.reaction.broken > self.broken {
+                rested.end = RestEnd::Breaking;
+                return rested;
+            }
             if rested.passes >= self.passes {
                 rested.end = RestEnd::NoConvergence;
                 return rested;
@@ -165,7 +174,8 @@ impl Relaxation {
                 rested.end = RestEnd::BlownUp;
                 return;
             }
-            let load = sums.load.sqrt().max(self.least_load);
+            let brought = interaction.driven().map_or(0.0, |driven| driven.load);
+            let load = sums.load.sqrt().max(brought).max(self.least_load);
             rested.residual = if sums.square == 0.0 { 0.0 } else { sums.square.sqrt() / load };
             if rested.residual <= self.tolerance && !disturbed {
                 return;

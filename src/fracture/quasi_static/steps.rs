@@ -2,7 +2,7 @@
 //! back the plate jumps.
 //!
 //! A step is taken back and halved when it damages too much or finds no rest, down to a sixteenth of the nominal step, and grown
-//! again after calm ones. Over a jump energy is released that no step can share out: it is reported as excess.
+//! again after calm ones. Where the smallest step still breaks more, rows are taken down while bonds break at one load. Over a jump energy is released that no step can share out: it is reported as excess.
 
 use super::super::bonds::BondState;
 use super::super::interaction::Interaction;
@@ -19,6 +19,8 @@ const LEAST: f64 = 1.0 / 16.0;
 const BROKEN: usize = 28;
 /// Growth of damage that a step may bring to a bond, one pass, without being halved.
 const DAMAGED: f64 = 0.1;
+/// Load of platens over its peak at which the body has failed.
+const FAILED: f64 = 0.9;
 
 /// Works through load steps.
 ///
@@ -32,20 +34,25 @@ pub fn follow(
     bonds: &mut BondState,
     mut recorder: Recorder<'_, '_>,
 ) -> Result<Walked> {
+    let relaxation = &Relaxation { broken: BROKEN, ..*relaxation };
     let mut u = vec![0.0; full.held.len()];
     let mut account = Account::default();
     let (nominal, mut step) = (1.0 / steps as f64, 1.0 / steps as f64);
     let mut evaluations = 0;
     let mut end = SceneEnd::Done;
-    while account.state.level < 1.0 - 1e-12 {
-        let level = (account.state.level + step).min(1.0);
+    let mut peak = 0.0;
+    // Whether the last row was taken down while bonds went on breaking at one load.
+    let mut breaking = false;
+    while breaking || account.state.level < 1.0 - 1e-12 {
+        let level = if breaking { account.state.level } else { (account.state.level + step).min(1.0) };
         let before = (u.clone(), bonds.clone());
         let rested = advance(full, account.state.level, level, relaxation, interaction, bonds, &mut u);
         evaluations += rested.evaluations;
-        let failed = rested.end != RestEnd::AtRest;
+        let failed = !matches!(rested.end, RestEnd::AtRest | RestEnd::Breaking);
         let reaction = rested.reaction;
-        let too_much = reaction.broken > BROKEN || (reaction.broken == 0 && reaction.damaged > DAMAGED);
-        if (failed || too_much) && step > LEAST * nominal {
+        let too_much =
+            rested.end == RestEnd::Breaking || reaction.broken > BROKEN || (reaction.broken == 0 && reaction.damaged > DAMAGED);
+        if (failed || too_much) && !breaking && step > LEAST * nominal {
             (u, *bonds) = before;
             step *= 0.5;
             continue;
@@ -57,10 +64,18 @@ pub fn follow(
         }
         account.fracture += reaction.released;
         recorder.log.broke(account.rows + 1, reaction.broken);
-        account.go(State::new(full, level, &u, &rested.force, reaction.strain));
-        account.row(&mut recorder, &u, &rested.force, bonds)?;
+        breaking = rested.end == RestEnd::Breaking;
+        let driven = interaction.driven();
+        account.go(State::new(full, level, &u, &rested.force, reaction.strain).with_driven(driven));
+        account.row(&mut recorder, &u, &rested.force, driven, bonds)?;
         if recorder.log.is_separated() {
             end = SceneEnd::Separated;
+            break;
+        }
+        // What is split between platens goes on touching them: its failure shows in the load.
+        peak = driven.map_or(0.0, |driven| driven.load.max(peak));
+        if driven.is_some_and(|driven| driven.load < FAILED * peak) {
+            end = SceneEnd::LoadFallen;
             break;
         }
         if reaction.broken == 0 && 2.0 * reaction.damaged < DAMAGED {

@@ -1,0 +1,180 @@
+//! Rigid plates without friction that press the body, driven by their displacement.
+//!
+//! A platen is a plane across its direction of motion that first touches the outline where that reaches farthest towards it.
+//! It meets the outermost point of every row of points along its motion, once the rim in front of that point has come to the
+//! plane: the gap is taken from the outline, not from the steps of the lattice, so that a disc is met little by little. A
+//! point may leave the platen, never pass it but for the penetration of a stiff one-sided spring, which is reported.
+
+use super::bonds::BondState;
+use super::interaction::{Damaging, Driven, Interaction, Reaction};
+use super::net::Net;
+use super::scene::{Action, Drive, Region, Scene};
+use crate::specimen::geometry::edges;
+use crate::specimen::{Edge, Point};
+
+/// Stiffness of a contact over the bound of the point's own: penetrations stay at some thousandths of the body's flattening.
+const STIFFER: f64 = 5.0;
+
+/// A point that a platen can meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Point.
+    pub point: u32,
+    /// Way of the platen until it meets the undeformed rim there, m.
+    pub gap: f64,
+    /// Spring, N/m.
+    pub stiffness: f64,
+}
+
+/// A rigid plate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Platen {
+    /// Unit vector of its motion, into the body.
+    pub direction: Point,
+    /// Way at full load, m.
+    pub travel: f64,
+    /// Points it can meet, in their order.
+    pub contacts: Vec<Contact>,
+}
+
+impl Platen {
+    /// Platens of a scene.
+    #[must_use]
+    pub fn all(scene: &Scene, net: &Net) -> Vec<Platen> {
+        scene.drives.iter().filter_map(|drive| Platen::of(drive, scene, net)).collect()
+    }
+
+    fn of(drive: &Drive, scene: &Scene, net: &Net) -> Option<Platen> {
+        let Action::Platen(motion) = drive.action else { return None };
+        let travel = motion[0].hypot(motion[1]);
+        let direction = motion.map(|m| m / travel);
+        let outline = &scene.specimen.outline;
+        let facing = facing(direction, net).into_iter().filter(|&i| covers(&drive.region, net.positions[i as usize]));
+        let met: Vec<(u32, f64)> = facing.map(|i| (i, rim(direction, outline, net.positions[i as usize]))).collect();
+        let corners = outline.iter().filter(|&&corner| covers(&drive.region, corner)).map(|&corner| dot(corner, direction));
+        let start = met.iter().map(|m| m.1).chain(corners).fold(f64::INFINITY, f64::min);
+        let contacts = met.into_iter().map(|(point, rim)| Contact { point, gap: rim - start, stiffness: 0.0 }).collect();
+        Some(Platen { direction, travel, contacts })
+    }
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// Points with no other in front of them, ascending.
+fn facing(direction: Point, net: &Net) -> Vec<u32> {
+    let across = [-direction[1], direction[0]];
+    let mut order: Vec<(f64, f64, u32)> =
+        net.positions.iter().zip(0..).map(|(&x, i)| (dot(x, across), dot(x, direction), i)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Less than a whole spacing, so that a turned lattice has no gaps between rows.
+    let beside = |i: u32| 0.5 * net.spacings[i as usize];
+    let hidden = |at: usize| {
+        let (seat, height, i) = order[at];
+        let near = |other: &&(f64, f64, u32)| (other.0 - seat).abs() < beside(i);
+        let before = order[..at].iter().rev().take_while(near);
+        before.chain(order[at + 1..].iter().take_while(near)).any(|other| other.1 < height)
+    };
+    let mut facing: Vec<u32> = (0..order.len()).filter(|&at| !hidden(at)).map(|at| order[at].2).collect();
+    facing.sort_unstable();
+    facing
+}
+
+/// Coordinate along the motion of the rim in front of a point; of the point itself where the outline lies behind.
+fn rim(direction: Point, outline: &[Point], point: Point) -> f64 {
+    let across = [-direction[1], direction[0]];
+    let (seat, height) = (dot(point, across), dot(point, direction));
+    let meets = |(a, b): (Point, Point)| {
+        let (from, to) = (dot(a, across), dot(b, across));
+        let share = (seat - from) / (to - from);
+        ((from <= seat) != (to <= seat)).then(|| dot(a, direction) + share * (dot(b, direction) - dot(a, direction)))
+    };
+    let front = edges(outline).filter_map(meets).filter(|rim| *rim <= height).fold(f64::NEG_INFINITY, f64::max);
+    if front.is_finite() { front } else { height }
+}
+
+/// Whether a platen of this region is wide enough for a place.
+fn covers(region: &Region, place: Point) -> bool {
+    match *region {
+        Region::Edge { edge, range, .. } => {
+            let along = place[usize::from(!matches!(edge, Edge::Top | Edge::Bottom))];
+            along >= range[0] && along <= range[1]
+        }
+        Region::Box { low, high } => (0..2).all(|i| place[i] >= low[i] && place[i] <= high[i]),
+    }
+}
+
+/// An interaction on a body between platens.
+pub struct Pressed<'n> {
+    inner: Box<dyn Interaction + 'n>,
+    net: &'n Net,
+    platens: Vec<Platen>,
+    level: f64,
+    driven: Driven,
+}
+
+impl<'n> Pressed<'n> {
+    /// Puts a body between platens, none of which has moved yet.
+    #[must_use]
+    pub fn new(inner: Box<dyn Interaction + 'n>, net: &'n Net, mut platens: Vec<Platen>) -> Self {
+        let whole = BondState::new(net, &vec![false; net.len()]);
+        let bound = inner.stiffness_bound(&whole);
+        for contact in platens.iter_mut().flat_map(|platen| &mut platen.contacts) {
+            contact.stiffness = STIFFER * bound[contact.point as usize][0];
+        }
+        Pressed { inner, net, platens, level: 0.0, driven: Driven::default() }
+    }
+}
+
+impl Interaction for Pressed<'_> {
+    fn unknowns(&self) -> usize {
+        self.inner.unknowns()
+    }
+
+    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
+        let mut reaction = self.inner.react(u, bonds, damaging, force);
+        let unknowns = self.inner.unknowns();
+        let (mut load, mut rate, mut penetration) = (0.0, 0.0, 0.0_f64);
+        for platen in &self.platens {
+            let d = platen.direction;
+            for contact in &platen.contacts {
+                let at = contact.point as usize * unknowns;
+                let depth = self.level * platen.travel - contact.gap - d[0] * u[at] - d[1] * u[at + 1];
+                if depth > 0.0 {
+                    let push = contact.stiffness * depth;
+                    (force[at], force[at + 1]) = (force[at] + push * d[0], force[at + 1] + push * d[1]);
+                    reaction.strain += 0.5 * push * depth;
+                    load += push;
+                    rate += push * platen.travel;
+                    penetration = penetration.max(depth);
+                }
+            }
+        }
+        let travel: f64 = self.platens.iter().map(|platen| platen.travel).sum();
+        self.driven =
+            Driven { displacement: self.level * travel, load: load / self.platens.len().max(1) as f64, rate, penetration };
+        reaction
+    }
+
+    fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {
+        let mut bound = self.inner.stiffness_bound(bonds);
+        for platen in &self.platens {
+            // Points about to be met count too: they may bulge towards the platen.
+            let reach = self.level * platen.travel;
+            let near = |contact: &&Contact| contact.gap <= reach + self.net.spacings[contact.point as usize];
+            for contact in platen.contacts.iter().filter(near) {
+                bound[contact.point as usize][0] += contact.stiffness;
+            }
+        }
+        bound
+    }
+
+    fn load_to(&mut self, level: f64) {
+        self.level = level;
+    }
+
+    fn driven(&self) -> Option<Driven> {
+        Some(self.driven)
+    }
+}

@@ -1,0 +1,185 @@
+//! The Brazilian disc of PBX 9501 between rigid platens (source 001): stress at its centre, and what the springs against
+//! zero-energy modes do to the displacement along its horizontal diameter.
+
+mod sweep;
+
+use std::f64::consts::{PI, TAU};
+
+pub use sweep::{Deviation, SWEEP, Sweep, TRAVEL, rows, sweep};
+
+use crate::body::Body;
+use crate::error::{Error, Result};
+use crate::fracture::Scene;
+use crate::fracture::bonds::BondState;
+use crate::fracture::correspondence::{Correspondence, NET_LAW};
+use crate::fracture::interaction::{Damaging, Interaction};
+use crate::fracture::net::Net;
+use crate::fracture::platens::{Platen, Pressed};
+use crate::fracture::quasi_static::relaxation::{Breaking, Loads, Relaxation, RestEnd};
+use crate::fracture::scene::{
+    Action, Arrangement, Damage, DamageEntry, DamageLaw, Drive, Procedure, Region, SceneLaw, SceneModel, SceneSolver,
+    ZeroEnergyControl,
+};
+use crate::material::{Material, Plane};
+use crate::quadrature;
+use crate::specimen::{Edge, Point};
+use crate::units::MM;
+use crate::verify::uniform_tension::strip;
+
+/// Diameter, m. The source prints 25.4 mm as the radius; its 8273 points of 0.25 mm fill a disc of this diameter.
+pub const DIAMETER: f64 = 25.4 * MM;
+/// Thickness, m.
+pub const THICKNESS: f64 = 6.35 * MM;
+/// Tensile strength of PBX 9501, Pa: cohesive strength of its interfaces, 1.66 MPa (Tan, Liu, Huang and Geubelle 2005, J. Mech.
+/// Phys. Solids 53:1892).
+pub const TENSILE_STRENGTH: f64 = 1.66e6;
+/// Lattice spacing that puts 101 points across, one of them on each axis, m. The crack can then run in one column.
+pub const SPACING: f64 = DIAMETER / 101.0;
+/// Factor of `silling` on this lattice. With 1 the control carries 3 % of the stress at the centre, with 0.5 it is 1 %.
+pub const CONTROL: (ZeroEnergyControl, f64) = (ZeroEnergyControl::Silling, 0.5);
+/// Corners of the outline.
+const CORNERS: usize = 360;
+
+/// The disc between platens that each move by `travel`, m.
+#[must_use]
+pub fn scene((control, factor): (ZeroEnergyControl, f64), spacing: f64, travel: f64) -> Scene {
+    let mut specimen = strip(DIAMETER, DIAMETER);
+    specimen.thickness = THICKNESS;
+    specimen.crack_plane_y = None;
+    specimen.loads.clear();
+    let corner = |i: usize| {
+        let (sin, cos) = (TAU * (i as f64 + 0.5) / CORNERS as f64).sin_cos();
+        [0.5 * DIAMETER * cos, 0.5 * DIAMETER * sin]
+    };
+    specimen.outline = (0..CORNERS).map(corner).collect();
+    let platen = |edge, y: f64| Drive {
+        region: Region::Edge { edge, depth: 0.0, range: [f64::NEG_INFINITY, f64::INFINITY] },
+        action: Action::Platen([0.0, y]),
+        ramp: 0.0,
+    };
+    Scene {
+        name: "pbx_disc".to_owned(),
+        specimen,
+        material: material(),
+        model: SceneModel {
+            law: SceneLaw::Correspondence { control, factor },
+            finite: false,
+            spacing,
+            horizon_ratio: 3.015,
+            lattice_angle: 0.0,
+            arrangement: Arrangement::Lattice,
+            solver: SceneSolver::AdaptiveDynamicRelaxation,
+        },
+        drives: vec![platen(Edge::Top, -travel), platen(Edge::Bottom, travel)],
+        holds: Vec::new(),
+        damage: Damage {
+            law: DamageLaw::PrincipalStress,
+            enters: DamageEntry::Influence,
+            stretch: None,
+            nonlinear: None,
+            tensile_strength: None,
+        },
+        procedure: Procedure::Static,
+        refinement: None,
+        warnings: Vec::new(),
+        echo: serde_json::Value::Null,
+    }
+}
+
+/// PBX 9501 at room temperature and 0.05/s: E = 1013 MPa, ν = 0.35 (Wetzel 1999, quoted by Banerjee and Adams 2004).
+fn material() -> Material {
+    Material {
+        name: "pbx9501".to_owned(),
+        youngs_modulus: 1.013e9,
+        poisson_ratio: 0.35,
+        plane: Plane::Stress,
+        yield_strength: None,
+        toughness: None,
+        fracture_energy: None,
+        density: Some(1830.0),
+        tensile_strength: Some(TENSILE_STRENGTH),
+    }
+}
+
+/// An elastic disc between platens.
+#[derive(Debug, Clone)]
+pub struct ElasticDisc {
+    /// Load, N.
+    pub load: f64,
+    /// σ_x and σ_y at the centre, Pa.
+    pub centre: [f64; 2],
+    /// (x, u_x) along the horizontal diameter, m.
+    pub row: Vec<(f64, f64)>,
+    /// Half angle over which the platens press, rad: that of an even pressure with the second moment of the contact forces.
+    pub half_angle: f64,
+    /// Largest depth by which a point has passed a platen, m.
+    pub penetration: f64,
+}
+
+/// Equilibrium of the undamaged disc.
+///
+/// # Errors
+/// No equilibrium.
+pub fn elastic(control: (ZeroEnergyControl, f64), spacing: f64, travel: f64) -> Result<ElasticDisc> {
+    let scene = scene(control, spacing, travel);
+    let model = &scene.model;
+    let body = Body::build(&scene.specimen, &scene.material, &NET_LAW, model.spacing, model.horizon_ratio, 0.0)?;
+    let net = Net::of_body(&body);
+    let mut bonds = BondState::new(&net, &vec![false; net.len()]);
+    let law = || Correspondence::new(&scene, &net, control.0, control.1);
+    let mut pressed = Pressed::new(Box::new(law()?), &net, Platen::all(&scene, &net));
+    pressed.load_to(1.0);
+    let size = 2 * net.len();
+    let (mut u, held, external) = (vec![0.0; size], vec![false; size], vec![0.0; size]);
+    let relaxation = Relaxation { breaking: Breaking::Never, least_load: 1.0, ..Relaxation::default() };
+    let rested = relaxation.relax(&mut pressed, &mut bonds, Loads { held: &held, external: &external }, &mut u);
+    if rested.end != RestEnd::AtRest {
+        return Err(Error::Mechanics(format!("the disc found no equilibrium: {rested:?}")));
+    }
+    let driven = pressed.driven().unwrap_or_default();
+    // The law alone shows the forces that the platens balance, and the stresses.
+    let (mut law, mut force) = (law()?, vec![0.0; size]);
+    law.react(&u, &mut bonds, Damaging::Frozen, &mut force);
+    let from_centre = |&i: &usize| net.positions[i][0].hypot(net.positions[i][1]);
+    let centre = (0..net.len()).min_by(|a, b| from_centre(a).total_cmp(&from_centre(b))).unwrap_or(0);
+    let stress = law.stresses().nth(centre).unwrap_or_default();
+    let on_top = |&&(_, i): &&(&Point, usize)| net.positions[i][1] > 0.4 * DIAMETER && force[2 * i + 1] > 1e-4 * driven.load;
+    let points: Vec<(&Point, usize)> = net.positions.iter().zip(0..).collect();
+    let moments = points.iter().filter(on_top).fold([0.0; 2], |[sum, second], (x, i)| {
+        let f = force[2 * i + 1];
+        [sum + f, second + f * x[0] * x[0]]
+    });
+    let on_axis = points.iter().filter(|(x, _)| x[1].abs() < 0.25 * net.spacings[0]);
+    Ok(ElasticDisc {
+        load: driven.load,
+        centre: [stress[(0, 0)], stress[(1, 1)]],
+        row: on_axis.map(|(x, i)| (x[0], u[2 * i])).collect(),
+        half_angle: (3.0 * moments[1] / moments[0]).sqrt() / (0.5 * DIAMETER),
+        penetration: driven.penetration,
+    })
+}
+
+/// σ_x and σ_y on the horizontal diameter of a disc pressed evenly over ±α at top and bottom (Hondros 1959, Austral. J. Appl.
+/// Sci. 10:243), Pa, with load P, N:
+///
+/// `σ_x = 2p/π (A - B)`, `σ_y = -2p/π (A + B)`, `A = (1-ρ²) sin 2α / (1 + 2ρ² cos 2α + ρ⁴)`,
+/// `B = atan((1-ρ²)/(1+ρ²) tan α)`, `ρ = 2x/D`, `p = P/(D t α)`; at the centre `2P/(π D t)` and `-6P/(π D t)` for small α.
+#[must_use]
+pub fn hondros(x: f64, load: f64, half_angle: f64) -> [f64; 2] {
+    let square = (2.0 * x / DIAMETER).powi(2);
+    let a = (1.0 - square) * (2.0 * half_angle).sin() / (1.0 + 2.0 * square * (2.0 * half_angle).cos() + square * square);
+    let b = ((1.0 - square) / (1.0 + square) * half_angle.tan()).atan();
+    let scale = 2.0 * load / (PI * DIAMETER * THICKNESS * half_angle);
+    [scale * (a - b), -scale * (a + b)]
+}
+
+/// u_x on the horizontal diameter from [`hondros`], m: the integral of `(σ_x - ν σ_y)/E` from the centre.
+#[must_use]
+pub fn hondros_displacement(x: f64, load: f64, half_angle: f64) -> f64 {
+    let material = material();
+    let strain = |x: f64| {
+        let [along, across] = hondros(x, load, half_angle);
+        (along - material.poisson_ratio * across) / material.youngs_modulus
+    };
+    quadrature::integrate(strain, 0.0, x, 1e-10).value
+}
