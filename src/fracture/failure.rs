@@ -81,6 +81,9 @@ impl Failure {
                 if reached { 0.0 } else { share }
             }
             Failure::Softening(law) => {
+                if at.elongation >= law.last * (2.0 + law.last) {
+                    return 0.0;
+                }
                 if at.stretch <= *peak {
                     return share;
                 }
@@ -128,6 +131,19 @@ impl Failure {
             Failure::Stretch(limits) | Failure::Energy(limits) => limits[owner as usize],
             Failure::Softening(law) => law.stretch_at(share),
         }
+    }
+
+    /// Whether a bond is torn by its true length alone: what slides along a bond of the other side stretches it in truth, but not
+    /// in linear measures.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_overlong(&self, owner: u32, elongation: f64) -> bool {
+        let last = match self {
+            Failure::Never => return false,
+            Failure::Stretch(limits) | Failure::Energy(limits) => limits[owner as usize],
+            Failure::Softening(law) => law.last,
+        };
+        elongation >= last * (2.0 + last)
     }
 
     /// Share down to which bonds are damaged gradually; at this share they break.

@@ -52,7 +52,7 @@ impl<'n> Springs<'n> {
 
     /// `|ξ + η|²/|ξ|² - 1`.
     #[inline(always)]
-    fn elongation<const N: usize>(bond: &NetBond, u: &[f64]) -> f64 {
+    pub(super) fn elongation<const N: usize>(bond: &NetBond, u: &[f64]) -> f64 {
         let (a, b) = (bond.from as usize * N, bond.to as usize * N);
         let eta = [u[b] - u[a], u[b + 1] - u[a + 1]];
         let along = eta[0] * bond.normal[0] + eta[1] * bond.normal[1];

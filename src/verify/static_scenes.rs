@@ -25,6 +25,10 @@ const STRETCH_FORM: [(f64, f64); 3] = [(0.1, 1.78), (0.3, 2.48), (1.0 / 3.0, 3.2
 /// Stress over Young's modulus of the plate, 200 MPa over 200 GPa.
 const STRAIN: f64 = 1e-3;
 
+/// Why Poisson's ratio read back misses the source's figure.
+const READ_BACK: &str = "the lattice sum of 28 bonds with volume weights has 0.3356 in the bulk at c_t = 0, and the corrected edges add to \
+     that; where the source reads its figure is not said";
+
 /// Rows of the topic.
 ///
 /// # Errors
@@ -36,14 +40,19 @@ pub fn rows(table: &mut Table) -> Result<()> {
         table.compare(name, plate.error, published, 100.0 * 0.1 / published, "source 002, example 1; theory.md, section 1");
         let name = format!("static scene, one_bond_two_parameter, nu {nu:.3}: Poisson's ratio read back");
         table.compare(name, plate.poisson_ratio, nu, 0.7, "source 002: within 0.16 to 0.70 %");
+        table.known_miss(READ_BACK);
     }
     let plate = Tension::of("bond_based", 1.0 / 3.0)?;
     let name = "static scene, bond_based: Poisson's ratio read back";
     table.compare(name, plate.poisson_ratio, 1.0 / 3.0, 0.7, "source 002: 0.3328 whatever the material's");
+    table.known_miss(READ_BACK);
     let errors = shear(0.3)?;
     for (axis, error) in ["x", "y"].iter().zip(errors) {
         let name = format!("uniform shear by the rim, nu 0.3: max |e_{axis}| in percent");
-        table.compare(name, error, 0.202, 100.0, "source 002, example 2; its boundary data are lost");
+        table.compare(name, error, 0.202, 10.0, "source 002, example 2; its boundary data are lost");
+        table.known_miss(
+            "with only the outermost points on the exact field the rows beside them err most; the source's boundary is unknown",
+        );
     }
     Ok(())
 }

@@ -17,6 +17,9 @@ use super::super::springs::Springs;
 /// step decides.
 const TOGETHER: f64 = 1e-3;
 
+/// Share of its limit in linear measures below which a bond that is too long in truth is torn by sliding.
+const SLIDING: f64 = 0.9;
+
 /// Bonds of a net with their law.
 pub struct Control<'n> {
     net: &'n Net,
@@ -118,6 +121,28 @@ impl<'n> Control<'n> {
         let broken: Vec<usize> = (0..self.measure.len()).filter(at).collect();
         broken.iter().for_each(|&b| bonds.share[b] = 0.0);
         broken
+    }
+
+    /// Breaks the bonds that are torn at this level by their true length though not in linear measures; returns their number and
+    /// the energy they held, J. What is close to its limit in linear measures is left to [`Control::break_at`].
+    pub fn break_overlong(&self, u: &[f64], level: f64, bonds: &mut BondState) -> (usize, f64) {
+        let now: Vec<f64> = u.iter().map(|u| level * u).collect();
+        let is_torn = |&b: &usize| {
+            let bond = &self.net.bonds[b];
+            let elongation =
+                if self.net.unknowns == 3 { Springs::elongation::<3>(bond, &now) } else { Springs::elongation::<2>(bond, &now) };
+            let clear = level * self.measure[b] < SLIDING * self.failure.onset(bond.from, self.last_share);
+            bonds.may_fail[b] && bonds.share[b] > 0.0 && clear && self.failure.is_overlong(bond.from, elongation)
+        };
+        let torn: Vec<usize> = (0..self.measure.len()).into_par_iter().with_min_len(4096).filter(is_torn).collect();
+        let held = |&b: &usize| {
+            let (bond, at) = (&self.net.bonds[b], measures(self.net, b, &now));
+            let square = at.stretch * at.stretch + at.ratio * at.shear * at.shear;
+            0.5 * bonds.share[b] * bond.k_n * bond.length * bond.length * square
+        };
+        let energy = torn.iter().map(held).sum();
+        torn.iter().for_each(|&b| bonds.share[b] = 0.0);
+        (torn.len(), energy)
     }
 
     /// Level at which these bonds are at their limit with this displacement, on the average: where they have just lost their last

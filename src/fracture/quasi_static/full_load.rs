@@ -13,7 +13,7 @@ pub struct FullLoad {
     pub held: Vec<bool>,
     /// Where held unknowns go, m; 0 elsewhere.
     pub motion: Vec<f64>,
-    /// Forces on the other unknowns, N; 0 on held ones.
+    /// Forces on the other unknowns, N; 0 on held ones but pins, which carry nothing beside.
     pub external: Vec<f64>,
     /// Unknowns held only because the plate would float; they must carry no load.
     pub pins: Vec<usize>,
@@ -50,7 +50,6 @@ impl FullLoad {
         }
         full.pins = minimal_constraints(net, &full.held);
         full.pins.iter().for_each(|&at| full.held[at] = true);
-        full.pins.iter().for_each(|&at| full.external[at] = 0.0);
         Ok(full)
     }
 
@@ -87,11 +86,13 @@ impl FullLoad {
     /// A force at a pin.
     pub fn check_balance(&self, net: &Net, force: &[f64]) -> Result<()> {
         let load = self.size(force);
-        let Some(&at) = self.pins.iter().find(|&&at| force[at].abs() > IMBALANCE * load) else { return Ok(()) };
+        let Some(&at) = self.pins.iter().find(|&&at| (force[at] + self.external[at]).abs() > IMBALANCE * load) else {
+            return Ok(());
+        };
         Err(Error::Mechanics(format!(
             "nothing holds the plate, and its loads do not balance: {:.3e} N are left along {} at ({:.3}, {:.3}) mm; give \
              [supports] or balanced loads",
-            force[at].abs(),
+            (force[at] + self.external[at]).abs(),
             ["x", "y"][at % net.unknowns],
             net.positions[at / net.unknowns][0] * 1e3,
             net.positions[at / net.unknowns][1] * 1e3,

@@ -9,6 +9,8 @@
 //! - where a bond has come to the end of its curve, or its law knows no gradual damage, it breaks alone (with its mirror
 //!   twins) while its stretch stays at the limit: the load dips to where its last force is gone.
 //!
+//! Bonds that parts sliding past each other stretch in truth but not in linear measures are torn where they stand.
+//!
 //! Of the usual controls (arc length, energy released, largest growth of damage) this one is explicit: the load follows from one
 //! pass over the bonds, it exists for any damage and has one value, so there are no roots to choose between and a step never
 //! fails to find the path.
@@ -39,7 +41,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { growth: 0.1, quiet: 1e-3, solutions: 12, steps: 100_000 }
+        Settings { growth: 0.04, quiet: 1e-3, solutions: 12, steps: 100_000 }
     }
 }
 
@@ -129,34 +131,29 @@ impl Walk<'_, '_, '_> {
         for _ in 0..self.path.settings.steps {
             self.control.look(&self.shape.u, bonds);
             let next = self.control.next(bonds);
-            let level = next.level.min(1.0);
-            if elastic {
-                self.nominal_rows(level, bonds)?;
-            }
+            // On an elastic way no further than the next nominal step.
+            let nominal = if elastic { self.nominal_level() } else { f64::INFINITY };
+            let level = next.level.min(nominal).min(1.0);
             self.account.go(self.state(level));
-            let spent = self.equilibrium.spent;
-            tracing::debug!(
-                level,
-                next.breaks,
-                self.growth,
-                self.broken,
-                spent.solves,
-                spent.iterations,
-                spent.factorisations,
-                "state"
-            );
-            let end = level >= 1.0;
-            self.row(end, bonds)?;
-            if end {
+            self.row(level == nominal || level >= 1.0, bonds)?;
+            let (torn, energy) = self.control.break_overlong(&self.shape.u, level, bonds);
+            if torn == 0 && level >= 1.0 {
                 return Ok(SceneEnd::Done);
             }
-            let start = bonds.share.clone();
-            elastic = next.breaks;
-            let found = if next.breaks { self.break_bonds(level, &start, bonds) } else { self.damage(&start, bonds) };
+            if torn == 0 && level < next.level {
+                continue;
+            }
+            let found = if torn > 0 {
+                self.tear(torn, energy, bonds)
+            } else {
+                let start = bonds.share.clone();
+                if next.breaks { self.break_bonds(level, &start, bonds) } else { self.damage(&start, bonds) }
+            };
             if found.is_err() {
                 return Ok(SceneEnd::NoConvergence);
             }
-            if next.breaks && is_separated(self.path.net, self.recorder.boundary, bonds) {
+            elastic = torn > 0 || next.breaks;
+            if elastic && is_separated(self.path.net, self.recorder.boundary, bonds) {
                 self.row(true, bonds)?;
                 return Ok(SceneEnd::Separated);
             }
@@ -171,13 +168,27 @@ impl Walk<'_, '_, '_> {
 
     /// Breaks the bonds whose limit is reached at this level, and goes to where their last force is gone.
     fn break_bonds(&mut self, level: f64, start: &[f64], bonds: &mut BondState) -> Result<()> {
+        if self.broken == 0 {
+            // The onset is the state in which the first bond breaks, and has a row.
+            self.row(true, bonds)?;
+        }
         let broken = self.control.break_at(level, bonds);
         self.account.fracture += self.control.taken(start, bonds, &self.shape.u, level);
+        self.recorder.log.broke(self.account.rows + usize::from(self.broken > 0), broken.len());
         self.broken += broken.len();
-        self.recorder.log.broke(self.account.rows + 1, broken.len());
         self.equilibrium.solve(bonds, &mut self.shape)?;
         let gone = self.control.level_of(&broken, &self.shape.u);
         self.account.go(self.state(if gone.is_finite() { gone.min(level) } else { level }));
+        Ok(())
+    }
+
+    /// Goes on at the same displacement without bonds that slid apart.
+    fn tear(&mut self, torn: usize, energy: f64, bonds: &mut BondState) -> Result<()> {
+        self.account.fracture += energy;
+        self.broken += torn;
+        self.recorder.log.broke(self.account.rows + 1, torn);
+        self.equilibrium.solve(bonds, &mut self.shape)?;
+        self.account.go(self.state(self.account.state.level));
         Ok(())
     }
 
@@ -205,17 +216,10 @@ impl Walk<'_, '_, '_> {
         Err(Error::Mechanics("a step found no quiet damage".to_owned()))
     }
 
-    /// Rows at the nominal levels on the way up to a level along the present ray.
-    fn nominal_rows(&mut self, level: f64, bonds: &BondState) -> Result<()> {
+    /// The next nominal load step.
+    fn nominal_level(&self) -> f64 {
         let steps = self.path.steps as f64;
-        loop {
-            let nominal = ((self.account.state.level * steps * (1.0 + 1e-12)).floor() + 1.0) / steps;
-            if nominal >= level {
-                return Ok(());
-            }
-            self.account.go(self.state(nominal));
-            self.row(true, bonds)?;
-        }
+        ((self.account.state.level * steps * (1.0 + 1e-12)).floor() + 1.0) / steps
     }
 
     /// A row for the present state if it differs enough from the last, or must have one.
