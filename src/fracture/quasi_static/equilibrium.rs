@@ -115,9 +115,9 @@ impl<'n> Equilibrium<'n> {
         let mut target = TOLERANCE * self.full.size(&shape.force);
         let (mut found, mut last) = (None, None);
         for iteration in 0..=ITERATIONS_MAX {
-            // A negated comparison, so that NaN ends the search.
-            if !(dot(&r, &r).sqrt() > target) {
-                found = dot(&r, &r).is_finite().then_some(iteration);
+            let size = dot(&r, &r).sqrt();
+            if size.is_nan() || size <= target {
+                found = size.is_finite().then_some(iteration);
                 break;
             }
             self.stiffness.solve(&r, &mut z);
@@ -128,7 +128,7 @@ impl<'n> Equilibrium<'n> {
             self.springs.react(&p, bonds, Damaging::Frozen, &mut q);
             // The force is -K p; held rows play no part.
             let curvature = -dot(&p, &q);
-            if !(curvature > 0.0) {
+            if curvature.is_nan() || curvature <= 0.0 {
                 break;
             }
             let step = rz / curvature;

@@ -169,8 +169,7 @@ impl Relaxation {
             if iteration == 0 || disturbed {
                 start = start.max(sums.acceleration);
             }
-            // A negated comparison, so that NaN counts as blown up.
-            if !(sums.acceleration <= BLOWN_UP * BLOWN_UP * start) {
+            if sums.acceleration.is_nan() || sums.acceleration > BLOWN_UP * BLOWN_UP * start {
                 rested.end = RestEnd::BlownUp;
                 return;
             }
