@@ -136,7 +136,7 @@ fn cut_bonds_take_the_fracture_energy() {
             let limit = critical_stretch(&body.unwrap().stencil, stiffness, energy, thickness);
             // A horizontal line through the middle of the plate, between two rows, over ten columns far from the sides.
             let above = |p: u32| net.positions[p as usize][1] > 10e-3;
-            let inside = |p: u32| (net.positions[p as usize][0] + 0.5e-3 - 5e-3).abs() < 5e-3;
+            let inside = |p: u32| (net.positions[p as usize][0] - 5e-3).abs() < 5e-3;
             let crossing = net.bonds.iter().filter(|bond| above(bond.from) != above(bond.to) && inside(bond.from));
             let taken: f64 = crossing.map(|bond| 0.5 * bond.k_n * (limit * bond.length).powi(2)).sum();
             let share = taken / (energy * thickness * 10e-3);
