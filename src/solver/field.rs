@@ -7,7 +7,7 @@
 use crate::body::lattice::{LANES, Lattice};
 
 /// Places of a task, about.
-const PLACES_PER_TASK: usize = 1 << 11;
+const PLACES_PER_TASK: usize = 1 << 12;
 
 /// Layout of a vector with `unknowns` components a place over a padded lattice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
