@@ -15,7 +15,7 @@
 //!
 //! Uniform strain is in no equilibrium within a horizon of a change of level, dual or not: a point there sees more on one side
 //! than on the other, and the strain at rest is off by a quarter to a half. `surface_correction = "balanced"` takes that away
-//! ([`balanced`]); limits of damage know nothing of it, so changes of level belong where no crack starts.
+//! (`dual_horizon/balanced.rs`); limits of damage know nothing of it, so changes of level belong where no crack starts.
 //!
 //! [`NetBond::lever`]: super::net::NetBond::lever
 
