@@ -68,9 +68,6 @@ impl Real for f32 {
     }
 }
 
-/// Blocks of a pair.
-const PAIR: usize = 2;
-
 /// What is done with K x.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Into {
@@ -121,12 +118,6 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
         Kernel { layout, springs, diagonal: [T::of(stretch), T::of(turn)] }
     }
 
-    /// Blocks side by side: with two unknowns a pair of them has room where three fill the registers with one.
-    #[inline(always)]
-    fn blocks() -> usize {
-        if N == 2 { B.max(PAIR) } else { B }
-    }
-
     /// Body row `row` of K x into the padded row `out`.
     #[inline(always)]
     pub fn row(&self, bonds: &Bonds, row: usize, x: &[T], out: &mut [T], into: Into) {
@@ -138,19 +129,16 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
         let mut chunk = 0;
         while chunk < regular.len() {
             let (at, place, start) = (first + chunk * LANES, place + chunk * LANES, padding + chunk * LANES);
-            let blocks = Self::blocks();
-            let block = &regular[chunk..regular.len().min(chunk + blocks * L / LANES)];
-            let wide = block.len() * LANES == blocks * L && !block.contains(&false);
-            if wide && blocks == PAIR {
-                give::<T, N, PAIR, L>(&self.regular(x, at), out, start, stride, into);
-            } else if wide {
+            let block = &regular[chunk..regular.len().min(chunk + B * L / LANES)];
+            let wide = block.len() * LANES == B * L && !block.contains(&false);
+            if wide {
                 give::<T, N, B, L>(&self.regular(x, at), out, start, stride, into);
             } else if regular[chunk] {
                 give::<T, N, 1, LANES>(&self.regular(x, at), out, start, stride, into);
             } else {
                 give::<T, N, 1, LANES>(&self.masked(&shares, x, at, place), out, start, stride, into);
             }
-            chunk += if wide { blocks * L / LANES } else { 1 };
+            chunk += if wide { B * L / LANES } else { 1 };
         }
     }
 
