@@ -28,7 +28,7 @@ pub enum Failure {
     /// Broken at the critical stretch s_c of the owner, true length.
     Stretch(Vec<f64>),
     /// Broken at `s² + (k_t/k_n) γ² ≥ s_c²`, longer than at rest, with the critical stretch of the owner: on the stretch form with a constant
-    /// kernel this is `(c_n s² + c_t γ²)/2 ≥ w_c0` (source 002, equation 24), in tension only.
+    /// kernel this is `(c_n s² + c_t γ²)/2 ≥ w_c0` (source 002, equation 24), in tension only; also where the true length is beyond s_c.
     Energy(Vec<f64>),
     /// Exponential softening.
     Softening(Softening),
@@ -77,8 +77,10 @@ impl Failure {
             }
             Failure::Energy(limits) => {
                 let limit = limits[owner as usize];
-                let reached = at.elongation > 0.0 && at.stretch * at.stretch + at.ratio * at.shear * at.shear >= limit * limit;
-                if reached { 0.0 } else { share }
+                let energy = at.elongation > 0.0 && at.stretch * at.stretch + at.ratio * at.shear * at.shear >= limit * limit;
+                // Debris that moves past stores little energy in linear measures; a bond so long is none.
+                let overlong = at.elongation >= limit * (2.0 + limit);
+                if energy || overlong { 0.0 } else { share }
             }
             Failure::Softening(law) => {
                 if at.elongation >= law.last * (2.0 + law.last) {

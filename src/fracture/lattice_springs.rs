@@ -288,7 +288,8 @@ impl BandWork<'_> {
                                 longer - longest
                             } else {
                                 let square = e_n * e_n + ratio * e_t * e_t - limit * limit;
-                                if longer > 0.0 { square } else { -1.0 }
+                                let energy = if longer > 0.0 { square } else { -1.0 };
+                                if longer >= longest { 1.0 } else { energy }
                             };
                             beyond[lane] = if share[lane] > 0.0 { measure } else { -1.0 };
                         }
