@@ -26,8 +26,8 @@ const STRETCH_FORM: [(f64, f64); 3] = [(0.1, 1.78), (0.3, 2.48), (1.0 / 3.0, 3.2
 const STRAIN: f64 = 1e-3;
 
 /// Why Poisson's ratio read back misses the source's figure.
-const READ_BACK: &str = "the lattice sum of 28 bonds with volume weights has 0.3356 in the bulk at c_t = 0, and the corrected edges add to \
-     that; where the source reads its figure is not said";
+const READ_BACK: &str = "the lattice sum of 28 bonds with volume weights gives 0.3356 at c_t = 0, less than half of the miss; the rest is not \
+     explained, and where the source reads its figure is not said";
 
 /// Rows of the topic.
 ///
@@ -51,7 +51,7 @@ pub fn rows(table: &mut Table) -> Result<()> {
         let name = format!("uniform shear by the rim, nu 0.3: max |e_{axis}| in percent");
         table.compare(name, error, 0.202, 10.0, "source 002, example 2; its boundary data are lost");
         table.known_miss(
-            "with only the outermost points on the exact field the rows beside them err most; the source's boundary is unknown",
+            "here the outermost points alone are held on the exact field; the source's boundary data are lost, the cause is not looked into",
         );
     }
     Ok(())

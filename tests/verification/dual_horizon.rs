@@ -311,8 +311,8 @@ fn mixed_mode_cracks_bend_away_from_the_ligament() {
     let turned: Vec<Point> = cracks.iter().map(|p| [-p[0], -p[1]]).collect();
     println!("{} points, half a turn {:.2e}, steps {}", cracks.len(), apart(&cracks, &turned), run.figures.evaluations);
     assert!(cracks.len() > 40, "{}", cracks.len());
-    // As far as two paths may lie apart, two fine horizons: round-off of the true length decides which bond of a mirrored pair breaks
-    // first, and fast cracks amplify it.
+    // As far as two paths may lie apart, two fine horizons: sums over a point and over its twin run in other orders, and fast
+    // cracks amplify the difference. The scenes at their own velocity are their own images exactly.
     let off = apart(&cracks, &turned);
     assert!(off <= 2.0 * 3.015 * run.grid.spacing, "{off:.2e}");
     let mean = |from: f64, to: f64| {

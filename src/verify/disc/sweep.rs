@@ -125,8 +125,8 @@ pub fn rows(table: &mut Table) -> Result<()> {
         let source = "silling at half the spacing, equal way of the platens; source 001, figure 3: agrees well";
         table.compare(quantity, computed, reference, AGREEMENT_PERCENT, source);
         table.known_miss(
-            "the springs carry part of the stress: 4 % of the modulus in uniform strain at 0.5e23 (π c_I h δ⁴/8), more in the disc, where \
-             they resist rotation too; weaker ones leave the contact soft. No constant of the sweep comes closer than a tenth",
+            "the springs carry part of the stress: 4 % of the modulus in uniform strain at 0.5e23 (π c_I h δ⁴/8), more in the disc, \
+             probably since they resist rotation too. No constant of the sweep comes closer than a tenth",
         );
     }
     Ok(())
