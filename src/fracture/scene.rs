@@ -153,6 +153,8 @@ pub enum Procedure {
     QuasiStatic {
         /// Load steps.
         steps: usize,
+        /// Iterations of relaxation in a step, bonds damaged in each; `None` to come to rest.
+        iterations: Option<usize>,
     },
     /// Motion in time.
     Dynamic {

@@ -131,7 +131,7 @@ fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture, snapshots: &[Sn
 fn caption(scene: &Scene, snapshot: &Snapshot) -> Vec<String> {
     match scene.procedure {
         Procedure::Static => vec!["static".to_owned()],
-        Procedure::QuasiStatic { steps } => vec![format!("step {:.0} of {steps}", snapshot.cycles)],
+        Procedure::QuasiStatic { steps, .. } => vec![format!("step {:.0} of {steps}", snapshot.cycles)],
         Procedure::Dynamic { .. } => vec![format!("time {:.3} µs", snapshot.cycles * 1e6)],
     }
 }

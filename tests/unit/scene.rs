@@ -39,7 +39,7 @@ fn what_is_left_out_is_chosen() {
     assert_eq!((scene.model.arrangement, scene.model.solver), (Arrangement::Lattice, SceneSolver::Secant));
     assert!((scene.model.spacing - 0.4e-3).abs() < 1e-12, "a hundredth of the width: {}", scene.model.spacing);
     assert_eq!((scene.damage.law, scene.damage.enters), (DamageLaw::None, DamageEntry::Influence));
-    assert_eq!(scene.procedure, Procedure::QuasiStatic { steps: 50 });
+    assert_eq!(scene.procedure, Procedure::QuasiStatic { steps: 50, iterations: None });
     assert!(scene.holds.is_empty() && scene.refinement.is_none() && scene.warnings.is_empty());
     assert_eq!(scene.echo["loading"]["steps"], 50);
 }

@@ -99,7 +99,10 @@ fn procedure_words(scene: &Scene) -> String {
     let solver = scene.model.solver;
     match scene.procedure {
         Procedure::Static => format!("one equilibrium at full load, solver {solver}"),
-        Procedure::QuasiStatic { steps } => format!("{steps} load steps, solver {solver}"),
+        Procedure::QuasiStatic { steps, iterations: None } => format!("{steps} load steps, solver {solver}"),
+        Procedure::QuasiStatic { steps, iterations: Some(each) } => {
+            format!("{steps} load steps of {each} iterations, not to rest, solver {solver}")
+        }
         Procedure::Dynamic { duration, time_step } => {
             let step = time_step.map_or_else(|| "its own time step".to_owned(), |step| format!("time step {step:e} s"));
             format!("motion over {duration:e} s, {step}, solver {solver}")

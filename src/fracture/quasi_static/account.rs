@@ -81,6 +81,12 @@ impl Account {
         if self.largest > 0.0 { nowhere / self.largest } else { 0.0 }
     }
 
+    /// Whether the strain energy is not finite, or exceeds so many times all the work there ever was.
+    #[must_use]
+    pub fn is_impossible(&self, times: f64) -> bool {
+        self.state.strain.is_nan() || self.state.strain > times * self.largest
+    }
+
     /// Takes down a row with this displacement and forces of the bonds.
     ///
     /// # Errors

@@ -1,12 +1,13 @@
 //! Scenes without time: one equilibrium, or a load that grows step by step.
 //!
 //! `adaptive_dynamic_relaxation` brings any interaction to rest, step after step, with the displacement of the loads rising
-//! ([`steps`]). `secant` follows the path of springs through falling load and displacement ([`path`]).
+//! ([`steps`]), or, with `iterations_per_step`, follows the load in damped motion without coming to rest ([`marching`]). `secant` follows the path of springs through falling load and displacement ([`path`]).
 
 pub mod account;
 pub mod control;
 pub mod equilibrium;
 pub mod full_load;
+pub mod marching;
 pub mod path;
 pub mod relaxation;
 pub mod rigid;
@@ -25,6 +26,7 @@ use super::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
 use crate::error::{Result, input};
 use account::Recorder;
 use full_load::FullLoad;
+use marching::March;
 use path::{Path, Settings, Walked};
 use relaxation::Relaxation;
 
@@ -50,11 +52,19 @@ pub fn run(
     if interaction.driven().is_some() {
         full.release();
     }
-    let steps = if let Procedure::QuasiStatic { steps } = scene.procedure { steps.max(1) } else { 1 };
-    let mut log = Log::new(scene, net, boundary, steps.max(if steps > 1 { ROWS_EXPECTED } else { 1 }));
+    let (steps, iterations) = match scene.procedure {
+        Procedure::QuasiStatic { steps, iterations } => (steps.max(1), iterations),
+        _ => (1, None),
+    };
+    // Relaxation to rest and the path have rows between the nominal steps.
+    let rows = if iterations.is_some() || steps == 1 { steps } else { steps.max(ROWS_EXPECTED) };
+    let mut log = Log::new(scene, net, boundary, rows);
     let recorder = Recorder { log: &mut log, observer, boundary, unknowns: net.unknowns, share: 0.0 };
     let walked = match scene.model.solver {
-        SceneSolver::AdaptiveDynamicRelaxation => steps::follow(&full, steps, &relaxation(scene), interaction, bonds, recorder)?,
+        SceneSolver::AdaptiveDynamicRelaxation => match iterations {
+            Some(iterations) => March { full: &full, steps, iterations }.follow(interaction, bonds, recorder)?,
+            None => steps::follow(&full, steps, &relaxation(scene), interaction, bonds, recorder)?,
+        },
         SceneSolver::Secant => {
             let failure = secant_law(scene, failure)?;
             let path = Path { net, full: &full, failure, steps, settings: Settings::default() };
@@ -72,7 +82,12 @@ pub fn run(
     let Walked { end, u, account, evaluations } = walked;
     let mut fracture = log.close(end, &u, bonds, SceneFigures { evaluations, ..SceneFigures::default() });
     let excess = account.excess();
-    if excess.abs() > EXCESS_TOLD {
+    if iterations.is_some() {
+        fracture.warnings.push(format!(
+            "the plate was not at rest in its load steps: {:.2} % of the work are motion or damped away",
+            100.0 * excess
+        ));
+    } else if excess.abs() > EXCESS_TOLD {
         fracture.warnings.push(format!(
             "{:.2} % of the work is neither strain nor fracture energy: the plate jumped, and a scene without time does not follow \
              where that energy goes",

@@ -158,7 +158,7 @@ impl Relaxation {
         rested: &mut Rested,
     ) {
         let damaging = if self.breaking == Breaking::EveryStep { Damaging::Allowed } else { Damaging::Frozen };
-        let mut swing = Swing { velocity: vec![0.0; u.len()], residual: vec![0.0; u.len()] };
+        let mut swing = Swing::at_rest(u.len());
         let mut start = 0.0_f64;
         for iteration in 0..self.iterations {
             let reaction = interaction.react(u, bonds, damaging, &mut rested.force);
@@ -193,7 +193,7 @@ impl Rested {
 }
 
 /// 1/Λ of every unknown, m/N; 0 where nothing moves.
-fn mobility(interaction: &dyn Interaction, bonds: &BondState, held: &[bool]) -> Vec<f64> {
+pub(super) fn mobility(interaction: &dyn Interaction, bonds: &BondState, held: &[bool]) -> Vec<f64> {
     let unknowns = interaction.unknowns();
     let inverse = |bound: f64| if bound > 0.0 { 4.0 / bound } else { 0.0 };
     let bounds = interaction.stiffness_bound(bonds);
@@ -202,7 +202,7 @@ fn mobility(interaction: &dyn Interaction, bonds: &BondState, held: &[bool]) -> 
 }
 
 /// The motion.
-struct Swing {
+pub(super) struct Swing {
     /// u̇(n-½), m.
     velocity: Vec<f64>,
     /// F, N; 0 where nothing moves.
@@ -211,7 +211,7 @@ struct Swing {
 
 /// Sums over all unknowns.
 #[derive(Default)]
-struct Sums {
+pub(super) struct Sums {
     /// F·F, N².
     square: f64,
     /// F·Λ⁻¹F, N m.
@@ -225,15 +225,21 @@ struct Sums {
 }
 
 impl Sums {
-    fn damping(&self) -> f64 {
+    /// c, at the most [`DAMPING_MAX`].
+    pub(super) fn damping(&self) -> f64 {
         let square = if self.mass > 0.0 { self.stiffness / self.mass } else { 0.0 };
         (DAMPING_SHARE * 2.0 * square.max(0.0).sqrt()).min(DAMPING_MAX)
     }
 }
 
 impl Swing {
+    /// No motion yet, of so many unknowns.
+    pub(super) fn at_rest(unknowns: usize) -> Self {
+        Swing { velocity: vec![0.0; unknowns], residual: vec![0.0; unknowns] }
+    }
+
     /// Takes the new residual, and what the step towards it shows.
-    fn take(&mut self, loads: Loads<'_>, mobility: &[f64], force: &[f64]) -> Sums {
+    pub(super) fn take(&mut self, loads: Loads<'_>, mobility: &[f64], force: &[f64]) -> Sums {
         let mut sums = Sums::default();
         for (i, (&force, &external)) in force.iter().zip(loads.external).enumerate() {
             sums.load += if loads.held[i] { force * force } else { external * external };
@@ -251,7 +257,7 @@ impl Swing {
     }
 
     /// Moves on with this damping; from rest without one.
-    fn step(&mut self, mobility: &[f64], damping: Option<f64>, u: &mut [f64]) {
+    pub(super) fn step(&mut self, mobility: &[f64], damping: Option<f64>, u: &mut [f64]) {
         let (keep, push) = damping.map_or((0.0, 0.5), |c| ((2.0 - c) / (2.0 + c), 2.0 / (2.0 + c)));
         for (i, u) in u.iter_mut().enumerate() {
             self.velocity[i] = keep * self.velocity[i] + push * self.residual[i] * mobility[i];

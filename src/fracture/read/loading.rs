@@ -10,9 +10,13 @@ use crate::input::{TIME, number, shorten, slice, table_of};
 use crate::specimen::Specimen;
 
 /// Keys of `[loading]` that concern all loads.
-const COMMON: &[&str] = &["parts", "steps", "duration_s", "time_step_s", "ramp_s"];
+const COMMON: &[&str] = &["parts", "steps", "iterations_per_step", "duration_s", "time_step_s", "ramp_s"];
 /// More than this is a slip.
 const PARTS_MAX: usize = 50;
+/// Key of the iterations in a load step.
+const ITERATIONS: &str = "loading.iterations_per_step";
+/// More than these come to rest.
+const ITERATIONS_MAX: u64 = 10_000;
 /// More load steps than this are a slip.
 const STEPS_MAX: u64 = 1_000_000;
 
@@ -20,6 +24,7 @@ const STEPS_MAX: u64 = 1_000_000;
 struct CommonInput {
     parts: Option<Vec<Value>>,
     steps: Option<u64>,
+    iterations_per_step: Option<u64>,
     duration_s: Option<f64>,
     time_step_s: Option<f64>,
     ramp_s: Option<f64>,
@@ -83,6 +88,10 @@ fn unknown(key: &str, value: &Value) -> crate::Error {
 fn procedure(common: &CommonInput) -> Result<Procedure> {
     let duration = TIME.read_optional("loading.duration_s", common.duration_s)?;
     let time_step = TIME.read_optional("loading.time_step_s", common.time_step_s)?;
+    let each = common.iterations_per_step.map(|each| whole(ITERATIONS, each, ITERATIONS_MAX)).transpose()?;
+    if let (Some(each), None) = (each, common.steps) {
+        return Err(input(ITERATIONS, each, "has no meaning without load steps", "give steps, or leave it out"));
+    }
     match (common.steps, duration) {
         (Some(steps), Some(_)) => {
             let problem = "stands beside duration_s: load steps have no time, and time has steps of its own";
@@ -96,7 +105,7 @@ fn procedure(common: &CommonInput) -> Result<Procedure> {
             if let Some((key, value)) = timed.into_iter().find_map(|(key, value)| Some((key, value?))) {
                 return Err(input(key, value, "has no meaning without duration_s", "give duration_s, or leave it out"));
             }
-            Ok(steps.map_or(Procedure::Static, |steps| Procedure::QuasiStatic { steps: steps as usize }))
+            Ok(steps.map_or(Procedure::Static, |steps| Procedure::QuasiStatic { steps: steps as usize, iterations: each }))
         }
         (None, Some(duration)) => {
             if let Some(step) = time_step.filter(|step| *step > duration) {

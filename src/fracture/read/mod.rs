@@ -21,7 +21,7 @@
 //! velocity_mm_s = 20000.0     # along the outward normal of the side, or along direction = [x, y]
 //! edges = ["top", "bottom"]   # with grip_mm, range_mm; or regions = [{ from_mm = [x, y], to_mm = [x, y] }]
 //! transverse = "free"         # or "held": the component across the motion
-//! duration_s = 4e-5           # motion, with time_step_s, ramp_s; or steps = load steps; neither: one equilibrium
+//! duration_s = 4e-5           # motion, with time_step_s, ramp_s; or steps = load steps, to rest or with iterations_per_step; neither: one equilibrium
 //! [supports]                  # sides { rows_mm, range_mm, fix } or, by any other name, boxes { from_mm, to_mm, fix }
 //! left = { range_mm = [-1.0, 1.0], fix = ["x"] }
 //! [damage]                    # optional; default law "none"

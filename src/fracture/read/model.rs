@@ -164,7 +164,8 @@ fn solver(asked: Option<SceneSolver>, law: SceneLaw, procedure: Procedure) -> Re
     const KEY: &str = "model.solver";
     let timed = matches!(procedure, Procedure::Dynamic { .. });
     let by_points = matches!(law, SceneLaw::Correspondence { .. });
-    let usual = match (timed, by_points) {
+    let marches = matches!(procedure, Procedure::QuasiStatic { iterations: Some(_), .. });
+    let usual = match (timed, by_points || marches) {
         (true, _) => SceneSolver::VelocityVerlet,
         (false, true) => SceneSolver::AdaptiveDynamicRelaxation,
         (false, false) => SceneSolver::Secant,
@@ -178,6 +179,10 @@ fn solver(asked: Option<SceneSolver>, law: SceneLaw, procedure: Procedure) -> Re
         SceneSolver::Secant | SceneSolver::AdaptiveDynamicRelaxation if timed => refuse(
             "looks for equilibrium, and loading.duration_s asks for motion in time",
             "use \"velocity_verlet\", or give loading.steps instead of duration_s",
+        ),
+        SceneSolver::Secant if marches => refuse(
+            "finds equilibrium in every step, and loading.iterations_per_step asks for steps that do not come to rest",
+            "use \"adaptive_dynamic_relaxation\", or leave iterations_per_step out",
         ),
         SceneSolver::Secant if by_points => refuse(
             "works on springs in bonds, which bond_law = \"correspondence\" has not",

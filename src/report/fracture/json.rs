@@ -85,7 +85,9 @@ fn loading(scene: &Scene) -> Value {
         .collect();
     match scene.procedure {
         Procedure::Static => json!({ "procedure": "static", "kinds": kinds }),
-        Procedure::QuasiStatic { steps } => json!({ "procedure": "quasi_static", "steps": steps, "kinds": kinds }),
+        Procedure::QuasiStatic { steps, iterations } => {
+            json!({ "procedure": "quasi_static", "steps": steps, "iterations_per_step": iterations, "kinds": kinds })
+        }
         Procedure::Dynamic { duration, .. } => json!({ "procedure": "dynamic", "duration_s": duration, "kinds": kinds }),
     }
 }
