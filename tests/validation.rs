@@ -15,5 +15,7 @@ mod fit_virkler;
 mod kept_back;
 #[path = "validation/median_virkler.rs"]
 mod median_virkler;
+#[path = "validation/notched_plates.rs"]
+mod notched_plates;
 #[path = "validation/rates_virkler.rs"]
 mod rates_virkler;

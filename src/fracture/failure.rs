@@ -99,12 +99,13 @@ impl Failure {
 
     /// Energy that gradual damage takes when the stretch grows from the largest before to the present one, over the energy of the
     /// whole bond at present: `∫ s² dD / s²` along the curve, whatever the size of the step, all strains of the bond having grown in
-    /// proportion. `None` for laws without a curve.
+    /// proportion. `None` for laws without a curve, and off it.
     #[inline(always)]
     #[must_use]
     pub fn taken_along_curve(&self, at: Measures, after: f64, peak_before: f64) -> Option<f64> {
         match self {
-            Failure::Softening(law) if !law.printed => {
+            // What is torn by its true length alone has not followed the curve.
+            Failure::Softening(law) if !law.printed && (after > 0.0 || at.stretch >= law.last) => {
                 Some(law.square_sum([law.share(peak_before), after]) / (at.stretch * at.stretch))
             }
             _ => None,

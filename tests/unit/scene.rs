@@ -218,6 +218,20 @@ fn a_preview_counts_points_and_loaded_points() {
     assert!(preview.cut > 0 && preview.horizons == [3.015 * 0.5e-3; 2] && preview.spacings == [0.5e-3; 2]);
 }
 
+/// Steps that do not come to rest belong to relaxation.
+#[test]
+fn iterations_of_a_step_are_read() {
+    let scene = steps(&["loading.iterations_per_step=2"]);
+    assert_eq!(scene.procedure, Procedure::QuasiStatic { steps: 50, iterations: Some(2) });
+    assert_eq!(scene.model.solver, SceneSolver::AdaptiveDynamicRelaxation);
+    let refusal = |overrides: &[&str], words: &str| {
+        let error = read(&format!("{PLATE}{STEPS}"), overrides).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    refusal(&["loading.iterations_per_step=0"], "loading.iterations_per_step");
+    refusal(&["loading.iterations_per_step=1", "model.solver=secant"], "model.solver");
+}
+
 #[test]
 fn scenes_and_cases_are_told_apart() {
     let is = |text: &str| is_scene(&Document::parse(text, "any", Path::new(""), &[]).unwrap().table);

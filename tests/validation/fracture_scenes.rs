@@ -8,7 +8,7 @@ use perilife::fracture::{self, Fracture, Scene};
 use perilife::predict::Silent;
 
 /// Runs a scene of `data/cases/fracture`.
-fn run(name: &str, overrides: &[&str]) -> Fracture {
+pub fn run(name: &str, overrides: &[&str]) -> Fracture {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases/fracture").join(format!("{name}.toml"));
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
     let scene = Scene::from_file(&file, &overrides).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -16,7 +16,7 @@ fn run(name: &str, overrides: &[&str]) -> Fracture {
 }
 
 /// Places of an initial tip's front, in mm.
-fn way(run: &Fracture, tip: usize) -> Vec<[f64; 2]> {
+pub fn way(run: &Fracture, tip: usize) -> Vec<[f64; 2]> {
     let of_tip = |point: &&PathPoint| point.tip == tip;
     run.path.iter().filter(of_tip).map(|point| point.position.map(|x| 1e3 * x)).collect()
 }
