@@ -237,7 +237,7 @@ fn apart(a: &[Point], b: &[Point]) -> f64 {
 /// one above. Coarser and faster pulled than the scene itself, in seconds.
 #[test]
 fn mixed_mode_cracks_bend_away_from_the_ligament() {
-    let set = ["model.spacing_mm=5", "loading.duration_s=0.7e-3"];
+    let set = ["model.spacing_mm=5", "loading.duration_s=0.9e-3"];
     let mut scene = mixed_mode("two_levels", &set);
     for drive in &mut scene.drives {
         if let Action::Velocity([_, Some(velocity)]) = &mut drive.action {
