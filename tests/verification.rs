@@ -4,23 +4,17 @@
 mod hand_cases;
 #[path = "support/plates.rs"]
 mod plates;
-#[path = "support/scene_plates.rs"]
-mod scene_plates;
 #[path = "support/noise.rs"]
 mod noise;
 #[path = "support/statics.rs"]
 mod statics;
-#[path = "support/level_scenes.rs"]
-mod level_scenes;
-
 #[path = "support/scenes.rs"]
 mod scenes;
-
-#[path = "verification/dynamics.rs"]
-mod dynamics;
 #[path = "support/correspondence.rs"]
 mod correspondence_bodies;
 
+#[path = "verification/dynamics.rs"]
+mod dynamics;
 #[path = "verification/correspondence.rs"]
 mod correspondence;
 #[path = "verification/disc.rs"]

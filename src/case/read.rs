@@ -2,19 +2,33 @@
 
 use std::path::{Path, PathBuf};
 
-use toml::{Table, Value};
+use toml::Table;
 
 use super::choices::Choices;
 use super::{Case, LAW_KEYS, LawSource, Method, fatigue, law, model};
 use crate::calibration::record::FittedRecord;
-use crate::error::{Result, input, input_missing};
+use crate::error::Result;
 use crate::fatigue::finite_horizon::life_shortfall;
-use crate::input::{Document, shorten};
+use crate::input::{Document, Sections, Strangers};
 use crate::units::MPA;
 use crate::{loading, material, specimen};
 
 /// Sections of a case file.
 pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "fatigue", "stop"];
+
+/// Sections of other files.
+const STRANGERS: &[Strangers] = &[
+    (
+        &["measured", "fit"],
+        "belongs to a calibration file, not to a case",
+        "run `perilife calibrate` on it, or remove the section",
+    ),
+    (
+        &["damage", "refinement", "micro_cracks"],
+        "belongs to a fracture scene, not to a fatigue case",
+        "run `perilife fracture` on it, or remove the section",
+    ),
+];
 
 impl Case {
     /// Reads a case file; `overrides` are `section.key=value`.
@@ -46,23 +60,16 @@ impl Case {
     /// A table without fatigue law is accepted, since a calibration has none yet: the law is then
     /// [`LawSource::Missing`] with an empty path.
     pub fn from_table(table: Table, name: &str, base_dir: &Path) -> Result<Self> {
-        check_sections(&table)?;
-        let echo =
-            serde_json::to_value(&table).map_err(|error| input_missing("case", error.to_string(), "write it as plain TOML"))?;
-        let empty = Value::Table(Table::new());
-        let required = |section: &str| {
-            table.get(section).ok_or_else(|| input_missing(section, "is missing", format!("write a section [{section}]")))
-        };
-        let optional = |section: &str| table.get(section).unwrap_or(&empty);
-
+        let sections = Sections::of(&table, SECTIONS, STRANGERS)?;
+        let echo = sections.echo()?;
         let mut warnings = Vec::new();
         let mut choices = Choices::default();
-        let mut specimen = specimen::from_value(required("specimen")?)?;
-        let material = material::from_value(required("material")?, base_dir, &mut warnings)?;
-        let loading = loading::from_values(required("loading")?, table.get("supports"), &mut specimen)?;
-        let model = model::from_value(optional("model"), &specimen, &material, &mut choices)?;
-        let fatigue = fatigue::from_value(optional("fatigue"), model.method, base_dir, &mut choices)?;
-        let stop = fatigue::stop_from_value(optional("stop"), &specimen)?;
+        let mut specimen = specimen::from_value(sections.required("specimen")?)?;
+        let material = material::from_value(sections.required("material")?, base_dir, &mut warnings)?;
+        let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
+        let model = model::from_value(sections.optional("model"), &specimen, &material, &mut choices)?;
+        let fatigue = fatigue::from_value(sections.optional("fatigue"), model.method, base_dir, &mut choices)?;
+        let stop = fatigue::stop_from_value(sections.optional("stop"), &specimen)?;
         let mut case = Case {
             name: name.to_owned(),
             specimen,
@@ -107,31 +114,6 @@ impl Case {
         self.warnings.extend(lines);
         Ok(self)
     }
-}
-
-/// Only known sections, each a table.
-fn check_sections(table: &Table) -> Result<()> {
-    for (name, value) in table {
-        match name.as_str() {
-            known if SECTIONS.contains(&known) => {}
-            "measured" | "fit" => {
-                let problem = "belongs to a calibration file, not to a case";
-                return Err(input(name, shorten(value), problem, "run `perilife calibrate` on it, or remove the section"));
-            }
-            "damage" | "refinement" | "micro_cracks" => {
-                let problem = "belongs to a fracture scene, not to a fatigue case";
-                return Err(input(name, shorten(value), problem, "run `perilife fracture` on it, or remove the section"));
-            }
-            _ => {
-                let what = if value.is_table() { "is not a known section" } else { "stands in no section" };
-                return Err(input(name, shorten(value), what, format!("known sections: {}", SECTIONS.join(", "))));
-            }
-        }
-        if !value.is_table() {
-            return Err(input(name, shorten(value), "is not a section", format!("write [{name}] and its keys below")));
-        }
-    }
-    Ok(())
 }
 
 /// What the user should know about law and horizon of this case.

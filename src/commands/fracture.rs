@@ -6,6 +6,7 @@ use super::console::Console;
 use crate::error::{Error, Result};
 use crate::fracture::scene::Procedure;
 use crate::fracture::{self, Fracture, Scene, SceneEnd};
+use crate::input::Document;
 use crate::report::fracture as report;
 use crate::report::output::OutputFolder;
 use crate::units::{KN, MM};
@@ -33,13 +34,15 @@ pub struct Args {
 /// Wrong input; files that cannot be read or written; [`Error::Mechanics`] where the scene ended without convergence or blew up,
 /// whose histories are written all the same.
 pub fn run(args: &Args) -> Result<()> {
-    let scene = Scene::from_file(&args.case, &args.set)?;
+    let document = Document::read(&args.case, &args.set)?;
+    let scene = Scene::from_document(&document)?;
     // Claimed first: a folder that cannot be written should not cost a run.
     let folder = OutputFolder::create(&args.out)?;
     for warning in &scene.warnings {
         args.console.warn(warning);
     }
-    let fracture = fracture::run(&scene, &args.console.progress(&scene.name))?;
+    // Some wrong input shows only once points and bonds stand.
+    let fracture = fracture::run(&scene, &args.console.progress(&scene.name)).map_err(|error| document.locate(error))?;
     keep(&scene, &fracture, folder, &args.console)
 }
 

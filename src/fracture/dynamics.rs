@@ -13,12 +13,14 @@ use rayon::prelude::*;
 
 use super::bonds::BondState;
 use super::boundary::{Boundary, Held};
-use super::interaction::{Damaging, Interaction, Reaction};
+use super::interaction::{Damaging, Driven, Interaction, Reaction};
 use super::log::Log;
 use super::net::Net;
 use super::outcome::{HistoryRow, SceneEnd};
+use super::scene::Rise;
 use super::{SceneObserver, SceneProgress};
 use crate::error::{Error, Result, input};
+use crate::specimen::Point;
 
 /// Share of the stability bound that the program's own step takes. The energy of velocity Verlet wavers with the square of the
 /// step: a plate torn in two (50 mm, spacing 1 mm, 8 m/s) has 0.27 to 0.34 % of the work astray for a moment, by law.
@@ -106,11 +108,14 @@ impl Run<'_> {
         let unknowns = interaction.unknowns();
         let size = self.masses.len();
         let mut motion = Motion { u: vec![0.0; size], v: vec![0.0; size], force: vec![0.0; size] };
-        let external = self.external(unknowns);
+        let pushes = self.pushes(unknowns);
+        let mut external = vec![0.0; size];
+        push_at(&pushes, 0.0, &mut external);
+        interaction.load_at(0.0);
         let held: Vec<(usize, Held)> =
             self.boundary.held.iter().map(|held| (held.point as usize * unknowns + held.component, *held)).collect();
         for (i, held) in &held {
-            motion.v[*i] = self.boundary.motion_at(held.motion, 0.0).1;
+            motion.v[*i] = held.at(0.0).1;
         }
         let mut work = self.kinetic(&motion.v);
         let mut fracture = 0.0;
@@ -120,39 +125,42 @@ impl Run<'_> {
         let mut end = SceneEnd::Done;
         for step in 1..=self.steps {
             let (before, time) = ((step - 1) as f64 * self.step, step as f64 * self.step);
-            self.drift(&mut motion, &external, self.boundary.level(before));
+            self.drift(&mut motion, &external);
             let mut driven = 0.0;
             let moved: Vec<f64> = held
                 .iter()
                 .map(|(i, held)| {
-                    let at = self.boundary.motion_at(held.motion, time).0;
-                    let moved = at - self.boundary.motion_at(held.motion, before).0;
+                    let at = held.at(time).0;
+                    let moved = at - held.at(before).0;
                     motion.u[*i] = at;
                     // Half of the work of the force that holds the point; the other half with the new force.
                     driven -= 0.5 * motion.force[*i] * moved;
                     moved
                 })
                 .collect();
-            let level = 0.5 * (self.boundary.level(before) + self.boundary.level(time));
-            let pushed = self.pushed(&external, &motion.v, level);
+            let pushed = self.pushed(&pushes, &motion.v, [before, time]);
+            interaction.load_at(time);
             let reaction = interaction.react(&motion.u, bonds, Damaging::Allowed, &mut motion.force);
-            self.kick(&mut motion, &external, self.boundary.level(time));
+            push_at(&pushes, time, &mut external);
+            self.kick(&mut motion, &external);
             for ((i, held), moved) in held.iter().zip(&moved) {
-                let (was, is) = (self.boundary.motion_at(held.motion, before).1, self.boundary.motion_at(held.motion, time).1);
+                let (was, is) = (held.at(before).1, held.at(time).1);
                 motion.v[*i] = is;
                 // What holds the point also brings its own mass into motion.
                 driven += 0.5 * self.masses[*i] * (is * is - was * was) - 0.5 * motion.force[*i] * moved;
             }
             work += driven + pushed;
+            let platens = interaction.driven();
             fracture += reaction.released;
             log.broke(step, reaction.broken);
             let look = step % WATCH == 0 || step % stride == 0 || step == self.steps;
             if look {
-                let row = self.row(step, &motion, &reaction, (fracture, work), unknowns);
+                let all_work = work + platens.map_or(0.0, |driven| driven.work);
+                let row = self.row(step, &motion, &reaction, (fracture, all_work), platens, unknowns);
                 largest = largest.max(row.kinetic.max(row.strain).max(row.work.abs()));
                 let nowhere = (row.kinetic + row.strain + row.fracture - row.work).abs();
                 // A negated comparison, so that NaN counts as blown up.
-                if !(nowhere <= FROM_NOWHERE * largest || largest == 0.0) {
+                if !(nowhere <= FROM_NOWHERE * largest + self.lag(&pushes, time) || largest == 0.0) {
                     end = SceneEnd::Unstable;
                     break;
                 }
@@ -168,39 +176,52 @@ impl Run<'_> {
         Ok((end, motion, evaluations))
     }
 
-    /// Forces of the loads at full level on all unknowns, N.
-    fn external(&self, unknowns: usize) -> Vec<f64> {
-        let mut external = vec![0.0; self.masses.len()];
-        for &(point, force) in &self.boundary.forces {
-            external[point as usize * unknowns] += force[0];
-            external[point as usize * unknowns + 1] += force[1];
-        }
-        external
+    /// Forces of the loads at full size by unknowns, N, with how they rise.
+    fn pushes(&self, unknowns: usize) -> Vec<(Rise, Vec<(usize, f64)>)> {
+        let by_unknown = |&(point, force): &(u32, Point)| {
+            let at = point as usize * unknowns;
+            [(at, force[0]), (at + 1, force[1])]
+        };
+        self.boundary.pushes.iter().map(|push| (push.rise, push.forces.iter().flat_map(by_unknown).collect())).collect()
     }
 
     /// First half: velocity to the half step, displacement to the new step.
-    fn drift(&self, motion: &mut Motion, external: &[f64], level: f64) {
+    fn drift(&self, motion: &mut Motion, external: &[f64]) {
         let (step, half) = (self.step, 0.5 * self.step);
         let force = &motion.force;
         motion.u.par_iter_mut().with_min_len(LEAST).zip(&mut motion.v).enumerate().for_each(|(i, (u, v))| {
-            *v += half * (force[i] + level * external[i]) / self.masses[i];
+            *v += half * (force[i] + external[i]) / self.masses[i];
             *u += step * *v;
         });
     }
 
     /// Second half: velocity to the new step.
-    fn kick(&self, motion: &mut Motion, external: &[f64], level: f64) {
+    fn kick(&self, motion: &mut Motion, external: &[f64]) {
         let half = 0.5 * self.step;
         let force = &motion.force;
         motion.v.par_iter_mut().with_min_len(LEAST).enumerate().for_each(|(i, v)| {
-            *v += half * (force[i] + level * external[i]) / self.masses[i];
+            *v += half * (force[i] + external[i]) / self.masses[i];
         });
     }
 
     /// Work of the given forces over a step with these half-step velocities, J.
-    fn pushed(&self, external: &[f64], v: &[f64], level: f64) -> f64 {
-        let power: f64 = external.iter().zip(v).filter(|(f, _)| **f != 0.0).map(|(f, v)| f * v).sum();
-        level * power * self.step
+    fn pushed(&self, pushes: &[(Rise, Vec<(usize, f64)>)], v: &[f64], [before, time]: [f64; 2]) -> f64 {
+        let power = |(rise, forces): &(Rise, Vec<(usize, f64)>)| {
+            let whole: f64 = forces.iter().map(|&(i, force)| force * v[i]).sum();
+            0.5 * (rise.share(before) + rise.share(time)) * whole
+        };
+        self.step * pushes.iter().map(power).sum::<f64>()
+    }
+
+    /// Kinetic energy before its work, J: forces that come in from one step to the next have moved the points half a step ahead of
+    /// what they have worked, `Δt²/8 Σ f²/m`. All there is in the first step of a load that rises from nothing.
+    fn lag(&self, pushes: &[(Rise, Vec<(usize, f64)>)], time: f64) -> f64 {
+        let of_push = |(rise, forces): &(Rise, Vec<(usize, f64)>)| {
+            let squares: f64 = forces.iter().map(|&(i, force)| force * force / self.masses[i]).sum();
+            rise.share(time).powi(2) * squares
+        };
+        // Twice, for points that two loads push, and for round-off.
+        0.25 * self.step * self.step * pushes.iter().map(of_push).sum::<f64>()
     }
 
     fn kinetic(&self, v: &[f64]) -> f64 {
@@ -212,9 +233,18 @@ impl Run<'_> {
         parts.iter().sum()
     }
 
-    fn row(&self, step: usize, motion: &Motion, reaction: &Reaction, sums: (f64, f64), unknowns: usize) -> HistoryRow {
+    fn row(
+        &self,
+        step: usize,
+        motion: &Motion,
+        reaction: &Reaction,
+        sums: (f64, f64),
+        platens: Option<Driven>,
+        unknowns: usize,
+    ) -> HistoryRow {
         let time = step as f64 * self.step;
-        let (displacement, load) = self.boundary.measure(unknowns, self.boundary.level(time), &motion.u, &motion.force);
+        let of_points = || self.boundary.measure_at(unknowns, time, &motion.u, &motion.force);
+        let (displacement, load) = platens.map_or_else(of_points, |driven| (driven.displacement, driven.load));
         HistoryRow {
             step,
             time,
@@ -226,6 +256,17 @@ impl Run<'_> {
             fracture: sums.0,
             work: sums.1,
         }
+    }
+}
+
+/// Writes the forces of the loads at a time, s, into those on all unknowns, N.
+fn push_at(pushes: &[(Rise, Vec<(usize, f64)>)], time: f64, external: &mut [f64]) {
+    for (_, forces) in pushes {
+        forces.iter().for_each(|&(i, _)| external[i] = 0.0);
+    }
+    for (rise, forces) in pushes {
+        let share = rise.share(time);
+        forces.iter().for_each(|&(i, force)| external[i] += share * force);
     }
 }
 

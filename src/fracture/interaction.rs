@@ -27,6 +27,8 @@ pub struct Driven {
     pub load: f64,
     /// Work that they do per share of their whole way, J.
     pub rate: f64,
+    /// Work that they have done so far, J: force times way from evaluation to evaluation, by the trapezoidal rule.
+    pub work: f64,
     /// Largest depth by which a point has passed one, m.
     pub penetration: f64,
 }
@@ -48,6 +50,11 @@ pub trait Interaction: Send {
     /// Told of the share of the full load before forces at it are asked for, for interactions that bring loads themselves.
     fn load_to(&mut self, level: f64) {
         let _ = level;
+    }
+
+    /// The same for motion in time, where every load rises by itself: told of the time, s.
+    fn load_at(&mut self, time: f64) {
+        let _ = time;
     }
 
     /// Writes the internal forces -dW/du at displacement `u` into `force`, after damage by `u` where that is allowed.

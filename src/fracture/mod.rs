@@ -21,6 +21,7 @@ pub mod platens;
 pub mod preview;
 pub mod quasi_static;
 pub mod read;
+mod region;
 pub mod scene;
 pub mod springs;
 
@@ -83,6 +84,8 @@ pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
             let density = scene.material.density.ok_or_else(|| {
                 crate::error::input_missing("material.density_kg_m3", "is missing: motion needs mass", "give it")
             })?;
+            // With all that will ever press: the time step is chosen once.
+            interaction.load_to(1.0);
             let bound = interaction.stiffness_bound(&bonds);
             let step = dynamics::time_step(time_step, dynamics::stable_step(&net, density, &bound))?;
             let masses = dynamics::masses(&net, density, &bound);

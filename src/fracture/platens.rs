@@ -8,7 +8,7 @@
 use super::bonds::BondState;
 use super::interaction::{Damaging, Driven, Interaction, Reaction};
 use super::net::Net;
-use super::scene::{Action, Drive, Region, Scene};
+use super::scene::{Action, Drive, Region, Rise, Scene};
 use crate::specimen::geometry::edges;
 use crate::specimen::{Edge, Point};
 
@@ -33,6 +33,8 @@ pub struct Platen {
     pub direction: Point,
     /// Way at full load, m.
     pub travel: f64,
+    /// How it moves in time.
+    pub rise: Rise,
     /// Points it can meet, in their order.
     pub contacts: Vec<Contact>,
 }
@@ -54,7 +56,7 @@ impl Platen {
         let corners = outline.iter().filter(|&&corner| covers(&drive.region, corner)).map(|&corner| dot(corner, direction));
         let start = met.iter().map(|m| m.1).chain(corners).fold(f64::INFINITY, f64::min);
         let contacts = met.into_iter().map(|(point, rim)| Contact { point, gap: rim - start, stiffness: 0.0 }).collect();
-        Some(Platen { direction, travel, contacts })
+        Some(Platen { direction, travel, rise: drive.rise, contacts })
     }
 }
 
@@ -110,7 +112,10 @@ pub struct Pressed<'n> {
     inner: Box<dyn Interaction + 'n>,
     net: &'n Net,
     platens: Vec<Platen>,
-    level: f64,
+    /// Ways that the platens have gone, m.
+    ways: Vec<f64>,
+    /// Ways and forces at the last evaluation, m and N.
+    last: Vec<(f64, f64)>,
     driven: Driven,
 }
 
@@ -123,7 +128,8 @@ impl<'n> Pressed<'n> {
         for contact in platens.iter_mut().flat_map(|platen| &mut platen.contacts) {
             contact.stiffness = STIFFER * bound[contact.point as usize][0];
         }
-        Pressed { inner, net, platens, level: 0.0, driven: Driven::default() }
+        let count = platens.len();
+        Pressed { inner, net, platens, ways: vec![0.0; count], last: vec![(0.0, 0.0); count], driven: Driven::default() }
     }
 }
 
@@ -135,34 +141,35 @@ impl Interaction for Pressed<'_> {
     fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
         let mut reaction = self.inner.react(u, bonds, damaging, force);
         let unknowns = self.inner.unknowns();
-        let (mut load, mut rate, mut penetration) = (0.0, 0.0, 0.0_f64);
-        for platen in &self.platens {
-            let d = platen.direction;
+        let (mut load, mut rate, mut work, mut penetration) = (0.0, 0.0, self.driven.work, 0.0_f64);
+        for ((platen, &way), last) in self.platens.iter().zip(&self.ways).zip(&mut self.last) {
+            let (d, mut own) = (platen.direction, 0.0);
             for contact in &platen.contacts {
                 let at = contact.point as usize * unknowns;
-                let depth = self.level * platen.travel - contact.gap - d[0] * u[at] - d[1] * u[at + 1];
+                let depth = way - contact.gap - d[0] * u[at] - d[1] * u[at + 1];
                 if depth > 0.0 {
                     let push = contact.stiffness * depth;
                     (force[at], force[at + 1]) = (force[at] + push * d[0], force[at + 1] + push * d[1]);
                     reaction.strain += 0.5 * push * depth;
-                    load += push;
-                    rate += push * platen.travel;
+                    own += push;
                     penetration = penetration.max(depth);
                 }
             }
+            load += own;
+            rate += own * platen.travel;
+            work += 0.5 * (last.1 + own) * (way - last.0);
+            *last = (way, own);
         }
-        let travel: f64 = self.platens.iter().map(|platen| platen.travel).sum();
-        self.driven =
-            Driven { displacement: self.level * travel, load: load / self.platens.len().max(1) as f64, rate, penetration };
+        let load = load / self.platens.len().max(1) as f64;
+        self.driven = Driven { displacement: self.ways.iter().sum(), load, rate, work, penetration };
         reaction
     }
 
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {
         let mut bound = self.inner.stiffness_bound(bonds);
-        for platen in &self.platens {
+        for (platen, way) in self.platens.iter().zip(&self.ways) {
             // Points about to be met count too: they may bulge towards the platen.
-            let reach = self.level * platen.travel;
-            let near = |contact: &&Contact| contact.gap <= reach + self.net.spacings[contact.point as usize];
+            let near = |contact: &&Contact| contact.gap <= way + self.net.spacings[contact.point as usize];
             for contact in platen.contacts.iter().filter(near) {
                 bound[contact.point as usize][0] += contact.stiffness;
             }
@@ -171,7 +178,11 @@ impl Interaction for Pressed<'_> {
     }
 
     fn load_to(&mut self, level: f64) {
-        self.level = level;
+        self.ways = self.platens.iter().map(|platen| level * platen.travel).collect();
+    }
+
+    fn load_at(&mut self, time: f64) {
+        self.ways = self.platens.iter().map(|platen| platen.rise.share(time) * platen.travel).collect();
     }
 
     fn driven(&self) -> Option<Driven> {

@@ -1,6 +1,7 @@
 //! What a fracture scene is: plate, material, model, loads, damage, procedure. Fixed once read; SI inside.
 
 use crate::bond_law::BondLaw;
+use crate::case::HORIZON_RATIO;
 use crate::material::Material;
 use crate::specimen::{Edge, Point, Specimen};
 
@@ -116,12 +117,57 @@ pub enum Region {
 pub enum Action {
     /// Force per area of the cut edge, Pa, in plate axes.
     Traction(Point),
-    /// Displacement at the end of the steps (or of the ramp), m; `None` leaves a component free.
+    /// Displacement at the end of the steps (or of the rise), m; `None` leaves a component free.
     Displacement([Option<f64>; 2]),
     /// Velocity, m/s; `None` leaves a component free.
     Velocity([Option<f64>; 2]),
     /// A rigid plate without friction that moves against the body by so much at the end of the steps, m, along this axis vector.
     Platen(Point),
+}
+
+/// How a load rises in a dynamic scene: nothing before `from`, linear over `ramp`, whole from then on. Points that it drives stand
+/// still before `from`. Without time all loads grow in proportion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rise {
+    /// Time at which it begins, s.
+    pub from: f64,
+    /// Time that it takes, s; 0 = at once.
+    pub ramp: f64,
+}
+
+impl Rise {
+    /// Whole from the start.
+    pub const AT_ONCE: Rise = Rise { from: 0.0, ramp: 0.0 };
+
+    /// Share r of the whole load at a time, s.
+    #[must_use]
+    pub fn share(self, time: f64) -> f64 {
+        match time - self.from {
+            since if since < 0.0 => 0.0,
+            since if since >= self.ramp => 1.0,
+            since => since / self.ramp,
+        }
+    }
+
+    /// dr/dt at a time, 1/s.
+    #[must_use]
+    pub fn slope(self, time: f64) -> f64 {
+        let since = time - self.from;
+        if since >= 0.0 && since < self.ramp { 1.0 / self.ramp } else { 0.0 }
+    }
+
+    /// ∫ r dt from the start to a time, s.
+    #[must_use]
+    pub fn sum(self, time: f64) -> f64 {
+        let since = (time - self.from).max(0.0);
+        if since < self.ramp { 0.5 * since * since / self.ramp } else { since - 0.5 * self.ramp }
+    }
+
+    /// Time at which the load is whole, s.
+    #[must_use]
+    pub fn end(self) -> f64 {
+        self.from + self.ramp
+    }
 }
 
 /// A load of a scene.
@@ -131,8 +177,10 @@ pub struct Drive {
     pub region: Region,
     /// What.
     pub action: Action,
-    /// Time over which it rises linearly in a dynamic scene, s; 0 = at once.
-    pub ramp: f64,
+    /// How it rises in time.
+    pub rise: Rise,
+    /// Key of the region in the input file, for messages.
+    pub key: String,
 }
 
 /// A support of a scene.
@@ -142,6 +190,8 @@ pub struct Hold {
     pub region: Region,
     /// Components held at zero.
     pub components: [bool; 2],
+    /// Key of the region in the input file, for messages.
+    pub key: String,
 }
 
 /// How the scene is worked through.
@@ -178,6 +228,12 @@ pub struct Damage {
     pub nonlinear: Option<Softening>,
     /// Tensile strength f_t, Pa.
     pub tensile_strength: Option<f64>,
+}
+
+impl Damage {
+    /// Bonds stay whole.
+    pub const NONE: Damage =
+        Damage { law: DamageLaw::None, enters: DamageEntry::Influence, stretch: None, nonlinear: None, tensile_strength: None };
 }
 
 /// Constants of the nonlinear law, stretches.
@@ -251,4 +307,37 @@ pub struct Scene {
     pub warnings: Vec<String>,
     /// The input as given; echoed in `result.json`.
     pub echo: serde_json::Value,
+}
+
+impl Scene {
+    /// A static scene on a lattice of the usual horizon ratio, upright, that nothing loads, holds or breaks: what scenes that are
+    /// built without a file start from.
+    #[must_use]
+    pub fn bare(name: &str, specimen: Specimen, material: Material, law: SceneLaw, spacing: f64) -> Scene {
+        let solver = match law {
+            SceneLaw::Bonds(_) => SceneSolver::Secant,
+            SceneLaw::Correspondence { .. } => SceneSolver::AdaptiveDynamicRelaxation,
+        };
+        Scene {
+            name: name.to_owned(),
+            specimen,
+            material,
+            model: SceneModel {
+                law,
+                finite: false,
+                spacing,
+                horizon_ratio: HORIZON_RATIO,
+                lattice_angle: 0.0,
+                arrangement: Arrangement::Lattice,
+                solver,
+            },
+            drives: Vec::new(),
+            holds: Vec::new(),
+            damage: Damage::NONE,
+            procedure: Procedure::Static,
+            refinement: None,
+            warnings: Vec::new(),
+            echo: serde_json::Value::Null,
+        }
+    }
 }

@@ -6,10 +6,12 @@
 
 mod document;
 mod quantity;
+mod sections;
 mod slice;
 
 pub use document::Document;
 pub use quantity::*;
+pub use sections::{Sections, Strangers};
 pub(crate) use slice::shorten;
 pub use slice::{OF_SCENES, PLANNED, slice, table_of, value_at};
 

@@ -37,6 +37,22 @@ pub struct Material {
 }
 
 impl Material {
+    /// A material of which nothing is known but its elastic constants: E in Pa, ν.
+    #[must_use]
+    pub fn elastic(youngs_modulus: f64, poisson_ratio: f64, plane: Plane) -> Material {
+        Material {
+            name: "inline".to_owned(),
+            youngs_modulus,
+            poisson_ratio,
+            plane,
+            yield_strength: None,
+            toughness: None,
+            fracture_energy: None,
+            density: None,
+            tensile_strength: None,
+        }
+    }
+
     /// Shear modulus G = E / (2 (1+ν)), Pa.
     #[must_use]
     pub fn shear_modulus(&self) -> f64 {

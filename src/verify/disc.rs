@@ -16,10 +16,7 @@ use crate::fracture::interaction::{Damaging, Interaction};
 use crate::fracture::net::Net;
 use crate::fracture::platens::{Platen, Pressed};
 use crate::fracture::quasi_static::relaxation::{Breaking, Loads, Relaxation, RestEnd};
-use crate::fracture::scene::{
-    Action, Arrangement, Damage, DamageEntry, DamageLaw, Drive, Procedure, Region, SceneLaw, SceneModel, SceneSolver,
-    ZeroEnergyControl,
-};
+use crate::fracture::scene::{Action, Damage, DamageLaw, Drive, SceneLaw, ZeroEnergyControl};
 use crate::material::{Material, Plane};
 use crate::quadrature;
 use crate::specimen::{Edge, Point};
@@ -52,53 +49,18 @@ pub fn scene((control, factor): (ZeroEnergyControl, f64), spacing: f64, travel: 
         [0.5 * DIAMETER * cos, 0.5 * DIAMETER * sin]
     };
     specimen.outline = (0..CORNERS).map(corner).collect();
-    let platen = |edge, y: f64| Drive {
-        region: Region::Edge { edge, depth: 0.0, range: [f64::NEG_INFINITY, f64::INFINITY] },
-        action: Action::Platen([0.0, y]),
-        ramp: 0.0,
-    };
+    let platen = |edge, y: f64| Drive::on_side(edge, Action::Platen([0.0, y]));
     Scene {
-        name: "pbx_disc".to_owned(),
-        specimen,
-        material: material(),
-        model: SceneModel {
-            law: SceneLaw::Correspondence { control, factor },
-            finite: false,
-            spacing,
-            horizon_ratio: 3.015,
-            lattice_angle: 0.0,
-            arrangement: Arrangement::Lattice,
-            solver: SceneSolver::AdaptiveDynamicRelaxation,
-        },
         drives: vec![platen(Edge::Top, -travel), platen(Edge::Bottom, travel)],
-        holds: Vec::new(),
-        damage: Damage {
-            law: DamageLaw::PrincipalStress,
-            enters: DamageEntry::Influence,
-            stretch: None,
-            nonlinear: None,
-            tensile_strength: None,
-        },
-        procedure: Procedure::Static,
-        refinement: None,
-        warnings: Vec::new(),
-        echo: serde_json::Value::Null,
+        damage: Damage { law: DamageLaw::PrincipalStress, ..Damage::NONE },
+        ..Scene::bare("pbx_disc", specimen, material(), SceneLaw::Correspondence { control, factor }, spacing)
     }
 }
 
 /// PBX 9501 at room temperature and 0.05/s: E = 1013 MPa, ν = 0.35 (Wetzel 1999, quoted by Banerjee and Adams 2004).
 fn material() -> Material {
-    Material {
-        name: "pbx9501".to_owned(),
-        youngs_modulus: 1.013e9,
-        poisson_ratio: 0.35,
-        plane: Plane::Stress,
-        yield_strength: None,
-        toughness: None,
-        fracture_energy: None,
-        density: Some(1830.0),
-        tensile_strength: Some(TENSILE_STRENGTH),
-    }
+    let elastic = Material::elastic(1.013e9, 0.35, Plane::Stress);
+    Material { name: "pbx9501".to_owned(), density: Some(1830.0), tensile_strength: Some(TENSILE_STRENGTH), ..elastic }
 }
 
 /// An elastic disc between platens.

@@ -7,6 +7,7 @@
 pub mod blocks;
 pub mod collinear;
 pub mod disc;
+pub mod dual_horizon;
 pub mod golden;
 pub mod golden_peridynamics;
 pub mod grown;
@@ -86,6 +87,11 @@ pub const TOPICS: &[Topic] = &[
         name: "pbx_disc",
         about: "correspondence: Brazilian disc between platens against Hondros, springs against zero-energy modes",
         fill: disc::rows,
+    },
+    Topic {
+        name: "dual_horizon",
+        about: "points of several levels: momentum, ghost forces, uniform strain across a change of level, counts",
+        fill: dual_horizon::rows,
     },
     Topic { name: "life", about: "lives of whole runs against quadrature with handbook K", fill: growth::lives },
 ];

@@ -52,17 +52,7 @@ pub fn uniform_tension_with(
     poisson_ratio: f64,
     (spacing, horizon_ratio, angle): (f64, f64, f64),
 ) -> Result<Errors> {
-    let material = Material {
-        name: "steel".to_owned(),
-        youngs_modulus: 200e9,
-        poisson_ratio,
-        plane: Plane::Stress,
-        yield_strength: None,
-        toughness: None,
-        fracture_energy: None,
-        density: None,
-        tensile_strength: None,
-    };
+    let material = steel(poisson_ratio);
     let body = Body::build(specimen, &material, law, spacing, horizon_ratio, angle)?;
     let bonds = Bonds::new(&body);
     // Unit strain.
@@ -99,6 +89,12 @@ pub fn uniform_tension_with(
         }
     }
     Ok(errors)
+}
+
+/// E = 200 GPa, plane stress.
+#[must_use]
+pub fn steel(poisson_ratio: f64) -> Material {
+    Material::elastic(200e9, poisson_ratio, Plane::Stress)
 }
 
 /// Takes mean displacement and mean rotation off a field (least squares).

@@ -166,9 +166,40 @@ fn check_understands_a_scene() {
     let object: Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!((&object["ok"], &object["kind"]), (&true.into(), &"fracture".into()));
     assert!(object["understood"]["load"].as_str().unwrap().contains("on top; velocity"));
-    // Without cracks and with a support that meets no point of a coarse lattice.
-    let set = "supports.pin={ from_mm = [5.9, 5.9], to_mm = [6.1, 6.1], fix = [\"x\"] }";
-    assert_eq!(perilife(dir.path(), &["check", "torn.toml", "--set", set]).status.code(), Some(0));
+}
+
+/// Points stand at odd halves of a millimetre: boxes and parts of sides between them hold none, which shows once points stand.
+#[test]
+fn a_load_or_support_without_points_is_refused() {
+    let dir = folder();
+    let box_between = "{ from_mm = [5.9, 5.9], to_mm = [6.1, 6.1], fix = [\"x\"] }";
+    let edges = "edges = [\"top\", \"bottom\"]";
+    for (old, new, line, words) in [
+        ("[damage]", format!("[supports]\npin = {box_between}\n[damage]"), 22, ["supports.pin", "(5.9, 5.9) to (6.1, 6.1) mm"]),
+        (
+            "[damage]",
+            "[supports]\nleft = { range_mm = [5.9, 6.1], fix = [\"x\"] }\n[damage]".to_owned(),
+            22,
+            ["supports.left.range_mm", "left from 5.9 to 6.1 mm"],
+        ),
+        (
+            edges,
+            "regions = [{ from_mm = [5.9, 5.9], to_mm = [6.1, 6.1] }]\ndirection = [0, 1]".to_owned(),
+            18,
+            ["loading.regions[0]", "(5.9, 5.9) to (6.1, 6.1) mm"],
+        ),
+        (edges, "edges = [\"top\"]\nrange_mm = [5.9, 6.1]".to_owned(), 19, ["loading.range_mm", "top from 5.9 to 6.1 mm"]),
+    ] {
+        let text = SCENE.replacen(old, &new, 1);
+        assert_ne!(text, SCENE);
+        fs::write(dir.path().join("loose.toml"), text).unwrap();
+        for command in [&["fracture", "loose.toml", "--out", "run"][..], &["check", "loose.toml"]] {
+            let place = format!("loose.toml:{line}: ");
+            let output = perilife(dir.path(), command);
+            assert_refused(&output, 2, &[&place, words[0], words[1], "no point", "1 mm apart", "model.spacing_mm"]);
+        }
+        assert!(!dir.path().join("run").exists());
+    }
 }
 
 #[test]

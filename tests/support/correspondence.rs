@@ -7,9 +7,7 @@ use perilife::fracture::bonds::BondState;
 use perilife::fracture::correspondence::{Correspondence, NET_LAW};
 use perilife::fracture::interaction::{Damaging, Interaction, Reaction};
 use perilife::fracture::net::Net;
-use perilife::fracture::scene::{
-    Arrangement, Damage, DamageEntry, DamageLaw, Procedure, SceneLaw, SceneModel, SceneSolver, ZeroEnergyControl,
-};
+use perilife::fracture::scene::{SceneLaw, ZeroEnergyControl};
 use perilife::material::{Material, Plane};
 use perilife::specimen::Specimen;
 use perilife::verify::uniform_tension::strip;
@@ -19,17 +17,7 @@ pub const THICKNESS: f64 = 6.35e-3;
 
 /// PBX 9501 as far as elasticity goes.
 pub fn material(plane: Plane) -> Material {
-    Material {
-        name: "pbx".to_owned(),
-        youngs_modulus: 1e9,
-        poisson_ratio: 0.35,
-        plane,
-        yield_strength: None,
-        toughness: None,
-        fracture_energy: None,
-        density: None,
-        tensile_strength: None,
-    }
+    Material::elastic(1e9, 0.35, plane)
 }
 
 /// A rectangle without loads and cracks, m.
@@ -43,33 +31,10 @@ pub fn rectangle(width: f64, length: f64) -> Specimen {
 
 /// A scene of correspondence without loads.
 pub fn scene(specimen: Specimen, plane: Plane, control: (ZeroEnergyControl, f64), spacing: f64, ratio: f64) -> Scene {
-    Scene {
-        name: "test".to_owned(),
-        specimen,
-        material: material(plane),
-        model: SceneModel {
-            law: SceneLaw::Correspondence { control: control.0, factor: control.1 },
-            finite: false,
-            spacing,
-            horizon_ratio: ratio,
-            lattice_angle: 0.0,
-            arrangement: Arrangement::Lattice,
-            solver: SceneSolver::AdaptiveDynamicRelaxation,
-        },
-        drives: Vec::new(),
-        holds: Vec::new(),
-        damage: Damage {
-            law: DamageLaw::None,
-            enters: DamageEntry::Influence,
-            stretch: None,
-            nonlinear: None,
-            tensile_strength: None,
-        },
-        procedure: Procedure::Static,
-        refinement: None,
-        warnings: Vec::new(),
-        echo: serde_json::Value::Null,
-    }
+    let law = SceneLaw::Correspondence { control: control.0, factor: control.1 };
+    let mut scene = Scene::bare("test", specimen, material(plane), law, spacing);
+    scene.model.horizon_ratio = ratio;
+    scene
 }
 
 /// Points and bonds of a scene.

@@ -1,76 +1,73 @@
-//! Fracture scenes for tests: a cracked square whose ends are pulled apart.
+//! Fracture scenes built without files: a cracked square torn in time, a plate pulled at rest, plates with points of several levels.
 
 use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use perilife::fracture::Scene;
-use perilife::fracture::scene::{
-    Action, Arrangement, Damage, DamageEntry, DamageLaw, Drive, Procedure, Region, SceneLaw, SceneModel, SceneSolver,
-};
+use perilife::fracture::scene::{Action, Damage, DamageLaw, Drive, Procedure, RefinedRegion, Refinement, SceneLaw, SceneSolver};
 use perilife::material::{Material, Plane};
-use perilife::specimen::{Edge, Specimen, from_value};
+use perilife::specimen::{self, Edge, Point, Specimen};
+use perilife::verify::dual_horizon;
+use perilife::verify::uniform_tension::strip;
 
-/// Steel of source 002, example 3.
-pub fn steel(poisson_ratio: f64) -> Material {
-    Material {
-        name: "inline".to_owned(),
-        youngs_modulus: 192e9,
-        poisson_ratio,
-        plane: Plane::Stress,
-        yield_strength: None,
-        toughness: None,
-        fracture_energy: Some(83e3),
-        density: Some(8000.0),
-        tensile_strength: None,
-    }
-}
+pub const MM: f64 = 1e-3;
 
-/// A square plate of a side with a central horizontal crack, m.
-pub fn square(side: f64, crack: f64) -> Specimen {
-    let text = format!(
-        "kind = \"middle_tension\"\nwidth_mm = {0}\nlength_mm = {0}\nthickness_mm = 1.0\ncrack_length_mm = {1}",
-        side * 1e3,
-        crack * 1e3 / 2.0
-    );
-    let mut specimen = from_value(&toml::Value::Table(text.parse().unwrap())).unwrap();
-    specimen.loads.clear();
-    specimen.supports.clear();
-    assert_eq!((specimen.cracks.len(), specimen.tips.len()), (1, 2));
-
-    specimen
-}
-
-/// The literature's form of a law: constant kernel for stretches, resisted rotation, classical corrections.
-pub fn law(kind: BondLawKind, rotation: Rotation) -> BondLaw {
-    let kernel = if kind.is_stretch_form() { Kernel::Constant } else { Kernel::Conical };
+/// A law as its literature has it: constant kernel for stretches, conical one else, classical corrections.
+pub const fn law(kind: BondLawKind, rotation: Rotation) -> BondLaw {
+    let kernel = match kind {
+        BondLawKind::BondBased | BondLawKind::OneBondTwoParameter => Kernel::Constant,
+        BondLawKind::TwoParameter | BondLawKind::StateBased => Kernel::Conical,
+    };
     BondLaw { kind, kernel, rotation, surface_correction: SurfaceCorrection::VolumeAndSurface }
 }
 
-/// A cracked square of 50 mm, its ends driven apart with a velocity, m/s, for a time, s.
-pub fn pulled(law: BondLaw, damage: DamageLaw, spacing: f64, velocity: f64, duration: f64) -> Scene {
+/// The plate of `[specimen]` keys.
+fn specimen_of(keys: &str) -> Specimen {
+    specimen::from_value(&toml::Value::Table(keys.parse().unwrap())).unwrap()
+}
+
+/// A square of 50 mm with a central crack of 10 mm, of the steel of source 002, example 3, its ends driven apart with a velocity, m/s,
+/// for a time, s.
+pub fn torn(law: BondLaw, damage: DamageLaw, spacing: f64, velocity: f64, duration: f64) -> Scene {
+    let mut square =
+        specimen_of("kind = \"middle_tension\"\nwidth_mm = 50\nlength_mm = 50\nthickness_mm = 1\ncrack_length_mm = 5");
+    square.loads.clear();
+    square.supports.clear();
+    assert_eq!((square.cracks.len(), square.tips.len()), (1, 2));
     let nu = if law.kind == BondLawKind::BondBased { 1.0 / 3.0 } else { 0.25 };
-    let end = |edge: Edge| Drive {
-        region: Region::Edge { edge, depth: 0.0, range: [f64::NEG_INFINITY, f64::INFINITY] },
-        action: Action::Velocity([None, Some(velocity * edge.normal()[1])]),
-        ramp: 0.0,
-    };
-    Scene {
-        name: "pulled".to_owned(),
-        specimen: square(0.05, 0.01),
-        material: steel(nu),
-        model: SceneModel {
-            law: SceneLaw::Bonds(law),
-            finite: false,
-            spacing,
-            horizon_ratio: 3.015,
-            lattice_angle: 0.0,
-            arrangement: Arrangement::Lattice,
-            solver: SceneSolver::VelocityVerlet,
-        },
+    let steel = Material { fracture_energy: Some(83e3), density: Some(8000.0), ..Material::elastic(192e9, nu, Plane::Stress) };
+    let end = |edge: Edge| Drive::on_side(edge, Action::Velocity([None, Some(velocity * edge.normal()[1])]));
+    let mut scene = Scene {
         drives: vec![end(Edge::Top), end(Edge::Bottom)],
-        holds: vec![],
-        damage: Damage { law: damage, enters: DamageEntry::Influence, stretch: None, nonlinear: None, tensile_strength: None },
+        damage: Damage { law: damage, ..Damage::NONE },
         procedure: Procedure::Dynamic { duration, time_step: None },
-        refinement: None,
-        warnings: vec![],
-        echo: serde_json::Value::Null,
+        ..Scene::bare("torn", square, steel, SceneLaw::Bonds(law), spacing)
+    };
+    scene.model.solver = SceneSolver::VelocityVerlet;
+    scene
+}
+
+/// A plate of 4 mm whose ends move apart by `pull` each and are held across it, one static solve, nothing breaks.
+pub fn pulled(width: f64, length: f64, spacing: f64, pull: f64, law: BondLaw) -> Scene {
+    let drive = |(end, motion)| Drive::on_side(end, Action::Displacement([Some(0.0), Some(motion)]));
+    let plate = Specimen { loads: vec![], thickness: 4.0 * MM, ..strip(width, length) };
+    Scene {
+        drives: [(Edge::Top, pull), (Edge::Bottom, -pull)].map(drive).to_vec(),
+        ..Scene::bare("pulled", plate, Material::elastic(203e9, 0.3, Plane::Stress), SceneLaw::Bonds(law), spacing)
     }
+}
+
+/// A plate of `[specimen]` keys beside `kind = "plate"`, without loads, on a dual horizon with these regions; nothing breaks.
+pub fn plate(keys: &str, law: BondLaw, spacing: f64, regions: &[(RefinedRegion, usize)]) -> Scene {
+    dual_horizon::scene(specimen_of(&format!("kind = \"plate\"\nthickness_mm = 2.0\n{keys}")), law, spacing, regions)
+}
+
+/// The scene on a dual horizon with these regions.
+pub fn refined(mut scene: Scene, regions: &[(RefinedRegion, usize)]) -> Scene {
+    scene.model.arrangement = perilife::fracture::scene::Arrangement::DualHorizon;
+    scene.refinement = Some(Refinement { regions: regions.to_vec() });
+    scene
+}
+
+/// An upright box, m.
+pub fn a_box(low: Point, high: Point) -> RefinedRegion {
+    RefinedRegion::Box { low, high }
 }

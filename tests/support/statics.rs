@@ -29,22 +29,12 @@ pub fn corrected_laws() -> impl Iterator<Item = BondLaw> {
 /// A material that the law can represent: bond-based has one Poisson's ratio, state-based goes beyond it.
 pub fn material(kind: BondLawKind, plane: Plane) -> Material {
     let limit = perilife::bond_law::stencil::poisson_limit(plane);
-    Material {
-        name: "test".to_owned(),
-        youngs_modulus: 200e9,
-        poisson_ratio: limit
-            * match kind {
-                BondLawKind::BondBased => 1.0,
-                BondLawKind::TwoParameter | BondLawKind::OneBondTwoParameter => 0.7,
-                BondLawKind::StateBased => 1.2,
-            },
-        plane,
-        yield_strength: None,
-        toughness: None,
-        fracture_energy: None,
-        density: None,
-        tensile_strength: None,
-    }
+    let share = match kind {
+        BondLawKind::BondBased => 1.0,
+        BondLawKind::TwoParameter | BondLawKind::OneBondTwoParameter => 0.7,
+        BondLawKind::StateBased => 1.2,
+    };
+    Material::elastic(200e9, limit * share, plane)
 }
 
 /// The body of a case.

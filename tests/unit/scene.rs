@@ -9,7 +9,7 @@ use perilife::fracture::Scene;
 use perilife::fracture::preview::preview;
 use perilife::fracture::read::is_scene;
 use perilife::fracture::scene::{
-    Action, Arrangement, DamageEntry, DamageLaw, Procedure, RefinedRegion, Region, SceneLaw, SceneSolver, ZeroEnergyControl,
+    Action, Arrangement, DamageEntry, DamageLaw, Procedure, RefinedRegion, Region, Rise, SceneLaw, SceneSolver, ZeroEnergyControl,
 };
 use perilife::input::Document;
 use perilife::specimen::geometry::{distance, polygon_area};
@@ -57,11 +57,13 @@ fn kernel_and_solver_follow_law_and_procedure() {
     let scene = steps(&["model.bond_law=correspondence", "material.poisson_ratio=0.4"]);
     assert_eq!(scene.model.solver, SceneSolver::AdaptiveDynamicRelaxation);
     assert_eq!(scene.model.law, SceneLaw::Correspondence { control: ZeroEnergyControl::Silling, factor: 1.0 });
+    let one_sided = steps(&["model.discretisation=variable_horizon"]);
+    assert_eq!(one_sided.model.solver, SceneSolver::AdaptiveDynamicRelaxation, "its forces have no energy");
     let text = format!("{PLATE}{}", STEPS.replace("steps = 50", "duration_s = 1e-5\nramp_s = 1e-6\ntime_step_s = 1e-8"));
     let scene = read(&text, &[]).unwrap();
     assert_eq!(scene.model.solver, SceneSolver::VelocityVerlet);
     assert_eq!(scene.procedure, Procedure::Dynamic { duration: 1e-5, time_step: Some(1e-8) });
-    assert!(scene.drives.iter().all(|drive| drive.ramp == 1e-6));
+    assert!(scene.drives.iter().all(|drive| drive.rise == Rise { from: 0.0, ramp: 1e-6 }));
     let scene = read(&format!("{PLATE}{}", STEPS.replace("steps = 50\n", "")), &[]).unwrap();
     assert_eq!(scene.procedure, Procedure::Static);
 }
@@ -93,6 +95,46 @@ fn loads_have_a_direction() {
     assert_eq!(actions(thrown), [Action::Velocity([None, Some(-0.5)])]);
     let parts = "duration_s = 1e-6\nramp_s = 1e-7\nparts = [{ kind = \"traction\", stress_mpa = 1, edges = [\"top\"], range_mm = [-5, 5] }, { kind = \"velocity\", velocity_mm_s = 1, edges = [\"right\"] }]";
     assert_eq!(actions(parts), [Action::Traction([0.0, 1e6]), Action::Velocity([Some(1e-3), None])]);
+}
+
+/// Every load rises by itself: over its own time or that of all, at once where that is 0, and from its own start on.
+#[test]
+fn loads_rise_one_after_another() {
+    let parts = "duration_s = 1e-4\nramp_s = 1e-5\nparts = [{ kind = \"traction\", stress_mpa = 1, edges = [\"top\", \"bottom\"] }, \
+                 { kind = \"velocity\", velocity_mm_s = 1, edges = [\"right\"], from_s = 2e-5, ramp_s = 0 }, \
+                 { kind = \"displacement\", displacement_mm = 1, edges = [\"left\"], from_s = 3e-5, ramp_s = 8e-5 }]";
+    let scene = read(&format!("{PLATE}[loading]\n{parts}\n"), &[]).unwrap();
+    let rises: Vec<Rise> = scene.drives.iter().map(|drive| drive.rise).collect();
+    let [common, sudden, late] = [(0.0, 1e-5), (2e-5, 0.0), (3e-5, 8e-5)].map(|(from, ramp)| Rise { from, ramp });
+    assert_eq!(rises, [common, common, sudden, late]);
+    assert!(scene.warnings.iter().any(|line| line.contains("left") && line.contains("0.00011")), "{:?}", scene.warnings);
+    let keys: Vec<&str> = scene.drives.iter().map(|drive| drive.key.as_str()).collect();
+    assert_eq!(keys, ["loading.parts[0].edges", "loading.parts[0].edges", "loading.parts[1].edges", "loading.parts[2].edges"]);
+    // One load has the keys of all.
+    let text = STEPS.replace("steps = 50", "duration_s = 1e-5\nramp_s = 1e-6\nfrom_s = 2e-6");
+    let scene = read(&format!("{PLATE}{text}"), &[]).unwrap();
+    assert_eq!(scene.drives[0].rise, Rise { from: 2e-6, ramp: 1e-6 });
+    assert!(scene.warnings.is_empty());
+}
+
+/// Share, its slope and its integral agree, whatever start and length.
+#[test]
+fn a_rise_is_its_own_integral() {
+    for rise in [Rise { from: 0.0, ramp: 2.0 }, Rise { from: 1.5, ramp: 2.0 }] {
+        let (step, mut share, mut sum) = (1e-3, 0.0, 0.0);
+        for i in 0..5000 {
+            // Middles of steps: exact, since the corners lie between steps.
+            let middle = (f64::from(i) + 0.5) * step;
+            (share, sum) = (share + step * rise.slope(middle), sum + step * rise.share(middle));
+            let end = middle + 0.5 * step;
+            assert!((rise.share(end) - share).abs() < 1e-9, "{rise:?} at {end}: {} and {share}", rise.share(end));
+            assert!((rise.sum(end) - sum).abs() < 1e-9, "{rise:?} at {end}: {} and {sum}", rise.sum(end));
+        }
+    }
+    let sudden = Rise { from: 1.5, ramp: 0.0 };
+    assert_eq!([1.0, 1.5, 4.0].map(|time| sudden.share(time)), [0.0, 1.0, 1.0]);
+    assert_eq!([1.0, 1.5, 4.0].map(|time| sudden.sum(time)), [0.0, 0.0, 2.5]);
+    assert_eq!((Rise::AT_ONCE.share(0.0), Rise::AT_ONCE.sum(3.0), Rise::AT_ONCE.slope(0.0)), (1.0, 3.0, 0.0));
 }
 
 /// Tractions stand on the plate in Pa, on the part of the side that is asked for.

@@ -9,13 +9,13 @@ use perilife::fracture::failure::{Failure, critical_stretch};
 use perilife::fracture::interaction::{Damaging, Interaction};
 use perilife::fracture::lattice_springs::LatticeSprings;
 use perilife::fracture::net::Net;
-use perilife::fracture::scene::{DamageLaw, Procedure, SceneLaw};
+use perilife::fracture::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
 use perilife::fracture::springs::Springs;
 use perilife::fracture::{self, SceneEnd};
 use perilife::predict::Silent;
 
 use crate::noise::Noise;
-use crate::scenes::{law, pulled};
+use crate::scenes::{law, torn};
 
 /// Forces, energies and breaks of the lattice kernel are those of the list, for every law, limit and kinematics, on a plate
 /// with a crack, two threads or one.
@@ -34,7 +34,7 @@ fn lattice_kernel_gives_what_the_list_gives() {
             if finite && kind != BondLawKind::BondBased {
                 continue;
             }
-            let mut scene = pulled(law(kind, Rotation::Resisted), DamageLaw::None, 1e-3, 20.0, 1e-6);
+            let mut scene = torn(law(kind, Rotation::Resisted), DamageLaw::None, 1e-3, 20.0, 1e-6);
             scene.model.lattice_angle = angle;
             let SceneLaw::Bonds(bond_law) = scene.model.law else { panic!("springs") };
             let body = Body::build(&scene.specimen, &scene.material, &bond_law, 1e-3, 3.015, angle).unwrap();
@@ -79,7 +79,7 @@ fn energy_is_kept_while_a_plate_is_torn() {
         (BondLawKind::OneBondTwoParameter, Rotation::Resisted, DamageLaw::CriticalEnergy, false),
         (BondLawKind::TwoParameter, Rotation::Free, DamageLaw::CriticalEnergy, false),
     ] {
-        let mut scene = pulled(law(kind, rotation), damage, 1e-3, 8.0, 80e-6);
+        let mut scene = torn(law(kind, rotation), damage, 1e-3, 8.0, 80e-6);
         scene.model.finite = finite;
         let run = fracture::run(&scene, &Silent).unwrap();
         assert_eq!(run.end, SceneEnd::Done, "{kind}");
@@ -109,7 +109,7 @@ fn energy_is_kept_while_a_plate_is_torn() {
 /// A time step above the stable one is refused; one at the bound keeps its energy, and a denser plate may take longer ones.
 #[test]
 fn stable_step_is_the_bound() {
-    let mut scene = pulled(law(BondLawKind::BondBased, Rotation::Resisted), DamageLaw::None, 1e-3, 1.0, 20e-6);
+    let mut scene = torn(law(BondLawKind::BondBased, Rotation::Resisted), DamageLaw::None, 1e-3, 1.0, 20e-6);
     let own = fracture::run(&scene, &Silent).unwrap();
     let stable = own.figures.time_step / 0.7;
     for (share, fine) in [(0.999, true), (1.001, false)] {
@@ -129,7 +129,7 @@ fn cut_bonds_take_the_fracture_energy() {
     for kind in [BondLawKind::BondBased, BondLawKind::OneBondTwoParameter, BondLawKind::TwoParameter] {
         for &surface_correction in SurfaceCorrection::ALL {
             let bond_law = BondLaw { surface_correction, ..law(kind, Rotation::Resisted) };
-            let scene = pulled(bond_law, DamageLaw::CriticalStretch, 1e-3, 20.0, 1e-6);
+            let scene = torn(bond_law, DamageLaw::CriticalStretch, 1e-3, 20.0, 1e-6);
             let (net, body) = fracture::build(&scene).unwrap();
             let (energy, thickness) = (scene.material.fracture_energy.unwrap(), scene.specimen.thickness);
             let stiffness = plane_stiffness(&spring_material(&bond_law, &scene.material))[0];
@@ -143,4 +143,120 @@ fn cut_bonds_take_the_fracture_energy() {
             assert!((share - 1.0).abs() < 5e-3, "{kind} {surface_correction}: {share:.4} of the fracture energy");
         }
     }
+}
+
+/// A plate of 40 mm x 20 mm that nothing breaks, moved in time by loads.
+fn moved(loading: &str) -> Scene {
+    let text = format!(
+        "[specimen]\nkind = \"plate\"\nwidth_mm = 40\nlength_mm = 20\nthickness_mm = 2\n[material]\nyoungs_modulus_gpa = 65\n\
+         poisson_ratio = 0.2\ndensity_kg_m3 = 2235\n[model]\nspacing_mm = 1\n[loading]\nduration_s = 3e-5\ntime_step_s = 4e-8\n{loading}\n"
+    );
+    Scene::from_toml(&text, "moved", std::path::Path::new("."), &[]).unwrap()
+}
+
+/// A traction that rises from nothing moves the plate before it has worked on it, by a step; that is no energy from nowhere.
+#[test]
+fn a_slow_traction_is_no_blow_up() {
+    for (step, ramp) in [(4e-8, 4e-6), (1e-8, 2e-5), (4e-8, 0.0)] {
+        let mut scene = moved(&format!(
+            "kind = \"traction\"\nstress_mpa = 5\nedges = [\"left\", \"right\"]\nramp_s = {}",
+            f64::max(ramp, 1e-12)
+        ));
+        scene.procedure = Procedure::Dynamic { duration: 1e-5, time_step: Some(step) };
+        assert_eq!(fracture::run(&scene, &Silent).unwrap().end, SceneEnd::Done, "ramp {ramp} s, steps of {step} s");
+    }
+}
+
+/// Tractions that rise one after another do what each does alone, added up: springs without damage are linear. Their forces at
+/// full size are those of all tractions at once.
+#[test]
+fn loads_that_rise_one_after_another_add_up() {
+    let part = |edges: &str, stress: f64, times: &str| {
+        format!("{{ kind = \"traction\", stress_mpa = {stress}, edges = [{edges}], {times} }}")
+    };
+    let first = part("\"top\", \"bottom\"", 5.0, "ramp_s = 4e-6");
+    let second = part("\"left\", \"right\"", -3.0, "ramp_s = 2e-6, from_s = 1e-5");
+    let run = |parts: &str| {
+        let scene = moved(&format!("parts = [{parts}]"));
+        fracture::run(&scene, &Silent).unwrap().snapshots.last().unwrap().displacement.clone()
+    };
+    let [both, a, b] = [format!("{first}, {second}"), first.clone(), second.clone()].map(|parts| run(&parts));
+    let largest = both.iter().flatten().fold(0.0, |m: f64, u| m.max(u.abs()));
+    for ((u, a), b) in both.iter().zip(&a).zip(&b) {
+        for axis in 0..2 {
+            assert!((u[axis] - a[axis] - b[axis]).abs() < 1e-12 * largest, "{u:?} is not {a:?} and {b:?}");
+        }
+    }
+    assert!(b.iter().flatten().any(|u| u.abs() > 0.1 * largest), "the second load counts");
+
+    let scene = moved(&format!("parts = [{first}, {second}]"));
+    let net = fracture::build(&scene).unwrap().0;
+    let boundary = Boundary::of(&scene, &net).unwrap();
+    assert_eq!(boundary.pushes.len(), 2);
+    let mut sum = vec![[0.0; 2]; net.len()];
+    for (point, force) in boundary.pushes.iter().flat_map(|push| &push.forces) {
+        let at = &mut sum[*point as usize];
+        *at = [at[0] + force[0], at[1] + force[1]];
+    }
+    for (point, force) in &net.forces {
+        let at = sum[*point as usize];
+        assert!((at[0] - force[0]).hypot(at[1] - force[1]) < 1e-12 * 5e6 * 2e-6, "{at:?} and {force:?}");
+    }
+    // Of each of the four loads the force on its side.
+    let forces: Vec<f64> = boundary.groups.iter().map(|group| group.force.unwrap()).collect();
+    for (force, whole) in forces.iter().zip([5e6 * 0.04 * 2e-3, 5e6 * 0.04 * 2e-3, 3e6 * 0.02 * 2e-3, 3e6 * 0.02 * 2e-3]) {
+        assert!((force / whole - 1.0).abs() < 1e-9, "{force} N, {whole} N");
+    }
+}
+
+/// A traction is brought up and held, then a velocity follows (Nooru-Mohamed, load path 4a): until then its points stand still. The
+/// energy that both bring is what the plate has.
+#[test]
+fn a_velocity_follows_a_traction() {
+    let scene = moved(
+        "parts = [{ kind = \"traction\", stress_mpa = 5, edges = [\"left\", \"right\"], ramp_s = 4e-6 }, \
+         { kind = \"velocity\", velocity_mm_s = 500, edges = [\"top\", \"bottom\"], from_s = 1e-5, ramp_s = 5e-6 }]",
+    );
+    let run = fracture::run(&scene, &Silent).unwrap();
+    assert_eq!(run.end, SceneEnd::Done);
+    let largest = run.history.iter().fold(0.0, |m: f64, row| m.max(row.work.abs()));
+    let mut worst = 0.0_f64;
+    for row in &run.history {
+        // Both ends at 0.5 m/s, rising over 5 µs from 10 µs on.
+        let since = (row.time - 1e-5).max(0.0);
+        let way = 2.0 * 0.5 * if since < 5e-6 { 0.5 * since * since / 5e-6 } else { since - 2.5e-6 };
+        assert!((row.displacement - way).abs() < 1e-15, "{} m at {} s, not {way}", row.displacement, row.time);
+        worst = worst.max((row.kinetic + row.strain - row.work).abs() / largest);
+    }
+    assert!(run.history.iter().any(|row| row.time < 1e-5 && row.work > 1e-3 * largest), "the traction acts before");
+    println!("energy astray {worst:.2e}");
+    assert!(worst < 5e-3, "{worst:.2e}");
+}
+
+/// Platens press in time as well, each when it is due: way and energy are those that they bring, and after a slow pressing the load
+/// is that of rest.
+#[test]
+fn platens_press_in_time() {
+    let platens = |times: &str| {
+        format!(
+            "parts = [{{ kind = \"platens\", displacement_mm = 0.01, edges = [\"top\"], {times} }}, {{ kind = \"platens\", displacement_mm = 0.02, edges = [\"bottom\"], ramp_s = 1e-4 }}]"
+        )
+    };
+    let mut scene = moved(&platens("ramp_s = 1e-4, from_s = 1e-5"));
+    scene.procedure = Procedure::Dynamic { duration: 1.5e-4, time_step: Some(4e-8) };
+    let run = fracture::run(&scene, &Silent).unwrap();
+    let last = run.history.last().unwrap();
+    assert!((last.displacement / 0.03e-3 - 1.0).abs() < 1e-12, "{}", last.displacement);
+    let largest = run.history.iter().fold(0.0, |m: f64, row| m.max(row.work.abs()));
+    let lost = run.history.iter().map(|row| (row.kinetic + row.strain - row.work).abs() / largest).fold(0.0, f64::max);
+    let mut still = scene.clone();
+    still.procedure = Procedure::Static;
+    still.model.solver = SceneSolver::AdaptiveDynamicRelaxation;
+    let rest = fracture::run(&still, &Silent).unwrap().history.last().unwrap().load;
+    // Mean over the time after the way is done, over the waves that are left.
+    let after: Vec<f64> = run.history.iter().filter(|row| row.time > 1.1e-4).map(|row| row.load).collect();
+    let mean = after.iter().sum::<f64>() / after.len() as f64;
+    println!("energy astray {lost:.2e}; load {mean:.2} N, at rest {rest:.2} N");
+    assert!(lost < 5e-3, "{lost:.2e}");
+    assert!((mean / rest - 1.0).abs() < 0.02, "{mean} N, at rest {rest} N");
 }

@@ -1,7 +1,7 @@
 //! Damped motion to rest, of any interaction.
 
 use perilife::body::Body;
-use perilife::bond_law::{BondLaw, Rotation};
+use perilife::bond_law::{BondLaw, BondLawKind, Rotation};
 use perilife::fracture::bonds::BondState;
 use perilife::fracture::boundary::{Boundary, Motion};
 use perilife::fracture::failure::Failure;
@@ -11,9 +11,11 @@ use perilife::fracture::quasi_static::relaxation::{Breaking, Loads, Relaxation, 
 use perilife::fracture::scene::{Scene, SceneLaw};
 use perilife::fracture::springs::Springs;
 
-use crate::scene_plates::{MM, SOURCE_LAW, pulled};
+use crate::scenes::{MM, law, pulled};
 
-const FREE: BondLaw = BondLaw { rotation: Rotation::Free, ..SOURCE_LAW };
+/// As the sources have it, and with free rotation.
+const SOURCE_LAW: BondLaw = law(BondLawKind::TwoParameter, Rotation::Resisted);
+const FREE: BondLaw = law(BondLawKind::TwoParameter, Rotation::Free);
 
 /// Net, loads and displacement at full load of a scene.
 fn setting(scene: &Scene) -> (Net, Vec<bool>, Vec<f64>) {

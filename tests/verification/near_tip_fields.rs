@@ -12,17 +12,7 @@ use crate::plates::{PANEL, case};
 use crate::statics::body;
 
 fn elasticity(plane: Plane) -> Elasticity {
-    Elasticity::of(&Material {
-        name: "test".to_owned(),
-        youngs_modulus: 72e9,
-        poisson_ratio: 0.3,
-        plane,
-        yield_strength: None,
-        toughness: None,
-        fracture_energy: None,
-        density: None,
-        tensile_strength: None,
-    })
+    Elasticity::of(&Material::elastic(72e9, 0.3, plane))
 }
 
 fn functions() -> impl Iterator<Item = Eigenfunction> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use perilife::fracture::scene::{Procedure, SceneSolver, Softening};
+use perilife::fracture::scene::{Arrangement, Procedure, SceneSolver, Softening};
 use perilife::fracture::{self, Fracture, Scene, SceneEnd};
 use perilife::predict::Silent;
 
@@ -122,6 +122,17 @@ fn symmetric_plates_are_damaged_symmetrically() {
     assert!(early.clone().any(|state| state.damage.iter().any(|d| *d > 0.0)), "something is broken");
     for state in early {
         assert!(is_mirrored(&state.damage), "step {}", state.cycles);
+    }
+}
+
+/// The reader refuses it with its line; a scene made otherwise is refused when it runs.
+#[test]
+fn forces_without_energy_have_no_path() {
+    let mut scene = notched(30.0, 0.03, "");
+    scene.model.arrangement = Arrangement::VariableHorizon;
+    let refusal = fracture::run(&scene, &Silent).unwrap_err().to_string();
+    for words in ["model.solver", "secant", "variable_horizon", "adaptive_dynamic_relaxation"] {
+        assert!(refusal.contains(words), "{words}: {refusal}");
     }
 }
 

@@ -1,10 +1,23 @@
 //! A plate in uniform tension.
 
 use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife::verify;
 use perilife::verify::tension_plate::{BALANCED, POISSON_RATIOS, PUBLISHED, plate};
 use perilife::verify::uniform_tension::{shapes, strip, uniform_tension};
 
 use crate::statics::laws;
+
+/// Scenes without time and points of several levels: every row of their topics holds or carries its reason, and no more carry one than
+/// the few that are known.
+#[test]
+fn short_topics_hold() {
+    for (name, known) in [("static_scenes", 5), ("dual_horizon", 3)] {
+        let rows = verify::rows(&verify::topics(&[name.to_owned()]).unwrap(), &|_, _| {}).unwrap();
+        let failing: Vec<_> = rows.iter().filter(|row| row.fails()).collect();
+        assert!(rows.len() > 10 && failing.is_empty(), "{failing:#?}");
+        assert_eq!(rows.iter().filter(|row| !row.ok()).count(), known, "{name}");
+    }
+}
 
 #[test]
 fn the_published_errors_come_out_with_the_classical_corrections() {

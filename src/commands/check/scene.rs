@@ -5,7 +5,7 @@ use super::understood::{Line, short};
 use crate::error::Result;
 use crate::fracture::Scene;
 use crate::fracture::preview::{Preview, preview};
-use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure, Refinement, Region, SceneLaw};
+use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure, Refinement, SceneLaw};
 use crate::report::specimen_picture::scene_svg;
 use crate::units::{GPA, MM, MPA};
 
@@ -133,8 +133,9 @@ fn drive_words(drive: &Drive) -> String {
         Action::Velocity(values) => format!("velocity {} mm/s", components(values)),
         Action::Platen(motion) => format!("platen moving {} mm", pair(motion, MM)),
     };
-    let ramp = if drive.ramp > 0.0 { format!(", rising over {:e} s", drive.ramp) } else { String::new() };
-    format!("{what} on {}{ramp}", region_words(&drive.region))
+    let ramp = if drive.rise.ramp > 0.0 { format!(", rising over {:e} s", drive.rise.ramp) } else { String::new() };
+    let from = if drive.rise.from > 0.0 { format!(" from {:e} s on", drive.rise.from) } else { String::new() };
+    format!("{what} on {}{ramp}{from}", drive.region)
 }
 
 fn hold_words(hold: &Hold) -> String {
@@ -143,21 +144,7 @@ fn hold_words(hold: &Hold) -> String {
         [true, false] => "x",
         _ => "y",
     };
-    format!("{held} held on {}", region_words(&hold.region))
-}
-
-fn region_words(region: &Region) -> String {
-    match region {
-        Region::Edge { edge, depth, range } => {
-            let depth = if *depth > 0.0 { format!(", {} mm deep", mm(*depth)) } else { String::new() };
-            let part =
-                if range[0].is_finite() { format!(" from {} to {} mm", mm(range[0]), mm(range[1])) } else { String::new() };
-            format!("{edge}{part}{depth}")
-        }
-        Region::Box { low, high } => {
-            format!("the box ({}, {}) to ({}, {}) mm", mm(low[0]), mm(low[1]), mm(high[0]), mm(high[1]))
-        }
-    }
+    format!("{held} held on {}", hold.region)
 }
 
 fn refinement_words(refinement: &Refinement) -> String {

@@ -22,7 +22,7 @@ use super::interaction::Interaction;
 use super::log::Log;
 use super::net::Net;
 use super::outcome::{Fracture, SceneFigures};
-use super::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
+use super::scene::{Arrangement, DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
 use crate::error::{Result, input};
 use account::Recorder;
 use full_load::FullLoad;
@@ -114,6 +114,9 @@ fn secant_law<'f>(scene: &Scene, failure: Option<&'f Failure>) -> Result<&'f Fai
     let Some(failure) = failure else {
         return Err(refuse("needs springs in bonds, and the law has none"));
     };
+    if scene.model.arrangement == Arrangement::VariableHorizon {
+        return Err(refuse("needs forces with an energy, and those of discretisation = \"variable_horizon\" have none"));
+    }
     if scene.model.finite {
         return Err(refuse("is linear in the displacement, and kinematics is \"finite\""));
     }

@@ -3,7 +3,7 @@
 use super::region::{around, overlap};
 use crate::bond_law::BondLawKind;
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::{Action, Arrangement, DamageLaw, Drive, Procedure, Region, Scene, SceneLaw};
+use crate::fracture::scene::{Action, Arrangement, DamageLaw, Drive, Procedure, Region, Rise, Scene, SceneLaw};
 use crate::loading::imbalance;
 use crate::specimen::{Point, Support};
 
@@ -28,11 +28,6 @@ fn check_time(scene: &Scene) -> Result<()> {
     if scene.material.density.is_none() {
         let problem = "is missing: motion in time needs mass";
         return Err(input_missing("material.density_kg_m3", problem, "give it, or leave loading.duration_s out"));
-    }
-    let sudden = |drive: &Drive| drive.ramp == 0.0 && matches!(drive.action, Action::Displacement(_) | Action::Platen(_));
-    if scene.drives.iter().any(sudden) {
-        let problem = "is missing: a displacement at once would be an infinite velocity";
-        return Err(input_missing("loading.ramp_s", problem, "give the time in which the displacement is reached"));
     }
     Ok(())
 }
@@ -77,11 +72,17 @@ fn prescribed(drive: &Drive) -> [Option<f64>; 2] {
     }
 }
 
+/// A prescribed motion with how it rises; rest is rest, however it comes.
+fn rising(drive: &Drive) -> [Option<(f64, Rise)>; 2] {
+    prescribed(drive).map(|value| value.map(|value| (value, if value == 0.0 { Rise::AT_ONCE } else { drive.rise })))
+}
+
 /// No point is told two different motions.
 fn check_conflicts(scene: &Scene) -> Result<()> {
-    let drives = scene.drives.iter().map(|drive| (&drive.region, prescribed(drive), "a load"));
-    let holds = scene.holds.iter().map(|hold| (&hold.region, hold.components.map(|held| held.then_some(0.0)), "a support"));
-    let all: Vec<(&Region, [Option<f64>; 2], &str)> = drives.chain(holds).collect();
+    let at_rest = |held: bool| held.then_some((0.0, Rise::AT_ONCE));
+    let drives = scene.drives.iter().map(|drive| (&drive.region, rising(drive), "a load"));
+    let holds = scene.holds.iter().map(|hold| (&hold.region, hold.components.map(at_rest), "a support"));
+    let all: Vec<_> = drives.chain(holds).collect();
     for (i, (region, motion, what)) in all.iter().enumerate() {
         for (other, other_motion, other_what) in &all[..i] {
             let differ = |c: usize| matches!((motion[c], other_motion[c]), (Some(a), Some(b)) if a != b);
@@ -138,7 +139,9 @@ pub fn settle_balance(scene: &mut Scene) -> Result<()> {
             return Err(input_missing("supports", problem, "hold a side in [supports], or let opposite forces share one line"));
         }
     }
-    if held != [false; 2] || left.force != [false; 2] || left.moment {
+    // Loads that rise one after another do not balance in between either.
+    let together = scene.drives.windows(2).all(|pair| pair[0].rise == pair[1].rise);
+    if held != [false; 2] || left.force != [false; 2] || left.moment || !together {
         scene.specimen.supports.push(Support::Elsewhere);
     }
     Ok(())
@@ -148,10 +151,14 @@ pub fn settle_balance(scene: &mut Scene) -> Result<()> {
 pub fn lines(scene: &Scene) -> Vec<String> {
     let mut lines = Vec::new();
     if let Procedure::Dynamic { duration, .. } = scene.procedure {
-        let ramp = scene.drives.iter().map(|drive| drive.ramp).fold(0.0, f64::max);
-        if ramp > duration {
-            lines.push(format!("loading.ramp_s = {ramp} is longer than the scene, {duration} s: the full load is never reached"));
-        }
+        let late = scene.drives.iter().find(|drive| drive.rise.end() > duration);
+        lines.extend(late.map(|drive| {
+            let end = drive.rise.end();
+            format!(
+                "the load on {} rises until {end} s and the scene ends at {duration} s: it is never reached in full",
+                drive.region
+            )
+        }));
     }
     let graded = scene.model.arrangement != Arrangement::Lattice;
     if graded && scene.refinement.is_none() {

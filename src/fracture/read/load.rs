@@ -5,9 +5,9 @@ use toml::Value;
 
 use super::region;
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::{Action, Drive, Region};
-use crate::input::{Quantity, slice};
-use crate::specimen::{Edge, Load, Point, Specimen};
+use crate::fracture::scene::{Action, Drive, Region, Rise};
+use crate::input::{Quantity, number, slice};
+use crate::specimen::{Edge, Point, Specimen};
 use crate::units::{MM, MPA};
 
 crate::kinds! {
@@ -40,6 +40,7 @@ pub const KEYS: &[&str] = &[
     "velocity_mm_s",
     "direction",
     "transverse",
+    "from_s",
 ];
 /// More than this is a slip.
 const REGIONS_MAX: usize = 50;
@@ -57,17 +58,29 @@ struct LoadInput {
     velocity_mm_s: Option<f64>,
     direction: Option<[f64; 2]>,
     transverse: Option<Transverse>,
+    ramp_s: Option<f64>,
+    from_s: Option<f64>,
+}
+
+/// Time of a scene of motion, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clock {
+    /// Duration.
+    pub duration: f64,
+    /// `ramp_s` of all loads that have none of their own.
+    pub ramp: f64,
 }
 
 /// One load: a drive for each of its edges or regions.
-pub fn drives(value: &Value, path: &str, ramp: f64, specimen: &mut Specimen) -> Result<Vec<Drive>> {
+pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Specimen) -> Result<Vec<Drive>> {
     let load: LoadInput = slice(value, path)?;
     let size = size(&load, path)?;
     let direction = direction(&load, path)?;
     check_keys(&load, path)?;
+    let rise = rise(&load, path, clock)?;
     let (regions, kind) = (regions(&load, path, specimen)?, load.kind);
     let mut drives = Vec::new();
-    for region in regions {
+    for (region, key) in regions {
         let outward = match region {
             Region::Edge { edge, .. } => Some(edge.normal()),
             Region::Box { .. } => None,
@@ -80,18 +93,45 @@ pub fn drives(value: &Value, path: &str, ramp: f64, specimen: &mut Specimen) -> 
         let held = load.transverse == Some(Transverse::Held);
         let components = [0, 1].map(|i| (unit[i] != 0.0 || held).then_some(vector[i]));
         let action = match kind {
-            LoadKind::Traction => {
-                push_traction(&region, vector, path, specimen)?;
-                Action::Traction(vector)
-            }
+            LoadKind::Traction => Action::Traction(vector),
             LoadKind::Displacement => Action::Displacement(components),
             LoadKind::Velocity => Action::Velocity(components),
             // A platen presses: it moves against the outward normal.
             LoadKind::Platens => Action::Platen(vector.map(|component| -component)),
         };
-        drives.push(Drive { region, action, ramp });
+        let drive = Drive { region, action, rise, key };
+        if kind == LoadKind::Traction {
+            push_traction(&drive, path, specimen)?;
+        }
+        drives.push(drive);
     }
     Ok(drives)
+}
+
+/// How a load rises: in a scene of motion by its own `ramp_s`, or that of all loads, from `from_s` on.
+fn rise(load: &LoadInput, path: &str, clock: Option<Clock>) -> Result<Rise> {
+    const TIME: Quantity = number("a time in s", 0.0, 1e6);
+    let (ramp_key, from_key) = (format!("{path}.ramp_s"), format!("{path}.from_s"));
+    let Some(clock) = clock else {
+        let given = [(&ramp_key, load.ramp_s), (&from_key, load.from_s)];
+        return match given.into_iter().find_map(|(key, value)| Some((key, value?))) {
+            None => Ok(Rise::AT_ONCE),
+            Some((key, value)) => {
+                Err(input(key, value, "has no meaning without duration_s", "give loading.duration_s, or leave it out"))
+            }
+        };
+    };
+    let ramp = TIME.read_optional(&ramp_key, load.ramp_s)?.unwrap_or(clock.ramp);
+    let from = TIME.read_optional(&from_key, load.from_s)?.unwrap_or(0.0);
+    if from >= clock.duration {
+        let problem = format!("is not before the end of the scene, {} s: the load would never act", clock.duration);
+        return Err(input(&from_key, from, problem, "give a smaller one, or a longer loading.duration_s"));
+    }
+    if ramp == 0.0 && matches!(load.kind, LoadKind::Displacement | LoadKind::Platens) {
+        let problem = "is missing: a displacement at once would be an infinite velocity";
+        return Err(input_missing(&ramp_key, problem, "give the time in which the displacement is reached"));
+    }
+    Ok(Rise { from, ramp })
 }
 
 /// The one size of a load, SI.
@@ -158,8 +198,8 @@ fn check_keys(load: &LoadInput, path: &str) -> Result<()> {
     Ok(())
 }
 
-/// Edges or regions of a load.
-fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<Region>> {
+/// Edges or regions of a load, each with the key that says which points it takes hold of.
+fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<(Region, String)>> {
     let (edges_key, regions_key) = (format!("{path}.edges"), format!("{path}.regions"));
     match (&load.edges, &load.regions) {
         (None, None) => {
@@ -175,8 +215,10 @@ fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<Regi
                 return Err(input(&format!("{edges_key}[{i}]"), edge, "stands twice", "name each side once"));
             }
             let (depth, range) = (format!("{path}.grip_mm"), format!("{path}.range_mm"));
+            let place = if load.range_mm.is_some() { &range } else { &edges_key };
             let of_edge = |edge: &Edge| {
-                region::edge(*edge, &edges_key, (&depth, load.grip_mm.unwrap_or(0.0)), (&range, load.range_mm), specimen)
+                let depth = (depth.as_str(), load.grip_mm.unwrap_or(0.0));
+                Ok((region::edge(*edge, &edges_key, depth, (&range, load.range_mm), specimen)?, place.clone()))
             };
             edges.iter().map(of_edge).collect()
         }
@@ -190,20 +232,22 @@ fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<Regi
                 let remedy = format!("give 1 to {REGIONS_MAX} boxes {{ from_mm = [x, y], to_mm = [x, y] }}");
                 return Err(input(&regions_key, format!("{} regions", regions.len()), "is no place of a load", remedy));
             }
-            let of_box = |(i, value): (usize, &Value)| region::box_from_value(value, &format!("{regions_key}[{i}]"), specimen);
+            let of_box = |(i, value): (usize, &Value)| {
+                let key = format!("{regions_key}[{i}]");
+                Ok((region::box_from_value(value, &key, specimen)?, key))
+            };
             regions.iter().enumerate().map(of_box).collect()
         }
     }
 }
 
 /// Puts a traction on the part of a side that it acts on.
-fn push_traction(region: &Region, traction: Point, path: &str, specimen: &mut Specimen) -> Result<()> {
-    let Region::Edge { edge, range, .. } = *region else { return Ok(()) };
-    let stretches = region::stretches_within(edge, range, specimen);
-    if stretches.is_empty() {
+fn push_traction(drive: &Drive, path: &str, specimen: &mut Specimen) -> Result<()> {
+    let loads = drive.loads(specimen);
+    if loads.is_empty() {
         let key = format!("{path}.range_mm");
         return Err(input_missing(&key, "lies where the outline does not reach this side", "move it onto the side"));
     }
-    specimen.loads.extend(stretches.into_iter().map(|(from, to)| Load::Edge { from, to, traction }));
+    specimen.loads.extend(loads);
     Ok(())
 }

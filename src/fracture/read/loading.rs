@@ -3,13 +3,13 @@
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::load;
+use super::load::{self, Clock};
 use crate::error::{Result, input, input_missing};
 use crate::fracture::scene::{Drive, Procedure};
 use crate::input::{TIME, number, shorten, slice, table_of};
 use crate::specimen::Specimen;
 
-/// Keys of `[loading]` that concern all loads.
+/// Keys of `[loading]` that concern all loads; one of several loads may have a `ramp_s` of its own.
 const COMMON: &[&str] = &["parts", "steps", "iterations_per_step", "duration_s", "time_step_s", "ramp_s"];
 /// More than this is a slip.
 const PARTS_MAX: usize = 50;
@@ -51,13 +51,18 @@ pub fn from_value(value: &Value, specimen: &mut Specimen) -> Result<Loading> {
         table.iter().map(|(key, value)| (key.clone(), value.clone())).partition(|(key, _)| COMMON.contains(&key.as_str()));
     let common: CommonInput = slice(&Value::Table(common), "loading")?;
     let ramp = TIME.read_optional("loading.ramp_s", common.ramp_s)?.unwrap_or(0.0);
+    let procedure = procedure(&common)?;
+    let clock = match procedure {
+        Procedure::Dynamic { duration, .. } => Some(Clock { duration, ramp }),
+        Procedure::Static | Procedure::QuasiStatic { .. } => None,
+    };
     let mut drives = Vec::new();
     match &common.parts {
         None if own.is_empty() => {
             let remedy = "give kind = \"traction\", \"displacement\", \"velocity\" or \"platens\", or parts = [{ kind = ... }]";
             return Err(input_missing("loading.kind", "is missing", remedy));
         }
-        None => drives.extend(load::drives(&Value::Table(own), "loading", ramp, specimen)?),
+        None => drives.extend(load::drives(&Value::Table(own), "loading", clock, specimen)?),
         Some(parts) => {
             if let Some((key, value)) = own.iter().next() {
                 let problem = "stands beside parts, each of which has keys of its own";
@@ -68,11 +73,11 @@ pub fn from_value(value: &Value, specimen: &mut Specimen) -> Result<Loading> {
                 return Err(input("loading.parts", format!("{} parts", parts.len()), "is no loading", remedy));
             }
             for (i, part) in parts.iter().enumerate() {
-                drives.extend(load::drives(part, &format!("loading.parts[{i}]"), ramp, specimen)?);
+                drives.extend(load::drives(part, &format!("loading.parts[{i}]"), clock, specimen)?);
             }
         }
     }
-    Ok(Loading { drives, procedure: procedure(&common)? })
+    Ok(Loading { drives, procedure })
 }
 
 fn unknown(key: &str, value: &Value) -> crate::Error {

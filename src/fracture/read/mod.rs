@@ -21,7 +21,10 @@
 //! velocity_mm_s = 20000.0     # along the outward normal of the side, or along direction = [x, y]
 //! edges = ["top", "bottom"]   # with grip_mm, range_mm; or regions = [{ from_mm = [x, y], to_mm = [x, y] }]
 //! transverse = "free"         # or "held": the component across the motion
-//! duration_s = 4e-5           # motion, with time_step_s, ramp_s; or steps = load steps, to rest or with iterations_per_step; neither: one equilibrium
+//! duration_s = 4e-5           # motion, with time_step_s; or steps = load steps, to rest or with iterations_per_step; neither:
+//!                             # one equilibrium
+//! ramp_s = 2e-6               # motion: the load rises linearly over so long; one of parts may have its own
+//! from_s = 1e-6               # motion: and begins then; its points stand still before
 //! [supports]                  # sides { rows_mm, range_mm, fix } or, by any other name, boxes { from_mm, to_mm, fix }
 //! left = { range_mm = [-1.0, 1.0], fix = ["x"] }
 //! [damage]                    # optional; default law "none"
@@ -51,8 +54,8 @@ use std::path::Path;
 use toml::{Table, Value};
 
 use super::scene::{Scene, SceneLaw};
-use crate::error::{Result, input, input_missing};
-use crate::input::{Document, shorten, value_at};
+use crate::error::Result;
+use crate::input::{Document, Sections, Strangers, value_at};
 use crate::{material, specimen};
 
 /// Sections of a scene file.
@@ -60,6 +63,20 @@ pub const SECTIONS: &[&str] = &["specimen", "material", "model", "loading", "sup
 
 /// Sections that only a scene file has.
 pub const SCENE_SECTIONS: &[&str] = &["damage", "refinement", "micro_cracks"];
+
+/// Sections of other files.
+const STRANGERS: &[Strangers] = &[
+    (
+        &["fatigue", "stop"],
+        "belongs to a fatigue case, not to a fracture scene, which has no cycles",
+        "remove the section, or run `perilife predict`",
+    ),
+    (
+        &["measured", "fit"],
+        "belongs to a calibration file, not to a fracture scene",
+        "run `perilife calibrate` on it, or remove the section",
+    ),
+];
 
 impl Scene {
     /// Reads a scene file; `overrides` are `section.key=value`.
@@ -98,28 +115,21 @@ pub fn is_scene(table: &Table) -> bool {
 }
 
 fn read(table: &Table, name: &str, base_dir: &Path) -> Result<Scene> {
-    check_sections(table)?;
-    let echo =
-        serde_json::to_value(table).map_err(|error| input_missing("scene", error.to_string(), "write it as plain TOML"))?;
-    let empty = Value::Table(Table::new());
-    let required = |section: &str| {
-        table.get(section).ok_or_else(|| input_missing(section, "is missing", format!("write a section [{section}]")))
-    };
-    let optional = |section: &str| table.get(section).unwrap_or(&empty);
-
+    let sections = Sections::of(table, SECTIONS, STRANGERS)?;
+    let echo = sections.echo()?;
     let mut warnings = Vec::new();
-    let mut specimen = specimen::plate_from_value(required("specimen")?)?;
+    let mut specimen = specimen::plate_from_value(sections.required("specimen")?)?;
     // The standard kinds serve as geometry: their loads and grips belong to fatigue tests.
     specimen.loads.clear();
     specimen.supports.clear();
-    let material = material::from_value(required("material")?, base_dir, &mut warnings)?;
-    let loading = loading::from_value(required("loading")?, &mut specimen)?;
-    let holds = supports::from_value(optional("supports"), &specimen)?;
-    let model = model::from_value(optional("model"), &specimen, &material, &loading.procedure)?;
-    let damage = damage::from_value(optional("damage"), &material)?;
-    let refinement = table.get("refinement").map(|value| refinement::from_value(value, &specimen)).transpose()?;
-    if table.contains_key("damage") && !matches!(model.law, SceneLaw::Correspondence { .. }) {
-        damage::refuse_entry(optional("damage"))?;
+    let material = material::from_value(sections.required("material")?, base_dir, &mut warnings)?;
+    let loading = loading::from_value(sections.required("loading")?, &mut specimen)?;
+    let holds = supports::from_value(sections.optional("supports"), &specimen)?;
+    let model = model::from_value(sections.optional("model"), &specimen, &material, &loading.procedure)?;
+    let damage = damage::from_value(sections.optional("damage"), &material)?;
+    let refinement = sections.given("refinement").map(|value| refinement::from_value(value, &specimen)).transpose()?;
+    if sections.given("damage").is_some() && !matches!(model.law, SceneLaw::Correspondence { .. }) {
+        damage::refuse_entry(sections.optional("damage"))?;
     }
     let mut scene = Scene {
         name: name.to_owned(),
@@ -136,35 +146,10 @@ fn read(table: &Table, name: &str, base_dir: &Path) -> Result<Scene> {
     };
     checks::check(&scene)?;
     checks::settle_balance(&mut scene)?;
-    if let Some(value) = table.get("micro_cracks") {
+    if let Some(value) = sections.given("micro_cracks") {
         micro_cracks::put_in(value, &mut scene)?;
     }
     let lines = checks::lines(&scene);
     scene.warnings.extend(lines);
     Ok(scene)
-}
-
-/// Only known sections, each a table.
-fn check_sections(table: &Table) -> Result<()> {
-    for (name, value) in table {
-        match name.as_str() {
-            known if SECTIONS.contains(&known) => {}
-            "fatigue" | "stop" => {
-                let problem = "belongs to a fatigue case, not to a fracture scene, which has no cycles";
-                return Err(input(name, shorten(value), problem, "remove the section, or run `perilife predict`"));
-            }
-            "measured" | "fit" => {
-                let problem = "belongs to a calibration file, not to a fracture scene";
-                return Err(input(name, shorten(value), problem, "run `perilife calibrate` on it, or remove the section"));
-            }
-            _ => {
-                let what = if value.is_table() { "is not a known section" } else { "stands in no section" };
-                return Err(input(name, shorten(value), what, format!("known sections: {}", SECTIONS.join(", "))));
-            }
-        }
-        if !value.is_table() {
-            return Err(input(name, shorten(value), "is not a section", format!("write [{name}] and its keys below")));
-        }
-    }
-    Ok(())
 }

@@ -6,7 +6,7 @@ use toml::Value;
 use crate::error::{Result, input, input_missing};
 use crate::fracture::scene::Region;
 use crate::input::{number, point, slice};
-use crate::specimen::geometry::{along, bounding_box};
+use crate::specimen::geometry::bounding_box;
 use crate::specimen::{Edge, Point, Specimen};
 use crate::units::MM;
 
@@ -81,18 +81,6 @@ pub fn edge(edge: Edge, key: &str, depth: (&str, f64), range: (&str, Option<[f64
         }
     };
     Ok(Region::Edge { edge, depth: metres, range: part })
-}
-
-/// The stretches of a side within a part of it.
-pub fn stretches_within(edge: Edge, range: [f64; 2], specimen: &Specimen) -> Vec<(Point, Point)> {
-    let axis = usize::from(edge.normal()[0] != 0.0);
-    let clipped = |(a, b): (Point, Point)| {
-        let share = |at: f64| ((at - a[axis]) / (b[axis] - a[axis])).clamp(0.0, 1.0);
-        let (first, second) = (share(range[0]), share(range[1]));
-        let (from, to) = (first.min(second), first.max(second));
-        (to > from).then(|| (along(a, b, from), along(a, b, to)))
-    };
-    edge.stretches(specimen).into_iter().filter_map(clipped).collect()
 }
 
 /// The box around a region, m: for a side, so deep as it holds and one `row` at the least.

@@ -5,7 +5,7 @@ use toml::Value;
 
 use super::region;
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::Hold;
+use crate::fracture::scene::{Hold, Region};
 use crate::input::{shorten, slice, table_of};
 use crate::specimen::{Component, Edge, Specimen};
 
@@ -33,11 +33,12 @@ pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Vec<Hold>> {
     let mut holds = Vec::new();
     for (name, value) in table_of(value, "supports")? {
         let path = format!("supports.{name}");
-        let (region, fix) = match name.parse::<Edge>() {
+        let (region, fix, key) = match name.parse::<Edge>() {
             Ok(side) => {
                 let entry: SideInput = slice(value, &path)?;
                 let (depth, range) = (format!("{path}.rows_mm"), format!("{path}.range_mm"));
-                (region::edge(side, &path, (&depth, entry.rows_mm), (&range, entry.range_mm), specimen)?, entry.fix)
+                let region = region::edge(side, &path, (&depth, entry.rows_mm), (&range, entry.range_mm), specimen)?;
+                (region, entry.fix, range)
             }
             Err(_) if value.as_table().is_some_and(|table| table.contains_key("rows_mm") || !table.contains_key("from_mm")) => {
                 let remedy = "known sides: top, bottom, left, right; a box has from_mm, to_mm and fix";
@@ -46,7 +47,7 @@ pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Vec<Hold>> {
             Err(_) => {
                 let entry: BoxInput = slice(value, &path)?;
                 let (low, high) = region::corners(&path, [entry.from_mm, entry.to_mm], specimen)?;
-                (crate::fracture::scene::Region::Box { low, high }, entry.fix)
+                (Region::Box { low, high }, entry.fix, path.clone())
             }
         };
         if fix.is_empty() {
@@ -54,7 +55,7 @@ pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Vec<Hold>> {
             return Err(input_missing(&format!("{path}.fix"), "holds nothing", remedy));
         }
         let components = [Component::X, Component::Y].map(|component| fix.contains(&component));
-        holds.push(Hold { region, components });
+        holds.push(Hold { region, components, key });
     }
     Ok(holds)
 }

@@ -1,0 +1,84 @@
+//! Where loads and supports take hold: points, stretches of the outline, words.
+
+use std::fmt;
+
+use super::net::Net;
+use super::scene::{Action, Drive, Region, Rise};
+use crate::specimen::geometry::{along, bounding_box};
+use crate::specimen::{Edge, Load, Point, Specimen};
+use crate::units::MM;
+
+impl Region {
+    /// The outermost row of a whole side.
+    #[must_use]
+    pub fn side(edge: Edge) -> Region {
+        Region::Edge { edge, depth: 0.0, range: [f64::NEG_INFINITY, f64::INFINITY] }
+    }
+
+    /// Points within the region, ascending; of a side at least those of its outermost row.
+    #[must_use]
+    pub fn points(&self, net: &Net, specimen: &Specimen) -> Vec<u32> {
+        let all = || net.positions.iter().enumerate();
+        match *self {
+            Region::Box { low, high } => {
+                let inside = |p: &Point| (0..2).all(|i| p[i] >= low[i] && p[i] <= high[i]);
+                all().filter(|(_, p)| inside(p)).map(|(i, _)| i as u32).collect()
+            }
+            Region::Edge { edge, depth, range } => {
+                let [low, high] = bounding_box(&specimen.outline);
+                let axis = usize::from(matches!(edge, Edge::Top | Edge::Bottom));
+                let far = matches!(edge, Edge::Top | Edge::Right);
+                let away = |p: &Point| if far { high[axis] - p[axis] } else { p[axis] - low[axis] };
+                let nearest = net.positions.iter().map(away).fold(f64::INFINITY, f64::min);
+                // A quarter of a spacing is safe against round-off.
+                let least = net.spacings.iter().copied().fold(f64::INFINITY, f64::min);
+                let depth = depth.max(nearest + 0.25 * least);
+                let along = |p: &Point| p[1 - axis] >= range[0] && p[1 - axis] <= range[1];
+                all().filter(|(_, p)| away(p) < depth && along(p)).map(|(i, _)| i as u32).collect()
+            }
+        }
+    }
+}
+
+impl Drive {
+    /// A load on the outermost row of a whole side, at once.
+    #[must_use]
+    pub fn on_side(edge: Edge, action: Action) -> Drive {
+        Drive { region: Region::side(edge), action, rise: Rise::AT_ONCE, key: "loading.edges".to_owned() }
+    }
+
+    /// A traction as loads of the plate; none where the load is something else, or the outline does not reach its part of the
+    /// side.
+    #[must_use]
+    pub fn loads(&self, specimen: &Specimen) -> Vec<Load> {
+        let (&Region::Edge { edge, range, .. }, Action::Traction(traction)) = (&self.region, self.action) else {
+            return Vec::new();
+        };
+        let axis = usize::from(edge.normal()[0] != 0.0);
+        let clipped = |(a, b): (Point, Point)| {
+            let share = |at: f64| ((at - a[axis]) / (b[axis] - a[axis])).clamp(0.0, 1.0);
+            let (first, second) = (share(range[0]), share(range[1]));
+            let (from, to) = (first.min(second), first.max(second));
+            (to > from).then(|| Load::Edge { from: along(a, b, from), to: along(a, b, to), traction })
+        };
+        edge.stretches(specimen).into_iter().filter_map(clipped).collect()
+    }
+}
+
+impl fmt::Display for Region {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mm = |metres: f64| (metres / MM * 1e4).round() / 1e4;
+        match *self {
+            Region::Edge { edge, depth, range } => {
+                write!(f, "{edge}")?;
+                if range[0].is_finite() {
+                    write!(f, " from {} to {} mm", mm(range[0]), mm(range[1]))?;
+                }
+                if depth > 0.0 { write!(f, ", {} mm deep", mm(depth)) } else { Ok(()) }
+            }
+            Region::Box { low, high } => {
+                write!(f, "the box ({}, {}) to ({}, {}) mm", mm(low[0]), mm(low[1]), mm(high[0]), mm(high[1]))
+            }
+        }
+    }
+}
