@@ -20,14 +20,14 @@ fn onset(run: &Fracture, name: &str, source: f64, percent: f64) -> usize {
 /// The load grows linearly, then less and less (hardening), then falls.
 fn assert_load_curve(run: &Fracture, name: &str) {
     let rows = &run.history;
-    let peak = rows.iter().enumerate().max_by(|a, b| a.1.load.total_cmp(&b.1.load)).unwrap().0;
-    let at = |share: f64| rows[(share * peak as f64) as usize];
-    let slope = |a: HistoryRow, b: HistoryRow| (b.load - a.load) / (b.displacement - a.displacement);
+    let peak = rows.iter().max_by(|a, b| a.load.total_cmp(&b.load)).unwrap();
+    let at = |share: f64| rows.iter().find(|row| row.displacement >= share * peak.displacement).unwrap();
+    let slope = |a: &HistoryRow, b: &HistoryRow| (b.load - a.load) / (b.displacement - a.displacement);
     let start = slope(at(0.1), at(0.3));
-    assert!((slope(at(0.3), at(0.5)) / start - 1.0).abs() < 0.02, "{name}: linear up to half of the peak's displacement");
-    let late = slope(at(0.85), at(0.95)) / start;
+    assert!((slope(at(0.3), at(0.6)) / start - 1.0).abs() < 0.02, "{name}: linear to 0.6 of the peak's displacement");
+    let late = slope(at(0.93), peak) / start;
     assert!((0.1..0.9).contains(&late), "{name}: slope before the peak {late:.2} of that at the start");
-    assert!(rows.last().unwrap().load < 0.95 * rows[peak].load, "{name}: falls after the peak");
+    assert!(rows.last().unwrap().load < 0.5 * peak.load, "{name}: falls after the peak");
 }
 
 /// The last picture up to which damage is its own image under `image` (place in the grid to place), to 1e-9, and its step;
@@ -43,12 +43,23 @@ fn symmetric_until(run: &Fracture, image: impl Fn(usize, usize) -> (usize, usize
     (damaged, kept.last().map_or(0.0, |state| state.cycles))
 }
 
+/// The path of equilibrium is linear, hardens and falls; steps that do not come to rest carry 7 % more (22 % at 0.5 mm): damage lags
+/// behind the load.
+#[test]
+fn load_curves() {
+    let path = run("q345_coarse", &[]);
+    assert_load_curve(&path, "q345_coarse");
+    let march = run("q345_offset_0", &["model.spacing_mm=1.0"]);
+    let over = march.peak_load() / path.peak_load();
+    println!("peak of the path {:.0} N, of the march {over:.3} times that", path.peak_load());
+    assert!((1.0..1.35).contains(&over), "{over}");
+}
+
 /// Level notches of 10 mm, 0, 10 and 20 mm apart in height: straight through, past each other, to the far sides; the plate lasts
 /// the longer the farther they are apart.
 #[test]
 fn notches_apart_in_height() {
     let level = run("q345_offset_0", &[]);
-    assert_load_curve(&level, "q345_offset_0");
     for tip in 0..2 {
         assert!(way(&level, tip).iter().all(|place| place[1].abs() < 1.0), "tip {tip} leaves the line of the notches");
     }
