@@ -19,9 +19,9 @@ mod tip_end;
 
 use std::time::Instant;
 
-pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
+pub use outcome::{CurvePoint, Observer, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 
-pub use snapshot::grid;
+pub use crate::net::PointGrid;
 
 use crate::body::lattice::fitting_spacing;
 use crate::body::{Body, Bond};
@@ -227,7 +227,7 @@ pub fn run(
         curve,
         stop,
         snapshots: album.snapshots,
-        grid: snapshot::grid(&body),
+        grid: PointGrid::of_body(&body),
         figures: RunFigures {
             points: body.points.len(),
             points_solved: equilibrium.points(&body),

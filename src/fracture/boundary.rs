@@ -1,6 +1,6 @@
 //! Loads and supports of a scene on the points of its net.
 
-use super::net::Net;
+use crate::net::Net;
 use super::scene::{Action, Region, Scene};
 use crate::error::{Result, input_missing};
 use crate::specimen::geometry::bounding_box;

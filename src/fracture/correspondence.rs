@@ -36,7 +36,7 @@ use rayon::prelude::*;
 
 use super::bonds::BondState;
 use super::interaction::{Damaging, Interaction, Reaction};
-use super::net::Net;
+use crate::net::Net;
 use super::scene::{DamageEntry, Procedure, Scene, ZeroEnergyControl};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::Result;

@@ -15,7 +15,7 @@ use super::bonds::BondState;
 use super::boundary::{Boundary, Held};
 use super::interaction::{Damaging, Interaction, Reaction};
 use super::log::Log;
-use super::net::Net;
+use crate::net::Net;
 use super::outcome::{HistoryRow, SceneEnd};
 use super::{SceneObserver, SceneProgress};
 use crate::error::{Error, Result, input};

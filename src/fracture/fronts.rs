@@ -5,7 +5,7 @@
 //! wider behind its front moves nothing. Points cracked away from every front and its way begin a new one: a branch, or a crack
 //! from a place where there was none.
 
-use super::net::Net;
+use crate::net::Net;
 use super::outcome::PathPoint;
 use crate::specimen::geometry::{direction, distance};
 use crate::specimen::{Point, Specimen};

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::bonds::BondState;
 use super::failure::Failure;
 use super::interaction::{Damaging, Interaction, Reaction};
-use super::net::Net;
+use crate::net::Net;
 use super::springs::stiffness_bound;
 use crate::body::Body;
 use crate::body::lattice::{LANES, Lattice};

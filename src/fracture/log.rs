@@ -3,7 +3,7 @@
 use super::bonds::BondState;
 use super::boundary::Boundary;
 use super::fronts::{CRACKED, Fronts, LOGGED};
-use super::net::Net;
+use crate::net::Net;
 use super::outcome::{Fracture, HistoryRow, SceneEnd, SceneFigures};
 use super::pieces::is_separated;
 use super::scene::Scene;

@@ -7,7 +7,7 @@
 
 use super::bonds::BondState;
 use super::interaction::{Damaging, Driven, Interaction, Reaction};
-use super::net::Net;
+use crate::net::Net;
 use super::scene::{Action, Drive, Region, Scene};
 use crate::specimen::geometry::edges;
 use crate::specimen::{Edge, Point};

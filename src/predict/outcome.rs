@@ -1,5 +1,6 @@
 //! What a run gives and how it reports while it goes on.
 
+use crate::net::PointGrid;
 use crate::specimen::Point;
 
 crate::kinds! {
@@ -57,23 +58,6 @@ pub struct Snapshot {
     pub displacement: Vec<[f64; 2]>,
     /// Damage φ of every point: share of its bonds that are broken, 0 to 1.
     pub damage: Vec<f64>,
-}
-
-/// Points of the body as pictures need them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointGrid {
-    /// Lattice spacing, m.
-    pub spacing: f64,
-    /// Columns and rows of the lattice that holds the body.
-    pub columns: usize,
-    /// Rows of the lattice.
-    pub rows: usize,
-    /// Position of lattice place (0, 0), m.
-    pub origin: Point,
-    /// Angle of the lattice rows against x, radians.
-    pub angle: f64,
-    /// For every lattice place (row by row), the index of its point or `None` outside the material.
-    pub point_at: Vec<Option<u32>>,
 }
 
 /// Figures of a run that users ask for.

@@ -1,7 +1,7 @@
 //! Pictures of the damaged plate along a run.
 
 use super::curve::Row;
-use super::{CurvePoint, PointGrid, Snapshot};
+use super::{CurvePoint, Snapshot};
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::solver::field::Layout;
@@ -82,23 +82,5 @@ fn take(body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) -> Snapshot
         crack_length: row.crack_length,
         displacement: body.points.iter().map(|&p| motion(p as usize)).collect(),
         damage: body.points.iter().map(|&p| damage(p as usize)).collect(),
-    }
-}
-
-/// Lattice of the snapshots.
-pub fn grid(body: &Body) -> PointGrid {
-    let lattice = &body.lattice;
-    let mut point_at = vec![None; lattice.columns * lattice.rows];
-    for (i, &place) in body.points.iter().enumerate() {
-        let (column, row) = lattice.column_row(place as usize);
-        point_at[row * lattice.columns + column] = Some(i as u32);
-    }
-    PointGrid {
-        spacing: lattice.spacing,
-        columns: lattice.columns,
-        rows: lattice.rows,
-        origin: lattice.origin,
-        angle: lattice.axis[1].atan2(lattice.axis[0]),
-        point_at,
     }
 }

@@ -10,7 +10,7 @@
 use std::f64::consts::PI;
 
 use crate::error::{Result, input};
-use crate::fracture::net::Net;
+use crate::net::Net;
 use crate::fracture::scene::ZeroEnergyControl;
 use crate::material::Material;
 

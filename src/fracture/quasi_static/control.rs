@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::super::bonds::BondState;
 use super::super::failure::{Failure, Measures};
-use super::super::net::Net;
+use crate::net::Net;
 use super::super::springs::Springs;
 
 /// Loads, relative, within which bonds count as reaching their limit together: mirror twins, and those whose order the size of a

@@ -9,9 +9,7 @@ pub mod equilibrium;
 pub mod full_load;
 pub mod path;
 pub mod relaxation;
-pub mod rigid;
 pub mod steps;
-pub mod stiffness;
 
 use super::SceneObserver;
 use super::bonds::BondState;
@@ -19,7 +17,7 @@ use super::boundary::Boundary;
 use super::failure::Failure;
 use super::interaction::Interaction;
 use super::log::Log;
-use super::net::Net;
+use crate::net::Net;
 use super::outcome::{Fracture, SceneFigures};
 use super::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
 use crate::error::{Result, input};

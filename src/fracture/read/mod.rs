@@ -38,7 +38,6 @@ mod load;
 mod loading;
 mod micro_cracks;
 mod model;
-mod refinement;
 mod region;
 mod supports;
 
@@ -53,6 +52,7 @@ use toml::{Table, Value};
 use super::scene::{Scene, SceneLaw};
 use crate::error::{Result, input, input_missing};
 use crate::input::{Document, shorten, value_at};
+use crate::net::read as refinement;
 use crate::{material, specimen};
 
 /// Sections of a scene file.

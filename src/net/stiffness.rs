@@ -5,15 +5,14 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
 
-use super::super::net::{Net, NetBond};
+use super::{Net, NetBond};
 use crate::error::{Error, Result};
 
 /// Share of the largest diagonal entry that is added to all, so that points and fragments without hold leave the factor definite.
 const SHIFT: f64 = 1e-10;
 
 /// Stiffness between the free unknowns.
-pub struct Stiffness<'n> {
-    net: &'n Net,
+pub struct Stiffness {
     /// Row of every unknown; `usize::MAX` where it is held.
     number: Vec<usize>,
     matrix: SparseColMat<usize, f64>,
@@ -25,12 +24,12 @@ pub struct Stiffness<'n> {
     factor: Option<Llt<usize, f64>>,
 }
 
-impl<'n> Stiffness<'n> {
+impl Stiffness {
     /// Pattern and symbolic factorisation.
     ///
     /// # Errors
     /// Out of memory.
-    pub fn new(net: &'n Net, held: &[bool]) -> Result<Self> {
+    pub fn new(net: &Net, held: &[bool]) -> Result<Self> {
         let mut number = vec![usize::MAX; held.len()];
         let free: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();
         free.iter().enumerate().for_each(|(row, &i)| number[i] = row);
@@ -51,19 +50,19 @@ impl<'n> Stiffness<'n> {
         let slots = net.bonds.iter().flat_map(|bond| Self::entries(net, &number, bond)).map(|(row, column, _)| slot(row, column));
         let slots = slots.collect();
         let diagonal = (0..free.len()).map(|i| slot(i, i)).collect();
-        Ok(Stiffness { net, slots, diagonal, number, matrix, symbolic, factor: None })
+        Ok(Stiffness { slots, diagonal, number, matrix, symbolic, factor: None })
     }
 
-    /// Factorises the stiffness with these shares of the bonds.
+    /// Factorises the stiffness of the net with these shares of the bonds.
     ///
     /// # Errors
     /// A stiffness that is not positive definite.
-    pub fn factorise(&mut self, share: &[f64]) -> Result<()> {
+    pub fn factorise(&mut self, net: &Net, share: &[f64]) -> Result<()> {
         let values = self.matrix.val_mut();
         values.fill(0.0);
         let mut slots = self.slots.iter();
-        for (bond, &share) in self.net.bonds.iter().zip(share) {
-            for (_, _, value) in Self::entries(self.net, &self.number, bond) {
+        for (bond, &share) in net.bonds.iter().zip(share) {
+            for (_, _, value) in Self::entries(net, &self.number, bond) {
                 if let Some(&slot) = slots.next() {
                     values[slot as usize] += share * value;
                 }
