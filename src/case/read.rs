@@ -14,7 +14,7 @@ use crate::units::MPA;
 use crate::{loading, material, specimen};
 
 /// Sections of a case file.
-pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "fatigue", "stop"];
+pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "refinement", "fatigue", "stop"];
 
 impl Case {
     /// Reads a case file; `overrides` are `section.key=value`.
@@ -60,7 +60,7 @@ impl Case {
         let mut specimen = specimen::from_value(required("specimen")?)?;
         let material = material::from_value(required("material")?, base_dir, &mut warnings)?;
         let loading = loading::from_values(required("loading")?, table.get("supports"), &mut specimen)?;
-        let model = model::from_value(optional("model"), &specimen, &material, &mut choices)?;
+        let model = model::from_values(optional("model"), table.get("refinement"), &specimen, &material, &mut choices)?;
         let fatigue = fatigue::from_value(optional("fatigue"), model.method, base_dir, &mut choices)?;
         let stop = fatigue::stop_from_value(optional("stop"), &specimen)?;
         let mut case = Case {
@@ -118,7 +118,7 @@ fn check_sections(table: &Table) -> Result<()> {
                 let problem = "belongs to a calibration file, not to a case";
                 return Err(input(name, shorten(value), problem, "run `perilife calibrate` on it, or remove the section"));
             }
-            "damage" | "refinement" | "micro_cracks" => {
+            "damage" | "micro_cracks" => {
                 let problem = "belongs to a fracture scene, not to a fatigue case";
                 return Err(input(name, shorten(value), problem, "run `perilife fracture` on it, or remove the section"));
             }

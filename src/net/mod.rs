@@ -8,6 +8,7 @@
 pub mod dual_horizon;
 pub mod equilibrium;
 pub mod grid;
+pub mod levelled;
 pub mod read;
 pub mod refinement;
 pub mod rigid;

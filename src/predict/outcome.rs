@@ -12,6 +12,7 @@ crate::kinds! {
         Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
         LeftPlate = "left_plate": "every crack tip has left the plate",
         EnteredHole = "entered_hole": "the last crack tip ran into a hole",
+        LeftRefinement = "left_refinement": "a crack tip came to the rim of the finest level of points: the refined region is too small",
         NothingAges = "nothing_ages": "no bond is left that fatigue can spend",
         RunOut = "run_out": "cycles_max was reached",
         NoConvergence = "no_convergence": "the equilibrium solver did not converge",

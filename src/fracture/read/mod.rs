@@ -59,7 +59,7 @@ use crate::{material, specimen};
 pub const SECTIONS: &[&str] = &["specimen", "material", "model", "loading", "supports", "damage", "refinement", "micro_cracks"];
 
 /// Sections that only a scene file has.
-pub const SCENE_SECTIONS: &[&str] = &["damage", "refinement", "micro_cracks"];
+pub const SCENE_SECTIONS: &[&str] = &["damage", "micro_cracks"];
 
 impl Scene {
     /// Reads a scene file; `overrides` are `section.key=value`.
