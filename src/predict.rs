@@ -175,7 +175,7 @@ pub fn run(
             newly.extend(aside);
             equilibrium.broke(body, &bonds, &newly);
             let may_foresee = counting && !overloaded && are_within(equilibrium.window(), body, &near_limit);
-            let around = Around { body: body, bonds: &bonds, tips: &tips, watched: &near };
+            let around = Around { body, bonds: &bonds, tips: &tips, watched: &near };
             match control.settle(&mut equilibrium, around, &newly, may_foresee, &mut displacement) {
                 Ok(None) => {}
                 Ok(Some(more)) => (solves, iterations) = (solves + 1, iterations + more),

@@ -9,6 +9,7 @@ use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection,
 use crate::error::{Result, input};
 use crate::input::{LENGTH, number, slice};
 use crate::material::Material;
+use crate::net::dual_horizon::regions::Area;
 use crate::net::{Arrangement, Refinement, read};
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
@@ -171,16 +172,18 @@ pub fn round_mm(metres: f64) -> f64 {
     (metres / MM * 1e6).round() / 1e6
 }
 
-/// The bond law can represent the material, and its choices go together.
-pub(super) fn check_law(material: &Material, model: &Model) -> Result<()> {
+/// The bond law can represent the material, and its choices go together; the levels of points do with its horizon.
+pub(super) fn check_law(specimen: &Specimen, material: &Material, model: &Model) -> Result<()> {
     match model.method {
         Method::Handbook => Ok(()),
         Method::Peridynamics => {
             if model.arrangement != Arrangement::Lattice && model.bond_law.kind == BondLawKind::StateBased {
-                let problem = format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
+                let problem =
+                    format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
                 let remedy = "use bond_based or two_parameter, or discretisation = \"lattice\"";
                 return Err(input("model.bond_law", format!("\"{}\"", model.bond_law.kind), problem, remedy));
             }
+            Area::all(specimen, model.refinement.as_ref(), model.horizon_ratio)?;
             stencil::check(&model.bond_law, material)
         }
     }

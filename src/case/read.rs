@@ -82,7 +82,7 @@ impl Case {
             Some(source) => case.law = source,
             None => {}
         }
-        model::check_law(&case.material, &case.model)?;
+        model::check_law(&case.specimen, &case.material, &case.model)?;
         case.warnings.extend(yield_line(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
@@ -102,7 +102,7 @@ impl Case {
             keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
         }
         law::adopt(&mut self, record)?;
-        model::check_law(&self.material, &self.model)?;
+        model::check_law(&self.specimen, &self.material, &self.model)?;
         let lines = law_lines(&self)?;
         self.warnings.extend(lines);
         Ok(self)

@@ -1,8 +1,8 @@
 //! Loads and supports of a scene on the points of its net.
 
-use crate::net::Net;
 use super::scene::{Action, Region, Scene};
 use crate::error::{Result, input_missing};
+use crate::net::Net;
 use crate::specimen::geometry::bounding_box;
 use crate::specimen::{Edge, Point};
 

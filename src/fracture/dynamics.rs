@@ -15,10 +15,10 @@ use super::bonds::BondState;
 use super::boundary::{Boundary, Held};
 use super::interaction::{Damaging, Interaction, Reaction};
 use super::log::Log;
-use crate::net::Net;
 use super::outcome::{HistoryRow, SceneEnd};
 use super::{SceneObserver, SceneProgress};
 use crate::error::{Error, Result, input};
+use crate::net::Net;
 
 /// Share of the stability bound that the program's own step takes. The energy of velocity Verlet wavers with the square of the
 /// step: a plate torn in two (50 mm, spacing 1 mm, 8 m/s) has 0.27 to 0.34 % of the work astray for a moment, by law.

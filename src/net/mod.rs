@@ -14,8 +14,8 @@ pub mod refinement;
 pub mod rigid;
 pub mod stiffness;
 
-pub use grid::PointGrid;
 pub use dual_horizon::Ask;
+pub use grid::PointGrid;
 pub use refinement::{Arrangement, RefinedRegion, Refinement};
 
 use rayon::prelude::*;

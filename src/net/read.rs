@@ -88,8 +88,7 @@ fn band(ends: [[f64; 2]; 2], width: Option<f64>, path: &str, specimen: &Specimen
     let high = [from[0].max(to[0]) + half, from[1].max(to[1]) + half];
     let [plate_low, plate_high] = bounding_box(&specimen.outline);
     if !overlap(low, high, plate_low, plate_high) {
-        let problem =
-            format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
+        let problem = format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
         return Err(input_missing(&key, problem, "move it onto the plate"));
     }
     Ok(RefinedRegion::Band { from, to, width })

@@ -8,8 +8,9 @@ use faer::sparse::{SparseColMat, Triplet};
 use super::{Net, NetBond};
 use crate::error::{Error, Result};
 
-/// Share of the largest diagonal entry that is added to all, so that points and fragments without hold leave the factor definite.
-const SHIFT: f64 = 1e-10;
+/// Shares of the largest diagonal entry that are added to all, so that points and fragments without hold leave the factor
+/// definite: the smaller the better it stands for the plate; the larger where round-off leaves no factor with the smaller.
+const SHIFTS: [f64; 2] = [1e-13, 1e-10];
 
 /// Stiffness between the free unknowns.
 pub struct Stiffness {
@@ -69,11 +70,21 @@ impl Stiffness {
             }
         }
         let largest = self.diagonal.iter().map(|&slot| values[slot as usize]).fold(0.0, f64::max);
-        self.diagonal.iter().for_each(|&slot| values[slot as usize] += SHIFT * largest);
-        let factor = Llt::try_new_with_symbolic(self.symbolic.clone(), self.matrix.as_ref(), faer::Side::Lower)
-            .map_err(|e| Error::Mechanics(format!("the stiffness matrix is not positive definite: {e:?}")))?;
-        self.factor = Some(factor);
-        Ok(())
+        let mut added = 0.0;
+        let mut trouble = None;
+        for shift in SHIFTS {
+            let values = self.matrix.val_mut();
+            self.diagonal.iter().for_each(|&slot| values[slot as usize] += (shift - added) * largest);
+            added = shift;
+            match Llt::try_new_with_symbolic(self.symbolic.clone(), self.matrix.as_ref(), faer::Side::Lower) {
+                Ok(factor) => {
+                    self.factor = Some(factor);
+                    return Ok(());
+                }
+                Err(e) => trouble = Some(e),
+            }
+        }
+        Err(Error::Mechanics(format!("the stiffness matrix is not positive definite: {trouble:?}")))
     }
 
     /// Applies the inverse of the last factorised stiffness to a vector of all unknowns; 0 where they are held.

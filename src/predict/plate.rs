@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use super::curve::Row;
 use super::Snapshot;
+use super::curve::Row;
 use crate::body::lattice::LANES;
 use crate::body::{Body, Bond};
 use crate::case::Model;

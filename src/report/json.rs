@@ -141,11 +141,12 @@ fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> St
         (false, false) => reason,
     };
     let (asked, actual) = (case.model.spacing / MM, prediction.figures.spacing / MM);
-    if key == "spacing_mm" && ((asked - actual) / actual).abs() > 1e-9 {
-        return format!("{source}; moved from {asked:.6} to {actual:.6} so that it divides the width");
-    }
-    if key == "spacing_mm" && case.model.refinement.is_some() {
-        return format!("{source}; that of the finest level, on which cracks grow");
+    if key == "spacing_mm" {
+        let finest = if case.model.refinement.is_some() { "; that of the finest level, on which cracks grow" } else { "" };
+        let is_moved = ((asked - actual) / actual).abs() > 1e-9;
+        let moved =
+            if is_moved { format!("; moved from {asked:.6} to {actual:.6} so that it divides the width") } else { String::new() };
+        return format!("{source}{finest}{moved}");
     }
     if key == "symmetry" {
         return format!("{source}; {}", solved_part(prediction));

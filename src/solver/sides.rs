@@ -6,10 +6,10 @@ use super::adaptive_dynamic_relaxation::DynamicRelaxation;
 use super::conjugate_gradient::MultigridSolver;
 use super::direct::DirectSolver;
 use super::field::{self, Layout};
+use super::levels::Levels;
 use super::product::{Into, Product};
 use super::window::WindowSolver;
 use super::window::held_rim::HeldRim;
-use super::levels::Levels;
 use super::{Balance, Focus, LinearSolver, SolverKind, System};
 use crate::body::{Body, Bond};
 use crate::error::Result;
@@ -131,7 +131,18 @@ impl<const N: usize> Sides<N> {
         let levels = Levels::new(plate, body, bonds, load);
         let solver: Box<dyn LinearSolver<N>> = Box::new(WindowSolver::of_whole(levels, kind == SolverKind::Direct));
         let f = layout.zeros();
-        Sides { product, solver, f, grips, u: vec![0.0; size], work: 0.0, rim: None, is_foreseen: false, has_fast_solves: true, points }
+        Sides {
+            product,
+            solver,
+            f,
+            grips,
+            u: vec![0.0; size],
+            work: 0.0,
+            rim: None,
+            is_foreseen: false,
+            has_fast_solves: true,
+            points,
+        }
     }
 }
 

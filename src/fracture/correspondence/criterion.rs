@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use crate::error::{Result, input, input_missing};
 use crate::fracture::bonds::BondState;
-use crate::net::Net;
 use crate::fracture::scene::{DamageLaw, Scene};
 use crate::material::{Material, Plane};
+use crate::net::Net;
 
 /// Without time, bonds loaded as much as this share of the most loaded one break together with it; the others wait for the
 /// next equilibrium, in which a crack beside them may have relieved them. Else all bonds of a broad field of nearly even stress,

@@ -17,15 +17,15 @@
 
 use super::super::bonds::BondState;
 use super::super::failure::Failure;
-use crate::net::Net;
 use super::super::outcome::SceneEnd;
 use super::super::pieces::is_separated;
 use super::account::{Account, Recorder, State};
 use super::control::Control;
 use super::equilibrium::Equilibrium;
 use super::full_load::FullLoad;
-use crate::net::equilibrium::Shape;
 use crate::error::{Error, Result};
+use crate::net::Net;
+use crate::net::equilibrium::Shape;
 
 /// Settings of path following.
 #[derive(Debug, Clone, Copy, PartialEq)]

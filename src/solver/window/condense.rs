@@ -84,7 +84,11 @@ pub fn condense<const M: usize, A: Assembly<M>>(
 
 /// [`condense`] for any plate.
 #[must_use]
-pub(in crate::solver) fn condense_plate<const M: usize, P: Plate<M>>(plate: &P, window: &[u32], pins: &[usize]) -> Option<Condensed> {
+pub(in crate::solver) fn condense_plate<const M: usize, P: Plate<M>>(
+    plate: &P,
+    window: &[u32],
+    pins: &[usize],
+) -> Option<Condensed> {
     let mut kept = vec![false; plate.places()];
     window.iter().for_each(|&place| kept[place as usize] = true);
     let mut ground = vec![false; plate.places()];
