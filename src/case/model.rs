@@ -4,9 +4,10 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::choices::{Choices, Method};
-use super::{HORIZON_RATIO, Model};
+use super::{Case, HORIZON_RATIO, Model};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
 use crate::error::{Result, input};
+use crate::fatigue::Ageing;
 use crate::input::{LENGTH, number, slice};
 use crate::material::Material;
 use crate::net::dual_horizon::regions::Area;
@@ -172,19 +173,24 @@ pub fn round_mm(metres: f64) -> f64 {
     (metres / MM * 1e6).round() / 1e6
 }
 
-/// The bond law can represent the material, and its choices go together; the levels of points do with its horizon.
-pub(super) fn check_law(specimen: &Specimen, material: &Material, model: &Model) -> Result<()> {
-    match model.method {
-        Method::Handbook => Ok(()),
-        Method::Peridynamics => {
-            if model.arrangement != Arrangement::Lattice && model.bond_law.kind == BondLawKind::StateBased {
-                let problem =
-                    format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
-                let remedy = "use bond_based or two_parameter, or discretisation = \"lattice\"";
-                return Err(input("model.bond_law", format!("\"{}\"", model.bond_law.kind), problem, remedy));
-            }
-            Area::all(specimen, model.refinement.as_ref(), model.horizon_ratio)?;
-            stencil::check(&model.bond_law, material)
+/// The bond law can represent the material, and its choices go together; levels of points go with law, horizon and ageing.
+pub(super) fn check_law(case: &Case) -> Result<()> {
+    let (model, law) = (&case.model, &case.model.bond_law);
+    if model.method == Method::Handbook {
+        return Ok(());
+    }
+    if model.arrangement != Arrangement::Lattice {
+        if law.kind == BondLawKind::StateBased {
+            let problem = format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
+            let remedy = "use bond_based or two_parameter, or discretisation = \"lattice\"";
+            return Err(input("model.bond_law", format!("\"{}\"", law.kind), problem, remedy));
+        }
+        if case.fatigue.ageing == Ageing::Everywhere {
+            let problem = format!("ages all bonds, and with \"{}\" those of the finest level alone can break", model.arrangement);
+            let remedy = "use \"crack_tip\", or model.discretisation = \"lattice\"";
+            return Err(input("fatigue.ageing", format!("\"{}\"", case.fatigue.ageing), problem, remedy));
         }
     }
+    Area::all(&case.specimen, model.refinement.as_ref(), model.horizon_ratio)?;
+    stencil::check(law, &case.material)
 }

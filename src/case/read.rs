@@ -9,7 +9,8 @@ use super::{Case, LAW_KEYS, LawSource, Method, fatigue, law, model};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::finite_horizon::life_shortfall;
-use crate::input::{Document, shorten};
+use crate::input::{Document, OF_SCENES, shorten, value_at};
+use crate::loading::LoadingKind;
 use crate::units::MPA;
 use crate::{loading, material, specimen};
 
@@ -82,7 +83,7 @@ impl Case {
             Some(source) => case.law = source,
             None => {}
         }
-        model::check_law(&case.specimen, &case.material, &case.model)?;
+        model::check_law(&case)?;
         case.warnings.extend(yield_line(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
@@ -102,15 +103,24 @@ impl Case {
             keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
         }
         law::adopt(&mut self, record)?;
-        model::check_law(&self.specimen, &self.material, &self.model)?;
+        model::check_law(&self)?;
         let lines = law_lines(&self)?;
         self.warnings.extend(lines);
         Ok(self)
     }
 }
 
-/// Only known sections, each a table.
+/// Only known sections, each a table; a scene is told by the kind of its load, whatever else is not right for a case in it.
 fn check_sections(table: &Table) -> Result<()> {
+    const KIND: &str = "loading.kind";
+    let kind = table.get("loading").and_then(|loading| value_at(loading, "kind")).and_then(Value::as_str);
+    if let Some(kind) = kind
+        && OF_SCENES.iter().any(|(key, names)| *key == KIND && names.contains(&kind))
+    {
+        let problem = "belongs to fracture scenes, not to a fatigue case";
+        let known = LoadingKind::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
+        return Err(input(KIND, format!("\"{kind}\""), problem, format!("run `perilife fracture`, or use one of {known}")));
+    }
     for (name, value) in table {
         match name.as_str() {
             known if SECTIONS.contains(&known) => {}

@@ -157,7 +157,8 @@ impl Equilibrium {
     }
 
     /// Equilibrium of a plate of several levels, `body` being its finest points, under `load` times its unit load (Pa or N). Only
-    /// [`SolverKind::Window`] and [`SolverKind::Direct`] know such plates; every other kind is taken for the first.
+    /// [`SolverKind::Window`] and [`SolverKind::Direct`] know such plates, and the latter solves the whole plate after every break;
+    /// every other kind is taken for the first.
     ///
     /// Displacements are those of the body in its layout, and behind them those of all other points, unknown by unknown, in the
     /// order of their numbers ([`Levelled::ids`]).

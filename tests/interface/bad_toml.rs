@@ -245,7 +245,7 @@ const BAD: &[Bad] = &[
     panel("spacing_mm = 1.0", "discretisation = \"variable_horizon\"", &["model.discretisation", "scenes", "perilife fracture"]),
     levelled("levels = 1", "levels = 9", &["refinement.regions[0].levels", "9", "1 to 4"]),
     levelled("levels = 1", "level = 1", &["refinement.regions[0].level", "not a known key"]),
-    levelled("around_flaws_mm = 9", "", &["refinement.regions[0]", "box_mm", "around_flaws_mm"]),
+    levelled("around_flaws_mm = 9, levels", "levels", &["refinement.regions[0]", "box_mm", "around_flaws_mm"]),
     levelled("around_flaws_mm = 9", "box_mm = [[90, 0], [99, 9]]", &["refinement.regions[0].box_mm", "outside the plate"]),
     levelled("spacing_mm = 2.0", "solver = \"multigrid\"", &["model.solver", "multigrid", "dual_horizon", "window"]),
     levelled(
@@ -253,6 +253,7 @@ const BAD: &[Bad] = &[
         "bond_law = \"state_based\"",
         &["model.bond_law", "state_based", "dual_horizon", "two_parameter"],
     ),
+    levelled("a = 6450.0", "a = 6450.0\nageing = \"everywhere\"", &["fatigue.ageing", "everywhere", "dual_horizon", "crack_tip"]),
     levelled("spacing_mm = 2.0", "horizon_ratio = 1.5", &["model.horizon_ratio", "do not overlap"]),
     levelled("spacing_mm = 2.0", "spacing_mm = 20.0", &["model.spacing_mm", "20", "fewer than 8 points"]),
     plate(

@@ -9,6 +9,7 @@ use perilife::solver::field::Layout;
 use perilife::specimen::Point;
 use perilife::specimen::geometry::{distance, distance_to_segment};
 use perilife::state::Bonds;
+use perilife::stress_intensity::cracked_plate::CrackedPlate;
 
 use crate::plates::{case, try_case};
 
@@ -89,6 +90,21 @@ fn strain_at_the_tip_is_that_of_the_fine_panel() {
         });
         println!("{name}: {} bonds, {:.3} % of the largest stretch", fine.len(), 100.0 * off / largest);
         assert!(fine.len() > 50 && off < 5e-3 * largest, "{name}: {off:.2e} of {largest:.2e}");
+    }
+}
+
+/// On turned rows of points, where plate and lattice have different axes.
+#[test]
+fn turned_rows_do_no_harm() {
+    let turned = ["model.lattice_angle_deg=20", "stop.crack_length_mm=16"];
+    let fine = run(&case(PANEL, &[&["model.spacing_mm=1"], &turned[..]].concat()));
+    let refined = run(&case(PANEL, &levels(TWO[0], TWO[1], &turned)));
+    let ratio = refined.life_cycles() / fine.life_cycles();
+    println!("life {ratio:.4}, {} and {} points", refined.figures.points, fine.figures.points);
+    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+    let last = |run: &Prediction| run.curve.last().unwrap().tips.iter().map(|tip| tip.position).collect::<Vec<Point>>();
+    for (a, b) in last(&fine).into_iter().zip(last(&refined)) {
+        assert!(distance(a, b) < fine.figures.horizon, "{a:?} and {b:?}");
     }
 }
 
@@ -219,4 +235,7 @@ fn cracks_stay_on_the_finest_level() {
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().contains("refinement.regions") && error.to_string().contains("crack tip"), "{error}");
     assert!(try_case(PANEL, &levels(TWO[0], TWO[1], &["model.bond_law=state_based"])).is_err());
+    // K is read off a lattice; so that nobody gets that of the coarsest spacing.
+    let levelled = case(PANEL, &levels(TWO[0], TWO[1], &[]));
+    assert_eq!(CrackedPlate::new(&levelled).err().map(|error| error.exit_code()), Some(2));
 }
