@@ -42,7 +42,7 @@ impl ForwardModel for PdModel<'_> {
         if done.stop == StopReason::LeftRefinement {
             return Err(Error::Mechanics(format!(
                 "{}: the crack left the finest level of points at a length of {:.3} mm; give refinement.regions that hold its way up \
-                 to the last reading and three horizons on",
+                 to the last reading and four horizons on",
                 self.case.name,
                 done.crack_length_final() / crate::units::MM
             )));

@@ -97,10 +97,10 @@ impl Plate {
     #[must_use]
     pub fn left_refinement(&self, tip: Point) -> String {
         format!(
-            "the crack tip at {} has come within a horizon ({:.4} mm) of the rim of the finest level, where bonds do not break: the \
-             run ends there; give refinement.regions that hold the whole way of the crack, up to the edges it shall reach",
+            "the crack tip at {} has come too near to the rim of the finest level, where bonds do not break: the run ends there; give \
+             refinement.regions that hold the whole way of the crack and four horizons ({:.4} mm) on, or up to the edge it shall reach",
             words(tip),
-            1e3 * self.body.horizon()
+            4e3 * self.body.horizon()
         )
     }
 

@@ -8,6 +8,7 @@ use crate::case::Case;
 use crate::fatigue::FatigueSettings;
 use crate::fatigue::ageing::AgeingBond;
 use crate::fatigue::crack_tip::{CrackTip, TipState};
+use crate::net::levelled::clear_way;
 use crate::specimen::Point;
 
 /// Reasons that show before a block: the crack is too long for its load, no tip is left, or nothing ages.
@@ -35,10 +36,10 @@ pub(super) fn before_block(
     ageing.is_empty().then_some(StopReason::NothingAges)
 }
 
-/// Where an active tip has come so near the rim of the finest level that bonds of its ageing zone cannot break, m; `None` in a
-/// plate of one level.
+/// Where an active tip has come so near the rim of the finest level that its growth would not be that on fine points, m; `None` in
+/// a plate of one level.
 pub(super) fn at_rim(body: &Body, tips: &[CrackTip], settings: &FatigueSettings) -> Option<Point> {
-    let reach = (0.5 + settings.zone_radius_horizons) * body.horizon();
+    let reach = clear_way(body.horizon(), settings.zone_radius_horizons);
     tips.iter().find(|tip| tip.is_active() && body.is_near_rim(tip.position, reach)).map(|tip| tip.position)
 }
 

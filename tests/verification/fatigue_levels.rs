@@ -9,7 +9,7 @@ use perilife::solver::field::Layout;
 use perilife::specimen::Point;
 use perilife::specimen::geometry::{distance, distance_to_segment};
 use perilife::state::Bonds;
-use perilife::stress_intensity::cracked_plate::CrackedPlate;
+use perilife::stress_intensity::CrackedPlate;
 
 use crate::plates::{case, try_case};
 
@@ -27,8 +27,8 @@ fn run(case: &Case) -> Prediction {
 }
 
 /// Coarsest spacing and region of two levels, and of three, both with 1 mm around the way of the crack of [`PANEL`].
-const TWO: [&str; 2] = ["model.spacing_mm=2", "refinement.regions=[{band_mm=[[-40,0],[40,0]],width_mm=24,levels=1}]"];
-const THREE: [&str; 2] = ["model.spacing_mm=4", "refinement.regions=[{band_mm=[[-40,0],[40,0]],width_mm=24,levels=2}]"];
+const TWO: [&str; 2] = ["model.spacing_mm=2", "refinement.regions=[{band_mm=[[-44,0],[44,0]],width_mm=24,levels=1}]"];
+const THREE: [&str; 2] = ["model.spacing_mm=4", "refinement.regions=[{band_mm=[[-44,0],[44,0]],width_mm=24,levels=2}]"];
 
 #[test]
 fn refined_panels_live_as_long_as_the_fine_one() {
@@ -179,7 +179,7 @@ fn differ(a: &Prediction, b: &Prediction) -> f64 {
 #[test]
 fn a_slant_crack_goes_the_same_way() {
     let fine = run(&case(SLANT, &["model.spacing_mm=1"]));
-    let region = "refinement.regions=[{box_mm=[[-32,-14],[32,14]],levels=1}]";
+    let region = "refinement.regions=[{box_mm=[[-32,-20],[32,20]],levels=1}]";
     let refined = run(&case(SLANT, &levels("model.spacing_mm=2", region, &[])));
     assert_eq!((fine.stop, refined.stop), (StopReason::Severed, StopReason::Severed));
     let way = |run: &Prediction, tip: usize| run.curve.iter().map(|row| row.tips[tip].position).collect::<Vec<Point>>();
@@ -227,8 +227,8 @@ fn cracks_stay_on_the_finest_level() {
     let share = (reached - at[0].crack_length) / (at[1].crack_length - at[0].crack_length);
     let cycles = at[0].cycles + share * (at[1].cycles - at[0].cycles);
     println!("rim reached at {:.2} mm, life {:.4} of the fine panel's to there", 1e3 * reached, short.life_cycles() / cycles);
-    // Right up to the rim.
-    assert!((short.life_cycles() / cycles - 1.0).abs() < 0.015, "{} and {cycles}", short.life_cycles());
+    // Right up to where it ends.
+    assert!((short.life_cycles() / cycles - 1.0).abs() < 0.01, "{} and {cycles}", short.life_cycles());
 
     let beside = "refinement.regions=[{box_mm=[[20,-9],[40,9]],levels=1}]";
     let error = predict(&case(PANEL, &levels(TWO[0], beside, &[])), &Silent).unwrap_err();
