@@ -7,16 +7,18 @@ mod law_source;
 pub mod model;
 mod read;
 
-pub use choices::{Choices, Discretisation, Failure, Method};
+pub use choices::{Choices, Failure, Method};
 pub use law_source::{LAW_KEYS, fitted_record};
 pub use read::SECTIONS;
 
+use crate::body::lattice::fitting_spacing;
 use crate::bond_law::BondLaw;
 use crate::calibration::record::FittedRecord;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
 use crate::loading::Loading;
 use crate::material::Material;
+use crate::net::{Arrangement, Refinement};
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
 
@@ -31,16 +33,40 @@ pub struct Model {
     pub method: Method,
     /// Bonds.
     pub bond_law: BondLaw,
-    /// Spacing asked for, m; the body takes the nearest one that fits.
+    /// Spacing asked for, m; the body takes the nearest one that fits. That of the finest level, on which cracks grow, where
+    /// there are several.
     pub spacing: f64,
     /// Horizon over spacing, m = δ/Δ.
     pub horizon_ratio: f64,
     /// Angle of the lattice rows against x, radians.
     pub lattice_angle: f64,
+    /// How points lie.
+    pub arrangement: Arrangement,
+    /// Where finer points lie, in an arrangement of several levels.
+    pub refinement: Option<Refinement>,
     /// Equilibrium solver.
     pub solver: SolverKind,
     /// Use of mirror symmetry.
     pub symmetry: Symmetry,
+}
+
+impl Model {
+    /// Finest spacings in a coarsest one.
+    fn coarsening(&self) -> f64 {
+        self.refinement.as_ref().map_or(1.0, |refinement| 2.0_f64.powi(refinement.deepest() as i32))
+    }
+
+    /// Spacing of the coarsest level asked for, m.
+    #[must_use]
+    pub fn coarsest_spacing(&self) -> f64 {
+        self.coarsening() * self.spacing
+    }
+
+    /// The spacing that the body will have, m: the coarsest is moved to the nearest one that divides the gross width.
+    #[must_use]
+    pub fn fitting_spacing(&self, specimen: &Specimen) -> f64 {
+        fitting_spacing(specimen, self.coarsest_spacing(), self.lattice_angle) / self.coarsening()
+    }
 }
 
 /// When a run stops at the latest.

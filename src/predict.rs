@@ -11,6 +11,7 @@ pub mod memory;
 mod outcome;
 mod overload;
 pub mod plastic_zone;
+pub mod plate;
 pub mod residual_strength;
 mod snapshot;
 mod start;
@@ -19,11 +20,10 @@ mod tip_end;
 
 use std::time::Instant;
 
-pub use outcome::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
+pub use outcome::{CurvePoint, Observer, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 
-pub use snapshot::grid;
+pub use crate::net::PointGrid;
 
-use crate::body::lattice::fitting_spacing;
 use crate::body::{Body, Bond};
 use crate::case::{Case, Method};
 use crate::error::{Error, Result};
@@ -33,11 +33,12 @@ use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::fatigue::remaining_life::BondLife;
 use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
-use crate::solver::{Equilibrium, Focus};
+use crate::solver::Focus;
 use crate::state::Bonds;
 use curve::Track;
 use end_of_life::first_end;
 use overload::{are_within, overstretched, stretched};
+use plate::Plate;
 use snapshot::Album;
 use start::Start;
 use tip_end::{break_through, retire_tips};
@@ -82,37 +83,39 @@ pub fn run(
     let started = Instant::now();
     // Whatever a run measures in spacings and horizons, it measures in those that its body has.
     let mut case = case.clone();
-    case.model.spacing = fitting_spacing(&case.specimen, case.model.spacing, case.model.lattice_angle);
+    case.model.spacing = case.model.fitting_spacing(&case.specimen);
     let case = &case;
     let (settings, model) = (&case.fatigue, &case.model);
 
     let start = Start::of(case)?;
     let specimen = &start.specimen;
-    let body = Body::build(specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
+    let plate = Plate::build(specimen, &case.specimen, &case.material, model)?;
+    let body = &plate.body;
     let law = law(body.horizon())?;
     let share = strain_share(&case.loading, settings);
     let threshold = share * threshold_strain(settings, &case.material, body.horizon()) / case.loading.range_share();
 
-    let mut bonds = Bonds::new(&body);
+    let mut bonds = Bonds::new(body);
     let mut life = BondLife::whole(bonds.multiplier.len());
-    let mut tips = start.tips(&body);
+    let mut tips = start.tips(body);
     let mut displacement = Vec::new();
-    if start::cuts_in_two(&body, &bonds, case) || set_aside(&body, &mut bonds, &body.pre_cut) == Cut::Severed {
+    if start::cuts_in_two(body, &bonds, case) || set_aside(body, &mut bonds, &body.pre_cut) == Cut::Severed {
         return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
     }
-    recorder.start(&body, &bonds);
-    let mut equilibrium = Equilibrium::new(model.solver, model.symmetry, &body, &bonds, case.loading.maximum);
+    recorder.start(body, &bonds);
+    let mut equilibrium = plate.equilibrium(model, &bonds, case.loading.maximum);
     let mut control = BlockControl::new(&settings.block, law.p, tips.len());
     if control.foresees() {
         equilibrium = equilibrium.foreseeing();
     }
-    let mut iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;
+    let mut iterations = equilibrium.solve(body, &bonds, &mut displacement)?;
     let mut solves = 1;
 
     let mut track = Track::new(case, start.records(&tips), equilibrium.work());
     let end = first_end(case);
     let mut album = Album::default();
     let mut broken_bonds = 0;
+    let mut warnings = plate.warnings();
     // Bonds that come near the critical stretch, also away from the tips.
     let mut near_limit: Vec<Bond> = Vec::new();
     let stop = loop {
@@ -120,32 +123,36 @@ pub fn run(
         let counting = start.is_over(&tips);
         if counting && track.begin() {
             tips.iter_mut().for_each(CrackTip::leave_rails);
-            let (picture, more) = equilibrium.picture(&body, &bonds)?;
+            let (picture, more) = equilibrium.picture(body, &bonds)?;
             iterations += more;
-            album.open(&body, &bonds, &picture, track.last());
+            album.open(&plate, &bonds, &picture, track.last());
         }
 
         // Which bonds age, and by how much strain a cycle.
         let near = if counting {
-            candidates(&body, &bonds, &tips, settings)
+            candidates(body, &bonds, &tips, settings)
         } else {
-            candidates(&body, &bonds, &start.on_the_way(&tips), settings)
+            candidates(body, &bonds, &start.on_the_way(&tips), settings)
         };
         if counting {
-            retire_tips(&mut tips, &body, &case.specimen, &near, settings.zone_radius_horizons);
+            retire_tips(&mut tips, body, &case.specimen, &near, settings.zone_radius_horizons);
         }
         near_limit.retain(|&bond| bonds.is_intact(bond));
         let watched: Vec<Bond> = near.iter().chain(&near_limit).copied().collect();
-        iterations += equilibrium.reach(&body, &bonds, &watched, &focus(&tips, &body, settings), &mut displacement)?;
-        let mut ageing = ageing_bonds(&body, &near, &displacement, &tips, settings, (share, threshold));
-        control.correct(&equilibrium, &body, &tips, &mut ageing);
+        iterations += equilibrium.reach(body, &bonds, &watched, &focus(&tips, body, settings), &mut displacement)?;
+        let mut ageing = ageing_bonds(body, &near, &displacement, &tips, settings, (share, threshold));
+        control.correct(&equilibrium, body, &tips, &mut ageing);
         if let Some(reason) = stop::before_block(case, end, &track, &tips, &ageing) {
             break reason;
+        }
+        if let Some(tip) = stop::at_rim(body, &tips, settings) {
+            warnings.push(plate.left_refinement(tip));
+            break StopReason::LeftRefinement;
         }
 
         // Spend life over the block; bonds at the end of theirs break.
         // A tip within a spacing of an edge or hole breaks through at once: the lattice cannot resolve what is left.
-        let through = break_through(&mut tips, &body, &bonds, &case.specimen);
+        let through = break_through(&mut tips, body, &bonds, &case.specimen);
         let block = if counting { &settings.block } else { &Block::NEXT_BREAK };
         let (cycles, mut spent) = if through.is_empty() { life.next_block(&law, block, &ageing) } else { (0.0, through) };
         if track.cycles_since_start() + cycles > case.stop.cycles_max {
@@ -160,15 +167,15 @@ pub fn run(
         let mut newly = spent.clone();
         let mut overloaded = false;
         let outcome = loop {
-            newly.iter().for_each(|&bond| bonds.cut(&body, bond));
-            let aside = match set_aside(&body, &mut bonds, &newly) {
+            newly.iter().for_each(|&bond| bonds.cut(body, bond));
+            let aside = match set_aside(body, &mut bonds, &newly) {
                 Cut::Severed => break Some(StopReason::Severed),
                 Cut::Whole(aside) => aside,
             };
             newly.extend(aside);
-            equilibrium.broke(&body, &bonds, &newly);
-            let may_foresee = counting && !overloaded && are_within(equilibrium.window(), &body, &near_limit);
-            let around = Around { body: &body, bonds: &bonds, tips: &tips, watched: &near };
+            equilibrium.broke(body, &bonds, &newly);
+            let may_foresee = counting && !overloaded && are_within(equilibrium.window(), body, &near_limit);
+            let around = Around { body, bonds: &bonds, tips: &tips, watched: &near };
             match control.settle(&mut equilibrium, around, &newly, may_foresee, &mut displacement) {
                 Ok(None) => {}
                 Ok(Some(more)) => (solves, iterations) = (solves + 1, iterations + more),
@@ -176,9 +183,9 @@ pub fn run(
                 Err(_) if overloaded => break Some(StopReason::Severed),
                 Err(_) => break Some(StopReason::NoConvergence),
             }
-            newly = overstretched(&body, &bonds, case, &displacement, &equilibrium);
+            newly = overstretched(body, &bonds, case, &displacement, &equilibrium);
             if equilibrium.is_whole() {
-                near_limit = stretched(&body, &bonds, case, &displacement, equilibrium.window());
+                near_limit = stretched(body, &bonds, case, &displacement, equilibrium.window());
             }
             overloaded |= !newly.is_empty();
             if overloaded && equilibrium.work() > GIVEN_WAY * work_before {
@@ -192,15 +199,15 @@ pub fn run(
 
         // Follow the tips and record.
         broken_bonds += spent.len();
-        let shares = share_out(&body, &tips, &spent);
-        tips.iter_mut().zip(&shares).for_each(|(tip, broken)| tip.advance(&body, &bonds, &case.specimen, broken));
+        let shares = share_out(body, &tips, &spent);
+        tips.iter_mut().zip(&shares).for_each(|(tip, broken)| tip.advance(body, &bonds, &case.specimen, broken));
         let work = if outcome.is_none() { equilibrium.work() } else { f64::NAN };
         track.record(start.records(&tips), broken_bonds, work, equilibrium.is_foreseen() && outcome.is_none());
         recorder.block(&ageing, &spent, track.last().crack_length);
         if counting && album.is_due(track.last()) && outcome.is_none() && !equilibrium.is_foreseen() {
-            let (picture, more) = equilibrium.picture(&body, &bonds)?;
+            let (picture, more) = equilibrium.picture(body, &bonds)?;
             iterations += more;
-            album.look(&body, &bonds, &picture, track.last());
+            album.look(&plate, &bonds, &picture, track.last());
         }
         let going_on = observer.block_done(&track.progress(case));
         if let Some(reason) = outcome.or_else(|| stop::after_block(case, end, &track)) {
@@ -213,12 +220,12 @@ pub fn run(
 
     let stop = stop::settled(end, &track, stop);
     if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
-        iterations += equilibrium.complete(&body, &bonds, &mut displacement)?;
+        iterations += equilibrium.complete(body, &bonds, &mut displacement)?;
         track.close(equilibrium.work());
     }
-    album.finish(&body, &bonds, &displacement, track.last());
-    let mut warnings = track.warnings(case, &body);
-    let (curve, zero) = track.into_curve(case, &body, end);
+    album.finish(&plate, &bonds, &displacement, track.last());
+    warnings.extend(track.warnings(case, body));
+    let (curve, zero) = track.into_curve(case, body, end);
     album.count_from(zero, &curve);
     warnings.extend(plastic_zone::warnings(case, &curve));
     // Those since N = 0, one row each.
@@ -227,11 +234,11 @@ pub fn run(
         curve,
         stop,
         snapshots: album.snapshots,
-        grid: snapshot::grid(&body),
+        grid: plate.grid(),
         figures: RunFigures {
-            points: body.points.len(),
-            points_solved: equilibrium.points(&body),
-            bonds: body.bond_count,
+            points: plate.points(),
+            points_solved: equilibrium.points(body),
+            bonds: plate.bonds(),
             blocks,
             solves,
             iterations,

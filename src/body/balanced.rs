@@ -24,6 +24,7 @@ pub mod least_squares;
 use super::Body;
 use super::facets::Facet;
 use super::sharing::Sharing;
+use super::surface_correction::settled;
 use crate::bond_law::stencil::{Stencil, StencilBond};
 use crate::error::{Error, Result};
 use least_squares::{BondGain, Gain, Link, Problem};
@@ -100,8 +101,7 @@ pub(super) fn balance(body: &mut Body, rim: &[Facet], sharing: &Sharing) -> Resu
         )
     })?;
     for (bond, change) in bonds.into_iter().zip(change) {
-        // Round-off must not make regular bonds look irregular.
-        body.multiplier[bond] = if change.abs() < 1e-9 { 1.0 } else { (1.0 + change) as f32 };
+        body.multiplier[bond] = settled(1.0 + change);
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ use crate::specimen::geometry::{bounding_box, distance_to_segment};
 use crate::specimen::{Hole, Load, Point, Specimen, Support};
 
 /// Stiffness of rigid grips over that of the plate.
-const GRIP_STIFFNESS: f32 = 1000.0;
+pub const GRIP_STIFFNESS: f32 = 1000.0;
 
 /// Forces on points at unit nominal load, held components and grips.
 #[derive(Debug, Clone, Default)]
@@ -87,6 +87,19 @@ impl Boundary {
         Ok(boundary)
     }
 
+    /// Loads and supports of a body that is the finest part of a plate of several levels, as far as they act on it: forces at unit
+    /// nominal load, places nearest to where loads act, places held, and places of grips, all in ascending order.
+    #[must_use]
+    pub fn of_finest(
+        forces: Vec<(u32, [f64; 2])>,
+        loaded: Vec<u32>,
+        fixed: Vec<(u32, [bool; 3])>,
+        rigid: Vec<u32>,
+        floating: bool,
+    ) -> Boundary {
+        Boundary { forces, loaded, fixed, rigid, floating, ..Boundary::default() }
+    }
+
     /// Removes the small resultant that sharing out the loads to points has left on a floating plate: the loaded points
     /// take the smallest change of forces (least squares) after which force and moment vanish.
     ///
@@ -133,7 +146,8 @@ impl Boundary {
     }
 
     /// Places within one horizon of a loaded or held place.
-    pub(super) fn no_fail(&self, lattice: &Lattice, horizon: f64) -> Vec<bool> {
+    #[must_use]
+    pub fn no_fail(&self, lattice: &Lattice, horizon: f64) -> Vec<bool> {
         let mut no_fail = vec![false; lattice.places()];
         let reach = (horizon / lattice.spacing).floor() as i32;
         let held = self.fixed.iter().map(|f| f.0).chain(self.clamped.iter().map(|c| c.0)).chain(self.rigid.iter().copied());

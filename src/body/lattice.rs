@@ -104,6 +104,12 @@ impl Lattice {
         Lattice { columns, rows, spacing: 0.5 * self.spacing, origin: self.position_of(-0.25, -0.25), stride, ..self.clone() }
     }
 
+    /// The same lattice with so many places of padding.
+    #[must_use]
+    pub fn padded(&self, padding: usize) -> Lattice {
+        Lattice { padding, stride: self.columns.next_multiple_of(LANES) + 2 * padding, ..self.clone() }
+    }
+
     /// Length of an array over all places, padding included.
     #[must_use]
     pub fn places(&self) -> usize {

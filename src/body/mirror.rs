@@ -11,6 +11,7 @@
 
 use rayon::prelude::*;
 
+use super::beyond::Beyond;
 use super::boundary::Boundary;
 use super::lattice::{LANES, Lattice};
 use super::{Body, Bond};
@@ -254,6 +255,7 @@ impl Part {
             bond_count: 0,
             thickness: whole.thickness,
             mirror,
+            beyond: Beyond::default(),
             lattice,
         };
         for row in 0..rows {

@@ -5,6 +5,7 @@
 //! surface correction acts.
 
 pub mod balanced;
+pub mod beyond;
 pub mod boundary;
 mod couples;
 pub mod facets;
@@ -21,6 +22,7 @@ use crate::bond_law::{BondLaw, SurfaceCorrection};
 use crate::error::{Error, Result};
 use crate::material::Material;
 use crate::specimen::{Point, Specimen};
+use beyond::Beyond;
 use boundary::Boundary;
 use lattice::Lattice;
 use mirror::{Flips, Mirror};
@@ -57,6 +59,8 @@ pub struct Body {
     pub thickness: f64,
     /// Lines of symmetry at which it ends, if it is part of a plate.
     pub mirror: Mirror,
+    /// What it is tied to if it is the finest part of a plate of several levels.
+    pub beyond: Beyond,
 }
 
 impl Body {
@@ -120,6 +124,7 @@ impl Body {
             bond_count,
             thickness: specimen.thickness,
             mirror: Mirror::default(),
+            beyond: Beyond::default(),
         };
         match law.surface_correction {
             SurfaceCorrection::None => {}

@@ -1,8 +1,29 @@
 //! Surface corrections: bonds near a free boundary carry more, since the bonds that the boundary cut off are missing.
 
 use super::Body;
-use crate::bond_law::stencil::plane_stiffness;
+use crate::bond_law::stencil::{Stencil, StencilBond, plane_stiffness};
 use crate::material::Material;
+
+/// Factor by which springs of the stencil fall short of the material's energy `C₁₁ e² V/2` under uniaxial strain e along the rows:
+/// what the sum over the lattice differs from the integral by.
+#[must_use]
+pub fn interior_gain(stencil: &Stencil, c11: f64, volume: f64) -> f64 {
+    let interior: f64 = stencil.bonds.iter().map(|bond| 2.0 * shares(bond)[0]).sum();
+    0.5 * c11 * volume / interior
+}
+
+/// Energy that each end of a bond stores under unit strain along rows and columns: half of the bond's.
+fn shares(bond: &StencilBond) -> [f64; 2] {
+    let [nx, ny] = bond.normal;
+    let square = bond.length * bond.length;
+    [nx, ny].map(|n| 0.25 * square * (bond.k_n * n.powi(4) + bond.k_t * nx * nx * ny * ny))
+}
+
+/// Rounds a multiplier: round-off in sums must not make interior bonds look irregular.
+#[must_use]
+pub fn settled(multiplier: f64) -> f32 {
+    if (multiplier - 1.0).abs() < 1e-9 { 1.0 } else { multiplier as f32 }
+}
 
 /// Classical correction (Madenci and Oterkus 2014, Peridynamic Theory and Its Applications, ch. 4 and 7).
 ///
@@ -18,13 +39,8 @@ pub fn volume_and_surface(body: &mut Body, material: &Material) {
     let c11 = plane_stiffness(material)[0];
     let volume = body.lattice.spacing * body.lattice.spacing * body.thickness;
     let mut energy = [vec![0.0_f64; places], vec![0.0_f64; places]];
-    let mut interior = 0.0;
     for (k, bond) in body.stencil.bonds.iter().enumerate() {
-        let [nx, ny] = bond.normal;
-        // Each end stores half of the bond's energy; strain e = 1.
-        let square = bond.length * bond.length;
-        let share = [nx, ny].map(|n| 0.25 * square * (bond.k_n * n.powi(4) + bond.k_t * nx * nx * ny * ny));
-        interior += 2.0 * share[0];
+        let share = shares(bond);
         for place in 0..places {
             if body.multiplier[k * places + place] > 0.0 {
                 let other = place.wrapping_add_signed(body.steps[k]);
@@ -36,7 +52,7 @@ pub fn volume_and_surface(body: &mut Body, material: &Material) {
         }
     }
     let exact = 0.5 * c11 * volume;
-    let inside = exact / interior;
+    let inside = interior_gain(&body.stencil, c11, volume);
     let gain = energy.map(|axis| axis.into_iter().map(|w| if w > 0.0 { exact / w } else { inside }).collect::<Vec<f64>>());
     for (k, bond) in body.stencil.bonds.iter_mut().enumerate() {
         let [nx, ny] = bond.normal;
@@ -46,8 +62,7 @@ pub fn volume_and_surface(body: &mut Body, material: &Material) {
                 let other = place.wrapping_add_signed(body.steps[k]);
                 let mean = |axis: &[f64]| 0.5 * (axis[place] + axis[other]);
                 let factor = ((nx / mean(&gain[0])).powi(2) + (ny / mean(&gain[1])).powi(2)).powf(-0.5) / inside;
-                // Round-off in the sums must not make interior bonds look irregular.
-                *multiplier = if (factor - 1.0).abs() < 1e-9 { 1.0 } else { factor as f32 };
+                *multiplier = settled(factor);
             }
         }
         bond.k_n *= inside;

@@ -39,6 +39,14 @@ impl ForwardModel for PdModel<'_> {
                 done.crack_length_final() / crate::units::MM
             )));
         }
+        if done.stop == StopReason::LeftRefinement {
+            return Err(Error::Mechanics(format!(
+                "{}: the crack left the finest level of points at a length of {:.3} mm; give refinement.regions that hold its way up \
+                 to the last reading and four horizons on",
+                self.case.name,
+                done.crack_length_final() / crate::units::MM
+            )));
+        }
         let curve: UnitCurve =
             done.curve.iter().map(|CurvePoint { cycles, crack_length, .. }| (*cycles, *crack_length)).collect();
         let end = done.crack_length_final();

@@ -14,13 +14,6 @@ crate::kinds! {
 }
 
 crate::kinds! {
-    /// Arrangements of points.
-    pub enum Discretisation for "model.discretisation" {
-        Lattice = "lattice": "square lattice of one spacing",
-    }
-}
-
-crate::kinds! {
     /// What spends the life of a bond.
     pub enum Failure for "fatigue.failure" {
         Stretch = "stretch": "bond stretch range",

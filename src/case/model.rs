@@ -3,12 +3,15 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::choices::{Choices, Discretisation, Method};
-use super::{HORIZON_RATIO, Model};
+use super::choices::{Choices, Method};
+use super::{Case, HORIZON_RATIO, Model};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
 use crate::error::{Result, input};
+use crate::fatigue::Ageing;
 use crate::input::{LENGTH, number, slice};
 use crate::material::Material;
+use crate::net::dual_horizon::regions::Area;
+use crate::net::{Arrangement, Refinement, read};
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::handbook;
@@ -24,8 +27,7 @@ const COLUMNS_MIN: f64 = 8.0;
 #[serde(deny_unknown_fields)]
 struct Input {
     method: Option<Method>,
-    #[serde(rename = "discretisation")]
-    _discretisation: Option<Discretisation>,
+    discretisation: Option<Arrangement>,
     symmetry: Option<Symmetry>,
     bond_law: Option<BondLawKind>,
     kernel: Option<Kernel>,
@@ -37,26 +39,33 @@ struct Input {
     solver: Option<SolverKind>,
 }
 
-/// Reads `[model]`; what is left out gets the program's choice. Explicit choices go into `choices`.
-pub(super) fn from_value(value: &Value, specimen: &Specimen, material: &Material, choices: &mut Choices) -> Result<Model> {
+/// Reads `[model]` and, if there is one, `[refinement]`; what is left out gets the program's choice. Explicit choices go into
+/// `choices`.
+pub(super) fn from_values(
+    value: &Value,
+    refinement: Option<&Value>,
+    specimen: &Specimen,
+    material: &Material,
+    choices: &mut Choices,
+) -> Result<Model> {
     let input: Input = slice(value, "model")?;
+    let arrangement = input.discretisation.unwrap_or(Arrangement::Lattice);
+    let refinement = refinement.map(|value| read::from_value(value, specimen)).transpose()?;
+    check_arrangement(arrangement, refinement.is_some(), input.solver)?;
     let method = input.method.unwrap_or(Method::Peridynamics);
     choices.bond_law = input.bond_law;
     choices.kernel = input.kernel;
     choices.rotation = input.rotation;
     choices.surface_correction = input.surface_correction;
     choices.horizon_ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
+    let levels = refinement.as_ref().map_or(0, Refinement::deepest);
     let spacing = match LENGTH.read_optional("model.spacing_mm", input.spacing_mm)? {
-        Some(spacing) => spacing,
+        Some(coarsest) => coarsest / 2.0_f64.powi(levels as i32),
         None => default_spacing(specimen),
     };
-    match method {
-        Method::Peridynamics => check_spacing(spacing, specimen)?,
-        Method::Handbook => check_formula(specimen)?,
-    }
     let angle =
         number("an angle in degrees", -90.0, 90.0).read("model.lattice_angle_deg", input.lattice_angle_deg.unwrap_or(0.0))?;
-    Ok(Model {
+    let model = Model {
         method,
         bond_law: BondLaw {
             kind: choices.bond_law.unwrap_or_else(|| BondLawKind::for_material(material)),
@@ -69,7 +78,45 @@ pub(super) fn from_value(value: &Value, specimen: &Specimen, material: &Material
         lattice_angle: angle.to_radians(),
         solver: input.solver.unwrap_or(SolverKind::Window),
         symmetry: input.symmetry.unwrap_or(Symmetry::Auto),
-    })
+        arrangement,
+        refinement,
+    };
+    match method {
+        Method::Peridynamics => {
+            check_spacing(spacing, specimen)?;
+            check_columns(model.coarsest_spacing(), specimen)?;
+        }
+        Method::Handbook => check_formula(specimen)?,
+    }
+    Ok(model)
+}
+
+/// Several levels need regions, regions need several levels, and both a solver that knows them.
+fn check_arrangement(arrangement: Arrangement, refined: bool, solver: Option<SolverKind>) -> Result<()> {
+    const KEY: &str = "model.discretisation";
+    let quoted = format!("\"{arrangement}\"");
+    match arrangement {
+        Arrangement::Lattice if refined => {
+            let problem = "has one spacing everywhere, and there is a section [refinement]";
+            return Err(input(KEY, quoted, problem, "use \"dual_horizon\", or remove the section"));
+        }
+        Arrangement::DualHorizon if !refined => {
+            let problem = "is points of several levels, and no section [refinement] says where they are fine";
+            return Err(input(KEY, quoted, problem, "give [refinement] with regions, or use \"lattice\""));
+        }
+        Arrangement::VariableHorizon => {
+            let problem = "belongs to fracture scenes, not to a fatigue case: without the dual horizon forces do not balance";
+            return Err(input(KEY, quoted, problem, "use \"dual_horizon\", or run `perilife fracture` on a scene"));
+        }
+        Arrangement::Lattice | Arrangement::DualHorizon => {}
+    }
+    match solver {
+        Some(solver @ (SolverKind::Multigrid | SolverKind::AdaptiveDynamicRelaxation)) if refined => {
+            let problem = "works on lattices of one spacing, and discretisation = \"dual_horizon\" has several levels";
+            Err(input("model.solver", format!("\"{solver}\""), problem, "use \"window\", or \"direct\""))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Hand calculation needs a formula for K(a).
@@ -100,11 +147,7 @@ pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
         let problem = format!("is larger than the crack ({} mm): no bond would be cut as it should", round_mm(flaw));
         return Err(input(KEY, given, problem, format!("give a ninth of the crack or less, {} mm", round_mm(flaw / 9.0))));
     }
-    let thinnest = specimen.gross_width.min(specimen.length());
-    if thinnest < COLUMNS_MIN * spacing {
-        let problem = format!("leaves fewer than {COLUMNS_MIN} points across the plate ({} mm)", round_mm(thinnest));
-        return Err(input(KEY, given, problem, format!("give {} mm or less", round_mm(thinnest / 100.0))));
-    }
+    check_columns(spacing, specimen)?;
     let points = specimen.area() / (spacing * spacing);
     if points > POINTS_MAX {
         let smallest = round_mm((specimen.area() / POINTS_MAX).sqrt());
@@ -114,16 +157,40 @@ pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
     Ok(())
 }
 
+/// The plate has some points of this spacing across, whatever lies in it.
+fn check_columns(spacing: f64, specimen: &Specimen) -> Result<()> {
+    let thinnest = specimen.gross_width.min(specimen.length());
+    if thinnest >= COLUMNS_MIN * spacing {
+        return Ok(());
+    }
+    let problem = format!("leaves fewer than {COLUMNS_MIN} points across the plate ({} mm)", round_mm(thinnest));
+    Err(input("model.spacing_mm", round_mm(spacing), problem, format!("give {} mm or less", round_mm(thinnest / 100.0))))
+}
+
 /// Metres as mm, rounded to six digits for messages.
 #[must_use]
 pub fn round_mm(metres: f64) -> f64 {
     (metres / MM * 1e6).round() / 1e6
 }
 
-/// The bond law can represent the material, and its choices go together.
-pub(super) fn check_law(material: &Material, model: &Model) -> Result<()> {
-    match model.method {
-        Method::Handbook => Ok(()),
-        Method::Peridynamics => stencil::check(&model.bond_law, material),
+/// The bond law can represent the material, and its choices go together; levels of points go with law, horizon and ageing.
+pub(super) fn check_law(case: &Case) -> Result<()> {
+    let (model, law) = (&case.model, &case.model.bond_law);
+    if model.method == Method::Handbook {
+        return Ok(());
     }
+    if model.arrangement != Arrangement::Lattice {
+        if law.kind == BondLawKind::StateBased {
+            let problem = format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
+            let remedy = "use bond_based or two_parameter, or discretisation = \"lattice\"";
+            return Err(input("model.bond_law", format!("\"{}\"", law.kind), problem, remedy));
+        }
+        if case.fatigue.ageing == Ageing::Everywhere {
+            let problem = format!("ages all bonds, and with \"{}\" those of the finest level alone can break", model.arrangement);
+            let remedy = "use \"crack_tip\", or model.discretisation = \"lattice\"";
+            return Err(input("fatigue.ageing", format!("\"{}\"", case.fatigue.ageing), problem, remedy));
+        }
+    }
+    Area::all(&case.specimen, model.refinement.as_ref(), model.horizon_ratio)?;
+    stencil::check(law, &case.material)
 }

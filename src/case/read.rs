@@ -2,19 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use toml::Table;
+use toml::{Table, Value};
 
 use super::choices::Choices;
 use super::{Case, LAW_KEYS, LawSource, Method, fatigue, law, model};
 use crate::calibration::record::FittedRecord;
-use crate::error::Result;
+use crate::error::{Result, input};
 use crate::fatigue::finite_horizon::life_shortfall;
-use crate::input::{Document, Sections, Strangers};
+use crate::input::{Document, OF_SCENES, Sections, Strangers, value_at};
+use crate::loading::LoadingKind;
 use crate::units::MPA;
 use crate::{loading, material, specimen};
 
 /// Sections of a case file.
-pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "fatigue", "stop"];
+pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "refinement", "fatigue", "stop"];
 
 /// Sections of other files.
 const STRANGERS: &[Strangers] = &[
@@ -24,7 +25,7 @@ const STRANGERS: &[Strangers] = &[
         "run `perilife calibrate` on it, or remove the section",
     ),
     (
-        &["damage", "refinement", "micro_cracks"],
+        &["damage", "micro_cracks"],
         "belongs to a fracture scene, not to a fatigue case",
         "run `perilife fracture` on it, or remove the section",
     ),
@@ -60,6 +61,7 @@ impl Case {
     /// A table without fatigue law is accepted, since a calibration has none yet: the law is then
     /// [`LawSource::Missing`] with an empty path.
     pub fn from_table(table: Table, name: &str, base_dir: &Path) -> Result<Self> {
+        refuse_scene(&table)?;
         let sections = Sections::of(&table, SECTIONS, STRANGERS)?;
         let echo = sections.echo()?;
         let mut warnings = Vec::new();
@@ -67,7 +69,8 @@ impl Case {
         let mut specimen = specimen::from_value(sections.required("specimen")?)?;
         let material = material::from_value(sections.required("material")?, base_dir, &mut warnings)?;
         let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
-        let model = model::from_value(sections.optional("model"), &specimen, &material, &mut choices)?;
+        let refinement = sections.given("refinement");
+        let model = model::from_values(sections.optional("model"), refinement, &specimen, &material, &mut choices)?;
         let fatigue = fatigue::from_value(sections.optional("fatigue"), model.method, base_dir, &mut choices)?;
         let stop = fatigue::stop_from_value(sections.optional("stop"), &specimen)?;
         let mut case = Case {
@@ -89,7 +92,7 @@ impl Case {
             Some(source) => case.law = source,
             None => {}
         }
-        model::check_law(&case.material, &case.model)?;
+        model::check_law(&case)?;
         case.warnings.extend(yield_line(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
@@ -109,11 +112,22 @@ impl Case {
             keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
         }
         law::adopt(&mut self, record)?;
-        model::check_law(&self.material, &self.model)?;
+        model::check_law(&self)?;
         let lines = law_lines(&self)?;
         self.warnings.extend(lines);
         Ok(self)
     }
+}
+
+/// A scene is told by the kind of its load, whatever else is not right for a case in it.
+fn refuse_scene(table: &Table) -> Result<()> {
+    const KIND: &str = "loading.kind";
+    let kind = table.get("loading").and_then(|loading| value_at(loading, "kind")).and_then(Value::as_str);
+    let of_scenes = |kind: &&str| OF_SCENES.iter().any(|(key, names)| *key == KIND && names.contains(kind));
+    let Some(kind) = kind.filter(of_scenes) else { return Ok(()) };
+    let known = LoadingKind::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
+    let problem = "belongs to fracture scenes, not to a fatigue case";
+    Err(input(KIND, format!("\"{kind}\""), problem, format!("run `perilife fracture`, or use one of {known}")))
 }
 
 /// What the user should know about law and horizon of this case.

@@ -9,7 +9,7 @@ use crate::calibration::case::Parameter;
 use crate::calibration::columns::{CycleUnit, LengthUnit};
 use crate::calibration::criterion::Criterion;
 use crate::calibration::rates::RateMethod;
-use crate::case::{Discretisation, Failure, Method};
+use crate::case::{Failure, Method};
 use crate::error::Result;
 use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::lattice_direction::LatticeDirection;
@@ -57,8 +57,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         Rotation::lines(),
         SurfaceCorrection::lines(),
         Kinematics::lines(),
-        Discretisation::lines(),
-        beside(&Discretisation::lines(), Arrangement::lines()),
+        Arrangement::lines(),
         Symmetry::lines(),
         SolverKind::lines(),
         beside(&SolverKind::lines(), SceneSolver::lines()),

@@ -140,6 +140,9 @@ fn judge(case: &Case, prediction: &Prediction, console: &Console) -> Result<()> 
         StopReason::NothingAges if !grown && case.fatigue.threshold > 0.0 => {
             console.warn("no bond ages: the crack stays below fatigue.delta_k_threshold_mpa_sqrt_m and does not grow");
         }
+        StopReason::LeftRefinement if !grown => {
+            return no_curve("the crack tip came to the rim of the finest level", "give refinement.regions around its whole way");
+        }
         StopReason::NothingAges | StopReason::LeftPlate | StopReason::EnteredHole if !grown => {
             let why = format!("no bond that can fail is strained at a crack tip (stopped: {})", prediction.stop);
             return no_curve(

@@ -24,7 +24,7 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
     let least = if body.stencil.unknowns == 3 { 2 } else { 3 };
     let mut suspects: Vec<usize> = broken.iter().flat_map(|&b| [body.ends(b).1, body.ends(b).2]).collect();
     while let Some(place) = suspects.pop() {
-        if bonds.intact_at(body, place) < least {
+        if bonds.intact_at(body, place) < least && !body.beyond.is_rim(place) {
             for (bond, other) in intact_bonds(body, bonds, place) {
                 bonds.cut(body, bond);
                 aside.push(bond);
@@ -45,19 +45,14 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
     for &bond in broken {
         let (_, a, b) = body.ends(bond);
         let Some(piece) = cut_off(body, bonds, a, b, &mut together) else { continue };
-        let loaded = |p: &usize| is_loaded(body, *p);
-        let inside = piece.iter().any(loaded);
-        let outside = body
-            .points
-            .iter()
-            .map(|&p| p as usize)
-            .any(|p| !piece.contains(&p) && is_loaded(body, p) && bonds.intact_at(body, p) > 0);
+        let inside = piece.iter().any(|&node| is_loaded(body, node));
+        let outside = loaded_nodes(body, bonds).any(|node| !piece.contains(&node));
         if inside && outside {
             return Cut::Severed;
         }
         if !inside {
             together.clear();
-            let mut members: Vec<usize> = piece.into_iter().collect();
+            let mut members: Vec<usize> = piece.into_iter().filter(|&node| node < body.places()).collect();
             members.sort_unstable();
             for place in members {
                 for (bond, _) in intact_bonds(body, bonds, place) {
@@ -72,28 +67,47 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
 
 /// Whether all loaded points that still have bonds hang together.
 fn loads_are_connected(body: &Body, bonds: &Bonds) -> bool {
-    let carries = |place: usize| is_loaded(body, place) && bonds.intact_at(body, place) > 0;
-    let loaded: Vec<usize> = body.points.iter().map(|&p| p as usize).filter(|&p| carries(p)).collect();
+    let loaded: Vec<usize> = loaded_nodes(body, bonds).collect();
     let Some(&first) = loaded.first() else { return false };
-    let mut seen = vec![false; body.places()];
+    let mut seen = vec![false; body.places() + body.beyond.pieces()];
     let mut front = vec![first];
     seen[first] = true;
-    while let Some(place) = front.pop() {
-        for (_, other) in intact_bonds(body, bonds, place) {
+    while let Some(node) = front.pop() {
+        for_neighbours(body, bonds, node, |other| {
             if !std::mem::replace(&mut seen[other], true) {
                 front.push(other);
             }
-        }
+        });
     }
-    loaded.into_iter().all(|place| seen[place])
+    loaded.into_iter().all(|node| seen[node])
 }
 
-fn is_loaded(body: &Body, place: usize) -> bool {
-    let place = place as u32;
+/// Loaded nodes that still carry: places with bonds, and behind the last place the pieces beyond the body.
+fn loaded_nodes<'a>(body: &'a Body, bonds: &'a Bonds) -> impl Iterator<Item = usize> + 'a {
+    let beyond = (0..body.beyond.pieces()).map(|piece| body.places() + piece).filter(|&node| is_loaded(body, node));
+    let places = body.points.iter().map(|&place| place as usize);
+    places.filter(|&place| is_loaded(body, place) && bonds.intact_at(body, place) > 0).chain(beyond)
+}
+
+fn is_loaded(body: &Body, node: usize) -> bool {
+    if node >= body.places() {
+        return body.beyond.is_loaded(node - body.places());
+    }
+    let place = node as u32;
     let boundary = &body.boundary;
     boundary.forces.binary_search_by_key(&place, |f| f.0).is_ok()
         || boundary.fixed.iter().any(|f| f.0 == place)
         || boundary.clamped.iter().any(|c| c.0 == place)
+}
+
+/// Calls `take` with all nodes that hang on one by intact bonds.
+fn for_neighbours(body: &Body, bonds: &Bonds, node: usize, mut take: impl FnMut(usize)) {
+    if node >= body.places() {
+        body.beyond.rim_of(node - body.places()).iter().for_each(|&place| take(place as usize));
+        return;
+    }
+    intact_bonds(body, bonds, node).into_iter().for_each(|(_, other)| take(other));
+    body.beyond.pieces_at(node).for_each(|piece| take(body.places() + piece));
 }
 
 /// Intact bonds of a point with the other end.
@@ -126,18 +140,20 @@ fn cut_off(body: &Body, bonds: &Bonds, a: usize, b: usize, together: &mut HashSe
         let side = usize::from(front[1].len() < front[0].len());
         let mut next = Vec::new();
         for place in std::mem::take(&mut front[side]) {
-            for (_, other) in intact_bonds(body, bonds, place) {
-                if seen[1 - side].contains(&other) {
-                    if is_known == [false, false] {
-                        together.clear();
-                    }
-                    together.extend(seen.iter().flatten());
-                    return None;
-                }
+            let mut meets = false;
+            for_neighbours(body, bonds, place, |other| {
+                meets |= seen[1 - side].contains(&other);
                 if seen[side].insert(other) {
                     is_known[side] |= together.contains(&other);
                     next.push(other);
                 }
+            });
+            if meets {
+                if is_known == [false, false] {
+                    together.clear();
+                }
+                together.extend(seen.iter().flatten());
+                return None;
             }
         }
         if next.is_empty() {

@@ -1,6 +1,6 @@
 //! What changes in the bonds of a scene: damage and the history it depends on. Written by the interaction alone.
 
-use super::net::Net;
+use crate::net::Net;
 
 /// State of every bond of a net.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,19 +25,10 @@ impl BondState {
         BondState { peak: vec![0.0; share.len()], share, may_fail }
     }
 
-    /// Damage φ = 1 - Σ μ V' / Σ V' of every point over its bonds (Silling and Askari 2005), 0 to 1. With a dual horizon
-    /// only the bonds of the point's own horizon count.
+    /// Damage of every point ([`Net::damage`]), 0 to 1.
     #[must_use]
     pub fn damage(&self, net: &Net) -> Vec<f64> {
-        let of_point = |i: usize| {
-            let (mut whole, mut intact) = (0.0, 0.0);
-            for (b, other) in net.family_of(i) {
-                whole += net.volumes[other];
-                intact += if self.share[b] > 0.0 { net.volumes[other] } else { 0.0 };
-            }
-            if whole > 0.0 { 1.0 - intact / whole } else { 1.0 }
-        };
-        (0..net.len()).map(of_point).collect()
+        net.damage(&self.share)
     }
 
     /// Bonds broken beside the cracks of the start.

@@ -1,8 +1,8 @@
 //! Loads and supports of a scene on the points of its net.
 
-use super::net::Net;
 use super::scene::{Action, Region, Rise, Scene};
 use crate::error::{Result, input};
+use crate::net::Net;
 use crate::specimen::{Point, Support};
 use crate::units::MM;
 

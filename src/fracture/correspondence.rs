@@ -36,10 +36,10 @@ use rayon::prelude::*;
 
 use super::bonds::BondState;
 use super::interaction::{Damaging, Interaction, Reaction};
-use super::net::Net;
 use super::scene::{DamageEntry, Procedure, Scene, ZeroEnergyControl};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::Result;
+use crate::net::Net;
 use control::Control;
 use criterion::Criterion;
 use elasticity::Elasticity;

@@ -15,11 +15,11 @@ use super::bonds::BondState;
 use super::boundary::{Boundary, Held};
 use super::interaction::{Damaging, Driven, Interaction, Reaction};
 use super::log::Log;
-use super::net::Net;
 use super::outcome::{HistoryRow, SceneEnd};
 use super::scene::Rise;
 use super::{SceneObserver, SceneProgress};
 use crate::error::{Error, Result, input};
+use crate::net::Net;
 use crate::specimen::Point;
 
 /// Share of the stability bound that the program's own step takes. The energy of velocity Verlet wavers with the square of the

@@ -5,8 +5,8 @@
 //! wider behind its front moves nothing. Points cracked away from every front and its way begin a new one: a branch, or a crack
 //! from a place where there was none.
 
-use super::net::Net;
 use super::outcome::PathPoint;
+use crate::net::Net;
 use crate::specimen::geometry::{direction, distance};
 use crate::specimen::{Point, Specimen};
 

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 use super::bonds::BondState;
 use super::failure::Failure;
 use super::interaction::{Damaging, Interaction, Reaction};
-use super::net::Net;
 use super::springs::stiffness_bound;
 use crate::body::Body;
 use crate::body::lattice::{LANES, Lattice};
+use crate::net::Net;
 
 /// Rows of a band.
 const BAND: usize = 16;

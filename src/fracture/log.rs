@@ -3,10 +3,10 @@
 use super::bonds::BondState;
 use super::boundary::Boundary;
 use super::fronts::{CRACKED, Fronts, LOGGED};
-use super::net::Net;
 use super::outcome::{Fracture, HistoryRow, SceneEnd, SceneFigures};
 use super::pieces::is_separated;
 use super::scene::Scene;
+use crate::net::Net;
 use crate::predict::Snapshot;
 
 /// Snapshots of a run beside the first.

@@ -7,14 +7,12 @@
 pub mod bonds;
 pub mod boundary;
 pub mod correspondence;
-pub mod dual_horizon;
 pub mod dynamics;
 pub mod failure;
 pub mod fronts;
 pub mod interaction;
 pub mod lattice_springs;
 mod log;
-pub mod net;
 pub mod outcome;
 pub mod pieces;
 pub mod platens;
@@ -27,12 +25,14 @@ pub mod springs;
 
 use std::time::Instant;
 
+pub use crate::net;
 pub use outcome::{Fracture, SceneEnd};
 pub use scene::Scene;
 
 use crate::body::Body;
 use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::error::{Result, input};
+use crate::net::{Ask, Net, dual_horizon};
 use crate::predict::memory;
 use bonds::BondState;
 use boundary::Boundary;
@@ -41,10 +41,9 @@ use failure::{Failure, critical_stretch};
 use interaction::Interaction;
 use lattice_springs::LatticeSprings;
 use log::Log;
-use net::Net;
 use outcome::SceneFigures;
 use platens::{Platen, Pressed};
-use scene::{Arrangement, Procedure, SceneLaw};
+use scene::{Action, Arrangement, Procedure, SceneLaw};
 use springs::Springs;
 
 /// What a scene reports while it goes on.
@@ -123,13 +122,32 @@ pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
             Ok((Net::of_body(&body), Some(body)))
         }
         (SceneLaw::Bonds(law), Arrangement::DualHorizon | Arrangement::VariableHorizon) => {
-            Ok((dual_horizon::net(scene, &law)?, None))
+            let ask = Ask {
+                specimen: &scene.specimen,
+                flaws: &scene.specimen,
+                material: &scene.material,
+                law: &law,
+                spacing: model.spacing,
+                horizon_ratio: model.horizon_ratio,
+                lattice_angle: model.lattice_angle,
+                arrangement: model.arrangement,
+                refinement: scene.refinement.as_ref(),
+                floating: is_floating(scene),
+            };
+            Ok((dual_horizon::build(&ask)?.net, None))
         }
         (SceneLaw::Correspondence { .. }, arrangement) => {
             let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";
             Err(input("model.discretisation", format!("\"{arrangement}\""), problem, "use \"lattice\""))
         }
     }
+}
+
+/// Whether nothing holds the plate, so that its loads must balance.
+fn is_floating(scene: &Scene) -> bool {
+    scene.specimen.supports.is_empty()
+        && scene.holds.is_empty()
+        && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_)))
 }
 
 /// Law of damage of the springs; `None` where there are none.

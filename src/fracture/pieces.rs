@@ -2,7 +2,7 @@
 
 use super::bonds::BondState;
 use super::boundary::Boundary;
-use super::net::Net;
+use crate::net::Net;
 
 /// Whether no way of intact bonds leads from the first load to some other load or support.
 #[must_use]

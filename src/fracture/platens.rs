@@ -7,8 +7,8 @@
 
 use super::bonds::BondState;
 use super::interaction::{Damaging, Driven, Interaction, Reaction};
-use super::net::Net;
 use super::scene::{Action, Drive, Region, Rise, Scene};
+use crate::net::Net;
 use crate::specimen::geometry::edges;
 use crate::specimen::{Edge, Point};
 

@@ -3,16 +3,8 @@
 use crate::bond_law::BondLaw;
 use crate::case::HORIZON_RATIO;
 use crate::material::Material;
+pub use crate::net::{Arrangement, RefinedRegion, Refinement};
 use crate::specimen::{Edge, Point, Specimen};
-
-crate::kinds! {
-    /// How points lie and reach each other.
-    pub enum Arrangement for "model.discretisation" {
-        Lattice = "lattice": "square lattice of one spacing",
-        DualHorizon = "dual_horizon": "points of several levels, each split in four, with horizon and dual horizon (Ren et al. 2016); fracture scenes",
-        VariableHorizon = "variable_horizon": "the same points without the dual horizon: shows the ghost forces that the dual horizon removes; fracture scenes",
-    }
-}
 
 crate::kinds! {
     /// Laws that act on a point's whole neighbourhood, beside the bond laws.
@@ -247,39 +239,6 @@ pub struct Softening {
     pub last: f64,
     /// The law as printed, which lets the force drop between s_et and s_nt, instead of the continuous one.
     pub printed: bool,
-}
-
-/// Where finer points lie (`dual_horizon`).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Refinement {
-    /// Regions with the number of times their points are split in four.
-    pub regions: Vec<(RefinedRegion, usize)>,
-}
-
-/// A region of finer points.
-#[derive(Debug, Clone, PartialEq)]
-pub enum RefinedRegion {
-    /// An upright box, m.
-    Box {
-        /// Lower left corner, m.
-        low: Point,
-        /// Upper right corner, m.
-        high: Point,
-    },
-    /// Points within half a width of a line, m.
-    Band {
-        /// One end, m.
-        from: Point,
-        /// Other end, m.
-        to: Point,
-        /// Whole width, m.
-        width: f64,
-    },
-    /// Points within so many metres of every crack and notch, levels graded outwards.
-    AroundFlaws {
-        /// Distance, m.
-        distance: f64,
-    },
 }
 
 /// A checked fracture scene.

@@ -35,19 +35,15 @@ impl<'n> Springs<'n> {
     /// Displacement differences of a bond: normal part, tangential part, unit vector of the pull.
     #[inline(always)]
     pub(super) fn strain<const FINITE: bool, const N: usize>(bond: &NetBond, u: &[f64]) -> (f64, f64, [f64; 2]) {
-        let (a, b) = (bond.from as usize * N, bond.to as usize * N);
-        let eta = [u[b] - u[a], u[b + 1] - u[a + 1]];
         let n = bond.normal;
         if FINITE {
-            let y = [bond.length * n[0] + eta[0], bond.length * n[1] + eta[1]];
+            let (a, b) = (bond.from as usize * N, bond.to as usize * N);
+            let y = [0, 1].map(|i| bond.length * n[i] + (u[b + i] - u[a + i]));
             let length = (y[0] * y[0] + y[1] * y[1]).sqrt();
             return (length - bond.length, 0.0, [y[0] / length, y[1] / length]);
         }
-        let mut e_t = eta[1] * n[0] - eta[0] * n[1];
-        if N == 3 {
-            e_t -= bond.lever * (u[a + 2] + u[b + 2]);
-        }
-        (eta[0] * n[0] + eta[1] * n[1], e_t, n)
+        let [e_n, e_t] = bond.opening::<N>(u);
+        (e_n, e_t, n)
     }
 
     /// `|ξ + η|²/|ξ|² - 1`.
@@ -96,11 +92,7 @@ impl<'n> Springs<'n> {
             let share = task.share[i];
             reaction.strain += share * energy;
             let (normal, tangential) = (share * bond.k_n * e_n, share * bond.k_t * e_t);
-            task.pulls[i] = [
-                normal * n[0] - tangential * n[1],
-                normal * n[1] + tangential * n[0],
-                if N == 3 { tangential * bond.lever } else { 0.0 },
-            ];
+            task.pulls[i] = bond.pull::<N>(n, normal, tangential);
         }
         reaction
     }
@@ -117,21 +109,6 @@ impl<'n> Springs<'n> {
         let parts: Vec<Reaction> = tasks.map(|task| self.pull::<FINITE, N>(u, damaging, task)).collect();
         self.pulls = pulls;
         parts.into_iter().fold(Reaction::default(), Reaction::and)
-    }
-
-    fn gather<const N: usize>(&self, force: &mut [f64]) {
-        force.par_chunks_mut(TASK * N).enumerate().for_each(|(task, force)| {
-            for (i, force) in force.chunks_exact_mut(N).enumerate() {
-                let point = task * TASK + i;
-                let mut sum = [0.0; 3];
-                for &entry in &self.net.entries[self.net.starts[point] as usize..self.net.starts[point + 1] as usize] {
-                    let pull = &self.pulls[(entry / 2) as usize];
-                    let sign = if entry % 2 == 0 { 1.0 } else { -1.0 };
-                    sum = [sum[0] + sign * pull[0], sum[1] + sign * pull[1], sum[2] + pull[2]];
-                }
-                force.copy_from_slice(&sum[..N]);
-            }
-        });
     }
 }
 
@@ -166,17 +143,17 @@ impl Interaction for Springs<'_> {
         let reaction = match (self.finite, self.net.unknowns) {
             (true, _) => {
                 let reaction = self.pull_all::<true, 2>(u, bonds, damaging);
-                self.gather::<2>(force);
+                self.net.gather::<2>(&self.pulls, force);
                 reaction
             }
             (false, 2) => {
                 let reaction = self.pull_all::<false, 2>(u, bonds, damaging);
-                self.gather::<2>(force);
+                self.net.gather::<2>(&self.pulls, force);
                 reaction
             }
             (false, _) => {
                 let reaction = self.pull_all::<false, 3>(u, bonds, damaging);
-                self.gather::<3>(force);
+                self.net.gather::<3>(&self.pulls, force);
                 reaction
             }
         };

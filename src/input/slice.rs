@@ -14,7 +14,7 @@ pub const PLANNED: &[(&str, &[&str])] =
 /// Names that a fracture scene knows and a fatigue case does not. Looked at as [`PLANNED`] is.
 pub const OF_SCENES: &[(&str, &[&str])] = &[
     ("model.bond_law", &["correspondence"]),
-    ("model.discretisation", &["dual_horizon", "variable_horizon"]),
+    ("model.discretisation", &["variable_horizon"]),
     ("model.solver", &["velocity_verlet", "secant"]),
     ("loading.kind", &["traction", "displacement", "velocity", "platens"]),
 ];

@@ -1,5 +1,6 @@
 //! What a run gives and how it reports while it goes on.
 
+use crate::net::PointGrid;
 use crate::specimen::Point;
 
 crate::kinds! {
@@ -11,6 +12,7 @@ crate::kinds! {
         Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
         LeftPlate = "left_plate": "every crack tip has left the plate",
         EnteredHole = "entered_hole": "the last crack tip ran into a hole",
+        LeftRefinement = "left_refinement": "a crack tip came to the rim of the finest level of points: the refined region is too small",
         NothingAges = "nothing_ages": "no bond is left that fatigue can spend",
         RunOut = "run_out": "cycles_max was reached",
         NoConvergence = "no_convergence": "the equilibrium solver did not converge",
@@ -57,23 +59,6 @@ pub struct Snapshot {
     pub displacement: Vec<[f64; 2]>,
     /// Damage φ of every point: share of its bonds that are broken, 0 to 1.
     pub damage: Vec<f64>,
-}
-
-/// Points of the body as pictures need them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointGrid {
-    /// Lattice spacing, m.
-    pub spacing: f64,
-    /// Columns and rows of the lattice that holds the body.
-    pub columns: usize,
-    /// Rows of the lattice.
-    pub rows: usize,
-    /// Position of lattice place (0, 0), m.
-    pub origin: Point,
-    /// Angle of the lattice rows against x, radians.
-    pub angle: f64,
-    /// For every lattice place (row by row), the index of its point or `None` outside the material.
-    pub point_at: Vec<Option<u32>>,
 }
 
 /// Figures of a run that users ask for.

@@ -1,10 +1,8 @@
 //! Pictures of the damaged plate along a run.
 
 use super::curve::Row;
-use super::{CurvePoint, PointGrid, Snapshot};
-use crate::body::Body;
-use crate::body::lattice::LANES;
-use crate::solver::field::Layout;
+use super::plate::Plate;
+use super::{CurvePoint, Snapshot};
 use crate::state::Bonds;
 
 /// Snapshots between the first and the last.
@@ -21,10 +19,10 @@ pub struct Album {
 
 impl Album {
     /// Starts with the plate at N = 0.
-    pub fn open(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) {
-        let lattice = &body.lattice;
+    pub fn open(&mut self, plate: &Plate, bonds: &Bonds, displacement: &[f64], row: &Row) {
+        let lattice = &plate.body.lattice;
         self.step = lattice.columns.min(lattice.rows) as f64 * lattice.spacing / BETWEEN;
-        self.look(body, bonds, displacement, row);
+        self.look(plate, bonds, displacement, row);
     }
 
     /// Whether the cracks have grown enough for the next snapshot.
@@ -33,9 +31,9 @@ impl Album {
     }
 
     /// Takes a snapshot.
-    pub fn look(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) {
+    pub fn look(&mut self, plate: &Plate, bonds: &Bonds, displacement: &[f64], row: &Row) {
         self.next = row.growth() + self.step;
-        self.snapshots.push(take(body, bonds, displacement, row));
+        self.snapshots.push(plate.snapshot(bonds, displacement, row));
     }
 
     /// Counts cycles from N = 0, `zero` cycles after the start of the run, and keeps to the ends of the curve.
@@ -48,57 +46,9 @@ impl Album {
     }
 
     /// Takes the last snapshot.
-    pub fn finish(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) {
+    pub fn finish(&mut self, plate: &Plate, bonds: &Bonds, displacement: &[f64], row: &Row) {
         if self.snapshots.last().is_none_or(|last| last.crack_length < row.crack_length || last.cycles < row.cycles) {
-            self.snapshots.push(take(body, bonds, displacement, row));
+            self.snapshots.push(plate.snapshot(bonds, displacement, row));
         }
-    }
-}
-
-fn take(body: &Body, bonds: &Bonds, displacement: &[f64], row: &Row) -> Snapshot {
-    let layout = Layout::of(&body.lattice, body.stencil.unknowns);
-    let places = body.places();
-    let damage = |place: usize| {
-        let (column, row) = body.lattice.column_row(place);
-        if bonds.chunk_is_regular(row, column / LANES) {
-            return 0.0;
-        }
-        let [mut whole, mut intact] = [0_u32; 2];
-        for (k, &step) in body.steps.iter().enumerate() {
-            for owner in [place, place.wrapping_add_signed(-step)] {
-                let bond = k * places + owner;
-                whole += u32::from(body.multiplier[bond] > 0.0);
-                intact += u32::from(bonds.multiplier[bond] > 0.0);
-            }
-        }
-        if whole == 0 { 1.0 } else { 1.0 - f64::from(intact) / f64::from(whole) }
-    };
-    let motion = |place: usize| {
-        let at = layout.index(place);
-        body.lattice.from_axes([displacement[at], displacement[at + layout.stride]])
-    };
-    Snapshot {
-        cycles: row.cycles,
-        crack_length: row.crack_length,
-        displacement: body.points.iter().map(|&p| motion(p as usize)).collect(),
-        damage: body.points.iter().map(|&p| damage(p as usize)).collect(),
-    }
-}
-
-/// Lattice of the snapshots.
-pub fn grid(body: &Body) -> PointGrid {
-    let lattice = &body.lattice;
-    let mut point_at = vec![None; lattice.columns * lattice.rows];
-    for (i, &place) in body.points.iter().enumerate() {
-        let (column, row) = lattice.column_row(place as usize);
-        point_at[row * lattice.columns + column] = Some(i as u32);
-    }
-    PointGrid {
-        spacing: lattice.spacing,
-        columns: lattice.columns,
-        rows: lattice.rows,
-        origin: lattice.origin,
-        angle: lattice.axis[1].atan2(lattice.axis[0]),
-        point_at,
     }
 }

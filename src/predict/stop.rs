@@ -3,9 +3,13 @@
 use super::StopReason;
 use super::curve::Track;
 use super::end_of_life::End;
+use crate::body::Body;
 use crate::case::Case;
+use crate::fatigue::FatigueSettings;
 use crate::fatigue::ageing::AgeingBond;
 use crate::fatigue::crack_tip::{CrackTip, TipState};
+use crate::net::levelled::clear_way;
+use crate::specimen::Point;
 
 /// Reasons that show before a block: the crack is too long for its load, no tip is left, or nothing ages.
 pub(super) fn before_block(
@@ -30,6 +34,13 @@ pub(super) fn before_block(
         return Some(if entered { StopReason::EnteredHole } else { StopReason::LeftPlate });
     }
     ageing.is_empty().then_some(StopReason::NothingAges)
+}
+
+/// Where an active tip has come so near the rim of the finest level that its growth would not be that on fine points, m; `None` in
+/// a plate of one level.
+pub(super) fn at_rim(body: &Body, tips: &[CrackTip], settings: &FatigueSettings) -> Option<Point> {
+    let reach = clear_way(body.horizon(), settings.zone_radius_horizons);
+    tips.iter().find(|tip| tip.is_active() && body.is_near_rim(tip.position, reach)).map(|tip| tip.position)
 }
 
 /// Reasons that show after a block: a known end is passed. The run goes on for a spacing more, so that the length averaged over

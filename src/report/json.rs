@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::bond_law::BondLawKind;
 use crate::case::{Case, LawSource, Method};
+use crate::net::Refinement;
 use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
 use crate::specimen::handbook::handbook;
@@ -60,7 +61,10 @@ fn model(case: &Case, prediction: &Prediction) -> Value {
         "kernel": model.bond_law.kernel.name(),
         "rotation": model.bond_law.rotation.name(),
         "surface_correction": model.bond_law.surface_correction.name(),
+        "discretisation": model.arrangement.name(),
+        "levels": 1 + model.refinement.as_ref().map_or(0, Refinement::deepest),
         "spacing_mm": clean(figures.spacing / MM),
+        "spacing_coarsest_mm": clean(figures.spacing * model.coarsest_spacing() / model.spacing / MM),
         "horizon_ratio": model.horizon_ratio,
         "horizon_mm": clean(figures.horizon / MM),
         "lattice_angle_deg": clean(model.lattice_angle.to_degrees()),
@@ -110,12 +114,13 @@ fn plastic_zone(case: &Case, prediction: &Prediction) -> Value {
 }
 
 /// Why the program takes what it takes where the case leaves a choice open.
-const WHY_CHOSEN: [(&str, &str); 10] = [
+const WHY_CHOSEN: [(&str, &str); 11] = [
     ("method", "default: computes any plate and the path of its cracks"),
     ("bond_law", "default: takes Poisson's ratio from the material instead of fixing it"),
     ("kernel", "default: of the kernels tried, its crack growth depends least on the lattice"),
     ("rotation", "default: rigid rotation of crack flanks must cost no energy"),
     ("surface_correction", "default: the most accurate one built"),
+    ("discretisation", "default: one spacing everywhere"),
     ("spacing_mm", "default: the smaller of crack length / 9 and width / 100"),
     ("horizon_ratio", "default: 3.015, three neighbours in every lattice direction"),
     ("lattice_angle_deg", "default: lattice rows along x"),
@@ -136,8 +141,12 @@ fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> St
         (false, false) => reason,
     };
     let (asked, actual) = (case.model.spacing / MM, prediction.figures.spacing / MM);
-    if key == "spacing_mm" && ((asked - actual) / actual).abs() > 1e-9 {
-        return format!("{source}; moved from {asked:.6} to {actual:.6} so that it divides the width");
+    if key == "spacing_mm" {
+        let finest = if case.model.refinement.is_some() { "; that of the finest level, on which cracks grow" } else { "" };
+        let is_moved = ((asked - actual) / actual).abs() > 1e-9;
+        let moved =
+            if is_moved { format!("; moved from {asked:.6} to {actual:.6} so that it divides the width") } else { String::new() };
+        return format!("{source}{finest}{moved}");
     }
     if key == "symmetry" {
         return format!("{source}; {}", solved_part(prediction));

@@ -7,6 +7,7 @@ pub mod dilatation;
 pub mod direct;
 pub mod field;
 pub mod kernel;
+mod levels;
 pub mod multigrid;
 pub mod product;
 mod ghosts;
@@ -15,8 +16,11 @@ mod rigid_motion;
 mod sides;
 pub mod window;
 
+use std::sync::Arc;
+
 use crate::body::{Body, Bond};
 use crate::error::Result;
+use crate::net::levelled::Levelled;
 use crate::specimen::Point;
 use crate::state::Bonds;
 use mirrored::Mirrored;
@@ -79,13 +83,14 @@ trait LinearSolver<const N: usize>: Send {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
     /// Told which bonds broke since the last solve.
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
-    /// Makes `u` right at the ends of `watched` bonds, and gets ready for breaks around the tips; returns the iterations.
-    fn reach(&mut self, _: System<'_, N>, _u: &mut [f64], _watched: &[Bond], _tips: &[Focus]) -> Result<usize> {
-        Ok(0)
+    /// Makes `u` right at the ends of `watched` bonds, and gets ready for breaks around the tips; what a solve of the whole plate
+    /// took and gave if that needed one.
+    fn reach(&mut self, _: System<'_, N>, _u: &mut [f64], _watched: &[Bond], _tips: &[Focus]) -> Result<Option<Solved>> {
+        Ok(None)
     }
-    /// Makes `u` right everywhere; returns the iterations.
-    fn complete(&mut self, _: System<'_, N>, _u: &mut [f64]) -> Result<usize> {
-        Ok(0)
+    /// Makes `u` right everywhere; what a solve took and gave if that needed one.
+    fn complete(&mut self, _: System<'_, N>, _u: &mut [f64]) -> Result<Option<Solved>> {
+        Ok(None)
     }
     /// `u` everywhere, as right as pictures need it, and the iterations; `None` where `u` itself is. Nothing else changes.
     fn picture(&mut self, _: System<'_, N>, _u: &[f64]) -> Result<Option<(Vec<f64>, usize)>> {
@@ -149,6 +154,17 @@ impl Equilibrium {
             }
         });
         Equilibrium { inner }
+    }
+
+    /// Equilibrium of a plate of several levels, `body` being its finest points, under `load` times its unit load (Pa or N). Only
+    /// [`SolverKind::Window`] and [`SolverKind::Direct`] know such plates, and the latter solves the whole plate after every break;
+    /// every other kind is taken for the first.
+    ///
+    /// Displacements are those of the body in its layout, and behind them those of all other points, unknown by unknown, in the
+    /// order of their numbers ([`Levelled::ids`]).
+    #[must_use]
+    pub fn of_levels(kind: SolverKind, plate: Arc<Levelled>, body: &Body, bonds: &Bonds, load: f64) -> Self {
+        Equilibrium { inner: in_pool(|| sides::balance_levels(kind, plate, body, bonds, load)) }
     }
 
     /// Points that are solved for: those of the body, or of the part of it that stands for all by symmetry.

@@ -8,6 +8,7 @@ pub mod sweep;
 
 use rayon::prelude::*;
 
+use super::assembly::{Blocks, Spring};
 use super::dilatation::Dilatation;
 use super::field::Layout;
 use super::ghosts::Ghosts;
@@ -47,16 +48,6 @@ pub(super) const ROWS_PER_TASK: usize = 8;
 type Double<const N: usize> = Kernel<f64, N, 1, 8>;
 /// The same in single precision, for preconditioners.
 type Single<const N: usize> = Kernel<f32, N, 2, 16>;
-
-/// One stencil bond as assembly uses it.
-#[derive(Debug, Clone, Copy)]
-struct Spring {
-    n: [f64; 2],
-    t: [f64; 2],
-    k_n: f64,
-    k_t: f64,
-    lever: f64,
-}
 
 /// Some rows of a product, compiled for every vector width and run with the widest the processor has.
 struct Rows<'a, T, const N: usize, const B: usize, const L: usize> {
@@ -189,30 +180,8 @@ impl<const N: usize> Product<N> {
 
     /// Block K_ij of a point with itself (`None`) or with the other end of its stencil bond k in direction ±1, zero rows and
     /// columns for held components not applied.
-    pub(super) fn bond_blocks(&self, k: usize, sign: f64, share: f64) -> ([[f64; N]; N], [[f64; N]; N]) {
-        let spring = &self.springs[k];
-        let (mut own, mut off) = ([[0.0; N]; N], [[0.0; N]; N]);
-        for i in 0..2 {
-            for j in 0..2 {
-                let a = share * (spring.k_n * spring.n[i] * spring.n[j] + spring.k_t * spring.t[i] * spring.t[j]);
-                own[i][j] = a;
-                off[i][j] = -a;
-            }
-        }
-        if N == 3 {
-            let couple = share * spring.k_t * spring.lever;
-            for i in 0..2 {
-                let c = sign * couple * spring.t[i];
-                // ∂²/∂u_i∂θ_i = ∂²/∂u_i∂θ_j = +c at the owner, -c at the other end.
-                own[i][2] = c;
-                own[2][i] = c;
-                off[i][2] = c;
-                off[2][i] = -c;
-            }
-            own[2][2] = couple * spring.lever;
-            off[2][2] = couple * spring.lever;
-        }
-        (own, off)
+    pub(super) fn bond_blocks(&self, k: usize, sign: f64, share: f64) -> Blocks<N> {
+        self.springs[k].blocks(sign, share)
     }
 }
 

@@ -1,15 +1,19 @@
 //! Both sides of K u = f for a body: load, held components, grips, and the linear solver that keeps them equal.
 
+use std::sync::Arc;
+
 use super::adaptive_dynamic_relaxation::DynamicRelaxation;
 use super::conjugate_gradient::MultigridSolver;
 use super::direct::DirectSolver;
 use super::field::{self, Layout};
+use super::levels::Levels;
 use super::product::{Into, Product};
 use super::window::WindowSolver;
 use super::window::held_rim::HeldRim;
 use super::{Balance, Focus, LinearSolver, SolverKind, System};
 use crate::body::{Body, Bond};
 use crate::error::Result;
+use crate::net::levelled::Levelled;
 use crate::state::Bonds;
 
 /// Load, held components and the linear solver of a body with N unknowns a point.
@@ -26,6 +30,8 @@ struct Sides<const N: usize> {
     /// Whether u is what it foresees.
     is_foreseen: bool,
     has_fast_solves: bool,
+    /// Points that are solved for.
+    points: usize,
 }
 
 struct Grips {
@@ -46,6 +52,14 @@ pub(super) fn balance(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -
     match body.stencil.unknowns {
         3 => Box::new(Sides::<3>::new(kind, body, bonds, load)),
         _ => Box::new(Sides::<2>::new(kind, body, bonds, load)),
+    }
+}
+
+/// The same for a plate of several levels, `body` being its finest points.
+pub(super) fn balance_levels(kind: SolverKind, plate: Arc<Levelled>, body: &Body, bonds: &Bonds, load: f64) -> Box<dyn Balance> {
+    match body.stencil.unknowns {
+        3 => Box::new(Sides::<3>::of_levels(kind, plate, body, bonds, load)),
+        _ => Box::new(Sides::<2>::of_levels(kind, plate, body, bonds, load)),
     }
 }
 
@@ -97,7 +111,38 @@ impl<const N: usize> Sides<N> {
             SolverKind::AdaptiveDynamicRelaxation => Box::new(DynamicRelaxation::new(body, bonds, &product)),
         };
         let has_fast_solves = kind == SolverKind::Window;
-        Sides { product, solver, f, grips, u: layout.zeros(), work: 0.0, rim: None, is_foreseen: false, has_fast_solves }
+        let (u, points) = (layout.zeros(), body.points.len());
+        Sides { product, solver, f, grips, u, work: 0.0, rim: None, is_foreseen: false, has_fast_solves, points }
+    }
+
+    /// A plate of several levels: its loads and supports are not those of the body, which is a part of it.
+    fn of_levels(kind: SolverKind, plate: Arc<Levelled>, body: &Body, bonds: &Bonds, load: f64) -> Self {
+        let product = Product::<N>::new(body, Vec::new());
+        let layout = Layout::of(&body.lattice, N);
+        let (points, size) = (plate.net.len(), layout.len() + N * (plate.numbers() - body.places()));
+        // The solver moves the grips itself and gives minus twice the strain energy for work; nothing else moves with them.
+        let grips = plate.grip_force.map(|force| Grips {
+            field: vec![0.0; size],
+            force: load * force,
+            drag: vec![0.0; size],
+            constant: 0.0,
+            scale: 1.0,
+        });
+        let levels = Levels::new(plate, body, bonds, load);
+        let solver: Box<dyn LinearSolver<N>> = Box::new(WindowSolver::of_whole(levels, kind == SolverKind::Direct));
+        let f = layout.zeros();
+        Sides {
+            product,
+            solver,
+            f,
+            grips,
+            u: vec![0.0; size],
+            work: 0.0,
+            rim: None,
+            is_foreseen: false,
+            has_fast_solves: true,
+            points,
+        }
     }
 }
 
@@ -212,11 +257,9 @@ impl<const N: usize> Balance for Sides<N> {
         if let Some(rim) = rim.filter(|_| !is_foreseen) {
             rim.follow(system, u, watched, tips);
         }
-        let was_whole = solver.is_whole();
-        iterations += solver.reach(system, u, watched, tips)?;
-        if solver.is_whole() && !was_whole {
-            let work = field::dot(system.product.layout(), system.f, u);
-            self.give(body, bonds, work, displacement);
+        if let Some(solved) = solver.reach(system, u, watched, tips)? {
+            iterations += solved.iterations;
+            self.give(body, bonds, solved.work, displacement);
         }
         Ok(iterations)
     }
@@ -226,13 +269,9 @@ impl<const N: usize> Balance for Sides<N> {
             return self.solve(body, bonds, displacement);
         }
         let (solver, system, u, _) = self.parts(body, bonds);
-        if solver.is_whole() {
-            return Ok(0);
-        }
-        let iterations = solver.complete(system, u)?;
-        let work = field::dot(system.product.layout(), system.f, u);
-        self.give(body, bonds, work, displacement);
-        Ok(iterations)
+        let Some(solved) = solver.complete(system, u)? else { return Ok(0) };
+        self.give(body, bonds, solved.work, displacement);
+        Ok(solved.iterations)
     }
 
     fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)> {
@@ -244,8 +283,8 @@ impl<const N: usize> Balance for Sides<N> {
         Ok((picture, iterations))
     }
 
-    fn points(&self, body: &Body) -> usize {
-        body.points.len()
+    fn points(&self, _: &Body) -> usize {
+        self.points
     }
 
     fn is_whole(&self) -> bool {

@@ -5,8 +5,9 @@ use crate::body::Body;
 use crate::body::pre_crack::{bonds_cut_by, places_near, tie_break};
 use crate::body::severed::{RepresentedEnd, represented_end};
 use crate::case::Case;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, input};
 use crate::fatigue::pieces::{Cut, set_aside};
+use crate::net::Arrangement;
 use crate::solver::field::Layout;
 use crate::solver::{Equilibrium, SolverKind};
 use crate::specimen::geometry::{distance, distance_to_polygon, distance_to_segment};
@@ -38,9 +39,13 @@ impl<'a> CrackedPlate<'a> {
     /// Discretises a case.
     ///
     /// # Errors
-    /// As [`Body::build`].
+    /// As [`Body::build`], and points of several levels.
     pub fn new(case: &'a Case) -> Result<Self> {
         let model = &case.model;
+        if model.arrangement != Arrangement::Lattice {
+            let problem = "has points of several levels, and K is read off a lattice of one spacing";
+            return Err(input("model.discretisation", format!("\"{}\"", model.arrangement), problem, "use \"lattice\""));
+        }
         let (spacing, ratio, angle) = (model.spacing, model.horizon_ratio, model.lattice_angle);
         let body = Body::build(&case.specimen, &case.material, &model.bond_law, spacing, ratio, angle)?;
         Ok(CrackedPlate { case, body })

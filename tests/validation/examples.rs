@@ -22,7 +22,9 @@ fn folder() -> PathBuf {
 
 /// Examples whose number is compared with a calculation by hand, and those that only have their own.
 const BY_HAND: [&str; 4] = ["compact_tension", "double_edge", "single_edge", "virkler_panel"];
-const OWN: [(&str, f64, StopReason); 4] = [
+const OWN: [(&str, f64, StopReason); 5] = [
+    // 0.7 % over that of virkler_panel, whose points are fine everywhere.
+    ("dual_horizon_panel", 126_800.3, StopReason::CrackLengthReached),
     ("hand_calculation", 247_247.1, StopReason::CrackLengthReached),
     ("notched_plate", 55_438.0, StopReason::Severed),
     ("plate_with_hole", 34_831.6, StopReason::Severed),

@@ -1,13 +1,13 @@
 //! The body that a run would compute, looked at before anything is solved.
 
 use super::understood::short;
-use crate::body::Body;
 use crate::body::lattice::Lattice;
 use crate::case::{Case, Method};
 use crate::error::{Error, InputError, Result};
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::no_fail::stuck;
 use crate::fatigue::pieces::{Cut, set_aside};
+use crate::predict::plate::Plate;
 use crate::state::Bonds;
 use crate::units::MM;
 
@@ -31,20 +31,21 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
     let about = specimen.area() / model.spacing.powi(2);
     if about > POINTS_BUILT {
         let padding = model.horizon_ratio.floor() as usize;
-        let lattice = Lattice::over(specimen, model.spacing, model.lattice_angle, padding)?;
-        let count = format!("about {:.0}", specimen.area() / lattice.spacing.powi(2));
-        return Ok(Preview { points: points_line(case, &count, lattice.spacing), warnings: Vec::new() });
+        let lattice = Lattice::over(specimen, model.coarsest_spacing(), model.lattice_angle, padding)?;
+        let spacing = model.fitting_spacing(specimen);
+        let most = if model.refinement.is_some() { "at most" } else { "about" };
+        let count = format!("{most} {:.0}", specimen.area() / spacing.powi(2));
+        return Ok(Preview { points: points_line(case, &count, [spacing, lattice.spacing]), warnings: Vec::new() });
     }
-    let body = Body::build(specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)
-        .map_err(as_input)?;
-    let mut bonds = Bonds::new(&body);
-    if set_aside(&body, &mut bonds, &body.pre_cut) == Cut::Severed {
+    let plate = Plate::build(specimen, specimen, &case.material, model).map_err(as_input)?;
+    let body = &plate.body;
+    let mut bonds = Bonds::new(body);
+    if set_aside(body, &mut bonds, &body.pre_cut) == Cut::Severed {
         return Err(as_input(Error::Mechanics("the initial cracks cut the plate in two".to_owned())));
     }
-    let count =
-        format!("{} and {} bonds, {} of them cut by the initial cracks", body.points.len(), body.bond_count, body.pre_cut.len());
-    let tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, &body)).collect();
-    let held = stuck(&body, &bonds, &tips, &case.fatigue).into_iter().map(|tip| {
+    let count = format!("{} and {} bonds, {} of them cut by the initial cracks", plate.points(), plate.bonds(), plate.cut());
+    let tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, body)).collect();
+    let held = stuck(body, &bonds, &tips, &case.fatigue).into_iter().map(|tip| {
         let [x, y] = tips[tip].position.map(|metres| short(metres / MM));
         format!(
             "the crack tip at ({x}, {y}) mm stands in the zone around a load or support, where bonds do not fail: it will not \
@@ -52,16 +53,23 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
             short(body.horizon() / MM)
         )
     });
-    Ok(Preview { points: points_line(case, &count, body.lattice.spacing), warnings: held.collect() })
+    let warnings = plate.warnings().into_iter().chain(held).collect();
+    let fine = body.lattice.spacing;
+    Ok(Preview { points: points_line(case, &count, [fine, fine * model.coarsest_spacing() / model.spacing]), warnings })
 }
 
-fn points_line(case: &Case, count: &str, spacing: f64) -> String {
+/// `spacings` of the finest and the coarsest level, m.
+fn points_line(case: &Case, count: &str, spacings: [f64; 2]) -> String {
     let model = &case.model;
+    let [spacing, coarsest] = spacings;
     let asked = short(model.spacing / MM);
-    let spacing_words = match short(spacing / MM) {
+    let mut spacing_words = match short(spacing / MM) {
         actual if actual == asked => format!("spacing {actual} mm"),
         actual => format!("spacing {actual} mm ({asked} asked for)"),
     };
+    if let Some(refinement) = &model.refinement {
+        spacing_words = format!("{spacing_words} to {} mm, {} ({})", short(coarsest / MM), model.arrangement, refinement.words());
+    }
     format!(
         "{count} at {spacing_words}, horizon {} mm (ratio {}), solver {}",
         short(spacing * model.horizon_ratio / MM),

@@ -5,7 +5,7 @@ use super::understood::{Line, short};
 use crate::error::Result;
 use crate::fracture::Scene;
 use crate::fracture::preview::{Preview, preview};
-use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure, Refinement, SceneLaw};
+use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure, SceneLaw};
 use crate::report::specimen_picture::scene_svg;
 use crate::units::{GPA, MM, MPA};
 
@@ -58,7 +58,7 @@ pub(super) fn scene_lines(scene: &Scene) -> Result<Vec<Line>> {
     ];
     lines.extend(scene.drives.iter().map(|drive| line("load", drive_words(drive))));
     lines.extend(scene.holds.iter().map(|hold| line("support", hold_words(hold))));
-    lines.extend(scene.refinement.as_ref().map(|refinement| line("refinement", refinement_words(refinement))));
+    lines.extend(scene.refinement.as_ref().map(|refinement| line("refinement", refinement.words())));
     lines.push(line("damage", damage_words(scene)));
     Ok(lines)
 }
@@ -145,11 +145,6 @@ fn hold_words(hold: &Hold) -> String {
         _ => "y",
     };
     format!("{held} held on {}", hold.region)
-}
-
-fn refinement_words(refinement: &Refinement) -> String {
-    let levels = refinement.regions.iter().map(|(_, levels)| *levels).max().unwrap_or(0);
-    format!("{} regions, up to {levels} levels", refinement.regions.len())
 }
 
 fn damage_words(scene: &Scene) -> String {

@@ -17,14 +17,15 @@
 
 use super::super::bonds::BondState;
 use super::super::failure::Failure;
-use super::super::net::Net;
 use super::super::outcome::SceneEnd;
 use super::super::pieces::is_separated;
 use super::account::{Account, Recorder, State};
 use super::control::Control;
-use super::equilibrium::{Equilibrium, Shape};
+use super::equilibrium::Equilibrium;
 use super::full_load::FullLoad;
 use crate::error::{Error, Result};
+use crate::net::Net;
+use crate::net::equilibrium::Shape;
 
 /// Settings of path following.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,7 +104,7 @@ impl Path<'_> {
             path: self,
             equilibrium: Equilibrium::new(self.net, self.full)?,
             control: Control::new(self.net, self.failure),
-            shape: Shape { u: vec![0.0; size], force: vec![0.0; size], strain: 0.0 },
+            shape: Shape::at_rest(size),
             account: Account::default(),
             recorder,
             broken_at_row: 0,
@@ -116,7 +117,7 @@ impl Path<'_> {
         walk.equilibrium.solve(bonds, &mut walk.shape)?;
         self.full.check_balance(self.net, &walk.shape.force)?;
         let end = walk.run(bonds)?;
-        let spent = walk.equilibrium.spent;
+        let spent = walk.equilibrium.spent();
         tracing::info!(solves = spent.solves, iterations = spent.iterations, factorisations = spent.factorisations, "path");
         let level = walk.account.state.level;
         let u = walk.shape.u.iter().map(|u| level * u).collect();

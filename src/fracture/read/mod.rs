@@ -41,7 +41,6 @@ mod load;
 mod loading;
 mod micro_cracks;
 mod model;
-mod refinement;
 mod region;
 mod supports;
 
@@ -56,13 +55,14 @@ use toml::{Table, Value};
 use super::scene::{Scene, SceneLaw};
 use crate::error::Result;
 use crate::input::{Document, Sections, Strangers, value_at};
+use crate::net::read as refinement;
 use crate::{material, specimen};
 
 /// Sections of a scene file.
 pub const SECTIONS: &[&str] = &["specimen", "material", "model", "loading", "supports", "damage", "refinement", "micro_cracks"];
 
 /// Sections that only a scene file has.
-pub const SCENE_SECTIONS: &[&str] = &["damage", "refinement", "micro_cracks"];
+pub const SCENE_SECTIONS: &[&str] = &["damage", "micro_cracks"];
 
 /// Sections of other files.
 const STRANGERS: &[Strangers] = &[

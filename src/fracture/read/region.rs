@@ -3,9 +3,10 @@
 use serde::Deserialize;
 use toml::Value;
 
-use crate::error::{Result, input, input_missing};
+use crate::error::{Result, input};
 use crate::fracture::scene::Region;
 use crate::input::{number, point, slice};
+pub use crate::net::read::{corners, overlap};
 use crate::specimen::geometry::bounding_box;
 use crate::specimen::{Edge, Point, Specimen};
 use crate::units::MM;
@@ -23,33 +24,6 @@ pub fn box_from_value(value: &Value, path: &str, specimen: &Specimen) -> Result<
     let input: BoxInput = slice(value, path)?;
     let (low, high) = corners(path, [input.from_mm, input.to_mm], specimen)?;
     Ok(Region::Box { low, high })
-}
-
-/// Lower left and upper right corner of a box given by two opposite corners in mm, which meets the plate.
-pub fn corners(path: &str, [from, to]: [[f64; 2]; 2], specimen: &Specimen) -> Result<(Point, Point)> {
-    let (from, to) = (point(path, from)?, point(path, to)?);
-    let low = [from[0].min(to[0]), from[1].min(to[1])];
-    let high = [from[0].max(to[0]), from[1].max(to[1])];
-    if low[0] == high[0] || low[1] == high[1] {
-        return Err(input_missing(path, "encloses no area", "give two opposite corners of a box"));
-    }
-    let [plate_low, plate_high] = bounding_box(&specimen.outline);
-    if !overlap(low, high, plate_low, plate_high) {
-        let problem = format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
-        return Err(input_missing(path, problem, "move it onto the plate"));
-    }
-    Ok((low, high))
-}
-
-/// A point in words.
-pub fn words(p: Point) -> String {
-    let round = |metres: f64| (metres / MM * 1e6).round() / 1e6;
-    format!("({}, {}) mm", round(p[0]), round(p[1]))
-}
-
-/// Whether two boxes share an area.
-pub fn overlap(low: Point, high: Point, other_low: Point, other_high: Point) -> bool {
-    (0..2).all(|i| low[i] < other_high[i] && other_low[i] < high[i])
 }
 
 /// A side with the depth of the hold and, where it is not the whole side, the part of it.

@@ -37,9 +37,48 @@ const RANK_FOLD: usize = 128;
 /// Residual over load of a displacement for a picture.
 const PICTURE_TOLERANCE: f64 = 1e-4;
 
-/// Multigrid for whole solves, a condensed window between them.
-pub struct WindowSolver<const N: usize> {
-    whole: MultigridSolver<N>,
+/// The plate as a whole: how it is solved, and how it is condensed.
+pub(in crate::solver) trait Whole<const N: usize>: Send {
+    /// Improves `u` until the whole plate is in equilibrium.
+    fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
+    /// The same to a residual of `tolerance` times the load.
+    fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
+    /// Told which bonds broke.
+    fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
+    /// Condenses the plate with its present bonds onto some places; `None` where that cannot be done in these digits.
+    fn condense(&self, system: System<'_, N>, places: &[u32]) -> Option<Condensed>;
+}
+
+/// A body alone: multigrid, or a factorisation where that breaks down.
+pub(in crate::solver) struct Alone<const N: usize>(MultigridSolver<N>);
+
+impl<const N: usize> Whole<N> for Alone<N> {
+    fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        // A part that hangs on a few bonds is nearly a mechanism, on which the iteration breaks down; a factorisation does not.
+        self.0.solve(system, u).or_else(|_| DirectSolver::default().solve(system, u))
+    }
+
+    fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        self.0.solve_to(tolerance, system, u).or_else(|_| DirectSolver::default().solve(system, u))
+    }
+
+    fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
+        self.0.broke(body, bonds, product, broken);
+    }
+
+    fn condense(&self, system: System<'_, N>, places: &[u32]) -> Option<Condensed> {
+        let System { body, bonds, product, .. } = system;
+        let pins = pins(body, bonds, places, width(product));
+        match product.dilatation() {
+            None => condense::<N, _>(body, bonds, &Springs::new(product), places, &pins),
+            Some(dilatation) => condense::<MIXED, _>(body, bonds, &Mixed::new(product, dilatation, bonds), places, &pins),
+        }
+    }
+}
+
+/// Solves of the whole plate, a condensed window between them.
+pub(in crate::solver) struct WindowSolver<const N: usize, W> {
+    whole: W,
     window: Option<Window>,
     broken: Vec<Bond>,
     /// Whether the displacement is right everywhere, not in the window only.
@@ -64,20 +103,22 @@ struct Window {
     springs: usize,
 }
 
-impl<const N: usize> WindowSolver<N> {
-    /// Starts without a window.
+impl<const N: usize> WindowSolver<N, Alone<N>> {
+    /// Starts without a window on a body alone.
     pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
-        let whole = MultigridSolver::for_few_solves(body, bonds, product);
-        WindowSolver { whole, window: None, broken: Vec::new(), is_whole: false, is_off: false, work: 0.0, picture: None }
+        WindowSolver::of_whole(Alone(MultigridSolver::for_few_solves(body, bonds, product)), false)
+    }
+}
+
+impl<const N: usize, W: Whole<N>> WindowSolver<N, W> {
+    /// Starts without a window; never has one if it `is_off`.
+    pub(in crate::solver) fn of_whole(whole: W, is_off: bool) -> Self {
+        WindowSolver { whole, window: None, broken: Vec::new(), is_whole: false, is_off, work: 0.0, picture: None }
     }
 
     /// Solves the whole plate; a window that is up to date takes its new base from it.
     fn solve_whole(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        // A part that hangs on a few bonds is nearly a mechanism, on which the iteration breaks down; a factorisation does not.
-        let solved = match self.whole.solve(system, u) {
-            Ok(solved) => solved,
-            Err(_) => DirectSolver::default().solve(system, u)?,
-        };
+        let solved = self.whole.solve(system, u)?;
         self.picture = None;
         // The work of the loads by the window's account against that by the whole system: the error of the window in energy.
         let drift = (self.work / solved.work - 1.0).abs();
@@ -115,12 +156,7 @@ impl<const N: usize> WindowSolver<N> {
             }
             places = farther;
         }
-        let pins = pins(body, bonds, &places, width);
-        let condensed = match product.dilatation() {
-            None => condense::<N, _>(body, bonds, &Springs::new(product), &places, &pins),
-            Some(dilatation) => condense::<MIXED, _>(body, bonds, &Mixed::new(product, dilatation, bonds), &places, &pins),
-        };
-        let Some(condensed) = condensed else {
+        let Some(condensed) = self.whole.condense(system, &places) else {
             self.is_off = true;
             return None;
         };
@@ -129,7 +165,7 @@ impl<const N: usize> WindowSolver<N> {
     }
 }
 
-impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
+impl<const N: usize, W: Whole<N>> LinearSolver<N> for WindowSolver<N, W> {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let broken = std::mem::take(&mut self.broken);
         if let Some(window) = &mut self.window {
@@ -155,17 +191,17 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
         self.broken.extend(broken);
     }
 
-    fn reach(&mut self, system: System<'_, N>, u: &mut [f64], watched: &[Bond], tips: &[Focus]) -> Result<usize> {
+    fn reach(&mut self, system: System<'_, N>, u: &mut [f64], watched: &[Bond], tips: &[Focus]) -> Result<Option<Solved>> {
         if self.window.as_ref().is_some_and(|window| hold(system.body, &window.condensed.places, watched)) {
-            return Ok(0);
+            return Ok(None);
         }
-        let iterations = self.complete(system, u)?;
+        let solved = self.complete(system, u)?;
         self.window = self.condense(system, u, watched, tips);
-        Ok(iterations)
+        Ok(solved)
     }
 
-    fn complete(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<usize> {
-        if self.is_whole { Ok(0) } else { Ok(self.solve_whole(system, u)?.iterations) }
+    fn complete(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Option<Solved>> {
+        if self.is_whole { Ok(None) } else { self.solve_whole(system, u).map(Some) }
     }
 
     fn picture(&mut self, system: System<'_, N>, u: &[f64]) -> Result<Option<(Vec<f64>, usize)>> {
@@ -179,10 +215,7 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
                 (0..N).map(|c| first + c * layout.stride).for_each(|index| picture[index] = u[index]);
             }
         }
-        let solved = match self.whole.solve_to(PICTURE_TOLERANCE, system, &mut picture) {
-            Ok(solved) => solved,
-            Err(_) => DirectSolver::default().solve(system, &mut picture)?,
-        };
+        let solved = self.whole.solve_to(PICTURE_TOLERANCE, system, &mut picture)?;
         self.picture = Some(picture.clone());
         Ok(Some((picture, solved.iterations)))
     }

@@ -14,7 +14,7 @@ use crate::body::balanced::{BOUNDS, ROWS_LEAST, ROWS_MORE, asked, gain};
 use crate::body::facets::facets;
 use crate::bond_law::stencil::Stencil;
 use crate::error::{Error, Result};
-use crate::fracture::net::Net;
+use crate::net::Net;
 use crate::specimen::Specimen;
 
 /// A pair of points with its bonds.
@@ -28,7 +28,7 @@ struct Pair {
 /// # Errors
 /// No multipliers within the bounds come near equilibrium.
 pub fn balance(net: &mut Net, specimen: &Specimen, levels: &Levels, stencils: &[Stencil], sharing: &Sharing<'_>) -> Result<()> {
-    let finest = levels.lattices[levels.lattices.len() - 1].spacing;
+    let finest = levels.finest().spacing;
     let irregular = irregular(net, levels, stencils);
     let pairs = pairs(net, levels, &stencils[0], finest);
     let mut areas = vec![[0.0; 2]; net.len()];

@@ -1,14 +1,14 @@
-//! `[refinement]` of a scene: where finer points lie.
+//! `[refinement]` of a case or a scene: where finer points lie.
 
 use serde::Deserialize;
 use toml::Value;
 
-use super::region;
+use super::{RefinedRegion, Refinement};
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::{RefinedRegion, Refinement};
 use crate::input::{LENGTH, point, slice};
-use crate::specimen::Specimen;
 use crate::specimen::geometry::{bounding_box, distance};
+use crate::specimen::{Point, Specimen};
+use crate::units::MM;
 
 /// Times that a point may be split in four.
 const LEVELS_MAX: usize = 4;
@@ -54,8 +54,8 @@ fn one(value: &Value, path: &str, specimen: &Specimen) -> Result<(RefinedRegion,
         return Err(input(&format!("{path}.width_mm"), width, "is the width of a band, and there is none", "leave it out"));
     }
     let region = match (given.box_mm, given.band_mm, given.around_flaws_mm) {
-        (Some(corners), None, None) => {
-            let (low, high) = region::corners(&format!("{path}.box_mm"), corners, specimen)?;
+        (Some(ends), None, None) => {
+            let (low, high) = corners(&format!("{path}.box_mm"), ends, specimen)?;
             RefinedRegion::Box { low, high }
         }
         (None, Some(ends), None) => band(ends, given.width_mm, path, specimen)?,
@@ -87,10 +87,36 @@ fn band(ends: [[f64; 2]; 2], width: Option<f64>, path: &str, specimen: &Specimen
     let low = [from[0].min(to[0]) - half, from[1].min(to[1]) - half];
     let high = [from[0].max(to[0]) + half, from[1].max(to[1]) + half];
     let [plate_low, plate_high] = bounding_box(&specimen.outline);
-    if !region::overlap(low, high, plate_low, plate_high) {
-        let problem =
-            format!("lies outside the plate, which reaches from {} to {}", region::words(plate_low), region::words(plate_high));
+    if !overlap(low, high, plate_low, plate_high) {
+        let problem = format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
         return Err(input_missing(&key, problem, "move it onto the plate"));
     }
     Ok(RefinedRegion::Band { from, to, width })
+}
+
+/// Lower left and upper right corner of a box given by two opposite corners in mm, which meets the plate.
+pub fn corners(path: &str, [from, to]: [[f64; 2]; 2], specimen: &Specimen) -> Result<(Point, Point)> {
+    let (from, to) = (point(path, from)?, point(path, to)?);
+    let low = [from[0].min(to[0]), from[1].min(to[1])];
+    let high = [from[0].max(to[0]), from[1].max(to[1])];
+    if low[0] == high[0] || low[1] == high[1] {
+        return Err(input_missing(path, "encloses no area", "give two opposite corners of a box"));
+    }
+    let [plate_low, plate_high] = bounding_box(&specimen.outline);
+    if !overlap(low, high, plate_low, plate_high) {
+        let problem = format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
+        return Err(input_missing(path, problem, "move it onto the plate"));
+    }
+    Ok((low, high))
+}
+
+/// A point in words.
+pub fn words(p: Point) -> String {
+    let round = |metres: f64| (metres / MM * 1e6).round() / 1e6;
+    format!("({}, {}) mm", round(p[0]), round(p[1]))
+}
+
+/// Whether two boxes share an area.
+pub fn overlap(low: Point, high: Point, other_low: Point, other_high: Point) -> bool {
+    (0..2).all(|i| low[i] < other_high[i] && other_low[i] < high[i])
 }

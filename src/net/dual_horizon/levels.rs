@@ -99,6 +99,12 @@ impl Levels {
         }
     }
 
+    /// The finest lattice.
+    #[must_use]
+    pub fn finest(&self) -> &Lattice {
+        &self.lattices[self.lattices.len() - 1]
+    }
+
     /// Place of a point, m.
     #[must_use]
     pub fn position(&self, leaf: Leaf) -> Point {

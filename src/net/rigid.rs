@@ -1,6 +1,6 @@
 //! Least supports of a plate that floats: components which, held, take its rigid motions and no load.
 
-use super::super::net::Net;
+use super::Net;
 use crate::specimen::geometry::distance;
 
 /// A component that holds a rigid motion: its row `[u_x, u_y, ω]`, lengths over the size of the plate.

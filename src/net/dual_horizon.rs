@@ -17,7 +17,7 @@
 //! than on the other, and the strain at rest is off by a quarter to a half. `surface_correction = "balanced"` takes that away
 //! (`dual_horizon/balanced.rs`); limits of damage know nothing of it, so changes of level belong where no crack starts.
 //!
-//! [`NetBond::lever`]: super::net::NetBond::lever
+//! [`NetBond::lever`]: super::NetBond::lever
 
 mod balanced;
 pub mod levels;
@@ -26,8 +26,7 @@ mod loads;
 pub mod regions;
 mod surface;
 
-use super::net::{Net, NetBond};
-use super::scene::{Action, Arrangement, Scene};
+use super::{Arrangement, Net, NetBond, PointGrid, Refinement};
 use crate::body::balanced::load_rows;
 use crate::body::lattice::Lattice;
 use crate::body::obstacles::Obstacles;
@@ -35,55 +34,93 @@ use crate::body::pre_crack::cutting_line;
 use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::bond_law::{BondLaw, BondLawKind, SurfaceCorrection};
 use crate::error::{Result, input};
-use crate::predict::PointGrid;
+use crate::material::Material;
 use crate::specimen::geometry::segments_touch;
-use crate::specimen::{Crack, Point};
+use crate::specimen::{Crack, Point, Specimen};
 use levels::Levels;
 use links::Linking;
 use loads::Sharing;
 use regions::Area;
 
-/// Points and bonds of a scene with a law of bonds.
+/// What points of several levels are asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Ask<'a> {
+    /// Plate, its cracks as they are cut.
+    pub specimen: &'a Specimen,
+    /// The same plate, its cracks as regions around flaws mean them.
+    pub flaws: &'a Specimen,
+    /// Material.
+    pub material: &'a Material,
+    /// Law of the bonds.
+    pub law: &'a BondLaw,
+    /// Spacing of the coarsest level asked for, m.
+    pub spacing: f64,
+    /// Horizon over spacing, on all levels.
+    pub horizon_ratio: f64,
+    /// Angle of the lattice rows against x, rad.
+    pub lattice_angle: f64,
+    /// With or without the dual horizon.
+    pub arrangement: Arrangement,
+    /// Where finer points lie; `None` leaves the coarsest level everywhere.
+    pub refinement: Option<&'a Refinement>,
+    /// Whether nothing holds the plate, so that its loads must balance.
+    pub floating: bool,
+}
+
+/// Points of several levels.
+#[derive(Debug, Clone)]
+pub struct Built {
+    /// Points and bonds.
+    pub net: Net,
+    /// The lattices they stand on.
+    pub levels: Levels,
+    /// Bonds and springs of the lattice of every level.
+    pub stencils: Vec<Stencil>,
+    /// Points at whose rim a load acts, ascending.
+    pub loaded: Vec<u32>,
+}
+
+/// Builds points and bonds.
 ///
 /// # Errors
 /// Wrong input, or choices that do not go together.
-pub fn net(scene: &Scene, law: &BondLaw) -> Result<Net> {
-    let (specimen, model) = (&scene.specimen, &scene.model);
+pub fn build(ask: &Ask<'_>) -> Result<Built> {
+    let Ask { specimen, law, arrangement, .. } = *ask;
     if law.kind == BondLawKind::StateBased {
-        let problem = format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
+        let problem = format!("has a dilatation of every point, and \"{arrangement}\" joins points by springs only");
         return Err(input("model.bond_law", format!("\"{}\"", law.kind), problem, "use a bond-based or two-parameter law"));
     }
-    if model.arrangement == Arrangement::VariableHorizon && law.surface_correction == SurfaceCorrection::Balanced {
-        let problem = format!("balances springs that pull both ends, and \"{}\" has others", model.arrangement);
+    if arrangement == Arrangement::VariableHorizon && law.surface_correction == SurfaceCorrection::Balanced {
+        let problem = format!("balances springs that pull both ends, and \"{arrangement}\" has others");
         return Err(input("model.surface_correction", "\"balanced\"", problem, "use \"none\" or \"volume_and_surface\""));
     }
     let padding = 0;
-    let lattice = Lattice::over(specimen, model.spacing, model.lattice_angle, padding)?;
-    let areas = Area::all(specimen, scene.refinement.as_ref(), model.horizon_ratio)?;
-    let levels = Levels::over(specimen, lattice, &areas, model.horizon_ratio)?;
-    let stencil =
-        |lattice: &Lattice| Stencil::new(law, &scene.material, lattice.spacing, model.horizon_ratio, specimen.thickness);
+    let lattice = Lattice::over(specimen, ask.spacing, ask.lattice_angle, padding)?;
+    let areas = Area::all(ask.flaws, ask.refinement, ask.horizon_ratio)?;
+    let levels = Levels::over(specimen, lattice, &areas, ask.horizon_ratio)?;
+    let stencil = |lattice: &Lattice| Stencil::new(law, ask.material, lattice.spacing, ask.horizon_ratio, specimen.thickness);
     let stencils = levels.lattices.iter().map(stencil).collect::<Result<Vec<Stencil>>>()?;
     let positions: Vec<_> = levels.leaves.iter().map(|&leaf| levels.position(leaf)).collect();
-    let linking = Linking::new(specimen, &levels, &stencils, &positions, model.arrangement);
+    let linking = Linking::new(specimen, &levels, &stencils, &positions, arrangement);
     let mut bonds = linking.within_levels();
     let mutual = bonds.len();
     bonds.extend(linking.across_levels());
     let of_level = |of: fn(&Stencil) -> f64| levels.leaves.iter().map(|leaf| of(&stencils[leaf.level])).collect::<Vec<f64>>();
-    let finest = levels.lattices[levels.lattices.len() - 1].spacing;
+    let finest = levels.finest().spacing;
     let consistent = (law.surface_correction == SurfaceCorrection::Balanced).then(|| {
         let walls = &stencils[stencils.len() - 1];
         (Obstacles::of(specimen, walls.spacing, stencils[0].horizon), load_rows(&stencils[0]))
     });
     let sharing = Sharing::new(&levels, &positions, consistent);
-    let forces = loads::forces(specimen, &sharing, is_floating(scene))?;
+    let forces = loads::forces(specimen, &sharing, ask.floating)?;
+    let loaded = loads::seats(specimen, &sharing);
     let mut net = Net {
         pre_cut: cut_by(&specimen.cracks, &bonds, &positions, finest),
         volumes: of_level(|stencil| stencil.spacing * stencil.spacing).into_iter().map(|a| a * specimen.thickness).collect(),
         spacings: of_level(|stencil| stencil.spacing),
         horizons: of_level(|stencil| stencil.horizon),
         mutual,
-        owner_only: model.arrangement == Arrangement::VariableHorizon,
+        owner_only: arrangement == Arrangement::VariableHorizon,
         unknowns: stencils[0].unknowns,
         rotation_length: stencils[0].spacing,
         forces,
@@ -98,19 +135,12 @@ pub fn net(scene: &Scene, law: &BondLaw) -> Result<Net> {
     match law.surface_correction {
         SurfaceCorrection::None => {}
         SurfaceCorrection::VolumeAndSurface => {
-            let c11 = plane_stiffness(&spring_material(law, &scene.material))[0];
+            let c11 = plane_stiffness(&spring_material(law, ask.material))[0];
             surface::volume_and_surface(&mut net, &levels.lattices[0], c11);
         }
         SurfaceCorrection::Balanced => balanced::balance(&mut net, specimen, &levels, &stencils, &sharing)?,
     }
-    Ok(net)
-}
-
-/// Whether nothing holds the plate, so that its loads must balance.
-fn is_floating(scene: &Scene) -> bool {
-    scene.specimen.supports.is_empty()
-        && scene.holds.is_empty()
-        && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_)))
+    Ok(Built { net, levels, stencils, loaded })
 }
 
 /// Bonds that cracks cut, ascending.
@@ -125,7 +155,7 @@ fn cut_by(cracks: &[Crack], bonds: &[NetBond], positions: &[Point], spacing: f64
 
 /// The finest lattice with every coarser point on all the places of its cell.
 fn grid(levels: &Levels) -> PointGrid {
-    let lattice = &levels.lattices[levels.lattices.len() - 1];
+    let lattice = levels.finest();
     let places = (0..lattice.columns * lattice.rows).map(|i| ((i % lattice.columns) as i64, (i / lattice.columns) as i64));
     PointGrid {
         spacing: lattice.spacing,

@@ -1,13 +1,30 @@
-//! Points and bonds of any arrangement: what the discretised plate of a fracture scene is, fixed once built.
+//! Points and bonds of any arrangement: what a discretised plate is where a lattice of one spacing will not do, fixed once built.
 //!
 //! A bond has an owner and a partner and acts on both with opposite forces, so that momentum is exact whatever the
 //! horizons. On a lattice every pair of points is one bond; with a dual horizon a pair of unequal horizons has up to two, each
 //! with half of the micromodulus at its owner's horizon (Ren, Zhuang, Cai and Rabczuk 2016, IJNME 108:1451). Two halves between
 //! equal horizons would always do the same, and are one bond.
 
+pub mod dual_horizon;
+pub mod equilibrium;
+pub mod grid;
+pub mod levelled;
+pub mod read;
+pub mod refinement;
+pub mod rigid;
+pub mod stiffness;
+
+pub use dual_horizon::Ask;
+pub use grid::PointGrid;
+pub use refinement::{Arrangement, RefinedRegion, Refinement};
+
+use rayon::prelude::*;
+
 use crate::body::Body;
-use crate::predict::PointGrid;
 use crate::specimen::Point;
+
+/// Points that one task gathers forces of.
+const TASK: usize = 4096;
 
 /// A bond of a net.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +50,25 @@ impl NetBond {
     #[must_use]
     pub fn tangent(&self) -> Point {
         [-self.normal[1], self.normal[0]]
+    }
+
+    /// Relative displacement of its ends along and across it, `η·n` and `η·t - r (θ + θ')`, m, with N unknowns a point.
+    #[inline(always)]
+    #[must_use]
+    pub fn opening<const N: usize>(&self, u: &[f64]) -> [f64; 2] {
+        let (a, b) = (self.from as usize * N, self.to as usize * N);
+        let (eta, n) = ([u[b] - u[a], u[b + 1] - u[a + 1]], self.normal);
+        let across = eta[1] * n[0] - eta[0] * n[1];
+        let turning = if N == 3 { self.lever * (u[a + 2] + u[b + 2]) } else { 0.0 };
+        [eta[0] * n[0] + eta[1] * n[1], across - turning]
+    }
+
+    /// Force on the owner of a bond that pulls so hard along `n` and across it, and the couple on both ends with three unknowns, N.
+    #[inline(always)]
+    #[must_use]
+    pub fn pull<const N: usize>(&self, n: Point, normal: f64, tangential: f64) -> [f64; 3] {
+        let couple = if N == 3 { tangential * self.lever } else { 0.0 };
+        [normal * n[0] - tangential * n[1], normal * n[1] + tangential * n[0], couple]
     }
 }
 
@@ -121,7 +157,7 @@ impl Net {
             unknowns: body.stencil.unknowns,
             rotation_length: lattice.spacing,
             forces: forces.map(|&(p, f)| (number[p as usize], lattice.from_axes(f))).collect(),
-            grid: crate::predict::grid(body),
+            grid: PointGrid::of_body(body),
             entries: Vec::new(),
             starts: Vec::new(),
             warnings: Vec::new(),
@@ -181,5 +217,37 @@ impl Net {
     /// Bonds in a point's own horizon with their other end.
     pub fn family_of(&self, point: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.bonds_of(point).filter(|&(b, _, owned)| owned || b < self.mutual).map(|(b, other, _)| (b, other))
+    }
+
+    /// Forces on the points, N unknowns each, from what every bond does to its owner ([`NetBond::pull`]): point by point, in
+    /// parallel and always in the same order.
+    pub fn gather<const N: usize>(&self, pulls: &[[f64; 3]], force: &mut [f64]) {
+        force.par_chunks_mut(TASK * N).enumerate().for_each(|(task, force)| {
+            for (i, force) in force.chunks_exact_mut(N).enumerate() {
+                let point = task * TASK + i;
+                let mut sum = [0.0; 3];
+                for &entry in &self.entries[self.starts[point] as usize..self.starts[point + 1] as usize] {
+                    let pull = &pulls[(entry / 2) as usize];
+                    let sign = if entry % 2 == 0 { 1.0 } else { -1.0 };
+                    sum = [sum[0] + sign * pull[0], sum[1] + sign * pull[1], sum[2] + pull[2]];
+                }
+                force.copy_from_slice(&sum[..N]);
+            }
+        });
+    }
+
+    /// Damage φ = 1 - Σ μ V' / Σ V' of every point over its bonds (Silling and Askari 2005), 0 to 1, where every bond has a share
+    /// of its stiffness. With a dual horizon only the bonds of the point's own horizon count.
+    #[must_use]
+    pub fn damage(&self, share: &[f64]) -> Vec<f64> {
+        let of_point = |i: usize| {
+            let (mut whole, mut intact) = (0.0, 0.0);
+            for (b, other) in self.family_of(i) {
+                whole += self.volumes[other];
+                intact += if share[b] > 0.0 { self.volumes[other] } else { 0.0 };
+            }
+            if whole > 0.0 { 1.0 - intact / whole } else { 1.0 }
+        };
+        (0..self.len()).map(of_point).collect()
     }
 }

@@ -42,7 +42,7 @@ impl<'a> Sharing<'a> {
 
     /// The point whose cell a piece bounds, or the nearest one.
     fn seat(&self, facet: &Facet) -> Option<usize> {
-        let finest = &self.levels.lattices[self.levels.lattices.len() - 1];
+        let finest = self.levels.finest();
         let at = behind(facet, finest.spacing);
         let [column, row] = finest.locate(at).map(|i| i.round() as i64);
         self.levels.point_over(column, row).or_else(|| {
@@ -85,7 +85,7 @@ impl<'a> Sharing<'a> {
 /// # Errors
 /// A load without points, loads out of balance on a plate that nothing holds.
 pub fn forces(specimen: &Specimen, sharing: &Sharing<'_>, floating: bool) -> Result<Vec<(u32, Point)>> {
-    let finest = sharing.levels.lattices[sharing.levels.lattices.len() - 1].spacing;
+    let finest = sharing.levels.finest().spacing;
     let mut sums = BTreeMap::<u32, Point>::new();
     for piece in load_pieces(specimen, finest) {
         let shares = sharing.of(&piece.facet);
@@ -107,4 +107,14 @@ pub fn forces(specimen: &Specimen, sharing: &Sharing<'_>, floating: bool) -> Res
         forces.iter_mut().zip(seated).for_each(|(force, (_, balanced))| force.1 = balanced);
     }
     Ok(forces)
+}
+
+/// Points at whose rim a load acts, ascending.
+#[must_use]
+pub fn seats(specimen: &Specimen, sharing: &Sharing<'_>) -> Vec<u32> {
+    let pieces = load_pieces(specimen, sharing.levels.finest().spacing);
+    let mut seats: Vec<u32> = pieces.iter().filter_map(|piece| sharing.seat(&piece.facet)).map(|seat| seat as u32).collect();
+    seats.sort_unstable();
+    seats.dedup();
+    seats
 }

@@ -3,8 +3,7 @@
 use super::levels::{Leaf, Levels};
 use crate::body::obstacles::Obstacles;
 use crate::bond_law::stencil::Stencil;
-use crate::fracture::net::NetBond;
-use crate::fracture::scene::Arrangement;
+use crate::net::{Arrangement, NetBond};
 use crate::specimen::{Point, Specimen};
 
 /// Relative round-off of a distance against a horizon.

@@ -5,15 +5,15 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
 
-use super::super::net::{Net, NetBond};
+use super::{Net, NetBond};
 use crate::error::{Error, Result};
 
-/// Share of the largest diagonal entry that is added to all, so that points and fragments without hold leave the factor definite.
-const SHIFT: f64 = 1e-10;
+/// Shares of the largest diagonal entry that are added to all, so that points and fragments without hold leave the factor
+/// definite: the smaller the better it stands for the plate; the larger where round-off leaves no factor with the smaller.
+const SHIFTS: [f64; 2] = [1e-13, 1e-10];
 
 /// Stiffness between the free unknowns.
-pub struct Stiffness<'n> {
-    net: &'n Net,
+pub struct Stiffness {
     /// Row of every unknown; `usize::MAX` where it is held.
     number: Vec<usize>,
     matrix: SparseColMat<usize, f64>,
@@ -25,12 +25,12 @@ pub struct Stiffness<'n> {
     factor: Option<Llt<usize, f64>>,
 }
 
-impl<'n> Stiffness<'n> {
+impl Stiffness {
     /// Pattern and symbolic factorisation.
     ///
     /// # Errors
     /// Out of memory.
-    pub fn new(net: &'n Net, held: &[bool]) -> Result<Self> {
+    pub fn new(net: &Net, held: &[bool]) -> Result<Self> {
         let mut number = vec![usize::MAX; held.len()];
         let free: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();
         free.iter().enumerate().for_each(|(row, &i)| number[i] = row);
@@ -51,30 +51,40 @@ impl<'n> Stiffness<'n> {
         let slots = net.bonds.iter().flat_map(|bond| Self::entries(net, &number, bond)).map(|(row, column, _)| slot(row, column));
         let slots = slots.collect();
         let diagonal = (0..free.len()).map(|i| slot(i, i)).collect();
-        Ok(Stiffness { net, slots, diagonal, number, matrix, symbolic, factor: None })
+        Ok(Stiffness { slots, diagonal, number, matrix, symbolic, factor: None })
     }
 
-    /// Factorises the stiffness with these shares of the bonds.
+    /// Factorises the stiffness of the net with these shares of the bonds.
     ///
     /// # Errors
     /// A stiffness that is not positive definite.
-    pub fn factorise(&mut self, share: &[f64]) -> Result<()> {
+    pub fn factorise(&mut self, net: &Net, share: &[f64]) -> Result<()> {
         let values = self.matrix.val_mut();
         values.fill(0.0);
         let mut slots = self.slots.iter();
-        for (bond, &share) in self.net.bonds.iter().zip(share) {
-            for (_, _, value) in Self::entries(self.net, &self.number, bond) {
+        for (bond, &share) in net.bonds.iter().zip(share) {
+            for (_, _, value) in Self::entries(net, &self.number, bond) {
                 if let Some(&slot) = slots.next() {
                     values[slot as usize] += share * value;
                 }
             }
         }
         let largest = self.diagonal.iter().map(|&slot| values[slot as usize]).fold(0.0, f64::max);
-        self.diagonal.iter().for_each(|&slot| values[slot as usize] += SHIFT * largest);
-        let factor = Llt::try_new_with_symbolic(self.symbolic.clone(), self.matrix.as_ref(), faer::Side::Lower)
-            .map_err(|e| Error::Mechanics(format!("the stiffness matrix is not positive definite: {e:?}")))?;
-        self.factor = Some(factor);
-        Ok(())
+        let mut added = 0.0;
+        let mut trouble = None;
+        for shift in SHIFTS {
+            let values = self.matrix.val_mut();
+            self.diagonal.iter().for_each(|&slot| values[slot as usize] += (shift - added) * largest);
+            added = shift;
+            match Llt::try_new_with_symbolic(self.symbolic.clone(), self.matrix.as_ref(), faer::Side::Lower) {
+                Ok(factor) => {
+                    self.factor = Some(factor);
+                    return Ok(());
+                }
+                Err(e) => trouble = Some(e),
+            }
+        }
+        Err(Error::Mechanics(format!("the stiffness matrix is not positive definite: {trouble:?}")))
     }
 
     /// Applies the inverse of the last factorised stiffness to a vector of all unknowns; 0 where they are held.

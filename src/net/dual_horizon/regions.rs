@@ -1,7 +1,7 @@
-//! Areas of finer points, as a scene asks for them.
+//! Areas of finer points, as a case or a scene asks for them.
 
 use crate::error::{Error, Result, input, input_missing};
-use crate::fracture::scene::{RefinedRegion, Refinement};
+use crate::net::{RefinedRegion, Refinement};
 use crate::specimen::geometry::{bounding_box, distance_to_polygon, distance_to_segment, point_in_polygon};
 use crate::specimen::{Point, Specimen};
 
@@ -18,12 +18,12 @@ pub struct Area<'s> {
     region: &'s RefinedRegion,
     /// Times its points are split in four.
     pub levels: usize,
-    /// Number in the list of the scene.
+    /// Number in the list of regions.
     index: usize,
 }
 
 impl<'s> Area<'s> {
-    /// Areas of a scene.
+    /// Areas of a plate.
     ///
     /// # Errors
     /// Levels out of range, areas outside the plate, horizons that do not overlap where levels meet.

@@ -1,0 +1,161 @@
+//! The discretised plate of a run: a body on a lattice, or the finest points of a plate of several levels with all that is beside
+//! them.
+
+use std::sync::Arc;
+
+use super::Snapshot;
+use super::curve::Row;
+use crate::body::lattice::LANES;
+use crate::body::{Body, Bond};
+use crate::case::Model;
+use crate::error::Result;
+use crate::material::Material;
+use crate::net::levelled::{Levelled, words};
+use crate::net::{Arrangement, Ask, PointGrid};
+use crate::solver::Equilibrium;
+use crate::solver::field::Layout;
+use crate::specimen::{Point, Specimen, Support};
+use crate::state::Bonds;
+
+/// A discretised plate.
+#[derive(Debug, Clone)]
+pub struct Plate {
+    /// The points whose bonds can break.
+    pub body: Body,
+    /// All levels, where there are several.
+    levels: Option<Arc<Levelled>>,
+}
+
+impl Plate {
+    /// Discretises `specimen`, with its cracks as they are cut; regions around flaws are those of `flaws`.
+    ///
+    /// # Errors
+    /// As [`Body::build`] and [`Levelled::build`].
+    pub fn build(specimen: &Specimen, flaws: &Specimen, material: &Material, model: &Model) -> Result<Plate> {
+        let (law, ratio, angle) = (&model.bond_law, model.horizon_ratio, model.lattice_angle);
+        if model.arrangement == Arrangement::Lattice {
+            let body = Body::build(specimen, material, law, model.spacing, ratio, angle)?;
+            return Ok(Plate { body, levels: None });
+        }
+        let holds = |support: &Support| !matches!(support, Support::RigidEnds);
+        let ask = Ask {
+            specimen,
+            flaws,
+            material,
+            law,
+            spacing: model.coarsest_spacing(),
+            horizon_ratio: ratio,
+            lattice_angle: angle,
+            arrangement: model.arrangement,
+            refinement: model.refinement.as_ref(),
+            floating: !specimen.supports.iter().any(holds),
+        };
+        let (body, levelled) = Levelled::build(&ask)?;
+        Ok(Plate { body, levels: Some(Arc::new(levelled)) })
+    }
+
+    /// Equilibrium with these bonds under `load` times the unit load (Pa or N).
+    #[must_use]
+    pub fn equilibrium(&self, model: &Model, bonds: &Bonds, load: f64) -> Equilibrium {
+        match &self.levels {
+            None => Equilibrium::new(model.solver, model.symmetry, &self.body, bonds, load),
+            Some(levels) => Equilibrium::of_levels(model.solver, levels.clone(), &self.body, bonds, load),
+        }
+    }
+
+    /// Number of points, of all levels.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.levels.as_ref().map_or(self.body.points.len(), |levels| levels.net.len())
+    }
+
+    /// Number of bonds of the uncracked plate, of all levels.
+    #[must_use]
+    pub fn bonds(&self) -> usize {
+        self.levels.as_ref().map_or(self.body.bond_count, |levels| levels.net.bonds.len())
+    }
+
+    /// Number of bonds that the initial cracks cut, of all levels.
+    #[must_use]
+    pub fn cut(&self) -> usize {
+        self.levels.as_ref().map_or(self.body.pre_cut.len(), |levels| levels.net.pre_cut.len())
+    }
+
+    /// Lattice of the pictures.
+    #[must_use]
+    pub fn grid(&self) -> PointGrid {
+        self.levels.as_ref().map_or_else(|| PointGrid::of_body(&self.body), |levels| levels.net.grid.clone())
+    }
+
+    /// What the user should know about its points.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        self.levels.as_ref().map_or_else(Vec::new, |levels| levels.net.warnings.clone())
+    }
+
+    /// What is to be said of a tip that has come to the rim of the finest level.
+    #[must_use]
+    pub fn left_refinement(&self, tip: Point) -> String {
+        format!(
+            "the crack tip at {} has come too near to the rim of the finest level, where bonds do not break: the run ends there; give \
+             refinement.regions that hold the whole way of the crack and four horizons ({:.4} mm) on, or up to the edge it shall reach",
+            words(tip),
+            4e3 * self.body.horizon()
+        )
+    }
+
+    /// A picture of it: displacement in the layout of its [`Equilibrium`], damage of every point.
+    pub(super) fn snapshot(&self, bonds: &Bonds, displacement: &[f64], row: &Row) -> Snapshot {
+        let (displacement, damage) = match &self.levels {
+            None => of_body(&self.body, bonds, displacement),
+            Some(levels) => of_levels(levels, &self.body, bonds, displacement),
+        };
+        Snapshot { cycles: row.cycles, crack_length: row.crack_length, displacement, damage }
+    }
+}
+
+/// Displacement in plate axes and damage of the points of a body: share of their bonds that are broken.
+fn of_body(body: &Body, bonds: &Bonds, displacement: &[f64]) -> (Vec<[f64; 2]>, Vec<f64>) {
+    let layout = Layout::of(&body.lattice, body.stencil.unknowns);
+    let places = body.places();
+    let damage = |place: usize| {
+        let (column, row) = body.lattice.column_row(place);
+        if bonds.chunk_is_regular(row, column / LANES) {
+            return 0.0;
+        }
+        let [mut whole, mut intact] = [0_u32; 2];
+        for (k, &step) in body.steps.iter().enumerate() {
+            for owner in [place, place.wrapping_add_signed(-step)] {
+                let bond = k * places + owner;
+                whole += u32::from(body.multiplier[bond] > 0.0);
+                intact += u32::from(bonds.multiplier[bond] > 0.0);
+            }
+        }
+        if whole == 0 { 1.0 } else { 1.0 - f64::from(intact) / f64::from(whole) }
+    };
+    let motion = |place: usize| {
+        let at = layout.index(place);
+        body.lattice.from_axes([displacement[at], displacement[at + layout.stride]])
+    };
+    let points = || body.points.iter().map(|&place| place as usize);
+    (points().map(motion).collect(), points().map(damage).collect())
+}
+
+/// The same for all points of a net.
+fn of_levels(levels: &Levelled, body: &Body, bonds: &Bonds, displacement: &[f64]) -> (Vec<[f64; 2]>, Vec<f64>) {
+    let net = &levels.net;
+    let layout = Layout::of(&body.lattice, net.unknowns);
+    let mut share = vec![1.0; net.bonds.len()];
+    net.pre_cut.iter().for_each(|&bond| share[bond as usize] = 0.0);
+    let is_broken = |bond: Bond| !bonds.is_intact(bond);
+    levels.bonds().iter().filter(|(bond, _)| is_broken(*bond)).for_each(|(_, b)| share[*b as usize] = 0.0);
+    let motion = |&id: &u32| {
+        let id = id as usize;
+        let (first, stride) = match id.checked_sub(body.places()) {
+            None => (layout.index(id), layout.stride),
+            Some(beyond) => (layout.len() + net.unknowns * beyond, 1),
+        };
+        body.lattice.from_axes([displacement[first], displacement[first + stride]])
+    };
+    (levels.ids.iter().map(motion).collect(), net.damage(&share))
+}
