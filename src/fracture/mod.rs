@@ -25,7 +25,6 @@ pub mod springs;
 
 use std::time::Instant;
 
-pub use crate::net;
 pub use outcome::{Fracture, SceneEnd};
 pub use scene::Scene;
 

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use super::net::Net;
 use super::scene::{Action, Drive, Region, Rise};
+use crate::net::Net;
 use crate::specimen::geometry::{along, bounding_box};
 use crate::specimen::{Edge, Load, Point, Specimen};
 use crate::units::MM;

@@ -9,12 +9,12 @@ use crate::fracture;
 use crate::fracture::bonds::BondState;
 use crate::fracture::failure::Failure;
 use crate::fracture::interaction::{Damaging, Interaction};
-use crate::fracture::net::{Net, NetBond};
 use crate::fracture::quasi_static::equilibrium::{Equilibrium, Shape};
 use crate::fracture::quasi_static::full_load::FullLoad;
 use crate::fracture::scene::{Arrangement, RefinedRegion, Refinement, Scene, SceneLaw};
 use crate::fracture::springs::Springs;
 use crate::material::{Material, Plane};
+use crate::net::{Net, NetBond};
 use crate::specimen::{Point, Specimen};
 use crate::units::MM;
 

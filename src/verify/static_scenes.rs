@@ -10,11 +10,11 @@ use crate::bond_law::stencil::{plane_stiffness, poisson_limit};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::Result;
 use crate::fracture::bonds::BondState;
-use crate::fracture::net::Net;
 use crate::fracture::quasi_static::equilibrium::{Equilibrium, Shape};
 use crate::fracture::quasi_static::full_load::FullLoad;
 use crate::fracture::{self, Scene};
 use crate::material::{Material, Plane};
+use crate::net::Net;
 use crate::predict::Silent;
 use crate::specimen::Point;
 use crate::units::{GPA, MPA};
@@ -28,8 +28,12 @@ const FOREIGN: [f64; 6] = [0.3, 0.25, 0.2, 0.15, 0.1, 0.0];
 const STRESS: f64 = 200e6;
 
 /// Why Poisson's ratio read back misses the source's figure.
-const READ_BACK: &str = "the lattice sum of 28 bonds with volume weights gives 0.3356 at c_t = 0, less than half of the miss; the rest is not \
-     explained, and where the source reads its figure is not said";
+const READ_BACK: &str = "the lattice sum of 28 bonds with volume weights gives 0.3356 at c_t = 0, about half of the miss; the other half are the \
+     layers at sides and ends, and goes with the spacing (0.3377 right in the middle, 0.3367 at 5 mm); where the source reads is not said";
+
+/// Why the classical correction misses the source's figure in shear.
+const SHEARED: &str = "the classical correction asks of points at the rim the energy of uniaxial strain, and errs in shear: 1.36, 1.99 and 0.76 % \
+     with one, two and three rows held; how the source holds its plate is lost";
 
 /// Rows of the topic.
 ///
@@ -45,13 +49,11 @@ pub fn rows(table: &mut Table) -> Result<()> {
         table.known_miss(READ_BACK);
     }
     bond_based(table)?;
-    let errors = shear(0.3)?;
-    for (axis, error) in ["x", "y"].iter().zip(errors) {
-        let name = format!("uniform shear by the rim, nu 0.3: max |e_{axis}| in percent");
-        table.compare(name, error, 0.202, 10.0, "source 002, example 2; its boundary data are lost");
-        table.known_miss(
-            "here the outermost points alone are held on the exact field; the source's boundary data are lost, the cause is not looked into",
-        );
+    for rows in [1, 3] {
+        let name = format!("uniform shear by {rows} rows of the rim, nu 0.3: max |e_x| in percent");
+        let [error, across] = shear(0.3, rows)?;
+        table.compare(name, error.max(across), 0.202, 10.0, "source 002, example 2; its boundary data are lost");
+        table.known_miss(SHEARED);
     }
     Ok(())
 }
@@ -149,9 +151,9 @@ impl Tension {
 /// Strain g of the sheared square.
 const SHEAR: f64 = 1e-3;
 
-/// Largest errors along x and y, percent of the point's own displacement, of a square of 50 x 50 points whose outermost points have
+/// Largest errors along x and y, percent of the point's own displacement, of a square of 50 x 50 points whose outermost rows have
 /// the displacement of pure shear, `u = g y/2, v = g x/2`.
-fn shear(poisson_ratio: f64) -> Result<[f64; 2]> {
+fn shear(poisson_ratio: f64, rows: usize) -> Result<[f64; 2]> {
     let law = BondLaw {
         kind: BondLawKind::OneBondTwoParameter,
         kernel: Kernel::Constant,
@@ -161,7 +163,7 @@ fn shear(poisson_ratio: f64) -> Result<[f64; 2]> {
     let body = Body::build(&strip(0.5, 0.5), &steel(poisson_ratio), &law, 0.01, 3.015, 0.0)?;
     let net = Net::of_body(&body);
     let exact: Vec<f64> = net.positions.iter().flat_map(|p| [0.5 * SHEAR * p[1], 0.5 * SHEAR * p[0]]).collect();
-    let on_rim = |p: &Point| p[0].abs().max(p[1].abs()) > 0.25 - 0.01;
+    let on_rim = |p: &Point| p[0].abs().max(p[1].abs()) > 0.25 - 0.01 * rows as f64;
     let held: Vec<bool> = net.positions.iter().flat_map(|p| [on_rim(p); 2]).collect();
     let motion = exact.iter().zip(&held).map(|(u, held)| if *held { *u } else { 0.0 }).collect();
     let full = FullLoad { motion, external: vec![0.0; held.len()], held, pins: Vec::new() };

@@ -8,10 +8,10 @@ use perilife::fracture::boundary::Boundary;
 use perilife::fracture::failure::{Failure, critical_stretch};
 use perilife::fracture::interaction::{Damaging, Interaction};
 use perilife::fracture::lattice_springs::LatticeSprings;
-use perilife::fracture::net::Net;
 use perilife::fracture::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
 use perilife::fracture::springs::Springs;
 use perilife::fracture::{self, SceneEnd};
+use perilife::net::Net;
 use perilife::predict::Silent;
 
 use crate::noise::Noise;

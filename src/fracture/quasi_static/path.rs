@@ -42,7 +42,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { growth: 0.1, quiet: 1e-2, solutions: 12, steps: 100_000 }
+        Settings { growth: 0.04, quiet: 1e-3, solutions: 12, steps: 100_000 }
     }
 }
 
