@@ -1,6 +1,6 @@
 //! Fracture scenes: static, quasi-static and dynamic loading of cracked plates, without cycles.
 //!
-//! A scene is points and bonds ([`net`]), forces between them with damage ([`interaction`]), loads ([`boundary`]) and a
+//! A scene is points and bonds ([`crate::net`]), forces between them with damage ([`interaction`]), loads ([`boundary`]) and a
 //! procedure. What changes is the state of the bonds ([`bonds`], written by the interaction) and the motion (written by the
 //! procedure).
 
