@@ -110,6 +110,10 @@ impl<'a> Log<'a> {
     pub fn close(mut self, end: SceneEnd, u: &[f64], bonds: &BondState, figures: SceneFigures) -> Fracture {
         if let Some(row) = self.history.last().copied() {
             let damage = bonds.damage(self.net);
+            // Between two looks the procedure may know first.
+            if end == SceneEnd::Separated {
+                self.separated.get_or_insert(row.step);
+            }
             self.look(&row, u, damage);
         }
         Fracture {
