@@ -146,7 +146,7 @@ pub fn run(
             break reason;
         }
         if let Some(tip) = stop::at_rim(body, &tips, settings) {
-            warnings.push(plate.left_refinement(tip));
+            warnings.push(plate.left_refinement(tip, settings.zone_radius_horizons));
             break StopReason::LeftRefinement;
         }
 

@@ -83,7 +83,7 @@ pub(super) fn from_values(
     };
     match method {
         Method::Peridynamics => {
-            check_spacing(spacing, specimen)?;
+            check_spacing(spacing, levels, specimen)?;
             check_columns(model.coarsest_spacing(), specimen)?;
         }
         Method::Handbook => check_formula(specimen)?,
@@ -140,15 +140,21 @@ pub fn default_spacing(specimen: &Specimen) -> f64 {
 ///
 /// # Errors
 /// `Error::Input` on `model.spacing_mm`.
-pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
+pub fn check_spacing(spacing: f64, levels: usize, specimen: &Specimen) -> Result<()> {
     const KEY: &str = "model.spacing_mm";
-    let (given, flaw) = (round_mm(spacing), specimen.smallest_flaw());
+    // The key is that of the coarsest level.
+    let coarsening = 2.0_f64.powi(levels as i32);
+    let coarsest = coarsening * spacing;
+    let (given, flaw) = (round_mm(coarsest), specimen.smallest_flaw());
     if spacing > flaw {
-        let problem = format!("is larger than the crack ({} mm): no bond would be cut as it should", round_mm(flaw));
-        return Err(input(KEY, given, problem, format!("give a ninth of the crack or less, {} mm", round_mm(flaw / 9.0))));
+        let refined = if levels > 0 { format!(" on {levels} finer levels") } else { String::new() };
+        let problem = format!("is larger{refined} than the crack ({} mm): no bond would be cut as it should", round_mm(flaw));
+        let remedy = format!("give a ninth of the crack or less on the finest level, {} mm", round_mm(coarsening * flaw / 9.0));
+        return Err(input(KEY, given, problem, remedy));
     }
     check_columns(spacing, specimen)?;
-    let points = specimen.area() / (spacing * spacing);
+    // Of the coarsest level at the least.
+    let points = specimen.area() / (coarsest * coarsest);
     if points > POINTS_MAX {
         let smallest = round_mm((specimen.area() / POINTS_MAX).sqrt());
         let problem = format!("would make about {points:.1e} points, more than {POINTS_MAX:.0e}");

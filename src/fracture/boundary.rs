@@ -129,7 +129,11 @@ impl Boundary {
     fn hold(&mut self, points: &[u32], components: [Option<f64>; 2], motion: impl Fn(f64) -> Motion, rise: Rise) -> Point {
         for (component, value) in components.iter().enumerate() {
             let Some(value) = value else { continue };
-            self.held.extend(points.iter().map(|&point| Held { point, component, motion: motion(*value), rise }));
+            // Overlapping loads may tell a point the same motion; its work counts once.
+            let known: std::collections::HashSet<u32> =
+                self.held.iter().filter(|held| held.component == component).map(|held| held.point).collect();
+            let new = points.iter().filter(|point| !known.contains(point));
+            self.held.extend(new.map(|&point| Held { point, component, motion: motion(*value), rise }));
         }
         let vector = components.map(|value| value.unwrap_or(0.0));
         let size = vector[0].hypot(vector[1]);

@@ -160,7 +160,8 @@ impl Run<'_> {
                 largest = largest.max(row.kinetic.max(row.strain).max(row.work.abs()));
                 let nowhere = (row.kinetic + row.strain + row.fracture - row.work).abs();
                 // A negated comparison, so that NaN counts as blown up.
-                if !(nowhere <= FROM_NOWHERE * largest + self.lag(&pushes, time) || largest == 0.0) {
+                let is_still = largest == 0.0 && !nowhere.is_nan();
+                if !(nowhere <= FROM_NOWHERE * largest + self.lag(&pushes, time) || is_still) {
                     end = SceneEnd::Unstable;
                     break;
                 }

@@ -29,12 +29,11 @@ impl Region {
                 let axis = usize::from(matches!(edge, Edge::Top | Edge::Bottom));
                 let far = matches!(edge, Edge::Top | Edge::Right);
                 let away = |p: &Point| if far { high[axis] - p[axis] } else { p[axis] - low[axis] };
-                let nearest = net.positions.iter().map(away).fold(f64::INFINITY, f64::min);
-                // A quarter of a spacing is safe against round-off.
-                let least = net.spacings.iter().copied().fold(f64::INFINITY, f64::min);
-                let depth = depth.max(nearest + 0.25 * least);
-                let along = |p: &Point| p[1 - axis] >= range[0] && p[1 - axis] <= range[1];
-                all().filter(|(_, p)| away(p) < depth && along(p)).map(|(i, _)| i as u32).collect()
+                let along = |point: &usize| {
+                    let at = net.positions[*point][1 - axis];
+                    at >= range[0] && at <= range[1]
+                };
+                net.within(depth, away).filter(along).map(|point| point as u32).collect()
             }
         }
     }

@@ -237,17 +237,11 @@ impl Holds {
             match *support {
                 Support::Fixed { from, to, depth, x, y } => {
                     floating = false;
-                    let away: Vec<f64> = net.positions.iter().map(|&at| distance_to_segment(at, from, to)).collect();
-                    let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
                     // As on a lattice: one along both axes where these are not those of the plate.
                     let components = if lattice.axis[1] == 0.0 { [x, y] } else { [x || y; 2] };
-                    for (i, away) in away.iter().enumerate() {
-                        // At least the nearest row of its own level.
-                        let own = net.spacings[i];
-                        if *away < depth.max(0.75 * own).max(nearest + 0.25 * own) {
-                            let held = &mut full.held[i * net.unknowns..][..2];
-                            held.iter_mut().zip(components).for_each(|(held, component)| *held |= component);
-                        }
+                    for point in net.within(depth, |&at| distance_to_segment(at, from, to)) {
+                        let held = &mut full.held[point * net.unknowns..][..2];
+                        held.iter_mut().zip(components).for_each(|(held, component)| *held |= component);
                     }
                 }
                 Support::ClampedEnds => {

@@ -214,6 +214,16 @@ impl Net {
         })
     }
 
+    /// Points that are nearer to something than `depth`, m, and at the least the nearest row of every level.
+    pub fn within(&self, depth: f64, away: impl Fn(&Point) -> f64) -> impl Iterator<Item = usize> {
+        let away: Vec<f64> = self.positions.iter().map(away).collect();
+        let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
+        // A row lies half a spacing inside; a quarter more is safe against round-off.
+        let limit = move |own: f64| depth.max(0.75 * own).max(nearest + 0.25 * own);
+        let is_within: Vec<bool> = away.iter().zip(&self.spacings).map(|(away, &own)| *away < limit(own)).collect();
+        (0..is_within.len()).filter(move |&point| is_within[point])
+    }
+
     /// Bonds in a point's own horizon with their other end.
     pub fn family_of(&self, point: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.bonds_of(point).filter(|&(b, _, owned)| owned || b < self.mutual).map(|(b, other, _)| (b, other))

@@ -10,7 +10,7 @@ use crate::body::{Body, Bond};
 use crate::case::Model;
 use crate::error::Result;
 use crate::material::Material;
-use crate::net::levelled::{Levelled, words};
+use crate::net::levelled::{Levelled, clear_way, words};
 use crate::net::{Arrangement, Ask, PointGrid};
 use crate::solver::Equilibrium;
 use crate::solver::field::Layout;
@@ -95,12 +95,14 @@ impl Plate {
 
     /// What is to be said of a tip that has come to the rim of the finest level.
     #[must_use]
-    pub fn left_refinement(&self, tip: Point) -> String {
+    pub fn left_refinement(&self, tip: Point, zone_radius_horizons: f64) -> String {
+        // Points of the rim reach two horizons beyond themselves to bonds of coarser ones.
+        let needed = clear_way(self.body.horizon(), zone_radius_horizons) + 2.0 * self.body.horizon();
         format!(
             "the crack tip at {} has come too near to the rim of the finest level, where bonds do not break: the run ends there; give \
-             refinement.regions that hold the whole way of the crack and four horizons ({:.4} mm) on, or up to the edge it shall reach",
+             refinement.regions that hold the whole way of the crack and {:.4} mm on, or up to the edge it shall reach",
             words(tip),
-            4e3 * self.body.horizon()
+            1e3 * needed
         )
     }
 

@@ -238,7 +238,7 @@ pub fn rows(table: &mut Table) -> Result<()> {
     Ok(())
 }
 
-/// The default law of a fatigue case on several levels.
+/// The law whose changes of level are balanced.
 const BALANCED: BondLaw = BondLaw {
     kind: BondLawKind::TwoParameter,
     kernel: Kernel::Conical,

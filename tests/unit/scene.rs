@@ -272,6 +272,8 @@ fn iterations_of_a_step_are_read() {
     };
     refusal(&["loading.iterations_per_step=0"], "loading.iterations_per_step");
     refusal(&["loading.iterations_per_step=1", "model.solver=secant"], "model.solver");
+    refusal(&["loading.iterations_per_step=1", "loading.kind=platens"], "platens");
+    refusal(&["loading.iterations_per_step=1", "model.bond_law=correspondence"], "correspondence");
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn load_curves() {
     let march = run("q345_offset_0", &["model.spacing_mm=1.0"]);
     let over = march.peak_load() / path.peak_load();
     println!("peak of the path {:.0} N, of the march {over:.3} times that", path.peak_load());
-    assert!((1.0..1.35).contains(&over), "{over}");
+    assert!((1.04..1.1).contains(&over), "{over}");
 }
 
 /// Level notches of 10 mm, 0, 10 and 20 mm apart in height: straight through, past each other, to the far sides; the plate lasts
@@ -67,7 +67,7 @@ fn notches_apart_in_height() {
     let size = [level.grid.columns, level.grid.rows];
     let (damaged, last) = symmetric_until(&level, |x, y| (size[0] - 1 - x, y));
     println!("q345_offset_0: mirrored to step {last}, {damaged} pictures with broken bonds");
-    assert!(damaged > 0, "mirrored at the first picture with broken bonds");
+    assert!(damaged > 0 && last as usize >= level.separated_step.unwrap(), "mirrored to step {last}, until it is in two");
 
     let near = run("q345_offset_10", &[]);
     let near_onset = onset(&near, "q345_offset_10", 2100.0, 2.0);
@@ -102,7 +102,7 @@ fn slanting_notches() {
     let plates = [("q345_angle_30", Some(2220.0)), ("q345_angle_45", None), ("q345_angle_60", Some(2150.0))];
     let separated = plates.map(|(name, source)| {
         let run = run(name, &[]);
-        // Earlier than in the source, since the corner of the slanting notch is sharper than its level end.
+        // Earlier than in the source, probably since the corner of the slanting notch is sharper than its level end.
         if let Some(source) = source {
             onset(&run, name, source, 13.0);
         }

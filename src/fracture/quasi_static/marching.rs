@@ -5,7 +5,7 @@
 //! 000): one iteration for every increment of displacement, so that "time steps" there count both. It follows a plate through
 //! snap-back, since damping takes up what equilibrium cannot, and costs one evaluation of the forces an iteration. What it gives is
 //! not equilibrium: load and onset depend on how fast the load grows against the swing, and approach the path of equilibrium
-//! only as the increments shrink.
+//! only as the increments shrink. Springs without platens only.
 
 use super::super::bonds::BondState;
 use super::super::interaction::{Damaging, Interaction};
@@ -14,10 +14,9 @@ use super::account::{Account, Recorder, State};
 use super::full_load::FullLoad;
 use super::path::Walked;
 use super::relaxation::{Loads, Swing, mobility};
-use super::steps::has_failed;
 use crate::error::Result;
 
-/// Rows at the most; with more steps every so many-th is kept.
+/// Rows at the most; with more steps every so many-th is kept, and only there is separation looked for.
 const ROWS: usize = 4000;
 /// Strain energy over the largest work from which the motion counts as blown up: all energy comes from the loads.
 const BLOWN_UP: f64 = 2.0;
@@ -51,11 +50,10 @@ impl March<'_> {
         let mobility = mobility(interaction, bonds, &full.held);
         let mut account = Account::default();
         let mut end = SceneEnd::Done;
-        let (mut evaluations, mut peak) = (0, 0.0);
+        let mut evaluations = 0;
         let stride = self.steps.div_ceil(ROWS);
         'march: for step in 1..=self.steps {
             let level = step as f64 / self.steps as f64;
-            interaction.load_to(level);
             u.iter_mut()
                 .zip(&full.motion)
                 .zip(&full.held)
@@ -67,8 +65,7 @@ impl March<'_> {
                 let reaction = interaction.react(&u, bonds, Damaging::Allowed, &mut force);
                 account.fracture += reaction.released;
                 recorder.log.broke(step, reaction.broken);
-                let driven = interaction.driven();
-                account.go(State::new(full, level, &u, &force, reaction.strain).with_driven(driven));
+                account.go(State::new(full, level, &u, &force, reaction.strain));
                 let sums = swing.take(loads, &mobility, &force);
                 if account.is_impossible(BLOWN_UP) {
                     end = SceneEnd::Unstable;
@@ -81,13 +78,9 @@ impl March<'_> {
                 continue;
             }
             account.rows = step - 1;
-            account.row(&mut recorder, &u, &force, interaction.driven(), bonds)?;
+            account.row(&mut recorder, &u, &force, None, bonds)?;
             if recorder.log.is_separated() {
                 end = SceneEnd::Separated;
-                break;
-            }
-            if has_failed(interaction.driven(), &mut peak) {
-                end = SceneEnd::LoadFallen;
                 break;
             }
         }

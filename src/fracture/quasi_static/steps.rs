@@ -5,7 +5,7 @@
 //! again after calm ones. Where the smallest step still breaks more, rows are taken down while bonds break at one load. Over a jump energy is released that no step can share out: it is reported as excess.
 
 use super::super::bonds::BondState;
-use super::super::interaction::{Driven, Interaction};
+use super::super::interaction::Interaction;
 use super::super::outcome::SceneEnd;
 use super::account::{Account, Recorder, State};
 use super::full_load::FullLoad;
@@ -73,7 +73,8 @@ pub fn follow(
             break;
         }
         // What is split between platens goes on touching them: its failure shows in the load.
-        if has_failed(driven, &mut peak) {
+        peak = driven.map_or(0.0, |driven| driven.load.max(peak));
+        if driven.is_some_and(|driven| driven.load < FAILED * peak) {
             end = SceneEnd::LoadFallen;
             break;
         }
@@ -82,12 +83,6 @@ pub fn follow(
         }
     }
     Ok(Walked { end, u, account, evaluations })
-}
-
-/// Whether the load of platens is clearly below its peak, which is kept.
-pub(super) fn has_failed(driven: Option<Driven>, peak: &mut f64) -> bool {
-    *peak = driven.map_or(0.0, |driven| driven.load.max(*peak));
-    driven.is_some_and(|driven| driven.load < FAILED * *peak)
 }
 
 /// Moves on from rest at one share of the full load to rest at another.

@@ -10,6 +10,7 @@ use crate::specimen::{Point, Support};
 /// Checks a scene as a whole.
 pub fn check(scene: &Scene) -> Result<()> {
     check_time(scene)?;
+    check_march(scene)?;
     check_damage(scene)?;
     check_arrangement(scene)?;
     check_conflicts(scene)
@@ -30,6 +31,20 @@ fn check_time(scene: &Scene) -> Result<()> {
         return Err(input_missing("material.density_kg_m3", problem, "give it, or leave loading.duration_s out"));
     }
     Ok(())
+}
+
+/// A march keeps the fictitious density of the whole body, and its load swings: bodies in contact and shape tensors need a rest.
+fn check_march(scene: &Scene) -> Result<()> {
+    let Procedure::QuasiStatic { iterations: Some(iterations), .. } = scene.procedure else { return Ok(()) };
+    let what = if scene.drives.iter().any(|drive| matches!(drive.action, Action::Platen(_))) {
+        "platens, whose contact comes and goes"
+    } else if matches!(scene.model.law, SceneLaw::Correspondence { .. }) {
+        "correspondence, whose stiffness can grow as bonds break"
+    } else {
+        return Ok(());
+    };
+    let problem = format!("does not come to rest, which does not go with {what}");
+    Err(input("loading.iterations_per_step", iterations, problem, "leave it out"))
 }
 
 fn check_damage(scene: &Scene) -> Result<()> {
