@@ -222,7 +222,7 @@ fn cracks_stay_on_the_finest_level() {
     let short = run(&case(PANEL, &levels(TWO[0], near, &[])));
     assert_eq!(short.stop, StopReason::LeftRefinement);
     let line = short.warnings.iter().find(|line| line.contains("rim of the finest level")).unwrap();
-    assert!(line.contains("refinement.regions") && line.contains("mm)"), "{line}");
+    assert!(line.contains("refinement.regions") && line.contains("12.0600 mm on"), "{line}");
     let fine = run(&case(PANEL, &["model.spacing_mm=1", "stop.crack_length_mm=28"]));
     let reached = short.crack_length_final();
     assert!(reached > 13e-3 && reached < 20e-3, "{reached}");
