@@ -4,6 +4,8 @@
 //! that age, choose the cycle block, spend bond life, break spent bonds, follow the crack tips. Command, service and
 //! calibration all come through here.
 
+pub mod checkpoint;
+mod course;
 mod curve;
 mod end_of_life;
 mod handbook;
@@ -28,18 +30,17 @@ use crate::body::{Body, Bond};
 use crate::case::{Case, Method};
 use crate::error::{Error, Result};
 use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, threshold_strain};
-use crate::fatigue::block_control::{Around, BlockControl};
+use crate::fatigue::block_control::Around;
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
-use crate::fatigue::remaining_life::BondLife;
 use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
 use crate::solver::Focus;
 use crate::state::Bonds;
-use curve::Track;
+use checkpoint::Checkpoint;
+use course::Course;
 use end_of_life::first_end;
 use overload::{are_within, overstretched, stretched};
 use plate::Plate;
-use snapshot::Album;
 use start::Start;
 use tip_end::{break_through, retire_tips};
 
@@ -52,6 +53,16 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
         Method::Peridynamics => run(case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer),
         Method::Handbook => handbook::run(case, observer),
     }
+}
+
+/// Goes on with a run of a case from a checkpoint of it; gives what [`predict`] gives, bit for bit, its wall time counted from the
+/// start of the first run.
+///
+/// # Errors
+/// As [`predict`]; [`Error::Input`] if the checkpoint is not one of this case.
+pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
+    checkpoint.check(case)?;
+    run_from(Some(checkpoint), case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer)
 }
 
 /// Takes down what a run does, block by block, so that it can be replayed.
@@ -80,7 +91,19 @@ pub fn run(
     recorder: &mut dyn Recorder,
     observer: &dyn Observer,
 ) -> Result<Prediction> {
+    run_from(None, case, law, recorder, observer)
+}
+
+/// The run of a case from its start, or from where an earlier one stood.
+fn run_from(
+    checkpoint: Option<Checkpoint>,
+    case: &Case,
+    law: impl FnOnce(f64) -> Result<FatigueLaw>,
+    recorder: &mut dyn Recorder,
+    observer: &dyn Observer,
+) -> Result<Prediction> {
     let started = Instant::now();
+    let hash = checkpoint::hash(case);
     // Whatever a run measures in spacings and horizons, it measures in those that its body has.
     let mut case = case.clone();
     case.model.spacing = case.model.fitting_spacing(&case.specimen);
@@ -95,97 +118,114 @@ pub fn run(
     let share = strain_share(&case.loading, settings);
     let threshold = share * threshold_strain(settings, &case.material, body.horizon()) / case.loading.range_share();
 
-    let mut bonds = Bonds::new(body);
-    let mut life = BondLife::whole(bonds.multiplier.len());
-    let mut tips = start.tips(body);
-    let mut displacement = Vec::new();
-    if start::cuts_in_two(body, &bonds, case) || set_aside(body, &mut bonds, &body.pre_cut) == Cut::Severed {
+    let mut run = Course::start(case, body, start.tips(body), law.p);
+    if start::cuts_in_two(body, &run.bonds, case) || set_aside(body, &mut run.bonds, &body.pre_cut) == Cut::Severed {
         return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
     }
-    recorder.start(body, &bonds);
-    let mut equilibrium = plate.equilibrium(model, &bonds, case.loading.maximum);
-    let mut control = BlockControl::new(&settings.block, law.p, tips.len());
-    if control.foresees() {
-        equilibrium = equilibrium.foreseeing();
-    }
-    let mut iterations = equilibrium.solve(body, &bonds, &mut displacement)?;
-    let mut solves = 1;
+    let earlier_s = checkpoint.map_or(Ok(0.0), |checkpoint| checkpoint.restore(&law, body, &mut run))?;
+    recorder.start(body, &run.bonds);
+    // From the bonds alone.
+    let solver = |run: &Course| {
+        let equilibrium = plate.equilibrium(model, &run.bonds, case.loading.maximum);
+        if run.control.foresees() { equilibrium.foreseeing() } else { equilibrium }
+    };
+    let mut equilibrium = solver(&run);
+    let mut displacement = Vec::new();
+    run.iterations += equilibrium.solve(body, &run.bonds, &mut displacement)?;
+    run.solves += 1;
 
-    let mut track = Track::new(case, start.records(&tips), equilibrium.work());
+    run.track.open(start.records(&run.tips), equilibrium.work());
     let end = first_end(case);
-    let mut album = Album::default();
-    let mut broken_bonds = 0;
     let mut warnings = plate.warnings();
-    // Bonds that come near the critical stretch, also away from the tips.
-    let mut near_limit: Vec<Bond> = Vec::new();
     let stop = loop {
         // Cycles count from where every crack has its initial length.
-        let counting = start.is_over(&tips);
-        if counting && track.begin() {
-            tips.iter_mut().for_each(CrackTip::leave_rails);
-            let (picture, more) = equilibrium.picture(body, &bonds)?;
-            iterations += more;
-            album.open(&plate, &bonds, &picture, track.last());
+        let counting = start.is_over(&run.tips);
+        if counting && run.track.begin() {
+            run.tips.iter_mut().for_each(CrackTip::leave_rails);
+            let (picture, more) = equilibrium.picture(body, &run.bonds)?;
+            run.iterations += more;
+            run.album.open(&plate, &run.bonds, &picture, run.track.last());
         }
 
-        // Which bonds age, and by how much strain a cycle.
+        // Which bonds may age, and which others are watched.
         let near = if counting {
-            candidates(body, &bonds, &tips, settings)
+            candidates(body, &run.bonds, &run.tips, settings)
         } else {
-            candidates(body, &bonds, &start.on_the_way(&tips), settings)
+            candidates(body, &run.bonds, &start.on_the_way(&run.tips), settings)
         };
-        if counting {
-            retire_tips(&mut tips, body, &case.specimen, &near, settings.zone_radius_horizons);
+        run.near_limit.retain(|&bond| run.bonds.is_intact(bond));
+        let watched: Vec<Bond> = near.iter().chain(&run.near_limit).copied().collect();
+
+        // Where the solver has to work on the whole plate anyway, it begins anew from the bonds: nothing of what went before is
+        // left but `run`, and a run taken up here goes on as this one does.
+        if equilibrium.is_due(body, &watched) {
+            tracing::debug!(solves = run.solves, "the solver begins anew from the bonds");
+            let elapsed_s = earlier_s + started.elapsed().as_secs_f64();
+            observer.may_keep(&|| Checkpoint::of(hash, &law, body, &run, &run.track.progress(case), elapsed_s));
+            drop(equilibrium);
+            equilibrium = solver(&run);
+            let before = std::mem::take(&mut displacement);
+            match equilibrium.solve(body, &run.bonds, &mut displacement) {
+                Ok(more) => (run.solves, run.iterations) = (run.solves + 1, run.iterations + more),
+                Err(_) => {
+                    displacement = before;
+                    break StopReason::NoConvergence;
+                }
+            }
         }
-        near_limit.retain(|&bond| bonds.is_intact(bond));
-        let watched: Vec<Bond> = near.iter().chain(&near_limit).copied().collect();
-        iterations += equilibrium.reach(body, &bonds, &watched, &focus(&tips, body, settings), &mut displacement)?;
-        let mut ageing = ageing_bonds(body, &near, &displacement, &tips, settings, (share, threshold));
-        control.correct(&equilibrium, body, &tips, &mut ageing);
-        if let Some(reason) = stop::before_block(case, end, &track, &tips, &ageing) {
+
+        // By how much strain a cycle they age.
+        if counting {
+            retire_tips(&mut run.tips, body, &case.specimen, &near, settings.zone_radius_horizons);
+        }
+        let focus = focus(&run.tips, body, settings);
+        run.iterations += equilibrium.reach(body, &run.bonds, &watched, &focus, &mut displacement)?;
+        let mut ageing = ageing_bonds(body, &near, &displacement, &run.tips, settings, (share, threshold));
+        run.control.correct(&equilibrium, body, &run.tips, &mut ageing);
+        if let Some(reason) = stop::before_block(case, end, &run.track, &run.tips, &ageing) {
             break reason;
         }
-        if let Some(tip) = stop::at_rim(body, &tips, settings) {
+        if let Some(tip) = stop::at_rim(body, &run.tips, settings) {
             warnings.push(plate.left_refinement(tip, settings.zone_radius_horizons));
             break StopReason::LeftRefinement;
         }
 
         // Spend life over the block; bonds at the end of theirs break.
         // A tip within a spacing of an edge or hole breaks through at once: the lattice cannot resolve what is left.
-        let through = break_through(&mut tips, body, &bonds, &case.specimen);
+        let through = break_through(&mut run.tips, body, &run.bonds, &case.specimen);
         let block = if counting { &settings.block } else { &Block::NEXT_BREAK };
-        let (cycles, mut spent) = if through.is_empty() { life.next_block(&law, block, &ageing) } else { (0.0, through) };
-        if track.cycles_since_start() + cycles > case.stop.cycles_max {
-            track.run_out(case.stop.cycles_max);
+        let (cycles, mut spent) = if through.is_empty() { run.life.next_block(&law, block, &ageing) } else { (0.0, through) };
+        if run.track.cycles_since_start() + cycles > case.stop.cycles_max {
+            run.track.run_out(case.stop.cycles_max);
             break StopReason::RunOut;
         }
-        life.spend(&law, cycles, &ageing);
-        track.spend(cycles);
+        run.life.spend(&law, cycles, &ageing);
+        run.track.spend(cycles);
 
         // Break, and find the new equilibrium, until no bond is stretched beyond the critical stretch.
         let work_before = equilibrium.work();
         let mut newly = spent.clone();
         let mut overloaded = false;
         let outcome = loop {
-            newly.iter().for_each(|&bond| bonds.cut(body, bond));
-            let aside = match set_aside(body, &mut bonds, &newly) {
+            newly.iter().for_each(|&bond| run.bonds.cut(body, bond));
+            let aside = match set_aside(body, &mut run.bonds, &newly) {
                 Cut::Severed => break Some(StopReason::Severed),
                 Cut::Whole(aside) => aside,
             };
             newly.extend(aside);
-            equilibrium.broke(body, &bonds, &newly);
-            let may_foresee = counting && !overloaded && are_within(equilibrium.window(), body, &near_limit);
-            let around = Around { body, bonds: &bonds, tips: &tips, watched: &near };
-            match control.settle(&mut equilibrium, around, &newly, may_foresee, &mut displacement) {
+            equilibrium.broke(body, &run.bonds, &newly);
+            let may_foresee = counting && !overloaded && are_within(equilibrium.window(), body, &run.near_limit);
+            let around = Around { body, bonds: &run.bonds, tips: &run.tips, watched: &near };
+            match run.control.settle(&mut equilibrium, around, &newly, may_foresee, &mut displacement) {
                 Ok(None) => {}
-                Ok(Some(more)) => (solves, iterations) = (solves + 1, iterations + more),
+                Ok(Some(more)) => (run.solves, run.iterations) = (run.solves + 1, run.iterations + more),
                 // What is left after bonds broke by overload cannot carry the load: the plate is as good as in two.
                 Err(_) if overloaded => break Some(StopReason::Severed),
                 Err(_) => break Some(StopReason::NoConvergence),
             }
-            newly = overstretched(body, &bonds, case, &displacement, &equilibrium);
+            newly = overstretched(body, &run.bonds, case, &displacement, &equilibrium);
             if equilibrium.is_whole() {
-                near_limit = stretched(body, &bonds, case, &displacement, equilibrium.window());
+                run.near_limit = stretched(body, &run.bonds, case, &displacement, equilibrium.window());
             }
             overloaded |= !newly.is_empty();
             if overloaded && equilibrium.work() > GIVEN_WAY * work_before {
@@ -198,19 +238,21 @@ pub fn run(
         };
 
         // Follow the tips and record.
-        broken_bonds += spent.len();
-        let shares = share_out(body, &tips, &spent);
-        tips.iter_mut().zip(&shares).for_each(|(tip, broken)| tip.advance(body, &bonds, &case.specimen, broken));
+        run.broken_bonds += spent.len();
+        let shares = share_out(body, &run.tips, &spent);
+        let tips = run.tips.iter_mut().zip(&shares);
+        tips.for_each(|(tip, broken)| tip.advance(body, &run.bonds, &case.specimen, broken));
         let work = if outcome.is_none() { equilibrium.work() } else { f64::NAN };
-        track.record(start.records(&tips), broken_bonds, work, equilibrium.is_foreseen() && outcome.is_none());
-        recorder.block(&ageing, &spent, track.last().crack_length);
-        if counting && album.is_due(track.last()) && outcome.is_none() && !equilibrium.is_foreseen() {
-            let (picture, more) = equilibrium.picture(body, &bonds)?;
-            iterations += more;
-            album.look(&plate, &bonds, &picture, track.last());
+        let is_open = equilibrium.is_foreseen() && outcome.is_none();
+        run.track.record(start.records(&run.tips), run.broken_bonds, work, is_open);
+        recorder.block(&ageing, &spent, run.track.last().crack_length);
+        if counting && run.album.is_due(run.track.last()) && outcome.is_none() && !equilibrium.is_foreseen() {
+            let (picture, more) = equilibrium.picture(body, &run.bonds)?;
+            run.iterations += more;
+            run.album.look(&plate, &run.bonds, &picture, run.track.last());
         }
-        let going_on = observer.block_done(&track.progress(case));
-        if let Some(reason) = outcome.or_else(|| stop::after_block(case, end, &track)) {
+        let going_on = observer.block_done(&run.track.progress(case));
+        if let Some(reason) = outcome.or_else(|| stop::after_block(case, end, &run.track)) {
             break reason;
         }
         if !going_on {
@@ -218,6 +260,7 @@ pub fn run(
         }
     };
 
+    let Course { bonds, mut track, mut album, solves, mut iterations, .. } = run;
     let stop = stop::settled(end, &track, stop);
     if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
         iterations += equilibrium.complete(body, &bonds, &mut displacement)?;
@@ -244,7 +287,7 @@ pub fn run(
             iterations,
             spacing: body.lattice.spacing,
             horizon: body.horizon(),
-            wall_s: started.elapsed().as_secs_f64(),
+            wall_s: earlier_s + started.elapsed().as_secs_f64(),
             memory_mb: memory::peak_mb(),
         },
         warnings,

@@ -13,6 +13,8 @@ mod bench;
 mod calibrate;
 #[path = "interface/check.rs"]
 mod check;
+#[path = "interface/checkpoint.rs"]
+mod checkpoint;
 #[path = "interface/cli.rs"]
 mod cli;
 #[path = "interface/export.rs"]

@@ -41,6 +41,8 @@ mod stability;
 mod fatigue;
 #[path = "verification/blocks.rs"]
 mod blocks;
+#[path = "verification/checkpoint.rs"]
+mod checkpoint;
 #[path = "verification/round_trip.rs"]
 mod round_trip;
 #[path = "verification/crack_length.rs"]

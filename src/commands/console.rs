@@ -32,6 +32,13 @@ impl Console {
         }
     }
 
+    /// A line on stderr that is no warning.
+    pub fn note(&self, text: &str) {
+        if !self.quiet {
+            let _ = writeln!(io::stderr(), "{text}");
+        }
+    }
+
     /// A warning on stderr.
     pub fn warn(&self, text: &str) {
         let _ = writeln!(io::stderr(), "warning: {text}");

@@ -13,6 +13,7 @@ pub mod rates;
 pub mod sif;
 pub mod verify;
 
+pub mod checkpoint;
 pub mod console;
 pub mod message;
 mod unaged;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use super::checkpoint;
 use super::console::Console;
 use crate::case::{Case, LawSource, Method};
 use crate::error::{Error, Result, input};
@@ -35,6 +36,9 @@ pub struct Args {
     /// Also write the load that would end the plate at once over crack length (residual_strength.csv and .svg)
     #[arg(long, help_heading = "Output")]
     pub residual_strength: bool,
+    /// Keeping the run for later.
+    #[command(flatten)]
+    pub keeping: checkpoint::Args,
     /// What is printed.
     #[command(flatten)]
     pub console: Console,
@@ -46,16 +50,19 @@ pub struct Args {
 /// Wrong input, a run without a result, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let case = Case::from_file(&args.case, &args.set)?;
-    let extras = Extras { residual_strength: args.residual_strength };
-    let done = run_case(&case, &args.out, extras, &args.console)?;
+    let extras = Extras { residual_strength: args.residual_strength, keeping: args.keeping.clone() };
+    let done = run_case(&case, &args.out, &extras, &args.console)?;
+    args.keeping.done()?;
     args.console.object(&done.result)
 }
 
 /// What a run writes on request.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Extras {
     /// The residual-strength curve.
     pub residual_strength: bool,
+    /// The state of the run while it goes on.
+    pub keeping: checkpoint::Args,
 }
 
 /// A finished and written run.
@@ -72,7 +79,7 @@ pub struct FinishedRun {
 ///
 /// # Errors
 /// As the engine and [`keep`] report; nothing is written then.
-pub fn run_case(case: &Case, out: &Path, extras: Extras, console: &Console) -> Result<FinishedRun> {
+pub fn run_case(case: &Case, out: &Path, extras: &Extras, console: &Console) -> Result<FinishedRun> {
     // Claimed first: a folder that cannot be written should not cost a run.
     let folder = OutputFolder::create(out)?;
     for warning in &case.warnings {
@@ -82,7 +89,7 @@ pub fn run_case(case: &Case, out: &Path, extras: Extras, console: &Console) -> R
         // A plate without known strength should not cost a run; K of its curve comes later.
         check_strength(case)?;
     }
-    let prediction = crate::predict::predict(case, &console.progress(&case.name))?;
+    let prediction = extras.keeping.run(case, console)?;
     if extras.residual_strength {
         let strengths = residual_strength(case, &prediction.curve)?;
         report::residual_strength::write(folder.path(), case, &strengths)?;

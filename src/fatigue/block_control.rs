@@ -16,6 +16,8 @@
 
 mod foresight;
 
+use serde::{Deserialize, Serialize};
+
 use super::ageing::{AgeingBond, stretch};
 use super::crack_tip::{CrackTip, nearest_tip, severed_length, share_out};
 use super::{Block, BlockKind};
@@ -54,7 +56,7 @@ pub struct Around<'a> {
 }
 
 /// Decides when the whole plate is solved; its state is what past blocks taught, and what has happened since the last solve.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BlockControl {
     /// Bound on the share of wrong cycles; `None` where every break is solved for.
     bound: Option<f64>,

@@ -11,6 +11,8 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 use crate::body::pre_crack::bonds_across;
 use crate::body::severed::{severed_per_length, severed_weight};
 use crate::body::{Body, Bond};
@@ -37,7 +39,7 @@ pub(super) const ROUND_OFF: f64 = 1e-9;
 const SEED_MARKS: usize = 48;
 
 /// What has become of a tip.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TipState {
     /// Grows, or could.
     Active,
@@ -48,14 +50,14 @@ pub enum TipState {
 }
 
 /// Centre of bonds that broke together near a tip, and the length of crack they stand for.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Mark {
     at: Point,
     length: f64,
 }
 
 /// A tip of a growing crack.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CrackTip {
     /// Position, m.
     pub position: Point,

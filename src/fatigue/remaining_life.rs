@@ -32,6 +32,12 @@ impl BondLife {
         self.life[bond as usize] = life;
     }
 
+    /// The bonds that have spent some of their life, ascending, and what remains of it.
+    #[must_use]
+    pub fn begun(&self) -> Vec<(Bond, f64)> {
+        self.life.iter().enumerate().filter(|(_, life)| **life != 1.0).map(|(bond, life)| (bond as Bond, *life)).collect()
+    }
+
     /// Chooses the next cycle block, or its part up to the next break: its cycles and the bonds it spends.
     #[must_use]
     pub fn next_block(&self, law: &FatigueLaw, block: &Block, ageing: &[AgeingBond]) -> (f64, Vec<Bond>) {

@@ -1,5 +1,7 @@
 //! The growing a-N curve of a run.
 
+use serde::{Deserialize, Serialize};
+
 use super::end_of_life::End;
 use super::outcome::{CurvePoint, Progress, TipRecord};
 use crate::body::Body;
@@ -21,7 +23,7 @@ const RELEASE_KNOWN_HORIZONS: f64 = 2.0;
 const SHORT_CRACK_HORIZONS: f64 = 5.0;
 
 /// The plate after a block.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Cycles since the start of the run (before N = 0 for a crack that is first grown).
     pub cycles: f64,
@@ -43,68 +45,95 @@ impl Row {
 
 /// All rows of a run so far.
 pub struct Track {
-    rows: Vec<Row>,
-    cycles: f64,
+    past: Past,
     formula: Option<HandbookFormula>,
     /// Crack length at which N = 0.
     origin: f64,
     specimen: Specimen,
-    /// Row at which cycles began to count.
-    zero: Option<usize>,
     /// Cycles since N = 0 at which the run was ended without a break.
     run_out: Option<f64>,
     /// Largest crack length the plate has room for, m.
     limit: f64,
+}
+
+/// What a track has taken down.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct Past {
+    rows: Vec<Row>,
+    cycles: f64,
+    /// Row at which cycles began to count.
+    zero: Option<usize>,
     /// Longest crack so far as the ways of its tips have it, m.
     longest: f64,
 }
 
+impl Past {
+    /// Whether it can be that of a run with `tips` tips.
+    pub(super) fn fits(&self, tips: usize) -> bool {
+        !self.rows.is_empty()
+            && self.rows.iter().all(|row| row.tips.len() == tips)
+            && self.zero.is_none_or(|zero| zero < self.rows.len())
+    }
+}
+
 impl Track {
-    /// Starts with the plate as it was cut.
-    pub(super) fn new(case: &Case, tips: Vec<TipRecord>, work: f64) -> Self {
-        let mut track = Track {
-            rows: Vec::new(),
-            cycles: 0.0,
+    /// Nothing is taken down yet.
+    pub(super) fn new(case: &Case) -> Self {
+        Track {
+            past: Past::default(),
             formula: handbook(&case.specimen),
             origin: case.specimen.crack_length,
             specimen: case.specimen.clone(),
-            zero: None,
             run_out: None,
             limit: match case.specimen.convention {
                 LengthConvention::MeanOfTips => case.specimen.length_limit().0,
                 LengthConvention::SumOfTips => f64::INFINITY,
             },
-            longest: 0.0,
-        };
-        track.record(tips, 0, work, false);
-        track
+        }
+    }
+
+    /// Goes on from what was taken down before.
+    pub(super) fn go_on_from(&mut self, past: Past) {
+        self.past = past;
+    }
+
+    /// What was taken down so far.
+    pub(super) fn past(&self) -> &Past {
+        &self.past
+    }
+
+    /// Takes down the plate as it was cut, if nothing is yet.
+    pub(super) fn open(&mut self, tips: Vec<TipRecord>, work: f64) {
+        if self.past.rows.is_empty() {
+            self.record(tips, 0, work, false);
+        }
     }
 
     /// The latest row.
     pub(super) fn last(&self) -> &Row {
-        // `new` records the first row.
-        &self.rows[self.rows.len() - 1]
+        // `open` records the first row, before the first block.
+        &self.past.rows[self.past.rows.len() - 1]
     }
 
     /// Lets cycles count from the latest row on; whether they did not before.
     pub(super) fn begin(&mut self) -> bool {
-        let now = self.rows.len() - 1;
-        self.zero.replace(self.zero.unwrap_or(now)).is_none()
+        let now = self.past.rows.len() - 1;
+        self.past.zero.replace(self.past.zero.unwrap_or(now)).is_none()
     }
 
     /// Whether cycles count.
     pub(super) fn is_counting(&self) -> bool {
-        self.zero.is_some()
+        self.past.zero.is_some()
     }
 
     /// Lets cycles pass.
     pub(super) fn spend(&mut self, cycles: f64) {
-        self.cycles += cycles;
+        self.past.cycles += cycles;
     }
 
     /// Cycles since N = 0; none before.
     pub(super) fn cycles_since_start(&self) -> f64 {
-        self.zero.map_or(0.0, |zero| self.cycles - self.rows[zero].cycles)
+        self.past.zero.map_or(0.0, |zero| self.past.cycles - self.past.rows[zero].cycles)
     }
 
     /// Records the plate after a block, or after a break within one that is still open. Growth of the tips counts from their
@@ -114,14 +143,14 @@ impl Track {
     pub(super) fn record(&mut self, tips: Vec<TipRecord>, broken_bonds: usize, work: f64, is_open: bool) {
         let growth: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
         let crack_length = self.specimen.crack_length_after(&growth);
-        self.longest = self.longest.max(crack_length);
+        self.past.longest = self.past.longest.max(crack_length);
         let crack_length = crack_length.min(self.limit);
-        self.rows.push(Row { cycles: self.cycles, crack_length, work, broken_bonds, tips, is_open });
+        self.past.rows.push(Row { cycles: self.past.cycles, crack_length, work, broken_bonds, tips, is_open });
     }
 
     /// Ends the block at hand with the work of a plate in equilibrium.
     pub(super) fn close(&mut self, work: f64) {
-        if let Some(row) = self.rows.last_mut().filter(|row| row.is_open) {
+        if let Some(row) = self.past.rows.last_mut().filter(|row| row.is_open) {
             (row.work, row.is_open) = (work, false);
         }
     }
@@ -134,13 +163,13 @@ impl Track {
     /// Largest K of the cycle at the last row, Pa√m, from the energy release rate there; `None` before N = 0, where a handbook
     /// knows it, or before the crack has grown by two horizons since it was cut.
     pub(super) fn k_max_released(&self, case: &Case, horizon: f64) -> Option<f64> {
-        let grown = self.last().growth() - self.rows[0].growth();
+        let grown = self.last().growth() - self.past.rows[0].growth();
         if !self.is_counting() || self.formula.is_some() || grown < RELEASE_KNOWN_HORIZONS * horizon {
             return None;
         }
         let span = RELEASE_SPAN_HORIZONS * horizon;
-        let recent = self.rows.iter().rposition(|row| row.growth() < self.last().growth() - span).unwrap_or(0);
-        let released = release_rate_at_end(&self.samples(&self.rows[recent..]), case.specimen.thickness)?;
+        let recent = self.past.rows.iter().rposition(|row| row.growth() < self.last().growth() - span).unwrap_or(0);
+        let released = release_rate_at_end(&self.samples(&self.past.rows[recent..]), case.specimen.thickness)?;
         Some((released * case.material.plane_modulus()).sqrt())
     }
 
@@ -168,12 +197,12 @@ impl Track {
                 100.0 * rate
             ));
         }
-        if self.longest > self.limit + body.horizon() {
+        if self.past.longest > self.limit + body.horizon() {
             let words = "bonds broke all around the tips, so that their way says nothing about the crack near its end: read the \
                          life, not the length (fatigue.ageing = \"crack_tip\" keeps breaks at the tips)";
             warnings.push(words.to_owned());
         }
-        let stopped_in_grip = self.rows.last().is_some_and(|row| {
+        let stopped_in_grip = self.past.rows.last().is_some_and(|row| {
             row.tips.iter().any(|tip| {
                 let [column, line] = body.lattice.locate(tip.position).map(f64::round);
                 (0.0..body.lattice.columns as f64).contains(&column)
@@ -195,17 +224,17 @@ impl Track {
 
     /// The rows with lengths averaged over one spacing of growth.
     fn averaged(&self, spacing: f64) -> Vec<Row> {
-        let cycles: Vec<f64> = self.rows.iter().map(|row| row.cycles).collect();
-        let lengths: Vec<f64> = self.rows.iter().map(|row| row.crack_length).collect();
+        let cycles: Vec<f64> = self.past.rows.iter().map(|row| row.cycles).collect();
+        let lengths: Vec<f64> = self.past.rows.iter().map(|row| row.crack_length).collect();
         // A spacing of growth at every tip.
-        let growth = vec![spacing; self.rows[0].tips.len()];
+        let growth = vec![spacing; self.past.rows[0].tips.len()];
         let average = LengthAverage::new(&cycles, &lengths, self.specimen.crack_length_after(&growth) - self.origin);
-        let mut rows = self.rows.clone();
-        let work: Vec<f64> = self.rows.iter().map(|row| row.work).collect();
+        let mut rows = self.past.rows.clone();
+        let work: Vec<f64> = self.past.rows.iter().map(|row| row.work).collect();
         rows.iter_mut().zip(average.of(&work)).for_each(|(row, work)| row.work = work);
         rows.iter_mut().zip(average.of_rising(&lengths)).for_each(|(row, length)| row.crack_length = length);
-        for tip in 0..self.rows[0].tips.len() {
-            let growth: Vec<f64> = self.rows.iter().map(|row| row.tips[tip].growth).collect();
+        for tip in 0..self.past.rows[0].tips.len() {
+            let growth: Vec<f64> = self.past.rows.iter().map(|row| row.tips[tip].growth).collect();
             rows.iter_mut().zip(average.of_rising(&growth)).for_each(|(row, growth)| row.tips[tip].growth = growth);
         }
         rows
@@ -238,7 +267,7 @@ impl Track {
         let share = case.loading.range_share();
         // The first row is the plate at N = 0 exactly, with what the row there or just after it says.
         let start = rows.partition_point(|row| row.cycles < zero).min(rows.len() - 1);
-        let broken_before = self.rows[start].broken_bonds;
+        let broken_before = self.past.rows[start].broken_bonds;
         let point = |i: usize, cycles: f64, crack_length: f64| CurvePoint {
             cycles,
             crack_length,

@@ -1,5 +1,8 @@
 //! What a run gives and how it reports while it goes on.
 
+use serde::{Deserialize, Serialize};
+
+use super::checkpoint::Checkpoint;
 use crate::net::PointGrid;
 use crate::specimen::Point;
 
@@ -20,7 +23,7 @@ crate::kinds! {
 }
 
 /// State of one tip at a recorded step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TipRecord {
     /// Position, m.
     pub position: Point,
@@ -132,6 +135,11 @@ pub struct Progress {
 pub trait Observer: Sync {
     /// Called after every cycle block.
     fn block_done(&self, progress: &Progress) -> bool;
+    /// Called where the run could be taken up again ([`super::resume`]); `checkpoint` builds what that takes, so that nothing is
+    /// built where nobody wants it. By default nobody does.
+    ///
+    /// These places depend on the case alone, not on time and not on what the observer does.
+    fn may_keep(&self, _checkpoint: &dyn Fn() -> Checkpoint) {}
 }
 
 /// An observer that watches nothing.

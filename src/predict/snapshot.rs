@@ -13,8 +13,10 @@ const BETWEEN: f64 = 20.0;
 pub struct Album {
     /// What was taken so far.
     pub snapshots: Vec<Snapshot>,
-    step: f64,
-    next: f64,
+    /// Growth between two, m.
+    pub(super) step: f64,
+    /// Growth at which the next is due, m.
+    pub(super) next: f64,
 }
 
 impl Album {

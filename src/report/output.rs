@@ -3,7 +3,7 @@
 //! A folder is replaced only if an earlier run of this program made it, which the marker file `.perilife` tells.
 
 use std::fs;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -117,6 +117,51 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
         let _ = fs::remove_file(&partial);
     }
     done.map_err(cannot)
+}
+
+/// A file that is written again and again, whole every time, and stays whole if the machine stops.
+#[derive(Debug)]
+pub struct Replaced {
+    path: PathBuf,
+    partial: PathBuf,
+}
+
+impl Replaced {
+    /// Claims `path`, which need not exist; what stands there stays until the first writing.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if it is a folder or a device; [`Error::File`] if nothing can be written beside it.
+    pub fn claim(path: &Path) -> Result<Replaced> {
+        if path.file_name().is_none() || fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+            return Err(input("--checkpoint", path.display(), "is no file", "give the name of a file"));
+        }
+        // A link keeps pointing where it points.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        // Always the same name: what a process that was killed left there is overwritten by the next.
+        let partial = parent_of(&path).join(format!(".{name}.partial"));
+        let file = Replaced { partial, path };
+        let tried = fs::File::create(&file.partial).and_then(|_| fs::remove_file(&file.partial));
+        tried.map_err(|e| Error::file(&file.path, "cannot write", e))?;
+        Ok(file)
+    }
+
+    /// Writes it whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it cannot be written; what stood there before then stays.
+    pub fn write(&self, bytes: &[u8]) -> Result<()> {
+        let written = fs::File::create(&self.partial).and_then(|mut file| {
+            file.write_all(bytes)?;
+            // A name must not come to stand for content that is not on the disk yet.
+            file.sync_all()
+        });
+        let done = written.and_then(|()| fs::rename(&self.partial, &self.path));
+        if done.is_err() {
+            let _ = fs::remove_file(&self.partial);
+        }
+        done.map_err(|e| Error::file(&self.path, "cannot write", e))
+    }
 }
 
 /// The folder to write, if it may be written: new, empty or ours.

@@ -14,6 +14,9 @@ use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
 
+/// Solves after which it begins anew: it remembers nothing, so that this costs one more solve.
+const SOLVES_MOST: usize = 32;
+
 /// Factorises anew for every solve.
 #[derive(Debug, Clone, Default)]
 pub struct DirectSolver {}
@@ -29,6 +32,10 @@ impl<const N: usize> LinearSolver<N> for DirectSolver {
     }
 
     fn broke(&mut self, _: &Body, _: &Bonds, _: &Product<N>, _: &[Bond]) {}
+
+    fn is_due(&self, _: &Body, _: &[Bond], solves: usize) -> bool {
+        solves >= SOLVES_MOST
+    }
 }
 
 /// Solves with M unknowns a point, of which the first N go into `u`.

@@ -163,6 +163,13 @@ impl Balance for Mirrored {
         Ok(iterations)
     }
 
+    fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool {
+        if self.is_lost {
+            return self.inner.is_due(body, watched, solves);
+        }
+        self.inner.is_due(&self.part.body, &self.part.bonds(body, watched), solves)
+    }
+
     fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
         if self.is_lost {
             return self.inner.complete(body, bonds, displacement);

@@ -96,6 +96,10 @@ trait LinearSolver<const N: usize>: Send {
     fn picture(&mut self, _: System<'_, N>, _u: &[f64]) -> Result<Option<(Vec<f64>, usize)>> {
         Ok(None)
     }
+    /// Whether to begin anew costs little now, `solves` solves after the last beginning.
+    fn is_due(&self, _body: &Body, _watched: &[Bond], solves: usize) -> bool {
+        solves >= SOLVES_MOST
+    }
     /// Whether `u` is right everywhere.
     fn is_whole(&self) -> bool {
         true
@@ -106,6 +110,10 @@ trait LinearSolver<const N: usize>: Send {
     }
 }
 
+/// Solves of the whole plate after which a solver begins anew. That takes three to four of them: a solve from rest, and where
+/// there is one a new hierarchy.
+const SOLVES_MOST: usize = 128;
+
 /// Does work on a thread of the pool: a parallel loop started from outside would wait for threads to be woken every time.
 fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     rayon::scope(|_| work())
@@ -114,6 +122,8 @@ fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
 /// Keeps a body in equilibrium with its load while bonds break.
 pub struct Equilibrium {
     inner: Box<dyn Balance>,
+    /// Solves since it was built.
+    solves: usize,
 }
 
 /// Both sides of the system, with the number of unknowns and mirror images hidden.
@@ -129,6 +139,7 @@ trait Balance: Send {
         tips: &[Focus],
         displacement: &mut Vec<f64>,
     ) -> Result<usize>;
+    fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool;
     fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
     fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)>;
     fn get_ready_to_foresee(&mut self);
@@ -153,7 +164,7 @@ impl Equilibrium {
                 None => sides::balance(kind, body, bonds, load),
             }
         });
-        Equilibrium { inner }
+        Equilibrium { inner, solves: 0 }
     }
 
     /// Equilibrium of a plate of several levels, `body` being its finest points, under `load` times its unit load (Pa or N). Only
@@ -164,7 +175,7 @@ impl Equilibrium {
     /// order of their numbers ([`Levelled::ids`]).
     #[must_use]
     pub fn of_levels(kind: SolverKind, plate: Arc<Levelled>, body: &Body, bonds: &Bonds, load: f64) -> Self {
-        Equilibrium { inner: in_pool(|| sides::balance_levels(kind, plate, body, bonds, load)) }
+        Equilibrium { inner: in_pool(|| sides::balance_levels(kind, plate, body, bonds, load)), solves: 0 }
     }
 
     /// Points that are solved for: those of the body, or of the part of it that stands for all by symmetry.
@@ -179,6 +190,7 @@ impl Equilibrium {
     /// # Errors
     /// `Error::Mechanics` if the iteration does not converge.
     pub fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
+        self.solves += 1;
         in_pool(|| self.inner.solve(body, bonds, displacement))
     }
 
@@ -201,6 +213,14 @@ impl Equilibrium {
         displacement: &mut Vec<f64>,
     ) -> Result<usize> {
         in_pool(|| self.inner.reach(body, bonds, watched, tips, displacement))
+    }
+
+    /// Whether this is a good moment to put a new one in its place, which knows nothing but the bonds: the window would have to be
+    /// moved for the `watched` bonds anyway, or that many solves have passed that a new beginning hardly counts. It depends on what
+    /// was solved since it was built, never on time.
+    #[must_use]
+    pub fn is_due(&self, body: &Body, watched: &[Bond]) -> bool {
+        !self.is_foreseen() && self.inner.is_due(body, watched, self.solves)
     }
 
     /// Makes the displacement right everywhere; returns the iterations.

@@ -264,6 +264,10 @@ impl<const N: usize> Balance for Sides<N> {
         Ok(iterations)
     }
 
+    fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool {
+        self.solver.is_due(body, watched, solves)
+    }
+
     fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
         if self.is_foreseen {
             return self.solve(body, bonds, displacement);

@@ -4,13 +4,15 @@
 //! foreseen too low by `ln(ε/ε_foreseen) = ∫ β dw`. Every block gives the mean of β over its w. It falls as the crack grows
 //! (like 1/K²: the same work then stands for less growth), so a straight line through the last blocks is carried on.
 
+use serde::{Deserialize, Serialize};
+
 /// Weight of a block over that of the next one.
 const DISCOUNT: f64 = 0.6;
 /// Spread of the blocks along w, in the size of the last one, below which they show a mean but no slope.
 const LEAST_SPREAD: f64 = 0.3;
 
 /// Growth of a tip within the block at hand, and the error to expect of strains foreseen.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Foresight {
     /// Growth since the last solve, m.
     pub grown: f64,
@@ -23,7 +25,7 @@ pub(super) struct Foresight {
 }
 
 /// Σ g, Σ g x, Σ g x², Σ g β, Σ g x β with weights g = w², since the mean of a block is known to ±1/w.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct Sums {
     one: f64,
     x: f64,

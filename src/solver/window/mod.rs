@@ -13,7 +13,7 @@ use super::assembly::{MIXED, Mixed, Springs};
 use super::conjugate_gradient::MultigridSolver;
 use super::direct::{DirectSolver, pinned_components};
 use super::product::{End, Product};
-use super::{Focus, LinearSolver, Solved, System};
+use super::{Focus, LinearSolver, SOLVES_MOST, Solved, System};
 use crate::body::mirror::signs;
 use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
@@ -34,6 +34,12 @@ const DRIFT_MAX: f64 = 1e-7;
 const RANK_MAX: usize = 512;
 /// Springs after which they are put into the inverse.
 const RANK_FOLD: usize = 128;
+/// Solves within the window before which its next move is no new beginning: bonds that come near the critical stretch may move it
+/// after every break.
+const UPDATES_LEAST: usize = 64;
+/// Solves within the window after which all begins anew, though the window could stay: so many take seconds, a new beginning some
+/// tenths of one on a plate of 50 000 points.
+const UPDATES_MOST: usize = 4096;
 /// Residual over load of a displacement for a picture.
 const PICTURE_TOLERANCE: f64 = 1e-4;
 
@@ -198,6 +204,12 @@ impl<const N: usize, W: Whole<N>> LinearSolver<N> for WindowSolver<N, W> {
         let solved = self.complete(system, u)?;
         self.window = self.condense(system, u, watched, tips);
         Ok(solved)
+    }
+
+    fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool {
+        let Some(window) = &self.window else { return solves >= SOLVES_MOST };
+        let moves = !hold(body, &window.condensed.places, watched);
+        solves >= if moves { UPDATES_LEAST } else { UPDATES_MOST }
     }
 
     fn complete(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Option<Solved>> {

@@ -1,0 +1,215 @@
+//! What it takes to go on with a run that was broken off.
+//!
+//! Now and then a run builds its solver anew from the bonds alone ([`crate::solver::Equilibrium::is_due`]), at the same places
+//! however it is interrupted. There everything numeric that follows depends only on what stands here, so that a run taken up
+//! there gives the same curve as one that nobody interrupted, bit for bit, on the same kind of processor.
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::course::Course;
+use super::curve::Past;
+use super::snapshot::Album;
+use super::{Progress, Snapshot};
+use crate::body::{Body, Bond};
+use crate::case::Case;
+use crate::error::{Error, InputError, Result};
+use crate::fatigue::FatigueLaw;
+use crate::fatigue::block_control::BlockControl;
+use crate::fatigue::crack_tip::CrackTip;
+
+/// First bytes of a checkpoint.
+const MAGIC: &[u8] = b"perilife checkpoint\n";
+/// Form of what follows; one higher with every change of it, or of what a run does with it.
+const FORM: u32 = 1;
+/// Program by which a checkpoint can be taken up.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// State of a run at one of the places where its solver is built anew.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    /// Hash of what the case says.
+    case: [u8; 32],
+    /// A, p and horizon of the fatigue law that it was run with.
+    law: [f64; 3],
+    cycles: f64,
+    crack_length: f64,
+    share: f64,
+    /// Bonds that are cut, by the initial cracks or since.
+    broken: Vec<Bond>,
+    /// Lives that are not whole any more.
+    life: Vec<(Bond, f64)>,
+    tips: Vec<CrackTip>,
+    near_limit: Vec<Bond>,
+    control: BlockControl,
+    past: Past,
+    album: Pictures,
+    broken_bonds: usize,
+    solves: usize,
+    iterations: usize,
+    /// Time spent on the run so far, s.
+    wall_s: f64,
+}
+
+/// Pictures so far.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Pictures {
+    step: f64,
+    next: f64,
+    all: Vec<Picture>,
+}
+
+/// A snapshot with the damage of the few points that have any.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Picture {
+    cycles: f64,
+    crack_length: f64,
+    displacement: Vec<[f64; 2]>,
+    damage: Vec<(u32, f64)>,
+}
+
+impl Checkpoint {
+    /// Where a run of a case with this [`hash`] stands.
+    pub(super) fn of(case: [u8; 32], law: &FatigueLaw, body: &Body, run: &Course, progress: &Progress, wall_s: f64) -> Self {
+        let is_broken = |bond: Bond| body.multiplier[bond as usize] > 0.0 && !run.bonds.is_intact(bond);
+        Checkpoint {
+            case,
+            law: constants(law),
+            cycles: progress.cycles,
+            crack_length: progress.crack_length,
+            share: progress.share,
+            broken: (0..body.multiplier.len()).map(|bond| bond as Bond).filter(|&bond| is_broken(bond)).collect(),
+            life: run.life.begun(),
+            tips: run.tips.clone(),
+            near_limit: run.near_limit.clone(),
+            control: run.control.clone(),
+            past: run.track.past().clone(),
+            album: Pictures::of(&run.album),
+            broken_bonds: run.broken_bonds,
+            solves: run.solves,
+            iterations: run.iterations,
+            wall_s,
+        }
+    }
+
+    /// Puts a run at its start where this one stood; returns the time spent on it so far, s.
+    ///
+    /// # Errors
+    /// It is that of another law or plate.
+    pub(super) fn restore(self, law: &FatigueLaw, body: &Body, run: &mut Course) -> Result<f64> {
+        if self.law != constants(law) {
+            return Err(refused("is that of a run with another fatigue law"));
+        }
+        let lives = self.life.iter().map(|(bond, _)| bond);
+        let fits = self.broken.iter().chain(&self.near_limit).chain(lives).all(|&bond| (bond as usize) < body.multiplier.len());
+        let pictures_fit = self
+            .album
+            .all
+            .iter()
+            .all(|picture| picture.damage.iter().all(|(point, _)| (*point as usize) < picture.displacement.len()));
+        if !(fits && pictures_fit && self.tips.len() == run.tips.len() && self.past.fits(run.tips.len())) {
+            return Err(refused("is that of another plate"));
+        }
+        self.broken.iter().for_each(|&bond| run.bonds.cut(body, bond));
+        self.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));
+        (run.tips, run.near_limit, run.control) = (self.tips, self.near_limit, self.control);
+        run.track.go_on_from(self.past);
+        run.album = self.album.into_album();
+        (run.broken_bonds, run.solves, run.iterations) = (self.broken_bonds, self.solves, self.iterations);
+        Ok(self.wall_s)
+    }
+
+    /// How far the run had come.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        Progress { cycles: self.cycles, crack_length: self.crack_length, share: self.share }
+    }
+
+    /// Whether it is that of a run of this case, by all that decides how the run goes; its name and where the file lies do not.
+    #[must_use]
+    pub fn belongs_to(&self, case: &Case) -> bool {
+        self.case == hash(case)
+    }
+
+    /// Refuses the checkpoint of another case.
+    ///
+    /// # Errors
+    /// [`Error::Input`].
+    pub fn check(&self, case: &Case) -> Result<()> {
+        if self.belongs_to(case) { Ok(()) } else { Err(refused("belongs to another case, or to this one before it was changed")) }
+    }
+
+    /// As bytes, with a checksum.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        // Numbers, lists and options of known length can always be written to memory.
+        let content = postcard::to_stdvec(self).unwrap_or_default();
+        let head = [MAGIC, &FORM.to_le_bytes(), &[VERSION.len() as u8], VERSION.as_bytes(), &Sha256::digest(&content)];
+        [&head.concat()[..], &content].concat()
+    }
+
+    /// From what [`Checkpoint::to_bytes`] gave.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that says what is wrong: no checkpoint at all, one of another version of the program, or a damaged one.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Checkpoint> {
+        let damaged = || refused("is damaged");
+        let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| refused("is no checkpoint of this program"))?;
+        let (form, rest) = rest.split_first_chunk().ok_or_else(damaged)?;
+        let (length, rest) = rest.split_first().ok_or_else(damaged)?;
+        let (version, rest) = rest.split_at_checked(usize::from(*length)).ok_or_else(damaged)?;
+        if (u32::from_le_bytes(*form), version) != (FORM, VERSION.as_bytes()) {
+            let other = String::from_utf8_lossy(version);
+            return Err(refused(format!("was written by perilife {other}, another version than this {VERSION}")));
+        }
+        let (sum, content) = rest.split_first_chunk::<32>().ok_or_else(damaged)?;
+        if Sha256::digest(content)[..] != sum[..] {
+            return Err(damaged());
+        }
+        postcard::from_bytes(content).map_err(|_| damaged())
+    }
+}
+
+impl Pictures {
+    fn of(album: &Album) -> Self {
+        let damaged = |(point, &damage): (usize, &f64)| (damage != 0.0).then_some((point as u32, damage));
+        let picture = |snapshot: &Snapshot| Picture {
+            cycles: snapshot.cycles,
+            crack_length: snapshot.crack_length,
+            displacement: snapshot.displacement.clone(),
+            damage: snapshot.damage.iter().enumerate().filter_map(damaged).collect(),
+        };
+        Pictures { step: album.step, next: album.next, all: album.snapshots.iter().map(picture).collect() }
+    }
+
+    fn into_album(self) -> Album {
+        let snapshot = |picture: Picture| {
+            let mut damage = vec![0.0; picture.displacement.len()];
+            picture.damage.iter().for_each(|&(point, share)| damage[point as usize] = share);
+            let Picture { cycles, crack_length, displacement, .. } = picture;
+            Snapshot { cycles, crack_length, displacement, damage }
+        };
+        Album { snapshots: self.all.into_iter().map(snapshot).collect(), step: self.step, next: self.next }
+    }
+}
+
+fn constants(law: &FatigueLaw) -> [f64; 3] {
+    [law.a, law.p, law.horizon]
+}
+
+/// Hash of all that decides how the run of a case goes.
+pub(super) fn hash(case: &Case) -> [u8; 32] {
+    let Case { specimen, material, loading, model, fatigue, law, stop, .. } = case;
+    // Debug output of floats says them to the last bit.
+    let all = format!("{:?}", (specimen, material, loading, model, fatigue, law, stop));
+    Sha256::digest(all).into()
+}
+
+/// A checkpoint that cannot be taken up.
+fn refused(problem: impl Into<String>) -> Error {
+    Error::Input(Box::new(InputError {
+        problem: problem.into(),
+        remedy: "remove it, or name another file, to begin the run anew".to_owned(),
+        ..InputError::default()
+    }))
+}

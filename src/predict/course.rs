@@ -1,0 +1,53 @@
+//! All that a run carries from block to block. The displacement is not among it: the solver makes it of the bonds.
+
+use super::curve::Track;
+use super::snapshot::Album;
+use crate::body::{Body, Bond};
+use crate::case::Case;
+use crate::fatigue::block_control::BlockControl;
+use crate::fatigue::crack_tip::CrackTip;
+use crate::fatigue::remaining_life::BondLife;
+use crate::state::Bonds;
+
+/// Where a run stands.
+pub(super) struct Course {
+    /// Which bonds carry.
+    pub bonds: Bonds,
+    /// What life is left to them.
+    pub life: BondLife,
+    /// Tips of the cracks.
+    pub tips: Vec<CrackTip>,
+    /// Bonds that come near the critical stretch, also away from the tips.
+    pub near_limit: Vec<Bond>,
+    /// What past blocks taught about strains foreseen.
+    pub control: BlockControl,
+    /// The curve so far.
+    pub track: Track,
+    /// Pictures so far.
+    pub album: Album,
+    /// Bonds broken since the start, those set aside not counted.
+    pub broken_bonds: usize,
+    /// Equilibrium solves.
+    pub solves: usize,
+    /// Solver iterations.
+    pub iterations: usize,
+}
+
+impl Course {
+    /// The start of a run with these tips, all bonds but those of the initial cracks whole; p is the exponent of its fatigue law.
+    pub(super) fn start(case: &Case, body: &Body, tips: Vec<CrackTip>, p: f64) -> Self {
+        let bonds = Bonds::new(body);
+        Course {
+            life: BondLife::whole(bonds.multiplier.len()),
+            control: BlockControl::new(&case.fatigue.block, p, tips.len()),
+            track: Track::new(case),
+            album: Album::default(),
+            near_limit: Vec::new(),
+            broken_bonds: 0,
+            solves: 0,
+            iterations: 0,
+            bonds,
+            tips,
+        }
+    }
+}

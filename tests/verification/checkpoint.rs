@@ -1,0 +1,234 @@
+//! A run taken up from any of its checkpoints gives what the undisturbed run gives, bit for bit.
+
+use std::sync::Mutex;
+
+use perilife::Result;
+use perilife::case::Case;
+use perilife::predict::checkpoint::Checkpoint;
+use perilife::predict::{Observer, Prediction, Progress, Silent, predict, resume};
+
+use crate::plates::case;
+
+/// Keeps every checkpoint as the bytes of its file, and the blocks before it.
+#[derive(Default)]
+struct Keeping {
+    kept: Mutex<Vec<(Vec<u8>, usize)>>,
+    blocks: Mutex<usize>,
+    /// Blocks after which the run is cancelled.
+    last: Option<usize>,
+}
+
+impl Keeping {
+    fn kept(self) -> Vec<(Vec<u8>, usize)> {
+        self.kept.into_inner().unwrap()
+    }
+}
+
+impl Observer for Keeping {
+    fn block_done(&self, _: &Progress) -> bool {
+        let mut blocks = self.blocks.lock().unwrap();
+        *blocks += 1;
+        self.last.is_none_or(|last| *blocks < last)
+    }
+
+    fn may_keep(&self, checkpoint: &dyn Fn() -> Checkpoint) {
+        self.kept.lock().unwrap().push((checkpoint().to_bytes(), *self.blocks.lock().unwrap()));
+    }
+}
+
+/// All numbers of a prediction but time and memory, to the last bit; floats by their bits, so that NaN equals NaN.
+fn bits(run: &Prediction) -> Vec<u64> {
+    let mut all = Vec::new();
+    for row in &run.curve {
+        all.extend([row.cycles, row.crack_length, row.delta_k, row.growth_rate, row.work].map(f64::to_bits));
+        all.push(row.broken_bonds as u64);
+        all.extend(row.tips.iter().flat_map(|tip| [tip.position[0], tip.position[1], tip.growth]).map(f64::to_bits));
+    }
+    for picture in &run.snapshots {
+        all.extend([picture.cycles, picture.crack_length].map(f64::to_bits));
+        all.extend(picture.displacement.iter().flatten().chain(&picture.damage).map(|x| x.to_bits()));
+    }
+    let figures = &run.figures;
+    all.extend([figures.points, figures.points_solved, figures.bonds, figures.blocks].map(|n| n as u64));
+    all.extend([figures.solves, figures.iterations].map(|n| n as u64));
+    all.extend([figures.spacing, figures.horizon].map(f64::to_bits));
+    all
+}
+
+fn assert_same(name: &str, run: &Prediction, whole: &Prediction) {
+    assert_eq!(run.curve.len(), whole.curve.len(), "{name}: rows");
+    for (i, (a, b)) in run.curve.iter().zip(&whole.curve).enumerate() {
+        assert_eq!(a.cycles.to_bits(), b.cycles.to_bits(), "{name}, row {i}: {} and {} cycles", a.cycles, b.cycles);
+    }
+    assert_eq!(run.stop, whole.stop, "{name}");
+    assert_eq!((run.figures.solves, run.figures.iterations), (whole.figures.solves, whole.figures.iterations), "{name}");
+    assert_eq!(run.snapshots.len(), whole.snapshots.len(), "{name}: pictures");
+    assert!(bits(run) == bits(whole), "{name}: differs in some bit");
+    assert_eq!(run.warnings, whole.warnings, "{name}");
+    assert!(run.grid == whole.grid, "{name}: grid");
+}
+
+fn read(bytes: &[u8]) -> Checkpoint {
+    Checkpoint::from_bytes(bytes).unwrap()
+}
+
+const MIDDLE: &str = "kind=\"middle_tension\"\nwidth_mm=120\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=10\n";
+const CLAMPED: &str =
+    "kind=\"single_edge_tension\"\nends=\"clamped\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\ncrack_length_mm=16\n";
+const SLANT: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\ncracks=[{from_mm=[-7,-5],to_mm=[7,5]}]\n";
+const BROAD: &str = "kind=\"plate\"\nwidth_mm=90\nlength_mm=80\nthickness_mm=2\ncracks=[{from_mm=[-9,-5],to_mm=[7,4]}]\n";
+const TWO: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n\
+                   cracks=[{from_mm=[-16,-3],to_mm=[-7,-3]},{from_mm=[6,3],to_mm=[17,3]}]\n";
+const HOLE: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n\
+                    holes=[{x_mm=3,y_mm=6,diameter_mm=10}]\ncracks=[{from_mm=[-17,0],to_mm=[-9,0]}]\n";
+
+const FINE: &str = "model.spacing_mm=1";
+const SINGLE: &str = "fatigue.block=until_next_break";
+const FIXED: &str = "fatigue.block=fixed";
+const LEVELS: [&str; 2] = ["model.discretisation=dual_horizon", "refinement.regions=[{box_mm=[[-45,-24],[45,24]],levels=1}]"];
+
+/// Name, `[specimen]`, settings; every one has a checkpoint at least.
+fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
+    vec![
+        ("window, quarter of a panel", MIDDLE, vec![FINE]),
+        ("window, clamped, grown", CLAMPED, vec![FINE, "fatigue.precrack=grown", "model.symmetry=off"]),
+        ("window, slant", SLANT, vec![FINE]),
+        ("window, state-based", SLANT, vec![FINE, "model.bond_law=state_based"]),
+        ("window, two cracks, fixed blocks", TWO, vec![FINE, FIXED, "fatigue.block_cycles=5"]),
+        ("window, hole, no precrack", HOLE, vec![FINE, FIXED, "fatigue.block_cycles=7", "fatigue.precrack=none"]),
+        ("window, levels", BROAD, vec![LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=30"]),
+        (
+            "direct, levels",
+            BROAD,
+            vec![LEVELS[0], LEVELS[1], "model.spacing_mm=3", "model.solver=direct", "stop.crack_length_mm=19.5"],
+        ),
+        ("multigrid, clamped, grown", CLAMPED, vec![FINE, "model.solver=multigrid", SINGLE, "fatigue.precrack=grown"]),
+        (
+            "multigrid, controlled",
+            SLANT,
+            vec!["model.spacing_mm=1.2", "model.solver=multigrid", "fatigue.block=controlled", "fatigue.block_error_percent=0.5"],
+        ),
+        (
+            "multigrid, ageing everywhere",
+            SLANT,
+            vec!["model.solver=multigrid", "fatigue.ageing=everywhere", SINGLE, "stop.crack_length_mm=28"],
+        ),
+        ("direct, two cracks", TWO, vec!["model.spacing_mm=2.5", "model.solver=direct", "stop.crack_length_mm=22"]),
+        ("relaxation, hole", HOLE, vec!["model.spacing_mm=2", "model.solver=adaptive_dynamic_relaxation", SINGLE]),
+    ]
+}
+
+#[test]
+fn a_run_taken_up_is_the_undisturbed_one() {
+    for (name, specimen, set) in scenes() {
+        let case = case(specimen, &[&["stop.cycles_max=1e12"], &set[..]].concat());
+        let keeping = Keeping::default();
+        let whole = predict(&case, &keeping).unwrap();
+        let kept = keeping.kept();
+        let sizes: Vec<usize> = kept.iter().map(|(bytes, _)| bytes.len() / 1000).collect();
+        println!(
+            "{name}: {} blocks, {} solves, {}, checkpoints of {sizes:?} kB",
+            whole.figures.blocks, whole.figures.solves, whole.stop
+        );
+        assert!(!kept.is_empty(), "{name}: no checkpoint, so this scene tests nothing");
+        // One that keeps nothing goes the same way.
+        assert_same(name, &predict(&case, &Silent).unwrap(), &whole);
+        let mut places = vec![0, kept.len() / 2, kept.len() - 1];
+        places.dedup();
+        for at in places {
+            let again = Keeping::default();
+            let run = resume(&case, read(&kept[at].0), &again).unwrap();
+            assert_same(&format!("{name}, checkpoint {at}"), &run, &whole);
+            // It goes on where the other stood, and comes by the same places.
+            assert_eq!(again.kept().len(), kept.len() - at - 1, "{name}");
+        }
+    }
+}
+
+/// The first checkpoint of a run.
+fn first(case: &Case) -> (Vec<u8>, Prediction) {
+    let keeping = Keeping::default();
+    let whole = predict(case, &keeping).unwrap();
+    (keeping.kept().swap_remove(0).0, whole)
+}
+
+/// A service cancels a run and goes on later; what is kept can be older than where it was cancelled.
+#[test]
+fn a_cancelled_run_goes_on() {
+    let case = case(SLANT, &[FINE]);
+    let whole = predict(&case, &Silent).unwrap();
+    let mut checkpoint: Option<Vec<u8>> = None;
+    let mut parts = 0;
+    let run = loop {
+        let keeping = Keeping { last: Some(250), ..Keeping::default() };
+        let run = match &checkpoint {
+            None => predict(&case, &keeping),
+            Some(bytes) => resume(&case, read(bytes), &keeping),
+        };
+        parts += 1;
+        match run {
+            Ok(run) => break run,
+            Err(error) => assert!(error.to_string().contains("was cancelled"), "{error}"),
+        }
+        let newer = keeping.kept().pop().map(|(bytes, _)| bytes);
+        assert!(newer.is_some(), "no way on within 250 blocks");
+        checkpoint = newer;
+    };
+    println!("{parts} parts, {:.3} s of {:.3} s", run.figures.wall_s, whole.figures.wall_s);
+    assert!(parts > 3, "{parts} parts");
+    assert_same("parts", &run, &whole);
+}
+
+fn refused(checkpoint: Result<Checkpoint>, words: &str) {
+    let error = checkpoint.expect_err(words);
+    assert_eq!(error.exit_code(), 2, "{error}");
+    assert!(error.to_string().contains(words), "{words} in {error}");
+}
+
+#[test]
+fn damaged_and_foreign_checkpoints_are_refused() {
+    let case = |set: &[&str]| case(SLANT, &[&[FINE, "stop.crack_length_mm=40"], set].concat());
+    let own = case(&[]);
+    let (bytes, _) = first(&own);
+    assert_eq!(read(&bytes).to_bytes(), bytes);
+    for length in (0..200).chain((200..bytes.len()).step_by(4999)) {
+        let word = if length < 20 { "is no checkpoint" } else { "damaged" };
+        // A version that is cut short is another one.
+        let cut = Checkpoint::from_bytes(&bytes[..length]);
+        refused(cut, word);
+    }
+    for at in (0..200).chain((200..bytes.len()).step_by(4999)) {
+        for bit in [1, 128] {
+            let mut changed = bytes.clone();
+            changed[at] ^= bit;
+            let error = Checkpoint::from_bytes(&changed).expect_err("a changed bit");
+            assert_eq!(error.exit_code(), 2, "byte {at}: {error}");
+        }
+    }
+    refused(Checkpoint::from_bytes(&[&bytes[..], &[0]].concat()), "damaged");
+    let mut older = bytes.clone();
+    let at = older.windows(5).position(|window| window == env!("CARGO_PKG_VERSION").as_bytes()).unwrap();
+    older[at] = b'9';
+    refused(Checkpoint::from_bytes(&older), "another version");
+
+    // Whatever says something else about the run makes it another case; the name of a case does not.
+    let others = [
+        "loading.stress_max_mpa=71",
+        "fatigue.a=6451",
+        "fatigue.precrack=none",
+        "model.solver=multigrid",
+        "stop.crack_length_mm=41",
+        "specimen.width_mm=62",
+        "material.poisson_ratio=0.31",
+    ];
+    for other in others {
+        let other_case = case(&[other]);
+        assert!(!read(&bytes).belongs_to(&other_case), "{other}");
+        let error = resume(&other_case, read(&bytes), &Silent).expect_err(other);
+        assert_eq!(error.exit_code(), 2, "{other}: {error}");
+        assert!(error.to_string().contains("another case"), "{other}: {error}");
+    }
+    let mut renamed = own.clone();
+    renamed.name = "renamed".to_owned();
+    assert!(read(&bytes).belongs_to(&renamed));
+}
