@@ -14,10 +14,10 @@ use crate::cli::{assert_refused, perilife, texts};
 const CASE: &str = r#"
 [specimen]
 kind = "plate"
-width_mm = 60.0
+width_mm = 70.0
 length_mm = 100.0
 thickness_mm = 2.0
-cracks = [{ from_mm = [-7.0, -5.0], to_mm = [7.0, 5.0] }]
+cracks = [{ from_mm = [-9.0, -5.0], to_mm = [9.0, 5.0] }]
 [material]
 youngs_modulus_gpa = 72.0
 poisson_ratio = 0.3

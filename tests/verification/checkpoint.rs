@@ -155,7 +155,7 @@ fn first(case: &Case) -> (Vec<u8>, Prediction) {
 /// A service cancels a run and goes on later; what is kept can be older than where it was cancelled.
 #[test]
 fn a_cancelled_run_goes_on() {
-    let case = case(SLANT, &[FINE]);
+    let case = case(CLAMPED, &[FINE, "model.solver=multigrid", SINGLE]);
     let whole = predict(&case, &Silent).unwrap();
     let mut checkpoint: Option<Vec<u8>> = None;
     let mut parts = 0;
@@ -175,7 +175,7 @@ fn a_cancelled_run_goes_on() {
         checkpoint = newer;
     };
     println!("{parts} parts, {:.3} s of {:.3} s", run.figures.wall_s, whole.figures.wall_s);
-    assert!(parts > 3, "{parts} parts");
+    assert!(parts >= 3, "{parts} parts");
     assert_same("parts", &run, &whole);
 }
 
