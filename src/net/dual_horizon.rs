@@ -157,14 +157,8 @@ fn cut_by(cracks: &[Crack], bonds: &[NetBond], positions: &[Point], spacing: f64
 fn grid(levels: &Levels) -> PointGrid {
     let lattice = levels.finest();
     let places = (0..lattice.columns * lattice.rows).map(|i| ((i % lattice.columns) as i64, (i / lattice.columns) as i64));
-    PointGrid {
-        spacing: lattice.spacing,
-        columns: lattice.columns,
-        rows: lattice.rows,
-        origin: lattice.origin,
-        angle: lattice.axis[1].atan2(lattice.axis[0]),
-        point_at: places.map(|(column, row)| levels.point_over(column, row).map(|point| point as u32)).collect(),
-    }
+    let point_at = places.map(|(column, row)| levels.point_over(column, row).map(|point| point as u32)).collect();
+    PointGrid::of_lattice(lattice, point_at)
 }
 
 /// What was split beyond what was asked for.

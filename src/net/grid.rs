@@ -1,6 +1,7 @@
 //! Points as pictures need them: the lattice they stand on and which point covers each of its places.
 
 use crate::body::Body;
+use crate::body::lattice::Lattice;
 use crate::specimen::Point;
 
 /// Lattice of a picture.
@@ -31,6 +32,11 @@ impl PointGrid {
             let (column, row) = lattice.column_row(place as usize);
             point_at[row * lattice.columns + column] = Some(i as u32);
         }
+        PointGrid::of_lattice(lattice, point_at)
+    }
+
+    /// A lattice with the points on its places, row by row.
+    pub(super) fn of_lattice(lattice: &Lattice, point_at: Vec<Option<u32>>) -> PointGrid {
         PointGrid {
             spacing: lattice.spacing,
             columns: lattice.columns,

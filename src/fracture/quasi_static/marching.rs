@@ -1,7 +1,7 @@
 //! Load steps of a fixed number of relaxation iterations: the plate follows the load in damped motion, and bonds are damaged in
 //! every iteration.
 //!
-//! This is how most published examples are worked through (Kilic and Madenci 2010; Madenci and Oterkus 2014, chapter 7; source
+//! This is how many published examples are worked through (Kilic and Madenci 2010; Madenci and Oterkus 2014, chapter 7; source
 //! 000): one iteration for every increment of displacement, so that "time steps" there count both. It follows a plate through
 //! snap-back, since damping takes up what equilibrium cannot, and costs one evaluation of the forces an iteration. What it gives is
 //! not equilibrium: load and onset depend on how fast the load grows against the swing, and approach the path of equilibrium
