@@ -29,6 +29,9 @@ pub mod calibration;
 pub mod verify;
 pub mod bench;
 pub mod report;
+pub mod check;
+#[cfg(feature = "service")]
+pub mod service;
 pub mod commands;
 
 pub use error::{Error, Result};

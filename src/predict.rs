@@ -145,6 +145,7 @@ fn run_from(
             let (picture, more) = equilibrium.picture(body, &run.bonds)?;
             run.iterations += more;
             run.album.open(&plate, &run.bonds, &picture, run.track.last());
+            run.album.show(&plate, observer);
         }
 
         // Which bonds may age, and which others are watched.
@@ -250,6 +251,10 @@ fn run_from(
             let (picture, more) = equilibrium.picture(body, &run.bonds)?;
             run.iterations += more;
             run.album.look(&plate, &run.bonds, &picture, run.track.last());
+            run.album.show(&plate, observer);
+        }
+        if counting {
+            observer.grown(run.track.last().tips());
         }
         let going_on = observer.block_done(&run.track.progress(case));
         if let Some(reason) = outcome.or_else(|| stop::after_block(case, end, &run.track)) {

@@ -118,9 +118,8 @@ pub fn csv(table: &DataFrame) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads a Parquet file.
-pub fn read_parquet(path: &Path) -> Result<Cells> {
-    let file = std::fs::File::open(path).map_err(|error| Error::file(path, "cannot read", error))?;
+/// Reads the bytes of a Parquet file; `path` is only named in messages.
+pub fn read_parquet(bytes: &[u8], path: &Path) -> Result<Cells> {
     let broken = |error: PolarsError| {
         Error::Input(Box::new(InputError {
             file: Some(path.to_path_buf()),
@@ -129,7 +128,7 @@ pub fn read_parquet(path: &Path) -> Result<Cells> {
             ..InputError::default()
         }))
     };
-    let table = ParquetReader::new(file).finish().map_err(broken)?;
+    let table = ParquetReader::new(std::io::Cursor::new(bytes)).finish().map_err(broken)?;
     let mut rows = vec![Vec::with_capacity(table.width()); table.height()];
     for column in table.columns() {
         for (index, row) in rows.iter_mut().enumerate() {

@@ -9,7 +9,7 @@ use crate::calibration::model::ForwardModel;
 use crate::calibration::pd_model::PdModel;
 use crate::error::Result;
 use crate::predict::Silent;
-use crate::verify::measured::{CALIBRATION, READINGS};
+use crate::verify::measured::{CALIBRATION, READINGS, at_hand};
 
 const GROUP: &str = "calibration";
 /// Forward runs that a calibration may take.
@@ -22,7 +22,7 @@ const ASKED: f64 = 3.5;
 pub fn median(bench: &mut Bench<'_>) -> Result<()> {
     let spacing = if bench.effort.quick { 3 } else { 1 };
     let text = CALIBRATION.replace("spacing_mm = 1.0", &format!("spacing_mm = {spacing}.0"));
-    let calibration = CalibrationCase::from_text(&text, "al2024-t3", READINGS)?;
+    let calibration = CalibrationCase::from_text(&text, "al2024-t3", at_hand(READINGS))?;
     let about = format!("Virkler panel, 9 to 49.8 mm, {spacing} mm");
     let (fit, fitted) = bench.time(|| calibrate(&calibration, &Silent))?;
     let row = Row::new(GROUP, &*about, DEFAULT, "fit of A and p to the median of 34 panels", fitted);

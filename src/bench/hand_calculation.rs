@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::predict::{Silent, predict};
 use crate::units::MM;
 use crate::verify::golden;
-use crate::verify::measured::CALIBRATION;
+use crate::verify::measured::{CALIBRATION, at_hand};
 use crate::verify::scene::{case, points};
 
 const GROUP: &str = "hand_calculation";
@@ -37,7 +37,7 @@ pub fn all(bench: &mut Bench<'_>) -> Result<()> {
 
     let readings = readings()?;
     let text = CALIBRATION.replace("spacing_mm = 1.0", "method = \"handbook\"");
-    let calibration = CalibrationCase::from_text(&text, "hand", readings.as_bytes())?;
+    let calibration = CalibrationCase::from_text(&text, "hand", at_hand(readings.as_bytes()))?;
     let (_, timing) = bench.time(|| (0..FITS).try_for_each(|_| calibrate(&calibration, &Silent).map(drop)))?;
     let fit = timing.of_one_in(FITS);
     let count = readings.lines().count() - 1;

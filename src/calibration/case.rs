@@ -1,6 +1,6 @@
 //! A calibration file: `[measured]` and `[fit]` beside the sections of a case.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -8,11 +8,11 @@ use toml::{Table, Value};
 
 use crate::calibration::criterion::Criterion;
 use crate::calibration::exponent::Exponent;
-use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurve, Units, parse, read};
+use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurve, Units, parse};
 use crate::calibration::record::SourceFile;
 use crate::case::{Case, LAW_KEYS, LawSource, Method};
-use crate::error::{Error, input, input_missing};
-use crate::input::{Document, LENGTH, slice};
+use crate::error::{input, input_missing};
+use crate::input::{Document, Folder, LENGTH, slice};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::MM;
@@ -77,30 +77,16 @@ struct FitSlice {
 impl CalibrationCase {
     /// Reads a calibration file and the measured files it names; `overrides` are `section.key=value`.
     pub fn from_file(path: &Path, overrides: &[String]) -> crate::Result<Self> {
-        let document = Document::read(path, overrides)?;
-        let base_dir = document.base_dir.clone();
-        Self::from_document(document, |keys| {
-            let (files, sources) = sources(&keys.files, &base_dir)?;
-            Ok((read(&files, keys.units())?, sources))
-        })
+        Self::from_document(Document::read(path, overrides)?)
     }
 
-    /// The same for text and readings that are at hand; `measured.files` then names the readings only.
-    pub fn from_text(text: &str, name: &str, readings: &[u8]) -> crate::Result<Self> {
-        let document = Document::parse(text, name, Path::new(""), &[])?;
-        Self::from_document(document, |keys| {
-            let [file] = &keys.files[..] else {
-                let given = format!("{} files", keys.files.len());
-                return Err(input("measured.files", given, "do not go with one table of readings", "name one file"));
-            };
-            Ok((parse(readings, Path::new(file), keys.units())?, vec![source(file, readings)]))
-        })
+    /// The same for text; the files it names lie in `folder`.
+    pub fn from_text(text: &str, name: &str, folder: impl Into<Folder>) -> crate::Result<Self> {
+        Self::from_document(Document::parse(text, name, folder, &[])?)
     }
 
-    fn from_document(
-        mut document: Document,
-        readings: impl Fn(&MeasuredSlice) -> crate::Result<(Measured, Vec<SourceFile>)>,
-    ) -> crate::Result<Self> {
+    /// The same for a parsed document, which gives errors their line.
+    pub fn from_document(mut document: Document) -> crate::Result<Self> {
         // Taken out of the table, but not of the text: errors still find their line.
         let measured = document.table.remove("measured");
         let fit = document.table.remove("fit").unwrap_or_else(|| Value::Table(Table::new()));
@@ -108,19 +94,13 @@ impl CalibrationCase {
             let measured = measured
                 .as_ref()
                 .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
-            let case = Case::from_table(document.table.clone(), &document.name, &document.base_dir)?;
-            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.base_dir, readings)
+            let case = Case::from_table(document.table.clone(), &document.name, &document.folder)?;
+            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.folder)
         };
         build().map_err(|error| document.locate(error))
     }
 
-    fn build(
-        mut case: Case,
-        keys: MeasuredSlice,
-        fit: FitSlice,
-        base_dir: &Path,
-        readings: impl Fn(&MeasuredSlice) -> crate::Result<(Measured, Vec<SourceFile>)>,
-    ) -> crate::Result<Self> {
+    fn build(mut case: Case, keys: MeasuredSlice, fit: FitSlice, folder: &Folder) -> crate::Result<Self> {
         if !matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
             let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
@@ -134,7 +114,7 @@ impl CalibrationCase {
                 "calibrate on a standard specimen (length at least 1.5 widths), then predict the plate with the fit",
             )
         })?;
-        let (measured, sources) = readings(&keys)?;
+        let (measured, sources) = readings(&keys, folder)?;
         let (limit, limit_name) = case.specimen.length_limit();
         measured.check_lengths(limit, limit_name)?;
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
@@ -145,7 +125,7 @@ impl CalibrationCase {
             warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
         }
         let delta_k = |length: f64| formula.k_i(length, case.loading.maximum);
-        let exponent = exponent(&fit, base_dir, case.model.method, delta_k(longest) / delta_k(shortest))?;
+        let exponent = exponent(&fit, folder, case.model.method, delta_k(longest) / delta_k(shortest))?;
         warnings.extend(exponent.warning.clone());
         let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
         case.stop.crack_length = longest;
@@ -197,7 +177,7 @@ fn unrecorded(case: &Case) -> Option<String> {
 }
 
 /// The exponent of `[fit]` for a window with this ratio of the largest to the smallest ΔK.
-fn exponent(fit: &FitSlice, base_dir: &Path, method: Method, delta_k_ratio: f64) -> crate::Result<Exponent> {
+fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_ratio: f64) -> crate::Result<Exponent> {
     let parameters = fit.parameters.clone().unwrap_or_else(|| vec![Parameter::A, Parameter::P]);
     let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
     if !parameters.contains(&Parameter::A) {
@@ -208,9 +188,9 @@ fn exponent(fit: &FitSlice, base_dir: &Path, method: Method, delta_k_ratio: f64)
         (_, Some(p), Some(_)) => Err(input("fit.p", p, "stands beside record: p is given twice", "give p or record")),
         (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
         (true, None, None) => Ok(Exponent::fitted(delta_k_ratio)),
-        (true, None, Some(file)) => Exponent::record_if_needed(file, base_dir, method, delta_k_ratio),
+        (true, None, Some(file)) => Exponent::record_if_needed(file, folder, method, delta_k_ratio),
         (false, Some(p), None) => Ok(Exponent::given(p)),
-        (false, None, Some(file)) => Exponent::of_record(file, base_dir, method),
+        (false, None, Some(file)) => Exponent::of_record(file, folder, method),
         (false, None, None) => Err(input_missing(
             "fit.p",
             "is missing",
@@ -219,18 +199,19 @@ fn exponent(fit: &FitSlice, base_dir: &Path, method: Method, delta_k_ratio: f64)
     }
 }
 
-/// Paths of the measured files, and what the record says about them.
-fn sources(files: &[String], base_dir: &Path) -> crate::Result<(Vec<PathBuf>, Vec<SourceFile>)> {
-    if files.is_empty() {
+/// Curves of the measured files, and what the record says about the files.
+fn readings(keys: &MeasuredSlice, folder: &Folder) -> crate::Result<(Measured, Vec<SourceFile>)> {
+    if keys.files.is_empty() {
         return Err(input("measured.files", "[]", "names no file", "name at least one measured a-N curve"));
     }
-    let paths: Vec<PathBuf> = files.iter().map(|file| base_dir.join(file)).collect();
-    let mut sources = Vec::with_capacity(files.len());
-    for (file, path) in files.iter().zip(&paths) {
-        let bytes = std::fs::read(path).map_err(|error| Error::file(path, "cannot read", error))?;
+    let mut measured = Measured::default();
+    let mut sources = Vec::with_capacity(keys.files.len());
+    for file in &keys.files {
+        let bytes = folder.read(file)?;
+        measured.add(parse(&bytes, &folder.path(file), keys.units())?)?;
         sources.push(source(file, &bytes));
     }
-    Ok((paths, sources))
+    Ok((measured, sources))
 }
 
 /// What the record says about a measured file.

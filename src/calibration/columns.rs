@@ -65,7 +65,8 @@ pub struct Units {
 
 /// What the columns of one file are.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Layout {
+pub struct Layout {
+    /// How specimens are laid out.
     pub shape: Shape,
     /// Metres per unit of a length cell.
     pub length_unit: f64,
@@ -75,9 +76,16 @@ pub(crate) struct Layout {
 
 /// How specimens are laid out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Shape {
+pub enum Shape {
     /// One row a reading.
-    Long { specimen: Option<usize>, cycles: usize, length: usize },
+    Long {
+        /// Column of the specimen's name.
+        specimen: Option<usize>,
+        /// Column of cycles.
+        cycles: usize,
+        /// Column of crack length.
+        length: usize,
+    },
     /// First column crack length, then one column of cycles per specimen.
     WideCycles,
     /// First column cycles, then one column of crack length per specimen.

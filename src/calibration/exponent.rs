@@ -1,10 +1,9 @@
 //! Where the exponent of a fit comes from: fitted, given, or taken from a record because the window does not tell it.
 
-use std::path::Path;
-
 use crate::calibration::fit::DELTA_K_RATIO_MIN;
 use crate::case::{Method, fitted_record};
 use crate::error::Result;
+use crate::input::Folder;
 
 /// The exponent of a calibration before its fit.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,8 +36,8 @@ impl Exponent {
     ///
     /// # Errors
     /// A record that cannot be read.
-    pub fn of_record(file: &str, base_dir: &Path, method: Method) -> Result<Self> {
-        let record = fitted_record(&base_dir.join(file))?;
+    pub fn of_record(file: &str, folder: &Folder, method: Method) -> Result<Self> {
+        let record = fitted_record(file, folder)?;
         let (p, error) = match method {
             Method::Peridynamics => (record.p, record.p_error),
             Method::Handbook => (record.paris_m, record.paris_m_error.unwrap_or(record.p_error)),
@@ -50,8 +49,8 @@ impl Exponent {
     ///
     /// # Errors
     /// As [`Exponent::of_record`].
-    pub fn record_if_needed(file: &str, base_dir: &Path, method: Method, delta_k_ratio: f64) -> Result<Self> {
-        let of_record = Self::of_record(file, base_dir, method)?;
+    pub fn record_if_needed(file: &str, folder: &Folder, method: Method, delta_k_ratio: f64) -> Result<Self> {
+        let of_record = Self::of_record(file, folder, method)?;
         let (p, error) = (of_record.fixed.unwrap_or(f64::NAN), of_record.error);
         if delta_k_ratio < DELTA_K_RATIO_MIN {
             let warning = format!(

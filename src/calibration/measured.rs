@@ -7,10 +7,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::calibration::columns::{self, Layout, Shape};
-pub use crate::calibration::columns::{CycleUnit, LengthUnit, Units};
+use crate::calibration::columns;
+pub use crate::calibration::columns::{CycleUnit, Layout, LengthUnit, Shape, Units};
 use crate::calibration::text_table::{Fault, TextRow, TextTable, whole_file};
-use crate::error::{Error, Result, input};
+use crate::error::{Error, InputError, Result, input};
 use crate::units::MM;
 
 /// Fewest readings a curve can have.
@@ -64,64 +64,96 @@ pub struct Measured {
 pub fn read(files: &[PathBuf], units: Units) -> Result<Measured> {
     let mut all = Measured::default();
     for file in files {
-        let one = if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet")) {
-            read_parquet(file, units)?
-        } else {
-            let bytes = std::fs::read(file).map_err(|error| Error::file(file, "cannot read", error))?;
-            parse(&bytes, file, units)?
-        };
-        for curve in &one.curves {
-            if let Some(earlier) = all.curves.iter().find(|earlier| earlier.specimen == curve.specimen) {
-                let problem = format!("stands in {} too", earlier.source.file.display());
-                let fault = Fault {
-                    file,
-                    line: curve.source.lines.first().copied(),
-                    key: Some("specimen"),
-                    value: Some(&curve.specimen),
-                };
-                return Err(fault.error(problem, "give every specimen its own name"));
-            }
-        }
-        all.curves.extend(one.curves);
-        all.warnings.extend(one.warnings);
+        let bytes = std::fs::read(file).map_err(|error| Error::file(file, "cannot read", error))?;
+        all.add(parse(&bytes, file, units)?)?;
     }
     Ok(all)
 }
 
-/// Reads the bytes of one CSV file; `file` is only named in messages and, where there is no specimen column, in the curve.
+/// Reads the bytes of one file; `file` is only named in messages and, where there is no specimen column, in the curve. Its ending
+/// tells Parquet from CSV.
 pub fn parse(bytes: &[u8], file: &Path, units: Units) -> Result<Measured> {
-    curves_of(&TextTable::parse(bytes, file)?, units)
+    let table = if is_parquet(file) { parquet_table(bytes, file) } else { TextTable::parse(bytes, file) };
+    Ok(curves_of(&table?, units, &mut Err)?.0)
+}
+
+/// What a file holds although some of it is wrong.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Survey {
+    /// What its columns are.
+    pub layout: Option<Layout>,
+    /// Curves of the good rows.
+    pub measured: Measured,
+    /// What is wrong, row by row, up to [`PROBLEMS_MAX`].
+    pub problems: Vec<InputError>,
+}
+
+/// Most problems that a survey names.
+pub const PROBLEMS_MAX: usize = 100;
+
+/// Reads the bytes of one file as [`parse`] does, but goes on behind a bad row.
+#[must_use]
+pub fn survey(bytes: &[u8], file: &Path, units: Units) -> Survey {
+    let mut problems: Vec<InputError> = Vec::new();
+    let mut note = |error: Error| match error {
+        Error::Input(problem) if problems.len() < PROBLEMS_MAX => {
+            problems.push(*problem);
+            Ok(())
+        }
+        other => Err(other),
+    };
+    let table = if is_parquet(file) { parquet_table(bytes, file) } else { TextTable::parse(bytes, file) };
+    let read = table.and_then(|table| curves_of(&table, units, &mut note));
+    match read {
+        Ok((measured, layout)) => Survey { layout: Some(layout), measured, problems },
+        // Too many, or one that leaves no table.
+        Err(Error::Input(problem)) => {
+            problems.push(*problem);
+            Survey { problems, ..Survey::default() }
+        }
+        Err(other) => {
+            problems.push(InputError { file: Some(file.to_path_buf()), problem: other.to_string(), ..InputError::default() });
+            Survey { problems, ..Survey::default() }
+        }
+    }
+}
+
+/// What is done about a bad row: an error ends the reading.
+type Fate<'a> = &'a mut dyn FnMut(Error) -> Result<()>;
+
+fn is_parquet(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"))
 }
 
 #[cfg(feature = "tables")]
-fn read_parquet(file: &Path, units: Units) -> Result<Measured> {
-    let cells = crate::tables::read_parquet(file)?;
+fn parquet_table(bytes: &[u8], file: &Path) -> Result<TextTable> {
+    let cells = crate::tables::read_parquet(bytes, file)?;
     let rows = cells.rows.into_iter().enumerate().map(|(index, cells)| TextRow { line: index + 1, cells }).collect();
     // Row n counts as line n, and so it passes the same checks as a CSV file.
-    curves_of(&TextTable { file: file.to_path_buf(), header: cells.header, header_line: 0, rows, decimal_comma: false }, units)
+    Ok(TextTable { file: file.to_path_buf(), header: cells.header, header_line: 0, rows, decimal_comma: false })
 }
 
 #[cfg(not(feature = "tables"))]
-fn read_parquet(file: &Path, _units: Units) -> Result<Measured> {
+fn parquet_table(_bytes: &[u8], file: &Path) -> Result<TextTable> {
     Err(whole_file(file)
         .error("is a Parquet table, which this build cannot read", "give CSV, or build with the feature `tables`"))
 }
 
 /// Curves of a table of cells.
-fn curves_of(table: &TextTable, units: Units) -> Result<Measured> {
+fn curves_of(table: &TextTable, units: Units, fate: Fate<'_>) -> Result<(Measured, Layout)> {
     let layout = columns::recognise(table, units)?;
     let mut curves = match layout.shape {
-        Shape::Long { specimen, cycles, length } => long_curves(table, &layout, specimen, cycles, length)?,
-        Shape::WideCycles | Shape::WideLengths => wide_curves(table, &layout)?,
+        Shape::Long { specimen, cycles, length } => long_curves(table, &layout, (specimen, cycles, length), fate)?,
+        Shape::WideCycles | Shape::WideLengths => wide_curves(table, &layout, fate)?,
     };
     let mut measured = Measured::default();
     for curve in &mut curves {
         if curve.cycles.len() < READINGS_MIN {
             let fault = Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
-            return Err(fault.error(
+            fate(fault.error(
                 format!("has {} readings", curve.cycles.len()),
                 format!("give at least {READINGS_MIN} readings for every specimen"),
-            ));
+            ))?;
         }
         let falls = curve.crack_length.windows(2).filter(|pair| pair[1] < pair[0]).count();
         if falls > 0 {
@@ -134,16 +166,15 @@ fn curves_of(table: &TextTable, units: Units) -> Result<Measured> {
         }
     }
     measured.curves = curves;
-    Ok(measured)
+    Ok((measured, layout))
 }
 
 /// One row a reading; specimens in the order of their first rows.
 fn long_curves(
     table: &TextTable,
     layout: &Layout,
-    specimen: Option<usize>,
-    cycles: usize,
-    length: usize,
+    (specimen, cycles, length): (Option<usize>, usize, usize),
+    fate: Fate<'_>,
 ) -> Result<Vec<MeasuredCurve>> {
     let alone = table.file.file_stem().map_or_else(|| "specimen".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let mut curves: Vec<MeasuredCurve> = Vec::new();
@@ -151,7 +182,8 @@ fn long_curves(
         let name = specimen.map_or(alone.as_str(), |column| row.cells[column].as_str());
         if name.is_empty() {
             let fault = Fault { line: Some(row.line), key: Some("specimen"), value: Some("\"\""), ..whole_file(&table.file) };
-            return Err(fault.error("is empty", "name the specimen in every row, or leave the column out"));
+            fate(fault.error("is empty", "name the specimen in every row, or leave the column out"))?;
+            continue;
         }
         // The last curve is the one of the row in all files but interleaved ones.
         let place = match curves.iter().rposition(|curve| curve.specimen == name) {
@@ -161,19 +193,19 @@ fn long_curves(
                 curves.len() - 1
             }
         };
-        add_reading(&mut curves[place], table, row, layout, cycles, length)?;
+        add_reading(&mut curves[place], table, row, layout, cycles, length).or_else(&mut *fate)?;
     }
     Ok(curves)
 }
 
 /// One column a specimen; an empty cell means that the specimen was not read there.
-fn wide_curves(table: &TextTable, layout: &Layout) -> Result<Vec<MeasuredCurve>> {
+fn wide_curves(table: &TextTable, layout: &Layout, fate: Fate<'_>) -> Result<Vec<MeasuredCurve>> {
     let mut curves = Vec::with_capacity(table.header.len() - 1);
     for column in 1..table.header.len() {
         let (cycles, length) = if layout.shape == Shape::WideCycles { (column, 0) } else { (0, column) };
         let mut curve = empty_curve(&table.header[column], table, length, layout);
         for row in table.rows.iter().filter(|row| !row.cells[column].is_empty()) {
-            add_reading(&mut curve, table, row, layout, cycles, length)?;
+            add_reading(&mut curve, table, row, layout, cycles, length).or_else(&mut *fate)?;
         }
         curves.push(curve);
     }
@@ -242,6 +274,27 @@ fn add_reading(
 }
 
 impl Measured {
+    /// Puts the curves of another file behind these.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if a specimen has a name that stands here already.
+    pub fn add(&mut self, other: Measured) -> Result<()> {
+        for curve in &other.curves {
+            let Some(earlier) = self.curves.iter().find(|earlier| earlier.specimen == curve.specimen) else { continue };
+            let problem = format!("stands in {} too", earlier.source.file.display());
+            let fault = Fault {
+                file: &curve.source.file,
+                line: curve.source.lines.first().copied(),
+                key: Some("specimen"),
+                value: Some(&curve.specimen),
+            };
+            return Err(fault.error(problem, "give every specimen its own name"));
+        }
+        self.curves.extend(other.curves);
+        self.warnings.extend(other.warnings);
+        Ok(())
+    }
+
     /// Refuses readings beyond the specimen: `limit` in m, and its name, for example "half width". Meant for the whole
     /// file before any window is cut, since a reading that cannot be tells that the file or the specimen is the wrong one.
     pub fn check_lengths(&self, limit: f64, limit_name: &str) -> Result<()> {

@@ -1,7 +1,5 @@
 //! `[fatigue]` and `[stop]` of an input file: how bonds age, where the law comes from, when a run stops.
 
-use std::path::Path;
-
 use serde::Deserialize;
 use toml::Value;
 
@@ -12,7 +10,7 @@ use crate::error::{Result, input, input_missing};
 use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::lattice_direction::LatticeDirection;
 use crate::fatigue::{Ageing, Block, BlockKind, FatigueSettings, OVERLOAD_STRETCH, Precrack};
-use crate::input::{INTENSITY, LENGTH, number, slice};
+use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
 use crate::specimen::{LengthConvention, Specimen};
 
 /// Radius of the ageing zone: a narrower zone breaks bonds beside the crack path less often, see the growth law.
@@ -56,9 +54,9 @@ pub(super) struct Fatigue {
     pub allow_extrapolation: bool,
 }
 
-/// Reads `[fatigue]` with the law that `method` needs; a fitted record is looked for from `base_dir`. Explicit choices go into
+/// Reads `[fatigue]` with the law that `method` needs; a fitted record is looked for from `folder`. Explicit choices go into
 /// `choices`.
-pub(super) fn from_value(value: &Value, method: Method, base_dir: &Path, choices: &mut Choices) -> Result<Fatigue> {
+pub(super) fn from_value(value: &Value, method: Method, folder: &Folder, choices: &mut Choices) -> Result<Fatigue> {
     let input: Input = slice(value, "fatigue")?;
     choices.ageing = input.ageing;
     choices.lattice_direction = input.lattice_direction;
@@ -91,7 +89,7 @@ pub(super) fn from_value(value: &Value, method: Method, base_dir: &Path, choices
         paris_m: input.paris_m,
     };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
-    Ok(Fatigue { settings, law: law.read(method, base_dir)?, allow_extrapolation })
+    Ok(Fatigue { settings, law: law.read(method, folder)?, allow_extrapolation })
 }
 
 /// Reads the cycle block: every kind has one key of its own, and no other takes it.

@@ -2,8 +2,6 @@
 //!
 //! The constants of both methods may stand side by side, so that one file serves `model.method` either way.
 
-use std::path::Path;
-
 use toml::Value;
 
 use super::choices::Method;
@@ -12,7 +10,7 @@ use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::FatigueLaw;
 use crate::fatigue::paris::ParisLaw;
-use crate::input::{Document, LENGTH, number, slice};
+use crate::input::{Folder, LENGTH, number, slice};
 use crate::units::MM_PER_CYCLE;
 
 /// Keys of `[fatigue]` that give a law.
@@ -31,14 +29,14 @@ pub const LAW_KEYS: [&str; 6] = ["fitted", "a", "p", "horizon_mm", "paris_c_mm_p
 
 impl LawKeys {
     /// The law that `method` needs; `None` where the file gives none at all, as in a calibration.
-    pub(super) fn read(&self, method: Method, base_dir: &Path) -> Result<Option<LawSource>> {
+    pub(super) fn read(&self, method: Method, folder: &Folder) -> Result<Option<LawSource>> {
         if let Some(fitted) = &self.fitted {
             let all = self.bond().into_iter().chain(self.paris());
             if let Some((key, value)) = all.filter_map(|(key, value)| Some((key, value?))).next() {
                 let remedy = "give fitted, or constants, not both";
                 return Err(input(&format!("fatigue.{key}"), value, "stands beside fitted: the law is given twice", remedy));
             }
-            return read_record(&base_dir.join(fitted)).map(Some);
+            return read_record(fitted, folder).map(Some);
         }
         let (bond, paris) = (self.bond_law()?, self.paris_law()?);
         match method {
@@ -111,11 +109,11 @@ fn wrong_law(keys: Vec<(&str, Option<f64>)>, method: Method) -> Error {
 }
 
 /// Reads a `fitted.toml`; one that does not exist (yet) is [`LawSource::Missing`].
-fn read_record(path: &Path) -> Result<LawSource> {
-    match fitted_record(path) {
+fn read_record(name: &str, folder: &Folder) -> Result<LawSource> {
+    match fitted_record(name, folder) {
         Ok(record) => Ok(LawSource::Fitted(Box::new(record))),
         Err(Error::File { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
-            Ok(LawSource::Missing(path.to_path_buf()))
+            Ok(LawSource::Missing(folder.path(name)))
         }
         Err(other) => Err(other),
     }
@@ -125,8 +123,8 @@ fn read_record(path: &Path) -> Result<LawSource> {
 ///
 /// # Errors
 /// A file that cannot be read, or is no such record.
-pub fn fitted_record(path: &Path) -> Result<FittedRecord> {
-    let document = Document::read(path, &[])?;
+pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
+    let document = folder.document(name)?;
     let record = slice::<FittedRecord>(&Value::Table(document.table.clone()), "record").and_then(|record| {
         law::check_record(&record)?;
         Ok(record)

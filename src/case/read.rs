@@ -9,7 +9,7 @@ use super::{Case, LAW_KEYS, LawSource, Method, fatigue, law, model};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::finite_horizon::life_shortfall;
-use crate::input::{Document, OF_SCENES, Sections, Strangers, value_at};
+use crate::input::{Document, Folder, OF_SCENES, Sections, Strangers, value_at};
 use crate::loading::LoadingKind;
 use crate::units::MPA;
 use crate::{loading, material, specimen};
@@ -37,15 +37,15 @@ impl Case {
         Self::from_document(&Document::read(path, overrides)?)
     }
 
-    /// Reads a case from text; relative paths in it start from `base_dir`.
-    pub fn from_toml(text: &str, name: &str, base_dir: &Path, overrides: &[String]) -> Result<Self> {
-        Self::from_document(&Document::parse(text, name, base_dir, overrides)?)
+    /// Reads a case from text; files it names lie in `folder`.
+    pub fn from_toml(text: &str, name: &str, folder: impl Into<Folder>, overrides: &[String]) -> Result<Self> {
+        Self::from_document(&Document::parse(text, name, folder, overrides)?)
     }
 
     /// Reads a case from a parsed document, which gives errors their line. The case must have a fatigue law.
     pub fn from_document(document: &Document) -> Result<Self> {
         let read = || {
-            let case = Self::from_table(document.table.clone(), &document.name, &document.base_dir)?;
+            let case = Self::from_table(document.table.clone(), &document.name, &document.folder)?;
             if matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
                 // Says what is missing and what to give.
                 return Err(law::missing(case.model.method, Path::new("")));
@@ -60,18 +60,18 @@ impl Case {
     ///
     /// A table without fatigue law is accepted, since a calibration has none yet: the law is then
     /// [`LawSource::Missing`] with an empty path.
-    pub fn from_table(table: Table, name: &str, base_dir: &Path) -> Result<Self> {
+    pub fn from_table(table: Table, name: &str, folder: &Folder) -> Result<Self> {
         refuse_scene(&table)?;
         let sections = Sections::of(&table, SECTIONS, STRANGERS)?;
         let echo = sections.echo()?;
         let mut warnings = Vec::new();
         let mut choices = Choices::default();
         let mut specimen = specimen::from_value(sections.required("specimen")?)?;
-        let material = material::from_value(sections.required("material")?, base_dir, &mut warnings)?;
+        let material = material::from_value(sections.required("material")?, folder, &mut warnings)?;
         let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
         let refinement = sections.given("refinement");
         let model = model::from_values(sections.optional("model"), refinement, &specimen, &material, &mut choices)?;
-        let fatigue = fatigue::from_value(sections.optional("fatigue"), model.method, base_dir, &mut choices)?;
+        let fatigue = fatigue::from_value(sections.optional("fatigue"), model.method, folder, &mut choices)?;
         let stop = fatigue::stop_from_value(sections.optional("stop"), &specimen)?;
         let mut case = Case {
             name: name.to_owned(),

@@ -1,26 +1,12 @@
 //! `perilife check`: is this input file right, and what would be run?
 
-mod preview;
-mod scene;
-mod understood;
-
 use std::path::PathBuf;
 
-use serde_json::map::Entry;
-use serde_json::{Map, Value, json};
-
-use self::preview::preview;
-use self::scene::{scene_drawing, scene_lines};
-use self::understood::{Line, case_lines, curves_line};
 use super::console::Console;
-use crate::calibration::case::CalibrationCase;
-use crate::case::Case;
+use crate::check::check;
 use crate::error::Result;
-use crate::fracture::Scene;
-use crate::fracture::read::is_scene;
 use crate::input::Document;
 use crate::report::output::write_file;
-use crate::report::specimen_picture::specimen_svg;
 
 /// Arguments of `perilife check`.
 #[derive(clap::Args, Debug)]
@@ -39,78 +25,23 @@ pub struct Args {
     pub console: Console,
 }
 
-/// What a file asks for, checked.
-struct Checked {
-    kind: &'static str,
-    name: String,
-    lines: Vec<Line>,
-    warnings: Vec<String>,
-    drawing: String,
-    echo: Value,
-}
-
 /// Checks the file, prints what was understood and draws the picture.
 ///
 /// # Errors
 /// Wrong input, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
-    let Checked { kind, name, lines, warnings, drawing, echo } = checked(args)?;
+    let checked = check(Document::read(&args.file, &args.set)?)?;
     if let Some(path) = &args.picture {
-        write_file(path, drawing.as_bytes())?;
+        write_file(path, checked.drawing.as_bytes())?;
     }
-    for warning in &warnings {
+    for warning in &checked.warnings {
         args.console.warn(warning);
     }
-    for line in &lines {
+    for line in &checked.lines {
         args.console.say(&format!("{:<12} {}", line.what, line.value));
     }
     args.console.say(&format!("{:<12} no errors", "check"));
-    let mut understood: Map<String, Value> = Map::new();
-    for line in lines {
-        // A scene has several loads and supports.
-        match understood.entry(line.what.replace(' ', "_")) {
-            Entry::Vacant(place) => drop(place.insert(line.value.into())),
-            Entry::Occupied(mut place) => {
-                let both = format!("{}; {}", place.get().as_str().unwrap_or_default(), line.value);
-                place.insert(both.into());
-            }
-        }
-    }
-    args.console.object(&json!({
-        "ok": true, "kind": kind, "name": name, "understood": understood, "warnings": warnings, "case": echo
-    }))
-}
-
-/// Reads the file as what it is: a calibration with the curves it names, a fracture scene, or a case. The body is built as well where that
-/// is quick, since only then some troubles show.
-fn checked(args: &Args) -> Result<Checked> {
-    let document = Document::read(&args.file, &args.set)?;
-    if is_scene(&document.table) {
-        return checked_scene(&document);
-    }
-    let is_calibration = document.table.contains_key("measured") || document.table.contains_key("fit");
-    let (kind, case, mut warnings, curves) = if is_calibration {
-        let CalibrationCase { case, curves, warnings, .. } = CalibrationCase::from_file(&args.file, &args.set)?;
-        ("calibration", case, warnings, curves)
-    } else {
-        let case = Case::from_document(&document)?;
-        let warnings = case.warnings.clone();
-        ("case", case, warnings, Vec::new())
-    };
-    let preview = preview(&case).map_err(|error| document.locate(error))?;
-    warnings.extend(preview.warnings);
-    let mut lines = case_lines(&case, preview.points);
-    if !curves.is_empty() {
-        lines.insert(0, curves_line(&curves));
-    }
-    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing: specimen_svg(&case), echo: case.echo })
-}
-
-fn checked_scene(document: &Document) -> Result<Checked> {
-    let scene = Scene::from_document(document)?;
-    let lines = scene_lines(&scene).map_err(|error| document.locate(error))?;
-    let drawing = scene_drawing(&scene);
-    Ok(Checked { kind: "fracture", name: scene.name, lines, warnings: scene.warnings, drawing, echo: scene.echo })
+    args.console.object(&checked.json())
 }
 
 #[cfg(test)]

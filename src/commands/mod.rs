@@ -10,8 +10,14 @@ pub mod fracture;
 pub mod list;
 pub mod predict;
 pub mod rates;
+#[cfg(feature = "service")]
+pub mod serve;
 pub mod sif;
+#[cfg(feature = "service")]
+pub mod token;
 pub mod verify;
+#[cfg(feature = "service")]
+pub mod worker;
 
 pub mod checkpoint;
 pub mod console;
@@ -23,10 +29,10 @@ use tracing_subscriber::EnvFilter;
 
 /// Declares the subcommands: doc line, name and module; gives the enum that clap parses and the call of the right `run`.
 macro_rules! commands {
-    ($($(#[$doc:meta])+ $Name:ident: $module:ident),+ $(,)?) => {
+    ($($(#[$attribute:meta])+ $Name:ident: $module:ident),+ $(,)?) => {
         /// A subcommand with its arguments.
         #[derive(Debug, Subcommand)]
-        pub enum Command { $($(#[$doc])+ $Name($module::Args)),+ }
+        pub enum Command { $($(#[$attribute])+ $Name($module::Args)),+ }
 
         impl Command {
             /// Runs it.
@@ -34,7 +40,8 @@ macro_rules! commands {
             /// # Errors
             /// What the command reports; [`crate::Error::exit_code`] is the exit code of the process.
             pub fn run(&self) -> crate::Result<()> {
-                match self { $(Command::$Name(args) => $module::run(args)),+ }
+                #[allow(unused_doc_comments, reason = "the lines about a subcommand stand at its arm too, as its condition does")]
+                match self { $($(#[$attribute])+ Command::$Name(args) => $module::run(args)),+ }
             }
         }
     };
@@ -61,6 +68,15 @@ commands! {
     Check: check,
     /// List every kind of every key of the input files
     List: list,
+    /// Serve calibrations and predictions over HTTP, with a web page
+    #[cfg(feature = "service")]
+    Serve: serve,
+    /// Work for a service from this or another machine
+    #[cfg(feature = "service")]
+    Worker: worker,
+    /// Make, list and remove the tokens of a service
+    #[cfg(feature = "service")]
+    Token: token,
 }
 
 /// Fatigue-life prediction of cracked plates by peridynamics.

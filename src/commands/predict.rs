@@ -6,18 +6,13 @@ use serde_json::Value;
 
 use super::checkpoint;
 use super::console::Console;
-use crate::case::{Case, LawSource, Method};
-use crate::error::{Error, Result, input};
+use crate::case::{Case, Method};
+use crate::error::Result;
+use crate::predict::Prediction;
 use crate::predict::plastic_zone::PlasticZone;
 use crate::predict::residual_strength::{check_strength, residual_strength};
-use crate::predict::{Prediction, StopReason};
-use crate::report;
-use crate::report::chart::{self, Mark, Series};
-use crate::report::csv::{self, Row};
-use crate::report::damage::{DamagePicture, cycles_and_length};
-use crate::report::output::{OutputFolder, write_file};
-use crate::report::{fit_use, json, vtk};
-use crate::specimen::Point;
+use crate::report::output::OutputFolder;
+use crate::report::{self, fit_use, run};
 use crate::specimen::handbook::handbook;
 use crate::units::MM;
 
@@ -100,118 +95,21 @@ pub fn run_case(case: &Case, out: &Path, extras: &Extras, console: &Console) -> 
 /// Judges a run, writes its files and puts the folder in place.
 ///
 /// # Errors
-/// [`Error::Mechanics`] if the solver failed before the crack grew; [`Error::Input`] if more than a quarter of the life
-/// lies outside the fitted ΔK range and the case does not allow that; [`Error::File`] if a file cannot be written.
+/// As [`run::judge`] and [`run::write`].
 pub fn keep(case: &Case, prediction: Prediction, folder: OutputFolder, console: &Console) -> Result<FinishedRun> {
     for warning in &prediction.warnings {
         console.warn(warning);
     }
-    judge(case, &prediction, console)?;
-    for label in fit_use::labels(case, &prediction) {
-        console.warn(&label);
+    for warning in run::judge(case, &prediction)? {
+        console.warn(&warning);
     }
-    let result = json::result(case, &prediction);
-    write_run(folder.path(), case, &prediction, &result)?;
+    let result = run::write(folder.path(), case, &prediction)?;
     let lines = summary(case, &prediction, folder.name());
     folder.finish()?;
     for line in lines {
         console.say(&line);
     }
     Ok(FinishedRun { prediction, result })
-}
-
-/// Share of life outside the fitted ΔK range above which the user is warned.
-const EXTRAPOLATION_WARNED: f64 = 0.05;
-/// Share of life outside the fitted ΔK range above which a run is refused unless the case allows it.
-const EXTRAPOLATION_REFUSED: f64 = 0.25;
-
-/// Whether a run counts as a result.
-fn judge(case: &Case, prediction: &Prediction, console: &Console) -> Result<()> {
-    let start = prediction.curve.first().map_or(f64::INFINITY, |point| point.crack_length);
-    // An empty curve compares as not grown.
-    let grown = prediction.crack_length_final().max(0.0) > start;
-    let no_curve = |why: &str, remedy: &str| {
-        Err(Error::Mechanics(format!("{}: {why} before the crack grew, so there is no curve; {remedy}", case.name)))
-    };
-    match prediction.stop {
-        StopReason::NoConvergence if grown => {
-            console.warn("the equilibrium solver did not converge; the curve ends where it last did")
-        }
-        StopReason::NoConvergence => {
-            return no_curve(
-                "the equilibrium solver did not converge",
-                "try model.solver = \"direct\" or another model.spacing_mm",
-            );
-        }
-        // Under the threshold nothing ages either, which is an answer.
-        StopReason::NothingAges if !grown && case.fatigue.threshold > 0.0 => {
-            console.warn("no bond ages: the crack stays below fatigue.delta_k_threshold_mpa_sqrt_m and does not grow");
-        }
-        StopReason::LeftRefinement if !grown => {
-            return no_curve("the crack tip came to the rim of the finest level", "give refinement.regions around its whole way");
-        }
-        StopReason::NothingAges | StopReason::LeftPlate | StopReason::EnteredHole if !grown => {
-            let why = format!("no bond that can fail is strained at a crack tip (stopped: {})", prediction.stop);
-            return no_curve(
-                &why,
-                "move crack and hole or support apart, or give a smaller model.spacing_mm; `perilife check` names the tips",
-            );
-        }
-        _ => {}
-    }
-    let share = json::life_share_extrapolated(case, prediction).unwrap_or(0.0);
-    let LawSource::Fitted(record) = &case.law else { return Ok(()) };
-    let (low, high) = (record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m);
-    let text = format!("{:.1} % of the life lies outside the fitted range of ΔK, {low:.2} to {high:.2} MPa√m", 100.0 * share);
-    if share > EXTRAPOLATION_REFUSED && !case.allow_extrapolation {
-        let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
-        return Err(input("fatigue.allow_extrapolation", false, format!("{}: {text}", case.name), remedy));
-    }
-    if share > EXTRAPOLATION_WARNED {
-        console.warn(&text);
-    }
-    Ok(())
-}
-
-/// Writes all files of a run into `folder`.
-fn write_run(folder: &Path, case: &Case, prediction: &Prediction, result: &Value) -> Result<()> {
-    write_file(&folder.join(csv::A_N_FILE), csv::a_n(prediction).as_bytes())?;
-    write_file(&folder.join("crack_path.csv"), csv::crack_path(prediction, &case.specimen.cracks).as_bytes())?;
-    write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
-    draw_curves(folder, case, prediction)?;
-    let paths: Vec<Vec<Point>> = csv::paths(prediction, &case.specimen.cracks)
-        .into_iter()
-        .map(|path| path.into_iter().map(|(_, position)| position).collect())
-        .collect();
-    if let Some(snapshot) = prediction.snapshots.last() {
-        let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
-        DamagePicture { grid: &prediction.grid, snapshot, cracks, paths: &paths, caption: &caption }
-            .write(&folder.join("damage.png"))?;
-    }
-    if prediction.snapshots.is_empty() {
-        return Ok(());
-    }
-    let paraview = folder.join("paraview");
-    std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
-    vtk::write_series(&paraview, &prediction.grid, &prediction.snapshots)
-}
-
-/// `a_n.svg`, and `da_dn.svg` where ΔK and da/dN are known.
-fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction) -> Result<()> {
-    let rows: Vec<Row> = prediction.curve.iter().map(Row::of).collect();
-    let series = |name: &str, mark, pick: fn(&Row) -> (f64, f64)| Series {
-        name: name.to_owned(),
-        mark,
-        points: rows.iter().map(pick).collect(),
-    };
-    let curve = series("predicted", Mark::Line, |row| (row.cycles, row.crack_length_mm));
-    let rates =
-        series("predicted, one point per cycle block", Mark::Dots, |row| (row.delta_k_mpa_sqrt_m, row.da_dn_mm_per_cycle));
-    chart::crack_length(&folder.join("a_n.svg"), &format!("{}: crack length over life", case.name), &[curve])?;
-    if rates.points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
-        chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;
-    }
-    Ok(())
 }
 
 fn summary(case: &Case, prediction: &Prediction, out: &Path) -> Vec<String> {

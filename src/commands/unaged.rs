@@ -13,5 +13,5 @@ pub(super) fn case_without_law(path: &Path, overrides: &[String]) -> Result<Case
     document.table.remove("measured");
     document.table.remove("fit");
     remove_law(&mut document.table);
-    Case::from_table(document.table.clone(), &document.name, &document.base_dir).map_err(|error| document.locate(error))
+    Case::from_table(document.table.clone(), &document.name, &document.folder).map_err(|error| document.locate(error))
 }

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
+use super::Folder;
 use super::slice::{path_steps, shorten};
 use crate::error::{Error, InputError, Result, input};
 
@@ -14,8 +15,8 @@ use crate::error::{Error, InputError, Result, input};
 pub struct Document {
     /// Name of the case: the file stem.
     pub name: String,
-    /// Folder that relative paths in the file start from.
-    pub base_dir: PathBuf,
+    /// Where the files lie that it names.
+    pub folder: Folder,
     /// Content with overrides applied.
     pub table: Table,
     file: Option<PathBuf>,
@@ -26,20 +27,23 @@ pub struct Document {
 impl Document {
     /// Reads a TOML file and applies `section.key=value` overrides.
     pub fn read(path: &Path, overrides: &[String]) -> Result<Self> {
-        let text = super::read_text(path)?;
+        Self::of_file(super::read_text(path)?, path, path.parent().unwrap_or(Path::new("")).into(), overrides)
+    }
+
+    /// The text of a file; the files it names lie in `folder`.
+    pub(super) fn of_file(text: String, path: &Path, folder: Folder, overrides: &[String]) -> Result<Self> {
         let name = path.file_stem().map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
-        let base_dir = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        Self::build(text, name, base_dir, Some(path.to_path_buf()), overrides)
+        Self::build(text, name, folder, Some(path.to_path_buf()), overrides)
     }
 
-    /// The same for text that is not in a file; relative paths start from `base_dir`.
-    pub fn parse(text: &str, name: &str, base_dir: &Path, overrides: &[String]) -> Result<Self> {
-        Self::build(text.to_owned(), name.to_owned(), base_dir.to_path_buf(), None, overrides)
+    /// The same for text that is not in a file; the files it names lie in `folder`.
+    pub fn parse(text: &str, name: &str, folder: impl Into<Folder>, overrides: &[String]) -> Result<Self> {
+        Self::build(text.to_owned(), name.to_owned(), folder.into(), None, overrides)
     }
 
-    fn build(text: String, name: String, base_dir: PathBuf, file: Option<PathBuf>, overrides: &[String]) -> Result<Self> {
+    fn build(text: String, name: String, folder: Folder, file: Option<PathBuf>, overrides: &[String]) -> Result<Self> {
         let table = text.parse::<Table>().map_err(|error| syntax_error(&error, &text, file.as_deref()))?;
-        let mut document = Document { name, base_dir, table, file, text, overridden: Vec::new() };
+        let mut document = Document { name, folder, table, file, text, overridden: Vec::new() };
         for text in overrides {
             document.set(text)?;
         }

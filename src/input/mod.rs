@@ -5,11 +5,13 @@
 //! that an error about a key finds its line.
 
 mod document;
+mod folder;
 mod quantity;
 mod sections;
 mod slice;
 
 pub use document::Document;
+pub use folder::Folder;
 pub use quantity::*;
 pub use sections::{Sections, Strangers};
 pub(crate) use slice::shorten;
@@ -17,7 +19,11 @@ pub use slice::{OF_SCENES, PLANNED, slice, table_of, value_at};
 
 /// Reads a whole text file; bytes that are not UTF-8 are wrong input, everything else is trouble with the file.
 pub fn read_text(path: &std::path::Path) -> crate::Result<String> {
-    let bytes = std::fs::read(path).map_err(|source| crate::Error::file(path, "cannot read", source))?;
+    text_of(std::fs::read(path).map_err(|source| crate::Error::file(path, "cannot read", source))?, path)
+}
+
+/// Bytes of a file as text.
+fn text_of(bytes: Vec<u8>, path: &std::path::Path) -> crate::Result<String> {
     String::from_utf8(bytes).map_err(|error| {
         let message = format!("is not UTF-8 text (byte {})", error.utf8_error().valid_up_to() + 1);
         crate::error::input_missing("file", message, "save it as plain UTF-8 text").in_file(path)

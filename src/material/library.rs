@@ -8,14 +8,12 @@
 //! ```
 //! Every number stands with its source. There is no fatigue law here: that is what `calibration/<name>/fitted.toml` holds.
 
-use std::path::Path;
-
 use include_dir::{Dir, include_dir};
 use serde::Deserialize;
 use toml::Value;
 
 use crate::error::{Error, InputError, Result, input};
-use crate::input::{Document, slice};
+use crate::input::{Document, Folder, slice};
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/data/materials");
 
@@ -66,10 +64,10 @@ pub fn names() -> Vec<String> {
     names
 }
 
-/// Finds a material by the name of a built-in file, or by the path of an own `.toml` file relative to `base_dir`.
-pub fn find(name: &str, base_dir: &Path) -> Result<MaterialFile> {
+/// Finds a material by the name of a built-in file, or by the path of an own `.toml` file in `folder`.
+pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
     if name.ends_with(".toml") || name.contains(['/', '\\']) {
-        let document = Document::read(&base_dir.join(name), &[])?;
+        let document = folder.document(name)?;
         return read(&document).map_err(|error| document.locate(error));
     }
     let text = FILES.get_file(format!("{name}.toml")).and_then(|file| file.contents_utf8());
@@ -77,7 +75,7 @@ pub fn find(name: &str, base_dir: &Path) -> Result<MaterialFile> {
         let remedy = format!("use one of {}, or the path of an own .toml file", names().join(", "));
         return Err(input("material.name", format!("\"{name}\""), "is not a known material", remedy));
     };
-    let document = Document::parse(text, name, Path::new(""), &[])?;
+    let document = Document::parse(text, name, Folder::none(), &[])?;
     read(&document)
 }
 

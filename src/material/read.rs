@@ -1,14 +1,12 @@
 //! `[material]` of an input file: a name, or constants written inline, or both (inline ones win).
 
-use std::path::Path;
-
 use serde::Deserialize;
 use toml::Value;
 
 use super::library::{self, Property};
 use super::{Material, Plane};
 use crate::error::{Result, input_missing};
-use crate::input::{DENSITY, FRACTURE_ENERGY, INTENSITY, MODULUS, Quantity, STRESS, number, slice};
+use crate::input::{DENSITY, FRACTURE_ENERGY, Folder, INTENSITY, MODULUS, Quantity, STRESS, number, slice};
 
 /// Keys of `[material]`.
 #[derive(Deserialize)]
@@ -25,11 +23,11 @@ struct Input {
     plane: Option<Plane>,
 }
 
-/// Reads `[material]`; own material files are looked for from `base_dir`. Pushes a line for every constant of the named
+/// Reads `[material]`; own material files are looked for from `folder`. Pushes a line for every constant of the named
 /// material that the case replaces.
-pub fn from_value(value: &Value, base_dir: &Path, warnings: &mut Vec<String>) -> Result<Material> {
+pub fn from_value(value: &Value, folder: &Folder, warnings: &mut Vec<String>) -> Result<Material> {
     let input: Input = slice(value, "material")?;
-    let file = input.name.as_deref().map(|name| library::find(name, base_dir)).transpose()?;
+    let file = input.name.as_deref().map(|name| library::find(name, folder)).transpose()?;
     let name = input.name.clone().unwrap_or_else(|| "inline".to_owned());
     let file = file.as_ref();
     let mut pick = |key: &str, given: Option<f64>, listed: Option<&Property>, quantity: Quantity| {

@@ -37,6 +37,11 @@ pub struct Row {
 }
 
 impl Row {
+    /// Where the tips are.
+    pub fn tips(&self) -> &[TipRecord] {
+        &self.tips
+    }
+
     /// Growth of all tips together, m.
     pub fn growth(&self) -> f64 {
         self.tips.iter().map(|tip| tip.growth).sum()

@@ -140,6 +140,11 @@ pub trait Observer: Sync {
     ///
     /// These places depend on the case alone, not on time and not on what the observer does.
     fn may_keep(&self, _checkpoint: &dyn Fn() -> Checkpoint) {}
+    /// Called after every cycle block since N = 0, before [`Observer::block_done`], with where the tips are now.
+    fn grown(&self, _tips: &[TipRecord]) {}
+    /// Called with every picture that is taken while the run goes on. Its cycles count from the start of the run, which is before
+    /// N = 0 where the crack is first grown to its initial length.
+    fn looked(&self, _snapshot: &Snapshot, _grid: &PointGrid) {}
 }
 
 /// An observer that watches nothing.

@@ -2,7 +2,7 @@
 
 use super::curve::Row;
 use super::plate::Plate;
-use super::{CurvePoint, Snapshot};
+use super::{CurvePoint, Observer, Snapshot};
 use crate::state::Bonds;
 
 /// Snapshots between the first and the last.
@@ -36,6 +36,13 @@ impl Album {
     pub fn look(&mut self, plate: &Plate, bonds: &Bonds, displacement: &[f64], row: &Row) {
         self.next = row.growth() + self.step;
         self.snapshots.push(plate.snapshot(bonds, displacement, row));
+    }
+
+    /// Shows the latest snapshot to who watches the run.
+    pub fn show(&self, plate: &Plate, observer: &dyn Observer) {
+        if let Some(snapshot) = self.snapshots.last() {
+            observer.looked(snapshot, &plate.grid());
+        }
     }
 
     /// Counts cycles from N = 0, `zero` cycles after the start of the run, and keeps to the ends of the curve.

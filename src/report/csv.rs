@@ -70,6 +70,13 @@ pub fn a_n(prediction: &Prediction) -> String {
     text
 }
 
+/// A table of the four columns alone.
+#[must_use]
+pub fn table(rows: &[Row]) -> String {
+    let lines = rows.iter().map(|row| row.fields() + "\n");
+    std::iter::once(A_N_COLUMNS.join(",") + "\n").chain(lines).collect()
+}
+
 /// `crack_path.csv`: `tip,cycles,x_mm,y_mm`, one row per tip and recorded step. Each tip's rows start with the initial crack
 /// it belongs to, from the far end to the tip, at N = 0; a tip at the end of a slot starts where it is.
 #[must_use]
@@ -112,7 +119,14 @@ fn far_end(tip: Point, cracks: &[Crack]) -> Option<Point> {
 /// # Errors
 /// [`Error::File`] if it cannot be read; [`Error::Input`] naming line and column where it is not such a table.
 pub fn read_a_n(path: &Path) -> Result<Vec<Row>> {
-    let text = std::fs::read_to_string(path).map_err(|e| Error::file(path, "cannot read", e))?;
+    parse_a_n(&std::fs::read_to_string(path).map_err(|e| Error::file(path, "cannot read", e))?, path)
+}
+
+/// The same for text; `path` is only named in messages.
+///
+/// # Errors
+/// As [`read_a_n`].
+pub fn parse_a_n(text: &str, path: &Path) -> Result<Vec<Row>> {
     let mut lines = text.lines();
     if !lines.next().is_some_and(|head| head.split(',').map(str::trim).take(4).eq(A_N_COLUMNS)) {
         return Err(bad_table(path, 1, None, None, "is not the header of an a-N table of this program"));

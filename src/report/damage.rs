@@ -50,8 +50,16 @@ impl DamagePicture<'_> {
     /// # Errors
     /// [`Error::File`] if the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
-        let bytes = self.canvas().png().map_err(|e| Error::file(path, "cannot draw", std::io::Error::other(e)))?;
+        let bytes = self.png().map_err(|e| Error::file(path, "cannot draw", std::io::Error::other(e)))?;
         write_file(path, &bytes)
+    }
+
+    /// The picture as bytes of a PNG file.
+    ///
+    /// # Errors
+    /// None that a picture in memory is known to have.
+    pub fn png(&self) -> std::result::Result<Vec<u8>, png::EncodingError> {
+        self.canvas().png()
     }
 
     fn canvas(&self) -> Canvas {

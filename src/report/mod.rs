@@ -3,15 +3,19 @@
 //! A run writes into an [`output::OutputFolder`], which appears under its name only once it is whole.
 
 pub mod bench;
+pub mod catalogue;
 pub mod chart;
 pub mod csv;
 pub mod damage;
 pub mod disc;
+pub mod fit;
 pub mod fit_use;
 pub mod fracture;
 pub mod json;
 pub mod output;
+pub mod resample;
 pub mod residual_strength;
+pub mod run;
 pub mod speed_chart;
 pub mod specimen_picture;
 pub mod verification;

@@ -17,6 +17,7 @@ use crate::calibration::paris::Paris;
 use crate::calibration::record::FittedRecord;
 use crate::calibration::results::record;
 use crate::error::Result;
+use crate::input::Folder;
 use crate::predict::{Silent, StopReason, predict};
 use crate::units::MM;
 
@@ -24,6 +25,12 @@ use crate::units::MM;
 pub const CALIBRATION: &str = include_str!("../../calibration/al2024-t3/case.toml");
 /// Median of 34 panels.
 pub const READINGS: &[u8] = include_bytes!("../../calibration/al2024-t3/measured/virkler_median.csv");
+
+/// The file that [`CALIBRATION`] names, with these readings.
+#[must_use]
+pub fn at_hand(readings: &[u8]) -> Folder {
+    Folder::at_hand([("measured/virkler_median.csv".to_owned(), readings.to_vec())])
+}
 
 /// ΔK at which the rate is compared, MPa√m: there fits of rates and fits of lives meet.
 const DELTA_K: f64 = 11.4;
@@ -81,7 +88,7 @@ crack_length_mm = 40.0
 /// # Errors
 /// As [`calibrate`] and [`predict`]; a life that ends before its length.
 pub fn all(table: &mut Table) -> Result<()> {
-    let calibration = CalibrationCase::from_text(CALIBRATION, "al2024-t3", READINGS)?;
+    let calibration = CalibrationCase::from_text(CALIBRATION, "al2024-t3", at_hand(READINGS))?;
     let fit = calibrate(&calibration, &Silent)?;
     let bound = 1.5;
     let what = "M(T) fitted from 9 to 49.8 mm, 1 mm spacing: cycles";

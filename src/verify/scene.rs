@@ -56,7 +56,7 @@ pub fn case(text: &str, set: &[&str]) -> Result<Case> {
 /// As [`Case::from_table`] and [`Case::with_law`].
 pub fn case_with_law(text: &str, set: &[String], record: &FittedRecord) -> Result<Case> {
     let document = Document::parse(text, "verification", Path::new("."), set)?;
-    Case::from_table(document.table.clone(), &document.name, &document.base_dir)?.with_law(record.clone())
+    Case::from_table(document.table.clone(), &document.name, &document.folder)?.with_law(record.clone())
 }
 
 /// The curve of a run as (cycles, crack length in m).

@@ -9,6 +9,7 @@ use perilife::calibration::fit::{Fit, FitTask, fit};
 use perilife::calibration::power_law::PowerLaw;
 use perilife::calibration::record::FittedRecord;
 use perilife::calibration::results::{FitReport, fit_curves_csv, record};
+use perilife::input::Folder;
 use perilife::units::{MM, MPA_SQRT_M};
 use tempfile::tempdir;
 
@@ -216,13 +217,14 @@ fn the_criterion_is_a_choice() {
 /// A calibration whose readings are at hand is the one of the same readings in a file.
 #[test]
 fn readings_at_hand_are_those_of_the_file() {
-    let (from_file, at_hand) = (read(GOOD, &[]).unwrap(), CalibrationCase::from_text(GOOD, "alloy", CURVES.as_bytes()).unwrap());
+    let curves = || Folder::at_hand([("curves.csv".to_owned(), CURVES.as_bytes().to_vec())]);
+    let (from_file, at_hand) = (read(GOOD, &[]).unwrap(), CalibrationCase::from_text(GOOD, "alloy", curves()).unwrap());
     assert_eq!((&at_hand.case, &at_hand.sources), (&from_file.case, &from_file.sources));
     let readings = |calibration: &CalibrationCase| -> Vec<(String, Vec<f64>, Vec<f64>)> {
         calibration.curves.iter().map(|c| (c.specimen.clone(), c.cycles.clone(), c.crack_length.clone())).collect()
     };
     assert_eq!(readings(&at_hand), readings(&from_file));
     let two = GOOD.replace("[\"curves.csv\"]", "[\"curves.csv\", \"more.csv\"]");
-    let error = CalibrationCase::from_text(&two, "alloy", CURVES.as_bytes()).unwrap_err().to_string();
-    assert!(error.contains("measured.files") && error.contains("2 files"), "{error}");
+    let error = CalibrationCase::from_text(&two, "alloy", curves()).unwrap_err().to_string();
+    assert!(error.contains("\"more.csv\"") && error.contains("came with curves.csv"), "{error}");
 }

@@ -6,6 +6,7 @@ use perilife::Error;
 use perilife::bond_law::{BondLawKind, Kernel, Rotation};
 use perilife::calibration::record::FittedRecord;
 use perilife::case::{Case, LawSource};
+use perilife::input::Folder;
 use perilife::material::library;
 
 const TEXT: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\ncrack_length_mm = 9\n\
@@ -181,7 +182,7 @@ fn a_record_is_read_from_its_file() {
 #[test]
 fn a_table_without_law_is_a_calibration() {
     let table = TEXT.parse().unwrap();
-    let case = Case::from_table(table, "fit", Path::new("")).unwrap();
+    let case = Case::from_table(table, "fit", &Folder::none()).unwrap();
     assert_eq!(case.law, LawSource::Missing(PathBuf::new()));
     assert_eq!(case.fatigue_law(1e-3).unwrap_err().exit_code(), 2);
     let error = read("", &[]).unwrap_err().to_string();
@@ -248,7 +249,7 @@ fn every_shipped_case_is_right() {
 #[test]
 fn every_material_has_sources_and_fits_the_default_law() {
     for name in library::names() {
-        let file = library::find(&name, Path::new("")).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let file = library::find(&name, &Folder::none()).unwrap_or_else(|error| panic!("{name}: {error}"));
         let properties = [
             Some(&file.youngs_modulus_gpa),
             Some(&file.poisson_ratio),
@@ -258,7 +259,7 @@ fn every_material_has_sources_and_fits_the_default_law() {
         assert!(properties.iter().flatten().all(|property| property.source.len() > 10 && property.value > 0.0), "{name}");
         assert!(file.poisson_ratio.value <= 1.0 / 3.0, "{name}: the default law reaches 1/3");
     }
-    let al = library::find("al2024-t3", Path::new("")).unwrap();
+    let al = library::find("al2024-t3", &Folder::none()).unwrap();
     assert_eq!((al.youngs_modulus_gpa.value, al.poisson_ratio.value), (73.1, 0.33));
 }
 

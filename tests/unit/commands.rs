@@ -5,9 +5,10 @@ use std::path::Path;
 
 use perilife::case::Case;
 use perilife::commands::console::Console;
-use perilife::commands::{list, message, predict};
+use perilife::commands::{message, predict};
 use perilife::error::InputError;
 use perilife::predict::{Prediction, StopReason};
+use perilife::report::catalogue::lines;
 use perilife::report::output::OutputFolder;
 use tempfile::tempdir;
 
@@ -86,7 +87,7 @@ fn an_error_shows_its_line_where_there_is_one() {
 
 #[test]
 fn the_list_misses_no_kind() {
-    let lines = list::lines();
+    let lines = lines();
     let mut keys = 0;
     for file in layering::rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
         for line in fs::read_to_string(&file).unwrap().lines() {

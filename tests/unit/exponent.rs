@@ -50,7 +50,7 @@ fn hand_calculation_finds_its_own_constants_and_predicts_with_them() {
     // Its record reads back and gives the life of the readings.
     let law = record(&wide, &fit);
     fs::write(folder.path().join("fitted.toml"), toml::to_string(&law).unwrap()).unwrap();
-    let back: FittedRecord = fitted_record(&folder.path().join("fitted.toml")).unwrap();
+    let back: FittedRecord = fitted_record("fitted.toml", &folder.path().into()).unwrap();
     assert_eq!((back.method.as_str(), back.paris_m, back.paris_m_error), ("handbook", law.paris_m, law.paris_m_error));
     let text = format!(
         "[specimen]\n{PANEL}[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n\
@@ -105,8 +105,8 @@ fn bonds_take_p_and_hand_calculation_m_of_a_record() {
     use perilife::calibration::exponent::Exponent;
     use perilife::case::Method;
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3");
-    let law = fitted_record(&path.join("fitted.toml")).unwrap();
-    let of = |method| Exponent::of_record("fitted.toml", &path, method).unwrap().fixed;
+    let law = fitted_record("fitted.toml", &path.as_path().into()).unwrap();
+    let of = |method| Exponent::of_record("fitted.toml", &path.as_path().into(), method).unwrap().fixed;
     assert_eq!((of(Method::Peridynamics), of(Method::Handbook)), (Some(law.p), Some(law.paris_m)));
     assert_ne!(law.p, law.paris_m);
 }

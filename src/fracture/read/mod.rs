@@ -54,7 +54,7 @@ use toml::{Table, Value};
 
 use super::scene::{Scene, SceneLaw};
 use crate::error::Result;
-use crate::input::{Document, Sections, Strangers, value_at};
+use crate::input::{Document, Folder, Sections, Strangers, value_at};
 use crate::net::read as refinement;
 use crate::{material, specimen};
 
@@ -87,12 +87,12 @@ impl Scene {
         Self::from_document(&Document::read(path, overrides)?)
     }
 
-    /// Reads a scene from text; relative paths in it start from `base_dir`.
+    /// Reads a scene from text; files it names lie in `folder`.
     ///
     /// # Errors
     /// Wrong input.
-    pub fn from_toml(text: &str, name: &str, base_dir: &Path, overrides: &[String]) -> Result<Self> {
-        Self::from_document(&Document::parse(text, name, base_dir, overrides)?)
+    pub fn from_toml(text: &str, name: &str, folder: impl Into<Folder>, overrides: &[String]) -> Result<Self> {
+        Self::from_document(&Document::parse(text, name, folder, overrides)?)
     }
 
     /// Reads a scene from a parsed document, which gives errors their line.
@@ -100,7 +100,7 @@ impl Scene {
     /// # Errors
     /// Wrong input.
     pub fn from_document(document: &Document) -> Result<Self> {
-        read(&document.table, &document.name, &document.base_dir).map_err(|error| document.locate(error))
+        read(&document.table, &document.name, &document.folder).map_err(|error| document.locate(error))
     }
 }
 
@@ -114,7 +114,7 @@ pub fn is_scene(table: &Table) -> bool {
         || kind.is_some_and(|kind| kind.parse::<LoadKind>().is_ok())
 }
 
-fn read(table: &Table, name: &str, base_dir: &Path) -> Result<Scene> {
+fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
     let sections = Sections::of(table, SECTIONS, STRANGERS)?;
     let echo = sections.echo()?;
     let mut warnings = Vec::new();
@@ -122,7 +122,7 @@ fn read(table: &Table, name: &str, base_dir: &Path) -> Result<Scene> {
     // The standard kinds serve as geometry: their loads and grips belong to fatigue tests.
     specimen.loads.clear();
     specimen.supports.clear();
-    let material = material::from_value(sections.required("material")?, base_dir, &mut warnings)?;
+    let material = material::from_value(sections.required("material")?, folder, &mut warnings)?;
     let loading = loading::from_value(sections.required("loading")?, &mut specimen)?;
     let holds = supports::from_value(sections.optional("supports"), &specimen)?;
     let model = model::from_value(sections.optional("model"), &specimen, &material, &loading.procedure)?;

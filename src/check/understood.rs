@@ -8,9 +8,11 @@ use crate::specimen::{LoadMeasure, Support};
 use crate::units::{GPA, KN, MM, MM_PER_CYCLE, MPA};
 
 /// One line of what was understood.
-#[derive(Debug)]
-pub(super) struct Line {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// What it is about.
     pub what: &'static str,
+    /// What was understood.
     pub value: String,
 }
 

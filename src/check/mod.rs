@@ -1,0 +1,103 @@
+//! Is an input file right, and what would be run? What was understood of it, in words and as a drawing, without running it.
+
+mod preview;
+mod scene;
+mod understood;
+
+use serde_json::map::Entry;
+use serde_json::{Map, Value, json};
+
+use self::preview::preview;
+use self::scene::{scene_drawing, scene_lines};
+use self::understood::{case_lines, curves_line};
+use crate::calibration::case::CalibrationCase;
+use crate::case::Case;
+use crate::error::Result;
+use crate::fracture::Scene;
+use crate::fracture::read::is_scene;
+use crate::input::Document;
+use crate::report::specimen_picture::specimen_svg;
+
+pub use self::understood::Line;
+
+/// What a file asks for, checked.
+#[derive(Debug)]
+pub struct Checked {
+    /// `case`, `calibration` or `fracture`.
+    pub kind: &'static str,
+    /// Its name.
+    pub name: String,
+    /// What was understood.
+    pub lines: Vec<Line>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// Specimen, cracks, loads and supports as SVG.
+    pub drawing: String,
+    /// The input as it was given.
+    pub echo: Value,
+}
+
+impl Checked {
+    /// As one object.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let mut understood: Map<String, Value> = Map::new();
+        for line in &self.lines {
+            // A scene has several loads and supports.
+            match understood.entry(line.what.replace(' ', "_")) {
+                Entry::Vacant(place) => drop(place.insert(line.value.clone().into())),
+                Entry::Occupied(mut place) => {
+                    let both = format!("{}; {}", place.get().as_str().unwrap_or_default(), line.value);
+                    place.insert(both.into());
+                }
+            }
+        }
+        json!({
+            "ok": true, "kind": self.kind, "name": self.name, "understood": understood, "warnings": self.warnings,
+            "case": self.echo,
+        })
+    }
+}
+
+/// Reads the file as what it is: a calibration with the curves it names, a fracture scene, or a case. The body is built as well where that
+/// is quick, since only then some troubles show.
+///
+/// # Errors
+/// Wrong input, or files it names that cannot be read.
+pub fn check(document: Document) -> Result<Checked> {
+    if is_scene(&document.table) {
+        return checked_scene(&document);
+    }
+    if is_calibration(&document.table) {
+        let calibration = CalibrationCase::from_document(document.clone())?;
+        let mut checked = checked_case(&document, "calibration", &calibration.case, calibration.warnings)?;
+        checked.lines.insert(0, curves_line(&calibration.curves));
+        return Ok(checked);
+    }
+    let case = Case::from_document(&document)?;
+    checked_case(&document, "case", &case, case.warnings.clone())
+}
+
+/// Whether these are the sections of a calibration.
+#[must_use]
+pub fn is_calibration(table: &toml::Table) -> bool {
+    table.contains_key("measured") || table.contains_key("fit")
+}
+
+/// The case of a document, with its warnings so far.
+///
+/// # Errors
+/// A body that cannot be built.
+pub fn checked_case(document: &Document, kind: &'static str, case: &Case, mut warnings: Vec<String>) -> Result<Checked> {
+    let preview = preview(case).map_err(|error| document.locate(error))?;
+    warnings.extend(preview.warnings);
+    let lines = case_lines(case, preview.points);
+    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing: specimen_svg(case), echo: case.echo.clone() })
+}
+
+fn checked_scene(document: &Document) -> Result<Checked> {
+    let scene = Scene::from_document(document)?;
+    let lines = scene_lines(&scene).map_err(|error| document.locate(error))?;
+    let drawing = scene_drawing(&scene);
+    Ok(Checked { kind: "fracture", name: scene.name, lines, warnings: scene.warnings, drawing, echo: scene.echo })
+}

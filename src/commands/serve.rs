@@ -1,0 +1,65 @@
+//! `perilife serve`: the HTTP service and its web page.
+
+use std::net::SocketAddr;
+use std::num::NonZeroU32;
+
+use super::console::Console;
+use super::worker;
+use crate::error::Result;
+use crate::service::api::Limits;
+use crate::service::{Settings, serve};
+
+/// Arguments of `perilife serve`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Address; beyond this machine it needs tokens (`perilife token`) and a proxy that adds TLS
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", help_heading = "Service")]
+    pub listen: SocketAddr,
+    /// Ask for tokens even on this machine
+    #[arg(long, help_heading = "Service")]
+    pub require_token: bool,
+    /// Largest body of a request, MiB
+    #[arg(long, value_name = "MIB", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "Limits")]
+    pub body_mib: u32,
+    /// Most points of a plate
+    #[arg(long, value_name = "COUNT", default_value_t = 4_000_000, help_heading = "Limits")]
+    pub points: u32,
+    /// Most jobs of one owner that wait
+    #[arg(long, value_name = "COUNT", default_value_t = 1000, help_heading = "Limits")]
+    pub queued: u32,
+    /// Most requests a second of one caller
+    #[arg(long, value_name = "COUNT", default_value = "5000", help_heading = "Limits")]
+    pub requests_per_second: NonZeroU32,
+    /// Most of them that submit, check or upload
+    #[arg(long, value_name = "COUNT", default_value = "300", help_heading = "Limits")]
+    pub writes_per_second: NonZeroU32,
+    /// Where jobs and results are kept, and who runs them.
+    #[command(flatten)]
+    pub work: worker::Work,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// Runs `perilife serve`, until it is asked to stop.
+///
+/// # Errors
+/// An address or a database that cannot be used; other machines let in without tokens.
+pub fn run(args: &Args) -> Result<()> {
+    let limits = Limits {
+        body_bytes: (args.body_mib as usize) << 20,
+        points: f64::from(args.points),
+        queued: i64::from(args.queued),
+        requests_per_second: args.requests_per_second,
+        writes_per_second: args.writes_per_second,
+        ..Limits::default()
+    };
+    let settings = Settings {
+        listen: args.listen,
+        database: args.work.place.url()?,
+        needs_token: args.require_token,
+        limits,
+        workers: args.work.settings(),
+    };
+    serve(&settings, |address| args.console.note(&format!("perilife {} at http://{address}", env!("CARGO_PKG_VERSION"))))
+}

@@ -1,0 +1,92 @@
+//! `perilife token`: who may use a service that asks for tokens.
+
+use serde_json::json;
+
+use super::console::Console;
+use super::worker::Place;
+use crate::error::{Result, input};
+use crate::service::job::time;
+use crate::service::store::Role;
+use crate::service::with_store;
+
+/// Arguments of `perilife token`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub task: Task,
+    /// Where the service keeps its jobs.
+    #[command(flatten)]
+    pub place: Place,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// What to do with tokens.
+#[derive(Debug, clap::Subcommand)]
+pub enum Task {
+    /// Make a token and print it; it is not kept and cannot be shown again
+    Add {
+        /// Whose it is
+        name: String,
+        /// What he may do: look (read), submit and end his own jobs (run), end those of others (admin)
+        #[arg(long, value_enum)]
+        role: Role,
+        /// Days until it ends [default: never]
+        #[arg(long, value_name = "DAYS")]
+        days: Option<u32>,
+    },
+    /// List names, roles and ends
+    List,
+    /// Remove a token
+    Remove {
+        /// Whose it is
+        name: String,
+    },
+}
+
+/// Runs `perilife token`.
+///
+/// # Errors
+/// A name that is taken or not known; a database that cannot be used.
+pub fn run(args: &Args) -> Result<()> {
+    let (url, console) = (args.place.url()?, &args.console);
+    match &args.task {
+        Task::Add { name, role, days } => {
+            if name.is_empty() || name.chars().any(char::is_control) {
+                return Err(input("NAME", format!("{name:?}"), "is no name", "give a word"));
+            }
+            let secret = with_store(&url, async |store| store.add_token(name, *role, *days).await)?;
+            let taken = || input("NAME", name, "has a token already", "remove it first: perilife token remove NAME");
+            let secret = secret.ok_or_else(taken)?;
+            console.result(&format!("{secret}\n"))?;
+            console.object(&json!({ "name": name, "role": role, "token": secret }))
+        }
+        Task::List => {
+            let tokens = with_store(&url, async |store| store.tokens().await)?;
+            let end = |ms: Option<i64>| ms.map_or_else(|| "never ends".to_owned(), |ms| format!("ends {}", time(ms)));
+            let lines = tokens.iter().map(|token| {
+                format!(
+                    "{:<24} {:<6} made {}, {}\n",
+                    token.name,
+                    token.role.name(),
+                    time(token.created_ms),
+                    end(token.expires_ms)
+                )
+            });
+            console.result(&lines.collect::<String>())?;
+            let objects = tokens.iter().map(|token| {
+                json!({ "name": token.name, "role": token.role, "created": time(token.created_ms), "expires": token.expires_ms.map(time) })
+            });
+            console.object(&json!({ "tokens": objects.collect::<Vec<_>>() }))
+        }
+        Task::Remove { name } => {
+            if !with_store(&url, async |store| store.remove_token(name).await)? {
+                return Err(input("NAME", name, "has no token", "see perilife token list"));
+            }
+            console.say(&format!("{name}: token removed"));
+            console.object(&json!({ "removed": name }))
+        }
+    }
+}

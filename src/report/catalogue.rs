@@ -1,0 +1,121 @@
+//! Every kind of every key of the input files.
+
+use serde_json::{Value, json};
+
+use crate::bench::GROUPS;
+use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use crate::calibration::case::Parameter;
+use crate::calibration::columns::{CycleUnit, LengthUnit};
+use crate::calibration::criterion::Criterion;
+use crate::calibration::rates::RateMethod;
+use crate::case::{Failure, Method};
+use crate::fatigue::finite_horizon::FiniteHorizon;
+use crate::fatigue::lattice_direction::LatticeDirection;
+use crate::fatigue::{Ageing, BlockKind, Precrack};
+use crate::fracture::SceneEnd;
+use crate::fracture::read::{Kinematics, LoadKind, Transverse};
+use crate::fracture::scene::{Arrangement, DamageEntry, DamageLaw, PointLaw, SceneSolver, ZeroEnergyControl};
+use crate::input::Folder;
+use crate::kinds::KindLine;
+use crate::loading::LoadingKind;
+use crate::material::{Plane, library};
+use crate::predict::StopReason;
+use crate::solver::{SolverKind, Symmetry};
+use crate::specimen::{Component, Edge, Ends, SpecimenKind};
+use crate::stress_intensity::StressIntensityMethod;
+use crate::verify::TOPICS;
+
+/// Every line, in the order of an input file: key, name, meaning.
+#[must_use]
+pub fn lines() -> Vec<(String, String, String)> {
+    let of_the_test = [
+        SpecimenKind::lines(),
+        vec![SpecimenKind::not_covered()],
+        Ends::lines(),
+        Plane::lines(),
+        LoadingKind::lines(),
+        LoadKind::lines(),
+        Edge::lines(),
+        Transverse::lines(),
+        Component::lines(),
+    ];
+    let of_the_model = [
+        Method::lines(),
+        BondLawKind::lines(),
+        PointLaw::lines(),
+        ZeroEnergyControl::lines(),
+        Kernel::lines(),
+        Rotation::lines(),
+        SurfaceCorrection::lines(),
+        Kinematics::lines(),
+        Arrangement::lines(),
+        Symmetry::lines(),
+        SolverKind::lines(),
+        beside(&SolverKind::lines(), SceneSolver::lines()),
+        DamageLaw::lines(),
+        DamageEntry::lines(),
+        Ageing::lines(),
+        LatticeDirection::lines(),
+        FiniteHorizon::lines(),
+        Precrack::lines(),
+        BlockKind::lines(),
+        Failure::lines(),
+    ];
+    let of_calibration = [
+        Parameter::lines(),
+        Criterion::lines(),
+        LengthUnit::lines(),
+        CycleUnit::lines(),
+        RateMethod::lines(),
+        StopReason::lines(),
+        beside(&StopReason::lines(), SceneEnd::lines()),
+    ];
+    let of_the_tips = StressIntensityMethod::lines();
+    let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
+    let mut all: Vec<_> = of_the_test.into_iter().flatten().map(words).collect();
+    all.extend(library::names().into_iter().map(|name| {
+        let meaning = library::find(&name, &Folder::none()).map_or_else(
+            |error| error.to_string(),
+            |file| format!("{}; E {} GPa, nu {}", file.title, file.youngs_modulus_gpa.value, file.poisson_ratio.value),
+        );
+        ("material.name".to_owned(), name, meaning)
+    }));
+    all.extend(of_the_model.into_iter().flatten().map(words));
+    all.extend(of_calibration.into_iter().flatten().map(words));
+    all.extend(of_the_tips.into_iter().map(words));
+    all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
+    all.extend(GROUPS.iter().map(|group| ("bench NAME".to_owned(), group.name.to_owned(), group.about.to_owned())));
+    all
+}
+
+/// The same as one object.
+#[must_use]
+pub fn json() -> Value {
+    let kinds = lines().into_iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning }));
+    json!({ "kinds": kinds.collect::<Vec<_>>() })
+}
+
+/// The lines of a second choice for a key that do not stand in the first one already.
+fn beside(first: &[KindLine], second: Vec<KindLine>) -> Vec<KindLine> {
+    second.into_iter().filter(|line| first.iter().all(|known| (known.key, known.name) != (line.key, line.name))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_says_something_once() {
+        let lines = lines();
+        let mut names: Vec<_> = lines.iter().map(|(key, name, _)| (key, name)).collect();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), lines.len());
+        assert!(lines.iter().all(|(key, _, meaning)| !key.is_empty() && meaning.len() > 5));
+        assert!(
+            lines.iter().any(|(key, name, meaning)| key == "specimen.kind"
+                && name.contains("part-through")
+                && meaning.contains("refused"))
+        );
+    }
+}

@@ -1,0 +1,122 @@
+//! A fit: all its files.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::chart::{self, Mark, Series};
+use super::output::write_file;
+use crate::calibration::case::CalibrationCase;
+use crate::calibration::fit::Fit;
+use crate::calibration::record::FittedRecord;
+use crate::calibration::results::{FitReport, fit_curves_csv};
+use crate::error::{Error, Result};
+use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+
+/// Writes all files of a fit into `folder`.
+///
+/// # Errors
+/// [`Error::File`] if a file cannot be written.
+pub fn write(folder: &Path, calibration: &CalibrationCase, fit: &Fit, report: &FitReport, law: &FittedRecord) -> Result<()> {
+    let unwritable = |file: &str, error: String| Error::file(&folder.join(file), "cannot write", std::io::Error::other(error));
+    let json = serde_json::to_string_pretty(report).map_err(|error| unwritable("fit.json", error.to_string()))?;
+    let toml = toml::to_string(law).map_err(|error| unwritable("fitted.toml", error.to_string()))?;
+    write_file(&folder.join("fit.json"), format!("{json}\n").as_bytes())?;
+    write_file(&folder.join("fitted.toml"), toml.as_bytes())?;
+    write_file(&folder.join("fit_curves.csv"), fit_curves_csv(fit).as_bytes())?;
+    write_file(&folder.join("fit_band.csv"), band(calibration, fit, report).as_bytes())?;
+    write_tables(folder, calibration, fit)?;
+    draw(folder, calibration, fit)
+}
+
+/// Standard errors from the middle of a 95 % band to its ends.
+const BAND: f64 = 1.96;
+
+/// `fit_band.csv`: the fitted curve of the record with the 95 % band that the standard errors of its constants leave it; not the
+/// scatter of specimens.
+///
+/// The rate at the pivot and the exponent m have errors of their own, without correlation, which is what makes it the pivot. With
+/// N(a) = ∫ da / rate, the relative error of N is s_N² = s_rate² + (s_m w)², w the mean of ln(ΔK/ΔK_pivot) over the cycles so far.
+fn band(calibration: &CalibrationCase, fit: &Fit, report: &FitReport) -> String {
+    let mut text = "crack_length_mm,cycles_fitted,cycles_low,cycles_high\n".to_owned();
+    let (lengths, cycles) = (&fit.record.crack_length, &fit.record.cycles_fitted);
+    let mut weighted = 0.0;
+    for (i, (&length, &n)) in lengths.iter().zip(cycles).enumerate() {
+        if i > 0 {
+            let delta_k = calibration.delta_k(0.5 * (length + lengths[i - 1])) / MPA_SQRT_M;
+            weighted += (n - cycles[i - 1]) * (delta_k / report.pivot_delta_k_mpa_sqrt_m).ln();
+        }
+        let w = if n > 0.0 { weighted / n } else { 0.0 };
+        let factor = (BAND * report.rate_at_pivot_relative_error.hypot(report.paris_m_error * w)).exp();
+        let _ = writeln!(text, "{:.12e},{n:.12e},{:.12e},{:.12e}", length / MM, n / factor, n * factor); // a String takes all
+    }
+    text
+}
+
+/// The same curves as Parquet beside their constants, and for several specimens quantiles of their cycles.
+#[cfg(feature = "tables")]
+fn write_tables(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
+    use crate::calibration::fit::FittedCurve;
+    use crate::calibration::frames::{SHARES, cycle_quantiles, fit_curves, specimens};
+    use crate::calibration::results::curves_written;
+    use crate::tables::{csv, join_by_specimen, parquet};
+
+    let curves: Vec<FittedCurve> = curves_written(fit).cloned().collect();
+    let constants = specimens(&curves)?;
+    let joined = join_by_specimen(&fit_curves(&curves)?, &constants)?;
+    write_file(&folder.join("fit_curves.parquet"), &parquet(&joined)?)?;
+    write_file(&folder.join("specimens.csv"), &csv(&constants)?)?;
+    if calibration.curves.len() > 1 {
+        let quantiles = cycle_quantiles(&calibration.curves, &fit.record.crack_length, &SHARES)?;
+        write_file(&folder.join("quantiles.csv"), &csv(&quantiles)?)?;
+    }
+    Ok(())
+}
+
+#[cfg(not(feature = "tables"))]
+fn write_tables(_folder: &Path, _calibration: &CalibrationCase, _fit: &Fit) -> Result<()> {
+    Ok(())
+}
+
+/// `fit.svg`: measured points with the fitted curve.
+fn draw(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
+    let points = |cycles: &[f64], lengths: &[f64]| cycles.iter().zip(lengths).map(|(n, a)| (*n, a / MM)).collect();
+    let series = |name: &str, cycles: &[f64], lengths: &[f64], mark| Series {
+        name: name.to_owned(),
+        points: points(cycles, lengths),
+        mark,
+    };
+    let record = &fit.record;
+    let name = if fit.specimens.len() > 1 { "measured, median of all specimens" } else { "measured" };
+    let mut all = vec![
+        series(name, &record.cycles_measured, &record.crack_length, Mark::Circles),
+        series("fitted", &record.cycles_fitted, &record.crack_length, Mark::Line),
+    ];
+    if fit.specimens.len() > 1 {
+        let every = fit.specimens.iter().flat_map(|curve| curve.cycles_measured.iter().copied()).collect::<Vec<f64>>();
+        let lengths = fit.specimens.iter().flat_map(|curve| curve.crack_length.iter().copied()).collect::<Vec<f64>>();
+        all.insert(0, series("measured, every specimen", &every, &lengths, Mark::Dots));
+    }
+    chart::crack_length(&folder.join("fit.svg"), &format!("{}: fit", calibration.case.name), &all)?;
+    draw_rates(folder, calibration, fit)
+}
+
+/// `fit_rates.svg`: the fitted curve's rates against ΔK with the straight line through them.
+fn draw_rates(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
+    let record = &fit.record;
+    let delta_k = |length: f64| calibration.delta_k(length) / MPA_SQRT_M;
+    let rates = |cycles: &[f64]| -> Vec<(f64, f64)> {
+        (1..cycles.len())
+            .map(|i| {
+                let (a, before) = (record.crack_length[i], record.crack_length[i - 1]);
+                (delta_k(0.5 * (a + before)), (a - before) / (cycles[i] - cycles[i - 1]) / MM_PER_CYCLE)
+            })
+            .collect()
+    };
+    let line = [fit.paris.delta_k_min, fit.paris.delta_k_max].map(|k| (k, fit.paris.c * k.powf(fit.paris.m))).to_vec();
+    let all = [
+        Series { name: "measured (secant)".to_owned(), points: rates(&record.cycles_measured), mark: Mark::Circles },
+        Series { name: "fitted model".to_owned(), points: rates(&record.cycles_fitted), mark: Mark::Dots },
+        Series { name: format!("da/dN = {:.3e} ΔK^{:.3}", fit.paris.c, fit.paris.m), points: line, mark: Mark::Dashes },
+    ];
+    chart::growth_rate(&folder.join("fit_rates.svg"), &format!("{}: growth rate", calibration.case.name), &all)
+}

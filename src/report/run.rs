@@ -1,0 +1,125 @@
+//! A run of cycles: whether it counts as a result, and all its files.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::chart::{self, Mark, Series};
+use super::csv::{self, Row};
+use super::damage::{DamagePicture, cycles_and_length};
+use super::output::write_file;
+use super::{fit_use, json, vtk};
+use crate::case::{Case, LawSource};
+use crate::error::{Error, Result, input};
+use crate::predict::{Prediction, StopReason};
+use crate::specimen::Point;
+
+/// Folder of the ParaView files in that of a run.
+pub const PARAVIEW: &str = "paraview";
+/// Share of life outside the fitted ΔK range above which the user is warned.
+const EXTRAPOLATION_WARNED: f64 = 0.05;
+/// Share of life outside the fitted ΔK range above which a run is refused unless the case allows it.
+const EXTRAPOLATION_REFUSED: f64 = 0.25;
+
+/// Whether a run counts as a result; what the user should know about it beyond what the run itself says.
+///
+/// # Errors
+/// [`Error::Mechanics`] if the run ended before the crack grew; [`Error::Input`] if more than a quarter of the life lies outside
+/// the fitted ΔK range and the case does not allow that.
+pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
+    let mut warnings = Vec::new();
+    let start = prediction.curve.first().map_or(f64::INFINITY, |point| point.crack_length);
+    // An empty curve compares as not grown.
+    let grown = prediction.crack_length_final().max(0.0) > start;
+    let no_curve = |why: &str, remedy: &str| {
+        Err(Error::Mechanics(format!("{}: {why} before the crack grew, so there is no curve; {remedy}", case.name)))
+    };
+    match prediction.stop {
+        StopReason::NoConvergence if grown => {
+            warnings.push("the equilibrium solver did not converge; the curve ends where it last did".to_owned());
+        }
+        StopReason::NoConvergence => {
+            return no_curve(
+                "the equilibrium solver did not converge",
+                "try model.solver = \"direct\" or another model.spacing_mm",
+            );
+        }
+        // Under the threshold nothing ages either, which is an answer.
+        StopReason::NothingAges if !grown && case.fatigue.threshold > 0.0 => {
+            let why = "no bond ages: the crack stays below fatigue.delta_k_threshold_mpa_sqrt_m and does not grow";
+            warnings.push(why.to_owned());
+        }
+        StopReason::LeftRefinement if !grown => {
+            return no_curve("the crack tip came to the rim of the finest level", "give refinement.regions around its whole way");
+        }
+        StopReason::NothingAges | StopReason::LeftPlate | StopReason::EnteredHole if !grown => {
+            let why = format!("no bond that can fail is strained at a crack tip (stopped: {})", prediction.stop);
+            return no_curve(
+                &why,
+                "move crack and hole or support apart, or give a smaller model.spacing_mm; `perilife check` names the tips",
+            );
+        }
+        _ => {}
+    }
+    warnings.extend(extrapolated(case, prediction)?);
+    warnings.extend(fit_use::labels(case, prediction));
+    Ok(warnings)
+}
+
+/// What is to be said about life outside the fitted range of ΔK.
+fn extrapolated(case: &Case, prediction: &Prediction) -> Result<Option<String>> {
+    let share = json::life_share_extrapolated(case, prediction).unwrap_or(0.0);
+    let LawSource::Fitted(record) = &case.law else { return Ok(None) };
+    let (low, high) = (record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m);
+    let text = format!("{:.1} % of the life lies outside the fitted range of ΔK, {low:.2} to {high:.2} MPa√m", 100.0 * share);
+    if share > EXTRAPOLATION_REFUSED && !case.allow_extrapolation {
+        let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
+        return Err(input("fatigue.allow_extrapolation", false, format!("{}: {text}", case.name), remedy));
+    }
+    Ok((share > EXTRAPOLATION_WARNED).then_some(text))
+}
+
+/// Writes all files of a run into `folder`; returns the content of `result.json`.
+///
+/// # Errors
+/// [`Error::File`] if a file cannot be written.
+pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Value> {
+    let result = json::result(case, prediction);
+    write_file(&folder.join(csv::A_N_FILE), csv::a_n(prediction).as_bytes())?;
+    write_file(&folder.join("crack_path.csv"), csv::crack_path(prediction, &case.specimen.cracks).as_bytes())?;
+    write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
+    draw_curves(folder, case, prediction)?;
+    let paths: Vec<Vec<Point>> = csv::paths(prediction, &case.specimen.cracks)
+        .into_iter()
+        .map(|path| path.into_iter().map(|(_, position)| position).collect())
+        .collect();
+    if let Some(snapshot) = prediction.snapshots.last() {
+        let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
+        DamagePicture { grid: &prediction.grid, snapshot, cracks, paths: &paths, caption: &caption }
+            .write(&folder.join("damage.png"))?;
+    }
+    if !prediction.snapshots.is_empty() {
+        let paraview = folder.join(PARAVIEW);
+        std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
+        vtk::write_series(&paraview, &prediction.grid, &prediction.snapshots)?;
+    }
+    Ok(result)
+}
+
+/// `a_n.svg`, and `da_dn.svg` where ΔK and da/dN are known.
+fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction) -> Result<()> {
+    let rows: Vec<Row> = prediction.curve.iter().map(Row::of).collect();
+    let series = |name: &str, mark, pick: fn(&Row) -> (f64, f64)| Series {
+        name: name.to_owned(),
+        mark,
+        points: rows.iter().map(pick).collect(),
+    };
+    let curve = series("predicted", Mark::Line, |row| (row.cycles, row.crack_length_mm));
+    let rates =
+        series("predicted, one point per cycle block", Mark::Dots, |row| (row.delta_k_mpa_sqrt_m, row.da_dn_mm_per_cycle));
+    chart::crack_length(&folder.join("a_n.svg"), &format!("{}: crack length over life", case.name), &[curve])?;
+    if rates.points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
+        chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;
+    }
+    Ok(())
+}

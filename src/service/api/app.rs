@@ -1,0 +1,151 @@
+//! What every request can reach.
+
+use std::net::IpAddr;
+use std::num::NonZeroU32;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use governor::{DefaultKeyedRateLimiter, Quota, RateLimiter};
+use tokio::sync::{Notify, RwLock, Semaphore};
+
+use crate::service::store::{Store, Token};
+
+/// How much a request may ask for.
+#[derive(Debug, Clone)]
+pub struct Limits {
+    /// Bytes of a body, all files together.
+    pub body_bytes: usize,
+    /// Files of a body.
+    pub files: usize,
+    /// Points of a plate.
+    pub points: f64,
+    /// Jobs of one owner that wait.
+    pub queued: i64,
+    /// Requests a second of one caller.
+    pub requests_per_second: NonZeroU32,
+    /// Of them those that submit, check or upload.
+    pub writes_per_second: NonZeroU32,
+    /// Bodies read and checked at a time, so that memory is bounded: the others wait.
+    pub bodies_at_once: usize,
+    /// Time in which an answer must begin.
+    pub answer_within: Duration,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        const READS: NonZeroU32 = NonZeroU32::new(5_000).unwrap();
+        const WRITES: NonZeroU32 = NonZeroU32::new(300).unwrap();
+        Limits {
+            body_bytes: 32 << 20,
+            files: 64,
+            points: 4e6,
+            queued: 1000,
+            requests_per_second: READS,
+            writes_per_second: WRITES,
+            bodies_at_once: 8,
+            answer_within: Duration::from_secs(60),
+        }
+    }
+}
+
+/// Who is let in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Security {
+    /// Whether every request needs a token. Without, only this machine can reach the service, and all who can may do all.
+    pub needs_token: bool,
+}
+
+/// Time for which a token that was found good is not looked up again.
+const TOKEN_FRESH: Duration = Duration::from_secs(10);
+/// Tokens remembered at most.
+const TOKENS_REMEMBERED: usize = 1000;
+
+/// What every request can reach.
+#[derive(Debug, Clone)]
+pub struct App {
+    /// The store.
+    pub store: Store,
+    /// How much a request may ask for.
+    pub limits: Limits,
+    /// Who is let in.
+    pub security: Security,
+    /// Told of new jobs.
+    pub wake: Arc<Notify>,
+    /// Workers of this process.
+    pub workers: usize,
+    /// Room for bodies.
+    pub bodies: Arc<Semaphore>,
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    requests: DefaultKeyedRateLimiter<String>,
+    writes: DefaultKeyedRateLimiter<String>,
+    tokens: RwLock<Vec<(String, Token, Instant)>>,
+    stopping: AtomicBool,
+}
+
+impl App {
+    /// A service on a store.
+    #[must_use]
+    pub fn new(store: Store, limits: Limits, security: Security, workers: usize, wake: Arc<Notify>) -> Self {
+        let limiter = |per_second: NonZeroU32| RateLimiter::keyed(Quota::per_second(per_second));
+        let shared = Shared {
+            requests: limiter(limits.requests_per_second),
+            writes: limiter(limits.writes_per_second),
+            tokens: RwLock::new(Vec::new()),
+            stopping: AtomicBool::new(false),
+        };
+        let bodies = Arc::new(Semaphore::new(limits.bodies_at_once));
+        App { store, limits, security, wake, workers, bodies, shared: Arc::new(shared) }
+    }
+
+    /// Whether a caller may ask once more just now.
+    #[must_use]
+    pub fn may_ask(&self, caller: Option<&str>, address: IpAddr, is_write: bool) -> bool {
+        let key = caller.map_or_else(|| address.to_string(), |name| format!("token {name}"));
+        let within = |limiter: &DefaultKeyedRateLimiter<String>| limiter.check_key(&key).is_ok();
+        within(&self.shared.requests) && (!is_write || within(&self.shared.writes))
+    }
+
+    /// Forgets callers that have not asked for a while.
+    pub fn forget_callers(&self) {
+        self.shared.requests.retain_recent();
+        self.shared.writes.retain_recent();
+    }
+
+    /// The token with this hash, if there is one that has not ended.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn token(&self, hash: &str) -> crate::service::store::Result<Option<Token>> {
+        {
+            let known = self.shared.tokens.read().await;
+            if let Some((_, token, _)) = known.iter().find(|(known, _, at)| known == hash && at.elapsed() < TOKEN_FRESH) {
+                return Ok(Some(token.clone()));
+            }
+        }
+        let found = self.store.token(hash).await?;
+        if let Some(token) = &found {
+            let mut known = self.shared.tokens.write().await;
+            known.retain(|(other, _, at)| other != hash && at.elapsed() < TOKEN_FRESH);
+            if known.len() < TOKENS_REMEMBERED {
+                known.push((hash.to_owned(), token.clone(), Instant::now()));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Ends what would otherwise never end.
+    pub fn stop(&self) {
+        self.shared.stopping.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the service is about to stop.
+    #[must_use]
+    pub fn is_stopping(&self) -> bool {
+        self.shared.stopping.load(Ordering::Relaxed)
+    }
+}

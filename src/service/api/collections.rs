@@ -1,0 +1,228 @@
+//! Jobs: submit, list, look at, cancel, delete.
+
+use axum::extract::rejection::QueryRejection;
+use axum::extract::{Path, Query, Request, State as Shared};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use axum::{Extension, Json};
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+
+use super::App;
+use super::documents::{self, Asked, submission};
+use super::security::Caller;
+use crate::service::job::{Job, JobKind, State};
+use crate::service::problem::{Answer, Problem};
+use crate::service::store::{NewJob, Role, Submitted};
+
+/// Most jobs of one part of a list.
+const LIST_MAX: u32 = 200;
+/// Jobs of one part of a list unless asked otherwise.
+const LIST: u32 = 20;
+/// Longest idempotency key, bytes.
+const KEY_MAX: usize = 200;
+/// Seconds after which there may be room in the queue.
+const QUEUE_MOVES_S: u32 = 10;
+
+/// A job with its files and, where one job is asked for, its input.
+#[derive(Serialize, ToSchema)]
+pub struct JobView {
+    #[serde(flatten)]
+    job: Job,
+    /// Files of its result.
+    files: Vec<FileView>,
+    /// TOML as submitted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    input: Option<String>,
+}
+
+/// A file of a result.
+#[derive(Serialize, ToSchema)]
+pub struct FileView {
+    name: String,
+    media_type: String,
+    bytes: i64,
+    href: String,
+}
+
+/// Part of a list of jobs, newest first.
+#[derive(Serialize, ToSchema)]
+pub struct Page {
+    items: Vec<JobView>,
+    /// What to give as `after` for the next part; null at the end.
+    next: Option<String>,
+}
+
+/// Which part of a list.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Part {
+    /// Jobs, 1 to 200; 20 if left out.
+    limit: Option<u32>,
+    /// Begin behind this job.
+    after: Option<String>,
+    /// Only jobs in this state.
+    state: Option<State>,
+}
+
+/// The kind of a collection's name in a URL.
+///
+/// # Errors
+/// 404.
+pub fn kind_of(collection: &str) -> Answer<JobKind> {
+    let kinds = [JobKind::Calibration, JobKind::Prediction];
+    kinds.into_iter().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
+}
+
+/// A job of a collection.
+///
+/// # Errors
+/// 404, 503.
+pub async fn job_of(app: &App, collection: &str, id: &str) -> Answer<Job> {
+    let kind = kind_of(collection)?;
+    app.store.job(kind, id).await?.ok_or_else(|| Problem::not_found(kind.name()))
+}
+
+/// What is shown of a job.
+///
+/// # Errors
+/// 503.
+pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
+    let entries = if job.state == State::Succeeded { app.store.file_entries(&job.id).await? } else { Vec::new() };
+    let base = format!("/v1/{}/{}/files", job.kind.collection(), job.id);
+    let files = entries
+        .into_iter()
+        .map(|entry| FileView {
+            href: format!("{base}/{}", entry.name),
+            name: entry.name,
+            media_type: entry.media_type,
+            bytes: entry.bytes,
+        })
+        .collect();
+    let input = if with_input { app.store.submission(&job.id).await?.map(|submission| submission.text) } else { None };
+    Ok(JobView { job, files, input })
+}
+
+/// Submits a calibration or a prediction. With the header `Idempotency-Key` a repeated request gives the same job.
+#[utoipa::path(post, path = "/v1/{collection}", tag = "jobs",
+    params(("collection" = String, Path, description = "`calibrations` or `predictions`"),
+        ("Idempotency-Key" = Option<String>, Header, description = "Text of the caller's choice, new for every new job")),
+    request_body = Asked,
+    responses((status = 202, body = JobView, description = "Accepted: it will be run, whatever happens to this server"),
+        (status = 200, body = JobView, description = "The job of an earlier request with this key"),
+        (status = 400, body = Problem), (status = 403, body = Problem), (status = 409, body = Problem),
+        (status = 413, body = Problem), (status = 422, body = Problem), (status = 429, body = Problem),
+        (status = 503, body = Problem)))]
+pub async fn submit(
+    Shared(app): Shared<App>,
+    Path(collection): Path<String>,
+    Extension(caller): Extension<Caller>,
+    headers: HeaderMap,
+    request: Request,
+) -> Answer<Response> {
+    let kind = kind_of(&collection)?;
+    caller.must_be(Role::Run)?;
+    let key = key_of(&headers)?;
+    let body = documents::read(&app, request).await?;
+    let calibration = body.asked.calibration.clone();
+    let submission = submission(&app, Some(kind), body.asked).await?;
+    let new = NewJob {
+        kind,
+        owner: &caller.name,
+        calibration: calibration.as_deref(),
+        idempotency_key: key.as_deref(),
+        fingerprint: &format!("{kind} {}", body.fingerprint),
+        submission: &submission,
+    };
+    let (id, status) = match app.store.submit(&new, app.limits.queued).await? {
+        Submitted::New(id) => {
+            app.wake.notify_one();
+            (id, StatusCode::ACCEPTED)
+        }
+        Submitted::Again(id) => (id, StatusCode::OK),
+        Submitted::KeyTaken => {
+            let detail = "this Idempotency-Key belongs to another request; use a new one for every new job";
+            return Err(Problem::conflict(detail));
+        }
+        Submitted::QueueFull => {
+            let detail = format!("{} of your jobs wait already, which is all this server takes", app.limits.queued);
+            return Err(Problem::too_many(detail, QUEUE_MOVES_S));
+        }
+    };
+    drop(body.room);
+    let job = job_of(&app, &collection, &id).await?;
+    let location = format!("/v1/{collection}/{id}");
+    Ok((status, [(header::LOCATION, location)], Json(view(&app, job, false).await?)).into_response())
+}
+
+fn key_of(headers: &HeaderMap) -> Answer<Option<String>> {
+    let Some(key) = headers.get("idempotency-key") else { return Ok(None) };
+    let key = key.to_str().ok().filter(|key| !key.is_empty() && key.len() <= KEY_MAX);
+    let refused = || Problem::bad_request(format!("the Idempotency-Key is not 1 to {KEY_MAX} characters of plain text"));
+    key.map(|key| Some(key.to_owned())).ok_or_else(refused)
+}
+
+/// Lists jobs, newest first.
+#[utoipa::path(get, path = "/v1/{collection}", tag = "jobs",
+    params(("collection" = String, Path, description = "`calibrations` or `predictions`"), Part),
+    responses((status = 200, body = Page), (status = 400, body = Problem), (status = 404, body = Problem)))]
+pub async fn list(
+    Shared(app): Shared<App>,
+    Path(collection): Path<String>,
+    part: Result<Query<Part>, QueryRejection>,
+) -> Answer<Json<Page>> {
+    let kind = kind_of(&collection)?;
+    let Query(part) = part.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
+    let limit = part.limit.unwrap_or(LIST);
+    if !(1..=LIST_MAX).contains(&limit) {
+        return Err(Problem::bad_request(format!("limit = {limit} is not 1 to {LIST_MAX}")));
+    }
+    let listing = app.store.list(kind, part.state, part.after.as_deref(), limit).await?;
+    let items = listing.jobs.into_iter().map(|job| JobView { job, files: Vec::new(), input: None }).collect();
+    Ok(Json(Page { items, next: listing.next }))
+}
+
+/// A job: where it stands, its figures and files.
+#[utoipa::path(get, path = "/v1/{collection}/{id}", tag = "jobs",
+    params(("collection" = String, Path), ("id" = String, Path)),
+    responses((status = 200, body = JobView), (status = 404, body = Problem)))]
+pub async fn show(Shared(app): Shared<App>, Path((collection, id)): Path<(String, String)>) -> Answer<Json<JobView>> {
+    let job = job_of(&app, &collection, &id).await?;
+    Ok(Json(view(&app, job, true).await?))
+}
+
+/// Asks for the end of a job. One that runs stops within a cycle block.
+#[utoipa::path(post, path = "/v1/{collection}/{id}/cancel", tag = "jobs",
+    params(("collection" = String, Path), ("id" = String, Path)),
+    responses((status = 202, body = JobView), (status = 403, body = Problem), (status = 404, body = Problem),
+        (status = 409, body = Problem, description = "It has ended already")))]
+pub async fn cancel(
+    Shared(app): Shared<App>,
+    Path((collection, id)): Path<(String, String)>,
+    Extension(caller): Extension<Caller>,
+) -> Answer<(StatusCode, Json<JobView>)> {
+    let job = job_of(&app, &collection, &id).await?;
+    caller.must_own(&job.owner)?;
+    if !app.store.cancel(&id).await? {
+        return Err(Problem::conflict(format!("the job has ended already: it has {}", job.state)));
+    }
+    let job = job_of(&app, &collection, &id).await?;
+    Ok((StatusCode::ACCEPTED, Json(view(&app, job, false).await?)))
+}
+
+/// Deletes a job that does not run, with its results.
+#[utoipa::path(delete, path = "/v1/{collection}/{id}", tag = "jobs",
+    params(("collection" = String, Path), ("id" = String, Path)),
+    responses((status = 204), (status = 403, body = Problem), (status = 404, body = Problem), (status = 409, body = Problem)))]
+pub async fn delete(
+    Shared(app): Shared<App>,
+    Path((collection, id)): Path<(String, String)>,
+    Extension(caller): Extension<Caller>,
+) -> Answer<StatusCode> {
+    let job = job_of(&app, &collection, &id).await?;
+    caller.must_own(&job.owner)?;
+    if !app.store.delete(&id).await? {
+        return Err(Problem::conflict("the job runs: cancel it first"));
+    }
+    Ok(StatusCode::NO_CONTENT)
+}

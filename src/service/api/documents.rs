@@ -1,0 +1,271 @@
+//! The body of a request to what is to be run or checked: JSON or a form, a table or TOML text, files beside it.
+
+use std::collections::BTreeMap;
+
+use axum::body::Bytes;
+use axum::extract::multipart::MultipartRejection;
+use axum::extract::{FromRequest, Multipart, Request};
+use axum::http::{StatusCode, header};
+use serde::Deserialize;
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use tokio::sync::OwnedSemaphorePermit;
+use utoipa::ToSchema;
+
+use super::App;
+use crate::calibration::case::CalibrationCase;
+use crate::case::{Case, Method};
+use crate::check::is_calibration;
+use crate::error::input;
+use crate::service::job::{FITTED, JobKind, State, Submission};
+use crate::service::problem::{Answer, Problem};
+use crate::service::store::hex;
+
+/// Longest name of a case or file, bytes.
+const NAME_MAX: usize = 200;
+
+/// What is asked for, as it came.
+#[derive(Debug, Clone, Default, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Asked {
+    /// Name of the case.
+    pub name: Option<String>,
+    /// The input: TOML text, or an object of the same keys.
+    #[schema(value_type = Value)]
+    pub input: Option<Value>,
+    /// Files that the input names, as text.
+    #[serde(default)]
+    #[schema(value_type = BTreeMap<String, String>)]
+    pub files: BTreeMap<String, FileText>,
+    /// Calibration whose law is to be used, whatever `[fatigue]` says.
+    pub calibration: Option<String>,
+}
+
+/// Content of a file.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(from = "String")]
+pub struct FileText(pub Vec<u8>);
+
+impl From<String> for FileText {
+    fn from(text: String) -> Self {
+        FileText(text.into_bytes())
+    }
+}
+
+/// A form of files and fields.
+pub type Fields = (BTreeMap<String, String>, Vec<(String, Vec<u8>)>);
+
+/// A body that was read, with its room among those that may be in memory, and its hash.
+pub struct Body {
+    /// What was asked for.
+    pub asked: Asked,
+    /// Hash of it.
+    pub fingerprint: String,
+    /// Given back when the body is done with.
+    pub room: OwnedSemaphorePermit,
+}
+
+/// Reads a body.
+///
+/// # Errors
+/// 400 and 413.
+pub async fn read(app: &App, request: Request) -> Answer<Body> {
+    let room = room(app).await?;
+    let kind = request.headers().get(header::CONTENT_TYPE).and_then(|kind| kind.to_str().ok()).unwrap_or_default().to_owned();
+    let (asked, fingerprint) = if kind.starts_with("multipart/form-data") {
+        let (mut fields, files) = form(app, request).await?;
+        let mut hash = Sha256::new();
+        for (name, value) in &fields {
+            hash.update(format!("{name}={value}\n"));
+        }
+        for (name, content) in &files {
+            hash.update(format!("{name}:{}\n", content.len()));
+            hash.update(content);
+        }
+        let mut field = |name: &str| fields.remove(name);
+        let asked = Asked {
+            name: field("name"),
+            input: field("input").map(Value::String),
+            calibration: field("calibration"),
+            files: files.into_iter().map(|(name, content)| (name, FileText(content))).collect(),
+        };
+        if let Some(name) = fields.keys().next() {
+            let detail = format!("the form has a field `{name}`; known are input, name, calibration and file");
+            return Err(Problem::bad_request(detail));
+        }
+        (asked, hex(&hash.finalize()))
+    } else {
+        let bytes = bytes(request).await?;
+        let fingerprint = hex(&Sha256::digest(&bytes));
+        let asked = if kind.starts_with("application/toml") {
+            let text = String::from_utf8(bytes.into()).map_err(|_| Problem::bad_request("the body is not UTF-8 text"))?;
+            Asked { input: Some(Value::String(text)), ..Asked::default() }
+        } else {
+            serde_json::from_slice(&bytes).map_err(|error| {
+                let detail =
+                    format!("the body is not JSON of the expected form: {error}; known are input, name, calibration, files");
+                Problem::bad_request(detail)
+            })?
+        };
+        (asked, fingerprint)
+    };
+    let most = app.limits.files;
+    if asked.files.len() > most {
+        return Err(Problem::too_large(format!("{} files are more than the {most} this server takes", asked.files.len())));
+    }
+    Ok(Body { asked, fingerprint, room })
+}
+
+/// Waits for room for one more body.
+pub async fn room(app: &App) -> Answer<OwnedSemaphorePermit> {
+    // Never closed, and if it were: come back later.
+    app.bodies.clone().acquire_owned().await.map_err(|_| Problem::too_many("the server is about to stop", 5))
+}
+
+async fn bytes(request: Request) -> Answer<Bytes> {
+    Bytes::from_request(request, &()).await.map_err(|rejection| refused(rejection.status(), &rejection.body_text()))
+}
+
+fn refused(status: StatusCode, text: &str) -> Problem {
+    match status {
+        StatusCode::PAYLOAD_TOO_LARGE => Problem::too_large("the body is larger than this server takes; see /v1/service"),
+        _ => Problem::bad_request(format!("the body cannot be read: {text}")),
+    }
+}
+
+/// Reads a form; parts with a file name are files.
+///
+/// # Errors
+/// 400 and 413.
+pub async fn form(app: &App, request: Request) -> Answer<Fields> {
+    let mut parts = Multipart::from_request(request, &()).await.map_err(|rejection: MultipartRejection| {
+        Problem::bad_request(format!("the body is no multipart form: {}", rejection.body_text()))
+    })?;
+    let (mut fields, mut files) = (BTreeMap::new(), Vec::new());
+    let broken = |error: axum::extract::multipart::MultipartError| refused(error.status(), &error.body_text());
+    while let Some(part) = parts.next_field().await.map_err(broken)? {
+        let (name, file) = (part.name().unwrap_or_default().to_owned(), part.file_name().map(str::to_owned));
+        let content = part.bytes().await.map_err(broken)?.to_vec();
+        match file {
+            Some(file) => {
+                check_name("file", &file)?;
+                if files.iter().any(|(other, _)| *other == file) {
+                    return Err(Problem::bad_request(format!("two files are called {file:?}; give every file its own name")));
+                }
+                files.push((file, content));
+            }
+            None => {
+                let text = String::from_utf8(content).map_err(|_| Problem::bad_request(format!("`{name}` is not UTF-8 text")))?;
+                fields.insert(name, text);
+            }
+        }
+        if files.len() > app.limits.files {
+            return Err(Problem::too_large(format!("more files than the {} this server takes", app.limits.files)));
+        }
+    }
+    Ok((fields, files))
+}
+
+fn check_name(key: &str, name: &str) -> Answer<()> {
+    let is_fine = !name.is_empty() && name.len() <= NAME_MAX && !name.chars().any(char::is_control);
+    if is_fine {
+        return Ok(());
+    }
+    let remedy = format!("give 1 to {NAME_MAX} bytes of text without line breaks");
+    Err(input(key, format!("{name:?}"), "is no name", remedy).into())
+}
+
+/// What was asked for as it can be stored and run.
+///
+/// # Errors
+/// What is wrong with it, as the command line would say it.
+pub async fn submission(app: &App, kind: Option<JobKind>, asked: Asked) -> Answer<Submission> {
+    let given = asked.input.ok_or_else(|| Problem::bad_request("the body has no `input`: give TOML text or an object"))?;
+    let name = asked.name.unwrap_or_else(|| kind.map_or("case", JobKind::name).to_owned());
+    check_name("name", &name)?;
+    let mut files: Vec<(String, Vec<u8>)> = Vec::with_capacity(asked.files.len() + 1);
+    for (name, FileText(content)) in asked.files {
+        check_name("file", &name)?;
+        files.push((name, content));
+    }
+    let is_text = given.is_string();
+    let mut text = text_of(given)?;
+    if let Some(table) = text.parse::<toml::Table>().ok().filter(|table| names_no_readings(table) && !files.is_empty()) {
+        text = with_readings(table, &files)?;
+    }
+    let with_fitted = asked.calibration.is_some();
+    if let Some(id) = &asked.calibration {
+        files.retain(|(name, _)| name != FITTED);
+        files.push((FITTED.to_owned(), record_of(app, id).await?));
+    }
+    let submission = Submission { name, text, with_fitted, files };
+    let points = app.limits.points;
+    let checked = tokio::task::spawn_blocking(move || check(&submission, kind, points).map(|()| submission));
+    let checked = checked.await.map_err(|_| Problem::internal())?;
+    checked.map_err(|problem| if is_text { problem } else { problem.without_line() })
+}
+
+/// TOML of the input.
+fn text_of(given: Value) -> Answer<String> {
+    match given {
+        Value::String(text) => Ok(text),
+        Value::Object(_) => {
+            let refused = |error: &dyn std::fmt::Display| Problem::bad_request(format!("`input` has no form in TOML: {error}"));
+            let table = toml::Table::try_from(given).map_err(|error| refused(&error))?;
+            toml::to_string(&table).map_err(|error| refused(&error))
+        }
+        _ => Err(Problem::bad_request("`input` is neither text nor an object: give TOML text or an object of its keys")),
+    }
+}
+
+fn names_no_readings(table: &toml::Table) -> bool {
+    is_calibration(table) && table.get("measured").is_none_or(|measured| measured.get("files").is_none())
+}
+
+/// A calibration that names no files uses all that came with it.
+fn with_readings(mut table: toml::Table, files: &[(String, Vec<u8>)]) -> Answer<String> {
+    let measured = table.entry("measured").or_insert_with(|| toml::Table::new().into());
+    if let Some(measured) = measured.as_table_mut() {
+        measured.insert("files".to_owned(), files.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().into());
+    }
+    toml::to_string(&table).map_err(|error| Problem::bad_request(error.to_string()))
+}
+
+/// The record of a finished calibration.
+async fn record_of(app: &App, id: &str) -> Answer<Vec<u8>> {
+    let refused = |problem: &str, remedy: &str| Problem::from(input("calibration", format!("\"{id}\""), problem, remedy));
+    let Some(job) = app.store.job(JobKind::Calibration, id).await? else {
+        return Err(refused("is no calibration here", "give the id of one that GET /v1/calibrations lists"));
+    };
+    match app.store.file(id, FITTED).await? {
+        Some(file) => Ok(file.content),
+        None => Err(refused(&format!("has no result: it is {}", job.state), &format!("wait until it has {}", State::Succeeded))),
+    }
+}
+
+/// Whether it can be run, as far as that shows without building the plate.
+fn check(submission: &Submission, kind: Option<JobKind>, points: f64) -> Answer<()> {
+    let document = submission.document()?;
+    match kind {
+        Some(JobKind::Prediction) => check_points(&Case::from_document(&document)?, points),
+        Some(JobKind::Calibration) => check_points(&CalibrationCase::from_document(document)?.case, points),
+        None => Ok(()),
+    }
+}
+
+/// Refuses plates of more points than this server takes.
+///
+/// # Errors
+/// 422.
+pub fn check_points(case: &Case, most: f64) -> Answer<()> {
+    let model = &case.model;
+    // The spacing is that of the finest level, so that of refined plates is an upper bound; their levels are few.
+    let points = case.specimen.area() / model.spacing.powi(2);
+    if model.method == Method::Handbook || model.refinement.is_some() || points <= most {
+        return Ok(());
+    }
+    let problem = format!("gives the plate {points:.3e} points, more than the {most:.3e} this server takes");
+    let spacing = model.spacing / crate::units::MM;
+    let remedy = format!("give at least {:.3}, or run it with `perilife predict`", spacing * (points / most).sqrt());
+    Err(input("model.spacing_mm", spacing, problem, remedy).into())
+}

@@ -1,0 +1,142 @@
+//! A job as it goes on, as server-sent events.
+
+use std::convert::Infallible;
+use std::time::{Duration, Instant};
+
+use axum::extract::{Path, State as Shared};
+use axum::http::HeaderMap;
+use axum::response::sse::{Event, KeepAlive, KeepAliveStream, Sse};
+use serde_json::json;
+use tokio::sync::mpsc::{Sender, channel};
+use tokio_stream::wrappers::ReceiverStream;
+
+use super::App;
+use super::collections::{job_of, view};
+use crate::service::job::JobKind;
+use crate::service::problem::{Answer, Problem};
+
+/// Time between two looks at the store.
+const LOOK_EVERY: Duration = Duration::from_millis(250);
+/// Time for which a store that does not answer is asked again, before the stream ends and the reader has to come back.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// Events that may wait for a slow reader.
+const WAITING: usize = 16;
+
+/// What a reader has seen; the id of every event.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Seen {
+    /// Revision of the job.
+    revision: i64,
+    /// Claim whose curve it was.
+    fence: i64,
+    /// Entries of that curve.
+    entries: i64,
+    /// Revision of the picture.
+    picture: i64,
+}
+
+impl Seen {
+    fn of(id: &str) -> Option<Seen> {
+        let mut numbers = id.split('.').map(|number| number.parse().ok());
+        let mut next = || numbers.next().flatten();
+        Some(Seen { revision: next()?, fence: next()?, entries: next()?, picture: next()? })
+    }
+
+    fn id(&self) -> String {
+        format!("{}.{}.{}.{}", self.revision, self.fence, self.entries, self.picture)
+    }
+}
+
+/// A job as it goes on: events `job` (where it stands), `growth` (more of its curve: entries from `from` on, 0 starts over) and
+/// `picture` (a new one is at its `href`). Ends when the job has ended. `Last-Event-ID` goes on where a reader was cut off.
+#[utoipa::path(get, path = "/v1/{collection}/{id}/events", tag = "jobs",
+    params(("collection" = String, Path), ("id" = String, Path), ("Last-Event-ID" = Option<String>, Header)),
+    responses((status = 200, description = "Events", content_type = "text/event-stream"), (status = 404, body = Problem)))]
+pub async fn events(
+    Shared(app): Shared<App>,
+    Path((collection, id)): Path<(String, String)>,
+    headers: HeaderMap,
+) -> Answer<Sse<KeepAliveStream<ReceiverStream<Result<Event, Infallible>>>>> {
+    let kind = job_of(&app, &collection, &id).await?.kind;
+    let seen = headers.get("last-event-id").and_then(|id| id.to_str().ok()).and_then(Seen::of).unwrap_or_default();
+    let (events, reader) = channel(WAITING);
+    tokio::spawn(async move {
+        let mut follower = Follower { app, kind, id, seen, events };
+        let mut answered = Instant::now();
+        loop {
+            match follower.look().await {
+                Ok(true) => answered = Instant::now(),
+                Ok(false) => break,
+                Err(_) if answered.elapsed() > PATIENCE => break,
+                Err(_) => {}
+            }
+            if follower.app.is_stopping() || follower.events.is_closed() {
+                break;
+            }
+            tokio::time::sleep(LOOK_EVERY).await;
+        }
+    });
+    Ok(Sse::new(ReceiverStream::new(reader)).keep_alive(KeepAlive::default()))
+}
+
+/// Sends a reader what is new.
+struct Follower {
+    app: App,
+    kind: JobKind,
+    id: String,
+    seen: Seen,
+    events: Sender<Result<Event, Infallible>>,
+}
+
+impl Follower {
+    /// Looks once; whether there may be more to come.
+    async fn look(&mut self) -> Answer<bool> {
+        let Some(revision) = self.app.store.revision(&self.id).await? else { return Ok(false) };
+        if revision == self.seen.revision {
+            return Ok(true);
+        }
+        let Some(job) = self.app.store.job(self.kind, &self.id).await? else { return Ok(false) };
+        let (is_final, fence, revision) = (job.state.is_final(), job.fence, job.revision);
+        if self.kind == JobKind::Prediction && !is_final {
+            self.follow_growth(fence).await?;
+            self.follow_picture().await?;
+        }
+        self.seen.revision = revision;
+        let view = view(&self.app, job, false).await?;
+        let sent = self.send("job", &json!(view)).await;
+        Ok(sent && !is_final)
+    }
+
+    async fn follow_growth(&mut self, fence: i64) -> Answer<()> {
+        if fence != self.seen.fence {
+            // Another worker took the job up, perhaps further back.
+            (self.seen.fence, self.seen.entries) = (fence, 0);
+        }
+        for growth in self.app.store.growth(&self.id, self.seen.entries).await? {
+            if growth.cycles.is_empty() {
+                continue;
+            }
+            self.seen.entries = (growth.from + growth.cycles.len()) as i64;
+            self.send("growth", &json!(growth)).await;
+        }
+        Ok(())
+    }
+
+    async fn follow_picture(&mut self) -> Answer<()> {
+        let Some((revision, about)) = self.app.store.picture_about(&self.id).await? else { return Ok(()) };
+        if revision != self.seen.picture {
+            self.seen.picture = revision;
+            let mut about: serde_json::Value = serde_json::from_str(&about).unwrap_or_else(|_| json!({}));
+            about["revision"] = revision.into();
+            about["href"] = format!("/v1/{}/{}/live/damage.png", self.kind.collection(), self.id).into();
+            self.send("picture", &about).await;
+        }
+        Ok(())
+    }
+
+    /// Sends an event; whether there is still somebody to send to.
+    async fn send(&self, name: &str, data: &serde_json::Value) -> bool {
+        let event = Event::default().event(name).id(self.seen.id()).data(data.to_string());
+        self.events.send(Ok(event)).await.is_ok()
+    }
+}

@@ -1,0 +1,148 @@
+//! Looking at input before anything is run: measured curves, and what a file would run.
+
+use std::path::Path;
+
+use axum::Json;
+use axum::extract::{Request, State};
+use serde::Serialize;
+use serde_json::Value;
+use utoipa::ToSchema;
+
+use super::App;
+use super::documents::{self, Asked, check_points, submission};
+use crate::calibration::measured::{CycleUnit, LengthUnit, MeasuredCurve, Shape, Survey, Units, survey};
+use crate::case::Case;
+use crate::check;
+use crate::error::input;
+use crate::fracture::read::is_scene;
+use crate::service::problem::{Answer, Place, Problem};
+use crate::units::MM;
+
+/// What was found in files of readings.
+#[derive(Serialize, ToSchema)]
+pub struct Found {
+    files: Vec<FoundFile>,
+}
+
+/// What was found in a file of readings.
+#[derive(Serialize, ToSchema)]
+pub struct FoundFile {
+    /// Its name.
+    file: String,
+    /// What its columns are; null where that cannot be told.
+    columns: Option<Columns>,
+    /// Curves of the good rows.
+    curves: Vec<FoundCurve>,
+    warnings: Vec<String>,
+    /// Bad rows, or what is wrong with the file as a whole.
+    problems: Vec<Place>,
+}
+
+/// What the columns of a file are.
+#[derive(Serialize, ToSchema)]
+pub struct Columns {
+    /// `long` (a row a reading) or `wide` (a column a specimen).
+    layout: &'static str,
+    length_unit: &'static str,
+    cycle_unit: &'static str,
+}
+
+/// Readings of a specimen.
+#[derive(Serialize, ToSchema)]
+pub struct FoundCurve {
+    specimen: String,
+    cycles: Vec<f64>,
+    crack_length_mm: Vec<f64>,
+    /// Line of each reading.
+    lines: Vec<usize>,
+}
+
+/// A form of files of readings.
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "describes a form")]
+struct Readings {
+    /// Files (repeatable).
+    #[schema(value_type = String, format = Binary)]
+    file: Vec<u8>,
+    /// `mm`, `inch` or `m`, where the header does not say it.
+    length_unit: Option<String>,
+    /// `cycles`, `kilocycles` or `megacycles`, where the header does not say it.
+    cycle_unit: Option<String>,
+}
+
+/// Reads measured a-N curves: what was understood, and every row that is wrong.
+#[utoipa::path(post, path = "/v1/measured", tag = "inputs",
+    request_body(content = inline(Readings), content_type = "multipart/form-data"),
+    responses((status = 200, body = Found), (status = 400, body = Problem), (status = 413, body = Problem)))]
+pub async fn measured(State(app): State<App>, request: Request) -> Answer<Json<Found>> {
+    let _room = documents::room(&app).await?;
+    let (fields, files) = documents::form(&app, request).await?;
+    if let Some(name) = fields.keys().find(|name| !["length_unit", "cycle_unit"].contains(&name.as_str())) {
+        return Err(Problem::bad_request(format!("the form has a field `{name}`; known are file, length_unit and cycle_unit")));
+    }
+    if files.is_empty() {
+        return Err(Problem::bad_request("the form has no `file`: send at least one"));
+    }
+    let length = fields.get("length_unit").filter(|name| !name.is_empty());
+    let cycles = fields.get("cycle_unit").filter(|name| !name.is_empty());
+    let units = Units {
+        length: length.map(|name| named(LengthUnit::ALL, LengthUnit::name, "length_unit", name)).transpose()?,
+        cycles: cycles.map(|name| named(CycleUnit::ALL, CycleUnit::name, "cycle_unit", name)).transpose()?,
+    };
+    let look = move || Found { files: files.into_iter().map(|(file, content)| found(file, &content, units)).collect() };
+    tokio::task::spawn_blocking(look).await.map(Json).map_err(|_| Problem::internal())
+}
+
+/// The kind of this name.
+fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &str) -> Answer<T> {
+    let known: Vec<&str> = all.iter().map(|kind| name_of(*kind)).collect();
+    let place = known.iter().position(|known| *known == name);
+    place.map(|place| all[place]).ok_or_else(|| {
+        input(key, format!("\"{name}\""), "is not a known unit", format!("use one of {}", known.join(", "))).into()
+    })
+}
+
+fn found(file: String, content: &[u8], units: Units) -> FoundFile {
+    let Survey { layout, measured, problems } = survey(content, Path::new(&file), units);
+    let columns = layout.map(|layout| Columns {
+        layout: if matches!(layout.shape, Shape::Long { .. }) { "long" } else { "wide" },
+        length_unit: LengthUnit::ALL.iter().find(|unit| unit.metres() == layout.length_unit).map_or("mm", |unit| unit.name()),
+        cycle_unit: CycleUnit::ALL.iter().find(|unit| unit.cycles() == layout.cycle_unit).map_or("cycles", |unit| unit.name()),
+    });
+    let curve = |curve: MeasuredCurve| FoundCurve {
+        specimen: curve.specimen,
+        cycles: curve.cycles,
+        crack_length_mm: curve.crack_length.iter().map(|metres| metres / MM).collect(),
+        lines: curve.source.lines,
+    };
+    FoundFile {
+        file,
+        columns,
+        curves: measured.curves.into_iter().map(curve).collect(),
+        warnings: measured.warnings,
+        problems: problems.into_iter().map(Place::from).collect(),
+    }
+}
+
+/// Checks a case, a calibration or a fracture scene without running it: what was understood, and a drawing.
+#[utoipa::path(post, path = "/v1/check", tag = "inputs", request_body = Asked,
+    responses((status = 200, body = Value), (status = 400, body = Problem), (status = 422, body = Problem)))]
+pub async fn check(State(app): State<App>, request: Request) -> Answer<Json<Value>> {
+    let body = documents::read(&app, request).await?;
+    let is_text = body.asked.input.as_ref().is_some_and(Value::is_string);
+    let submission = submission(&app, None, body.asked).await?;
+    let points = app.limits.points;
+    let look = move || -> Answer<Value> {
+        let document = submission.document()?;
+        if !is_scene(&document.table) && !check::is_calibration(&document.table) {
+            check_points(&Case::from_document(&document)?, points)?;
+        }
+        let checked = check::check(document)?;
+        let mut object = checked.json();
+        object["drawing"] = checked.drawing.into();
+        Ok(object)
+    };
+    let looked = tokio::task::spawn_blocking(look).await.map_err(|_| Problem::internal())?;
+    drop(body.room);
+    looked.map(Json).map_err(|problem| if is_text { problem } else { problem.without_line() })
+}

@@ -1,0 +1,80 @@
+//! What the service is and knows: itself, every kind of every key, materials.
+
+use axum::extract::State;
+use axum::{Extension, Json};
+use serde::Serialize;
+use serde_json::{Value, json};
+use utoipa::ToSchema;
+
+use super::App;
+use super::security::Caller;
+use crate::input::Folder;
+use crate::material::library::{self, Property};
+use crate::report::catalogue;
+use crate::service::problem::{Answer, Problem};
+use crate::service::store::Role;
+
+/// The service and what it allows.
+#[derive(Serialize, ToSchema)]
+pub struct Service {
+    name: &'static str,
+    version: &'static str,
+    /// Whether requests need a token.
+    needs_token: bool,
+    /// What the caller may do; null if he may not do anything yet.
+    role: Option<Role>,
+    /// Jobs that this process runs at a time.
+    workers: usize,
+    limits: Allowed,
+}
+
+/// How much a request may ask for.
+#[derive(Serialize, ToSchema)]
+pub struct Allowed {
+    body_bytes: usize,
+    files: usize,
+    points: f64,
+    queued: i64,
+}
+
+/// The service and what it allows.
+#[utoipa::path(get, path = "/v1/service", tag = "knowledge", responses((status = 200, body = Service)))]
+pub async fn service(State(app): State<App>, caller: Option<Extension<Caller>>) -> Json<Service> {
+    let limits = &app.limits;
+    Json(Service {
+        name: env!("CARGO_PKG_NAME"),
+        version: env!("CARGO_PKG_VERSION"),
+        needs_token: app.security.needs_token,
+        role: caller.map(|Extension(caller)| caller.role),
+        workers: app.workers,
+        limits: Allowed { body_bytes: limits.body_bytes, files: limits.files, points: limits.points, queued: limits.queued },
+    })
+}
+
+/// Every kind of every key of the input files.
+#[utoipa::path(get, path = "/v1/kinds", tag = "knowledge", responses((status = 200, body = Value)))]
+pub async fn kinds() -> Json<Value> {
+    Json(catalogue::json())
+}
+
+/// Materials by name, every number with its source.
+#[utoipa::path(get, path = "/v1/materials", tag = "knowledge", responses((status = 200, body = Value)))]
+pub async fn materials() -> Answer<Json<Value>> {
+    let property = |property: &Property| json!({ "value": property.value, "source": property.source, "note": property.note });
+    let material = |name: String| -> Answer<Value> {
+        let file = library::find(&name, &Folder::none()).map_err(Problem::from)?;
+        let known = |property_of: &Option<Property>| property_of.as_ref().map(property);
+        Ok(json!({
+            "name": name,
+            "title": file.title,
+            "youngs_modulus_gpa": property(&file.youngs_modulus_gpa),
+            "poisson_ratio": property(&file.poisson_ratio),
+            "yield_strength_mpa": known(&file.yield_strength_mpa),
+            "toughness_mpa_sqrt_m": known(&file.toughness_mpa_sqrt_m),
+            "fracture_energy_j_m2": known(&file.fracture_energy_j_m2),
+            "density_kg_m3": known(&file.density_kg_m3),
+            "tensile_strength_mpa": known(&file.tensile_strength_mpa),
+        }))
+    };
+    Ok(Json(json!({ "materials": library::names().into_iter().map(material).collect::<Answer<Vec<_>>>()? })))
+}

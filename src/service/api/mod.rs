@@ -1,0 +1,78 @@
+//! The HTTP service: every route, its limits and its answers.
+
+mod app;
+mod collections;
+mod documents;
+mod events;
+mod inputs;
+mod knowledge;
+mod page;
+mod results;
+mod security;
+mod watching;
+
+pub use app::{App, Limits, Security};
+pub use watching::start as start_counting;
+
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::http::StatusCode;
+use axum::middleware::{from_fn, from_fn_with_state};
+use axum::response::IntoResponse;
+use axum::routing::get;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::compression::CompressionLayer;
+use utoipa::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use utoipa_swagger_ui::SwaggerUi;
+
+use super::problem::Problem;
+
+/// What `/openapi.json` says of the service as a whole.
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "perilife",
+        description = "Fatigue-life prediction of cracked plates by peridynamics: fit the fatigue law to measured a-N curves, \
+                       predict the life of plates nobody tested. Inputs are those of the command line, as TOML text or as JSON \
+                       of the same keys; what is wrong with them is said in the same words.",
+        license(name = "MIT OR Apache-2.0")
+    ),
+    components(schemas(Problem))
+)]
+struct Description;
+
+/// All routes.
+pub fn router(app: App) -> Router {
+    let (v1, description) = OpenApiRouter::with_openapi(Description::openapi())
+        .routes(routes!(knowledge::service))
+        .routes(routes!(knowledge::kinds))
+        .routes(routes!(knowledge::materials))
+        .routes(routes!(inputs::measured))
+        .routes(routes!(inputs::check))
+        .routes(routes!(collections::submit, collections::list))
+        .routes(routes!(collections::show, collections::delete))
+        .routes(routes!(collections::cancel))
+        .routes(routes!(events::events))
+        .routes(routes!(results::file))
+        .routes(routes!(results::picture))
+        .routes(routes!(results::remaining))
+        .split_for_parts();
+    let limits = app.limits.clone();
+    v1.merge(Router::from(SwaggerUi::new("/docs").url("/openapi.json", description)))
+        .route("/healthz", get(watching::health))
+        .route("/metrics", get(watching::metrics))
+        .fallback(page::page)
+        .method_not_allowed_fallback(|| async {
+            Problem::new(StatusCode::METHOD_NOT_ALLOWED, "Method not allowed", "this address does not take that method")
+        })
+        .layer(DefaultBodyLimit::max(limits.body_bytes))
+        .layer(from_fn_with_state(app.clone(), security::guard))
+        .layer(from_fn(watching::measure))
+        .layer(from_fn_with_state(limits.answer_within, security::in_time))
+        .layer(CompressionLayer::new())
+        .layer(CatchPanicLayer::custom(|_| Problem::internal().into_response()))
+        .layer(from_fn(security::headers))
+        .with_state(app)
+}

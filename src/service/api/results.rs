@@ -1,0 +1,189 @@
+//! Results of finished jobs, and the picture of one that runs.
+
+use std::path::Path as FilePath;
+
+use axum::Json;
+use axum::extract::rejection::QueryRejection;
+use axum::extract::{Path, Query, State as Shared};
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+
+use super::App;
+use super::collections::job_of;
+use crate::error::input;
+use crate::report::csv::{self, A_N_FILE, Row};
+use crate::report::resample::Sampling;
+use crate::service::job::{Job, State};
+use crate::service::problem::{Answer, Problem};
+
+/// Rows of a resampled curve: as many as a table can show.
+const POINTS: std::ops::RangeInclusive<u64> = 2..=100_000;
+
+/// Where an a-N curve is wanted.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Wanted {
+    /// Only for `a_n.csv`: so many rows, equally spaced in cycles.
+    points: Option<u64>,
+    /// Only for `a_n.csv`: a row every so many cycles, and one at the end.
+    every_cycles: Option<f64>,
+}
+
+/// A file of a finished job: `result.json`, `a_n.csv`, `fitted.toml`, pictures and so on, as the job lists them.
+#[utoipa::path(get, path = "/v1/{collection}/{id}/files/{name}", tag = "results",
+    params(("collection" = String, Path), ("id" = String, Path), ("name" = String, Path), Wanted),
+    responses((status = 200, description = "The file"), (status = 400, body = Problem), (status = 404, body = Problem),
+        (status = 409, body = Problem, description = "The job has no result"), (status = 422, body = Problem)))]
+pub async fn file(
+    Shared(app): Shared<App>,
+    Path((collection, id, name)): Path<(String, String, String)>,
+    wanted: Result<Query<Wanted>, QueryRejection>,
+) -> Answer<Response> {
+    let Query(wanted) = wanted.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
+    let Some(file) = app.store.file(&id, &name).await? else {
+        let job = job_of(&app, &collection, &id).await?;
+        must_have_result(&job)?;
+        return Err(Problem::not_found("file of this job"));
+    };
+    // Names of other collections lead nowhere, even if the id is right.
+    super::collections::kind_of(&collection)?;
+    let sampling = match (wanted.points, wanted.every_cycles) {
+        (None, None) => None,
+        (Some(points), None) => Some(Sampling::Points(points)),
+        (None, Some(step)) => Some(Sampling::EveryCycles(step)),
+        (Some(_), Some(_)) => return Err(Problem::bad_request("give points or every_cycles, not both")),
+    };
+    let content = match sampling {
+        None => file.content,
+        Some(_) if name != A_N_FILE => return Err(Problem::bad_request("points and every_cycles are for a_n.csv only")),
+        Some(sampling) => resampled(&file.content, sampling).await?.into_bytes(),
+    };
+    let shown = matches!(&*file.media_type, "image/png" | "image/svg+xml" | "application/json");
+    let disposition = format!("{}; filename=\"{}\"", if shown { "inline" } else { "attachment" }, file.name);
+    let fixed = [
+        (header::CONTENT_TYPE, file.media_type),
+        (header::CONTENT_DISPOSITION, disposition),
+        // A result never changes.
+        (header::CACHE_CONTROL, "private, max-age=86400, immutable".to_owned()),
+    ];
+    Ok((fixed, content).into_response())
+}
+
+async fn resampled(table: &[u8], sampling: Sampling) -> Answer<String> {
+    if let Sampling::Points(points) = sampling
+        && !POINTS.contains(&points)
+    {
+        let problem = format!("is not {} to {}", POINTS.start(), POINTS.end());
+        return Err(input("points", points, problem, "give for example 400").into());
+    }
+    let rows = rows(table)?;
+    if let Sampling::EveryCycles(step) = sampling {
+        let count = (rows[rows.len() - 1].cycles - rows[0].cycles) / step;
+        if count > *POINTS.end() as f64 {
+            let problem = format!("gives {count:.0} rows, more than {}", POINTS.end());
+            return Err(input("every_cycles", step, problem, "give a larger step").into());
+        }
+    }
+    let work = move || Ok(csv::table(&sampling.of(&rows, "every_cycles")?));
+    tokio::task::spawn_blocking(work).await.map_err(|_| Problem::internal())?
+}
+
+/// Rows of a stored curve, at least one.
+fn rows(table: &[u8]) -> Answer<Vec<Row>> {
+    let text = std::str::from_utf8(table).map_err(|_| Problem::internal())?;
+    Ok(csv::parse_a_n(text, FilePath::new(A_N_FILE))?)
+}
+
+fn must_have_result(job: &Job) -> Answer<()> {
+    match job.state {
+        State::Succeeded => Ok(()),
+        state => Err(Problem::conflict(format!("the job has no result: it is {state}"))),
+    }
+}
+
+/// The plate of a running prediction as it was last seen: damage and crack paths.
+#[utoipa::path(get, path = "/v1/{collection}/{id}/live/damage.png", tag = "results",
+    params(("collection" = String, Path), ("id" = String, Path)),
+    responses((status = 200, description = "PNG", content_type = "image/png"), (status = 404, body = Problem)))]
+pub async fn picture(Shared(app): Shared<App>, Path((collection, id)): Path<(String, String)>) -> Answer<Response> {
+    super::collections::kind_of(&collection)?;
+    let picture = app.store.picture(&id).await?.ok_or_else(|| Problem::not_found("picture"))?;
+    Ok(([(header::CONTENT_TYPE, "image/png")], picture).into_response())
+}
+
+/// From which length on, and with which factor.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct From {
+    /// Crack length today.
+    crack_length_mm: f64,
+    /// What the remaining life is divided by for the inspection interval; 2 if left out.
+    factor: Option<f64>,
+}
+
+/// What is left of a life.
+#[derive(Serialize, ToSchema)]
+pub struct Remaining {
+    crack_length_mm: f64,
+    /// Cycles at which the curve reaches that length.
+    cycles_at: f64,
+    /// Cycles at its end.
+    life_cycles: f64,
+    /// From there to the end.
+    remaining_cycles: f64,
+    factor: f64,
+    /// Remaining cycles over the factor.
+    inspection_interval_cycles: f64,
+}
+
+/// Factor of the inspection interval: two looks before the end.
+const FACTOR: f64 = 2.0;
+
+/// Remaining life from a crack length on, and an inspection interval.
+#[utoipa::path(get, path = "/v1/predictions/{id}/remaining", tag = "results",
+    params(("id" = String, Path), From),
+    responses((status = 200, body = Remaining), (status = 400, body = Problem), (status = 404, body = Problem),
+        (status = 409, body = Problem), (status = 422, body = Problem)))]
+pub async fn remaining(
+    Shared(app): Shared<App>,
+    Path(id): Path<String>,
+    from: Result<Query<From>, QueryRejection>,
+) -> Answer<Json<Remaining>> {
+    let Query(from) = from.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
+    let factor = from.factor.unwrap_or(FACTOR);
+    if !(factor.is_finite() && factor >= 1.0) {
+        return Err(input("factor", factor, "is not 1 or more", "give for example 2").into());
+    }
+    let Some(file) = app.store.file(&id, A_N_FILE).await? else {
+        must_have_result(&job_of(&app, "predictions", &id).await?)?;
+        return Err(Problem::not_found("curve"));
+    };
+    let rows = rows(&file.content)?;
+    let (cycles_at, life_cycles) = (cycles_at(&rows, from.crack_length_mm)?, rows[rows.len() - 1].cycles);
+    let remaining_cycles = life_cycles - cycles_at;
+    Ok(Json(Remaining {
+        crack_length_mm: from.crack_length_mm,
+        cycles_at,
+        life_cycles,
+        remaining_cycles,
+        factor,
+        inspection_interval_cycles: remaining_cycles / factor,
+    }))
+}
+
+/// Cycles at which a curve reaches a length, linear between rows; where it stays at one for a while, their end.
+fn cycles_at(rows: &[Row], length: f64) -> Answer<f64> {
+    let (first, last) = (rows[0].crack_length_mm, rows[rows.len() - 1].crack_length_mm);
+    if !(first..=last).contains(&length) {
+        let problem = format!("is not on the curve, which goes from {first} to {last} mm");
+        return Err(input("crack_length_mm", length, problem, "give a length between them").into());
+    }
+    // Between both, so there is a row on either side, or it is the last.
+    let after = rows.partition_point(|row| row.crack_length_mm <= length);
+    let from = rows[after - 1];
+    let Some(to) = rows.get(after) else { return Ok(from.cycles) };
+    let share = (length - from.crack_length_mm) / (to.crack_length_mm - from.crack_length_mm);
+    Ok(from.cycles + share * (to.cycles - from.cycles))
+}

@@ -1,0 +1,171 @@
+//! Who may ask, how often, and what browsers are told.
+
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use axum::extract::{ConnectInfo, Request, State};
+use axum::http::request::Parts;
+use axum::http::uri::Authority;
+use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+
+use super::App;
+use crate::service::problem::{Answer, Problem};
+use crate::service::store::{Role, hash};
+
+/// Who asks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Caller {
+    /// Name of the token; empty where none is needed.
+    pub name: String,
+    /// What he may do.
+    pub role: Role,
+}
+
+impl Caller {
+    /// Refuses who may not.
+    ///
+    /// # Errors
+    /// 403.
+    pub fn must_be(&self, role: Role) -> Answer<()> {
+        if self.role >= role {
+            return Ok(());
+        }
+        let detail = format!("this needs a token of the role {role}; yours has {}", self.role);
+        Err(Problem::new(StatusCode::FORBIDDEN, "Forbidden", detail))
+    }
+
+    /// Refuses who may not do something with a job of this owner.
+    ///
+    /// # Errors
+    /// 403.
+    pub fn must_own(&self, owner: &str) -> Answer<()> {
+        self.must_be(if owner == self.name { Role::Run } else { Role::Admin })
+    }
+}
+
+/// Lets a request through, or not.
+pub async fn guard(
+    State(app): State<App>,
+    ConnectInfo(address): ConnectInfo<SocketAddr>,
+    request: Request,
+    next: Next,
+) -> Response {
+    // The body, which may not be shared, is left aside.
+    let (mut head, body) = request.into_parts();
+    match caller_of(&app, address, &head).await {
+        Ok(caller) => {
+            if let Some(caller) = caller {
+                head.extensions.insert(caller);
+            }
+            next.run(Request::from_parts(head, body)).await
+        }
+        Err(problem) => problem.into_response(),
+    }
+}
+
+/// Who asks; `None` for what everybody may see.
+async fn caller_of(app: &App, address: SocketAddr, head: &Parts) -> Answer<Option<Caller>> {
+    let is_write = !matches!(head.method, Method::GET | Method::HEAD);
+    check_origin(app, &head.headers, is_write)?;
+    let token = token_of(&head.headers);
+    let known = match token {
+        Some(token) if app.security.needs_token => app.token(&hash(token)).await?,
+        _ => None,
+    };
+    let name = known.as_ref().map(|token| &*token.name);
+    if !app.may_ask(name, address.ip(), is_write) {
+        return Err(Problem::too_many("more requests than this server takes from one caller; go slower", 1));
+    }
+    if !app.security.needs_token {
+        return Ok(Some(Caller { name: String::new(), role: Role::Admin }));
+    }
+    let path = head.uri.path();
+    let is_open = !(path.starts_with("/v1/") || path == "/metrics") || path == "/v1/service";
+    match known {
+        Some(token) => Ok(Some(Caller { name: token.name, role: token.role })),
+        None if is_open => Ok(None),
+        None => {
+            let detail = match token {
+                None => "this needs a token: send the header `Authorization: Bearer TOKEN`",
+                Some(_) => "this token is not known, or its time is over",
+            };
+            Err(Problem::new(StatusCode::UNAUTHORIZED, "Unauthorized", detail))
+        }
+    }
+}
+
+fn token_of(headers: &HeaderMap) -> Option<&str> {
+    headers.get(header::AUTHORIZATION)?.to_str().ok()?.strip_prefix("Bearer ").map(str::trim)
+}
+
+/// Refuses what a page of somebody else makes a browser send: names that merely lead here (DNS rebinding), and changes from
+/// other origins.
+fn check_origin(app: &App, headers: &HeaderMap, is_write: bool) -> Answer<()> {
+    let refused = |detail: &str| Err(Problem::new(StatusCode::FORBIDDEN, "Forbidden", detail));
+    let text = |name: header::HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
+    let host = text(header::HOST).and_then(|host| host.parse::<Authority>().ok());
+    if !app.security.needs_token {
+        let is_here = host.as_ref().is_some_and(|host| {
+            let name = host.host().trim_matches(['[', ']']);
+            name == "localhost" || name.parse::<std::net::IpAddr>().is_ok_and(|address| address.is_loopback())
+        });
+        if !is_here {
+            return refused("without tokens this service answers to the names of this machine only: 127.0.0.1, [::1], localhost");
+        }
+    }
+    if let Some(origin) = text(header::ORIGIN)
+        && is_write
+    {
+        let same = origin.split_once("://").and_then(|(_, rest)| rest.parse::<Authority>().ok()) == host;
+        if !same {
+            return refused("a page of another origin may not change anything here");
+        }
+    }
+    Ok(())
+}
+
+/// Ends a request whose answer does not begin in time.
+pub async fn in_time(State(limit): State<Duration>, request: Request, next: Next) -> Response {
+    tokio::time::timeout(limit, next.run(request)).await.unwrap_or_else(|_| {
+        let detail = format!("no answer within {} s; try again when the server has less to do", limit.as_secs());
+        Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Too slow", detail).into_response()
+    })
+}
+
+/// What the page may load: only what comes from here.
+const PAGE: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; \
+                    font-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// The description of the API is shown by a page that styles its elements.
+const DOCS: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; \
+                    connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// Results are looked at, never run.
+const DATA: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox; frame-ancestors 'none'";
+
+/// Headers of every answer.
+pub async fn headers(request: Request, next: Next) -> Response {
+    let path = request.uri().path().to_owned();
+    let mut response = next.run(request).await;
+    let policy = match &*path {
+        path if path.starts_with("/docs") => DOCS,
+        path if path.starts_with("/v1/") || path == "/openapi.json" || path == "/metrics" => DATA,
+        _ => PAGE,
+    };
+    let fixed = [
+        (header::CONTENT_SECURITY_POLICY, policy),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::X_FRAME_OPTIONS, "DENY"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
+        (header::HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+        (header::HeaderName::from_static("permissions-policy"), "camera=(), geolocation=(), microphone=()"),
+    ];
+    for (name, value) in fixed {
+        response.headers_mut().insert(name, HeaderValue::from_static(value));
+    }
+    if path.starts_with("/v1/") {
+        response.headers_mut().entry(header::CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));
+    }
+    response
+}

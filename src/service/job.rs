@@ -1,0 +1,181 @@
+//! A job: what was asked for, how far it is, what came of it.
+
+use std::fmt;
+use std::str::FromStr;
+use std::time::{Duration, UNIX_EPOCH};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::ToSchema;
+
+use super::problem::Problem;
+use crate::calibration::case::remove_law;
+use crate::error::Result;
+use crate::input::{Document, Folder};
+
+/// What a job does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum JobKind {
+    /// Fits the fatigue law to measured curves.
+    Calibration,
+    /// Runs a case.
+    Prediction,
+}
+
+/// Where a job stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// Waits for a worker.
+    Queued,
+    /// A worker has it.
+    Running,
+    /// Done; its results are there.
+    Succeeded,
+    /// Ended without a result; its problem says why.
+    Failed,
+    /// Ended because somebody asked for it.
+    Cancelled,
+}
+
+/// Names as they stand in the database and in URLs.
+macro_rules! names {
+    ($Type:ident, $($Variant:ident = $name:literal),+) => {
+        impl $Type {
+            /// Its name.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self { $($Type::$Variant => $name),+ }
+            }
+        }
+        impl FromStr for $Type {
+            type Err = ();
+            fn from_str(name: &str) -> std::result::Result<Self, ()> {
+                match name { $($name => Ok($Type::$Variant),)+ _ => Err(()) }
+            }
+        }
+        impl fmt::Display for $Type {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+    };
+}
+names!(JobKind, Calibration = "calibration", Prediction = "prediction");
+names!(State, Queued = "queued", Running = "running", Succeeded = "succeeded", Failed = "failed", Cancelled = "cancelled");
+
+impl JobKind {
+    /// Its place in URLs.
+    #[must_use]
+    pub fn collection(self) -> &'static str {
+        match self {
+            JobKind::Calibration => "calibrations",
+            JobKind::Prediction => "predictions",
+        }
+    }
+}
+
+impl State {
+    /// Whether nothing more will happen.
+    #[must_use]
+    pub fn is_final(self) -> bool {
+        matches!(self, State::Succeeded | State::Failed | State::Cancelled)
+    }
+}
+
+/// How far a running job is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JobProgress {
+    /// Cycles since N = 0.
+    pub cycles: f64,
+    /// Crack length.
+    pub crack_length_mm: f64,
+    /// Share of the way to the end, 0 to 1.
+    pub share: f64,
+    /// Time spent by the worker that has it now.
+    pub elapsed_s: f64,
+    /// What is left at the pace so far.
+    pub seconds_left: Option<f64>,
+}
+
+/// A job as the API shows it.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct Job {
+    /// Opaque; sorts by time of submission.
+    pub id: String,
+    /// What it does.
+    pub kind: JobKind,
+    /// As the one who submitted it called it.
+    pub name: String,
+    /// Where it stands.
+    pub state: State,
+    /// Name of the token it was submitted with.
+    pub owner: String,
+    /// Time of submission (RFC 3339).
+    pub created: String,
+    /// When a worker first took it.
+    pub started: Option<String>,
+    /// When it ended.
+    pub finished: Option<String>,
+    /// Claims by workers since it began or since its last checkpoint; more than one after a crash.
+    pub attempts: i64,
+    /// Somebody has asked for its end.
+    pub cancel_asked: bool,
+    /// Jobs before it in the queue.
+    pub position: Option<i64>,
+    /// While it runs.
+    pub progress: Option<JobProgress>,
+    /// Why it failed.
+    pub problem: Option<Problem>,
+    /// The figures of its result.
+    pub summary: Option<Value>,
+    /// The calibration whose law a prediction uses.
+    pub calibration: Option<String>,
+    /// Counts every change.
+    pub revision: i64,
+    /// Counts the claims.
+    #[serde(skip)]
+    pub fence: i64,
+}
+
+/// What was asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Submission {
+    /// Name of the case.
+    pub name: String,
+    /// TOML, as in a file.
+    pub text: String,
+    /// Whether the law is that of the file [`FITTED`], whatever the text says.
+    pub with_fitted: bool,
+    /// Files that the text names.
+    pub files: Vec<(String, Vec<u8>)>,
+}
+
+/// The record of a calibration among the files of a prediction that uses it.
+pub const FITTED: &str = "fitted.toml";
+
+impl Submission {
+    /// The text as a parsed document.
+    ///
+    /// # Errors
+    /// Text that is not TOML.
+    pub fn document(&self) -> Result<Document> {
+        let mut document = Document::parse(&self.text, &self.name, Folder::at_hand(self.files.iter().cloned()), &[])?;
+        if self.with_fitted {
+            remove_law(&mut document.table);
+            let fatigue = document.table.entry("fatigue").or_insert_with(|| toml::Table::new().into());
+            if let Some(fatigue) = fatigue.as_table_mut() {
+                fatigue.insert("fitted".to_owned(), FITTED.into());
+            }
+        }
+        Ok(document)
+    }
+}
+
+/// Milliseconds since 1970 as RFC 3339 in UTC.
+#[must_use]
+pub fn time(milliseconds: i64) -> String {
+    let since = Duration::from_millis(milliseconds.try_into().unwrap_or(0));
+    humantime::format_rfc3339_millis(UNIX_EPOCH + since).to_string()
+}

@@ -1,0 +1,187 @@
+//! The service: calibrate, predict and watch from a browser or a script, losing nothing.
+//!
+//! Three parts that know each other only through the [`store`]: the [`api`] takes jobs in and shows them, [`worker`]s run them by
+//! the functions that the commands call, and the store is where a job exists. One process may have both ([`serve`]), or many
+//! machines share one PostgreSQL ([`work`]).
+//!
+//! A job is accepted once it is committed, claimed by one worker at a time (a number that grows with every claim fences off one
+//! that was taken for dead and is not), kept alive by signs of life, taken up from its last checkpoint wherever its worker died,
+//! and finished once, together with its files, in one transaction.
+
+pub mod api;
+pub mod job;
+pub mod problem;
+pub mod store;
+pub mod worker;
+
+use std::net::SocketAddr;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::net::TcpListener;
+use tokio::runtime::{Builder, Runtime};
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::sync::Notify;
+
+use crate::error::{Error, Result, input};
+use api::{App, Limits, Security};
+use store::Store;
+use worker::Workers;
+
+/// Connections to the database beyond those of the workers.
+const CONNECTIONS: u32 = 8;
+/// Time between two forgettings of callers that were not heard of.
+const FORGET_EVERY: Duration = Duration::from_secs(60);
+/// Time that requests have to end when the process is to stop.
+const LAST_ANSWERS: Duration = Duration::from_secs(10);
+
+/// What a service is to do.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Address.
+    pub listen: SocketAddr,
+    /// `sqlite://FILE` or `postgres://...`.
+    pub database: String,
+    /// Whether every request needs a token, even from this machine.
+    pub needs_token: bool,
+    /// How much a request may ask for.
+    pub limits: Limits,
+    /// Workers of this process; `jobs` 0 has none.
+    pub workers: worker::Settings,
+}
+
+/// Serves until the process is asked to stop (SIGINT, SIGTERM); `ready` is told the address once it answers.
+///
+/// # Errors
+/// [`Error::Input`] if it would be open to other machines without tokens; [`Error::File`] if address or database cannot be used.
+pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> {
+    runtime()?.block_on(async {
+        let store = open(&settings.database, CONNECTIONS + settings.workers.jobs as u32).await?;
+        let needs_token = settings.needs_token || !settings.listen.ip().is_loopback();
+        if needs_token && store.tokens().await.map_err(|error| database(&settings.database, error))?.is_empty() {
+            let remedy = "make one first: perilife token add NAME --role admin";
+            let problem = "asks for tokens, of which there is none";
+            return Err(input("--listen", settings.listen, problem, remedy));
+        }
+        let cannot = |error| Error::file(Path::new(&settings.listen.to_string()), "cannot listen", error);
+        let listener = TcpListener::bind(settings.listen).await.map_err(cannot)?;
+        let address = listener.local_addr().map_err(cannot)?;
+
+        let wake = Arc::new(Notify::new());
+        let workers = Workers::start(store.clone(), settings.workers.clone(), Arc::clone(&wake)).map_err(threads)?;
+        let security = Security { needs_token };
+        let app = App::new(store.clone(), settings.limits.clone(), security, settings.workers.jobs, wake);
+        api::start_counting();
+        let forgetting = tokio::spawn(forget_callers(app.clone()));
+        ready(address);
+
+        let stop_app = app.clone();
+        let stopped = async move {
+            asked_to_stop().await;
+            stop_app.stop();
+        };
+        let service = api::router(app).into_make_service_with_connect_info::<SocketAddr>();
+        let (said, heard) = tokio::sync::oneshot::channel::<()>();
+        let stopping = async move {
+            stopped.await;
+            let _ = said.send(());
+        };
+        let serving = axum::serve(listener, service).with_graceful_shutdown(stopping);
+        // Who keeps a connection open for ever does not keep the process.
+        let late = async {
+            let _ = heard.await;
+            tokio::time::sleep(LAST_ANSWERS).await;
+        };
+        let served = tokio::select! {
+            served = serving => served,
+            () = late => Ok(()),
+        };
+        tracing::info!("stopping: jobs go on from their checkpoints at the next start");
+        forgetting.abort();
+        workers.stop().await;
+        store.close().await;
+        served.map_err(cannot)
+    })
+}
+
+/// Works for a service of another process until this one is asked to stop.
+///
+/// # Errors
+/// [`Error::File`] if the database cannot be used.
+pub fn work(url: &str, settings: &worker::Settings, ready: impl FnOnce()) -> Result<()> {
+    runtime()?.block_on(async {
+        let store = open(url, 1 + settings.jobs as u32).await?;
+        let workers = Workers::start(store.clone(), settings.clone(), Arc::new(Notify::new())).map_err(threads)?;
+        ready();
+        asked_to_stop().await;
+        tracing::info!("stopping: jobs go on from their checkpoints elsewhere");
+        workers.stop().await;
+        store.close().await;
+        Ok(())
+    })
+}
+
+/// Does something with the store of a service.
+///
+/// # Errors
+/// [`Error::File`] if the database cannot be used.
+pub fn with_store<T>(url: &str, task: impl AsyncFnOnce(&Store) -> store::Result<T>) -> Result<T> {
+    runtime()?.block_on(async {
+        let store = open(url, 1).await?;
+        let done = task(&store).await.map_err(|error| database(url, error));
+        store.close().await;
+        done
+    })
+}
+
+fn runtime() -> Result<Runtime> {
+    Builder::new_multi_thread().enable_all().build().map_err(threads)
+}
+
+async fn open(url: &str, connections: u32) -> Result<Store> {
+    Store::open(url, connections).await.map_err(|error| database(url, error))
+}
+
+/// A database that cannot be used; passwords in its URL are not repeated.
+fn database(url: &str, error: sqlx::Error) -> Error {
+    Error::file(Path::new(&without_password(url)), "cannot use the database", std::io::Error::other(error))
+}
+
+/// A URL that may be shown.
+#[must_use]
+pub fn without_password(url: &str) -> String {
+    let Some((scheme, rest)) = url.split_once("://") else { return "the database".to_owned() };
+    // Query parameters may hold passwords as well.
+    let rest = rest.split('?').next().unwrap_or_default();
+    match rest.rsplit_once('@') {
+        Some((user, place)) => format!("{scheme}://{}@{place}", user.split(':').next().unwrap_or_default()),
+        None => format!("{scheme}://{rest}"),
+    }
+}
+
+fn threads(error: std::io::Error) -> Error {
+    Error::file(Path::new("threads"), "cannot be started", error)
+}
+
+/// Waits for the signal to stop.
+async fn asked_to_stop() {
+    let terminated = async {
+        match signal(SignalKind::terminate()) {
+            Ok(mut terminate) => drop(terminate.recv().await),
+            // Without it the other signal is what is left.
+            Err(_) => std::future::pending().await,
+        }
+    };
+    tokio::select! {
+        _ = tokio::signal::ctrl_c() => {}
+        () = terminated => {}
+    }
+}
+
+async fn forget_callers(app: App) {
+    loop {
+        tokio::time::sleep(FORGET_EVERY).await;
+        app.forget_callers();
+    }
+}

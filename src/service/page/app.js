@@ -1,0 +1,116 @@
+// Entry of the page: finds the view that belongs to the address, and keeps what all views share.
+
+import { getJson, onWaiting } from "./api.js";
+import { createCalibrateView } from "./calibrate.js";
+import { openCalibration } from "./calibration_page.js";
+import { openComparison } from "./compare.js";
+import { byId, element, show, showPage } from "./dom.js";
+import { count } from "./format.js";
+import { problemBox } from "./notices.js";
+import { createPredictView } from "./predict.js";
+import { openPrediction } from "./prediction_page.js";
+import { createRunsView } from "./runs.js";
+import { forgetToken, readToken } from "./token.js";
+
+const views = { measure: createCalibrateView(), predict: createPredictView(), runs: createRunsView() };
+const PAGES = { calibrations: openCalibration, predictions: openPrediction };
+const TITLES = { measure: "Measure and calibrate", predict: "Predict", runs: "Runs", calibrations: "Calibration", predictions: "Prediction", compare: "Comparison" };
+const NAVIGATION = { measure: "measure", predict: "predict", runs: "runs", calibrations: "runs", predictions: "runs", compare: "runs" };
+
+let leaving = new AbortController();
+let first = true;
+
+/** "#/predictions/7?x=1" to its parts. */
+function address() {
+  const [path, query = ""] = location.hash.replace(/^#\/?/, "").split("?");
+  const [name = "", rest = ""] = path.split("/");
+  return { name: name in TITLES ? name : "measure", rest, query: new URLSearchParams(query) };
+}
+
+async function route() {
+  leaving.abort();
+  leaving = new AbortController();
+  const { signal } = leaving;
+  const { name, rest, query } = address();
+  const place = name in views ? name : "run";
+  views.runs.close();
+  for (const section of document.querySelectorAll("section.view")) section.hidden = section.id !== `view-${place}`;
+  for (const link of document.querySelectorAll("nav a")) {
+    if (link.dataset.view === NAVIGATION[name]) link.setAttribute("aria-current", "page");
+    else link.removeAttribute("aria-current");
+  }
+  document.title = `${TITLES[name]} – perilife`;
+  if (place === "run") await openRun(byId("view-run"), name, rest, signal);
+  else {
+    announce(byId(`view-${place}`));
+    if (place === "predict") await materialsKnown;
+    if (!signal.aborted) views[name].open?.(query);
+  }
+}
+
+async function openRun(root, name, rest, signal) {
+  show(root, element("h1", { tabindex: "-1" }, TITLES[name]), element("p", { class: "quiet", role: "status" }, "Loading …"));
+  announce(root);
+  try {
+    const ids = rest.split(",").map(decodeURIComponent);
+    const work = name === "compare" ? openComparison(root, ids, signal) : PAGES[name](root, ids[0], signal);
+    await work;
+  } catch (error) {
+    if (signal.aborted || error.name === "AbortError") return;
+    showPage(root, element("h1", { tabindex: "-1" }, TITLES[name]), problemBox(error, error.status === 404 ? null : route),
+      element("p", null, element("a", { href: "#/runs" }, "All runs")));
+  }
+}
+
+/** After a change of view the reading goes on at its heading; not at the very first, where the page starts at its top. */
+function announce(root) {
+  if (!first) {
+    root.querySelector("h1").focus({ preventScroll: true });
+    scrollTo(0, 0);
+  }
+  first = false;
+}
+
+async function loadMaterials() {
+  try {
+    const { materials } = await getJson("/v1/materials");
+    views.measure.setMaterials(materials);
+    views.predict.setMaterials(materials);
+    show(byId("start-problem"));
+  } catch (error) {
+    show(byId("start-problem"), problemBox(error, loadMaterials));
+  }
+}
+
+async function loadService() {
+  try {
+    const service = await getJson("/v1/service");
+    byId("service-facts").textContent = `${service.name} ${service.version}, ${count(service.workers, "worker")}${service.role ? `, your role: ${service.role}` : ""}`;
+  } catch {
+    byId("service-facts").textContent = ""; // the materials say what is wrong
+  }
+}
+
+onWaiting((words) => {
+  const banner = byId("waiting");
+  banner.textContent = words ?? "";
+  banner.hidden = words === null;
+});
+document.addEventListener("token", () => {
+  byId("forget-token").hidden = readToken() === null;
+});
+byId("forget-token").hidden = readToken() === null;
+byId("forget-token").addEventListener("click", () => {
+  forgetToken();
+  location.reload();
+});
+// The address names the view, so the skip link must not change it.
+document.querySelector(".skip").addEventListener("click", (event) => {
+  event.preventDefault();
+  byId("main").focus();
+});
+window.addEventListener("hashchange", route);
+
+const materialsKnown = loadMaterials();
+loadService();
+route();

@@ -1,0 +1,102 @@
+// Measure and calibrate: measured files, the test they come from, and the start of a fit.
+
+import { createEditor } from "./editor.js";
+import { byId, show } from "./dom.js";
+import { EXAMPLE_NAME, EXAMPLE_TEST, exampleCsv } from "./example.js";
+import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
+import { createMeasured } from "./measured.js";
+import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
+import { startRun } from "./submit.js";
+
+const PARAMETERS = [
+  { value: "a,p", title: "A and p (rate and exponent)" },
+  { value: "a", title: "A alone, p given" },
+];
+
+/** Builds the view; gives {setMaterials}. */
+export function createCalibrateView() {
+  const form = createForm((field) => {
+    if (field === from && !specimen.fields.crack_length_mm.touched) fillIn(specimen.fields.crack_length_mm, from.input.value);
+    arrange();
+    editor.check.soon();
+  });
+  const from = form.number("measured.from_crack_length_mm", { label: "From crack length", unit: "mm", optional: true, hint: "first reading that every specimen has" });
+  const to = form.number("measured.to_crack_length_mm", { label: "To crack length", unit: "mm", optional: true, hint: "last reading that every specimen has" });
+  const specimen = createSpecimen(form);
+  // Toughness ends a prediction; a test that was measured is known to have got where it got.
+  const material = createMaterial(form, { toughness: false });
+  const loading = createLoading(form);
+  const spacing = form.number("model.spacing_mm", { label: "Spacing of points", unit: "mm", optional: true, hint: "left empty: a ninth of the crack, at most W/100" });
+  const parameters = form.choice("fit.parameters", { label: "Fitted", options: PARAMETERS });
+  const exponent = form.number("fit.p", { label: "Exponent p", hint: "of the law in use, not the Paris m" });
+  const name = form.text("name", { label: "Name of the fit", optional: true });
+  const fields = byId("test-fields");
+  const start = byId("calibrate");
+
+  function arrange() {
+    loading.suit(specimen.fields.kind.input.value);
+    exponent.node.hidden = parameters.input.value !== "a";
+  }
+
+  function collect() {
+    const fitted = parameters.input.value.split(",");
+    return {
+      measured: compact({ files: measured.names(), from_crack_length_mm: numberIn(from), to_crack_length_mm: numberIn(to), ...measured.units() }),
+      specimen: specimen.collect(),
+      material: material.collect(),
+      loading: loading.collect(),
+      model: compact({ spacing_mm: numberIn(spacing) }),
+      fit: compact({ parameters: fitted, p: fitted.length === 1 ? numberIn(exponent) : undefined }),
+    };
+  }
+
+  function fill(test) {
+    const known = specimen.fill(test.specimen) && material.fill(test.material) && loading.fill(test.loading);
+    fillIn(spacing, test.model?.spacing_mm);
+    arrange();
+    return known;
+  }
+
+  const measured = createMeasured(() => {
+    const range = measured.window();
+    if (range && !from.touched) fillIn(from, range[0]);
+    if (range && !to.touched) fillIn(to, range[1]);
+    if (range && !specimen.fields.crack_length_mm.touched) fillIn(specimen.fields.crack_length_mm, from.input.value);
+    editor.check.soon();
+  });
+
+  show(fields, specimen.element, material.element, loading.element,
+    group("Fit", grid(from.node, to.node, spacing.node, parameters.node, exponent.node, name.node)));
+
+  const editor = createEditor({
+    host: byId("test-editor"), fields, panel: byId("test-check"), form, collect,
+    // What comes back of a calibration is its case alone: the form keeps its own window and fit.
+    fill: () => false,
+    context: () => {
+      const files = measured.files();
+      return files ? { files } : "Load measured data first: the test is checked together with it.";
+    },
+    onResult: (ok) => {
+      start.disabled = !ok;
+    },
+  });
+  arrange();
+
+  byId("example").addEventListener("click", async () => {
+    for (const field of [from, to, specimen.fields.crack_length_mm]) field.touched = false;
+    fill(EXAMPLE_TEST);
+    await measured.loadExample(EXAMPLE_NAME, exampleCsv());
+  });
+  start.addEventListener("click", async () => {
+    if (!(await editor.check.now())) return;
+    startRun("/v1/calibrations", { ...editor.body(), ...compact({ name: name.input.value.trim() }) }, {
+      button: start, status: byId("calibrate-status"), refuse: editor.check.refuse,
+    });
+  });
+
+  editor.check.now();
+  return { setMaterials: (list) => {
+    material.setMaterials(list);
+    editor.check.soon();
+  } };
+}

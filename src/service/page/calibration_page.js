@@ -1,0 +1,132 @@
+// Page of one calibration: the fit beside the readings, its constants with their errors, files to take away.
+
+import { getBlob, getJson, getText, showBlob } from "./api.js";
+import { createChart } from "./chart.js";
+import { element, readCsv, show, showPage, table, terms } from "./dom.js";
+import { follow } from "./events.js";
+import { cycles, deviation, fixed, percent, plain, scientific, significant, words } from "./format.js";
+import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
+import { warningList } from "./check.js";
+import { loadInto, problemBox } from "./notices.js";
+
+const STRESS_INTENSITY = "MPa√m";
+
+export async function openCalibration(root, id, signal) {
+  const job = await getJson(`/v1/calibrations/${encodeURIComponent(id)}`, signal);
+  const use = element("a", { class: "button primary", href: `#/predict?law=${encodeURIComponent(id)}`, hidden: true, "data-action": "use-law" }, "Predict a plate with this law");
+  const head = createJobHead(job, { actions: [use] });
+  const body = element("div", { class: "job-body" });
+  showPage(root, head.node, body);
+  let chart = null;
+  signal.addEventListener("abort", () => chart?.destroy());
+
+  async function finish(last) {
+    const whole = { ...job, ...last, input: job.input };
+    if (whole.state !== "succeeded") {
+      show(body, failureOf(whole), inputText(whole));
+      return;
+    }
+    use.hidden = false;
+    const part = (id, title, ...content) => element("section", { "aria-labelledby": id }, element("h2", { id }, title), ...content);
+    const curves = element("div");
+    const quantiles = element("div");
+    const rates = element("img", { alt: "Growth rate against range of stress intensity, readings and fitted law, logarithmic axes", hidden: true });
+    const files = whole.files ?? [];
+    const has = (name) => files.some((file) => file.name === name);
+    show(body,
+      whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings),
+      element("div", { class: "columns wide-left" },
+        element("div", { class: "stack" }, part("fit-title", "Readings and fitted curve", curves),
+          has("fit_rates.svg") && part("rates-title", "Growth rates", element("div", { class: "paper picture" }, rates))),
+        element("div", { class: "stack" }, part("constants-title", "Constants", constants(whole.summary)), specimens(whole.summary), quantiles)),
+      downloadList(whole), inputText(whole));
+    const path = (name) => `${pathOf(whole)}/files/${name}`;
+    loadInto(curves, async () => {
+      const [fit, band] = await Promise.all(["fit_curves.csv", "fit_band.csv"].map((name) => (has(name) ? getText(path(name), signal).then(readCsv) : null)));
+      chart = drawFit(curves, fit, band);
+    });
+    if (has("quantiles.csv")) {
+      loadInto(quantiles, async () => show(quantiles, quantileTable(readCsv(await getText(path("quantiles.csv"), signal)))));
+    }
+    if (has("fit_rates.svg")) getBlob(path("fit_rates.svg"), signal).then((blob) => showBlob(rates, blob)).catch((error) => error.name === "AbortError" || rates.after(problemBox(error)));
+  }
+
+  if (isFinal(job)) {
+    await finish(job);
+    return;
+  }
+  show(body, element("p", { class: "quiet" }, "The fit, its band and its constants appear here when the calibration is done."));
+  await follow(`${pathOf(job)}/events`, {
+    signal,
+    connection: head.connection,
+    take(name, data) {
+      if (name !== "job") return false;
+      head.update(data);
+      if (isFinal(data)) finish(data);
+      return isFinal(data);
+    },
+  });
+}
+
+function drawFit(place, fit, band) {
+  const chart = createChart(place, {
+    name: "fit",
+    label: "Crack length against cycles: readings, fitted curve and its 95 % band",
+    x: { label: "Cycles N", format: cycles, from: 0 },
+    y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
+  });
+  const names = [...new Set(fit?.specimen ?? [])];
+  const only = (name, column) => column.filter((_, index) => fit.specimen[index] === name);
+  const readings = names.map((name, index) => ({
+    id: `measured-${name}`, name: `${name}, measured`, kind: "points", tone: index + 1,
+    x: only(name, fit.cycles_measured), y: only(name, fit.crack_length_mm),
+  }));
+  const fitted = band
+    ? [{ id: "band", name: "95 % band of the fitted curve", kind: "band", tone: 0, x: band.cycles_low, y: band.crack_length_mm, x2: band.cycles_high, y2: band.crack_length_mm },
+      { id: "fitted", name: "Fitted", kind: "line", tone: 0, x: band.cycles_fitted, y: band.crack_length_mm }]
+    : names.slice(0, 1).map((name) => ({ id: "fitted", name: "Fitted", kind: "line", tone: 0, x: only(name, fit.cycles_fitted), y: only(name, fit.crack_length_mm) }));
+  chart.set([...fitted, ...readings]);
+  return chart;
+}
+
+function constants(s) {
+  const error = (value, decimals) => (Number.isFinite(value) ? `± ${fixed(value, decimals)}` : "");
+  const name = (text, unit) => [text, element("span", { class: "row-unit" }, unit)];
+  const horizon = Number.isFinite(s.horizon_mm) ? `, at a horizon of ${plain(s.horizon_mm, 5)} mm` : "";
+  const rows = [
+    [name("Rate at the pivot", `mm/cycle, at ΔK = ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`), scientific(s.rate_at_pivot_mm_per_cycle, 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
+    [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error, 4)],
+    [name("Paris C", `mm/cycle, at ΔK = 1 ${STRESS_INTENSITY}`), scientific(s.paris_c_mm_per_cycle, 4), ""],
+    [name("Bond exponent p", "dλ/dN = −A εᵖ"), fixed(s.p, 4), error(s.p_error, 4)],
+    [name("Bond constant A", `1/cycle${horizon}`), scientific(s.a, 4), ""],
+  ];
+  return element("div", { class: "stack tight" },
+    table("Fitted constants", [{ title: "Constant" }, { title: "Value", numeric: true }, { title: "Std. error", numeric: true }], rows, { hidden: true, name: "constants" }),
+    element("p", { class: "hint" }, "C and m are correlated: compare and quote the rate at the pivot, where the readings fix it best, together with m."),
+    terms([
+      ["Range of ΔK", `${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`],
+      ["Life measured", `${cycles(s.life_measured)} cycles`],
+      ["Life fitted", `${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
+      ["rms life error", `${percent(s.rms_life_error, 2)} over all readings`],
+    ], "fit"));
+}
+
+function specimens({ specimens: list = [] }) {
+  if (list.length < 2) return null;
+  const columns = [{ title: "Specimen" }, { title: "A", unit: "1/cycle", numeric: true }, { title: "p", numeric: true }, { title: "Measured", unit: "cycles", numeric: true },
+    { title: "Fitted", unit: "cycles", numeric: true }, { title: "rms error", numeric: true }];
+  const rows = list.map((one) => [one.name, scientific(one.a, 4), fixed(one.p, 4), cycles(one.life_measured), cycles(Math.round(one.life_fitted)), percent(one.rms_life_error, 2)]);
+  return element("section", { "aria-labelledby": "specimens-title" }, element("h2", { id: "specimens-title" }, "Specimens"), table("Fit of every specimen", columns, rows, { hidden: true, name: "specimens" }));
+}
+
+/** Columns as the program names them: their endings are their units. */
+function quantileTable(columns) {
+  const names = Object.keys(columns);
+  const heads = names.map((name) => ({ title: words(name), numeric: typeof columns[name][0] === "number" }));
+  const rows = columns[names[0]].map((_, index) => names.map((name) => {
+    const value = columns[name][index];
+    if (typeof value !== "number") return value;
+    return /cycles|life/.test(name) && value >= 100 ? cycles(value) : plain(value, 4);
+  }));
+  return element("section", { "aria-labelledby": "quantiles-title" }, element("h2", { id: "quantiles-title" }, "Scatter between specimens"), table("Quantiles over the specimens", heads, rows, { hidden: true, name: "quantiles" }));
+}

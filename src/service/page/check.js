@@ -1,0 +1,101 @@
+// Checks the input while the user types: draws the plate, says what was understood, and puts a problem where it belongs.
+
+import { Problem, postJson, showBlob } from "./api.js";
+import { debounce, element, show, terms } from "./dom.js";
+import { excerpt } from "./excerpt.js";
+import { sentence, words } from "./format.js";
+import { problemBox } from "./notices.js";
+
+const WAIT_MS = 350;
+
+/**
+ * `collect()` gives {input, files, calibration} or a sentence that says what is still missing. The result stands in `panel`.
+ * Gives {soon(), now(), last, source}; `onResult(ok)` is told every outcome.
+ */
+export function createCheck(panel, { form, collect, onResult = () => {} }) {
+  const state = element("p", { class: "check-state", role: "status" });
+  const image = element("img", { alt: "Drawing of the specimen as understood: outline, cracks, loads and supports", hidden: true });
+  const figure = element("div", { class: "paper" }, image);
+  const details = element("div");
+  show(panel, state, figure, details);
+
+  let last = null; // what the service answered to the present input, null where it refused
+  let running = null;
+
+  function tell(words, kind) {
+    state.textContent = words;
+    state.dataset.check = kind;
+  }
+
+  function finish(result, words, kind) {
+    last = result;
+    tell(words, kind);
+    panel.classList.toggle("stale", result === null);
+    onResult(result !== null);
+  }
+
+  async function now() {
+    running?.abort();
+    running = null;
+    form.clearProblems();
+    const body = collect();
+    if (typeof body === "string") {
+      show(details);
+      finish(null, body, "waiting");
+      return false;
+    }
+    if (!form.numbersAreGood()) {
+      show(details);
+      finish(null, "A field does not hold a number.", "problem");
+      return false;
+    }
+    const own = new AbortController();
+    running = own;
+    tell("Checking …", "running");
+    try {
+      const result = await postJson("/v1/check", body, { signal: own.signal });
+      if (own.signal.aborted) return false;
+      await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
+      show(details, result.warnings.length > 0 && warningList(result.warnings),
+        terms(Object.entries(result.understood).map(([key, value]) => [sentence(words(key)), String(value)]), "understood"));
+      finish(result, "Checked: no errors.", "ok");
+      return true;
+    } catch (error) {
+      if (own.signal.aborted) return false;
+      if (!(error instanceof Problem)) throw error;
+      const atField = form.showProblem(error.input);
+      const text = sourceOf(body, error.input);
+      show(details, problemBox(error, error.passes ? now : null), text && excerpt(text.text, [error.input.line], text.name));
+      finish(null, atField ? "One field needs a correction." : "The input is not complete yet, or not right.", "problem");
+      return false;
+    }
+  }
+
+  return {
+    soon: debounce(now, WAIT_MS),
+    now,
+    get last() {
+      return last;
+    },
+    /** A problem that came with the start of a run, shown like one of a check. */
+    refuse(error) {
+      const atField = form.showProblem(error.input);
+      show(details, problemBox(error));
+      finish(null, atField ? "One field needs a correction." : "The run was not started.", "problem");
+    },
+  };
+}
+
+/** The text a problem speaks of: a measured file, or the TOML that was written. */
+function sourceOf(body, input) {
+  if (!input?.line) return null;
+  const name = String(input.file ?? "").split("/").pop();
+  if (body.files?.[name]) return { name, text: body.files[name] };
+  return typeof body.input === "string" ? { name: "input", text: body.input } : null;
+}
+
+/** Warnings of the program, word for word: they are part of the answer. */
+export function warningList(warnings, title = "Warnings") {
+  return element("div", { class: "notice warn", "data-warnings": warnings.length },
+    element("h3", null, `${title} (${warnings.length})`), element("ul", null, warnings.map((line) => element("li", null, sentence(line)))));
+}

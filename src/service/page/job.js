@@ -1,0 +1,160 @@
+// What every run has: state, progress, problem, files, cancel and delete.
+
+import { Problem, download, postJson, remove } from "./api.js";
+import { byId, element, show, terms } from "./dom.js";
+import { excerpt } from "./excerpt.js";
+import { bytes, cycles, duration, fixed, moment, percent, sentence } from "./format.js";
+import { problemBox } from "./notices.js";
+
+export const FINAL = ["succeeded", "failed", "cancelled"];
+
+export const collectionOf = (job) => (job.kind === "calibration" ? "calibrations" : "predictions");
+export const hrefOf = (job) => `#/${collectionOf(job)}/${encodeURIComponent(job.id)}`;
+export const pathOf = (job) => `/v1/${collectionOf(job)}/${encodeURIComponent(job.id)}`;
+export const nameOf = (job) => job.name || job.id;
+export const isFinal = (job) => FINAL.includes(job.state);
+
+export function stateBadge(state) {
+  return element("span", { class: `badge ${state}`, "data-state": state }, sentence(state));
+}
+
+/** Asks before a run is deleted; true when it is gone. */
+export async function confirmDelete(job) {
+  const dialog = byId("delete-dialog");
+  byId("delete-what").textContent = `${sentence(job.kind)} “${nameOf(job)}” and all its files will be deleted. This cannot be undone.`;
+  dialog.returnValue = "";
+  dialog.showModal();
+  await new Promise((resolve) => {
+    dialog.addEventListener("close", resolve, { once: true });
+  });
+  if (dialog.returnValue !== "delete") return false;
+  await remove(pathOf(job));
+  return true;
+}
+
+export async function cancelJob(job) {
+  return postJson(`${pathOf(job)}/cancel`);
+}
+
+/** Head of the page of a run: names it, follows its state, lets it be cancelled or deleted. Gives {node, update(job), connection(live)}. */
+export function createJobHead(first, { actions = [] } = {}) {
+  let job = first;
+  let spoken = "";
+  const badge = element("span");
+  const facts = element("p", { class: "quiet" });
+  const bar = element("progress", { max: "1", "aria-label": "Progress" });
+  const figures = element("div");
+  const link = element("p", { class: "quiet", hidden: true }, "The connection is interrupted; the run goes on. Reconnecting …");
+  const progress = element("div", { class: "progress" }, bar, figures, link);
+  const aloud = element("p", { class: "visually-hidden", "aria-live": "polite" });
+  const trouble = element("div");
+  const guarded = (work) => async () => {
+    show(trouble);
+    try {
+      await work();
+    } catch (error) {
+      show(trouble, problemBox(error));
+    }
+  };
+  const cancel = element("button", { type: "button", class: "button", "data-action": "cancel", onclick: guarded(async () => {
+    cancel.disabled = true;
+    try {
+      update(await cancelJob(job));
+    } finally {
+      cancel.disabled = false;
+    }
+  }) }, "Cancel");
+  const discard = element("button", { type: "button", class: "button", "data-action": "delete", onclick: guarded(async () => {
+    if (await confirmDelete(job)) location.hash = "#/runs";
+  }) }, "Delete");
+  const node = element("header", { class: "job-head", id: "job", "data-job-kind": job.kind },
+    element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, nameOf(job)), badge,
+      element("div", { class: "tool-row end" }, actions, cancel, discard)),
+    facts, progress, aloud, trouble);
+
+  function update(next) {
+    job = { ...job, ...next };
+    node.dataset.jobState = job.state;
+    node.dataset.jobId = job.id;
+    show(badge, stateBadge(job.state));
+    const ended = isFinal(job);
+    cancel.hidden = ended;
+    discard.hidden = !ended;
+    const took = job.started && job.finished ? `, took ${duration((new Date(job.finished) - new Date(job.started)) / 1000)}` : "";
+    facts.textContent = `${sentence(job.kind)} ${job.id}, submitted ${moment(job.created)}${took}${job.attempts > 1 ? `, attempt ${job.attempts}` : ""}`;
+    progress.hidden = ended;
+    if (!ended) showProgress();
+    speak();
+  }
+
+  function showProgress() {
+    const p = job.progress;
+    if (job.state === "queued" || !p) {
+      bar.removeAttribute("value");
+      const words = job.state === "queued" ? `Waiting for a free worker${job.position ? `: number ${job.position} in the queue` : ""}.` : "Starting …";
+      show(figures, element("p", null, words));
+      return;
+    }
+    bar.value = p.share ?? 0;
+    show(figures, terms([
+      ["Share", percent(p.share, 0)],
+      Number.isFinite(p.cycles) && ["Cycles", cycles(Math.round(p.cycles))],
+      Number.isFinite(p.crack_length_mm) && ["Crack length", `${fixed(p.crack_length_mm, 2)} mm`],
+      ["Elapsed", duration(p.elapsed_s)],
+      ["Time left", Number.isFinite(p.seconds_left) ? `about ${duration(p.seconds_left)}` : "not known yet"],
+    ].filter(Boolean), "progress"));
+  }
+
+  /** Said aloud at every quarter and at the end, not four times a second. */
+  function speak() {
+    const quarter = Math.floor((job.progress?.share ?? 0) * 4) * 25;
+    const words = isFinal(job) ? `Run ${job.state}` : job.state === "running" ? `Running, ${quarter} percent done` : "Waiting in the queue";
+    if (words !== spoken) aloud.textContent = words;
+    spoken = words;
+  }
+
+  document.title = `${nameOf(job)} – perilife`;
+  update(first);
+  return {
+    node, update,
+    connection(live) {
+      link.hidden = live;
+    },
+    get job() {
+      return job;
+    },
+  };
+}
+
+/** Why a run failed, with the lines of its input where the problem names one. */
+export function failureOf(job) {
+  if (job.state === "cancelled") return element("p", { class: "notice" }, "This run was cancelled before its end.");
+  const problem = Problem.ofJob(job.problem);
+  const { line, file } = problem.input ?? {};
+  const ofInput = line && job.input && !/\.csv$/i.test(file ?? "");
+  return element("div", null, problemBox(problem), ofInput && excerpt(job.input, [line], "Input"));
+}
+
+/** Everything to take away; `special`: {name: node} where a file has choices of its own. */
+export function downloadList(job, special = {}) {
+  const trouble = element("div");
+  const fetchFile = async (href, name) => {
+    show(trouble);
+    try {
+      await download(href, name);
+    } catch (error) {
+      show(trouble, problemBox(error));
+    }
+  };
+  const items = (job.files ?? []).map((file) => element("li", { "data-file": file.name },
+    element("button", { type: "button", class: "link", onclick: () => fetchFile(file.href, file.name) }, file.name),
+    element("span", { class: "quiet" }, ` ${bytes(file.bytes)}`), special[file.name]?.(file, fetchFile)));
+  return element("section", { "aria-labelledby": "downloads-title" }, element("h2", { id: "downloads-title" }, "Downloads"),
+    items.length > 0 ? element("ul", { class: "downloads" }, items) : element("p", { class: "quiet" }, "This run left no files."), trouble);
+}
+
+/** The input as it was submitted. */
+export function inputText(job) {
+  return job.input && element("details", { class: "input-text" }, element("summary", null, "Input as submitted (TOML)"),
+    element("pre", { tabindex: "0", role: "region", "aria-label": "Input as submitted" }, job.input));
+}

@@ -1,0 +1,187 @@
+// Measured files: reads them through the service, says what was recognised, shows points and wrong lines.
+
+import { postForm } from "./api.js";
+import { createChart } from "./chart.js";
+import { byId, element, show, table } from "./dom.js";
+import { excerpt } from "./excerpt.js";
+import { count, cycles, fixed, plain } from "./format.js";
+import { problemBox } from "./notices.js";
+
+const SEPARATORS = { ",": "commas", ";": "semicolons", "\t": "tabs", " ": "blanks" };
+const LENGTHS = { mm: "millimetres", inch: "inches", m: "metres" };
+const CYCLES = { cycles: "single cycles", kilocycles: "thousands of cycles", megacycles: "millions of cycles" };
+const LAYOUTS = { long: "one reading a row", wide: "one column of cycles for every specimen" };
+
+/** `onChange` is told whenever other curves stand there. Gives {files(), units(), window(), load(files)}. */
+export function createMeasured(onChange) {
+  const root = byId("measured");
+  const input = byId("measured-input");
+  const drop = byId("measured-drop");
+  const [lengthUnit, cycleUnit] = [byId("length-unit"), byId("cycle-unit")];
+  const [result, chartPlace] = [byId("measured-result"), byId("measured-chart")];
+  let files = []; // {name, file, text}
+  let answer = []; // the files as the service read them
+  let running = null;
+  let chart = null;
+
+  async function add(list) {
+    const fresh = await Promise.all([...list].map(async (file) => ({ name: file.name, file, text: await file.text() })));
+    if (fresh.length === 0) return;
+    // The same name again is a corrected file.
+    files = [...files.filter((old) => !fresh.some((one) => one.name === old.name)), ...fresh];
+    read();
+  }
+
+  async function read() {
+    running?.abort();
+    const own = new AbortController();
+    running = own;
+    root.dataset.measured = files.length > 0 ? "reading" : "empty";
+    if (files.length === 0) {
+      answer = [];
+      draw();
+      return;
+    }
+    const form = new FormData();
+    for (const { name, file } of files) form.append("file", file, name);
+    if (lengthUnit.value) form.append("length_unit", lengthUnit.value);
+    if (cycleUnit.value) form.append("cycle_unit", cycleUnit.value);
+    if (answer.length === 0) show(result, element("p", { class: "quiet", role: "status" }, "Reading …"));
+    try {
+      const found = await postForm("/v1/measured", form, own.signal);
+      if (own.signal.aborted) return;
+      answer = found.files;
+      draw();
+    } catch (error) {
+      if (own.signal.aborted) return;
+      answer = [];
+      draw();
+      show(result, problemBox(error, read));
+      root.dataset.measured = "problem";
+    }
+  }
+
+  const curves = () => answer.flatMap((file) => file.curves);
+  const problems = () => answer.flatMap((file) => file.problems);
+
+  function draw() {
+    root.dataset.measured = files.length === 0 ? "empty" : problems().length > 0 ? "problem" : "ok";
+    byId("units").hidden = files.length === 0;
+    byId("example-note").hidden = !files.some((file) => file.example);
+    show(result, answer.map(describe), problems().length > 0 && problemTable(), files.map(wrongLines), warnings());
+    drawChart();
+    onChange();
+  }
+
+  function describe({ file, columns, curves: found }) {
+    const readings = found.reduce((sum, curve) => sum + curve.cycles.length, 0);
+    const names = found.map((curve) => curve.specimen);
+    const list = names.length > 6 ? `${names.slice(0, 6).join(", ")} …` : names.join(", ");
+    const words = columns && [
+      LAYOUTS[columns.layout] ?? columns.layout,
+      `columns separated by ${SEPARATORS[columns.separator] ?? columns.separator}`,
+      columns.decimal_comma ? "decimal commas" : "decimal points",
+      `crack length in ${LENGTHS[columns.length_unit] ?? columns.length_unit}`,
+      `cycles counted in ${CYCLES[columns.cycle_unit] ?? columns.cycle_unit}`,
+    ].join(", ");
+    return element("div", { class: "file-card", "data-file": file },
+      element("div", null, element("h3", null, file),
+        element("p", null, found.length > 0 ? `${count(found.length, "specimen")} (${list}), ${count(readings, "reading")}: ${ranges(found)}.` : "No curve could be read."),
+        words && element("p", { class: "quiet" }, `Recognised: ${words}.`)),
+      element("button", { type: "button", class: "button small", "aria-label": `Remove ${file}`, onclick: () => {
+        files = files.filter((one) => one.name !== file);
+        read();
+      } }, "Remove"));
+  }
+
+  function ranges(found) {
+    const lengths = found.flatMap((curve) => curve.crack_length_mm);
+    const last = Math.max(...found.map((curve) => curve.cycles.at(-1) ?? 0));
+    return `${plain(Math.min(...lengths))} to ${plain(Math.max(...lengths))} mm, up to ${cycles(last)} cycles`;
+  }
+
+  function problemTable() {
+    const list = problems();
+    const rows = list.map((one) => [
+      one.line ? element("button", { type: "button", class: "link", onclick: () => jump(one) }, `${one.file}:${one.line}`) : one.file,
+      one.key ?? "", one.value ?? "", one.problem ?? "", one.remedy ?? "",
+    ]);
+    return element("div", { class: "notice bad", role: "alert", "data-problems": list.length },
+      element("h3", null, list.length >= 100 ? "The first 100 problems" : count(list.length, "problem")),
+      element("p", null, "Correct the file and drop it again under the same name. The chart shows the readings that are right."),
+      table("Problems of the measured files", ["File and line", "Column", "Value", "Problem", "Remedy"].map((title) => ({ title })), rows, { hidden: true, name: "problems" }));
+  }
+
+  function wrongLines({ name, text }) {
+    const lines = problems().filter((one) => one.file === name && one.line).map((one) => one.line);
+    return lines.length > 0 && excerpt(text, lines, name);
+  }
+
+  function jump({ file, line }) {
+    const figure = [...result.querySelectorAll(".excerpt")].find((one) => one.textContent.includes(file));
+    const target = figure?.querySelector(`[data-line="${Number(line)}"]`);
+    target?.scrollIntoView({ block: "center" });
+    figure?.querySelector(".excerpt-lines").focus({ preventScroll: true });
+  }
+
+  function warnings() {
+    const list = answer.flatMap((file) => file.warnings.map((line) => `${file.file}: ${line}`));
+    return list.length > 0 && element("div", { class: "notice warn" }, element("ul", null, list.map((line) => element("li", null, line))));
+  }
+
+  function drawChart() {
+    chartPlace.hidden = curves().length === 0;
+    if (chartPlace.hidden) return;
+    chart ??= createChart(chartPlace, {
+      name: "measured",
+      label: "Measured crack length against cycles",
+      x: { label: "Cycles N", format: cycles, from: 0 },
+      y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
+    });
+    chart.set(answer.flatMap((file) => file.curves.map((curve) => ({ file: file.file, curve }))).map(({ file, curve }, index) => ({
+      id: `${file}/${curve.specimen}`, name: curve.specimen, kind: "points", x: curve.cycles, y: curve.crack_length_mm, tone: index,
+    })));
+  }
+
+  input.addEventListener("change", () => {
+    add(input.files);
+    input.value = ""; // the same file may be chosen again after a correction
+  });
+  for (const name of ["dragenter", "dragover"]) {
+    drop.addEventListener(name, (event) => {
+      event.preventDefault();
+      drop.classList.add("over");
+    });
+  }
+  drop.addEventListener("dragleave", () => drop.classList.remove("over"));
+  drop.addEventListener("drop", (event) => {
+    event.preventDefault();
+    drop.classList.remove("over");
+    add(event.dataTransfer.files);
+  });
+  // A file dropped beside the field must not replace the page.
+  for (const name of ["dragover", "drop"]) window.addEventListener(name, (event) => event.preventDefault());
+  lengthUnit.addEventListener("change", read);
+  cycleUnit.addEventListener("change", read);
+  root.dataset.measured = "empty";
+
+  return {
+    /** Texts by file name, as a calibration takes them; null before anything is there. */
+    files: () => (curves().length === 0 ? null : Object.fromEntries(files.map(({ name, text }) => [name, text]))),
+    names: () => files.map((file) => file.name),
+    units: () => ({ length_unit: lengthUnit.value || undefined, cycle_unit: cycleUnit.value || undefined }),
+    /** Crack lengths that every curve covers. */
+    window() {
+      const given = curves().filter((curve) => curve.crack_length_mm.length > 0);
+      if (given.length === 0) return null;
+      return [Math.max(...given.map((curve) => Math.min(...curve.crack_length_mm))), Math.min(...given.map((curve) => Math.max(...curve.crack_length_mm)))];
+    },
+    specimens: () => curves().length,
+    loadExample(name, text) {
+      files = [{ name, text, file: new Blob([text], { type: "text/csv" }), example: true }];
+      lengthUnit.value = "";
+      cycleUnit.value = "";
+      return read();
+    },
+  };
+}

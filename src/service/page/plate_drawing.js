@@ -1,0 +1,208 @@
+// A plate to scale: outline, holes, notches, cracks, and the ways its crack tips went. The stage keeps the scale;
+// the sketch (to draw in) and the live picture (to look at) both stand on it.
+
+import { element, shape, show } from "./dom.js";
+
+const MARGIN = 30;
+const HEIGHT_MAX = 430;
+const RULE_STRIP = 16; // below the picture, so that the rule never lies on the load
+
+/** Outline, holes, cracks and notches of a specimen of the input file, mm. Null when sizes are missing. */
+export function geometryOf(specimen) {
+  const { kind, width_mm: w, length_mm: l, crack_length_mm: a } = specimen ?? {};
+  const rectangle = (left, right, bottom, top) => [[left, bottom], [right, bottom], [right, top], [left, top]];
+  const strip = () => rectangle(-w / 2, w / 2, -l / 2, l / 2);
+  const bare = { holes: [], notches: [], cracks: [], pinned: false };
+  const crack = (from, to) => ({ from_mm: [from, 0], to_mm: [to, 0] });
+  const sized = w > 0 && (l > 0 || kind === "compact_tension");
+  switch (kind) {
+    case "middle_tension": return sized ? { ...bare, outline: strip(), cracks: a > 0 ? [crack(-a, a)] : [] } : null;
+    case "single_edge_tension": return sized ? { ...bare, outline: strip(), cracks: a > 0 ? [crack(-w / 2, -w / 2 + a)] : [] } : null;
+    case "double_edge_tension":
+      return sized ? { ...bare, outline: strip(), cracks: a > 0 ? [crack(-w / 2, -w / 2 + a), crack(w / 2, w / 2 - a)] : [] } : null;
+    case "compact_tension": return sized ? {
+      ...bare,
+      outline: rectangle(-0.25 * w, w, -0.6 * w, 0.6 * w),
+      holes: [1, -1].map((side) => ({ x_mm: 0, y_mm: side * 0.275 * w, diameter_mm: 0.25 * w })),
+      cracks: a > 0 ? [crack(-0.25 * w, a)] : [],
+      pinned: true,
+    } : null;
+    case "plate": {
+      const d = specimen.diameter_mm;
+      const outline = specimen.outline_mm ?? (d > 0 ? disc(d / 2) : sized ? strip() : null);
+      return outline && { ...bare, outline, holes: specimen.holes ?? [], cracks: specimen.cracks ?? [], notches: specimen.notches ?? [] };
+    }
+    default: return null;
+  }
+}
+
+function disc(radius) {
+  return Array.from({ length: 90 }, (_, index) => [radius * Math.cos((index * Math.PI) / 45), radius * Math.sin((index * Math.PI) / 45)]);
+}
+
+function boxOf(points) {
+  const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
+  for (const [x, y] of points) {
+    box.left = Math.min(box.left, x);
+    box.right = Math.max(box.right, x);
+    box.bottom = Math.min(box.bottom, y);
+    box.top = Math.max(box.top, y);
+  }
+  return box;
+}
+
+/** Part of the plate with its cracks and holes, and air around them; never more than the plate. */
+function closeBox(geometry, more) {
+  const points = [...geometry.cracks, ...geometry.notches].flatMap((one) => [one.from_mm, one.to_mm]).concat(more)
+    .filter((point) => Number.isFinite(point[0] + point[1]));
+  const whole = boxOf(geometry.outline);
+  if (points.length === 0) return whole;
+  const box = boxOf(points);
+  const air = Math.max(0.6 * Math.max(box.right - box.left, box.top - box.bottom), 0.04 * (whole.right - whole.left));
+  return {
+    left: Math.max(whole.left, box.left - air), right: Math.min(whole.right, box.right + air),
+    bottom: Math.max(whole.bottom, box.bottom - air), top: Math.min(whole.top, box.top + air),
+  };
+}
+
+/** An SVG that fits a plate into its container. `drawMore(stage)` adds what stands above the plate. */
+export function createStage(container, { label, role = "img", drawMore }) {
+  let geometry = null;
+  let followed = [];
+  let width = 0;
+  let close = false;
+  let view = null;
+  const base = shape("g");
+  const above = shape("g");
+  const svg = shape("svg", { class: "plate", role, "aria-label": label }, base, above);
+  const zoom = element("button", { type: "button", class: "button small", "aria-pressed": "false", onclick: () => {
+    close = !close;
+    zoom.setAttribute("aria-pressed", String(close));
+    draw();
+  } }, "Zoom to the cracks");
+  const holder = element("div", { class: "plate-holder" }, svg);
+  show(container, holder, element("div", { class: "plate-tools" }, zoom));
+
+  const observer = new ResizeObserver(([entry]) => {
+    const next = Math.floor(entry.contentRect.width);
+    if (next === width || next === 0) return;
+    width = next;
+    draw();
+  });
+  observer.observe(holder);
+
+  const stage = {
+    svg, above,
+    setGeometry(next) {
+      geometry = next;
+      draw();
+    },
+    /** Points that the close view must hold too. */
+    follow(points) {
+      followed = points;
+    },
+    draw,
+    toPixels: ([x, y]) => [view.x + (x - view.box.left) * view.scale, view.y + (view.box.top - y) * view.scale],
+    toMillimetres: ([px, py]) => [(px - view.x) / view.scale + view.box.left, view.box.top - (py - view.y) / view.scale],
+    get ready() {
+      return view !== null;
+    },
+    destroy: () => observer.disconnect(),
+  };
+
+  function draw() {
+    if (!geometry || width === 0) {
+      view = null;
+      show(base);
+      show(above);
+      svg.setAttribute("height", 0);
+      return;
+    }
+    const box = close ? closeBox(geometry, followed) : boxOf(geometry.outline);
+    const [across, up] = [box.right - box.left, box.top - box.bottom];
+    const room = width - 2 * MARGIN;
+    const height = Math.min(Math.max((room * up) / across, 150), HEIGHT_MAX - 2 * MARGIN) + 2 * MARGIN;
+    const scale = Math.min(room / across, (height - 2 * MARGIN) / up);
+    view = { box, scale, x: (width - across * scale) / 2, y: (height - up * scale) / 2 };
+    svg.setAttribute("width", width);
+    svg.setAttribute("height", Math.round(height) + RULE_STRIP);
+    drawPlate();
+    drawMore(stage);
+  }
+
+  const at = (point) => stage.toPixels(point).map((value) => Math.round(value * 10) / 10);
+  const polygon = (points) => `M${points.map((point) => at(point).join(" ")).join("L")}z`;
+  const line = (one, attributes) => {
+    const [[x1, y1], [x2, y2]] = [at(one.from_mm), at(one.to_mm)];
+    return shape("line", { x1, y1, x2, y2, ...attributes });
+  };
+  const whole = (one) => [...one.from_mm, ...one.to_mm].every(Number.isFinite);
+
+  function drawPlate() {
+    const { outline, holes, cracks, notches, pinned } = geometry;
+    show(base,
+      shape("path", { class: "plate-body", d: polygon(outline) }),
+      holes.filter((hole) => hole.diameter_mm > 0 && Number.isFinite(hole.x_mm + hole.y_mm)).map((hole) => {
+        const [cx, cy] = at([hole.x_mm, hole.y_mm]);
+        return shape("circle", { class: "plate-hole", cx, cy, r: (hole.diameter_mm / 2) * view.scale });
+      }),
+      notches.filter(whole).map((notch) => line(notch, { class: "plate-notch", "stroke-width": notch.width_mm * view.scale })),
+      cracks.filter(whole).map((crack) => line(crack, { class: "plate-crack" })),
+      close || pinned ? null : arrows(boxOf(outline)), rule());
+  }
+
+  /** The load pulls at both ends. */
+  function arrows(box) {
+    return [0.1, 0.3, 0.5, 0.7, 0.9].flatMap((share) => [[box.top, -1], [box.bottom, 1]].map(([edge, way]) => {
+      const [x, y] = at([box.left + share * (box.right - box.left), edge]);
+      return shape("path", { class: "plate-load", d: `M${x} ${y + 5 * way}v${13 * way}m-3 ${-4 * way}l3 ${4 * way}l3 ${-4 * way}` });
+    }));
+  }
+
+  /** A length to measure by, as long as about a quarter of the picture. */
+  function rule() {
+    const length = 10 ** Math.floor(Math.log10((width * 0.3) / view.scale));
+    const best = [5, 2, 1].map((factor) => factor * length).find((candidate) => candidate * view.scale <= width * 0.3);
+    const end = Number(svg.getAttribute("height")) - 4;
+    return shape("g", { class: "plate-rule" },
+      shape("path", { d: `M4 ${end - 5}v5h${best * view.scale}v-5` }),
+      shape("text", { x: 8 + best * view.scale, y: end }, `${best} mm`));
+  }
+
+  return stage;
+}
+
+/** A picture to look at: the plate and the ways of its crack tips, which may grow. */
+export function createPlatePicture(container, label) {
+  let paths = [];
+  const stage = createStage(container, { label, drawMore: drawPaths });
+
+  function drawPaths() {
+    const pixel = (point) => stage.toPixels(point).map((value) => Math.round(value * 10) / 10);
+    show(stage.above, paths.map((path) => {
+      const points = path.filter((point) => Number.isFinite(point[0] + point[1])).map(pixel);
+      if (points.length === 0) return null;
+      const [cx, cy] = points[points.length - 1];
+      return shape("g", null,
+        shape("path", { class: "plate-path", d: `M${points.map((point) => point.join(" ")).join("L")}` }),
+        shape("circle", { class: "plate-tip", cx, cy, r: 3.5 }));
+    }));
+  }
+
+  return {
+    setSpecimen(specimen) {
+      stage.setGeometry(geometryOf(specimen));
+    },
+    get known() {
+      return stage.ready;
+    },
+    /** `next`: per tip its points [x, y], mm. */
+    setPaths(next) {
+      paths = next;
+      const points = next.flat();
+      stage.follow(points);
+      if (stage.ready) stage.draw();
+    },
+    destroy: () => stage.destroy(),
+  };
+}

@@ -1,0 +1,198 @@
+// Page of one prediction: while it runs the curve, the crack path and the damage field grow; afterwards the life and what follows from it.
+
+import { getBlob, getJson, getText, postJson, showBlob } from "./api.js";
+import { createChart } from "./chart.js";
+import { warningList } from "./check.js";
+import { element, readCsv, show, showPage, terms } from "./dom.js";
+import { follow } from "./events.js";
+import { cycles, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
+import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
+import { problemBox } from "./notices.js";
+import { createPlatePicture } from "./plate_drawing.js";
+import { createRemaining } from "./remaining.js";
+
+export async function openPrediction(root, id, signal) {
+  const job = await getJson(`/v1/predictions/${encodeURIComponent(id)}`, signal);
+  const again = element("a", { class: "button", href: `#/predict?from=${encodeURIComponent(id)}`, "data-action": "again" }, "Start a new one from this");
+  const head = createJobHead(job, { actions: [again] });
+  const outcome = element("div", { class: "job-body" });
+  const below = element("div", { class: "job-body" });
+  const chartPlace = element("div");
+  const ratePlace = element("div");
+  const picturePlace = element("div");
+  const image = element("img", { alt: "Share of broken bonds over the plate, with the crack path", hidden: true });
+  const imageNote = element("p", { class: "quiet" }, "No picture yet.");
+  const part = (name, title, ...content) => element("section", { "aria-labelledby": `${name}-title`, "data-part": name }, element("h2", { id: `${name}-title` }, title), ...content);
+  const rates = part("rates", "Growth rate", ratePlace);
+  rates.hidden = true;
+  const pictures = element("div", { class: "columns wide-left" },
+    element("div", { class: "stack" }, part("curve", "Crack length against cycles", chartPlace), rates),
+    element("div", { class: "stack" }, part("path", "Crack path", picturePlace),
+      part("damage", "Damage", element("div", { class: "paper picture" }, image), imageNote)));
+  showPage(root, head.node, outcome, pictures, below);
+
+  const chart = createChart(chartPlace, {
+    name: "life",
+    label: "Predicted crack length against cycles",
+    x: { label: "Cycles N", format: (value) => cycles(Math.round(value)), from: 0 },
+    y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
+  });
+  const plate = createPlatePicture(picturePlace, "The plate with its cracks and the way every crack tip has gone");
+  signal.addEventListener("abort", () => {
+    chart.destroy();
+    plate.destroy();
+  });
+  const curve = { id: "curve", name: "Predicted", kind: "line", tone: 0, x: [], y: [] };
+  const today = { id: "today", name: "Today", kind: "points", tone: 1, x: [], y: [] };
+  chart.set([curve]);
+  drawSpecimen();
+
+  /** The job says what was submitted as text; the check reads it and gives the specimen to draw. */
+  async function drawSpecimen() {
+    try {
+      const body = { input: job.input, ...(job.calibration ? { calibration: job.calibration } : {}) };
+      const specimen = job.case?.specimen ?? (await postJson("/v1/check", body, { signal })).case?.specimen;
+      plate.setSpecimen(specimen);
+    } catch (error) {
+      // An input with files of its own cannot be read again here: the path then stands in the damage picture alone.
+      if (error.name !== "AbortError") picturePlace.prepend(element("p", { class: "quiet" }, "The outline of this plate cannot be drawn from its input; the damage picture shows the path."));
+    }
+  }
+
+  let paths = [];
+  function grow({ from, cycles: steps, crack_length_mm: lengths, tips }) {
+    if (from < curve.x.length) {
+      curve.x.length = from;
+      curve.y.length = from;
+      paths = paths.map((path) => path.slice(0, from));
+    }
+    if (curve.x.length === 0) chart.set([curve]);
+    chart.extend("curve", steps, lengths);
+    for (const entry of tips ?? []) {
+      entry.forEach((point, tip) => {
+        paths[tip] ??= [];
+        paths[tip].push(point);
+      });
+    }
+    plate.setPaths(paths);
+  }
+
+  let revision = -1;
+  async function showPicture({ revision: next, href, cycles: at, crack_length_mm: length }) {
+    if (next <= revision) return;
+    revision = next;
+    try {
+      const blob = await getBlob(href, signal);
+      if (revision !== next) return; // a newer one is on its way
+      await showBlob(image, blob);
+      imageNote.textContent = `At ${cycles(Math.round(at))} cycles, crack length ${fixed(length, 2)} mm.`;
+    } catch {
+      // The next picture comes soon; the run itself is not touched by this.
+    }
+  }
+
+  async function finish(last) {
+    const whole = { ...job, ...last, input: job.input };
+    if (whole.state !== "succeeded") show(outcome, failureOf(whole));
+    else show(outcome, result(whole.summary), whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings));
+    const special = { "a_n.csv": curveChoices };
+    show(below, downloadList(whole, special), inputText(whole));
+    await loadFiles(whole);
+    // A run that failed or was cancelled before its first block has nothing to show.
+    pictures.hidden = curve.x.length === 0;
+  }
+
+  async function loadFiles(whole) {
+    const has = (name) => whole.files?.some((file) => file.name === name);
+    const path = (name) => `${pathOf(whole)}/files/${name}`;
+    try {
+      if (has("a_n.csv")) {
+        const columns = readCsv(await getText(path("a_n.csv"), signal));
+        Object.assign(curve, { x: columns.cycles, y: columns.crack_length_mm });
+        chart.set([curve, today]);
+        drawRates(columns);
+        if (whole.state === "succeeded") {
+          outcome.append(createRemaining(whole, columns, (at, length) => {
+            Object.assign(today, { x: at === null ? [] : [at], y: at === null ? [] : [length] });
+            chart.set([curve, today]);
+          }, signal));
+        }
+      }
+      if (has("crack_path.csv")) plate.setPaths(pathsOf(readCsv(await getText(path("crack_path.csv"), signal))));
+      if (has("damage.png")) {
+        revision = Infinity;
+        await showBlob(image, await getBlob(path("damage.png"), signal));
+        imageNote.textContent = "Share of broken bonds at the end of the run.";
+      }
+    } catch (error) {
+      if (error.name !== "AbortError") below.prepend(problemBox(error, () => finish(whole)));
+    }
+  }
+
+  function drawRates({ delta_k_mpa_sqrt_m: k = [], da_dn_mm_per_cycle: rate = [] }) {
+    const good = k.map((value, index) => [value, rate[index]]).filter(([value, other]) => value > 0 && other > 0);
+    rates.hidden = good.length < 3;
+    if (rates.hidden) return;
+    const rateChart = createChart(ratePlace, {
+      name: "rates",
+      label: "Growth rate against range of stress intensity, logarithmic axes",
+      x: { label: "ΔK", unit: "MPa√m", scale: "log", format: (value) => significant(value, 4) },
+      y: { label: "da/dN", unit: "mm/cycle", scale: "log", format: (value) => scientific(value, 3) },
+    });
+    signal.addEventListener("abort", () => rateChart.destroy());
+    rateChart.set([{ id: "rate", name: "Predicted", kind: "points", tone: 0, x: good.map((pair) => pair[0]), y: good.map((pair) => pair[1]) }]);
+  }
+
+  if (isFinal(job)) {
+    await finish(job);
+    return;
+  }
+  await follow(`${pathOf(job)}/events`, {
+    signal,
+    connection: head.connection,
+    take(name, data) {
+      if (name === "growth") grow(data);
+      if (name === "picture") showPicture(data);
+      if (name !== "job") return false;
+      head.update(data);
+      if (isFinal(data)) finish(data);
+      return isFinal(data);
+    },
+  });
+}
+
+function pathsOf({ tip, x_mm: xs, y_mm: ys }) {
+  const byTip = new Map();
+  tip.forEach((name, index) => {
+    if (!byTip.has(name)) byTip.set(name, []);
+    byTip.get(name).push([xs[index], ys[index]]);
+  });
+  return [...byTip.values()];
+}
+
+function result(s) {
+  return element("section", { class: "result", "aria-labelledby": "result-title", "data-part": "result" },
+    element("h2", { id: "result-title", class: "visually-hidden" }, "Result"),
+    terms([
+      ["Life", element("strong", { class: "large", "data-value": "life_cycles" }, `${cycles(Math.round(s.life_cycles))} cycles`)],
+      ["Crack length", `${fixed(s.crack_length_initial_mm, 2)} to ${fixed(s.crack_length_final_mm, 2)} mm`],
+      ["Stopped because", sentence(s.stop_meaning ?? words(s.stop_reason))],
+      ["Computed", `${whole(s.points)} points in ${duration(s.wall_s)}`],
+    ], "result"));
+}
+
+/** The curve as it was computed, or at equally spaced cycles. */
+function curveChoices(file, fetchFile) {
+  const amount = element("input", { type: "text", inputmode: "numeric", id: "resample-amount", value: "200" });
+  const kind = element("select", { id: "resample-kind" }, element("option", { value: "points" }, "points in all"), element("option", { value: "every_cycles" }, "cycles apart"));
+  const message = element("span", { class: "field-problem", role: "alert" });
+  return element("span", { class: "resample" },
+    element("label", { for: "resample-amount" }, "or equally spaced, "), amount,
+    element("label", { for: "resample-kind", class: "visually-hidden" }, "What the number means"), kind,
+    element("button", { type: "button", class: "button small", "data-action": "resample", onclick: () => {
+      const number = Number(amount.value.replaceAll(/\s/g, ""));
+      const good = number > 0 && (kind.value === "every_cycles" || (Number.isInteger(number) && number >= 2));
+      message.textContent = good ? "" : "Give a number above 0; points: a whole number from 2.";
+      if (good) fetchFile(`${file.href}?${kind.value}=${number}`, "a_n.csv");
+    } }, "Download"), message);
+}

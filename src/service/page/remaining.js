@@ -1,0 +1,76 @@
+// Remaining life from today's crack length, and the interval to inspect at.
+
+import { getJson } from "./api.js";
+import { debounce, element, show, terms } from "./dom.js";
+import { cycles, fixed, parseNumber } from "./format.js";
+import { pathOf } from "./job.js";
+import { problemBox } from "./notices.js";
+
+const SLIDER_STEPS = 1000;
+const WAIT_MS = 200;
+
+/** `mark(cycles, length)` shows today on the curve; null takes it away. */
+export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }, mark, signal) {
+  const [shortest, life] = [lengths[0], steps.at(-1)];
+  const longest = lengths.reduce((most, value) => Math.max(most, value), shortest);
+  // Rounded inwards: a length outside the curve has no answer.
+  const rounded = (value) => Math.min(Math.max(Math.round(value * 100), Math.ceil(shortest * 100)), Math.floor(longest * 100)) / 100;
+  const length = element("input", { type: "text", inputmode: "decimal", id: "today-length", autocomplete: "off", value: rounded(shortest).toFixed(2), "aria-describedby": "today-hint" });
+  const slider = element("input", { type: "range", id: "today-slider", min: "0", max: String(SLIDER_STEPS), value: "0" });
+  const factor = element("input", { type: "text", inputmode: "decimal", id: "inspection-factor", autocomplete: "off", value: "2" });
+  const answer = element("div", { "aria-live": "polite", class: "remaining-answer" });
+  const field = (label, unit, input, hint) => element("div", { class: "field" },
+    element("label", { for: input.id }, label, unit && element("span", { class: "visually-hidden" }, `, ${unit}`)),
+    element("div", { class: "control" }, input, unit && element("span", { class: "unit" }, unit)), hint);
+
+  /** Length at a number of cycles, linear between the blocks. */
+  function lengthAt(at) {
+    let index = steps.findIndex((value) => value >= at);
+    if (index <= 0) return lengths[index === 0 ? 0 : lengths.length - 1];
+    if (steps[index] === steps[index - 1]) index += 1;
+    const share = (at - steps[index - 1]) / (steps[index] - steps[index - 1]);
+    return lengths[index - 1] + share * (lengths[index] - lengths[index - 1]);
+  }
+
+  async function ask() {
+    const [a, f] = [parseNumber(length.value), parseNumber(factor.value)];
+    if (!(a > 0) || !(f >= 1)) {
+      mark(null);
+      show(answer, element("p", { class: "field-problem" }, "Give a crack length in mm and a factor of at least 1."));
+      return;
+    }
+    try {
+      const got = await getJson(`${pathOf(job)}/remaining?crack_length_mm=${a}&factor=${f}`, signal);
+      mark(got.cycles_at, got.crack_length_mm);
+      // Not while the slider is being dragged: it would jump under the hand.
+      if (document.activeElement !== slider) slider.value = String(Math.round((got.cycles_at / life) * SLIDER_STEPS));
+      slider.setAttribute("aria-valuetext", `crack length ${fixed(got.crack_length_mm, 2)} mm`);
+      show(answer, terms([
+        ["Remaining life", element("strong", { class: "large", "data-value": "remaining_cycles" }, `${cycles(Math.round(got.remaining_cycles))} cycles`)],
+        ["Inspection interval", element("strong", { class: "large", "data-value": "inspection_interval_cycles" }, `${cycles(Math.floor(got.inspection_interval_cycles))} cycles`)],
+        ["Used so far", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],
+      ], "remaining"));
+    } catch (error) {
+      if (error.name === "AbortError") return;
+      mark(null);
+      show(answer, problemBox(error, error.passes ? ask : null));
+    }
+  }
+
+  const soon = debounce(ask, WAIT_MS);
+  length.addEventListener("input", soon);
+  factor.addEventListener("input", soon);
+  slider.addEventListener("input", () => {
+    length.value = rounded(lengthAt((Number(slider.value) / SLIDER_STEPS) * life)).toFixed(2);
+    soon();
+  });
+  ask();
+
+  return element("section", { class: "remaining", "aria-labelledby": "remaining-title", "data-part": "remaining" },
+    element("h2", { id: "remaining-title" }, "Remaining life"),
+    element("div", { class: "fields" },
+      field("Crack length today", "mm", length, element("p", { class: "hint", id: "today-hint" }, `${fixed(shortest, 2)} to ${fixed(longest, 2)} mm on this curve`)),
+      field("Position along the life", "", slider),
+      field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = remaining life / factor"))),
+    answer);
+}

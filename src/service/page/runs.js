@@ -1,0 +1,180 @@
+// List of all runs: open, cancel, delete, and tick predictions to compare them.
+
+import { getJson } from "./api.js";
+import { byId, element, show } from "./dom.js";
+import { count, cycles, duration, fixed, moment, percent, scientific, words } from "./format.js";
+import { cancelJob, confirmDelete, hrefOf, isFinal, nameOf, stateBadge } from "./job.js";
+import { problemBox } from "./notices.js";
+
+const PAGE = 20;
+const REFRESH_MS = 3000;
+export const COMPARE_MAX = 8;
+
+/** Builds the view; gives {open(query), close()}. */
+export function createRunsView() {
+  const [kind, state, place, pager, compareBar] = ["runs-kind", "runs-state", "runs-list", "runs-pager", "compare-bar"].map(byId);
+  const ticked = new Map(); // id to name, over all pages of the list
+  let pages = [""]; // `after` of every page up to the one shown
+  let next = null;
+  let timer = 0;
+  let running = null;
+  let shown = "";
+
+  function address() {
+    const query = new URLSearchParams({ limit: PAGE });
+    if (pages.at(-1)) query.set("after", pages.at(-1));
+    if (state.value) query.set("state", state.value);
+    return `/v1/${kind.value}?${query}`;
+  }
+
+  async function load({ quietly = false } = {}) {
+    clearTimeout(timer);
+    running?.abort();
+    const own = new AbortController();
+    running = own;
+    if (!quietly) {
+      shown = "";
+      show(place, element("p", { class: "quiet", role: "status" }, "Loading …"));
+    }
+    try {
+      const list = await getJson(address(), own.signal);
+      if (own.signal.aborted) return;
+      next = list.next;
+      render(list.items);
+      if (list.items.some((job) => !isFinal(job))) timer = setTimeout(() => load({ quietly: true }), REFRESH_MS);
+    } catch (error) {
+      if (own.signal.aborted) return;
+      shown = "";
+      show(place, problemBox(error, () => load()));
+    }
+  }
+
+  function render(items) {
+    const text = JSON.stringify([kind.value, items]);
+    if (text === shown) return; // nothing new: no flicker, and the focus stays
+    shown = text;
+    const focused = document.activeElement?.dataset?.focus;
+    show(place, items.length === 0 ? empty() : tableOf(items));
+    if (focused) place.querySelector(`[data-focus="${CSS.escape(focused)}"]`)?.focus();
+    byId("runs-newer").disabled = pages.length === 1;
+    byId("runs-older").disabled = !next;
+    pager.hidden = pages.length === 1 && !next;
+    drawCompare();
+  }
+
+  function empty() {
+    const what = kind.value === "calibrations" ? "calibrations" : "predictions";
+    if (state.value || pages.length > 1) return element("p", { class: "empty" }, `No ${state.value} ${what} here.`);
+    return element("div", { class: "empty" }, element("p", null, `No ${what} yet.`),
+      element("p", null, kind.value === "calibrations"
+        ? element("a", { href: "#/measure", class: "button" }, "Calibrate from measured curves")
+        : element("a", { href: "#/predict", class: "button" }, "Predict a plate")));
+  }
+
+  function tableOf(items) {
+    const predictions = kind.value === "predictions";
+    const heads = [predictions && ["Compare", ""], ["Name", ""], ["State", ""],
+      ...(predictions ? [["Life, cycles", "number"], ["Final length, mm", "number"], ["Stop reason", ""]] : [["Rate at pivot, mm/cycle", "number"], ["m", "number"], ["rms life error", "number"]]),
+      ["Submitted", ""], ["Took", "number"], ["Actions", ""]].filter(Boolean);
+    return element("div", { class: "table-scroll", tabindex: "0", role: "region", "aria-label": `List of ${kind.value}` },
+      element("table", { class: "runs" },
+        element("caption", { class: "visually-hidden" }, `List of ${kind.value}, newest first`),
+        element("thead", null, element("tr", null, heads.map(([title, type]) => element("th", { scope: "col", class: type || null }, title)))),
+        element("tbody", null, items.map((job) => row(job, predictions)))));
+  }
+
+  function row(job, predictions) {
+    const s = job.summary;
+    const number = (text) => element("td", { class: "number" }, text);
+    const took = job.started && job.finished ? (new Date(job.finished) - new Date(job.started)) / 1000 : NaN;
+    const figures = predictions
+      ? [number(s ? cycles(Math.round(s.life_cycles)) : ""), number(s ? fixed(s.crack_length_final_mm, 2) : ""), element("td", { title: s?.stop_meaning }, s ? words(s.stop_reason) : "")]
+      : [number(s ? scientific(s.rate_at_pivot_mm_per_cycle, 4) : ""), number(s ? fixed(s.paris_m, 3) : ""), number(s ? percent(s.rms_life_error, 2) : "")];
+    return element("tr", { "data-job": job.id, "data-job-state": job.state },
+      predictions && element("td", { class: "tick" }, tick(job)),
+      element("th", { scope: "row" }, element("a", { href: hrefOf(job), "data-focus": `open-${job.id}` }, nameOf(job))),
+      element("td", null, stateBadge(job.state), job.state === "running" && job.progress ? ` ${percent(job.progress.share, 0)}` : null),
+      figures,
+      element("td", { class: "nowrap" }, moment(job.created)), number(Number.isFinite(took) ? duration(took) : ""),
+      element("td", null, isFinal(job) ? action(job, "Delete", remove) : action(job, "Cancel", cancel)));
+  }
+
+  function tick(job) {
+    const box = element("input", { type: "checkbox", "aria-label": `Compare ${nameOf(job)}`, "data-focus": `tick-${job.id}`, disabled: job.state !== "succeeded" || (ticked.size >= COMPARE_MAX && !ticked.has(job.id)) });
+    box.checked = ticked.has(job.id);
+    box.addEventListener("change", () => {
+      if (box.checked) ticked.set(job.id, nameOf(job));
+      else ticked.delete(job.id);
+      shown = "";
+      drawCompare();
+      place.querySelectorAll(".tick input").forEach((other) => {
+        const state = other.closest("tr").dataset.jobState;
+        other.disabled = state !== "succeeded" || (ticked.size >= COMPARE_MAX && !other.checked);
+      });
+    });
+    return box;
+  }
+
+  function action(job, title, work) {
+    return element("button", { type: "button", class: "button small", "aria-label": `${title} ${nameOf(job)}`, "data-focus": `act-${job.id}`, "data-action": title.toLowerCase(), onclick: () => work(job) }, title);
+  }
+
+  async function guarded(work) {
+    show(byId("runs-problem"));
+    try {
+      await work();
+      await load({ quietly: true });
+    } catch (error) {
+      show(byId("runs-problem"), problemBox(error));
+    }
+  }
+
+  const cancel = (job) => guarded(() => cancelJob(job));
+  const remove = (job) => guarded(async () => {
+    if (await confirmDelete(job)) ticked.delete(job.id);
+  });
+
+  function drawCompare() {
+    compareBar.hidden = kind.value !== "predictions" || ticked.size === 0;
+    byId("compare-count").textContent = ticked.size === 1
+      ? `${[...ticked.values()][0]} is ticked. Tick one more to compare.`
+      : `${count(ticked.size, "prediction")} ticked${ticked.size === COMPARE_MAX ? ", the most that can be compared" : ""}.`;
+    const go = byId("compare");
+    go.hidden = ticked.size < 2;
+    go.href = `#/compare/${[...ticked.keys()].map(encodeURIComponent).join(",")}`;
+  }
+
+  function restart() {
+    pages = [""];
+    load();
+  }
+
+  kind.addEventListener("change", () => {
+    location.replace(`#/runs?kind=${kind.value}`);
+  });
+  state.addEventListener("change", restart);
+  byId("compare-clear").addEventListener("click", () => {
+    ticked.clear();
+    shown = "";
+    load({ quietly: true });
+  });
+  byId("runs-older").addEventListener("click", () => {
+    pages.push(next);
+    load();
+  });
+  byId("runs-newer").addEventListener("click", () => {
+    pages.pop();
+    load();
+  });
+
+  return {
+    open(query) {
+      kind.value = query.get("kind") === "calibrations" ? "calibrations" : "predictions";
+      restart();
+    },
+    close() {
+      clearTimeout(timer);
+      running?.abort();
+    },
+  };
+}

@@ -1,0 +1,198 @@
+// Form of a test or a plate: specimen, material, loading. Keys are those of the input file.
+
+import { element, show } from "./dom.js";
+import { compact, fillIn, grid, group, numberIn } from "./form.js";
+import { plain, sentence, words } from "./format.js";
+
+const STANDARD = ["middle_tension", "compact_tension", "single_edge_tension", "double_edge_tension"];
+const LENGTH_HINTS = {
+  middle_tension: "half of the length from tip to tip",
+  compact_tension: "from the load line",
+  single_edge_tension: "from the edge",
+  double_edge_tension: "of each crack, from its edge",
+};
+const WIDTH_HINTS = { compact_tension: "from the load line to the back face" };
+const ENDS = [
+  { value: "", title: "choose …" },
+  { value: "pinned", title: "Pinned grips, free to rotate" },
+  { value: "clamped", title: "Clamped grips" },
+  { value: "uniform_stress", title: "Uniform stress" },
+];
+const MAGNITUDES = [
+  ["stress_range_mpa", "Stress range Δσ", "MPa", "gross section, maximum − minimum"],
+  ["stress_max_mpa", "Maximum stress σmax", "MPa", "gross section"],
+  ["force_range_kn", "Force range ΔP", "kN", "maximum − minimum"],
+  ["force_max_kn", "Maximum force Pmax", "kN", ""],
+  ["force_range_n", "Force range ΔP", "N", "maximum − minimum"],
+  ["force_max_n", "Maximum force Pmax", "N", ""],
+];
+
+/** True when every key of `object` is one of `known`. */
+function onlyKnown(object, known) {
+  return Object.keys(object).every((key) => known.includes(key));
+}
+
+/** Specimen: the standard kinds, and `plate` ({element, collect, fill}) where one is given. */
+export function createSpecimen(form, { plate } = {}) {
+  const kinds = [...STANDARD, ...(plate ? ["plate"] : [])];
+  const title = (kind) => (kind === "plate" ? "Plate drawn here" : sentence(words(kind)));
+  const kind = form.choice("specimen.kind", { label: "Kind", options: kinds.map((value) => ({ value, title: title(value) })) });
+  const number = (key, label, hint) => form.number(`specimen.${key}`, { label, unit: "mm", hint });
+  const width = number("width_mm", "Width W");
+  const length = number("length_mm", "Length L", "between the loaded ends");
+  const thickness = number("thickness_mm", "Thickness B");
+  const crack = number("crack_length_mm", "Initial crack length a");
+  const ends = form.choice("specimen.ends", { label: "Ends", options: ENDS });
+  const fields = { width_mm: width, length_mm: length, thickness_mm: thickness, crack_length_mm: crack };
+
+  function arrange() {
+    const chosen = kind.input.value;
+    const hint = (field, words) => {
+      field.note.textContent = words ?? "";
+      field.note.hidden = !words;
+    };
+    length.node.hidden = chosen === "compact_tension";
+    crack.node.hidden = chosen === "plate";
+    ends.node.hidden = chosen !== "single_edge_tension";
+    hint(crack, LENGTH_HINTS[chosen]);
+    hint(width, WIDTH_HINTS[chosen]);
+    hint(length, chosen === "plate" ? "along the load" : "between the loaded ends");
+    if (plate) plate.element.hidden = chosen !== "plate";
+  }
+  kind.input.addEventListener("input", arrange);
+  arrange();
+
+  return {
+    element: group("Specimen", grid(kind.node, width.node, length.node, thickness.node, crack.node, ends.node), plate?.element),
+    fields: { kind, ...fields, ends },
+    collect() {
+      const chosen = kind.input.value;
+      const sizes = Object.entries(fields).filter(([, field]) => !field.node.hidden).map(([key, field]) => [key, numberIn(field)]);
+      return compact({
+        kind: chosen,
+        ...Object.fromEntries(sizes),
+        ends: chosen === "single_edge_tension" ? ends.input.value : undefined,
+        ...(chosen === "plate" ? plate.collect() : {}),
+      });
+    },
+    /** Takes a specimen over; false when it says something the form cannot show. */
+    fill(specimen) {
+      const known = ["kind", "ends", ...Object.keys(fields), ...(specimen.kind === "plate" ? ["holes", "cracks"] : [])];
+      if (!kinds.includes(specimen.kind) || !onlyKnown(specimen, known)) return false;
+      fillIn(kind, specimen.kind);
+      fillIn(ends, specimen.ends);
+      for (const [key, field] of Object.entries(fields)) fillIn(field, specimen[key]);
+      arrange();
+      if (specimen.kind === "plate") plate.fill(specimen);
+      return true;
+    },
+  };
+}
+
+const PROPERTIES = [
+  ["youngs_modulus_gpa", "Young’s modulus E", "GPa"],
+  ["poisson_ratio", "Poisson’s ratio ν", ""],
+  ["yield_strength_mpa", "Yield strength", "MPa"],
+  ["toughness_mpa_sqrt_m", "Toughness", "MPa√m"],
+];
+
+/** Material: one of the library, or constants. */
+export function createMaterial(form, { toughness = true } = {}) {
+  const name = form.choice("material.name", { label: "Material", options: [{ value: "", title: "Own constants" }] });
+  const plane = form.choice("material.plane", { label: "State", options: [{ value: "stress", title: "Plane stress" }, { value: "strain", title: "Plane strain" }] });
+  const fields = Object.fromEntries(PROPERTIES.map(([key, label, unit]) => [key,
+    form.number(`material.${key}`, { label, unit, optional: ["yield_strength_mpa", "toughness_mpa_sqrt_m"].includes(key) })]));
+  name.node.classList.add("wide");
+  const listed = element("div");
+  let materials = [];
+
+  function arrange() {
+    const chosen = materials.find((material) => material.name === name.input.value);
+    for (const [key, field] of Object.entries(fields)) {
+      // A toughness depends on thickness and heat treatment, so the library seldom has one, and it may be given beside a name.
+      field.node.hidden = key === "toughness_mpa_sqrt_m" ? !toughness : Boolean(chosen);
+    }
+    show(listed, chosen && element("details", { class: "quiet" },
+      element("summary", null, constantsOf(chosen)),
+      element("ul", null, PROPERTIES.filter(([key]) => chosen[key]).map(([key, label, unit]) =>
+        element("li", null, `${label} ${plain(chosen[key].value)} ${unit}: ${chosen[key].source}${chosen[key].note ? ` (${chosen[key].note})` : ""}`)))));
+  }
+
+  function constantsOf(material) {
+    const short = { youngs_modulus_gpa: "E", poisson_ratio: "ν", yield_strength_mpa: "yield strength", toughness_mpa_sqrt_m: "toughness" };
+    return PROPERTIES.filter(([key]) => material[key]).map(([key, , unit]) => `${short[key]} ${plain(material[key].value)} ${unit}`.trim()).join(", ");
+  }
+
+  name.input.addEventListener("input", arrange);
+  arrange();
+
+  return {
+    element: group("Material", grid(name.node, plane.node, ...Object.values(fields).map((field) => field.node)), listed),
+    /** Materials of the library; the first becomes the choice. */
+    setMaterials(list) {
+      const chosen = materials.length === 0 ? list.find((material) => material.name === "al2024-t3")?.name ?? list[0]?.name : name.input.value;
+      materials = list;
+      show(name.input, list.map((material) => element("option", { value: material.name }, `${material.name} – ${material.title}`)),
+        element("option", { value: "" }, "Own constants"));
+      name.input.value = chosen ?? "";
+      arrange();
+    },
+    collect() {
+      const given = Object.entries(fields).filter(([, field]) => !field.node.hidden).map(([key, field]) => [key, numberIn(field)]);
+      return compact({ name: name.input.value, ...Object.fromEntries(given), plane: plane.input.value });
+    },
+    fill(material) {
+      const named = materials.some((one) => one.name === material.name);
+      const beside = named ? ["toughness_mpa_sqrt_m"] : Object.keys(fields);
+      if ((material.name && !named) || !onlyKnown(material, ["name", "plane", ...beside])) return false;
+      fillIn(name, material.name ?? "");
+      fillIn(plane, material.plane ?? "stress");
+      for (const [key, field] of Object.entries(fields)) fillIn(field, material[key]);
+      arrange();
+      return true;
+    },
+  };
+}
+
+/** Loading: one magnitude, named as what it is, and the ratio. */
+export function createLoading(form) {
+  const quantity = form.choice("loading.kind", { label: "Load given as", options: MAGNITUDES.map(([key, label, unit]) => ({ value: key, title: `${label}, ${unit}` })) });
+  const magnitude = form.number(MAGNITUDES.map(([key]) => `loading.${key}`), { label: "Load", unit: "MPa", hint: "gross section" });
+  const ratio = form.number("loading.stress_ratio", { label: "Stress ratio R", signed: true, hint: "minimum / maximum" });
+
+  function arrange() {
+    const [key, label, unit, hint] = MAGNITUDES.find(([candidate]) => candidate === quantity.input.value);
+    magnitude.name.textContent = label;
+    magnitude.node.querySelector("label .visually-hidden").textContent = `, ${unit}`;
+    magnitude.unitNode.textContent = unit;
+    magnitude.note.textContent = hint;
+    magnitude.note.hidden = hint === "";
+    magnitude.input.dataset.key = `loading.${key}`;
+  }
+  quantity.input.addEventListener("input", arrange);
+  arrange();
+
+  return {
+    element: group("Loading, constant amplitude", grid(quantity.node, magnitude.node, ratio.node)),
+    /** A compact specimen is pulled by pins: it takes forces. */
+    suit(specimenKind) {
+      const force = specimenKind === "compact_tension";
+      if (force === quantity.input.value.startsWith("force")) return;
+      quantity.input.value = force ? "force_range_kn" : "stress_range_mpa";
+      fillIn(magnitude, "");
+      arrange();
+    },
+    collect() {
+      return compact({ kind: "constant_amplitude", [quantity.input.value]: numberIn(magnitude), stress_ratio: numberIn(ratio) });
+    },
+    fill(loading) {
+      const keys = MAGNITUDES.map(([key]) => key).filter((key) => key in loading);
+      if (keys.length !== 1 || !onlyKnown(loading, ["kind", "stress_ratio", ...keys])) return false;
+      fillIn(quantity, keys[0]);
+      arrange();
+      fillIn(magnitude, loading[keys[0]]);
+      fillIn(ratio, loading.stress_ratio);
+      return true;
+    },
+  };
+}

@@ -1,0 +1,38 @@
+// Starts a run: one key for one press of the button, repeated when the answer got lost, so that no press starts two runs.
+
+import { postJson, pressKey } from "./api.js";
+
+const ATTEMPTS = 3;
+
+function pause(seconds) {
+  return new Promise((resolve) => {
+    setTimeout(resolve, seconds * 1000);
+  });
+}
+
+/** Posts `body` to `path` and opens the run; a refusal goes to `refuse`. */
+export async function startRun(path, body, { button, status, refuse }) {
+  const key = pressKey();
+  button.disabled = true;
+  status.textContent = "Starting …";
+  try {
+    for (let attempt = 1; ; attempt += 1) {
+      try {
+        const job = await postJson(path, body, { key });
+        status.textContent = "";
+        location.hash = `#/${job.kind === "calibration" ? "calibrations" : "predictions"}/${encodeURIComponent(job.id)}`;
+        return;
+      } catch (error) {
+        if (!error.passes || attempt === ATTEMPTS) throw error;
+        const seconds = Math.min(error.retryAfter ?? 2 * attempt, 30);
+        status.textContent = `${error.message} Trying again in ${seconds} s.`;
+        await pause(seconds);
+      }
+    }
+  } catch (error) {
+    status.textContent = "";
+    refuse(error);
+  } finally {
+    button.disabled = false;
+  }
+}

@@ -1,0 +1,41 @@
+// Writes the input of a form as the TOML file the command line reads, so that a run made here can be repeated there.
+
+function text(value) {
+  // JSON escapes are TOML escapes, as long as the delete character is spelt out too.
+  return JSON.stringify(value).replaceAll("\u007f", "\\u007F");
+}
+
+function key(name) {
+  return /^[A-Za-z0-9_-]+$/.test(name) ? name : text(name);
+}
+
+function number(value) {
+  const digits = String(value);
+  return /[.e]/.test(digits) ? digits : `${digits}.0`;
+}
+
+function inline(value) {
+  if (typeof value === "number") return number(value);
+  if (typeof value === "string") return text(value);
+  if (typeof value === "boolean") return String(value);
+  if (Array.isArray(value)) return `[${value.map(inline).join(", ")}]`;
+  return `{ ${entries(value).map(([name, item]) => `${key(name)} = ${inline(item)}`).join(", ")} }`;
+}
+
+function entries(table) {
+  return Object.entries(table).filter(([, value]) => value !== undefined && value !== null);
+}
+
+/** One line, or one item a line where the value is a list of tables. */
+function line(name, value) {
+  const tables = Array.isArray(value) && value.length > 0 && value.every((item) => typeof item === "object" && !Array.isArray(item));
+  if (!tables) return `${key(name)} = ${inline(value)}`;
+  return [`${key(name)} = [`, ...value.map((item) => `    ${inline(item)},`), "]"].join("\n");
+}
+
+/** An object of sections as TOML text. */
+export function writeToml(input) {
+  const sections = entries(input).filter(([, section]) => entries(section).length > 0);
+  return sections.map(([name, section]) => [`[${key(name)}]`, ...entries(section).map(([item, value]) => line(item, value))].join("\n"))
+    .join("\n\n").concat("\n");
+}

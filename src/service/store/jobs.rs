@@ -1,0 +1,247 @@
+//! Jobs as those see them who submit, watch, cancel and delete them.
+
+use sqlx::Row;
+use sqlx::any::AnyRow;
+
+use super::{Result, Store};
+use crate::service::job::{Job, JobKind, State, Submission, time};
+
+/// A job to be stored.
+#[derive(Debug, Clone)]
+pub struct NewJob<'a> {
+    /// What it does.
+    pub kind: JobKind,
+    /// Name of the token that submits it.
+    pub owner: &'a str,
+    /// The calibration whose law it uses.
+    pub calibration: Option<&'a str>,
+    /// Key by which a repeated request is known.
+    pub idempotency_key: Option<&'a str>,
+    /// Hash of the request.
+    pub fingerprint: &'a str,
+    /// What was asked for.
+    pub submission: &'a Submission,
+}
+
+/// What became of a submission.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Submitted {
+    /// A new job.
+    New(String),
+    /// The job of an earlier request with this key.
+    Again(String),
+    /// The key was used for another request.
+    KeyTaken,
+    /// The owner has as many jobs in the queue as he may have.
+    QueueFull,
+}
+
+/// Part of a list, newest first.
+#[derive(Debug, Clone, Default)]
+pub struct Listing {
+    /// Jobs.
+    pub jobs: Vec<Job>,
+    /// Where the next part begins, if there is one.
+    pub next: Option<String>,
+}
+
+/// Columns of a [`Job`].
+const COLUMNS: &str = "id, kind, name, owner, state, calibration, created_ms, started_ms, finished_ms, attempts, cancel_asked, \
+                       revision, fence, progress, problem, summary";
+
+/// Sorts behind every id.
+const BEHIND_ALL: &str = "~";
+
+impl Store {
+    /// Stores a job with its input, whole or not at all: once this returns it will be run.
+    ///
+    /// # Errors
+    /// The database cannot take it; nothing is stored then.
+    pub async fn submit(&self, new: &NewJob<'_>, queued_max: i64) -> Result<Submitted> {
+        // Without failure: text, numbers and bytes.
+        let content = postcard::to_stdvec(new.submission).unwrap_or_default();
+        let mut transaction = self.begin().await?;
+        if let Some(key) = new.idempotency_key {
+            let earlier = sqlx::query("SELECT fingerprint, job FROM idempotency WHERE owner = $1 AND key = $2")
+                .bind(new.owner)
+                .bind(key)
+                .fetch_optional(&mut *transaction)
+                .await?;
+            if let Some(row) = earlier {
+                let same = row.try_get::<String, _>(0)? == new.fingerprint;
+                return Ok(if same { Submitted::Again(row.try_get(1)?) } else { Submitted::KeyTaken });
+            }
+        }
+        let queued: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM jobs WHERE state = 'queued' AND owner = $1")
+            .bind(new.owner)
+            .fetch_one(&mut *transaction)
+            .await?;
+        if queued >= queued_max {
+            return Ok(Submitted::QueueFull);
+        }
+        let id = uuid::Uuid::now_v7().to_string();
+        sqlx::query(self.sql(
+            "INSERT INTO jobs (id, kind, name, owner, state, calibration, created_ms) VALUES ($1, $2, $3, $4, 'queued', $5, {now})",
+        ))
+        .bind(&id)
+        .bind(new.kind.name())
+        .bind(&new.submission.name)
+        .bind(new.owner)
+        .bind(new.calibration)
+        .execute(&mut *transaction)
+        .await?;
+        sqlx::query("INSERT INTO submissions (job, content) VALUES ($1, $2)")
+            .bind(&id)
+            .bind(content)
+            .execute(&mut *transaction)
+            .await?;
+        if let Some(key) = new.idempotency_key {
+            let stored = sqlx::query("INSERT INTO idempotency (owner, key, fingerprint, job) VALUES ($1, $2, $3, $4)")
+                .bind(new.owner)
+                .bind(key)
+                .bind(new.fingerprint)
+                .bind(&id)
+                .execute(&mut *transaction)
+                .await;
+            // Somebody else sent the same key in the same moment: his job counts.
+            if stored.as_ref().is_err_and(|error| error.as_database_error().is_some_and(|e| e.is_unique_violation())) {
+                transaction.rollback().await?;
+                return Box::pin(self.submit(new, queued_max)).await;
+            }
+            stored?;
+        }
+        transaction.commit().await?;
+        Ok(Submitted::New(id))
+    }
+
+    /// A job.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn job(&self, kind: JobKind, id: &str) -> Result<Option<Job>> {
+        let statement = format!("SELECT {COLUMNS} FROM jobs WHERE id = $1 AND kind = $2");
+        let row = sqlx::query(self.sql(&statement)).bind(id).bind(kind.name()).fetch_optional(&self.pool).await?;
+        let Some(mut job) = row.map(|row| job_of(&row)).transpose()? else { return Ok(None) };
+        if job.state == State::Queued {
+            let before = sqlx::query_scalar("SELECT COUNT(*) FROM jobs WHERE state = 'queued' AND id < $1");
+            job.position = Some(before.bind(id).fetch_one(&self.pool).await?);
+        }
+        Ok(Some(job))
+    }
+
+    /// How often a job has changed; `None` if there is no such job.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn revision(&self, id: &str) -> Result<Option<i64>> {
+        sqlx::query_scalar("SELECT revision FROM jobs WHERE id = $1").bind(id).fetch_optional(&self.pool).await
+    }
+
+    /// What was asked for.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn submission(&self, id: &str) -> Result<Option<Submission>> {
+        let content: Option<Vec<u8>> =
+            sqlx::query_scalar("SELECT content FROM submissions WHERE job = $1").bind(id).fetch_optional(&self.pool).await?;
+        let broken = |error: postcard::Error| sqlx::Error::Decode(error.into());
+        content.map(|bytes| postcard::from_bytes(&bytes).map_err(broken)).transpose()
+    }
+
+    /// Jobs of a kind, newest first, from behind the job `after` on.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn list(&self, kind: JobKind, state: Option<State>, after: Option<&str>, limit: u32) -> Result<Listing> {
+        let statement = format!(
+            "SELECT {COLUMNS} FROM jobs WHERE kind = $1 AND id < $3 AND ($4 = '' OR state = $4) ORDER BY id DESC LIMIT $2"
+        );
+        // One more than asked for tells whether there are more.
+        let rows = sqlx::query(self.sql(&statement))
+            .bind(kind.name())
+            .bind(i64::from(limit) + 1)
+            .bind(after.unwrap_or(BEHIND_ALL))
+            .bind(state.map_or("", State::name))
+            .fetch_all(&self.pool)
+            .await?;
+        let mut jobs: Vec<Job> = rows.iter().map(job_of).collect::<Result<_>>()?;
+        let is_more = jobs.len() > limit as usize;
+        jobs.truncate(limit as usize);
+        let next = jobs.last().filter(|_| is_more).map(|job| job.id.clone());
+        Ok(Listing { jobs, next })
+    }
+
+    /// Asks for the end of a job: one that waits ends at once, one that runs within a cycle block. Whether there was one to end.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn cancel(&self, id: &str) -> Result<bool> {
+        let changed = sqlx::query(self.sql(
+            "UPDATE jobs SET cancel_asked = 1, revision = revision + 1,
+                finished_ms = CASE WHEN state = 'queued' THEN {now} END,
+                state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END
+             WHERE id = $1 AND state IN ('queued', 'running')",
+        ))
+        .bind(id)
+        .execute(&self.pool)
+        .await?;
+        Ok(changed.rows_affected() > 0)
+    }
+
+    /// Removes a job that does not run, with all it has. Whether there was one.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn delete(&self, id: &str) -> Result<bool> {
+        let gone = sqlx::query("DELETE FROM jobs WHERE id = $1 AND state <> 'running'").bind(id).execute(&self.pool).await?;
+        Ok(gone.rows_affected() > 0)
+    }
+
+    /// Removes jobs that ended longer than so many milliseconds ago; returns how many.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn expire(&self, kept_ms: i64) -> Result<u64> {
+        let gone = sqlx::query(self.sql("DELETE FROM jobs WHERE finished_ms < {now} - $1")).bind(kept_ms);
+        Ok(gone.execute(&self.pool).await?.rows_affected())
+    }
+
+    /// Jobs in each state.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn counts(&self) -> Result<Vec<(String, i64)>> {
+        let rows = sqlx::query("SELECT state, COUNT(*) FROM jobs GROUP BY state").fetch_all(&self.pool).await?;
+        rows.iter().map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).collect()
+    }
+}
+
+/// A row of [`COLUMNS`].
+fn job_of(row: &AnyRow) -> Result<Job> {
+    let name = |column: &str| -> Result<String> { row.try_get(column) };
+    let moment = |column: &str| -> Result<Option<String>> { Ok(row.try_get::<Option<i64>, _>(column)?.map(time)) };
+    let unknown = |column: &str| sqlx::Error::Decode(format!("unknown {column}").into());
+    // What this program wrote as JSON reads back; what a later version wrote is left out.
+    fn object<T: serde::de::DeserializeOwned>(row: &AnyRow, column: &str) -> Result<Option<T>> {
+        Ok(row.try_get::<Option<String>, _>(column)?.and_then(|text| serde_json::from_str(&text).ok()))
+    }
+    Ok(Job {
+        id: name("id")?,
+        kind: name("kind")?.parse().map_err(|()| unknown("kind"))?,
+        name: name("name")?,
+        state: name("state")?.parse().map_err(|()| unknown("state"))?,
+        owner: name("owner")?,
+        created: time(row.try_get("created_ms")?),
+        started: moment("started_ms")?,
+        finished: moment("finished_ms")?,
+        attempts: row.try_get("attempts")?,
+        cancel_asked: row.try_get::<i64, _>("cancel_asked")? != 0,
+        position: None,
+        progress: object(row, "progress")?,
+        problem: object(row, "problem")?,
+        summary: object(row, "summary")?,
+        calibration: row.try_get("calibration")?,
+        revision: row.try_get("revision")?,
+        fence: row.try_get("fence")?,
+    })
+}

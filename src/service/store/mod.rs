@@ -1,0 +1,165 @@
+//! What the service remembers: jobs, their input, state and results, in SQLite (one file) or PostgreSQL (many machines) by the
+//! same statements.
+//!
+//! The store is the only place in which a job exists: nothing of it stands in files, and no name from outside becomes a path.
+//! Times are those of the database, so that machines need not agree on theirs.
+
+mod files;
+mod jobs;
+mod queue;
+mod schema;
+mod tokens;
+
+use std::path::Path;
+use std::time::Duration;
+
+use sqlx::AnyPool;
+use sqlx::any::AnyPoolOptions;
+
+pub use files::{File, FileEntry};
+pub use jobs::{Listing, NewJob, Submitted};
+pub use queue::{Beat, Claim, Growth, Outcome};
+pub use tokens::{Role, Token, hash, hex};
+
+/// What a statement can fail with; see [`is_gone`].
+pub type Result<T> = std::result::Result<T, sqlx::Error>;
+
+/// Time a statement waits for a free connection, and a SQLite writer for another.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// The database.
+#[derive(Debug, Clone)]
+pub struct Store {
+    pool: AnyPool,
+    dialect: Dialect,
+}
+
+/// In what the statements differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Dialect {
+    Sqlite,
+    Postgres,
+}
+
+impl Dialect {
+    /// Milliseconds since 1970 by the clock of the database.
+    fn now(self) -> &'static str {
+        match self {
+            Dialect::Sqlite => "CAST(unixepoch('subsec') * 1000 AS INTEGER)",
+            Dialect::Postgres => "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)",
+        }
+    }
+
+    /// Passes over rows that another transaction is about to take. SQLite has one writer at a time.
+    fn skip_locked(self) -> &'static str {
+        match self {
+            Dialect::Sqlite => "",
+            Dialect::Postgres => "FOR UPDATE SKIP LOCKED",
+        }
+    }
+
+    /// Type of bytes.
+    fn bytes(self) -> &'static str {
+        match self {
+            Dialect::Sqlite => "BLOB",
+            Dialect::Postgres => "BYTEA",
+        }
+    }
+
+    /// Begins a transaction that writes: SQLite must know before it reads, or two could wait for each other.
+    fn begin(self) -> &'static str {
+        match self {
+            Dialect::Sqlite => "BEGIN IMMEDIATE",
+            Dialect::Postgres => "BEGIN",
+        }
+    }
+}
+
+/// URL of the database file of a data folder.
+#[must_use]
+pub fn url_of_file(path: &Path) -> String {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"/-_.~".contains(&byte);
+    let bytes = path.as_os_str().as_encoded_bytes().iter();
+    let encoded: String = bytes.map(|&b| if plain(b) { (b as char).to_string() } else { format!("%{b:02X}") }).collect();
+    format!("sqlite://{encoded}?mode=rwc")
+}
+
+impl Store {
+    /// Connects to `sqlite://FILE` or `postgres://...` and brings the tables up to date.
+    ///
+    /// # Errors
+    /// Another kind of URL; a database that cannot be reached or was made by a later version of this program.
+    pub async fn open(url: &str, connections: u32) -> Result<Store> {
+        sqlx::any::install_default_drivers();
+        let dialect = match url.split(':').next() {
+            Some("sqlite") => Dialect::Sqlite,
+            Some("postgres" | "postgresql") => Dialect::Postgres,
+            _ => return Err(sqlx::Error::Configuration("the URL must begin with sqlite:// or postgres://".into())),
+        };
+        let pool = AnyPoolOptions::new()
+            .max_connections(connections)
+            .acquire_timeout(PATIENCE)
+            .after_connect(move |connection, _| {
+                Box::pin(async move {
+                    if dialect == Dialect::Sqlite {
+                        // Readers and the writer do not wait for each other; what was committed outlives a loss of power.
+                        let settings = format!(
+                            "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA busy_timeout = {};",
+                            PATIENCE.as_millis()
+                        );
+                        sqlx::raw_sql(sqlx::AssertSqlSafe(settings)).execute(connection).await?;
+                    }
+                    Ok(())
+                })
+            })
+            .connect(url)
+            .await?;
+        let store = Store { pool, dialect };
+        store.migrate().await?;
+        Ok(store)
+    }
+
+    /// Whether the database answers.
+    ///
+    /// # Errors
+    /// It does not.
+    pub async fn ping(&self) -> Result<()> {
+        sqlx::query("SELECT 1").execute(&self.pool).await.map(drop)
+    }
+
+    /// Closes all connections.
+    pub async fn close(&self) {
+        self.pool.close().await;
+    }
+
+    /// A statement with the fragments of this database filled in: `{now}`, `{skip_locked}`, `{bytes}`.
+    fn sql(&self, statement: &str) -> sqlx::AssertSqlSafe<String> {
+        let dialect = self.dialect;
+        let filled = statement
+            .replace("{now}", dialect.now())
+            .replace("{skip_locked}", dialect.skip_locked())
+            .replace("{bytes}", dialect.bytes());
+        sqlx::AssertSqlSafe(filled)
+    }
+
+    /// A transaction that writes.
+    async fn begin(&self) -> Result<sqlx::Transaction<'static, sqlx::Any>> {
+        self.pool.begin_with(self.dialect.begin()).await
+    }
+}
+
+/// Whether a statement failed because there is no connection, not because of what was asked: worth another try on a new one.
+#[must_use]
+pub fn is_gone(error: &sqlx::Error) -> bool {
+    use sqlx::Error as E;
+    match error {
+        E::Io(_) | E::Tls(_) | E::Protocol(_) | E::PoolTimedOut | E::PoolClosed | E::WorkerCrashed => true,
+        // PostgreSQL: connection lost (08), out of room (53), being shut down or not up yet (57); SQLite: busy, locked, no memory,
+        // read-only, disk error, full, cannot open.
+        E::Database(database) => database.code().is_some_and(|code| {
+            ["08", "53", "57"].iter().any(|class| code.len() == 5 && code.starts_with(class))
+                || code.parse::<u32>().is_ok_and(|code| code < 10_000 && [5, 6, 7, 8, 10, 13, 14].contains(&(code & 0xff)))
+        }),
+        _ => false,
+    }
+}

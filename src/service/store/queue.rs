@@ -1,0 +1,277 @@
+//! Jobs as workers see them: claimed for a time, kept alive, written to by who holds the claim, finished once.
+
+use serde::{Deserialize, Serialize};
+use sqlx::Row;
+
+use super::{File, Result, Store};
+use crate::service::job::{JobKind, JobProgress, State, Submission};
+
+/// A job that a worker holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Claim {
+    /// The job.
+    pub id: String,
+    /// What it does.
+    pub kind: JobKind,
+    /// Number of the claim; every writing names it.
+    pub fence: i64,
+    /// Claims since it began or since its last checkpoint, this one among them.
+    pub attempts: i64,
+    /// Somebody asked for its end already.
+    pub cancel_asked: bool,
+}
+
+/// What a sign of life brings back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beat {
+    /// Go on.
+    Held,
+    /// Somebody asks for the end of the job.
+    Cancel,
+    /// The job is another worker's now, or gone.
+    Lost,
+}
+
+/// How a job ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Its last state.
+    pub state: State,
+    /// The figures of its result, JSON.
+    pub summary: Option<String>,
+    /// Why there is none, JSON.
+    pub problem: Option<String>,
+    /// Its files.
+    pub files: Vec<File>,
+}
+
+/// A piece of a growing curve.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Growth {
+    /// Number of the first entry; 0 starts over.
+    pub from: usize,
+    /// Cycles since N = 0.
+    pub cycles: Vec<f64>,
+    /// Crack length.
+    pub crack_length_mm: Vec<f64>,
+    /// Position of every tip, mm.
+    pub tips: Vec<Vec<[f64; 2]>>,
+}
+
+impl Store {
+    /// The next job that waits, or whose worker has given no sign of life for as long as it was granted.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn claim(&self, worker: &str, lease_ms: i64) -> Result<Option<Claim>> {
+        let row = sqlx::query(self.sql(
+            "UPDATE jobs SET state = 'running', worker = $1, fence = fence + 1, attempts = attempts + 1,
+                lease_until_ms = {now} + $2, started_ms = COALESCE(started_ms, {now}), revision = revision + 1
+             WHERE id = (SELECT id FROM jobs WHERE state = 'queued' OR (state = 'running' AND lease_until_ms < {now})
+                         ORDER BY id LIMIT 1 {skip_locked})
+             RETURNING id, kind, fence, attempts, cancel_asked",
+        ))
+        .bind(worker)
+        .bind(lease_ms)
+        .fetch_optional(&self.pool)
+        .await?;
+        let Some(row) = row else { return Ok(None) };
+        let kind: String = row.try_get("kind")?;
+        Ok(Some(Claim {
+            id: row.try_get("id")?,
+            kind: kind.parse().map_err(|()| sqlx::Error::Decode("unknown kind".into()))?,
+            fence: row.try_get("fence")?,
+            attempts: row.try_get("attempts")?,
+            cancel_asked: row.try_get::<i64, _>("cancel_asked")? != 0,
+        }))
+    }
+
+    /// What a claimed job is about, and where it stood.
+    ///
+    /// # Errors
+    /// The database does not answer, or what stands there cannot be read.
+    pub async fn content(&self, claim: &Claim) -> Result<(Option<Submission>, Option<Vec<u8>>)> {
+        let checkpoint = sqlx::query_scalar("SELECT content FROM checkpoints WHERE job = $1").bind(&claim.id);
+        Ok((self.submission(&claim.id).await?, checkpoint.fetch_optional(&self.pool).await?))
+    }
+
+    /// A sign of life: the claim holds on for `lease_ms`.
+    ///
+    /// # Errors
+    /// The database does not answer; the claim may still hold.
+    pub async fn beat(&self, claim: &Claim, lease_ms: i64, progress: Option<&JobProgress>) -> Result<Beat> {
+        let progress = progress.and_then(|progress| serde_json::to_string(progress).ok());
+        let asked: Option<i64> = sqlx::query_scalar(self.sql(
+            "UPDATE jobs SET lease_until_ms = {now} + $3, revision = revision + CASE WHEN $4 IS NULL OR $4 = progress THEN 0 ELSE 1 END,
+                progress = COALESCE($4, progress)
+             WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING cancel_asked",
+        ))
+        .bind(&claim.id)
+        .bind(claim.fence)
+        .bind(lease_ms)
+        .bind(progress)
+        .fetch_optional(&self.pool)
+        .await?;
+        Ok(asked.map_or(Beat::Lost, |asked| if asked == 0 { Beat::Held } else { Beat::Cancel }))
+    }
+
+    /// Stores the state of a job, from which any worker can go on. Whether the claim still holds.
+    ///
+    /// # Errors
+    /// The database cannot take it; what stood there before stays.
+    pub async fn keep(&self, claim: &Claim, checkpoint: Vec<u8>) -> Result<bool> {
+        let mut transaction = self.begin().await?;
+        if !hold(&mut transaction, claim, "attempts = 0").await? {
+            return Ok(false);
+        }
+        sqlx::query(
+            "INSERT INTO checkpoints (job, content) VALUES ($1, $2) ON CONFLICT (job) DO UPDATE SET content = excluded.content",
+        )
+        .bind(&claim.id)
+        .bind(checkpoint)
+        .execute(&mut *transaction)
+        .await?;
+        transaction.commit().await?;
+        Ok(true)
+    }
+
+    /// Puts a piece behind the growing curve of a job; a piece from 0 replaces all. Whether the claim still holds.
+    ///
+    /// # Errors
+    /// The database cannot take it.
+    pub async fn grow(&self, claim: &Claim, growth: &Growth) -> Result<bool> {
+        let mut transaction = self.begin().await?;
+        if !hold(&mut transaction, claim, "revision = revision + 1").await? {
+            return Ok(false);
+        }
+        if growth.from == 0 {
+            sqlx::query("DELETE FROM growth WHERE job = $1").bind(&claim.id).execute(&mut *transaction).await?;
+        }
+        sqlx::query(
+            "INSERT INTO growth (job, first, entries) VALUES ($1, $2, $3)
+             ON CONFLICT (job, first) DO UPDATE SET entries = excluded.entries",
+        )
+        .bind(&claim.id)
+        .bind(growth.from as i64)
+        .bind(serde_json::to_string(growth).unwrap_or_default())
+        .execute(&mut *transaction)
+        .await?;
+        transaction.commit().await?;
+        Ok(true)
+    }
+
+    /// Pieces of the growing curve of a job from entry `from` on.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn growth(&self, id: &str, from: i64) -> Result<Vec<Growth>> {
+        let pieces: Vec<String> = sqlx::query_scalar("SELECT entries FROM growth WHERE job = $1 AND first >= $2 ORDER BY first")
+            .bind(id)
+            .bind(from)
+            .fetch_all(&self.pool)
+            .await?;
+        Ok(pieces.iter().filter_map(|piece| serde_json::from_str(piece).ok()).collect())
+    }
+
+    /// Shows the latest picture of a job; `about` is what is said of it, JSON.
+    ///
+    /// # Errors
+    /// The database cannot take it.
+    pub async fn show(&self, claim: &Claim, about: &str, picture: Vec<u8>) -> Result<bool> {
+        let mut transaction = self.begin().await?;
+        if !hold(&mut transaction, claim, "revision = revision + 1").await? {
+            return Ok(false);
+        }
+        sqlx::query(
+            "INSERT INTO pictures (job, revision, about, content) VALUES ($1, 1, $2, $3) ON CONFLICT (job) DO UPDATE
+                SET revision = pictures.revision + 1, about = excluded.about, content = excluded.content",
+        )
+        .bind(&claim.id)
+        .bind(about)
+        .bind(picture)
+        .execute(&mut *transaction)
+        .await?;
+        transaction.commit().await?;
+        Ok(true)
+    }
+
+    /// Number of the latest picture of a job, and what is said of it.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn picture_about(&self, id: &str) -> Result<Option<(i64, String)>> {
+        let row = sqlx::query("SELECT revision, about FROM pictures WHERE job = $1").bind(id).fetch_optional(&self.pool).await?;
+        row.map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).transpose()
+    }
+
+    /// The latest picture of a job.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn picture(&self, id: &str) -> Result<Option<Vec<u8>>> {
+        sqlx::query_scalar("SELECT content FROM pictures WHERE job = $1").bind(id).fetch_optional(&self.pool).await
+    }
+
+    /// Ends a job with its results, all or nothing, if the claim still holds; whether it did.
+    ///
+    /// # Errors
+    /// The database cannot take it; the job then runs on as far as it is concerned.
+    pub async fn finish(&self, claim: &Claim, outcome: &Outcome) -> Result<bool> {
+        let mut transaction = self.begin().await?;
+        let changed = sqlx::query(self.sql(
+            "UPDATE jobs SET state = $3, summary = $4, problem = $5, finished_ms = {now}, worker = NULL, lease_until_ms = NULL,
+                revision = revision + 1
+             WHERE id = $1 AND fence = $2 AND state = 'running'",
+        ))
+        .bind(&claim.id)
+        .bind(claim.fence)
+        .bind(outcome.state.name())
+        .bind(&outcome.summary)
+        .bind(&outcome.problem)
+        .execute(&mut *transaction)
+        .await?;
+        if changed.rows_affected() == 0 {
+            return Ok(false);
+        }
+        for file in &outcome.files {
+            sqlx::query("INSERT INTO files (job, name, media_type, size, content) VALUES ($1, $2, $3, $4, $5)")
+                .bind(&claim.id)
+                .bind(&file.name)
+                .bind(&file.media_type)
+                .bind(file.content.len() as i64)
+                .bind(&file.content[..])
+                .execute(&mut *transaction)
+                .await?;
+        }
+        for leftover in ["DELETE FROM checkpoints WHERE job = $1", "DELETE FROM growth WHERE job = $1"] {
+            sqlx::query(leftover).bind(&claim.id).execute(&mut *transaction).await?;
+        }
+        transaction.commit().await?;
+        Ok(true)
+    }
+
+    /// Gives a job back to the queue; a blameless one is not counted as having been tried.
+    ///
+    /// # Errors
+    /// The database does not answer; the job goes on elsewhere once its time has run out.
+    pub async fn release(&self, claim: &Claim, is_blameless: bool) -> Result<()> {
+        sqlx::query(
+            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, attempts = attempts - $3,
+                revision = revision + 1
+             WHERE id = $1 AND fence = $2 AND state = 'running'",
+        )
+        .bind(&claim.id)
+        .bind(claim.fence)
+        .bind(i64::from(is_blameless))
+        .execute(&self.pool)
+        .await
+        .map(drop)
+    }
+}
+
+/// Changes the row of a claimed job, which others then cannot take until the transaction ends; whether the claim holds.
+async fn hold(transaction: &mut sqlx::Transaction<'static, sqlx::Any>, claim: &Claim, change: &'static str) -> Result<bool> {
+    let statement = format!("UPDATE jobs SET {change} WHERE id = $1 AND fence = $2 AND state = 'running'");
+    let held = sqlx::query(sqlx::AssertSqlSafe(statement)).bind(&claim.id).bind(claim.fence).execute(&mut **transaction);
+    Ok(held.await?.rows_affected() > 0)
+}

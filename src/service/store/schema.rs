@@ -1,0 +1,66 @@
+//! The tables, and how they came to be: each step runs once, in order.
+
+use super::{Result, Store};
+
+/// Steps so far. What stands here is never changed again; what is to change gets a step of its own.
+const STEPS: &[&[&str]] = &[&[
+    // `id` is a UUID of version 7: sorted by it jobs are sorted by time. `fence` counts the claims: whoever writes must name the
+    // claim he holds, so that a worker taken for dead that is not cannot write over its successor. `attempts` counts the claims
+    // since the last checkpoint. `revision` grows with every change that somebody may be watching for.
+    "CREATE TABLE jobs (
+        id TEXT PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL, owner TEXT NOT NULL, state TEXT NOT NULL,
+        calibration TEXT, created_ms BIGINT NOT NULL, started_ms BIGINT, finished_ms BIGINT,
+        worker TEXT, fence BIGINT NOT NULL DEFAULT 0, lease_until_ms BIGINT, attempts BIGINT NOT NULL DEFAULT 0,
+        cancel_asked BIGINT NOT NULL DEFAULT 0, revision BIGINT NOT NULL DEFAULT 0,
+        progress TEXT, problem TEXT, summary TEXT)",
+    "CREATE INDEX jobs_by_state ON jobs (state, id)",
+    "CREATE INDEX jobs_by_kind ON jobs (kind, id)",
+    "CREATE INDEX jobs_finished ON jobs (finished_ms)",
+    "CREATE TABLE submissions (job TEXT PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, content {bytes} NOT NULL)",
+    "CREATE TABLE idempotency (
+        owner TEXT NOT NULL, key TEXT NOT NULL, fingerprint TEXT NOT NULL,
+        job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, PRIMARY KEY (owner, key))",
+    "CREATE INDEX idempotency_by_job ON idempotency (job)",
+    "CREATE TABLE checkpoints (job TEXT PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, content {bytes} NOT NULL)",
+    "CREATE TABLE files (
+        job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, name TEXT NOT NULL, media_type TEXT NOT NULL,
+        size BIGINT NOT NULL, content {bytes} NOT NULL, PRIMARY KEY (job, name))",
+    // What a running job shows of itself: pieces of its curve, and its latest picture.
+    "CREATE TABLE growth (
+        job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, first BIGINT NOT NULL, entries TEXT NOT NULL,
+        PRIMARY KEY (job, first))",
+    "CREATE TABLE pictures (
+        job TEXT PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, revision BIGINT NOT NULL, about TEXT NOT NULL,
+        content {bytes} NOT NULL)",
+    "CREATE TABLE tokens (
+        hash TEXT PRIMARY KEY, name TEXT NOT NULL UNIQUE, role TEXT NOT NULL, created_ms BIGINT NOT NULL, expires_ms BIGINT)",
+]];
+
+/// Number by which processes that start together agree who lays the tables in PostgreSQL.
+const LOCK: i64 = 0x7065_7269_6c69_6665;
+
+impl Store {
+    /// Takes the steps that this database has not seen yet, all or none.
+    pub(super) async fn migrate(&self) -> Result<()> {
+        let mut transaction = self.begin().await?;
+        if self.dialect == super::Dialect::Postgres {
+            sqlx::query("SELECT pg_advisory_xact_lock($1)").bind(LOCK).execute(&mut *transaction).await?;
+        }
+        sqlx::query("CREATE TABLE IF NOT EXISTS perilife_schema (version BIGINT NOT NULL)").execute(&mut *transaction).await?;
+        let version: Option<i64> =
+            sqlx::query_scalar("SELECT MAX(version) FROM perilife_schema").fetch_one(&mut *transaction).await?;
+        let done = usize::try_from(version.unwrap_or(0)).unwrap_or(0);
+        if done > STEPS.len() {
+            let problem = format!("the database is at version {done}, this program knows {} only: use a newer one", STEPS.len());
+            return Err(sqlx::Error::Configuration(problem.into()));
+        }
+        for (number, step) in STEPS.iter().enumerate().skip(done) {
+            for statement in *step {
+                sqlx::query(self.sql(statement)).execute(&mut *transaction).await?;
+            }
+            let number = number as i64 + 1;
+            sqlx::query("INSERT INTO perilife_schema (version) VALUES ($1)").bind(number).execute(&mut *transaction).await?;
+        }
+        transaction.commit().await
+    }
+}

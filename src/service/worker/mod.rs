@@ -1,0 +1,163 @@
+//! Workers: threads that take jobs from the store one after the other and run them, the same functions as the commands.
+//!
+//! A solver never runs on the threads that serve requests, and requests never on those of a solver. Each job runs in a thread pool
+//! of its own size, so that one plate does not take the cores of another.
+
+mod job;
+mod results;
+mod watch;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use tokio::runtime::Handle;
+use tokio::sync::Notify;
+
+use super::store::Store;
+use job::work;
+
+/// How workers work.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Jobs at a time.
+    pub jobs: usize,
+    /// Threads for each.
+    pub threads: usize,
+    /// Time without a sign of life after which a job is another worker's.
+    pub lease: Duration,
+    /// Least time between two checkpoints of a job.
+    pub checkpoint_every: Duration,
+    /// Claims without a checkpoint between them after which a job is given up.
+    pub attempts: i64,
+    /// Time after which a finished job is deleted; `None` keeps it.
+    pub keep: Option<Duration>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            jobs: std::thread::available_parallelism().map_or(1, usize::from),
+            threads: 1,
+            lease: Duration::from_secs(15),
+            checkpoint_every: Duration::from_secs(3),
+            attempts: 10,
+            keep: None,
+        }
+    }
+}
+
+/// Time between two looks for work that another machine may have submitted.
+const LOOK_EVERY: Duration = Duration::from_millis(250);
+/// Time before another try of a database that does not answer.
+const TRY_EVERY: Duration = Duration::from_secs(1);
+/// Time between two looks for finished jobs that need not be kept any longer.
+const EXPIRE_EVERY: Duration = Duration::from_secs(60);
+
+/// What the threads of a process share.
+#[derive(Debug)]
+struct Shared {
+    store: Store,
+    settings: Settings,
+    /// Name of the process, unlike any other.
+    name: String,
+    wake: Arc<Notify>,
+    stopping: AtomicBool,
+    handle: Handle,
+}
+
+impl Shared {
+    fn is_stopping(&self) -> bool {
+        self.stopping.load(Ordering::Relaxed)
+    }
+
+    /// Waits, but not beyond the end of the process.
+    async fn pause(&self, time: Duration) {
+        if !self.is_stopping() {
+            let _ = tokio::time::timeout(time, self.wake.notified()).await;
+        }
+    }
+}
+
+/// Running workers; stopped by [`Workers::stop`].
+#[derive(Debug)]
+pub struct Workers {
+    shared: Arc<Shared>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Workers {
+    /// Starts them; `wake` tells of new jobs. Must be called within a runtime, on which their statements to the store run.
+    ///
+    /// # Errors
+    /// The machine gives no threads.
+    pub fn start(store: Store, settings: Settings, wake: Arc<Notify>) -> std::io::Result<Workers> {
+        let name = format!("{}/{}/{}", host(), std::process::id(), uuid::Uuid::now_v7());
+        let handle = Handle::current();
+        let shared = Arc::new(Shared { store, settings, name, wake, stopping: AtomicBool::new(false), handle });
+        let mut threads = Vec::with_capacity(shared.settings.jobs);
+        for number in 0..shared.settings.jobs {
+            let shared = Arc::clone(&shared);
+            threads.push(std::thread::Builder::new().name(format!("worker-{number}")).spawn(move || take_jobs(&shared))?);
+        }
+        if let Some(keep) = shared.settings.keep {
+            shared.handle.spawn(expire(Arc::clone(&shared), keep));
+        }
+        Ok(Workers { shared, threads })
+    }
+
+    /// Asks for the end and waits for it: jobs stop within a cycle block, and go on from their checkpoints elsewhere or later.
+    pub async fn stop(self) {
+        self.shared.stopping.store(true, Ordering::Relaxed);
+        self.shared.wake.notify_waiters();
+        let join = move || self.threads.into_iter().for_each(|thread| drop(thread.join()));
+        let _ = tokio::task::spawn_blocking(join).await;
+    }
+}
+
+/// What the machine calls itself.
+fn host() -> String {
+    let name = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    if name.trim().is_empty() { "host".to_owned() } else { name.trim().to_owned() }
+}
+
+/// One worker.
+fn take_jobs(shared: &Arc<Shared>) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(shared.settings.threads).build();
+    let pool = match pool {
+        Ok(pool) => pool,
+        Err(error) => return tracing::error!("a worker has no threads: {error}"),
+    };
+    let lease_ms = milliseconds(shared.settings.lease);
+    while !shared.is_stopping() {
+        match shared.handle.block_on(shared.store.claim(&shared.name, lease_ms)) {
+            Ok(Some(claim)) => {
+                // There may be more where this came from.
+                shared.wake.notify_one();
+                work(shared, &pool, &claim);
+            }
+            Ok(None) => shared.handle.block_on(shared.pause(LOOK_EVERY)),
+            Err(error) => {
+                tracing::warn!("no job can be taken: {error}");
+                shared.handle.block_on(shared.pause(TRY_EVERY));
+            }
+        }
+    }
+}
+
+/// Deletes finished jobs when their time is over.
+async fn expire(shared: Arc<Shared>, keep: Duration) {
+    while !shared.is_stopping() {
+        match shared.store.expire(milliseconds(keep)).await {
+            Ok(0) => {}
+            Ok(count) => tracing::info!(count, "finished jobs deleted: their time is over"),
+            Err(error) => tracing::warn!("finished jobs cannot be deleted: {error}"),
+        }
+        tokio::time::sleep(EXPIRE_EVERY.min(keep)).await;
+    }
+}
+
+fn milliseconds(time: Duration) -> i64 {
+    i64::try_from(time.as_millis()).unwrap_or(i64::MAX)
+}

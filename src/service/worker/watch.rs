@@ -1,0 +1,215 @@
+//! A run under a worker's eyes: the run tells how far it is and where it could be taken up, the worker's other half tells the
+//! store, and brings back whether the run may go on.
+
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::predict::checkpoint::Checkpoint;
+use crate::predict::{Observer, PointGrid, Progress, Snapshot, TipRecord};
+use crate::report::damage::{DamagePicture, cycles_and_length};
+use crate::service::job::JobProgress;
+use crate::service::store::Growth;
+use crate::specimen::{Crack, Point};
+use crate::units::MM;
+
+/// Entries of a growing curve from its start to its end: as many as a picture of it can show.
+const ENTRIES: f64 = 800.0;
+
+/// Why a run is to end before its time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Stop {
+    /// Somebody asked for it.
+    Cancelled = 1,
+    /// The job is not this worker's any more.
+    Lost = 2,
+    /// The process stops.
+    Shutdown = 3,
+}
+
+/// The plate as it was last seen, to be drawn by who has time for it.
+#[derive(Debug)]
+pub struct Look {
+    snapshot: Snapshot,
+    grid: PointGrid,
+    cracks: Vec<Crack>,
+    paths: Vec<Vec<Point>>,
+}
+
+impl Look {
+    /// What is said of the picture, JSON, and its PNG; `None` if it cannot be drawn.
+    #[must_use]
+    pub fn draw(&self) -> Option<(String, Vec<u8>)> {
+        let Look { snapshot, grid, cracks, paths } = self;
+        let caption = cycles_and_length(snapshot);
+        let picture = DamagePicture { grid, snapshot, cracks, paths, caption: &caption };
+        let about = serde_json::json!({ "cycles": snapshot.cycles, "crack_length_mm": snapshot.crack_length / MM });
+        Some((about.to_string(), picture.png().ok()?))
+    }
+}
+
+/// What a run has told since it was last asked.
+#[derive(Debug, Default)]
+pub struct News {
+    /// How far it is.
+    pub progress: Option<JobProgress>,
+    /// Where its curve has got to.
+    pub growth: Option<Growth>,
+    /// Its latest look.
+    pub look: Option<Look>,
+}
+
+/// Takes a checkpoint's bytes to where they are kept; whether that worked.
+pub type Keep<'a> = &'a (dyn Fn(Vec<u8>) -> bool + Sync);
+
+/// Watches one run.
+pub struct Watch<'a> {
+    cracks: &'a [Crack],
+    keep: Keep<'a>,
+    keep_every: Duration,
+    started: Instant,
+    /// 0 or a [`Stop`].
+    stop: AtomicU8,
+    told: Mutex<Told>,
+}
+
+/// What the run has told.
+struct Told {
+    progress: Option<Progress>,
+    /// Share at which this worker took it up.
+    first_share: f64,
+    /// Runs that ended, of a job that makes several.
+    runs: u32,
+    tips: Vec<Point>,
+    /// Ways of the tips as far as entries show them.
+    paths: Vec<Vec<Point>>,
+    entries: Growth,
+    last_entry: f64,
+    look: Option<Look>,
+    kept: Instant,
+    keep_cost: Duration,
+}
+
+/// Time between two checkpoints over the time that keeping one takes, at least: so they cost 5 % at most.
+const OVER_COST: u32 = 20;
+
+impl<'a> Watch<'a> {
+    /// Watches a run of a plate with these cracks, whose curve so far is `growth`.
+    #[must_use]
+    pub fn new(cracks: &'a [Crack], growth: &Growth, keep: Keep<'a>, keep_every: Duration) -> Self {
+        let tips = growth.tips.first().map_or(0, Vec::len);
+        let path = |tip: usize| growth.tips.iter().filter_map(|entry| Some(entry.get(tip)?.map(|mm| mm * MM))).collect();
+        let told = Told {
+            progress: None,
+            first_share: f64::NAN,
+            runs: 0,
+            tips: Vec::new(),
+            paths: (0..tips).map(path).collect(),
+            entries: Growth { from: growth.cycles.len(), ..Growth::default() },
+            last_entry: f64::NEG_INFINITY,
+            look: None,
+            kept: Instant::now(),
+            keep_cost: Duration::ZERO,
+        };
+        Watch { cracks, keep, keep_every, started: Instant::now(), stop: AtomicU8::new(0), told: Mutex::new(told) }
+    }
+
+    /// Asks the run to end; the first reason counts.
+    pub fn stop(&self, why: Stop) {
+        let _ = self.stop.compare_exchange(0, why as u8, Ordering::Relaxed, Ordering::Relaxed);
+    }
+
+    /// Why it was asked to end.
+    #[must_use]
+    pub fn stopped(&self) -> Option<Stop> {
+        let why = self.stop.load(Ordering::Relaxed);
+        [Stop::Cancelled, Stop::Lost, Stop::Shutdown].into_iter().find(|stop| *stop as u8 == why)
+    }
+
+    /// What was told since the last time; `several` for a job that makes runs nobody knows the number of.
+    #[must_use]
+    pub fn news(&self, several: bool) -> News {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        let elapsed_s = self.started.elapsed().as_secs_f64();
+        let (first_share, runs) = (told.first_share, told.runs);
+        let progress = told.progress.map(|Progress { cycles, crack_length, share }| {
+            let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
+            // A fit takes some three runs, and ends when it is done.
+            let share =
+                if several { ((f64::from(runs) + share) / (f64::from(runs) + 1.0).max(RUNS_OF_A_FIT)).min(0.99) } else { share };
+            let done = share - if several { 0.0 } else { first_share };
+            let seconds_left = (done > 0.0).then(|| elapsed_s * (1.0 - share) / done);
+            JobProgress { cycles, crack_length_mm: crack_length / MM, share, elapsed_s, seconds_left }
+        });
+        let growth = (!told.entries.cycles.is_empty()).then(|| {
+            let next = told.entries.from + told.entries.cycles.len();
+            std::mem::replace(&mut told.entries, Growth { from: next, ..Growth::default() })
+        });
+        News { progress, growth, look: told.look.take() }
+    }
+
+    /// Puts back what could not be told.
+    pub fn untold(&self, mut growth: Growth) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        let later = std::mem::take(&mut told.entries);
+        growth.cycles.extend(later.cycles);
+        growth.crack_length_mm.extend(later.crack_length_mm);
+        growth.tips.extend(later.tips);
+        told.entries = growth;
+    }
+}
+
+/// Runs that a fit takes, usually.
+const RUNS_OF_A_FIT: f64 = 3.5;
+
+impl Observer for Watch<'_> {
+    fn block_done(&self, progress: &Progress) -> bool {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        if told.progress.is_some_and(|before| progress.share < 0.5 * before.share) {
+            told.runs += 1;
+        }
+        if told.first_share.is_nan() {
+            told.first_share = progress.share;
+        }
+        told.progress = Some(*progress);
+        if !told.tips.is_empty() && progress.share >= told.last_entry + 1.0 / ENTRIES {
+            told.last_entry = progress.share;
+            told.entries.cycles.push(progress.cycles);
+            told.entries.crack_length_mm.push(progress.crack_length / MM);
+            let tips = std::mem::take(&mut told.tips);
+            told.entries.tips.push(tips.iter().map(|tip| tip.map(|metres| metres / MM)).collect());
+            told.paths.resize(tips.len(), Vec::new());
+            told.paths.iter_mut().zip(tips).for_each(|(path, tip)| path.push(tip));
+        }
+        self.stopped().is_none()
+    }
+
+    fn grown(&self, tips: &[TipRecord]) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        told.tips.clear();
+        told.tips.extend(tips.iter().map(|tip| tip.position));
+    }
+
+    fn looked(&self, snapshot: &Snapshot, grid: &PointGrid) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        // The picture is taken where the run stands; its cycles may count from before N = 0.
+        let cycles = told.progress.map_or(0.0, |progress| progress.cycles);
+        let snapshot = Snapshot { cycles, ..snapshot.clone() };
+        let paths = told.paths.clone();
+        told.look = Some(Look { snapshot, grid: grid.clone(), cracks: self.cracks.to_vec(), paths });
+    }
+
+    fn may_keep(&self, checkpoint: &dyn Fn() -> Checkpoint) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        if told.kept.elapsed() < self.keep_every.max(OVER_COST * told.keep_cost) {
+            return;
+        }
+        let begun = Instant::now();
+        // Others may ask how far the run is meanwhile.
+        drop(told);
+        (self.keep)(checkpoint().to_bytes());
+        told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        (told.kept, told.keep_cost) = (Instant::now(), begun.elapsed());
+    }
+}

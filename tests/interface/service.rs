@@ -1,0 +1,30 @@
+//! The service as a client sees it.
+
+#[path = "service/crashes.rs"]
+mod crashes;
+#[path = "service/jobs.rs"]
+mod jobs;
+#[path = "service/refusals.rs"]
+mod refusals;
+#[path = "service/results.rs"]
+mod results;
+#[path = "service/tokens.rs"]
+mod tokens;
+
+use serde_json::{Value, json};
+
+/// A plate of some thousand points that takes a tenth of a second.
+pub const QUICK: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\nthickness_mm = 2\n\
+    crack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.1\n\
+    [model]\nspacing_mm = 1.5\n[fatigue]\na = 6450.0\np = 2.86\nhorizon_mm = 3.015\n[stop]\ncrack_length_mm = 20\n";
+
+/// A slant crack that takes seconds and can be taken up at several places.
+pub const SLOW: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 70.0\nlength_mm = 100.0\nthickness_mm = 2.0\n\
+    cracks = [{ from_mm = [-9.0, -5.0], to_mm = [9.0, 5.0] }]\n[material]\nyoungs_modulus_gpa = 72.0\npoisson_ratio = 0.3\n\
+    [loading]\nstress_max_mpa = 70.0\nstress_ratio = 0.1\n[model]\nspacing_mm = 1.0\n\
+    [fatigue]\na = 6450.0\np = 2.86\nhorizon_mm = 3.015\n";
+
+/// The body of a submission of TOML text.
+pub fn of(name: &str, text: &str) -> Value {
+    json!({ "name": name, "input": text })
+}

@@ -1,0 +1,162 @@
+//! Jobs: watched, cancelled, deleted, listed, submitted twice and by many at once.
+
+use std::collections::HashSet;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+use tempfile::tempdir;
+
+use super::{QUICK, SLOW, of};
+use crate::postgres::Postgres;
+use crate::server::{PATIENCE, Server, in_folder};
+
+/// Does a test with each store that this machine has.
+pub fn with_each_store(name: &str, test: impl Fn(&[&str])) {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    test(&[&place[0], &place[1]]);
+    if let Some(postgres) = Postgres::start() {
+        test(&["--database", &postgres.database(name)]);
+    }
+}
+
+#[test]
+fn a_job_is_watched_to_its_end() {
+    with_each_store("watched", |place| {
+        let service = Server::start(place, &["--jobs", "1"]);
+        let job = service.submit("predictions", &of("slow", SLOW));
+        let events = service.events(&job, &[]);
+        let (name, last) = events.last().unwrap();
+        assert!(name == "job" && last["state"] == "succeeded", "{last:#}");
+        let shares: Vec<f64> = events.iter().filter(|(name, _)| name == "job").filter_map(|(_, job)| job["progress"]["share"].as_f64()).collect();
+        assert!(shares.len() > 3 && shares.is_sorted(), "{shares:?}");
+
+        // Pieces of the curve join, rise, and lie on the curve of the result.
+        let mut grown = 0;
+        let mut live: Vec<(f64, f64)> = Vec::new();
+        for (_, piece) in events.iter().filter(|(name, _)| name == "growth") {
+            assert_eq!(piece["from"].as_u64().unwrap(), grown);
+            let column = |name: &str| -> Vec<f64> { serde_json::from_value(piece[name].clone()).unwrap() };
+            let tips: Vec<Vec<[f64; 2]>> = serde_json::from_value(piece["tips"].clone()).unwrap();
+            assert!(tips.iter().all(|tips| tips.len() == 2) && tips.len() == column("cycles").len());
+            live.extend(column("cycles").into_iter().zip(column("crack_length_mm")));
+            grown = live.len() as u64;
+        }
+        assert!(live.len() > 20 && live.is_sorted_by(|a, b| a.0 <= b.0 && a.1 <= b.1));
+        let life = last["summary"]["life_cycles"].as_f64().unwrap();
+        assert!(live.last().unwrap().0 <= life * 1.001);
+        assert!(events.iter().any(|(name, picture)| name == "picture" && picture["href"].as_str().unwrap().ends_with("damage.png")));
+        // Whoever comes late, or back with the last id, is told the end.
+        for headers in [&[][..], &[("last-event-id", "3.1.9.1")], &[("last-event-id", "what?")]] {
+            let late = service.events(&job, headers);
+            assert_eq!(late.last().unwrap().1["state"], "succeeded");
+        }
+    });
+}
+
+#[test]
+fn a_job_can_be_cancelled_and_deleted() {
+    with_each_store("cancelled", |place| {
+        let service = Server::start(place, &["--jobs", "1"]);
+        let [running, waiting] = [(); 2].map(|()| service.submit("predictions", &of("slow", SLOW)));
+        let begun = Instant::now();
+        while service.get(&running).json()["state"] == "queued" {
+            assert!(begun.elapsed() < PATIENCE);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        service.send("DELETE", &running, &[], b"").expect(409);
+        assert_eq!(service.get(&waiting).json()["position"], 0);
+        for job in [&waiting, &running] {
+            service.post(&format!("{job}/cancel"), &json!({})).expect(202);
+        }
+        assert_eq!(service.ended(&waiting)["state"], "cancelled");
+        assert_eq!(service.ended(&running)["state"], "cancelled");
+        service.post(&format!("{running}/cancel"), &json!({})).expect(409);
+        service.get(&format!("{running}/files/a_n.csv")).expect(409);
+        for job in [&waiting, &running] {
+            service.send("DELETE", job, &[], b"").expect(204);
+            service.get(job).expect(404);
+        }
+    });
+}
+
+#[test]
+fn lists_come_in_parts() {
+    with_each_store("listed", |place| {
+        let service = Server::start(place, &["--jobs", "0"]);
+        let jobs: Vec<String> = (0..7).map(|i| service.submit("predictions", &of(&format!("case {i}"), QUICK))).collect();
+        let (mut seen, mut after) = (Vec::new(), String::new());
+        loop {
+            let page = service.get(&format!("/v1/predictions?limit=3{after}")).expect(200).json();
+            seen.extend(page["items"].as_array().unwrap().iter().map(|job| job["name"].as_str().unwrap().to_owned()));
+            let Some(next) = page["next"].as_str() else { break };
+            after = format!("&after={next}");
+        }
+        assert_eq!(seen, (0..7).rev().map(|i| format!("case {i}")).collect::<Vec<_>>());
+        service.post(&format!("{}/cancel", jobs[4]), &json!({})).expect(202);
+        let names = |query: &str| -> Vec<Value> {
+            service.get(&format!("/v1/predictions?{query}")).json()["items"].as_array().unwrap().iter().map(|job| job["name"].clone()).collect()
+        };
+        assert_eq!(names("state=cancelled"), ["case 4"]);
+        assert_eq!(names("state=queued").len(), 6);
+        assert_eq!(service.get("/v1/calibrations").json()["items"], json!([]));
+        for query in ["limit=0", "limit=1000", "limit=x", "state=asleep"] {
+            service.get(&format!("/v1/predictions?{query}")).expect(400);
+        }
+    });
+}
+
+/// 200 clients at once, each sending everything twice as a bad network would: none lost, none run twice.
+#[test]
+fn many_clients_at_once_lose_nothing() {
+    with_each_store("crowd", |place| {
+        let service = Server::start(place, &["--jobs", "2"]);
+        let hand = QUICK.replace("[model]\nspacing_mm = 1.5\n", "[model]\nmethod = \"handbook\"\n");
+        let hand = hand.replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015", "paris_c_mm_per_cycle = 9e-8\nparis_m = 2.87");
+        let accepted: Vec<String> = std::thread::scope(|scope| {
+            let client = |number: usize| {
+                let (service, hand) = (&service, &hand);
+                move || {
+                    let body = of(&format!("client {number}"), hand).to_string();
+                    let key = format!("key {number}");
+                    let headers = [("content-type", "application/json"), ("idempotency-key", key.as_str())];
+                    let send = || {
+                        let answer = service.send("POST", "/v1/predictions", &headers, body.as_bytes());
+                        assert!([200, 202].contains(&answer.status), "{}", answer.text());
+                        answer.json()["id"].as_str().unwrap().to_owned()
+                    };
+                    let (first, second) = (send(), send());
+                    assert_eq!(first, second);
+                    first
+                }
+            };
+            let clients: Vec<_> = (0..200).map(|number| scope.spawn(client(number))).collect();
+            clients.into_iter().map(|client| client.join().unwrap()).collect()
+        });
+        assert_eq!(accepted.iter().collect::<HashSet<_>>().len(), 200);
+        for id in &accepted {
+            let job = service.succeeded(&format!("/v1/predictions/{id}"));
+            assert_eq!(job["attempts"], 1, "run once");
+        }
+        let other = [("content-type", "application/json"), ("idempotency-key", "key 7")];
+        service.send("POST", "/v1/predictions", &other, of("another", &hand).to_string().as_bytes()).expect(409);
+    });
+}
+
+/// A process that is asked to stop gives its jobs back; the next one goes on with them.
+#[test]
+fn a_stop_loses_nothing() {
+    with_each_store("stopped", |place| {
+        let mut service = Server::start(place, &["--jobs", "1", "--checkpoint-every", "0"]);
+        let job = service.submit("predictions", &of("slow", SLOW));
+        let begun = Instant::now();
+        while service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) < 0.3 {
+            assert!(begun.elapsed() < PATIENCE);
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        service.stop();
+        let service = Server::start(place, &["--jobs", "1"]);
+        let done = service.succeeded(&job);
+        assert!(done["attempts"].as_i64().unwrap() <= 1, "a stop is not held against the job: {done:#}");
+    });
+}

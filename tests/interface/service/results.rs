@@ -1,0 +1,218 @@
+//! A job gives what the command gives, file by file.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use tempfile::tempdir;
+
+use super::{QUICK, SLOW, of};
+use crate::cli::{perilife, texts};
+use crate::server::{Server, in_folder};
+
+fn run(folder: &Path, arguments: &[&str]) -> String {
+    let output = perilife(folder, arguments);
+    assert!(output.status.success(), "{}", texts(&output).1);
+    texts(&output).0
+}
+
+fn server(folder: &Path) -> Server {
+    let place = in_folder(&folder.join("service"));
+    Server::start(&[&place[0], &place[1]], &["--jobs", "2"])
+}
+
+/// Without what differs from run to run.
+fn timeless(mut result: Value) -> Value {
+    for key in ["wall_s", "memory_mb"] {
+        result[key] = Value::Null;
+    }
+    result
+}
+
+#[test]
+fn a_prediction_has_the_files_of_the_command() {
+    let dir = tempdir().unwrap();
+    let folder = dir.path();
+    let service = server(folder);
+    for (name, text) in [("quick", QUICK), ("slow", SLOW)] {
+        let job = service.submit("predictions", &of(name, text));
+        fs::write(folder.join(format!("{name}.toml")), text).unwrap();
+        run(folder, &["predict", &format!("{name}.toml"), "--out", name]);
+        let done = service.succeeded(&job);
+        for file in fs::read_dir(folder.join(name)).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()) {
+            match file.as_str() {
+                ".perilife" => {}
+                "paraview" => assert!(service.file(&job, "paraview.zip").starts_with(b"PK")),
+                "result.json" => {
+                    let [ours, theirs] = [service.file(&job, &file), fs::read(folder.join(name).join(&file)).unwrap()];
+                    let [ours, theirs] = [ours, theirs].map(|bytes| timeless(serde_json::from_slice(&bytes).unwrap()));
+                    assert_eq!(ours, theirs, "{name}");
+                    assert_eq!(done["summary"]["life_cycles"], theirs["life_cycles"]);
+                }
+                file => {
+                    assert!(service.file(&job, file) == fs::read(folder.join(name).join(file)).unwrap(), "{name}: {file} differs");
+                }
+            }
+        }
+        let listed: Vec<&str> = done["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
+        assert_eq!(listed.len(), fs::read_dir(folder.join(name)).unwrap().count() - 1, "{listed:?}");
+        for file in done["files"].as_array().unwrap() {
+            let answer = service.get(file["href"].as_str().unwrap()).expect(200);
+            assert_eq!(answer.body.len() as i64, file["bytes"].as_i64().unwrap());
+            assert!(answer.header("content-type").unwrap().starts_with(file["media_type"].as_str().unwrap()));
+            assert!(answer.header("content-security-policy").unwrap().contains("sandbox"), "results are never run");
+        }
+        resampled_as_exported(folder, &service, name, &job);
+        remaining_life(&service, &job, &done);
+    }
+}
+
+/// `points` and `every_cycles` are those of `perilife export`.
+fn resampled_as_exported(folder: &Path, service: &Server, name: &str, job: &str) {
+    for (query, option) in [("points=40", ["--points", "40"]), ("every_cycles=777.5", ["--every-cycles", "777.5"])] {
+        run(folder, &["export", name, "--out", "export.csv", option[0], option[1]]);
+        assert_eq!(service.file(job, &format!("a_n.csv?{query}")), fs::read(folder.join("export.csv")).unwrap(), "{query}");
+    }
+    for (query, status) in [("points=1", 422), ("every_cycles=-1", 422), ("every_cycles=1e-9", 422), ("points=x", 400), ("points=9&every_cycles=9", 400)] {
+        service.get(&format!("{job}/files/a_n.csv?{query}")).expect(status);
+    }
+    service.get(&format!("{job}/files/result.json?points=9")).expect(400);
+}
+
+/// Remaining life is what the curve says, linear between its rows.
+fn remaining_life(service: &Server, job: &str, done: &Value) {
+    let number = |value: &Value| value.as_f64().unwrap();
+    let (from, to) = (number(&done["summary"]["crack_length_initial_mm"]), number(&done["summary"]["crack_length_final_mm"]));
+    let life = number(&done["summary"]["life_cycles"]);
+    let middle = 0.5 * (from + to);
+    let answer = service.get(&format!("{job}/remaining?crack_length_mm={middle}&factor=3")).expect(200).json();
+    let table = String::from_utf8(service.file(job, "a_n.csv")).unwrap();
+    let rows: Vec<[f64; 2]> = table
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let mut fields = line.split(',').map(|field| field.parse().unwrap());
+            [fields.next().unwrap(), fields.next().unwrap()]
+        })
+        .collect();
+    let pair = rows.windows(2).find(|pair| pair[0][1] <= middle && middle < pair[1][1]).unwrap();
+    let at = pair[0][0] + (middle - pair[0][1]) / (pair[1][1] - pair[0][1]) * (pair[1][0] - pair[0][0]);
+    assert!((number(&answer["cycles_at"]) / at - 1.0).abs() < 1e-12, "{answer} {at}");
+    assert!((number(&answer["remaining_cycles"]) - (life - at)).abs() < 1e-9 * life);
+    assert!((number(&answer["inspection_interval_cycles"]) * 3.0 - (life - at)).abs() < 1e-9 * life);
+    for (query, status) in [("crack_length_mm=1", 422), ("crack_length_mm=1e9", 422), ("crack_length_mm=NaN", 422), ("factor=2", 400)] {
+        service.get(&format!("{job}/remaining?{query}")).expect(status);
+    }
+    let less = service.get(&format!("{job}/remaining?crack_length_mm={middle}&factor=0.5")).expect(422);
+    assert!(less.text().contains("is not 1 or more"));
+}
+
+const TEST: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\n\
+    thickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.1\n";
+
+/// Readings as the quick plate would give them.
+fn readings(folder: &Path) -> String {
+    fs::write(folder.join("measured.toml"), QUICK).unwrap();
+    run(folder, &["predict", "measured.toml", "--out", "measured"]);
+    run(folder, &["export", "measured", "--out", "measured.csv", "--points", "30"]);
+    let table = fs::read_to_string(folder.join("measured.csv")).unwrap();
+    let rows = table.lines().skip(1).map(|line| line.split(',').take(2).collect::<Vec<_>>().join(",") + "\n");
+    "cycles,crack_length_mm\n".to_owned() + &rows.collect::<String>()
+}
+
+#[test]
+fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
+    let dir = tempdir().unwrap();
+    let folder = dir.path();
+    let service = server(folder);
+    let curve = readings(folder);
+    fs::write(folder.join("curve.csv"), &curve).unwrap();
+    let model = |method: &str| format!("{TEST}[model]\n{method}\n");
+    for (name, method) in [("bonds", "spacing_mm = 1.5"), ("hand", "method = \"handbook\"")] {
+        let text = model(method);
+        fs::write(folder.join(format!("{name}.toml")), &text).unwrap();
+        run(folder, &["calibrate", &format!("{name}.toml"), "--out", name]);
+        // As JSON with the files in it, and as a form that names no files.
+        let job = service.submit("calibrations", &json!({ "name": name, "input": text, "files": { "curve.csv": curve } }));
+        let done = service.succeeded(&job);
+        for file in ["fitted.toml", "fit_curves.csv", "fit_band.csv", "fit.svg", "fit_rates.svg", "fit_curves.parquet"] {
+            assert!(service.file(&job, file) == fs::read(folder.join(name).join(file)).unwrap(), "{name}: {file} differs");
+        }
+        let form = multipart(&[("name", None, name), ("input", None, &text.replace("files = [\"curve.csv\"]", "")), ("file", Some("curve.csv"), &curve)]);
+        let again = service.send("POST", "/v1/calibrations", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes());
+        let again = format!("/v1/calibrations/{}", again.expect(202).json()["id"].as_str().unwrap());
+        service.succeeded(&again);
+        assert_eq!(service.file(&again, "fitted.toml"), service.file(&job, "fitted.toml"), "{name}: as a form");
+
+        // A case with this law, whatever its own.
+        let case = if name == "hand" { QUICK.replace("[model]\nspacing_mm = 1.5\n", "[model]\nmethod = \"handbook\"\n") } else { QUICK.to_owned() };
+        let body = json!({ "name": "case", "input": case, "calibration": done["id"] });
+        let prediction = service.submit("predictions", &body);
+        fs::write(folder.join("case.toml"), case.replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015\n", &format!("fitted = \"{name}/fitted.toml\"\n"))).unwrap();
+        run(folder, &["predict", "case.toml", "--out", "case"]);
+        assert_eq!(service.succeeded(&prediction)["calibration"], done["id"]);
+        assert!(service.file(&prediction, "a_n.csv") == fs::read(folder.join("case/a_n.csv")).unwrap(), "{name}: with the fit");
+    }
+}
+
+/// The band of a fit holds its curve, and is wider where less is known.
+#[test]
+fn the_band_of_a_fit_is_about_its_curve() {
+    let dir = tempdir().unwrap();
+    let folder = dir.path();
+    fs::write(folder.join("curve.csv"), readings(folder)).unwrap();
+    fs::write(folder.join("hand.toml"), format!("{TEST}[model]\nmethod = \"handbook\"\n")).unwrap();
+    run(folder, &["calibrate", "hand.toml", "--out", "fit"]);
+    let table = fs::read_to_string(folder.join("fit/fit_band.csv")).unwrap();
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("crack_length_mm,cycles_fitted,cycles_low,cycles_high"));
+    let rows: Vec<Vec<f64>> = lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect();
+    let report: Value = serde_json::from_slice(&fs::read(folder.join("fit/fit.json")).unwrap()).unwrap();
+    let rate_error = report["rate_at_pivot_relative_error"].as_f64().unwrap();
+    for row in &rows[1..] {
+        let [_, fitted, low, high] = row[..] else { panic!("{row:?}") };
+        assert!(low < fitted && fitted < high);
+        // Never narrower than the rate alone leaves it, and the same factor both ways.
+        assert!((high / fitted).ln() >= 1.96 * rate_error * (1.0 - 1e-9) && ((high / fitted) / (fitted / low) - 1.0).abs() < 1e-9);
+    }
+    assert_eq!(rows.len(), 30);
+}
+
+/// A form of parts: name, file name, content.
+fn multipart(parts: &[(&str, Option<&str>, &str)]) -> String {
+    let part = |(name, file, content): &(&str, Option<&str>, &str)| {
+        let file = file.map_or_else(String::new, |file| format!("; filename=\"{file}\""));
+        format!("--XX\r\nContent-Disposition: form-data; name=\"{name}\"{file}\r\n\r\n{content}\r\n")
+    };
+    parts.iter().map(part).collect::<String>() + "--XX--\r\n"
+}
+
+/// What a check says is what the command says; measured files are read to their end whatever is wrong in them.
+#[test]
+fn inputs_are_looked_at_as_by_the_command() {
+    let dir = tempdir().unwrap();
+    let folder = dir.path();
+    let service = server(folder);
+    fs::write(folder.join("case.toml"), QUICK).unwrap();
+    let theirs: Value = serde_json::from_str(&run(folder, &["check", "case.toml", "--json", "--picture", "case.svg"])).unwrap();
+    let mut ours = service.post("/v1/check", &json!({ "name": "case", "input": QUICK })).expect(200).json();
+    assert_eq!(ours["drawing"].as_str().unwrap(), fs::read_to_string(folder.join("case.svg")).unwrap());
+    ours.as_object_mut().unwrap().remove("drawing");
+    assert_eq!(ours, theirs);
+    // The same input as an object.
+    let table: toml::Table = QUICK.parse().unwrap();
+    let object = service.post("/v1/check", &json!({ "name": "case", "input": table })).expect(200).json();
+    assert_eq!(object["understood"], theirs["understood"]);
+
+    let csv = "N; a_mm\n0; 9,0\n1000; 9,5\nx; 10\n3000; 11\n2500; 12\n4000; 12,5\n5000; 13\n";
+    let form = multipart(&[("file", Some("a.csv"), &csv.replace('N', "cycles")), ("file", Some("b.csv"), "what,is\n1,2\n")]);
+    let found = service.send("POST", "/v1/measured", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes());
+    let found = found.expect(200).json();
+    let [a, b] = [&found["files"][0], &found["files"][1]];
+    assert_eq!(a["columns"], json!({ "layout": "long", "length_unit": "mm", "cycle_unit": "cycles" }));
+    assert_eq!(a["curves"][0]["lines"], json!([2, 3, 5, 7, 8]));
+    let problems: Vec<(i64, &str)> =
+        a["problems"].as_array().unwrap().iter().map(|p| (p["line"].as_i64().unwrap(), p["problem"].as_str().unwrap())).collect();
+    assert_eq!(problems, [(4, "is not a number"), (6, "is below the reading before (3000)")]);
+    assert!(b["columns"].is_null() && b["curves"] == json!([]) && b["problems"][0]["problem"] == "is not a known column");
+}

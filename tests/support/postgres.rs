@@ -1,0 +1,121 @@
+//! A PostgreSQL server of a test's own, where the machine has the programs for one.
+
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use tempfile::TempDir;
+
+/// A server with its own folder and port, stopped and removed when dropped.
+pub struct Postgres {
+    programs: PathBuf,
+    folder: TempDir,
+    port: u16,
+}
+
+impl Postgres {
+    /// Starts one; `None`, with the reason printed, where that cannot be. A machine that is meant to have it says so in
+    /// `PERILIFE_TESTS_NEED`, and the test fails there.
+    pub fn start() -> Option<Postgres> {
+        let started = Self::try_start();
+        if let Err(why) = &started {
+            let needed = std::env::var("PERILIFE_TESTS_NEED").is_ok_and(|needs| needs.contains("postgres"));
+            assert!(!needed, "PostgreSQL is needed here: {why}");
+            println!("skipped with PostgreSQL: {why}");
+        }
+        started.ok()
+    }
+
+    fn try_start() -> Result<Postgres, String> {
+        let programs = programs().ok_or("no server is installed (Debian: apt-get install postgresql)")?;
+        let folder = tempfile::Builder::new().prefix("perilife-pg").tempdir().map_err(|error| error.to_string())?;
+        let port = TcpListener::bind("127.0.0.1:0").and_then(|free| free.local_addr()).map_err(|error| error.to_string())?.port();
+        let server = Postgres { programs, folder, port };
+        if is_root() {
+            run(Command::new("chown").arg("postgres").arg(server.folder.path()))?;
+        }
+        let data = server.data();
+        run(server.program("initdb").args(["-U", "perilife", "-A", "trust", "--no-sync", "-D"]).arg(&data))?;
+        server.up()?;
+        Ok(server)
+    }
+
+    /// Starts the server, which is not running.
+    pub fn up(&self) -> Result<(), String> {
+        let (port, sockets) = (self.port, self.folder.path().display());
+        let options = format!("-p {port} -c listen_addresses=127.0.0.1 -c unix_socket_directories={sockets} -c fsync=off");
+        run(self.program("pg_ctl").args(["-w", "-l", "log", "-o", &options, "-D"]).arg(self.data()).arg("start"))
+    }
+
+    /// Stops it as a crash would.
+    pub fn down(&self) {
+        let _ = run(self.program("pg_ctl").args(["-m", "immediate", "-D"]).arg(self.data()).arg("stop"));
+    }
+
+    /// URL of a new, empty database.
+    pub fn database(&self, name: &str) -> String {
+        let url = format!("postgres://perilife@127.0.0.1:{}", self.port);
+        run(Command::new(self.programs.join("createdb")).args(["--maintenance-db", &format!("{url}/postgres"), name])).unwrap();
+        format!("{url}/{name}")
+    }
+
+    /// Runs a statement.
+    pub fn sql(&self, database: &str, statement: &str) -> Result<(), String> {
+        run(Command::new(self.programs.join("psql")).args(["-q", "-d", database, "-c", statement]))
+    }
+
+    fn data(&self) -> PathBuf {
+        self.folder.path().join("data")
+    }
+
+    /// A program of the server, which refuses to run as root.
+    fn program(&self, name: &str) -> Command {
+        let path = self.programs.join(name);
+        let mut command = if is_root() {
+            let mut command = Command::new("runuser");
+            command.args(["-u", "postgres", "--"]).arg(path);
+            command
+        } else {
+            Command::new(path)
+        };
+        command.current_dir(self.folder.path());
+        command
+    }
+}
+
+impl Drop for Postgres {
+    fn drop(&mut self) {
+        self.down();
+    }
+}
+
+/// Folder of the newest server's programs.
+fn programs() -> Option<PathBuf> {
+    let versions = std::fs::read_dir("/usr/lib/postgresql").into_iter().flatten().flatten();
+    let mut found: Vec<PathBuf> =
+        versions.map(|version| version.path().join("bin")).filter(|bin| bin.join("initdb").is_file()).collect();
+    found.sort();
+    found.pop()
+}
+
+fn is_root() -> bool {
+    use std::os::unix::fs::MetadataExt;
+    Path::new("/proc/self").metadata().is_ok_and(|process| process.uid() == 0)
+}
+
+fn run(command: &mut Command) -> Result<(), String> {
+    // What it leaves running must not hold on to a pipe of ours.
+    let log = tempfile::tempfile().map_err(|error| error.to_string())?;
+    let copy = log.try_clone().map_err(|error| error.to_string())?;
+    let status = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(copy).status();
+    match status {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => {
+            use std::io::{Read, Seek};
+            let (mut log, mut text) = (log, String::new());
+            let _ = log.rewind().and_then(|()| log.read_to_string(&mut text));
+            Err(format!("{command:?}: {status}: {text}"))
+        }
+        Err(error) => Err(format!("{command:?}: {error}")),
+    }
+}

@@ -1,0 +1,226 @@
+//! The service as a process, and requests to it.
+
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use assert_cmd::cargo::cargo_bin;
+use serde_json::Value;
+use ureq::Agent;
+use ureq::http::{Request, Response};
+
+/// Longest wait for anything, on a machine with other things to do.
+pub const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A running `perilife serve` (or `worker`), killed when dropped.
+pub struct Server {
+    process: Child,
+    /// `http://...`; empty for a worker.
+    pub url: String,
+    agent: Agent,
+    token: Option<String>,
+}
+
+/// What came back.
+pub struct Answer {
+    pub status: u16,
+    pub headers: Vec<(String, String)>,
+    pub body: Vec<u8>,
+}
+
+impl Answer {
+    pub fn json(&self) -> Value {
+        serde_json::from_slice(&self.body).unwrap_or_else(|error| panic!("{error}: {}", self.text()))
+    }
+
+    pub fn text(&self) -> String {
+        String::from_utf8_lossy(&self.body).into_owned()
+    }
+
+    pub fn header(&self, name: &str) -> Option<&str> {
+        self.headers.iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
+    }
+
+    /// The same, if it has this status.
+    pub fn expect(self, status: u16) -> Answer {
+        assert_eq!(self.status, status, "{}", self.text());
+        self
+    }
+}
+
+impl Server {
+    /// Starts the service with a free port of this machine; `place` is `["--data", DIR]` or `["--database", URL]`.
+    pub fn start(place: &[&str], more: &[&str]) -> Server {
+        let arguments = [&["serve", "--listen", "127.0.0.1:0"], place, more].concat();
+        let (process, line) = started(&arguments);
+        let url = line.rsplit(' ').next().unwrap_or_default().trim().to_owned();
+        assert!(url.starts_with("http://127.0.0.1:"), "{line}");
+        Server { process, url, agent: agent(), token: None }
+    }
+
+    /// Starts a worker without a door.
+    pub fn worker(place: &[&str], more: &[&str]) -> Server {
+        let (process, line) = started(&[&["worker"], place, more].concat());
+        assert!(line.starts_with("perilife worker"), "{line}");
+        Server { process, url: String::new(), agent: agent(), token: None }
+    }
+
+    pub fn with_token(mut self, token: &str) -> Server {
+        self.token = Some(token.to_owned());
+        self
+    }
+
+    /// Asks; connection trouble is an error.
+    pub fn try_send(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Result<Answer, ureq::Error> {
+        answer_of(self.agent.run(self.request(method, path, headers, body))?)
+    }
+
+    fn request(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Request<Vec<u8>> {
+        let mut request = Request::builder().method(method).uri(format!("{}{path}", self.url));
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        if let Some(token) = &self.token {
+            request = request.header("authorization", format!("Bearer {token}"));
+        }
+        request.body(body.to_vec()).unwrap()
+    }
+
+    pub fn send(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Answer {
+        self.try_send(method, path, headers, body).unwrap_or_else(|error| panic!("{method} {path}: {error}"))
+    }
+
+    pub fn get(&self, path: &str) -> Answer {
+        self.send("GET", path, &[], b"")
+    }
+
+    pub fn post(&self, path: &str, body: &Value) -> Answer {
+        self.send("POST", path, &[("content-type", "application/json")], body.to_string().as_bytes())
+    }
+
+    /// Submits and returns the job's address.
+    pub fn submit(&self, collection: &str, body: &Value) -> String {
+        let job = self.post(&format!("/v1/{collection}"), body).expect(202).json();
+        format!("/v1/{collection}/{}", job["id"].as_str().unwrap())
+    }
+
+    /// Waits until a job has ended.
+    pub fn ended(&self, job: &str) -> Value {
+        let begun = Instant::now();
+        loop {
+            // The service may be on its way back.
+            if let Ok(answer) = self.try_send("GET", job, &[], b"")
+                && answer.status == 200
+            {
+                let job = answer.json();
+                if !["queued", "running"].contains(&job["state"].as_str().unwrap()) {
+                    return job;
+                }
+            }
+            assert!(begun.elapsed() < PATIENCE, "{job} does not end");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Waits until a job has ended well.
+    pub fn succeeded(&self, job: &str) -> Value {
+        let ended = self.ended(job);
+        assert_eq!(ended["state"], "succeeded", "{ended:#}");
+        ended
+    }
+
+    /// A file of a job.
+    pub fn file(&self, job: &str, name: &str) -> Vec<u8> {
+        self.get(&format!("{job}/files/{name}")).expect(200).body
+    }
+
+    /// Events of a job until its end: names and data.
+    pub fn events(&self, job: &str, headers: &[(&str, &str)]) -> Vec<(String, Value)> {
+        let response = self.agent.run(self.request("GET", &format!("{job}/events"), headers, b"")).unwrap();
+        assert_eq!(response.status(), 200);
+        let (mut events, mut name) = (Vec::new(), String::new());
+        for line in BufReader::new(response.into_body().into_reader()).lines() {
+            let line = line.unwrap();
+            if let Some(value) = line.strip_prefix("event: ") {
+                name = value.to_owned();
+            } else if let Some(value) = line.strip_prefix("data: ") {
+                events.push((name.clone(), serde_json::from_str(value).unwrap()));
+            }
+        }
+        events
+    }
+
+    /// Ends the process without a warning.
+    pub fn kill(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+
+    /// Asks the process to stop, and waits for it.
+    pub fn stop(&mut self) {
+        let _ = Command::new("kill").args(["-TERM", &self.process.id().to_string()]).status();
+        let begun = Instant::now();
+        while self.process.try_wait().unwrap().is_none() {
+            assert!(begun.elapsed() < Duration::from_secs(30), "it does not stop");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// Starts the program and returns what it says once it is ready.
+fn started(arguments: &[&str]) -> (Child, String) {
+    let mut process = Command::new(cargo_bin("perilife"))
+        .args(arguments)
+        .env("RUST_LOG", "perilife=error")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stderr = BufReader::new(process.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.starts_with("perilife ") {
+        line.clear();
+        assert!(stderr.read_line(&mut line).unwrap() > 0, "it ended before it was ready");
+        if !line.starts_with("perilife ") {
+            eprint!("{line}");
+        }
+    }
+    // What it says later is shown with the test that fails.
+    std::thread::spawn(move || {
+        let mut rest = String::new();
+        let _ = stderr.read_to_string(&mut rest);
+        if !rest.is_empty() {
+            eprintln!("{rest}");
+        }
+    });
+    (process, line)
+}
+
+fn agent() -> Agent {
+    Agent::config_builder()
+        .http_status_as_error(false)
+        .timeout_connect(Some(Duration::from_secs(5)))
+        .timeout_recv_response(Some(PATIENCE))
+        .build()
+        .into()
+}
+
+fn answer_of(mut response: Response<ureq::Body>) -> Result<Answer, ureq::Error> {
+    let headers = response.headers().iter();
+    let headers = headers.map(|(name, value)| (name.to_string(), value.to_str().unwrap_or_default().to_owned())).collect();
+    let body = response.body_mut().with_config().limit(1 << 30).read_to_vec()?;
+    Ok(Answer { status: response.status().as_u16(), headers, body })
+}
+
+/// Where a service keeps its jobs: a folder, or a database.
+pub fn in_folder(folder: &Path) -> [String; 2] {
+    ["--data".to_owned(), folder.display().to_string()]
+}
