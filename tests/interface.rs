@@ -2,6 +2,12 @@
 
 #[path = "support/made_up_run.rs"]
 mod made_up_run;
+#[path = "support/noise.rs"]
+mod noise;
+#[path = "support/postgres.rs"]
+mod postgres;
+#[path = "support/server.rs"]
+mod server;
 
 #[path = "interface/bad_csv.rs"]
 mod bad_csv;
@@ -25,5 +31,7 @@ mod bad_scenes;
 mod fracture;
 #[path = "interface/hand_calculation.rs"]
 mod hand_calculation;
+#[path = "interface/service.rs"]
+mod service;
 #[path = "interface/sif.rs"]
 mod sif;

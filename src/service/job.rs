@@ -118,7 +118,7 @@ pub struct Job {
     pub started: Option<String>,
     /// When it ended.
     pub finished: Option<String>,
-    /// Claims by workers since it began or since its last checkpoint; more than one after a crash.
+    /// Workers that have taken it so far; more than one where a worker stopped or died.
     pub attempts: i64,
     /// Somebody has asked for its end.
     pub cancel_asked: bool,
@@ -134,9 +134,6 @@ pub struct Job {
     pub calibration: Option<String>,
     /// Counts every change.
     pub revision: i64,
-    /// Counts the claims.
-    #[serde(skip)]
-    pub fence: i64,
 }
 
 /// What was asked for.

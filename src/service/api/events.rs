@@ -96,7 +96,7 @@ impl Follower {
             return Ok(true);
         }
         let Some(job) = self.app.store.job(self.kind, &self.id).await? else { return Ok(false) };
-        let (is_final, fence, revision) = (job.state.is_final(), job.fence, job.revision);
+        let (is_final, fence, revision) = (job.state.is_final(), job.attempts, job.revision);
         if self.kind == JobKind::Prediction && !is_final {
             self.follow_growth(fence).await?;
             self.follow_picture().await?;

@@ -18,7 +18,7 @@ const TITLES = { measure: "Measure and calibrate", predict: "Predict", runs: "Ru
 const NAVIGATION = { measure: "measure", predict: "predict", runs: "runs", calibrations: "runs", predictions: "runs", compare: "runs" };
 
 let leaving = new AbortController();
-let first = true;
+let lastPlace = null;
 
 /** "#/predictions/7?x=1" to its parts. */
 function address() {
@@ -42,7 +42,7 @@ async function route() {
   document.title = `${TITLES[name]} – perilife`;
   if (place === "run") await openRun(byId("view-run"), name, rest, signal);
   else {
-    announce(byId(`view-${place}`));
+    announce(place);
     if (place === "predict") await materialsKnown;
     if (!signal.aborted) views[name].open?.(query);
   }
@@ -50,7 +50,7 @@ async function route() {
 
 async function openRun(root, name, rest, signal) {
   show(root, element("h1", { tabindex: "-1" }, TITLES[name]), element("p", { class: "quiet", role: "status" }, "Loading …"));
-  announce(root);
+  announce("run");
   try {
     const ids = rest.split(",").map(decodeURIComponent);
     const work = name === "compare" ? openComparison(root, ids, signal) : PAGES[name](root, ids[0], signal);
@@ -62,13 +62,16 @@ async function openRun(root, name, rest, signal) {
   }
 }
 
-/** After a change of view the reading goes on at its heading; not at the very first, where the page starts at its top. */
-function announce(root) {
-  if (!first) {
-    root.querySelector("h1").focus({ preventScroll: true });
+/**
+ * After a change of view the reading goes on at its heading. Not at the very first, where the page starts at its top, nor
+ * within a view, where the focus is on what was changed.
+ */
+function announce(place) {
+  if (lastPlace !== null && (place === "run" || place !== lastPlace)) {
+    byId(`view-${place}`).querySelector("h1").focus({ preventScroll: true });
     scrollTo(0, 0);
   }
-  first = false;
+  lastPlace = place;
 }
 
 async function loadMaterials() {

@@ -38,7 +38,8 @@ export async function openCalibration(root, id, signal) {
       element("div", { class: "columns wide-left" },
         element("div", { class: "stack" }, part("fit-title", "Readings and fitted curve", curves),
           has("fit_rates.svg") && part("rates-title", "Growth rates", element("div", { class: "paper picture" }, rates))),
-        element("div", { class: "stack" }, part("constants-title", "Constants", constants(whole.summary)), specimens(whole.summary), quantiles)),
+        element("div", { class: "stack" }, part("constants-title", "Constants", constants(whole.summary)))),
+      element("div", { class: "columns" }, specimens(whole.summary), quantiles),
       downloadList(whole), inputText(whole));
     const path = (name) => `${pathOf(whole)}/files/${name}`;
     loadInto(curves, async () => {

@@ -44,6 +44,13 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
       finish(null, body, "waiting");
       return false;
     }
+    // An empty form is no mistake: it is said what is missing before the service is asked.
+    const missing = form.missing();
+    if (missing.length > 0) {
+      show(details);
+      finish(null, `Still to fill in: ${missing.join(", ")}.`, "waiting");
+      return false;
+    }
     if (!form.numbersAreGood()) {
       show(details);
       finish(null, "A field does not hold a number.", "problem");

@@ -50,16 +50,20 @@ export function createForm(onChange) {
     return { keys, input, node, message, note, unitNode, name, touched: false, wrong: false };
   }
 
+  const empty = (field) => field.input.value.trim() === "";
+
   return {
     /** A number with its unit. Left empty it is left out. */
     number(key, options) {
       const input = element("input", { type: "text", inputmode: options.signed ? "text" : "decimal", autocomplete: "off", spellcheck: "false", value: options.value ?? "" });
-      return add({ ...wrap([key].flat(), input, { id: uniqueId("field"), ...options }), numeric: true });
+      return add({ ...wrap([key].flat(), input, { id: uniqueId("field"), ...options }), numeric: true, needed: !options.optional });
     },
-    /** A choice among `options`: {value, title}. */
+    /** A choice among `options`: {value, title}; `needed` where the empty one is none. */
     choice(key, options) {
       const input = element("select", null, options.options.map(({ value, title }) => element("option", { value }, title)));
-      return add(wrap([key].flat(), input, { id: uniqueId("field"), ...options }));
+      const field = wrap([key].flat(), input, { id: uniqueId("field"), ...options });
+      field.node.classList.add("choice");
+      return add({ ...field, needed: options.needed });
     },
     /** A line of text. */
     text(key, options) {
@@ -70,17 +74,21 @@ export function createForm(onChange) {
     cell(key, name, value, message) {
       const input = element("input", { type: "text", inputmode: "text", autocomplete: "off", spellcheck: "false", "aria-label": name, value, "data-key": key });
       const node = element("td", { class: "cell" }, input);
-      return add({ keys: [key], input, node, message, numeric: true, touched: false, wrong: false });
+      return add({ keys: [key], input, node, message, name: { textContent: name }, numeric: true, needed: true, touched: false, wrong: false });
     },
     /** Forgets fields that left the page. */
     drop(list) {
       list.forEach((field) => fields.delete(field));
     },
+    /** Names of the fields that have to be filled in still. */
+    missing() {
+      return [...fields].filter((field) => field.needed && inUse(field) && empty(field)).map((field) => field.name.textContent);
+    },
     /** Whether every number that stands in a visible field is one; says so at those that are not. */
     numbersAreGood() {
       let good = true;
       for (const field of fields) {
-        if (!field.numeric || !inUse(field) || field.input.value.trim() === "") continue;
+        if (!field.numeric || !inUse(field) || empty(field)) continue;
         if (!Number.isNaN(parseNumber(field.input.value))) continue;
         say(field, `“${field.input.value.trim()}” is not a number: give a plain one, such as 12.5 or 1e-7`);
         good = false;

@@ -65,7 +65,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     }
   }) }, "Cancel");
   const discard = element("button", { type: "button", class: "button", "data-action": "delete", onclick: guarded(async () => {
-    if (await confirmDelete(job)) location.hash = "#/runs";
+    if (await confirmDelete(job)) location.hash = `#/runs?kind=${collectionOf(job)}`;
   }) }, "Delete");
   const node = element("header", { class: "job-head", id: "job", "data-job-kind": job.kind },
     element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, nameOf(job)), badge,

@@ -121,9 +121,5 @@ export function createPlate(form, { size, onChange }) {
       rebuild("cracks", cracks.map((crack) => [...crack.from_mm, ...crack.to_mm]));
       sketch.draw();
     },
-    /** Whether a row has an empty cell: a row just added is not checked before it is filled. */
-    get unfinished() {
-      return Object.values(rows).flat(2).some((cell) => cell.input.value.trim() === "");
-    },
   };
 }

@@ -40,6 +40,7 @@ export function createPredictView() {
     p: form.number("fatigue.p", { label: "Exponent p", hint: "not the Paris exponent m" }),
     horizon_mm: form.number("fatigue.horizon_mm", { label: "At horizon", unit: "mm", hint: "A holds for this horizon" }),
   };
+  law.node.classList.add("wide");
   const lawNote = element("div", { class: "law-note" });
   const spacing = form.number("model.spacing_mm", { label: "Spacing of points", unit: "mm", optional: true, hint: "left empty: a ninth of the smallest flaw, at most W/100" });
   const stopLength = form.number("stop.crack_length_mm", { label: "Stop at crack length", unit: "mm", optional: true });
@@ -55,7 +56,8 @@ export function createPredictView() {
     if (kind === "plate") plate.draw();
     for (const field of Object.values(constants)) field.node.hidden = law.input.value !== "" || fields.hidden;
     const chosen = calibrations.find((one) => one.id === law.input.value);
-    show(lawNote, chosen?.summary ? describe(chosen) : null);
+    show(lawNote, chosen?.summary ? describe(chosen) : calibrations.length === 0 && element("p", { class: "quiet" },
+      "No calibration has been made here yet: ", element("a", { href: "#/measure" }, "fit measured curves"), ", or give constants."));
   }
 
   function describe({ id, summary: s }) {
@@ -99,11 +101,7 @@ export function createPredictView() {
 
   const editor = createEditor({
     host: byId("plate-editor"), fields, panel: byId("plate-check"), form, collect, fill,
-    context: () => {
-      const plateDrawn = specimen.fields.kind.input.value === "plate";
-      if (plateDrawn && !fields.hidden && plate.unfinished) return "Fill in every cell of the tables of cracks and holes.";
-      return law.input.value ? { calibration: law.input.value } : {};
-    },
+    context: () => (law.input.value ? { calibration: law.input.value } : {}),
     onResult: (ok) => {
       start.disabled = !ok;
     },
@@ -114,6 +112,8 @@ export function createPredictView() {
   async function loadLaws(wanted) {
     try {
       calibrations = (await getJson("/v1/calibrations?limit=100&state=succeeded")).items;
+      // One that is asked for by its address may be older than these.
+      if (wanted && !calibrations.some((one) => one.id === wanted)) calibrations.push(await getJson(`/v1/calibrations/${encodeURIComponent(wanted)}`));
       show(byId("law-problem"));
     } catch (error) {
       show(byId("law-problem"), problemBox(error, () => loadLaws(wanted)));

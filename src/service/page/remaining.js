@@ -19,7 +19,7 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
   const slider = element("input", { type: "range", id: "today-slider", min: "0", max: String(SLIDER_STEPS), value: "0" });
   const factor = element("input", { type: "text", inputmode: "decimal", id: "inspection-factor", autocomplete: "off", value: "2" });
   const answer = element("div", { "aria-live": "polite", class: "remaining-answer" });
-  const field = (label, unit, input, hint) => element("div", { class: "field" },
+  const field = (label, unit, input, hint) => element("div", { class: input.type === "range" ? "field wide" : "field" },
     element("label", { for: input.id }, label, unit && element("span", { class: "visually-hidden" }, `, ${unit}`)),
     element("div", { class: "control" }, input, unit && element("span", { class: "unit" }, unit)), hint);
 

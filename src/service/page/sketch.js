@@ -68,7 +68,9 @@ export function createSketch(container, { plate, edits }) {
         focused = name;
         drag = { move, end: () => {} };
       },
-    }, shape("circle", { class: "handle-reach", cx, cy, r: 16 }), shape("circle", { class: "handle-mark", cx, cy, r: 5 }));
+    }, shape("circle", { class: "handle-reach", cx, cy, r: 16 }), name.startsWith("Hole")
+      ? shape("path", { class: "handle-mark", d: `M${cx - 5} ${cy}h10m-5 -5v10` })
+      : shape("circle", { class: "handle-mark", cx, cy, r: 3.5 }));
   }
 
   function drawHandles() {

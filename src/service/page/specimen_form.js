@@ -42,7 +42,7 @@ export function createSpecimen(form, { plate } = {}) {
   const length = number("length_mm", "Length L", "between the loaded ends");
   const thickness = number("thickness_mm", "Thickness B");
   const crack = number("crack_length_mm", "Initial crack length a");
-  const ends = form.choice("specimen.ends", { label: "Ends", options: ENDS });
+  const ends = form.choice("specimen.ends", { label: "Ends", options: ENDS, needed: true });
   const fields = { width_mm: width, length_mm: length, thickness_mm: thickness, crack_length_mm: crack };
 
   function arrange() {
@@ -156,7 +156,7 @@ export function createMaterial(form, { toughness = true } = {}) {
 
 /** Loading: one magnitude, named as what it is, and the ratio. */
 export function createLoading(form) {
-  const quantity = form.choice("loading.kind", { label: "Load given as", options: MAGNITUDES.map(([key, label, unit]) => ({ value: key, title: `${label}, ${unit}` })) });
+  const quantity = form.choice("loading.kind", { label: "Load given as", options: MAGNITUDES.map(([key, label, unit]) => ({ value: key, title: `${label.replace(/ \S+$/, "")}, ${unit}` })) });
   const magnitude = form.number(MAGNITUDES.map(([key]) => `loading.${key}`), { label: "Load", unit: "MPa", hint: "gross section" });
   const ratio = form.number("loading.stress_ratio", { label: "Stress ratio R", signed: true, hint: "minimum / maximum" });
 

@@ -46,7 +46,7 @@ pub struct Listing {
 }
 
 /// Columns of a [`Job`].
-const COLUMNS: &str = "id, kind, name, owner, state, calibration, created_ms, started_ms, finished_ms, attempts, cancel_asked, \
+const COLUMNS: &str = "id, kind, name, owner, state, calibration, created_ms, started_ms, finished_ms, cancel_asked, \
                        revision, fence, progress, problem, summary";
 
 /// Sorts behind every id.
@@ -234,7 +234,7 @@ fn job_of(row: &AnyRow) -> Result<Job> {
         created: time(row.try_get("created_ms")?),
         started: moment("started_ms")?,
         finished: moment("finished_ms")?,
-        attempts: row.try_get("attempts")?,
+        attempts: row.try_get("fence")?,
         cancel_asked: row.try_get::<i64, _>("cancel_asked")? != 0,
         position: None,
         progress: object(row, "progress")?,
@@ -242,6 +242,5 @@ fn job_of(row: &AnyRow) -> Result<Job> {
         summary: object(row, "summary")?,
         calibration: row.try_get("calibration")?,
         revision: row.try_get("revision")?,
-        fence: row.try_get("fence")?,
     })
 }

@@ -50,7 +50,10 @@ fn a_prediction_has_the_files_of_the_command() {
                     assert_eq!(done["summary"]["life_cycles"], theirs["life_cycles"]);
                 }
                 file => {
-                    assert!(service.file(&job, file) == fs::read(folder.join(name).join(file)).unwrap(), "{name}: {file} differs");
+                    assert!(
+                        service.file(&job, file) == fs::read(folder.join(name).join(file)).unwrap(),
+                        "{name}: {file} differs"
+                    );
                 }
             }
         }
@@ -73,7 +76,13 @@ fn resampled_as_exported(folder: &Path, service: &Server, name: &str, job: &str)
         run(folder, &["export", name, "--out", "export.csv", option[0], option[1]]);
         assert_eq!(service.file(job, &format!("a_n.csv?{query}")), fs::read(folder.join("export.csv")).unwrap(), "{query}");
     }
-    for (query, status) in [("points=1", 422), ("every_cycles=-1", 422), ("every_cycles=1e-9", 422), ("points=x", 400), ("points=9&every_cycles=9", 400)] {
+    for (query, status) in [
+        ("points=1", 422),
+        ("every_cycles=-1", 422),
+        ("every_cycles=1e-9", 422),
+        ("points=x", 400),
+        ("points=9&every_cycles=9", 400),
+    ] {
         service.get(&format!("{job}/files/a_n.csv?{query}")).expect(status);
     }
     service.get(&format!("{job}/files/result.json?points=9")).expect(400);
@@ -100,7 +109,9 @@ fn remaining_life(service: &Server, job: &str, done: &Value) {
     assert!((number(&answer["cycles_at"]) / at - 1.0).abs() < 1e-12, "{answer} {at}");
     assert!((number(&answer["remaining_cycles"]) - (life - at)).abs() < 1e-9 * life);
     assert!((number(&answer["inspection_interval_cycles"]) * 3.0 - (life - at)).abs() < 1e-9 * life);
-    for (query, status) in [("crack_length_mm=1", 422), ("crack_length_mm=1e9", 422), ("crack_length_mm=NaN", 422), ("factor=2", 400)] {
+    for (query, status) in
+        [("crack_length_mm=1", 422), ("crack_length_mm=1e9", 422), ("crack_length_mm=NaN", 422), ("factor=2", 400)]
+    {
         service.get(&format!("{job}/remaining?{query}")).expect(status);
     }
     let less = service.get(&format!("{job}/remaining?crack_length_mm={middle}&factor=0.5")).expect(422);
@@ -138,17 +149,30 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         for file in ["fitted.toml", "fit_curves.csv", "fit_band.csv", "fit.svg", "fit_rates.svg", "fit_curves.parquet"] {
             assert!(service.file(&job, file) == fs::read(folder.join(name).join(file)).unwrap(), "{name}: {file} differs");
         }
-        let form = multipart(&[("name", None, name), ("input", None, &text.replace("files = [\"curve.csv\"]", "")), ("file", Some("curve.csv"), &curve)]);
-        let again = service.send("POST", "/v1/calibrations", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes());
+        let form = multipart(&[
+            ("name", None, name),
+            ("input", None, &text.replace("files = [\"curve.csv\"]", "")),
+            ("file", Some("curve.csv"), &curve),
+        ]);
+        let again =
+            service.send("POST", "/v1/calibrations", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes());
         let again = format!("/v1/calibrations/{}", again.expect(202).json()["id"].as_str().unwrap());
         service.succeeded(&again);
         assert_eq!(service.file(&again, "fitted.toml"), service.file(&job, "fitted.toml"), "{name}: as a form");
 
         // A case with this law, whatever its own.
-        let case = if name == "hand" { QUICK.replace("[model]\nspacing_mm = 1.5\n", "[model]\nmethod = \"handbook\"\n") } else { QUICK.to_owned() };
+        let case = if name == "hand" {
+            QUICK.replace("[model]\nspacing_mm = 1.5\n", "[model]\nmethod = \"handbook\"\n")
+        } else {
+            QUICK.to_owned()
+        };
         let body = json!({ "name": "case", "input": case, "calibration": done["id"] });
         let prediction = service.submit("predictions", &body);
-        fs::write(folder.join("case.toml"), case.replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015\n", &format!("fitted = \"{name}/fitted.toml\"\n"))).unwrap();
+        fs::write(
+            folder.join("case.toml"),
+            case.replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015\n", &format!("fitted = \"{name}/fitted.toml\"\n")),
+        )
+        .unwrap();
         run(folder, &["predict", "case.toml", "--out", "case"]);
         assert_eq!(service.succeeded(&prediction)["calibration"], done["id"]);
         assert!(service.file(&prediction, "a_n.csv") == fs::read(folder.join("case/a_n.csv")).unwrap(), "{name}: with the fit");
@@ -173,7 +197,9 @@ fn the_band_of_a_fit_is_about_its_curve() {
         let [_, fitted, low, high] = row[..] else { panic!("{row:?}") };
         assert!(low < fitted && fitted < high);
         // Never narrower than the rate alone leaves it, and the same factor both ways.
-        assert!((high / fitted).ln() >= 1.96 * rate_error * (1.0 - 1e-9) && ((high / fitted) / (fitted / low) - 1.0).abs() < 1e-9);
+        assert!(
+            (high / fitted).ln() >= 1.96 * rate_error * (1.0 - 1e-9) && ((high / fitted) / (fitted / low) - 1.0).abs() < 1e-9
+        );
     }
     assert_eq!(rows.len(), 30);
 }

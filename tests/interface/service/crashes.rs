@@ -1,0 +1,139 @@
+//! Processes and databases that die in the middle of everything: every accepted job ends with the curve of an undisturbed run, once.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use tempfile::tempdir;
+
+use super::jobs::with_each_store;
+use super::{QUICK, SLOW, of};
+use crate::cli::perilife;
+use crate::noise::Noise;
+use crate::postgres::Postgres;
+use crate::server::{PATIENCE, Server};
+
+/// The a-N curve of an undisturbed run by the command line.
+fn undisturbed(folder: &Path, text: &str) -> Vec<u8> {
+    fs::write(folder.join("case.toml"), text).unwrap();
+    assert!(perilife(folder, &["predict", "case.toml", "--out", "run"]).status.success());
+    fs::read(folder.join("run/a_n.csv")).unwrap()
+}
+
+/// Waits for something to become true.
+fn wait(what: &str, is_so: impl Fn() -> bool) {
+    let begun = Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < PATIENCE, "{what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+const EAGER: [&str; 8] = ["--jobs", "2", "--checkpoint-every", "0", "--lease", "2", "--attempts", "100"];
+
+/// Jobs of two kinds in turn, and their undisturbed curves.
+fn mixed(folder: &Path, count: usize) -> Vec<(&'static str, Vec<u8>)> {
+    let [quick, slow] = [QUICK, SLOW].map(|text| (text, undisturbed(folder, text)));
+    (0..count).map(|i| if i % 3 == 0 { slow.clone() } else { quick.clone() }).collect()
+}
+
+fn submit(service: &Server, jobs: &[(&str, Vec<u8>)]) -> Vec<String> {
+    jobs.iter().map(|(text, _)| service.submit("predictions", &of("case", text))).collect()
+}
+
+fn check(service: &Server, addresses: &[String], jobs: &[(&str, Vec<u8>)]) {
+    for (address, (_, curve)) in addresses.iter().zip(jobs) {
+        service.succeeded(address);
+        assert!(service.file(address, "a_n.csv") == *curve, "{address}: another curve");
+    }
+    assert_eq!(service.get("/v1/predictions?limit=200").json()["items"].as_array().unwrap().len(), addresses.len(), "none twice");
+}
+
+#[test]
+fn a_killed_server_loses_nothing() {
+    with_each_store("killed", |place| {
+        let dir = tempdir().unwrap();
+        let jobs = mixed(dir.path(), 4);
+        let mut service = Server::start(place, &EAGER);
+        let addresses = submit(&service, &jobs);
+        let mut noise = Noise::new(7);
+        for _ in 0..4 {
+            std::thread::sleep(Duration::from_millis(300 + (500.0 * noise.normal().abs()) as u64));
+            service.kill();
+            service = Server::start(place, &EAGER);
+        }
+        check(&service, &addresses, &jobs);
+    });
+}
+
+/// A worker of two is killed; the other goes on with its job from the checkpoint.
+#[test]
+fn another_worker_takes_over() {
+    let Some(postgres) = Postgres::start() else { return };
+    let dir = tempdir().unwrap();
+    let curve = undisturbed(dir.path(), SLOW);
+    let url = postgres.database("taken_over");
+    let place = ["--database", url.as_str()];
+    let service = Server::start(&place, &["--jobs", "0"]);
+    let mut first = Server::worker(&place, &EAGER);
+    let job = service.submit("predictions", &of("case", SLOW));
+    // Far enough for a checkpoint, and not at the end.
+    wait("half-way", || service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) > 0.4);
+    first.kill();
+    let _second = Server::worker(&place, &EAGER);
+    let events = service.events(&job, &[]);
+    let done = service.succeeded(&job);
+    assert!(service.file(&job, "a_n.csv") == curve, "another curve");
+    assert_eq!(done["attempts"], 2, "{done:#}");
+    // It began where the first had come to, not anew.
+    let taken_up = events.iter().filter(|(name, _)| name == "job").filter_map(|(_, job)| job["progress"]["share"].as_f64());
+    assert!(taken_up.clone().all(|share| share > 0.05), "{:?}", taken_up.collect::<Vec<_>>());
+}
+
+/// The database goes away while jobs run: requests are told so, workers hold on, nothing is lost.
+#[test]
+fn a_database_that_is_gone_for_a_while_loses_nothing() {
+    let Some(postgres) = Postgres::start() else { return };
+    let dir = tempdir().unwrap();
+    let jobs = mixed(dir.path(), 4);
+    let url = postgres.database("gone");
+    let service = Server::start(&["--database", &url], &EAGER);
+    let addresses = submit(&service, &jobs);
+    for _ in 0..2 {
+        std::thread::sleep(Duration::from_millis(700));
+        postgres.down();
+        let answer = service.post("/v1/predictions", &of("case", QUICK)).expect(503);
+        assert!(answer.header("retry-after").is_some() && answer.text().contains("cannot be used just now"), "{}", answer.text());
+        service.get("/healthz").expect(503);
+        service.get(&addresses[0]).expect(503);
+        postgres.up().unwrap();
+        wait("it is well again", || service.get("/healthz").status == 200);
+    }
+    // Connections cut one by one while it stays up.
+    let cut = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = 'gone' AND pid <> pg_backend_pid()";
+    for _ in 0..5 {
+        std::thread::sleep(Duration::from_millis(150));
+        postgres.sql(&url, cut).unwrap();
+    }
+    check(&service, &addresses, &jobs);
+}
+
+/// A job that kills its workers is given up in the end, and the others go on.
+#[test]
+fn a_job_that_nobody_survives_is_given_up() {
+    with_each_store("given_up", |place| {
+        let eager = ["--jobs", "1", "--lease", "2", "--attempts", "2", "--checkpoint-every", "1000"];
+        let service = Server::start(place, &["--jobs", "0"]);
+        let job = service.submit("predictions", &of("case", SLOW));
+        for attempt in 1..=2 {
+            let mut worker = Server::worker(place, &eager);
+            wait("taken", || service.get(&job).json()["attempts"] == attempt);
+            worker.kill();
+        }
+        let next = service.submit("predictions", &of("case", QUICK));
+        let _worker = Server::worker(place, &eager);
+        let ended = service.ended(&job);
+        assert_eq!((&ended["state"], &ended["problem"]["title"]), (&"failed".into(), &"Given up".into()), "{ended:#}");
+        service.succeeded(&next);
+    });
+}

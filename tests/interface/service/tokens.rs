@@ -1,0 +1,103 @@
+//! Who may do what where tokens are asked for.
+
+use serde_json::json;
+use tempfile::tempdir;
+
+use super::{QUICK, of};
+use crate::cli::{assert_refused, perilife, texts};
+use crate::server::{Server, in_folder};
+
+#[test]
+fn roles_are_kept() {
+    let dir = tempdir().unwrap();
+    let folder = dir.path();
+    let data = folder.join("service");
+    let place = in_folder(&data);
+    let token = |name: &str, role: &str| {
+        let output = perilife(folder, &["token", "--data", data.to_str().unwrap(), "add", name, "--role", role]);
+        assert!(output.status.success(), "{}", texts(&output).1);
+        texts(&output).0.trim().to_owned()
+    };
+    let [reader, runner, other, admin] =
+        [("ann", "read"), ("bob", "run"), ("cy", "run"), ("dee", "admin")].map(|(name, role)| token(name, role));
+    assert!(reader.starts_with("perilife_") && reader.len() == 73 && reader != runner);
+    let twice = perilife(folder, &["token", "--data", data.to_str().unwrap(), "add", "ann", "--role", "run"]);
+    assert_refused(&twice, 2, &["ann", "has a token already"]);
+
+    let mut service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--require-token"]);
+    let unknown = service.get("/v1/predictions").expect(401);
+    assert_eq!(
+        (unknown.header("www-authenticate"), unknown.header("content-type")),
+        (Some("Bearer"), Some("application/problem+json"))
+    );
+    service.get("/metrics").expect(401);
+    for open in ["/", "/healthz", "/openapi.json", "/v1/service"] {
+        service.get(open).expect(200);
+    }
+    assert!(service.get("/v1/service").json()["role"].is_null());
+    service = service.with_token("perilife_0000");
+    service.get("/v1/predictions").expect(401);
+
+    service = service.with_token(&reader);
+    assert_eq!(service.get("/v1/service").json()["role"], "read");
+    service.get("/v1/predictions").expect(200);
+    service.post("/v1/predictions", &of("case", QUICK)).expect(403);
+    service = service.with_token(&runner);
+    let jobs = [(); 2].map(|()| service.submit("predictions", &of("case", QUICK)));
+    service.post(&format!("{}/cancel", jobs[0]), &json!({})).expect(202);
+    service = service.with_token(&other);
+    assert_eq!(service.get(&jobs[1]).expect(200).json()["owner"], "bob");
+    for (method, path) in [("POST", format!("{}/cancel", jobs[1])), ("DELETE", jobs[0].clone())] {
+        service.send(method, &path, &[], b"").expect(403);
+    }
+    service = service.with_token(&admin);
+    service.send("DELETE", &jobs[0], &[], b"").expect(204);
+    service.post(&format!("{}/cancel", jobs[1]), &json!({})).expect(202);
+    // Two with the same key are two jobs if they are of two people.
+    let key = [("content-type", "application/json"), ("idempotency-key", "mine")];
+    let body = of("case", QUICK).to_string();
+    let mut ids = Vec::new();
+    for secret in [&runner, &other] {
+        service = service.with_token(secret);
+        ids.push(service.send("POST", "/v1/predictions", &key, body.as_bytes()).expect(202).json()["id"].clone());
+    }
+    assert_ne!(ids[0], ids[1]);
+
+    // Only hashes are kept, and no log has them.
+    service.kill();
+    let kept = std::fs::read(data.join("perilife.sqlite")).unwrap();
+    for secret in [&reader, &runner] {
+        assert!(!kept.windows(secret.len()).any(|bytes| bytes == secret.as_bytes()));
+    }
+    let listed = texts(&perilife(folder, &["token", "--data", data.to_str().unwrap(), "list"])).0;
+    assert!(listed.contains("ann") && listed.lines().count() == 4 && !listed.contains("perilife_"));
+    assert!(perilife(folder, &["token", "--data", data.to_str().unwrap(), "remove", "ann"]).status.success());
+    assert_refused(&perilife(folder, &["token", "--data", data.to_str().unwrap(), "remove", "ann"]), 2, &["has no token"]);
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--require-token"]).with_token(&reader);
+    service.get("/v1/predictions").expect(401);
+}
+
+#[test]
+fn nobody_is_let_in_from_elsewhere_without_tokens() {
+    let dir = tempdir().unwrap();
+    let data = dir.path().join("service");
+    let call = ["serve", "--data", data.to_str().unwrap(), "--listen", "0.0.0.0:0"];
+    assert_refused(&perilife(dir.path(), &call), 2, &["--listen = 0.0.0.0:0", "perilife token add NAME --role admin"]);
+    let nowhere = ["serve", "--database", "postgres://me:secret@127.0.0.1:1/none?password=hidden", "--listen", "127.0.0.1:0"];
+    let output = perilife(dir.path(), &nowhere);
+    assert_refused(&output, 4, &["postgres://me@127.0.0.1:1/none: cannot use the database"]);
+    let stderr = texts(&output).1;
+    assert!(!stderr.contains("secret") && !stderr.contains("hidden"), "{stderr}");
+    assert_refused(
+        &perilife(dir.path(), &["worker", "--database", "mysql://x/y"]),
+        4,
+        &["must begin with sqlite:// or postgres://"],
+    );
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = taken.local_addr().unwrap().to_string();
+    assert_refused(
+        &perilife(dir.path(), &["serve", "--data", data.to_str().unwrap(), "--listen", &address]),
+        4,
+        &["cannot listen"],
+    );
+}
