@@ -31,7 +31,7 @@ pub struct Args {
     #[arg(long, value_name = "COUNT", default_value = "5000", help_heading = "Limits")]
     pub requests_per_second: NonZeroU32,
     /// Most of them that submit, check or upload
-    #[arg(long, value_name = "COUNT", default_value = "300", help_heading = "Limits")]
+    #[arg(long, value_name = "COUNT", default_value = "1000", help_heading = "Limits")]
     pub writes_per_second: NonZeroU32,
     /// Where jobs and results are kept, and who runs them.
     #[command(flatten)]

@@ -35,7 +35,7 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         const READS: NonZeroU32 = NonZeroU32::new(5_000).unwrap();
-        const WRITES: NonZeroU32 = NonZeroU32::new(300).unwrap();
+        const WRITES: NonZeroU32 = NonZeroU32::new(1_000).unwrap();
         Limits {
             body_bytes: 32 << 20,
             files: 64,

@@ -147,19 +147,3 @@ export async function download(path, name) {
   link.remove();
   setTimeout(() => URL.revokeObjectURL(address), 60_000);
 }
-
-/** Shows a blob in an image and gives back the address it had before. The old picture stays until the new one is decoded. */
-export async function showBlob(image, blob) {
-  const address = URL.createObjectURL(blob);
-  const next = new Image();
-  next.src = address;
-  try {
-    await next.decode();
-  } catch {
-    // An SVG without a size cannot be decoded ahead in some browsers; it is shown as it is.
-  }
-  const before = image.src;
-  image.src = address;
-  image.hidden = false;
-  if (before.startsWith("blob:")) URL.revokeObjectURL(before);
-}

@@ -101,6 +101,7 @@ onWaiting((words) => {
 });
 document.addEventListener("token", () => {
   byId("forget-token").hidden = readToken() === null;
+  loadService(); // the role comes with the token
 });
 byId("forget-token").hidden = readToken() === null;
 byId("forget-token").addEventListener("click", () => {

@@ -57,6 +57,12 @@ export function createCalibrateView() {
     return known;
   }
 
+  /** A list of laws is of use only when they can be told apart. */
+  function defaultName() {
+    const [first, ...others] = measured.names();
+    return `${first.replace(/\.[a-z]+$/i, "")}${others.length > 0 ? ` and ${others.length} more` : ""}`;
+  }
+
   const measured = createMeasured(() => {
     const range = measured.window();
     if (range && !from.touched) fillIn(from, range[0]);
@@ -89,7 +95,7 @@ export function createCalibrateView() {
   });
   start.addEventListener("click", async () => {
     if (!(await editor.check.now())) return;
-    startRun("/v1/calibrations", { ...editor.body(), ...compact({ name: name.input.value.trim() }) }, {
+    startRun("/v1/calibrations", { ...editor.body(), name: name.input.value.trim() || defaultName() }, {
       button: start, status: byId("calibrate-status"), refuse: editor.check.refuse,
     });
   });

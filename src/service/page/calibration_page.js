@@ -1,6 +1,6 @@
 // Page of one calibration: the fit beside the readings, its constants with their errors, files to take away.
 
-import { getBlob, getJson, getText, showBlob } from "./api.js";
+import { getBlob, getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { element, readCsv, show, showPage, table, terms } from "./dom.js";
 import { follow } from "./events.js";
@@ -8,8 +8,10 @@ import { cycles, deviation, fixed, percent, plain, scientific, significant, word
 import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
 import { warningList } from "./check.js";
 import { loadInto, problemBox } from "./notices.js";
+import { createPicture, showBlob } from "./picture.js";
 
 const STRESS_INTENSITY = "MPa√m";
+const SPECIMENS_APART = 6;
 
 export async function openCalibration(root, id, signal) {
   const job = await getJson(`/v1/calibrations/${encodeURIComponent(id)}`, signal);
@@ -29,27 +31,27 @@ export async function openCalibration(root, id, signal) {
     use.hidden = false;
     const part = (id, title, ...content) => element("section", { "aria-labelledby": id }, element("h2", { id }, title), ...content);
     const curves = element("div");
-    const quantiles = element("div");
-    const rates = element("img", { alt: "Growth rate against range of stress intensity, readings and fitted law, logarithmic axes", hidden: true });
+    const { node: rates, image } = createPicture("Growth rate against range of stress intensity, readings and fitted law, logarithmic axes");
     const files = whole.files ?? [];
     const has = (name) => files.some((file) => file.name === name);
     show(body,
       whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings),
       element("div", { class: "columns wide-left" },
         element("div", { class: "stack" }, part("fit-title", "Readings and fitted curve", curves),
-          has("fit_rates.svg") && part("rates-title", "Growth rates", element("div", { class: "paper picture" }, rates))),
+          has("fit_rates.svg") && part("rates-title", "Growth rates", rates)),
         element("div", { class: "stack" }, part("constants-title", "Constants", constants(whole.summary)))),
-      element("div", { class: "columns" }, specimens(whole.summary), quantiles),
+      specimens(whole.summary),
       downloadList(whole), inputText(whole));
     const path = (name) => `${pathOf(whole)}/files/${name}`;
     loadInto(curves, async () => {
-      const [fit, band] = await Promise.all(["fit_curves.csv", "fit_band.csv"].map((name) => (has(name) ? getText(path(name), signal).then(readCsv) : null)));
-      chart = drawFit(curves, fit, band);
+      const names = ["fit_curves.csv", "fit_band.csv", "quantiles.csv"];
+      const [fit, band, quantiles] = await Promise.all(names.map((name) => (has(name) ? getText(path(name), signal).then(readCsv) : null)));
+      chart = drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band)]);
     });
-    if (has("quantiles.csv")) {
-      loadInto(quantiles, async () => show(quantiles, quantileTable(readCsv(await getText(path("quantiles.csv"), signal)))));
+    if (has("fit_rates.svg")) {
+      getBlob(path("fit_rates.svg"), signal).then((blob) => showBlob(image, blob))
+        .catch((error) => error.name === "AbortError" || rates.after(problemBox(error)));
     }
-    if (has("fit_rates.svg")) getBlob(path("fit_rates.svg"), signal).then((blob) => showBlob(rates, blob)).catch((error) => error.name === "AbortError" || rates.after(problemBox(error)));
   }
 
   if (isFinal(job)) {
@@ -69,29 +71,53 @@ export async function openCalibration(root, id, signal) {
   });
 }
 
-function drawFit(place, fit, band) {
+/** Fitted curve with the band that the errors of its constants leave it. */
+function fittedCurve(fit, band) {
+  const line = { id: "fitted", name: "Fitted", kind: "line", tone: 0 };
+  if (band) {
+    return [{ id: "band", name: "95 % band of the fitted curve", kind: "band", tone: 0, x: band.cycles_low, y: band.crack_length_mm, x2: band.cycles_high, y2: band.crack_length_mm },
+      { ...line, x: band.cycles_fitted, y: band.crack_length_mm }];
+  }
+  const first = (column) => column.filter((_, index) => fit.specimen[index] === fit.specimen[0]);
+  return [{ ...line, x: first(fit.cycles_fitted), y: first(fit.crack_length_mm) }];
+}
+
+/** Band between the outer quantiles of the specimens: columns cycles_p05, cycles_p50, cycles_p95. */
+function scatterBand(quantiles) {
+  const columns = Object.keys(quantiles ?? {}).filter((name) => /^cycles_p\d+$/.test(name));
+  if (columns.length < 2) return [];
+  const [low, high] = [columns[0], columns.at(-1)];
+  const share = (name) => Number(name.slice("cycles_p".length));
+  return [{ id: "scatter", name: `${share(low)} to ${share(high)} % of the specimens`, kind: "band", tone: 7,
+    x: quantiles[low], y: quantiles.crack_length_mm, x2: quantiles[high], y2: quantiles.crack_length_mm }];
+}
+
+function drawFit(place, fit, curves) {
   const chart = createChart(place, {
     name: "fit",
     label: "Crack length against cycles: readings, fitted curve and its 95 % band",
     x: { label: "Cycles N", format: cycles, from: 0 },
     y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
   });
-  const names = [...new Set(fit?.specimen ?? [])];
-  const only = (name, column) => column.filter((_, index) => fit.specimen[index] === name);
-  const readings = names.map((name, index) => ({
-    id: `measured-${name}`, name: `${name}, measured`, kind: "points", tone: index + 1,
-    x: only(name, fit.cycles_measured), y: only(name, fit.crack_length_mm),
-  }));
-  const fitted = band
-    ? [{ id: "band", name: "95 % band of the fitted curve", kind: "band", tone: 0, x: band.cycles_low, y: band.crack_length_mm, x2: band.cycles_high, y2: band.crack_length_mm },
-      { id: "fitted", name: "Fitted", kind: "line", tone: 0, x: band.cycles_fitted, y: band.crack_length_mm }]
-    : names.slice(0, 1).map((name) => ({ id: "fitted", name: "Fitted", kind: "line", tone: 0, x: only(name, fit.cycles_fitted), y: only(name, fit.crack_length_mm) }));
-  chart.set([...fitted, ...readings]);
+  const median = "median";
+  const names = [...new Set(fit.specimen)];
+  const specimens = names.filter((name) => name !== median || names.length === 1);
+  const points = (id, name, tone, wanted) => {
+    const only = (column) => column.filter((_, index) => wanted(fit.specimen[index]));
+    return { id, name: `${name}, measured`, kind: "points", tone, x: only(fit.cycles_measured), y: only(fit.crack_length_mm) };
+  };
+  // Dozens of specimens are told apart by nobody: they share a mark, and the median has its own.
+  const readings = specimens.length > SPECIMENS_APART
+    ? [points("all", `${specimens.length} specimens`, 1, (name) => name !== median), points(median, median, 2, (name) => name === median)]
+    : names.map((own, index) => points(`measured-${own}`, own, index + 1, (name) => name === own));
+  chart.set([...curves, ...readings]);
   return chart;
 }
 
 function constants(s) {
-  const error = (value, decimals) => (Number.isFinite(value) ? `± ${fixed(value, decimals)}` : "");
+  // An exponent that was not fitted has no error of this fit.
+  const isFitted = (s.p_source ?? "fitted") === "fitted";
+  const error = (value, decimals) => (isFitted && Number.isFinite(value) ? `± ${fixed(value, decimals)}` : words(isFitted ? "" : s.p_source));
   const name = (text, unit) => [text, element("span", { class: "row-unit" }, unit)];
   const horizon = Number.isFinite(s.horizon_mm) ? `, at a horizon of ${plain(s.horizon_mm, 5)} mm` : "";
   const rows = [
@@ -118,16 +144,4 @@ function specimens({ specimens: list = [] }) {
     { title: "Fitted", unit: "cycles", numeric: true }, { title: "rms error", numeric: true }];
   const rows = list.map((one) => [one.name, scientific(one.a, 4), fixed(one.p, 4), cycles(one.life_measured), cycles(Math.round(one.life_fitted)), percent(one.rms_life_error, 2)]);
   return element("section", { "aria-labelledby": "specimens-title" }, element("h2", { id: "specimens-title" }, "Specimens"), table("Fit of every specimen", columns, rows, { hidden: true, name: "specimens" }));
-}
-
-/** Columns as the program names them: their endings are their units. */
-function quantileTable(columns) {
-  const names = Object.keys(columns);
-  const heads = names.map((name) => ({ title: words(name), numeric: typeof columns[name][0] === "number" }));
-  const rows = columns[names[0]].map((_, index) => names.map((name) => {
-    const value = columns[name][index];
-    if (typeof value !== "number") return value;
-    return /cycles|life/.test(name) && value >= 100 ? cycles(value) : plain(value, 4);
-  }));
-  return element("section", { "aria-labelledby": "quantiles-title" }, element("h2", { id: "quantiles-title" }, "Scatter between specimens"), table("Quantiles over the specimens", heads, rows, { hidden: true, name: "quantiles" }));
 }

@@ -1,10 +1,11 @@
 // Checks the input while the user types: draws the plate, says what was understood, and puts a problem where it belongs.
 
-import { Problem, postJson, showBlob } from "./api.js";
+import { Problem, postJson } from "./api.js";
 import { debounce, element, show, terms } from "./dom.js";
 import { excerpt } from "./excerpt.js";
 import { sentence, words } from "./format.js";
 import { problemBox } from "./notices.js";
+import { createPicture, showBlob } from "./picture.js";
 
 const WAIT_MS = 350;
 
@@ -14,8 +15,7 @@ const WAIT_MS = 350;
  */
 export function createCheck(panel, { form, collect, onResult = () => {} }) {
   const state = element("p", { class: "check-state", role: "status" });
-  const image = element("img", { alt: "Drawing of the specimen as understood: outline, cracks, loads and supports", hidden: true });
-  const figure = element("div", { class: "paper" }, image);
+  const { node: figure, image } = createPicture("Drawing of the specimen as understood: outline, cracks, loads and supports");
   const details = element("div");
   show(panel, state, figure, details);
 

@@ -72,7 +72,9 @@ export function percent(share, decimals = 1) {
 
 /** Percent with its sign, for deviations. */
 export function deviation(share, decimals = 2) {
-  return Number.isFinite(share) ? `${share > 0 ? "+" : ""}${percent(share, decimals)}` : NONE;
+  if (!Number.isFinite(share)) return NONE;
+  const rounded = Number((100 * share).toFixed(decimals));
+  return rounded === 0 ? percent(0, decimals) : `${rounded > 0 ? "+" : ""}${percent(share, decimals)}`;
 }
 
 /** Seconds in words: 4 s, 2 min 5 s, 1 h 3 min. */

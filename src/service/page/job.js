@@ -57,12 +57,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     }
   };
   const cancel = element("button", { type: "button", class: "button", "data-action": "cancel", onclick: guarded(async () => {
-    cancel.disabled = true;
-    try {
-      update(await cancelJob(job));
-    } finally {
-      cancel.disabled = false;
-    }
+    update({ ...(await cancelJob(job)), cancel_asked: true });
   }) }, "Cancel");
   const discard = element("button", { type: "button", class: "button", "data-action": "delete", onclick: guarded(async () => {
     if (await confirmDelete(job)) location.hash = `#/runs?kind=${collectionOf(job)}`;
@@ -79,6 +74,8 @@ export function createJobHead(first, { actions = [] } = {}) {
     show(badge, stateBadge(job.state));
     const ended = isFinal(job);
     cancel.hidden = ended;
+    cancel.disabled = job.cancel_asked === true;
+    cancel.textContent = job.cancel_asked ? "Cancelling …" : "Cancel";
     discard.hidden = !ended;
     const took = job.started && job.finished ? `, took ${duration((new Date(job.finished) - new Date(job.started)) / 1000)}` : "";
     facts.textContent = `${sentence(job.kind)} ${job.id}, submitted ${moment(job.created)}${took}${job.attempts > 1 ? `, attempt ${job.attempts}` : ""}`;
@@ -95,11 +92,13 @@ export function createJobHead(first, { actions = [] } = {}) {
       show(figures, element("p", null, words));
       return;
     }
+    const prediction = job.kind === "prediction";
     bar.value = p.share ?? 0;
     show(figures, terms([
       ["Share", percent(p.share, 0)],
-      Number.isFinite(p.cycles) && ["Cycles", cycles(Math.round(p.cycles))],
-      Number.isFinite(p.crack_length_mm) && ["Crack length", `${fixed(p.crack_length_mm, 2)} mm`],
+      // A fit makes several runs: where one of them stands says nothing.
+      prediction && ["Cycles", cycles(Math.round(p.cycles))],
+      prediction && ["Crack length", `${fixed(p.crack_length_mm, 2)} mm`],
       ["Elapsed", duration(p.elapsed_s)],
       ["Time left", Number.isFinite(p.seconds_left) ? `about ${duration(p.seconds_left)}` : "not known yet"],
     ].filter(Boolean), "progress"));

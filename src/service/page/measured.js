@@ -79,11 +79,11 @@ export function createMeasured(onChange) {
     const list = names.length > 6 ? `${names.slice(0, 6).join(", ")} …` : names.join(", ");
     const words = columns && [
       LAYOUTS[columns.layout] ?? columns.layout,
-      `columns separated by ${SEPARATORS[columns.separator] ?? columns.separator}`,
-      columns.decimal_comma ? "decimal commas" : "decimal points",
+      columns.separator && `columns separated by ${SEPARATORS[columns.separator] ?? columns.separator}`,
+      columns.decimal_comma !== undefined && (columns.decimal_comma ? "decimal commas" : "decimal points"),
       `crack length in ${LENGTHS[columns.length_unit] ?? columns.length_unit}`,
       `cycles counted in ${CYCLES[columns.cycle_unit] ?? columns.cycle_unit}`,
-    ].join(", ");
+    ].filter(Boolean).join(", ");
     return element("div", { class: "file-card", "data-file": file },
       element("div", null, element("h3", null, file),
         element("p", null, found.length > 0 ? `${count(found.length, "specimen")} (${list}), ${count(readings, "reading")}: ${ranges(found)}.` : "No curve could be read."),
@@ -174,7 +174,9 @@ export function createMeasured(onChange) {
     window() {
       const given = curves().filter((curve) => curve.crack_length_mm.length > 0);
       if (given.length === 0) return null;
-      return [Math.max(...given.map((curve) => Math.min(...curve.crack_length_mm))), Math.min(...given.map((curve) => Math.max(...curve.crack_length_mm)))];
+      // Without the last bits that a change of unit leaves.
+      const tidy = (value) => Number(value.toPrecision(9));
+      return [tidy(Math.max(...given.map((curve) => Math.min(...curve.crack_length_mm)))), tidy(Math.min(...given.map((curve) => Math.max(...curve.crack_length_mm))))];
     },
     specimens: () => curves().length,
     loadExample(name, text) {

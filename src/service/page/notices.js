@@ -1,6 +1,7 @@
 // Problems and loading states, the same everywhere.
 
 import { element, show } from "./dom.js";
+import { sentence } from "./format.js";
 
 /** A problem in full: sentence, place, remedy; with a button where trying again makes sense. */
 export function problemBox(problem, retry) {
@@ -10,7 +11,7 @@ export function problemBox(problem, retry) {
   // The sentence usually ends with the remedy; it is not said twice.
   const untold = given(remedy) && !problem.message.includes(remedy);
   return element("div", { class: "notice bad", role: "alert", "data-problem": problem.status ?? "" },
-    element("p", null, element("strong", null, titleOf(problem)), " ", problem.message),
+    element("p", null, element("strong", null, titleOf(problem)), " ", sentence(problem.message)),
     place.length > 0 && element("p", { class: "quiet" }, `At ${place.join(", ")}`),
     untold && element("p", null, `Remedy: ${remedy}`),
     retry && element("p", null, element("button", { type: "button", class: "button", onclick: retry }, "Try again")));

@@ -4,7 +4,7 @@ import { getJson } from "./api.js";
 import { byId, element, show } from "./dom.js";
 import { createEditor } from "./editor.js";
 import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
-import { percent, scientific, significant } from "./format.js";
+import { percent, scientific, sentence, significant, words } from "./format.js";
 import { createPlate } from "./plate_form.js";
 import { problemBox } from "./notices.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
@@ -34,7 +34,7 @@ export function createPredictView() {
   const specimen = createSpecimen(form, { plate });
   const material = createMaterial(form);
   const loading = createLoading(form);
-  const law = form.choice("calibration", { label: "Growth law", options: [{ value: "", title: "Constants given here" }] });
+  const law = form.choice("calibration", { label: "Taken from", options: [{ value: "", title: "Constants given here" }] });
   const constants = {
     a: form.number("fatigue.a", { label: "A", unit: "1/cycle" }),
     p: form.number("fatigue.p", { label: "Exponent p", hint: "not the Paris exponent m" }),
@@ -108,6 +108,13 @@ export function createPredictView() {
     onMode: arrange,
   });
 
+  /** Kind and size of the specimen as it was checked, so that runs without a name can be told apart. */
+  function defaultName() {
+    const { kind, width_mm: width, length_mm: length } = editor.check.last?.case?.specimen ?? {};
+    const size = width && length ? ` ${width} × ${length} mm` : width ? ` W ${width} mm` : "";
+    return kind ? `${sentence(words(kind))}${size}` : "Prediction";
+  }
+
   /** Finished calibrations as laws to choose from; the newest is the choice until the user makes one. */
   async function loadLaws(wanted) {
     try {
@@ -128,7 +135,7 @@ export function createPredictView() {
 
   start.addEventListener("click", async () => {
     if (!(await editor.check.now())) return;
-    startRun("/v1/predictions", { ...editor.body(), ...compact({ name: name.input.value.trim() }) }, {
+    startRun("/v1/predictions", { ...editor.body(), name: name.input.value.trim() || defaultName() }, {
       button: start, status: byId("predict-status"), refuse: editor.check.refuse,
     });
   });

@@ -1,6 +1,6 @@
 // Page of one prediction: while it runs the curve, the crack path and the damage field grow; afterwards the life and what follows from it.
 
-import { getBlob, getJson, getText, postJson, showBlob } from "./api.js";
+import { getBlob, getJson, getText, postJson } from "./api.js";
 import { createChart } from "./chart.js";
 import { warningList } from "./check.js";
 import { element, readCsv, show, showPage, terms } from "./dom.js";
@@ -8,6 +8,7 @@ import { follow } from "./events.js";
 import { cycles, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
 import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
+import { createPicture, showBlob } from "./picture.js";
 import { createPlatePicture } from "./plate_drawing.js";
 import { createRemaining } from "./remaining.js";
 
@@ -20,15 +21,15 @@ export async function openPrediction(root, id, signal) {
   const chartPlace = element("div");
   const ratePlace = element("div");
   const picturePlace = element("div");
-  const image = element("img", { alt: "Share of broken bonds over the plate, with the crack path", hidden: true });
+  const { node: damage, image } = createPicture("Share of broken bonds over the plate, with the crack path");
   const imageNote = element("p", { class: "quiet" }, "No picture yet.");
   const part = (name, title, ...content) => element("section", { "aria-labelledby": `${name}-title`, "data-part": name }, element("h2", { id: `${name}-title` }, title), ...content);
   const rates = part("rates", "Growth rate", ratePlace);
   rates.hidden = true;
   const pictures = element("div", { class: "columns wide-left" },
-    element("div", { class: "stack" }, part("curve", "Crack length against cycles", chartPlace), rates),
-    element("div", { class: "stack" }, part("path", "Crack path", picturePlace),
-      part("damage", "Damage", element("div", { class: "paper picture" }, image), imageNote)));
+    element("div", { class: "stack" }, part("curve", "Crack length against cycles", chartPlace),
+      part("damage", "Damage", damage, imageNote)),
+    element("div", { class: "stack" }, part("path", "Crack path", picturePlace), rates));
   showPage(root, head.node, outcome, pictures, below);
 
   const chart = createChart(chartPlace, {

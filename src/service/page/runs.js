@@ -135,9 +135,12 @@ export function createRunsView() {
   });
 
   function drawCompare() {
-    compareBar.hidden = kind.value !== "predictions" || ticked.size === 0;
-    byId("compare-count").textContent = ticked.size === 1
-      ? `${[...ticked.values()][0]} is ticked. Tick one more to compare.`
+    // There before anything is ticked, so that the list does not move under the hand.
+    compareBar.hidden = kind.value !== "predictions" || place.querySelector(".tick") === null;
+    byId("compare-clear").hidden = ticked.size === 0;
+    const told = [...ticked.values()];
+    byId("compare-count").textContent = ticked.size < 2
+      ? `${told.length > 0 ? `${told[0]} is ticked: tick another one` : "Tick two or more predictions"} to compare them.`
       : `${count(ticked.size, "prediction")} ticked${ticked.size === COMPARE_MAX ? ", the most that can be compared" : ""}.`;
     const go = byId("compare");
     go.hidden = ticked.size < 2;

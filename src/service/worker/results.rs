@@ -103,10 +103,12 @@ fn file(name: String, content: Vec<u8>) -> File {
 
 fn archive(folder: &Path) -> Result<Vec<u8>> {
     let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    // The fastest: a plate of numbers hardly packs better at ten times the cost.
+    let packing = SimpleFileOptions::default().compression_level(Some(1));
     let failed = |error: &dyn std::fmt::Display| Error::file(folder, "cannot pack", std::io::Error::other(error.to_string()));
     for path in entries(folder)? {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        archive.start_file(name, SimpleFileOptions::default()).map_err(|error| failed(&error))?;
+        archive.start_file(name, packing).map_err(|error| failed(&error))?;
         archive.write_all(&read(&path)?).map_err(|error| failed(&error))?;
     }
     Ok(archive.finish().map_err(|error| failed(&error))?.into_inner())

@@ -78,7 +78,7 @@ fn another_worker_takes_over() {
     let mut first = Server::worker(&place, &EAGER);
     let job = service.submit("predictions", &of("case", SLOW));
     // Far enough for a checkpoint, and not at the end.
-    wait("half-way", || service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) > 0.4);
+    wait("on its way", || service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) > 0.15);
     first.kill();
     let _second = Server::worker(&place, &EAGER);
     let events = service.events(&job, &[]);

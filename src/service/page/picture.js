@@ -1,0 +1,31 @@
+// Pictures of the program: shown without flicker, and large on request, since their small print is made for a page.
+
+import { byId, element } from "./dom.js";
+
+/** An image on paper with a button that shows it as large as the window allows. Gives {node, image}. */
+export function createPicture(alt) {
+  const image = element("img", { alt, hidden: true });
+  const enlarge = element("button", { type: "button", class: "button small", "aria-label": `Enlarge: ${alt}`, onclick: () => {
+    const large = byId("picture-large");
+    large.src = image.src;
+    large.alt = alt;
+    byId("picture-dialog").showModal();
+  } }, "Enlarge");
+  return { image, node: element("div", { class: "picture" }, element("div", { class: "paper" }, image), enlarge) };
+}
+
+/** Shows a blob in an image. The old picture stays until the new one is decoded. */
+export async function showBlob(image, blob) {
+  const address = URL.createObjectURL(blob);
+  const next = new Image();
+  next.src = address;
+  try {
+    await next.decode();
+  } catch {
+    // An SVG without a size cannot be decoded ahead in some browsers; it is shown as it is.
+  }
+  const before = image.src;
+  image.src = address;
+  image.hidden = false;
+  if (before.startsWith("blob:")) URL.revokeObjectURL(before);
+}
