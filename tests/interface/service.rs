@@ -2,6 +2,8 @@
 
 #[path = "service/crashes.rs"]
 mod crashes;
+#[path = "service/fuzzed.rs"]
+mod fuzzed;
 #[path = "service/jobs.rs"]
 mod jobs;
 #[path = "service/refusals.rs"]

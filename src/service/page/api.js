@@ -62,7 +62,10 @@ async function reach(path, options) {
     return await fetch(path, options);
   } catch (error) {
     if (options.signal?.aborted) throw error;
-    throw new Problem(0, { title: "No connection", detail: "The service cannot be reached. Check that it is running and that this computer is on its network." });
+    throw new Problem(0, {
+      title: "No connection",
+      detail: "The service cannot be reached. Check that it is running and that this computer is on its network.",
+    });
   }
 }
 

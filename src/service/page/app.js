@@ -14,7 +14,10 @@ import { forgetToken, readToken } from "./token.js";
 
 const views = { measure: createCalibrateView(), predict: createPredictView(), runs: createRunsView() };
 const PAGES = { calibrations: openCalibration, predictions: openPrediction };
-const TITLES = { measure: "Measure and calibrate", predict: "Predict", runs: "Runs", calibrations: "Calibration", predictions: "Prediction", compare: "Comparison" };
+const TITLES = {
+  measure: "Measure and calibrate", predict: "Predict", runs: "Runs",
+  calibrations: "Calibration", predictions: "Prediction", compare: "Comparison",
+};
 const NAVIGATION = { measure: "measure", predict: "predict", runs: "runs", calibrations: "runs", predictions: "runs", compare: "runs" };
 
 let leaving = new AbortController();
@@ -34,6 +37,7 @@ async function route() {
   const { name, rest, query } = address();
   const place = name in views ? name : "run";
   views.runs.close();
+  byId("start-problem").hidden = place !== "measure" && place !== "predict"; // the others need no materials
   for (const section of document.querySelectorAll("section.view")) section.hidden = section.id !== `view-${place}`;
   for (const link of document.querySelectorAll("nav a")) {
     if (link.dataset.view === NAVIGATION[name]) link.setAttribute("aria-current", "page");
@@ -88,7 +92,8 @@ async function loadMaterials() {
 async function loadService() {
   try {
     const service = await getJson("/v1/service");
-    byId("service-facts").textContent = `${service.name} ${service.version}, ${count(service.workers, "worker")}${service.role ? `, your role: ${service.role}` : ""}`;
+    const facts = [`${service.name} ${service.version}`, count(service.workers, "worker"), service.role && `your role: ${service.role}`];
+    byId("service-facts").textContent = facts.filter(Boolean).join(", ");
   } catch {
     byId("service-facts").textContent = ""; // the materials say what is wrong
   }
@@ -99,9 +104,9 @@ onWaiting((words) => {
   banner.textContent = words ?? "";
   banner.hidden = words === null;
 });
-document.addEventListener("token", () => {
-  byId("forget-token").hidden = readToken() === null;
-  loadService(); // the role comes with the token
+document.addEventListener("token", ({ detail: given }) => {
+  byId("forget-token").hidden = !given;
+  if (given) loadService(); // the role comes with the token
 });
 byId("forget-token").hidden = readToken() === null;
 byId("forget-token").addEventListener("click", () => {

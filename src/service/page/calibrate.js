@@ -20,13 +20,14 @@ export function createCalibrateView() {
     arrange();
     editor.check.soon();
   });
-  const from = form.number("measured.from_crack_length_mm", { label: "From crack length", unit: "mm", optional: true, hint: "first reading that every specimen has" });
-  const to = form.number("measured.to_crack_length_mm", { label: "To crack length", unit: "mm", optional: true, hint: "last reading that every specimen has" });
+  const length = { unit: "mm", optional: true };
+  const from = form.number("measured.from_crack_length_mm", { ...length, label: "From crack length", hint: "first reading that every specimen has" });
+  const to = form.number("measured.to_crack_length_mm", { ...length, label: "To crack length", hint: "last reading that every specimen has" });
   const specimen = createSpecimen(form);
   // Toughness ends a prediction; a test that was measured is known to have got where it got.
   const material = createMaterial(form, { toughness: false });
   const loading = createLoading(form);
-  const spacing = form.number("model.spacing_mm", { label: "Spacing of points", unit: "mm", optional: true, hint: "left empty: a ninth of the crack, at most W/100" });
+  const spacing = form.number("model.spacing_mm", { ...length, label: "Spacing of points", hint: "left empty: a ninth of the crack, at most W/100" });
   const parameters = form.choice("fit.parameters", { label: "Fitted", options: PARAMETERS });
   const exponent = form.number("fit.p", { label: "Exponent p", hint: "of the law in use, not the Paris m" });
   const name = form.text("name", { label: "Name of the fit", optional: true });

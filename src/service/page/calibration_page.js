@@ -2,7 +2,7 @@
 
 import { getBlob, getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
-import { element, readCsv, show, showPage, table, terms } from "./dom.js";
+import { element, readCsv, section, show, showPage, table, terms } from "./dom.js";
 import { follow } from "./events.js";
 import { cycles, deviation, fixed, percent, plain, scientific, significant, words } from "./format.js";
 import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
@@ -15,7 +15,8 @@ const SPECIMENS_APART = 6;
 
 export async function openCalibration(root, id, signal) {
   const job = await getJson(`/v1/calibrations/${encodeURIComponent(id)}`, signal);
-  const use = element("a", { class: "button primary", href: `#/predict?law=${encodeURIComponent(id)}`, hidden: true, "data-action": "use-law" }, "Predict a plate with this law");
+  const address = `#/predict?law=${encodeURIComponent(id)}`;
+  const use = element("a", { class: "button primary", href: address, hidden: true, "data-action": "use-law" }, "Predict a plate with this law");
   const head = createJobHead(job, { actions: [use] });
   const body = element("div", { class: "job-body" });
   showPage(root, head.node, body);
@@ -29,7 +30,6 @@ export async function openCalibration(root, id, signal) {
       return;
     }
     use.hidden = false;
-    const part = (id, title, ...content) => element("section", { "aria-labelledby": id }, element("h2", { id }, title), ...content);
     const curves = element("div");
     const { node: rates, image } = createPicture("Growth rate against range of stress intensity, readings and fitted law, logarithmic axes");
     const files = whole.files ?? [];
@@ -37,9 +37,9 @@ export async function openCalibration(root, id, signal) {
     show(body,
       whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings),
       element("div", { class: "columns wide-left" },
-        element("div", { class: "stack" }, part("fit-title", "Readings and fitted curve", curves),
-          has("fit_rates.svg") && part("rates-title", "Growth rates", rates)),
-        element("div", { class: "stack" }, part("constants-title", "Constants", constants(whole.summary)))),
+        element("div", { class: "stack" }, section("fit", "Readings and fitted curve", curves),
+          has("fit_rates.svg") && section("rates", "Growth rates", rates)),
+        element("div", { class: "stack" }, section("constants", "Constants", constants(whole.summary)))),
       specimens(whole.summary),
       downloadList(whole), inputText(whole));
     const path = (name) => `${pathOf(whole)}/files/${name}`;
@@ -75,8 +75,11 @@ export async function openCalibration(root, id, signal) {
 function fittedCurve(fit, band) {
   const line = { id: "fitted", name: "Fitted", kind: "line", tone: 0 };
   if (band) {
-    return [{ id: "band", name: "95 % band of the fitted curve", kind: "band", tone: 0, x: band.cycles_low, y: band.crack_length_mm, x2: band.cycles_high, y2: band.crack_length_mm },
-      { ...line, x: band.cycles_fitted, y: band.crack_length_mm }];
+    const y = band.crack_length_mm;
+    return [
+      { id: "band", name: "95 % band of the fitted curve", kind: "band", tone: 0, x: band.cycles_low, y, x2: band.cycles_high, y2: y },
+      { ...line, x: band.cycles_fitted, y },
+    ];
   }
   const first = (column) => column.filter((_, index) => fit.specimen[index] === fit.specimen[0]);
   return [{ ...line, x: first(fit.cycles_fitted), y: first(fit.crack_length_mm) }];
@@ -120,16 +123,19 @@ function constants(s) {
   const error = (value, decimals) => (isFitted && Number.isFinite(value) ? `± ${fixed(value, decimals)}` : words(isFitted ? "" : s.p_source));
   const name = (text, unit) => [text, element("span", { class: "row-unit" }, unit)];
   const horizon = Number.isFinite(s.horizon_mm) ? `, at a horizon of ${plain(s.horizon_mm, 5)} mm` : "";
+  const atPivot = `mm/cycle, at ΔK = ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
   const rows = [
-    [name("Rate at the pivot", `mm/cycle, at ΔK = ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`), scientific(s.rate_at_pivot_mm_per_cycle, 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
+    [name("Rate at the pivot", atPivot), scientific(s.rate_at_pivot_mm_per_cycle, 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
     [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error, 4)],
     [name("Paris C", `mm/cycle, at ΔK = 1 ${STRESS_INTENSITY}`), scientific(s.paris_c_mm_per_cycle, 4), ""],
     [name("Bond exponent p", "dλ/dN = −A εᵖ"), fixed(s.p, 4), error(s.p_error, 4)],
     [name("Bond constant A", `1/cycle${horizon}`), scientific(s.a, 4), ""],
   ];
+  const columns = [{ title: "Constant" }, { title: "Value", numeric: true }, { title: "Std. error", numeric: true }];
   return element("div", { class: "stack tight" },
-    table("Fitted constants", [{ title: "Constant" }, { title: "Value", numeric: true }, { title: "Std. error", numeric: true }], rows, { hidden: true, name: "constants" }),
-    element("p", { class: "hint" }, "C and m are correlated: compare and quote the rate at the pivot, where the readings fix it best, together with m."),
+    table("Fitted constants", columns, rows, { hidden: true, name: "constants" }),
+    element("p", { class: "hint" },
+      "C and m are correlated: compare and quote the rate at the pivot, where the readings fix it best, together with m."),
     terms([
       ["Range of ΔK", `${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`],
       ["Life measured", `${cycles(s.life_measured)} cycles`],
@@ -140,8 +146,11 @@ function constants(s) {
 
 function specimens({ specimens: list = [] }) {
   if (list.length < 2) return null;
-  const columns = [{ title: "Specimen" }, { title: "A", unit: "1/cycle", numeric: true }, { title: "p", numeric: true }, { title: "Measured", unit: "cycles", numeric: true },
-    { title: "Fitted", unit: "cycles", numeric: true }, { title: "rms error", numeric: true }];
-  const rows = list.map((one) => [one.name, scientific(one.a, 4), fixed(one.p, 4), cycles(one.life_measured), cycles(Math.round(one.life_fitted)), percent(one.rms_life_error, 2)]);
-  return element("section", { "aria-labelledby": "specimens-title" }, element("h2", { id: "specimens-title" }, "Specimens"), table("Fit of every specimen", columns, rows, { hidden: true, name: "specimens" }));
+  const number = (title, unit) => ({ title, unit, numeric: true });
+  const columns = [{ title: "Specimen" }, number("A", "1/cycle"), number("p"), number("Measured", "cycles"), number("Fitted", "cycles"), number("rms error")];
+  const rows = list.map((one) => [
+    one.name, scientific(one.a, 4), fixed(one.p, 4), cycles(one.life_measured), cycles(Math.round(one.life_fitted)),
+    percent(one.rms_life_error, 2),
+  ]);
+  return section("specimens", "Specimens", table("Fit of every specimen", columns, rows, { hidden: true, name: "specimens" }));
 }

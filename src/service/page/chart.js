@@ -2,7 +2,7 @@
 // arrow keys (with a readout that is spoken) and as a table.
 
 import { domainOf, scaleOf } from "./chart_scale.js";
-import { element, shape, show, table, uniqueId } from "./dom.js";
+import { button, element, shape, show, table, uniqueId } from "./dom.js";
 import { significant } from "./format.js";
 
 const TONES = 8;
@@ -50,7 +50,7 @@ export function createChart(container, { name, label, x: xAxis, y: yAxis, ratio 
   const legend = element("ul", { class: "chart-legend", "aria-label": "Legend: press to hide or show a curve" });
   const readout = element("p", { class: "chart-readout", "aria-live": "polite", id: hintId }, HINT);
   const sheet = element("div", { hidden: true });
-  const toggle = element("button", { type: "button", class: "button small", "aria-expanded": "false", onclick: toggleTable }, "Show as table");
+  const toggle = button("Show as table", toggleTable, { class: "button small", "aria-expanded": "false" });
   const plot = element("div", { class: "chart-plot" }, svg);
   const figure = element("figure", { class: "chart", "data-chart": name },
     element("div", { class: "chart-head" }, legend, toggle), plot, readout, sheet);
@@ -246,12 +246,12 @@ export function createChart(container, { name, label, x: xAxis, y: yAxis, ratio 
   function drawLegend() {
     show(legend, series.map((one) => {
       const sample = shape("svg", { width: 26, height: 14, "aria-hidden": "true" }, swatch(one));
-      const button = element("button", { type: "button", "aria-pressed": String(!hidden.has(one.id)), onclick: () => {
+      const press = button([sample, one.name], () => {
         if (!hidden.delete(one.id)) hidden.add(one.id);
-        button.setAttribute("aria-pressed", String(!hidden.has(one.id)));
+        press.setAttribute("aria-pressed", String(!hidden.has(one.id)));
         schedule();
-      } }, sample, one.name);
-      return element("li", null, button);
+      }, { class: null, "aria-pressed": String(!hidden.has(one.id)) });
+      return element("li", null, press);
     }));
   }
 
@@ -285,7 +285,7 @@ export function createChart(container, { name, label, x: xAxis, y: yAxis, ratio 
         return [one.name, range(xAxis, one.x, one.x2), range(yAxis, one.y, one.y2)];
       });
     });
-    const columns = [{ title: "Curve" }, { title: xAxis.label, unit: xAxis.unit, numeric: true }, { title: yAxis.label, unit: yAxis.unit, numeric: true }];
+    const columns = [{ title: "Curve" }, ...[xAxis, yAxis].map((axis) => ({ title: axis.label, unit: axis.unit, numeric: true }))];
     show(sheet, table(thinned ? `${label} (every row is in the download; here a selection)` : label, columns, rows));
   }
 

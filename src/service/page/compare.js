@@ -2,7 +2,7 @@
 
 import { getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
-import { element, readCsv, show, showPage, table } from "./dom.js";
+import { element, readCsv, section, show, showPage, table } from "./dom.js";
 import { cycles, fixed, sentence, significant, words } from "./format.js";
 import { hrefOf, nameOf, pathOf } from "./job.js";
 import { COMPARE_MAX } from "./runs.js";
@@ -19,11 +19,12 @@ export async function openComparison(root, ids, signal) {
   const base = element("select", { id: "compare-base" }, done.map((job, index) => element("option", { value: job.id }, names[index])));
   base.addEventListener("change", () => show(ratios, tableOf(done, names, base.value)));
   showPage(root,
-    element("header", { class: "job-head", id: "comparison" }, element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, "Comparison of predictions"),
-      element("div", { class: "tool-row end" }, element("a", { class: "button", href: "#/runs" }, "Back to the runs")))),
+    element("header", { class: "job-head", id: "comparison" },
+      element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, "Comparison of predictions"),
+        element("div", { class: "tool-row end" }, element("a", { class: "button", href: "#/runs" }, "Back to the runs")))),
     done.length < jobs.length && element("p", { class: "notice warn" }, "Runs that have not succeeded are left out."),
-    element("section", { "aria-labelledby": "compare-chart-title" }, element("h2", { id: "compare-chart-title" }, "Crack length against cycles"), chartPlace),
-    element("section", { "aria-labelledby": "compare-table-title" }, element("h2", { id: "compare-table-title" }, "Lives"),
+    section("compare-curves", "Crack length against cycles", chartPlace),
+    section("compare-lives", "Lives",
       element("div", { class: "field inline" }, element("label", { for: "compare-base" }, "Ratios to"), base), ratios));
   show(ratios, tableOf(done, names, base.value));
   const chart = createChart(chartPlace, {
@@ -47,12 +48,14 @@ function namesOf(jobs) {
 
 function tableOf(jobs, names, baseId) {
   const base = jobs.find((job) => job.id === baseId)?.summary.life_cycles;
-  const columns = [{ title: "Prediction" }, { title: "Life", unit: "cycles", numeric: true }, { title: "Ratio of lives", numeric: true },
-    { title: "Initial length", unit: "mm", numeric: true }, { title: "Final length", unit: "mm", numeric: true }, { title: "Stopped because" }, { title: "Warnings", numeric: true }];
+  const number = (title, unit) => ({ title, unit, numeric: true });
+  const columns = [{ title: "Prediction" }, number("Life", "cycles"), number("Ratio of lives"), number("Initial length", "mm"),
+    number("Final length", "mm"), { title: "Stopped because" }, number("Warnings")];
   const rows = jobs.map((job, index) => {
     const s = job.summary;
     return [element("a", { href: hrefOf(job) }, names[index]), cycles(Math.round(s.life_cycles)), significant(s.life_cycles / base, 3),
-      fixed(s.crack_length_initial_mm, 2), fixed(s.crack_length_final_mm, 2), sentence(s.stop_meaning ?? words(s.stop_reason)), String(s.warnings?.length ?? 0)];
+      fixed(s.crack_length_initial_mm, 2), fixed(s.crack_length_final_mm, 2), sentence(s.stop_meaning ?? words(s.stop_reason)),
+      String(s.warnings?.length ?? 0)];
   });
   return table("Lives of the compared predictions", columns, rows, { hidden: true, name: "compare" });
 }

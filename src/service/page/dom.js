@@ -23,6 +23,16 @@ export function shape(tag, attributes, ...children) {
   return fill(document.createElementNS(SVG, tag), attributes, children);
 }
 
+/** A button; `attributes` may say more, or another class. */
+export function button(title, onclick, attributes) {
+  return element("button", { type: "button", class: "button", ...attributes, onclick }, title);
+}
+
+/** A section with its heading. */
+export function section(id, title, ...content) {
+  return element("section", { "aria-labelledby": `${id}-title`, "data-part": id }, element("h2", { id: `${id}-title` }, title), ...content);
+}
+
 export function byId(id) {
   return document.getElementById(id);
 }
@@ -58,8 +68,8 @@ export function debounce(action, wait) {
 
 /** A table that scrolls inside itself. `columns`: {title, unit?, numeric?}; `rows`: arrays of text or nodes. */
 export function table(caption, columns, rows, { hidden = false, rowHeader = true, name } = {}) {
-  const heads = columns.map((column) =>
-    element("th", { scope: "col", class: column.numeric ? "number" : null }, column.title, column.unit ? element("span", { class: "unit" }, ` ${column.unit}`) : null));
+  const heads = columns.map(({ title, unit, numeric }) =>
+    element("th", { scope: "col", class: numeric ? "number" : null }, title, unit && element("span", { class: "unit" }, ` ${unit}`)));
   const body = rows.map((row) => element("tr", null, row.map((cell, index) => {
     const attributes = { class: columns[index].numeric ? "number" : null };
     return rowHeader && index === 0 ? element("th", { scope: "row", ...attributes }, cell) : element("td", attributes, cell);

@@ -1,7 +1,7 @@
 // One input, two ways to write it: the form, or the TOML text for everything else the program can do.
 
 import { createCheck } from "./check.js";
-import { element, show } from "./dom.js";
+import { button, element, show } from "./dom.js";
 import { writeToml } from "./toml.js";
 
 /**
@@ -15,7 +15,7 @@ export function createEditor({ host, fields, panel, form, collect, fill, context
   const textPart = element("div", { class: "text-mode", hidden: true },
     element("label", { for: area.id }, "Input as TOML"), area,
     element("p", { class: "hint" }, "The file the command line takes. This text is what is run."));
-  const way = (name, title, act) => element("button", { type: "button", class: "button small", "data-action": name, "aria-pressed": String(name === "form"), onclick: act }, title);
+  const way = (name, title, act) => button(title, act, { class: "button small", "data-action": name, "aria-pressed": String(name === "form") });
   const buttons = [
     way("form", "Form", () => textMode && backToForm()),
     way("toml", "TOML text", () => textMode || toText(writeToml(collect()))),
@@ -33,7 +33,7 @@ export function createEditor({ host, fields, panel, form, collect, fill, context
     textMode = text;
     fields.hidden = text;
     textPart.hidden = !text;
-    buttons.forEach((button) => button.setAttribute("aria-pressed", String((button.dataset.action === "toml") === text)));
+    buttons.forEach((one) => one.setAttribute("aria-pressed", String((one.dataset.action === "toml") === text)));
     show(question);
     onMode();
     check.soon();
@@ -53,8 +53,7 @@ export function createEditor({ host, fields, panel, form, collect, fill, context
     show(question, element("div", { class: "notice warn", role: "alert" },
       element("p", null, "The text says something the form has no field for, or is not right yet. Going back to the form discards the text."),
       element("p", { class: "tool-row" },
-        element("button", { type: "button", class: "button", onclick: () => show(question) }, "Keep the text"),
-        element("button", { type: "button", class: "button", onclick: () => setMode(false) }, "Discard the text"))));
+        button("Keep the text", () => show(question)), button("Discard the text", () => setMode(false)))));
   }
 
   return {

@@ -3,6 +3,8 @@
 import { request } from "./api.js";
 
 const WAITS_S = [0.5, 1, 2, 4, 8, 15];
+// The service says something every 15 s, if only a comment: after three times that the line is dead, whatever it looks like.
+const SILENCE_S = 45;
 
 /** Splits a stream of text into events {event, id, data}. */
 async function* eventsOf(body) {
@@ -10,7 +12,7 @@ async function* eventsOf(body) {
   let rest = "";
   try {
     for (;;) {
-      const { done, value } = await reader.read();
+      const { done, value } = await within(SILENCE_S, reader.read());
       if (done) return;
       rest += value;
       // An event ends at an empty line; a carriage return at the very end may be half of a line end.
@@ -24,6 +26,14 @@ async function* eventsOf(body) {
   } finally {
     reader.cancel().catch(() => {});
   }
+}
+
+function within(seconds, promise) {
+  let timer = 0;
+  const silence = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error("nothing was heard")), seconds * 1000);
+  });
+  return Promise.race([promise, silence]).finally(() => clearTimeout(timer));
 }
 
 function parse(block) {

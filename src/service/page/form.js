@@ -9,6 +9,11 @@ function belongs(fieldKey, key) {
   return fieldKey === key || inside(key, fieldKey) || inside(fieldKey, key);
 }
 
+/** Attributes of an input for numbers. A phone keyboard for decimals has no minus, so signed numbers get the one for text. */
+function numeric(signed, value) {
+  return { type: "text", inputmode: signed ? "text" : "decimal", autocomplete: "off", spellcheck: "false", value };
+}
+
 /** A set of fields that tell `onChange` when the user types. */
 export function createForm(onChange) {
   const fields = new Set();
@@ -55,7 +60,7 @@ export function createForm(onChange) {
   return {
     /** A number with its unit. Left empty it is left out. */
     number(key, options) {
-      const input = element("input", { type: "text", inputmode: options.signed ? "text" : "decimal", autocomplete: "off", spellcheck: "false", value: options.value ?? "" });
+      const input = element("input", numeric(options.signed, options.value ?? ""));
       return add({ ...wrap([key].flat(), input, { id: uniqueId("field"), ...options }), numeric: true, needed: !options.optional });
     },
     /** A choice among `options`: {value, title}; `needed` where the empty one is none. */
@@ -72,7 +77,7 @@ export function createForm(onChange) {
     },
     /** An input of a table: its name is spoken, its problem stands below the table. */
     cell(key, name, value, message) {
-      const input = element("input", { type: "text", inputmode: "text", autocomplete: "off", spellcheck: "false", "aria-label": name, value, "data-key": key });
+      const input = element("input", { ...numeric(true, value), "aria-label": name, "data-key": key });
       const node = element("td", { class: "cell" }, input);
       return add({ keys: [key], input, node, message, name: { textContent: name }, numeric: true, needed: true, touched: false, wrong: false });
     },

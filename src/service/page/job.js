@@ -1,9 +1,9 @@
 // What every run has: state, progress, problem, files, cancel and delete.
 
 import { Problem, download, postJson, remove } from "./api.js";
-import { byId, element, show, terms } from "./dom.js";
+import { button, byId, element, show, terms } from "./dom.js";
 import { excerpt } from "./excerpt.js";
-import { bytes, cycles, duration, fixed, moment, percent, sentence } from "./format.js";
+import { bytes, count, cycles, duration, fixed, moment, percent, sentence } from "./format.js";
 import { problemBox } from "./notices.js";
 
 export const FINAL = ["succeeded", "failed", "cancelled"];
@@ -44,7 +44,7 @@ export function createJobHead(first, { actions = [] } = {}) {
   const facts = element("p", { class: "quiet" });
   const bar = element("progress", { max: "1", "aria-label": "Progress" });
   const figures = element("div");
-  const link = element("p", { class: "quiet", hidden: true }, "The connection is interrupted; the run goes on. Reconnecting …");
+  const link = element("p", { class: "quiet", hidden: true }, "The connection is interrupted, which does not harm the run. Reconnecting …");
   const progress = element("div", { class: "progress" }, bar, figures, link);
   const aloud = element("p", { class: "visually-hidden", "aria-live": "polite" });
   const trouble = element("div");
@@ -56,12 +56,12 @@ export function createJobHead(first, { actions = [] } = {}) {
       show(trouble, problemBox(error));
     }
   };
-  const cancel = element("button", { type: "button", class: "button", "data-action": "cancel", onclick: guarded(async () => {
+  const cancel = button("Cancel", guarded(async () => {
     update({ ...(await cancelJob(job)), cancel_asked: true });
-  }) }, "Cancel");
-  const discard = element("button", { type: "button", class: "button", "data-action": "delete", onclick: guarded(async () => {
+  }), { "data-action": "cancel" });
+  const discard = button("Delete", guarded(async () => {
     if (await confirmDelete(job)) location.hash = `#/runs?kind=${collectionOf(job)}`;
-  }) }, "Delete");
+  }), { "data-action": "delete" });
   const node = element("header", { class: "job-head", id: "job", "data-job-kind": job.kind },
     element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, nameOf(job)), badge,
       element("div", { class: "tool-row end" }, actions, cancel, discard)),
@@ -78,7 +78,8 @@ export function createJobHead(first, { actions = [] } = {}) {
     cancel.textContent = job.cancel_asked ? "Cancelling …" : "Cancel";
     discard.hidden = !ended;
     const took = job.started && job.finished ? `, took ${duration((new Date(job.finished) - new Date(job.started)) / 1000)}` : "";
-    facts.textContent = `${sentence(job.kind)} ${job.id}, submitted ${moment(job.created)}${took}${job.attempts > 1 ? `, attempt ${job.attempts}` : ""}`;
+    const again = job.attempts > 1 ? `, attempt ${job.attempts}` : "";
+    facts.textContent = `${sentence(job.kind)} ${job.id}, submitted ${moment(job.created)}${took}${again}`;
     progress.hidden = ended;
     if (!ended) showProgress();
     speak();
@@ -88,8 +89,8 @@ export function createJobHead(first, { actions = [] } = {}) {
     const p = job.progress;
     if (job.state === "queued" || !p) {
       bar.removeAttribute("value");
-      const words = job.state === "queued" ? `Waiting for a free worker${job.position ? `: number ${job.position} in the queue` : ""}.` : "Starting …";
-      show(figures, element("p", null, words));
+      const before = job.position > 0 ? `, ${count(job.position, "run")} before it` : "";
+      show(figures, element("p", null, job.state === "queued" ? `Waiting for a free worker${before}.` : "Starting …"));
       return;
     }
     const prediction = job.kind === "prediction";
@@ -146,7 +147,7 @@ export function downloadList(job, special = {}) {
     }
   };
   const items = (job.files ?? []).map((file) => element("li", { "data-file": file.name },
-    element("button", { type: "button", class: "link", onclick: () => fetchFile(file.href, file.name) }, file.name),
+    button(file.name, () => fetchFile(file.href, file.name), { class: "link" }),
     element("span", { class: "quiet" }, ` ${bytes(file.bytes)}`), special[file.name]?.(file, fetchFile)));
   return element("section", { "aria-labelledby": "downloads-title" }, element("h2", { id: "downloads-title" }, "Downloads"),
     items.length > 0 ? element("ul", { class: "downloads" }, items) : element("p", { class: "quiet" }, "This run left no files."), trouble);

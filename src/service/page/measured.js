@@ -2,7 +2,7 @@
 
 import { postForm } from "./api.js";
 import { createChart } from "./chart.js";
-import { byId, element, show, table } from "./dom.js";
+import { button, byId, element, show, table } from "./dom.js";
 import { excerpt } from "./excerpt.js";
 import { count, cycles, fixed, plain } from "./format.js";
 import { problemBox } from "./notices.js";
@@ -84,14 +84,15 @@ export function createMeasured(onChange) {
       `crack length in ${LENGTHS[columns.length_unit] ?? columns.length_unit}`,
       `cycles counted in ${CYCLES[columns.cycle_unit] ?? columns.cycle_unit}`,
     ].filter(Boolean).join(", ");
+    const summary = `${count(found.length, "specimen")} (${list}), ${count(readings, "reading")}`;
     return element("div", { class: "file-card", "data-file": file },
       element("div", null, element("h3", null, file),
-        element("p", null, found.length > 0 ? `${count(found.length, "specimen")} (${list}), ${count(readings, "reading")}: ${ranges(found)}.` : "No curve could be read."),
+        element("p", null, found.length > 0 ? `${summary}: ${ranges(found)}.` : "No curve could be read."),
         words && element("p", { class: "quiet" }, `Recognised: ${words}.`)),
-      element("button", { type: "button", class: "button small", "aria-label": `Remove ${file}`, onclick: () => {
+      button("Remove", () => {
         files = files.filter((one) => one.name !== file);
         read();
-      } }, "Remove"));
+      }, { class: "button small", "aria-label": `Remove ${file}` }));
   }
 
   function ranges(found) {
@@ -103,13 +104,14 @@ export function createMeasured(onChange) {
   function problemTable() {
     const list = problems();
     const rows = list.map((one) => [
-      one.line ? element("button", { type: "button", class: "link", onclick: () => jump(one) }, `${one.file}:${one.line}`) : one.file,
+      one.line ? button(`${one.file}:${one.line}`, () => jump(one), { class: "link" }) : one.file,
       one.key ?? "", one.value ?? "", one.problem ?? "", one.remedy ?? "",
     ]);
+    const columns = ["File and line", "Column", "Value", "Problem", "Remedy"].map((title) => ({ title }));
     return element("div", { class: "notice bad", role: "alert", "data-problems": list.length },
       element("h3", null, list.length >= 100 ? "The first 100 problems" : count(list.length, "problem")),
       element("p", null, "Correct the file and drop it again under the same name. The chart shows the readings that are right."),
-      table("Problems of the measured files", ["File and line", "Column", "Value", "Problem", "Remedy"].map((title) => ({ title })), rows, { hidden: true, name: "problems" }));
+      table("Problems of the measured files", columns, rows, { hidden: true, name: "problems" }));
   }
 
   function wrongLines({ name, text }) {
@@ -172,11 +174,13 @@ export function createMeasured(onChange) {
     units: () => ({ length_unit: lengthUnit.value || undefined, cycle_unit: cycleUnit.value || undefined }),
     /** Crack lengths that every curve covers. */
     window() {
-      const given = curves().filter((curve) => curve.crack_length_mm.length > 0);
+      const given = curves().map((curve) => curve.crack_length_mm).filter((lengths) => lengths.length > 0);
       if (given.length === 0) return null;
       // Without the last bits that a change of unit leaves.
       const tidy = (value) => Number(value.toPrecision(9));
-      return [tidy(Math.max(...given.map((curve) => Math.min(...curve.crack_length_mm)))), tidy(Math.min(...given.map((curve) => Math.max(...curve.crack_length_mm))))];
+      const starts = given.map((lengths) => Math.min(...lengths));
+      const ends = given.map((lengths) => Math.max(...lengths));
+      return [tidy(Math.max(...starts)), tidy(Math.min(...ends))];
     },
     specimens: () => curves().length,
     loadExample(name, text) {

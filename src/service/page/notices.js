@@ -1,20 +1,21 @@
 // Problems and loading states, the same everywhere.
 
-import { element, show } from "./dom.js";
+import { button, element, show } from "./dom.js";
 import { sentence } from "./format.js";
 
 /** A problem in full: sentence, place, remedy; with a button where trying again makes sense. */
 export function problemBox(problem, retry) {
   const { file, line, key, value, remedy } = problem.input ?? {};
   const given = (thing) => thing !== undefined && thing !== null && thing !== "";
-  const place = [given(file) && `file ${file}`, given(line) && `line ${line}`, given(key) && (given(value) ? `${key} = ${value}` : key)].filter(Boolean);
+  const setting = given(key) && (given(value) ? `${key} = ${value}` : key);
+  const place = [given(file) && `file ${file}`, given(line) && `line ${line}`, setting].filter(Boolean);
   // The sentence usually ends with the remedy; it is not said twice.
   const untold = given(remedy) && !problem.message.includes(remedy);
   return element("div", { class: "notice bad", role: "alert", "data-problem": problem.status ?? "" },
     element("p", null, element("strong", null, titleOf(problem)), " ", sentence(problem.message)),
     place.length > 0 && element("p", { class: "quiet" }, `At ${place.join(", ")}`),
     untold && element("p", null, `Remedy: ${remedy}`),
-    retry && element("p", null, element("button", { type: "button", class: "button", onclick: retry }, "Try again")));
+    retry && element("p", null, button("Try again", () => retry())));
 }
 
 function titleOf(problem) {

@@ -1,16 +1,16 @@
 // Pictures of the program: shown without flicker, and large on request, since their small print is made for a page.
 
-import { byId, element } from "./dom.js";
+import { button, byId, element } from "./dom.js";
 
 /** An image on paper with a button that shows it as large as the window allows. Gives {node, image}. */
 export function createPicture(alt) {
   const image = element("img", { alt, hidden: true });
-  const enlarge = element("button", { type: "button", class: "button small", "aria-label": `Enlarge: ${alt}`, onclick: () => {
+  const enlarge = button("Enlarge", () => {
     const large = byId("picture-large");
     large.src = image.src;
     large.alt = alt;
     byId("picture-dialog").showModal();
-  } }, "Enlarge");
+  }, { class: "button small", "aria-label": `Enlarge: ${alt}` });
   return { image, node: element("div", { class: "picture" }, element("div", { class: "paper" }, image), enlarge) };
 }
 

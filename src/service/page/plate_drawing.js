@@ -1,7 +1,7 @@
 // A plate to scale: outline, holes, notches, cracks, and the ways its crack tips went. The stage keeps the scale;
 // the sketch (to draw in) and the live picture (to look at) both stand on it.
 
-import { element, shape, show } from "./dom.js";
+import { button, element, shape, show } from "./dom.js";
 
 const MARGIN = 30;
 const HEIGHT_MAX = 430;
@@ -75,11 +75,11 @@ export function createStage(container, { label, role = "img", drawMore }) {
   const base = shape("g");
   const above = shape("g");
   const svg = shape("svg", { class: "plate", role, "aria-label": label }, base, above);
-  const zoom = element("button", { type: "button", class: "button small", "aria-pressed": "false", onclick: () => {
+  const zoom = button("Zoom to the cracks", () => {
     close = !close;
     zoom.setAttribute("aria-pressed", String(close));
     draw();
-  } }, "Zoom to the cracks");
+  }, { class: "button small", "aria-pressed": "false" });
   const holder = element("div", { class: "plate-holder" }, svg);
   show(container, holder, element("div", { class: "plate-tools" }, zoom));
 

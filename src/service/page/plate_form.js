@@ -1,12 +1,18 @@
 // Tables of holes and cracks of a drawn plate, with the sketch above them. The cells are the one place where the numbers are.
 
-import { element, show } from "./dom.js";
+import { button, element, show } from "./dom.js";
 import { fillIn, numberIn } from "./form.js";
 import { createSketch } from "./sketch.js";
 
 const LISTS = {
-  holes: { title: "Holes", one: "Hole", add: "Add a hole", columns: [["x_mm", "x"], ["y_mm", "y"], ["diameter_mm", "Diameter"]] },
-  cracks: { title: "Cracks", one: "Crack", add: "Add a crack", columns: [["from_mm[0]", "x₁"], ["from_mm[1]", "y₁"], ["to_mm[0]", "x₂"], ["to_mm[1]", "y₂"]] },
+  holes: {
+    title: "Holes", one: "Hole", add: "Add a hole",
+    columns: [["x_mm", "x"], ["y_mm", "y"], ["diameter_mm", "Diameter"]],
+  },
+  cracks: {
+    title: "Cracks", one: "Crack", add: "Add a crack",
+    columns: [["from_mm[0]", "x₁"], ["from_mm[1]", "y₁"], ["to_mm[0]", "x₂"], ["to_mm[1]", "y₂"]],
+  },
 };
 const SPOKEN = { "x₁": "start x", "y₁": "start y", "x₂": "end x", "y₂": "end y" };
 
@@ -29,7 +35,9 @@ export function createPlate(form, { size, onChange }) {
   function render(what) {
     show(bodies[what], rows[what].map((cells, index) => element("tr", null,
       element("th", { scope: "row" }, String(index + 1)), cells.map((cell) => cell.node),
-      element("td", { class: "cell-button" }, element("button", { type: "button", class: "button small", "aria-label": `Remove ${LISTS[what].one.toLowerCase()} ${index + 1}`, onclick: () => edits.remove(what, index) }, "Remove")))));
+      element("td", { class: "cell-button" }, button("Remove", () => edits.remove(what, index), {
+        class: "button small", "aria-label": `Remove ${LISTS[what].one.toLowerCase()} ${index + 1}`,
+      })))));
     if (rows[what].length === 0) {
       show(bodies[what], element("tr", null, element("td", { class: "quiet", colspan: LISTS[what].columns.length + 2 }, "none")));
     }
@@ -86,22 +94,24 @@ export function createPlate(form, { size, onChange }) {
   function listOf(what) {
     const { title, add, columns } = LISTS[what];
     const head = columns.map(([, name]) => element("th", { scope: "col" }, name, element("span", { class: "unit" }, " mm")));
+    const last = element("th", { scope: "col" }, element("span", { class: "visually-hidden" }, "Remove"));
     return element("div", { class: "row-table", "data-rows": what },
       element("div", { class: "table-scroll" },
         element("table", null, element("caption", null, title),
-          element("thead", null, element("tr", null, element("th", { scope: "col" }, "No."), head, element("th", { scope: "col" }, element("span", { class: "visually-hidden" }, "Remove")))),
+          element("thead", null, element("tr", null, element("th", { scope: "col" }, "No."), head, last)),
           bodies[what])),
       messages[what],
-      element("button", { type: "button", class: "button small", onclick: () => {
+      button(add, () => {
         rebuild(what, [...values(what), []]);
         changed();
         rows[what].at(-1)[0].input.focus();
-      } }, add));
+      }, { class: "button small" }));
   }
 
   const sketch = createSketch(canvas, { plate: () => ({ ...size(), ...collect() }), edits });
   const node = element("div", { class: "plate-form" }, canvas,
-    element("p", { class: "hint" }, "The origin is the middle of the plate; x runs across, y along the load. A crack may start at an edge or in a hole: what lies outside the material is cut off."),
+    element("p", { class: "hint" }, "The origin is the middle of the plate; x runs across, y along the load. ",
+      "A crack may start at an edge or in a hole: what lies outside the material is cut off."),
     listOf("cracks"), listOf("holes"));
   node.addEventListener("input", () => sketch.draw());
   render("holes");

@@ -42,8 +42,11 @@ export function createPredictView() {
   };
   law.node.classList.add("wide");
   const lawNote = element("div", { class: "law-note" });
-  const spacing = form.number("model.spacing_mm", { label: "Spacing of points", unit: "mm", optional: true, hint: "left empty: a ninth of the smallest flaw, at most W/100" });
-  const stopLength = form.number("stop.crack_length_mm", { label: "Stop at crack length", unit: "mm", optional: true });
+  const length = { unit: "mm", optional: true };
+  const spacing = form.number("model.spacing_mm", {
+    ...length, label: "Spacing of points", hint: "left empty: a ninth of the smallest flaw, at most W/100",
+  });
+  const stopLength = form.number("stop.crack_length_mm", { ...length, label: "Stop at crack length" });
   const stopCycles = form.number("stop.cycles_max", { label: "Stop after", unit: "cycles", optional: true });
   const name = form.text("name", { label: "Name of the prediction", optional: true });
   const fields = byId("plate-fields");
@@ -61,8 +64,11 @@ export function createPredictView() {
   }
 
   function describe({ id, summary: s }) {
+    const rate = `${scientific(s.rate_at_pivot_mm_per_cycle)} mm/cycle ± ${percent(s.rate_at_pivot_relative_error)}`;
+    const range = `${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)} MPa√m`;
     return element("p", { class: "quiet" },
-      `${scientific(s.rate_at_pivot_mm_per_cycle)} mm/cycle ± ${percent(s.rate_at_pivot_relative_error)} at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m)} MPa√m, m ${significant(s.paris_m)} ± ${significant(s.paris_m_error, 2)}; fitted from ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)} MPa√m. `,
+      `${rate} at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m)} MPa√m, m ${significant(s.paris_m)} ± ${significant(s.paris_m_error, 2)}; `,
+      `fitted for ΔK from ${range}. `,
       element("a", { href: `#/calibrations/${encodeURIComponent(id)}` }, "Open the calibration"));
   }
 
@@ -120,14 +126,16 @@ export function createPredictView() {
     try {
       calibrations = (await getJson("/v1/calibrations?limit=100&state=succeeded")).items;
       // One that is asked for by its address may be older than these.
-      if (wanted && !calibrations.some((one) => one.id === wanted)) calibrations.push(await getJson(`/v1/calibrations/${encodeURIComponent(wanted)}`));
+      const known = calibrations.some((one) => one.id === wanted);
+      if (wanted && !known) calibrations.push(await getJson(`/v1/calibrations/${encodeURIComponent(wanted)}`));
       show(byId("law-problem"));
     } catch (error) {
       show(byId("law-problem"), problemBox(error, () => loadLaws(wanted)));
       return;
     }
     const chosen = wanted ?? (law.touched ? law.input.value : calibrations[0]?.id ?? "");
-    show(law.input, calibrations.map((one) => element("option", { value: one.id }, one.name || one.id)), element("option", { value: "" }, "Constants given here"));
+    show(law.input, calibrations.map((one) => element("option", { value: one.id }, one.name || one.id)),
+      element("option", { value: "" }, "Constants given here"));
     law.input.value = calibrations.some((one) => one.id === chosen) ? chosen : "";
     arrange();
     editor.check.soon();

@@ -3,7 +3,7 @@
 import { getBlob, getJson, getText, postJson } from "./api.js";
 import { createChart } from "./chart.js";
 import { warningList } from "./check.js";
-import { element, readCsv, show, showPage, terms } from "./dom.js";
+import { button, element, readCsv, section, show, showPage, terms } from "./dom.js";
 import { follow } from "./events.js";
 import { cycles, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
 import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
@@ -14,7 +14,8 @@ import { createRemaining } from "./remaining.js";
 
 export async function openPrediction(root, id, signal) {
   const job = await getJson(`/v1/predictions/${encodeURIComponent(id)}`, signal);
-  const again = element("a", { class: "button", href: `#/predict?from=${encodeURIComponent(id)}`, "data-action": "again" }, "Start a new one from this");
+  const address = `#/predict?from=${encodeURIComponent(id)}`;
+  const again = element("a", { class: "button", href: address, "data-action": "again" }, "Start a new one from this");
   const head = createJobHead(job, { actions: [again] });
   const outcome = element("div", { class: "job-body" });
   const below = element("div", { class: "job-body" });
@@ -23,13 +24,12 @@ export async function openPrediction(root, id, signal) {
   const picturePlace = element("div");
   const { node: damage, image } = createPicture("Share of broken bonds over the plate, with the crack path");
   const imageNote = element("p", { class: "quiet" }, "No picture yet.");
-  const part = (name, title, ...content) => element("section", { "aria-labelledby": `${name}-title`, "data-part": name }, element("h2", { id: `${name}-title` }, title), ...content);
-  const rates = part("rates", "Growth rate", ratePlace);
+  const rates = section("rates", "Growth rate", ratePlace);
   rates.hidden = true;
   const pictures = element("div", { class: "columns wide-left" },
-    element("div", { class: "stack" }, part("curve", "Crack length against cycles", chartPlace),
-      part("damage", "Damage", damage, imageNote)),
-    element("div", { class: "stack" }, part("path", "Crack path", picturePlace), rates));
+    element("div", { class: "stack" }, section("curve", "Crack length against cycles", chartPlace),
+      section("damage", "Damage", damage, imageNote)),
+    element("div", { class: "stack" }, section("path", "Crack path", picturePlace), rates));
   showPage(root, head.node, outcome, pictures, below);
 
   const chart = createChart(chartPlace, {
@@ -56,7 +56,9 @@ export async function openPrediction(root, id, signal) {
       plate.setSpecimen(specimen);
     } catch (error) {
       // An input with files of its own cannot be read again here: the path then stands in the damage picture alone.
-      if (error.name !== "AbortError") picturePlace.prepend(element("p", { class: "quiet" }, "The outline of this plate cannot be drawn from its input; the damage picture shows the path."));
+      if (error.name === "AbortError") return;
+      const words = "The outline of this plate cannot be drawn from its input; the damage picture shows the path.";
+      picturePlace.prepend(element("p", { class: "quiet" }, words));
     }
   }
 
@@ -185,15 +187,16 @@ function result(s) {
 /** The curve as it was computed, or at equally spaced cycles. */
 function curveChoices(file, fetchFile) {
   const amount = element("input", { type: "text", inputmode: "numeric", id: "resample-amount", value: "200" });
-  const kind = element("select", { id: "resample-kind" }, element("option", { value: "points" }, "points in all"), element("option", { value: "every_cycles" }, "cycles apart"));
+  const kind = element("select", { id: "resample-kind" },
+    element("option", { value: "points" }, "points in all"), element("option", { value: "every_cycles" }, "cycles apart"));
   const message = element("span", { class: "field-problem", role: "alert" });
   return element("span", { class: "resample" },
     element("label", { for: "resample-amount" }, "or equally spaced, "), amount,
     element("label", { for: "resample-kind", class: "visually-hidden" }, "What the number means"), kind,
-    element("button", { type: "button", class: "button small", "data-action": "resample", onclick: () => {
+    button("Download", () => {
       const number = Number(amount.value.replaceAll(/\s/g, ""));
       const good = number > 0 && (kind.value === "every_cycles" || (Number.isInteger(number) && number >= 2));
       message.textContent = good ? "" : "Give a number above 0; points: a whole number from 2.";
       if (good) fetchFile(`${file.href}?${kind.value}=${number}`, "a_n.csv");
-    } }, "Download"), message);
+    }, { class: "button small", "data-action": "resample" }), message);
 }

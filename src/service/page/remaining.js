@@ -15,9 +15,10 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
   const longest = lengths.reduce((most, value) => Math.max(most, value), shortest);
   // Rounded inwards: a length outside the curve has no answer.
   const rounded = (value) => Math.min(Math.max(Math.round(value * 100), Math.ceil(shortest * 100)), Math.floor(longest * 100)) / 100;
-  const length = element("input", { type: "text", inputmode: "decimal", id: "today-length", autocomplete: "off", value: rounded(shortest).toFixed(2), "aria-describedby": "today-hint" });
+  const decimal = { type: "text", inputmode: "decimal", autocomplete: "off" };
+  const length = element("input", { ...decimal, id: "today-length", value: rounded(shortest).toFixed(2), "aria-describedby": "today-hint" });
   const slider = element("input", { type: "range", id: "today-slider", min: "0", max: String(SLIDER_STEPS), value: "0" });
-  const factor = element("input", { type: "text", inputmode: "decimal", id: "inspection-factor", autocomplete: "off", value: "2" });
+  const factor = element("input", { ...decimal, id: "inspection-factor", value: "2" });
   const answer = element("div", { "aria-live": "polite", class: "remaining-answer" });
   const field = (label, unit, input, hint) => element("div", { class: input.type === "range" ? "field wide" : "field" },
     element("label", { for: input.id }, label, unit && element("span", { class: "visually-hidden" }, `, ${unit}`)),
@@ -45,9 +46,11 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
       // Not while the slider is being dragged: it would jump under the hand.
       if (document.activeElement !== slider) slider.value = String(Math.round((got.cycles_at / life) * SLIDER_STEPS));
       slider.setAttribute("aria-valuetext", `crack length ${fixed(got.crack_length_mm, 2)} mm`);
+      const large = (key, value) => element("strong", { class: "large", "data-value": key }, `${cycles(value)} cycles`);
       show(answer, terms([
-        ["Remaining life", element("strong", { class: "large", "data-value": "remaining_cycles" }, `${cycles(Math.round(got.remaining_cycles))} cycles`)],
-        ["Inspection interval", element("strong", { class: "large", "data-value": "inspection_interval_cycles" }, `${cycles(Math.floor(got.inspection_interval_cycles))} cycles`)],
+        ["Remaining life", large("remaining_cycles", Math.round(got.remaining_cycles))],
+        // Rounded down: an interval is a promise.
+        ["Inspection interval", large("inspection_interval_cycles", Math.floor(got.inspection_interval_cycles))],
         ["Used so far", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],
       ], "remaining"));
     } catch (error) {
@@ -69,7 +72,8 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
   return element("section", { class: "remaining", "aria-labelledby": "remaining-title", "data-part": "remaining" },
     element("h2", { id: "remaining-title" }, "Remaining life"),
     element("div", { class: "fields" },
-      field("Crack length today", "mm", length, element("p", { class: "hint", id: "today-hint" }, `${fixed(shortest, 2)} to ${fixed(longest, 2)} mm on this curve`)),
+      field("Crack length today", "mm", length,
+        element("p", { class: "hint", id: "today-hint" }, `${fixed(shortest, 2)} to ${fixed(longest, 2)} mm on this curve`)),
       field("Position along the life", "", slider),
       field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = remaining life / factor"))),
     answer);

@@ -1,7 +1,7 @@
 // List of all runs: open, cancel, delete, and tick predictions to compare them.
 
 import { getJson } from "./api.js";
-import { byId, element, show } from "./dom.js";
+import { button, byId, element, show } from "./dom.js";
 import { count, cycles, duration, fixed, moment, percent, scientific, words } from "./format.js";
 import { cancelJob, confirmDelete, hrefOf, isFinal, nameOf, stateBadge } from "./job.js";
 import { problemBox } from "./notices.js";
@@ -73,9 +73,11 @@ export function createRunsView() {
 
   function tableOf(items) {
     const predictions = kind.value === "predictions";
-    const heads = [predictions && ["Compare", ""], ["Name", ""], ["State", ""],
-      ...(predictions ? [["Life, cycles", "number"], ["Final length, mm", "number"], ["Stop reason", ""]] : [["Rate at pivot, mm/cycle", "number"], ["m", "number"], ["rms life error", "number"]]),
-      ["Submitted", ""], ["Took", "number"], ["Actions", ""]].filter(Boolean);
+    const figures = predictions
+      ? [["Life, cycles", "number"], ["Final length, mm", "number"], ["Stop reason", ""]]
+      : [["Rate at pivot, mm/cycle", "number"], ["m", "number"], ["rms life error", "number"]];
+    const heads = [predictions && ["Compare", ""], ["Name", ""], ["State", ""], ...figures, ["Submitted", ""], ["Took", "number"], ["Actions", ""]]
+      .filter(Boolean);
     return element("div", { class: "table-scroll", tabindex: "0", role: "region", "aria-label": `List of ${kind.value}` },
       element("table", { class: "runs" },
         element("caption", { class: "visually-hidden" }, `List of ${kind.value}, newest first`),
@@ -87,9 +89,12 @@ export function createRunsView() {
     const s = job.summary;
     const number = (text) => element("td", { class: "number" }, text);
     const took = job.started && job.finished ? (new Date(job.finished) - new Date(job.started)) / 1000 : NaN;
+    const known = (text) => (s ? text() : ""); // a run that is not done has no figures
     const figures = predictions
-      ? [number(s ? cycles(Math.round(s.life_cycles)) : ""), number(s ? fixed(s.crack_length_final_mm, 2) : ""), element("td", { title: s?.stop_meaning }, s ? words(s.stop_reason) : "")]
-      : [number(s ? scientific(s.rate_at_pivot_mm_per_cycle, 4) : ""), number(s ? fixed(s.paris_m, 3) : ""), number(s ? percent(s.rms_life_error, 2) : "")];
+      ? [number(known(() => cycles(Math.round(s.life_cycles)))), number(known(() => fixed(s.crack_length_final_mm, 2))),
+        element("td", { title: s?.stop_meaning }, known(() => words(s.stop_reason)))]
+      : [number(known(() => scientific(s.rate_at_pivot_mm_per_cycle, 4))), number(known(() => fixed(s.paris_m, 3))),
+        number(known(() => percent(s.rms_life_error, 2)))];
     return element("tr", { "data-job": job.id, "data-job-state": job.state },
       predictions && element("td", { class: "tick" }, tick(job)),
       element("th", { scope: "row" }, element("a", { href: hrefOf(job), "data-focus": `open-${job.id}` }, nameOf(job))),
@@ -99,24 +104,30 @@ export function createRunsView() {
       element("td", null, isFinal(job) ? action(job, "Delete", remove) : action(job, "Cancel", cancel)));
   }
 
+  function mayTick(jobState, isTicked) {
+    return jobState === "succeeded" && (isTicked || ticked.size < COMPARE_MAX);
+  }
+
   function tick(job) {
-    const box = element("input", { type: "checkbox", "aria-label": `Compare ${nameOf(job)}`, "data-focus": `tick-${job.id}`, disabled: job.state !== "succeeded" || (ticked.size >= COMPARE_MAX && !ticked.has(job.id)) });
+    const box = element("input", { type: "checkbox", "data-focus": `tick-${job.id}` });
     box.checked = ticked.has(job.id);
+    box.disabled = !mayTick(job.state, box.checked);
     box.addEventListener("change", () => {
       if (box.checked) ticked.set(job.id, nameOf(job));
       else ticked.delete(job.id);
       shown = "";
       drawCompare();
       place.querySelectorAll(".tick input").forEach((other) => {
-        const state = other.closest("tr").dataset.jobState;
-        other.disabled = state !== "succeeded" || (ticked.size >= COMPARE_MAX && !other.checked);
+        other.disabled = !mayTick(other.closest("tr").dataset.jobState, other.checked);
       });
     });
-    return box;
+    return element("label", { class: "tick-reach" }, box, element("span", { class: "visually-hidden" }, `Compare ${nameOf(job)}`));
   }
 
   function action(job, title, work) {
-    return element("button", { type: "button", class: "button small", "aria-label": `${title} ${nameOf(job)}`, "data-focus": `act-${job.id}`, "data-action": title.toLowerCase(), onclick: () => work(job) }, title);
+    return button(title, () => work(job), {
+      class: "button small", "aria-label": `${title} ${nameOf(job)}`, "data-focus": `act-${job.id}`, "data-action": title.toLowerCase(),
+    });
   }
 
   async function guarded(work) {

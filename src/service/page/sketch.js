@@ -2,11 +2,17 @@
 // The tables beside it hold the numbers; the sketch only changes them.
 
 import { niceStep } from "./chart_scale.js";
-import { element, shape, show } from "./dom.js";
+import { button, element, shape, show } from "./dom.js";
 import { plain } from "./format.js";
 import { createStage, geometryOf } from "./plate_drawing.js";
 
 const TOOLS = [["move", "Move"], ["crack", "Draw a crack"], ["hole", "Place a hole"]];
+
+const HINTS = {
+  move: "",
+  crack: "Press at one end of the crack and let go at the other.",
+  hole: "Press where the centre of the hole is to be.",
+};
 
 /**
  * `plate()` gives the specimen as it stands in the form; `edits` are {addCrack(from, to), addHole(x, y),
@@ -18,18 +24,18 @@ export function createSketch(container, { plate, edits }) {
   let focused = null; // name of the handle that has the focus, to give it back after a redraw
 
   const canvas = element("div");
-  const buttons = TOOLS.map(([name, title]) => element("button", {
-    type: "button", class: "button small", "aria-pressed": String(name === tool), "data-tool": name, onclick: () => choose(name),
-  }, title));
+  const buttons = TOOLS.map(([name, title]) => button(title, () => choose(name), {
+    class: "button small", "aria-pressed": String(name === tool), "data-tool": name,
+  }));
   const place = element("output", { class: "quiet sketch-place" }, "");
   show(container, element("div", { class: "tool-row", role: "group", "aria-label": "Sketch tools" }, buttons), canvas, place);
   const stage = createStage(canvas, { label: "Sketch of the plate. The tables below hold the same numbers.", role: "group", drawMore: drawHandles });
 
   function choose(name) {
     tool = name;
-    buttons.forEach((button) => button.setAttribute("aria-pressed", String(button.dataset.tool === name)));
+    buttons.forEach((one) => one.setAttribute("aria-pressed", String(one.dataset.tool === name)));
     stage.svg.classList.toggle("drawing", name !== "move");
-    place.textContent = { move: "", crack: "Press at one end of the crack and let go at the other.", hole: "Press where the centre of the hole is to be." }[name];
+    place.textContent = HINTS[name];
   }
 
   const grid = () => niceStep(Math.max(plate().width_mm || 1, 1), 200);
@@ -82,8 +88,10 @@ export function createSketch(container, { plate, edits }) {
         (point) => edits.moveHole(index, point), () => edits.remove("holes", index))),
       cracks.flatMap((crack, index) => [["from_mm", "start"], ["to_mm", "end"]].map(([end, word]) => finite(crack[end]) &&
         handle(`Crack ${index + 1} ${word}`, crack[end], (point) => edits.moveCrack(index, end, point), () => edits.remove("cracks", index)))));
-    if (had && document.activeElement?.tagName !== "INPUT") [...stage.above.children].find((node) => node.dataset.handle === had)?.focus({ preventScroll: true });
     focused = null;
+    // Not out of a cell of the tables, where somebody is typing.
+    if (!had || document.activeElement?.tagName === "INPUT") return;
+    [...stage.above.children].find((node) => node.dataset.handle === had)?.focus({ preventScroll: true });
   }
 
   stage.svg.addEventListener("pointerdown", (event) => {

@@ -96,10 +96,13 @@ const PROPERTIES = [
   ["toughness_mpa_sqrt_m", "Toughness", "MPa√m"],
 ];
 
+const PLANES = [{ value: "stress", title: "Plane stress" }, { value: "strain", title: "Plane strain" }];
+const SHORT = { youngs_modulus_gpa: "E", poisson_ratio: "ν", yield_strength_mpa: "yield strength", toughness_mpa_sqrt_m: "toughness" };
+
 /** Material: one of the library, or constants. */
 export function createMaterial(form, { toughness = true } = {}) {
   const name = form.choice("material.name", { label: "Material", options: [{ value: "", title: "Own constants" }] });
-  const plane = form.choice("material.plane", { label: "State", options: [{ value: "stress", title: "Plane stress" }, { value: "strain", title: "Plane strain" }] });
+  const plane = form.choice("material.plane", { label: "State", options: PLANES });
   const fields = Object.fromEntries(PROPERTIES.map(([key, label, unit]) => [key,
     form.number(`material.${key}`, { label, unit, optional: ["yield_strength_mpa", "toughness_mpa_sqrt_m"].includes(key) })]));
   name.node.classList.add("wide");
@@ -114,13 +117,15 @@ export function createMaterial(form, { toughness = true } = {}) {
     }
     show(listed, chosen && element("details", { class: "quiet" },
       element("summary", null, constantsOf(chosen)),
-      element("ul", null, PROPERTIES.filter(([key]) => chosen[key]).map(([key, label, unit]) =>
-        element("li", null, `${label} ${plain(chosen[key].value)} ${unit}: ${chosen[key].source}${chosen[key].note ? ` (${chosen[key].note})` : ""}`)))));
+      element("ul", null, PROPERTIES.filter(([key]) => chosen[key]).map(([key, label, unit]) => {
+        const { value, source, note } = chosen[key];
+        return element("li", null, `${label} ${plain(value)} ${unit}: ${source}${note ? ` (${note})` : ""}`);
+      }))));
   }
 
   function constantsOf(material) {
-    const short = { youngs_modulus_gpa: "E", poisson_ratio: "ν", yield_strength_mpa: "yield strength", toughness_mpa_sqrt_m: "toughness" };
-    return PROPERTIES.filter(([key]) => material[key]).map(([key, , unit]) => `${short[key]} ${plain(material[key].value)} ${unit}`.trim()).join(", ");
+    const known = PROPERTIES.filter(([key]) => material[key]);
+    return known.map(([key, , unit]) => `${SHORT[key]} ${plain(material[key].value)} ${unit}`.trim()).join(", ");
   }
 
   name.input.addEventListener("input", arrange);
@@ -156,7 +161,9 @@ export function createMaterial(form, { toughness = true } = {}) {
 
 /** Loading: one magnitude, named as what it is, and the ratio. */
 export function createLoading(form) {
-  const quantity = form.choice("loading.kind", { label: "Load given as", options: MAGNITUDES.map(([key, label, unit]) => ({ value: key, title: `${label.replace(/ \S+$/, "")}, ${unit}` })) });
+  const withoutSymbol = (label) => label.replace(/ \S+$/, "");
+  const options = MAGNITUDES.map(([key, label, unit]) => ({ value: key, title: `${withoutSymbol(label)}, ${unit}` }));
+  const quantity = form.choice("loading.kind", { label: "Load given as", options });
   const magnitude = form.number(MAGNITUDES.map(([key]) => `loading.${key}`), { label: "Load", unit: "MPa", hint: "gross section" });
   const ratio = form.number("loading.stress_ratio", { label: "Stress ratio R", signed: true, hint: "minimum / maximum" });
 

@@ -13,8 +13,8 @@ mod tokens;
 use std::path::Path;
 use std::time::Duration;
 
-use sqlx::AnyPool;
 use sqlx::any::AnyPoolOptions;
+use sqlx::{AnyPool, Connection};
 
 pub use files::{File, FileEntry};
 pub use jobs::{Listing, NewJob, Submitted};
@@ -111,6 +111,12 @@ impl Store {
                     }
                     Ok(())
                 })
+            })
+            .before_acquire(|connection, _| {
+                // SQLite ends a transaction by itself when the disk is full; the driver, which would end it once more, fails at that
+                // and takes the connection for busy ever after. Such a one is thrown away.
+                let is_free = !connection.is_in_transaction();
+                Box::pin(async move { Ok(is_free) })
             })
             .connect(url)
             .await?;

@@ -66,6 +66,87 @@ fn a_killed_server_loses_nothing() {
     });
 }
 
+/// Twenty times something dies while a queue is worked off: the server with its workers, a worker of another process, or all
+/// connections to the database.
+#[test]
+#[ignore = "long: twenty kills, a minute"]
+fn twenty_kills_lose_nothing() {
+    let Some(postgres) = Postgres::start() else { return };
+    let dir = tempdir().unwrap();
+    let jobs = mixed(dir.path(), 18);
+    let url = postgres.database("twenty");
+    let place = ["--database", url.as_str()];
+    let mut service = Server::start(&place, &EAGER);
+    let mut worker = Server::worker(&place, &EAGER);
+    let addresses = submit(&service, &jobs);
+    let mut noise = Noise::new(20);
+    let cut = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = 'twenty' AND pid <> pg_backend_pid()";
+    for kill in 0..20 {
+        std::thread::sleep(Duration::from_millis(200 + (600.0 * noise.normal().abs()) as u64));
+        match kill % 3 {
+            0 => {
+                service.kill();
+                service = Server::start(&place, &EAGER);
+            }
+            1 => {
+                worker.kill();
+                worker = Server::worker(&place, &EAGER);
+            }
+            _ => postgres.sql(&url, cut).unwrap(),
+        }
+    }
+    let left = addresses.iter().filter(|job| service.get(job).json()["state"] != "succeeded").count();
+    println!("{left} of {} jobs were left after the last kill", jobs.len());
+    check(&service, &addresses, &jobs);
+}
+
+/// A small disk of its own, which can be filled.
+struct SmallDisk(tempfile::TempDir);
+
+impl SmallDisk {
+    fn mounted() -> Option<SmallDisk> {
+        let folder = tempdir().unwrap();
+        let mount =
+            std::process::Command::new("mount").args(["-t", "tmpfs", "-o", "size=40m", "tmpfs"]).arg(folder.path()).output();
+        if mount.is_ok_and(|mount| mount.status.success()) {
+            return Some(SmallDisk(folder));
+        }
+        println!("skipped: no disk can be mounted here");
+        None
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        let _ = std::process::Command::new("umount").arg("-l").arg(self.0.path()).status();
+    }
+}
+
+/// The disk fills up while jobs run: new ones are refused with 503, what is there can be read, and all goes on once there is room.
+#[test]
+fn a_full_disk_loses_nothing() {
+    let Some(disk) = SmallDisk::mounted() else { return };
+    let dir = tempdir().unwrap();
+    let jobs = mixed(dir.path(), 4);
+    let place = crate::server::in_folder(disk.0.path());
+    let service = Server::start(&[&place[0], &place[1]], &EAGER);
+    let addresses = submit(&service, &jobs);
+    let ballast = disk.0.path().join("ballast");
+    let mut file = fs::File::create(&ballast).unwrap();
+    while std::io::Write::write_all(&mut file, &[0; 4096]).is_ok() {}
+    let refused = (0..20).map(|_| service.post("/v1/predictions", &of("case", QUICK))).find(|answer| answer.status != 202);
+    let refused = refused.unwrap().expect(503);
+    assert!(refused.header("retry-after").is_some(), "{}", refused.text());
+    service.get(&addresses[0]).expect(200);
+    // Long enough for claims to run out.
+    std::thread::sleep(Duration::from_millis(3500));
+    fs::remove_file(&ballast).unwrap();
+    for (address, (_, curve)) in addresses.iter().zip(&jobs) {
+        service.succeeded(address);
+        assert!(service.file(address, "a_n.csv") == *curve, "{address}: another curve");
+    }
+}
+
 /// A worker of two is killed; the other goes on with its job from the checkpoint.
 #[test]
 fn another_worker_takes_over() {

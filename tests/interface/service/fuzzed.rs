@@ -1,0 +1,213 @@
+//! Bodies and files that nobody meant: whatever comes in, the answer is one of the service's own, never a fault of the program.
+
+use std::net::SocketAddr;
+use std::num::NonZeroU32;
+use std::sync::Arc;
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::ConnectInfo;
+use axum::http::Request;
+use perilife::predict::memory::peak_mb;
+use perilife::service::api::{App, Limits, Security, router};
+use perilife::service::store::{Store, url_of_file};
+use serde_json::json;
+use tempfile::tempdir;
+use tower::ServiceExt;
+
+use super::QUICK;
+use crate::noise::Noise;
+
+/// Memory that no flood of bodies may exceed, MB. A process of the tests has some 300 of its own.
+const MEMORY_MB: f64 = 1500.0;
+
+const CSV: &str = "specimen,cycles,crack_length_mm\nA,0,9.0\nA,1000,9.5\nA,2000,10.1\nA,3000,10.8\nA,4000,11.6\nA,5000,12.5\n\
+                   B,0,9.0\nB,1100,9.5\nB,2100,10.1\nB,3300,10.8\nB,4100,11.6\nB,5600,12.5\n";
+const WIDE: &str =
+    "crack_length_mm;A;B\n9,0;0;0\n9,5;1000;1100\n10,1;2000;2100\n10,8;3000;3300\n11,6;4000;4100\n12,5;5000;5600\n";
+const TEST: &str = "[measured]\nfiles = [\"curve.csv\"]\nfrom_crack_length_mm = 9\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\n\
+    length_mm = 120\nthickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\n\
+    stress_ratio = 0.1\n[model]\nspacing_mm = 6\n[fit]\nparameters = [\"a\", \"p\"]\n";
+const SCENE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 60\nthickness_mm = 2\n[material]\nname = \"al2024-t3\"\n\
+    [loading]\nkind = \"displacement\"\ndisplacement_mm = 0.1\nedges = [\"top\", \"bottom\"]\nsteps = 10\n[model]\nspacing_mm = 6\n\
+    [damage]\nlaw = \"critical_stretch\"\n";
+
+/// Pieces that inputs trip over.
+const TRAPS: [&str; 36] = [
+    "1e308",
+    "-1e308",
+    "1e-320",
+    "nan",
+    "inf",
+    "-0",
+    "0",
+    "99999999999999999999",
+    "-9223372036854775808",
+    "\"",
+    "'''",
+    "[[",
+    "]]",
+    "{",
+    "}",
+    "null",
+    "true",
+    "\u{0}",
+    "\u{feff}",
+    "\r",
+    "\t",
+    ";",
+    ",",
+    "=",
+    "..",
+    "../../etc/passwd",
+    "\u{1f4a5}",
+    "\\u0000",
+    "a.b.c = 1\n",
+    "[model]\n",
+    "holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 1 }]\n",
+    "cracks = []\n",
+    "spacing_mm = 1e-9\n",
+    "outline_mm = [[0,0]]\n",
+    "\"files\":{}",
+    "--XX\r\n",
+];
+
+/// Random changes of a text that keep most of it.
+struct Mutator(Noise);
+
+impl Mutator {
+    fn below(&mut self, most: usize) -> usize {
+        ((1e9 * self.0.normal().abs()) as usize) % most.max(1)
+    }
+
+    fn mutated(&mut self, seed: &[u8]) -> Vec<u8> {
+        let mut bytes = seed.to_vec();
+        for _ in 0..=self.below(4) {
+            let at = self.below(bytes.len() + 1);
+            match self.below(8) {
+                0 => drop(bytes.splice(at..at, TRAPS[self.below(TRAPS.len())].bytes())),
+                1 => {
+                    let until = (at + self.below(12)).min(bytes.len());
+                    drop(bytes.splice(at..until, TRAPS[self.below(TRAPS.len())].bytes()));
+                }
+                2 => bytes.truncate(at),
+                3 => {
+                    let until = (at + self.below(40)).min(bytes.len());
+                    drop(bytes.drain(at..until));
+                }
+                4 if at < bytes.len() => bytes[at] ^= 1 << self.below(8),
+                5 if at < bytes.len() => bytes[at] = self.below(256) as u8,
+                6 => {
+                    let until = (at + self.below(60)).min(bytes.len());
+                    let piece = bytes[at..until].to_vec();
+                    let to = self.below(bytes.len() + 1);
+                    drop(bytes.splice(to..to, piece));
+                }
+                _ => self.change_number(&mut bytes),
+            }
+        }
+        bytes
+    }
+
+    /// Replaces a number by one of another size.
+    fn change_number(&mut self, bytes: &mut Vec<u8>) {
+        let digits: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i].is_ascii_digit()).collect();
+        if digits.is_empty() {
+            return;
+        }
+        let from = digits[self.below(digits.len())];
+        let until = (from..bytes.len()).find(|&i| !bytes[i].is_ascii_digit()).unwrap_or(bytes.len());
+        let power = self.below(40) as i32 - 20;
+        drop(bytes.splice(from..until, format!("{:e}", self.0.normal() * 10f64.powi(power)).into_bytes()));
+    }
+}
+
+fn form(name: &str, content: &str) -> String {
+    format!("--XX\r\nContent-Disposition: form-data; name=\"file\"; filename=\"{name}\"\r\n\r\n{content}\r\n--XX--\r\n")
+}
+
+/// Address, media type, body.
+fn seeds() -> Vec<(&'static str, &'static str, Vec<u8>)> {
+    let quick = QUICK.replace("spacing_mm = 1.5", "spacing_mm = 6");
+    let object: toml::Table = quick.parse().unwrap();
+    let (json, toml, multipart) = ("application/json", "application/toml", "multipart/form-data; boundary=XX");
+    let bodies = [
+        ("/v1/measured", multipart, form("curve.csv", CSV)),
+        ("/v1/measured", multipart, form("curve.csv", WIDE)),
+        ("/v1/measured", multipart, form("curve.parquet", "PAR1 nothing PAR1")),
+        ("/v1/check", json, json!({ "input": quick }).to_string()),
+        ("/v1/check", json, json!({ "name": "x", "input": object, "files": { "a": "b" } }).to_string()),
+        ("/v1/check", toml, quick.clone()),
+        ("/v1/check", toml, SCENE.to_owned()),
+        ("/v1/predictions", toml, quick.clone()),
+        ("/v1/predictions", json, json!({ "input": object, "calibration": "01a202b2-bf2d-75fe-996b-265c5720d3fc" }).to_string()),
+        ("/v1/calibrations", json, json!({ "input": TEST, "files": { "curve.csv": CSV } }).to_string()),
+        ("/v1/calibrations", json, json!({ "input": TEST, "files": { "curve.csv": WIDE } }).to_string()),
+    ];
+    bodies.into_iter().map(|(path, kind, body)| (path, kind, body.into_bytes())).collect()
+}
+
+/// Sends `count` changed bodies to a service without workers; returns how often each status came back.
+async fn flood(service: Router, count: u64, first: u64) -> std::collections::BTreeMap<u16, u64> {
+    let seeds = seeds();
+    let address = SocketAddr::from(([127, 0, 0, 1], 9));
+    let mut statuses = std::collections::BTreeMap::new();
+    for number in first..first + count {
+        let mut mutator = Mutator(Noise::new(number));
+        let (path, kind, seed) = &seeds[mutator.below(seeds.len())];
+        let body = mutator.mutated(seed);
+        let request =
+            Request::post(*path).header("host", "localhost").header("content-type", *kind).extension(ConnectInfo(address));
+        let answer = service.clone().oneshot(request.body(Body::from(body.clone())).unwrap()).await.unwrap();
+        let status = answer.status().as_u16();
+        *statuses.entry(status).or_default() += 1;
+        let known = [200, 202, 400, 413, 422];
+        assert!(known.contains(&status), "{status} for number {number}, {path}: {}", String::from_utf8_lossy(&body));
+        if status >= 400 {
+            let kind = answer.headers().get("content-type").unwrap();
+            assert_eq!(kind, "application/problem+json", "number {number}");
+        }
+    }
+    statuses
+}
+
+fn flooded(count: u64) {
+    const PLENTY: NonZeroU32 = NonZeroU32::new(u32::MAX).unwrap();
+    let folder = tempdir().unwrap();
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().unwrap();
+    let statuses = runtime.block_on(async {
+        let store = Store::open(&url_of_file(&folder.path().join("fuzz.sqlite")), 4).await.unwrap();
+        let limits = Limits {
+            body_bytes: 1 << 20,
+            points: 2000.0,
+            queued: i64::MAX,
+            requests_per_second: PLENTY,
+            writes_per_second: PLENTY,
+            ..Limits::default()
+        };
+        let service = router(App::new(store, limits, Security { needs_token: false }, 0, Arc::default()));
+        let halves = [0, 1].map(|half| tokio::spawn(flood(service.clone(), count / 2, half * (count / 2))));
+        let mut all = std::collections::BTreeMap::new();
+        for half in halves {
+            for (status, times) in half.await.unwrap() {
+                *all.entry(status).or_insert(0) += times;
+            }
+        }
+        all
+    });
+    println!("{count} bodies: {statuses:?}; peak memory {:.0} MB", peak_mb());
+    assert!(peak_mb() < MEMORY_MB, "{} MB", peak_mb());
+    // The changes are such that much is still understood, and much is not.
+    assert!(statuses[&200] > count / 50 && statuses[&422] > count / 50 && statuses[&400] > count / 50, "{statuses:?}");
+}
+
+#[test]
+fn thousands_of_broken_bodies_break_nothing() {
+    flooded(4000);
+}
+
+#[test]
+#[ignore = "long: a million bodies, some ten minutes"]
+fn a_million_broken_bodies_break_nothing() {
+    flooded(1_000_000);
+}
