@@ -1,5 +1,7 @@
 //! Do the doors work?
 
+#[path = "support/browser.rs"]
+mod browser;
 #[path = "support/made_up_run.rs"]
 mod made_up_run;
 #[path = "support/noise.rs"]

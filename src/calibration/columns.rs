@@ -72,6 +72,8 @@ pub struct Layout {
     pub length_unit: f64,
     /// Cycles per unit of a cycles cell.
     pub cycle_unit: f64,
+    /// Whether `7,5` is a number.
+    pub decimal_comma: bool,
 }
 
 /// How specimens are laid out.
@@ -112,6 +114,7 @@ pub(crate) fn recognise(table: &TextTable, units: Units) -> crate::Result<Layout
     let length = place(|meaning| matches!(meaning, Meaning::Length(_)));
     let specimen = place(|meaning| matches!(meaning, Meaning::Specimen));
     let unknown = place(|meaning| matches!(meaning, Meaning::Unknown));
+    let decimal_comma = table.decimal_comma;
     refuse_repeated(table)?;
     match (cycles, length) {
         (Some(cycles), Some(length)) => {
@@ -125,11 +128,12 @@ pub(crate) fn recognise(table: &TextTable, units: Units) -> crate::Result<Layout
             }
             let length_unit = length_unit(table, length, meanings[length], units)?;
             let cycle_unit = cycle_unit(table, cycles, meanings[cycles], units)?;
-            Ok(Layout { shape: Shape::Long { specimen, cycles, length }, length_unit, cycle_unit })
+            Ok(Layout { shape: Shape::Long { specimen, cycles, length }, length_unit, cycle_unit, decimal_comma })
         }
         (None, Some(0)) if meanings.len() >= 3 && specimen.is_none() => {
             let length_unit = length_unit(table, 0, meanings[0], units)?;
-            Ok(Layout { shape: Shape::WideCycles, length_unit, cycle_unit: units.cycles.unwrap_or(CycleUnit::Cycles).cycles() })
+            let cycle_unit = units.cycles.unwrap_or(CycleUnit::Cycles).cycles();
+            Ok(Layout { shape: Shape::WideCycles, length_unit, cycle_unit, decimal_comma })
         }
         (Some(0), None) if meanings.len() >= 3 && specimen.is_none() => {
             let cycle_unit = cycle_unit(table, 0, meanings[0], units)?;
@@ -139,7 +143,7 @@ pub(crate) fn recognise(table: &TextTable, units: Units) -> crate::Result<Layout
                     "set measured.length_unit = \"mm\", \"inch\" or \"m\"",
                 ));
             };
-            Ok(Layout { shape: Shape::WideLengths, length_unit: unit.metres(), cycle_unit })
+            Ok(Layout { shape: Shape::WideLengths, length_unit: unit.metres(), cycle_unit, decimal_comma })
         }
         _ => Err(match unknown {
             Some(column) => unknown_column(table, column),

@@ -104,10 +104,10 @@ impl Problem {
         Problem::new(StatusCode::INTERNAL_SERVER_ERROR, "Internal error", detail)
     }
 
-    /// Without the line, which means nothing where the input was no text.
+    /// Without the line, which means nothing where the input was no text; those of files stay.
     #[must_use]
     pub fn without_line(mut self) -> Self {
-        if let Some(input) = &mut self.input {
+        if let Some(input) = self.input.as_mut().filter(|input| input.file.is_none()) {
             input.line = None;
         }
         self

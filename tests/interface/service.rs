@@ -6,6 +6,8 @@ mod crashes;
 mod fuzzed;
 #[path = "service/jobs.rs"]
 mod jobs;
+#[path = "service/page.rs"]
+mod page;
 #[path = "service/refusals.rs"]
 mod refusals;
 #[path = "service/results.rs"]

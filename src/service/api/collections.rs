@@ -6,6 +6,7 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 
 use super::App;
@@ -34,6 +35,9 @@ pub struct JobView {
     /// TOML as submitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     input: Option<String>,
+    /// The same as an object.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    case: Option<Value>,
 }
 
 /// A file of a result.
@@ -99,8 +103,9 @@ pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
             bytes: entry.bytes,
         })
         .collect();
-    let input = if with_input { app.store.submission(&job.id).await?.map(|submission| submission.text) } else { None };
-    Ok(JobView { job, files, input })
+    let submission = if with_input { app.store.submission(&job.id).await? } else { None };
+    let case = submission.as_ref().and_then(|submission| serde_json::to_value(submission.document().ok()?.table).ok());
+    Ok(JobView { job, files, input: submission.map(|submission| submission.text), case })
 }
 
 /// Submits a calibration or a prediction. With the header `Idempotency-Key` a repeated request gives the same job.
@@ -178,7 +183,7 @@ pub async fn list(
         return Err(Problem::bad_request(format!("limit = {limit} is not 1 to {LIST_MAX}")));
     }
     let listing = app.store.list(kind, part.state, part.after.as_deref(), limit).await?;
-    let items = listing.jobs.into_iter().map(|job| JobView { job, files: Vec::new(), input: None }).collect();
+    let items = listing.jobs.into_iter().map(|job| JobView { job, files: Vec::new(), input: None, case: None }).collect();
     Ok(Json(Page { items, next: listing.next }))
 }
 

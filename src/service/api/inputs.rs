@@ -45,6 +45,8 @@ pub struct Columns {
     layout: &'static str,
     length_unit: &'static str,
     cycle_unit: &'static str,
+    /// Whether `7,5` was taken for a number.
+    decimal_comma: bool,
 }
 
 /// Readings of a specimen.
@@ -108,6 +110,7 @@ fn found(file: String, content: &[u8], units: Units) -> FoundFile {
         layout: if matches!(layout.shape, Shape::Long { .. }) { "long" } else { "wide" },
         length_unit: LengthUnit::ALL.iter().find(|unit| unit.metres() == layout.length_unit).map_or("mm", |unit| unit.name()),
         cycle_unit: CycleUnit::ALL.iter().find(|unit| unit.cycles() == layout.cycle_unit).map_or("cycles", |unit| unit.name()),
+        decimal_comma: layout.decimal_comma,
     });
     let curve = |curve: MeasuredCurve| FoundCurve {
         specimen: curve.specimen,

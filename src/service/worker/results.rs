@@ -17,6 +17,7 @@ use crate::predict::Prediction;
 use crate::report::run::PARAVIEW;
 use crate::report::{fit, run};
 use crate::service::store::File;
+use crate::units::MM;
 
 /// Summary and files of a result.
 pub type Results = (Value, Vec<File>);
@@ -66,8 +67,14 @@ pub fn of_fit(calibration: &CalibrationCase, watch: &Watch<'_>) -> Result<Result
     fit::write(folder.path(), calibration, &fitted, &report, &record(calibration, &fitted))?;
     let mut summary = json!(report);
     let warnings: Vec<&String> = calibration.warnings.iter().chain(&fitted.warnings).collect();
+    let case = &calibration.case;
     if let Some(figures) = summary.as_object_mut() {
         figures.insert("warnings".to_owned(), json!(warnings));
+        // What the law is of.
+        figures.insert("material".to_owned(), json!(case.material.name));
+        figures.insert("plane".to_owned(), json!(case.material.plane.name()));
+        figures.insert("stress_ratio".to_owned(), json!(case.loading.ratio));
+        figures.insert("thickness_mm".to_owned(), json!(case.specimen.thickness / MM));
     }
     Ok((summary, collected(folder.path())?))
 }

@@ -134,6 +134,8 @@ fn a_full_disk_loses_nothing() {
     let ballast = disk.0.path().join("ballast");
     let mut file = fs::File::create(&ballast).unwrap();
     while std::io::Write::write_all(&mut file, &[0; 4096]).is_ok() {}
+    // Or it would take its room until the end.
+    drop(file);
     let refused = (0..20).map(|_| service.post("/v1/predictions", &of("case", QUICK))).find(|answer| answer.status != 202);
     let refused = refused.unwrap().expect(503);
     assert!(refused.header("retry-after").is_some(), "{}", refused.text());

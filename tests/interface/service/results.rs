@@ -235,7 +235,7 @@ fn inputs_are_looked_at_as_by_the_command() {
     let found = service.send("POST", "/v1/measured", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes());
     let found = found.expect(200).json();
     let [a, b] = [&found["files"][0], &found["files"][1]];
-    assert_eq!(a["columns"], json!({ "layout": "long", "length_unit": "mm", "cycle_unit": "cycles" }));
+    assert_eq!(a["columns"], json!({ "layout": "long", "length_unit": "mm", "cycle_unit": "cycles", "decimal_comma": true }));
     assert_eq!(a["curves"][0]["lines"], json!([2, 3, 5, 7, 8]));
     let problems: Vec<(i64, &str)> =
         a["problems"].as_array().unwrap().iter().map(|p| (p["line"].as_i64().unwrap(), p["problem"].as_str().unwrap())).collect();

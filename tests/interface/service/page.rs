@@ -1,0 +1,233 @@
+//! A walk through the whole page in a real browser: upload, calibrate, predict, watch it grow, download, compare.
+//!
+//! Pictures of it stand in `target/tmp/page/` afterwards, to be looked at.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use tempfile::tempdir;
+
+use crate::browser::Browser;
+use crate::cli::perilife;
+use crate::server::{Server, in_folder};
+
+const DELETE: char = '\u{e017}';
+const RIGHT: char = '\u{e014}';
+const END: char = '\u{e010}';
+
+const BROKEN: &str = "specimen,cycles,crack_length_mm\nA1,0,9\nA1,12000,9.6\nA1,21000,10.2\nA1,many,10.9\nA1,39000,11.7\n\
+    A1,4100,12.4\nA1,47000,13.3\nA1,60000,14.4\nA1,66000,15\n<img src=x onerror=alert(1)>,-1,9\nA1,99000,20\n";
+
+/// Every visible field has a name, every picture words, every table a caption; nothing is wider than the window, and on a phone
+/// everything is large enough for a finger.
+const FLAWS: &str = r#"
+const flaws = [], seen = (e) => e.getClientRects().length > 0;
+for (const e of document.querySelectorAll("input,select,textarea"))
+    if (seen(e) && !e.labels?.length && !e.getAttribute("aria-label")) flaws.push("no label: " + e.outerHTML.slice(0, 90));
+for (const e of document.querySelectorAll("button,a"))
+    if (seen(e) && !(e.textContent.trim() || e.getAttribute("aria-label"))) flaws.push("no name: " + e.outerHTML.slice(0, 90));
+for (const e of document.querySelectorAll("img")) if (!e.hasAttribute("alt")) flaws.push("no words: " + e.src);
+for (const e of document.querySelectorAll("table")) if (!e.caption) flaws.push("no caption: " + e.outerHTML.slice(0, 60));
+const ids = [...document.querySelectorAll("[id]")].map((e) => e.id);
+for (const id of new Set(ids)) if (ids.filter((other) => other === id).length > 1) flaws.push("twice: #" + id);
+if (document.documentElement.scrollWidth > innerWidth + 1) flaws.push("wider than the window");
+if (innerWidth < 600) for (const e of document.querySelectorAll("main button, main select, main input"))
+    if (seen(e) && e.type !== "checkbox" && e.getBoundingClientRect().height < 43 && !e.closest("td, p")) flaws.push("small: " + e.outerHTML.slice(0, 90));
+return flaws;
+"#;
+
+struct Walk {
+    browser: Browser,
+    pictures: PathBuf,
+}
+
+impl Walk {
+    /// Looks at the page: keeps a picture, finds no flaw.
+    fn look(&self, name: &str) {
+        fs::write(self.pictures.join(format!("{name}.png")), self.browser.picture()).unwrap();
+        let flaws = self.browser.run(FLAWS);
+        assert_eq!(flaws, serde_json::json!([]), "{name}");
+        // What a browser says of every answer that is an error is meant where input is wrong on purpose.
+        let complaints: Vec<String> =
+            self.browser.complaints().into_iter().filter(|line| !line.contains("status of 4")).collect();
+        assert!(complaints.is_empty(), "{name}: {complaints:?}");
+    }
+
+    /// Clicks, and waits for a job to end well.
+    fn start(&self, button: &str) -> String {
+        self.browser.see(&format!("{button}:not([disabled])"));
+        self.browser.click(button);
+        self.browser.see("#job");
+        self.browser.run("return document.querySelector('#job').dataset.jobId").as_str().unwrap().to_owned()
+    }
+}
+
+#[test]
+fn the_page_leads_from_readings_to_remaining_life() {
+    let Some(browser) = Browser::start() else { return };
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let pictures = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page");
+    fs::create_dir_all(&pictures).unwrap();
+    let walk = Walk { browser, pictures };
+    let page = &walk.browser;
+    page.look(1280, 900, "light");
+    page.open(&service.url);
+    page.see("#measured-input, #example");
+    walk.look("01_start");
+
+    // Readings with mistakes are shown where they are wrong.
+    let broken = dir.path().join("broken.csv");
+    fs::write(&broken, BROKEN).unwrap();
+    page.fill("#measured-input", broken.to_str().unwrap());
+    page.see("[data-problems]");
+    page.until("document.querySelector('#measured').dataset.measured === 'problem'");
+    let found = page.text("[data-problems]");
+    assert!(
+        ["many", "is not a number", "is below the reading before", "is negative"].iter().all(|words| found.contains(words)),
+        "{found}"
+    );
+    walk.look("02_problems");
+    page.click("[aria-label='Remove broken.csv']");
+
+    // A good file, the test it is of, a fit.
+    page.click("#example");
+    page.see("#calibrate:not([disabled])");
+    page.fill("#view-measure [data-key='specimen.width_mm']", "15");
+    page.until("document.querySelectorAll('#view-measure [aria-invalid=true]').length === 1");
+    page.fill("#view-measure [data-key='specimen.width_mm']", "152.4");
+    page.run("document.querySelector('[data-chart=measured] svg[tabindex]').focus()");
+    page.press(&[RIGHT, RIGHT, END]);
+    assert!(page.text("[data-chart=measured] .chart-readout").contains("Crack length"));
+    page.see("#calibrate:not([disabled])");
+    walk.look("03_example");
+    let fit = walk.start("#calibrate");
+    page.see("#job[data-job-state=succeeded]");
+    page.see("[data-chart=fit] path[data-series].band, [data-chart=fit] path.band");
+    walk.look("04_fit");
+    let summary = service.get(&format!("/v1/calibrations/{fit}")).json()["summary"].clone();
+    let exponent = format!("{:.2}", summary["paris_m"].as_f64().unwrap());
+    assert!(page.text("[data-table=constants]").contains(&exponent), "{exponent} in {}", page.text("[data-table=constants]"));
+
+    // A plate with this law, drawn with a second crack that goes again.
+    page.click("[data-action=use-law]");
+    page.see("#predict:not([disabled])");
+    let cracks = page.count("[data-rows=cracks] tbody tr");
+    page.click("[data-tool=crack]");
+    let drag = "const svg = document.querySelector('.sketch svg.plate'); svg.scrollIntoView({ block: 'center' });
+        const box = svg.getBoundingClientRect(); return [box.x, box.y, box.width, box.height]";
+    let numbers: Vec<f64> = serde_json::from_value(page.run(drag)).unwrap();
+    drag_pointer(page, &numbers, [0.40, 0.30], [0.50, 0.34]);
+    page.until(&format!("document.querySelectorAll('[data-rows=cracks] tbody tr').length === {}", cracks + 1));
+    page.run(&format!("document.querySelector(\"[data-handle='Crack {} end']\").focus()", cracks + 1));
+    page.press(&[RIGHT, DELETE]);
+    page.until(&format!("document.querySelectorAll('[data-rows=cracks] tbody tr').length === {cracks}"));
+    page.see("#plate-check [data-check=ok], #plate-check.check-state[data-check=ok], [data-check=ok]");
+    walk.look("05_plate");
+
+    // It grows while one looks on.
+    let first = walk.start("#predict");
+    page.see("#job[data-job-state=running]");
+    page.see("[data-chart=life] path[data-series]");
+    let early = page
+        .run("return document.querySelector('[data-chart=life] path[data-series]').getAttribute('d').length")
+        .as_u64()
+        .unwrap();
+    page.until(&format!(
+        "document.querySelector('#job[data-job-state=succeeded]') || \
+         document.querySelector('[data-chart=life] path[data-series]').getAttribute('d').length > {early}"
+    ));
+    walk.look("06_running");
+    page.see("#job[data-job-state=succeeded]");
+    page.see("[data-value=remaining_cycles]");
+    let done = service.get(&format!("/v1/predictions/{first}")).json();
+    let life = done["summary"]["life_cycles"].as_f64().unwrap();
+    assert!(digits(&page.text("[data-value=life_cycles]")).starts_with(&format!("{life:.0}")), "{life}");
+    assert_eq!(done["calibration"], fit.as_str());
+    walk.look("07_predicted");
+
+    // What is left from a length on, and when to look again.
+    let [from, to] = ["crack_length_initial_mm", "crack_length_final_mm"].map(|key| done["summary"][key].as_f64().unwrap());
+    let today = format!("{:.1}", 0.5 * (from + to));
+    page.fill("#today-length", &today);
+    page.fill("#inspection-factor", "3");
+    let left = service.get(&format!("/v1/predictions/{first}/remaining?crack_length_mm={today}&factor=3")).json();
+    let interval = format!("{:.0}", left["inspection_interval_cycles"].as_f64().unwrap());
+    page.until(&format!(
+        "document.querySelector('[data-value=inspection_interval_cycles]').innerText.replace(/\\D/g, '').startsWith('{interval}')"
+    ));
+
+    // A second run, and both side by side.
+    page.click("[data-action=again]");
+    page.see("#predict:not([disabled])");
+    walk.start("#predict");
+    page.see("#job[data-job-state=succeeded]");
+    page.open(&format!("{}/#/runs", service.url));
+    page.see("tr[data-job][data-job-state=succeeded]");
+    walk.look("08_runs");
+    for place in [1, 2] {
+        page.click(&format!("tr[data-job]:nth-of-type({place}) .tick input"));
+    }
+    page.click("#compare");
+    page.see("[data-chart=compare] path[data-series]");
+    page.see("[data-table=compare]");
+    walk.look("09_compare");
+
+    // Cancel and delete.
+    page.open(&format!("{}/#/predict?from={first}", service.url));
+    page.see("#predict:not([disabled])");
+    walk.start("#predict");
+    page.click("[data-action=cancel]");
+    page.see("#job[data-job-state=cancelled]");
+    page.click("[data-action=delete]");
+    page.click("#delete-dialog [value=delete]");
+    page.until("!location.hash.includes('/predictions/')");
+
+    // On a phone, in the dark, and after a reload.
+    page.look(360, 740, "dark");
+    for (name, hash) in [
+        ("10_phone_start", "#/measure".to_owned()),
+        ("11_phone_plate", "#/predict".to_owned()),
+        ("12_phone_predicted", format!("#/predictions/{first}")),
+        ("13_phone_fit", format!("#/calibrations/{fit}")),
+        ("14_phone_runs", "#/runs".to_owned()),
+    ] {
+        page.open(&format!("{}/{hash}", service.url));
+        page.run("location.reload()");
+        page.until("document.readyState === 'complete'");
+        let expected = if name.contains("predicted") { "[data-value=remaining_cycles]" } else { "main h1, main h2" };
+        page.see(expected);
+        std::thread::sleep(std::time::Duration::from_millis(400));
+        walk.look(name);
+    }
+}
+
+/// With tokens the page asks for one, and goes on with it.
+#[test]
+fn the_page_asks_for_a_token() {
+    let Some(page) = Browser::start() else { return };
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let made = perilife(dir.path(), &["token", &place[0], &place[1], "add", "ann", "--role", "run"]);
+    let token = String::from_utf8(made.stdout).unwrap();
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--require-token"]);
+    page.look(1280, 900, "dark");
+    page.open(&format!("{}/#/runs", service.url));
+    page.see("#token-dialog[open] #token");
+    page.fill("#token", token.trim());
+    page.run("document.querySelector('#token-dialog form').requestSubmit()");
+    page.until("!document.querySelector('#token-dialog').open");
+    assert_eq!(page.run("return JSON.stringify(localStorage).includes('perilife_')"), false, "not kept beyond the window");
+}
+
+fn digits(text: &str) -> String {
+    text.chars().filter(|c| c.is_ascii_digit() || *c == '.').collect()
+}
+
+/// Drags the pointer between two places of a box, given in shares of its size.
+fn drag_pointer(page: &Browser, frame: &[f64], from: [f64; 2], to: [f64; 2]) {
+    let at = |share: [f64; 2]| [frame[0] + share[0] * frame[2], frame[1] + share[1] * frame[3]].map(f64::round);
+    let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
+    page.drag(&[at(from), at(middle), at(to)]);
+}
