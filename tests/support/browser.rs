@@ -69,6 +69,7 @@ impl Browser {
         Some(browser)
     }
 
+    #[track_caller]
     fn command(&self, path: &str, body: &Value) -> Value {
         let mut answer = self.agent.post(format!("{}/{path}", self.session)).send_json(body).unwrap();
         let value = answer.body_mut().with_config().limit(1 << 28).read_json::<Value>().unwrap()["value"].take();
@@ -81,11 +82,13 @@ impl Browser {
     }
 
     /// What a script gives.
+    #[track_caller]
     pub fn run(&self, script: &str) -> Value {
         self.command("execute/sync", &json!({ "script": script, "args": [] }))
     }
 
     /// Waits until an expression is true.
+    #[track_caller]
     pub fn until(&self, expression: &str) {
         let begun = Instant::now();
         while self.run(&format!("return Boolean({expression})")) != true {
@@ -95,6 +98,7 @@ impl Browser {
     }
 
     /// Waits until there is something to see for a selector.
+    #[track_caller]
     pub fn see(&self, selector: &str) {
         self.until(&format!("[...document.querySelectorAll({})].some((e) => e.getClientRects().length)", json!(selector)));
     }
@@ -109,20 +113,29 @@ impl Browser {
         self.run(&format!("return document.querySelectorAll({}).length", json!(selector))).as_u64().unwrap()
     }
 
+    /// The first element for a selector, one that can be seen if there is one, brought into view.
+    #[track_caller]
     fn element(&self, selector: &str) -> String {
-        let found = self.command("element", &json!({ "using": "css selector", "value": selector }));
-        found.as_object().unwrap().values().next().unwrap().as_str().unwrap().to_owned()
+        let script = format!(
+            "const all = [...document.querySelectorAll({})]; const one = all.find((e) => e.getClientRects().length) ?? all[0];
+             one?.scrollIntoView({{ block: 'center' }}); return one",
+            json!(selector)
+        );
+        let found = self.run(&script);
+        let reference = found.as_object().and_then(|found| found.values().next()?.as_str());
+        reference.unwrap_or_else(|| panic!("nothing for {selector}")).to_owned()
     }
 
     /// Clicks as a user does: only what can be seen and reached.
+    #[track_caller]
     pub fn click(&self, selector: &str) {
         self.see(selector);
         let element = self.element(selector);
-        self.run(&format!("document.querySelector({}).scrollIntoView({{ block: 'center' }})", json!(selector)));
         self.command(&format!("element/{element}/click"), &json!({}));
     }
 
     /// Types into a field, or gives the path of a file to one that takes files.
+    #[track_caller]
     pub fn fill(&self, selector: &str, text: &str) {
         let element = self.element(selector);
         if self.run(&format!("return document.querySelector({}).type", json!(selector))) != "file" {

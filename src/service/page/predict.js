@@ -105,11 +105,13 @@ export function createPredictView() {
     group("Model and stop", grid(spacing.node, stopLength.node, stopCycles.node, name.node)));
   show(byId("law-fields"), group("Growth law", grid(law.node, ...Object.values(constants).map((field) => field.node)), lawNote));
 
+  // While another run's input is on its way, what stands in the form is not what the user means to start.
+  let opening = false;
   const editor = createEditor({
     host: byId("plate-editor"), fields, panel: byId("plate-check"), form, collect, fill,
     context: () => (law.input.value ? { calibration: law.input.value } : {}),
     onResult: (ok) => {
-      start.disabled = !ok;
+      start.disabled = !ok || opening;
     },
     onMode: arrange,
   });
@@ -157,8 +159,10 @@ export function createPredictView() {
     },
     /** `law`: a calibration to use; `from`: a prediction to start from. */
     async open(query) {
-      await loadLaws(query.get("law") ?? undefined);
       const from = query.get("from");
+      opening = Boolean(from);
+      start.disabled = true;
+      await loadLaws(query.get("law") ?? undefined);
       if (!from) return;
       try {
         const job = await getJson(`/v1/predictions/${encodeURIComponent(from)}`);
@@ -168,6 +172,9 @@ export function createPredictView() {
         await editor.start(job.input);
       } catch (error) {
         editor.check.refuse(error);
+      } finally {
+        opening = false;
+        editor.check.soon();
       }
     },
   };
