@@ -2,8 +2,10 @@
 //!
 //! `cargo bench --profile dev --bench service`
 
+#[expect(dead_code, reason = "tests use the rest of it")]
 #[path = "../tests/support/postgres.rs"]
 mod postgres;
+#[expect(dead_code, reason = "tests use the rest of it")]
 #[path = "../tests/support/server.rs"]
 mod server;
 

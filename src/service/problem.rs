@@ -22,7 +22,7 @@ pub struct Problem {
     pub detail: String,
     /// Where in the input it stands.
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub input: Option<Place>,
+    pub input: Option<Box<Place>>,
     /// Seconds after which another try makes sense.
     #[serde(skip)]
     pub retry_after: Option<u32>,
@@ -107,7 +107,7 @@ impl Problem {
     /// Without the line, which means nothing where the input was no text; those of files stay.
     #[must_use]
     pub fn without_line(mut self) -> Self {
-        if let Some(input) = self.input.as_mut().filter(|input| input.file.is_none()) {
+        if let Some(input) = self.input.as_deref_mut().filter(|input| input.file.is_none()) {
             input.line = None;
         }
         self
@@ -118,9 +118,10 @@ impl From<Error> for Problem {
     fn from(error: Error) -> Self {
         let detail = error.to_string();
         match error {
-            Error::Input(input) => {
-                Problem { input: Some((*input).into()), ..Problem::new(StatusCode::UNPROCESSABLE_ENTITY, "Wrong input", detail) }
-            }
+            Error::Input(input) => Problem {
+                input: Some(Box::new((*input).into())),
+                ..Problem::new(StatusCode::UNPROCESSABLE_ENTITY, "Wrong input", detail)
+            },
             Error::Mechanics(_) => Problem::new(StatusCode::UNPROCESSABLE_ENTITY, "No result", detail),
             Error::File { .. } => {
                 // Input from outside names no files: this is the disk of the server.

@@ -138,6 +138,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
         "document.querySelector('#job[data-job-state=succeeded]') || \
          document.querySelector('[data-chart=life] path[data-series]').getAttribute('d').length > {early}"
     ));
+    page.see("[data-part=damage] img[src^='blob:']");
     walk.look("06_running");
     page.see("#job[data-job-state=succeeded]");
     page.see("[data-value=remaining_cycles]");
