@@ -157,9 +157,15 @@ impl Server {
         let _ = self.process.wait();
     }
 
+    /// Sends the process a signal.
+    pub fn signal(&self, name: &str) {
+        let sent = Command::new("kill").args([name, &self.process.id().to_string()]).status();
+        assert!(sent.is_ok_and(|sent| sent.success()), "{name}");
+    }
+
     /// Asks the process to stop, and waits for it.
     pub fn stop(&mut self) {
-        let _ = Command::new("kill").args(["-TERM", &self.process.id().to_string()]).status();
+        self.signal("-TERM");
         let begun = Instant::now();
         while self.process.try_wait().unwrap().is_none() {
             assert!(begun.elapsed() < Duration::from_secs(30), "it does not stop");

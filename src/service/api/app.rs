@@ -116,17 +116,18 @@ impl App {
         self.shared.writes.retain_recent();
     }
 
+    /// The token with this hash, if it was looked up a moment ago.
+    pub async fn fresh_token(&self, hash: &str) -> Option<Token> {
+        let known = self.shared.tokens.read().await;
+        let found = known.iter().find(|(known, _, at)| known == hash && at.elapsed() < TOKEN_FRESH);
+        found.map(|(_, token, _)| token.clone())
+    }
+
     /// The token with this hash, if there is one that has not ended.
     ///
     /// # Errors
     /// The database does not answer.
     pub async fn token(&self, hash: &str) -> crate::service::store::Result<Option<Token>> {
-        {
-            let known = self.shared.tokens.read().await;
-            if let Some((_, token, _)) = known.iter().find(|(known, _, at)| known == hash && at.elapsed() < TOKEN_FRESH) {
-                return Ok(Some(token.clone()));
-            }
-        }
         let found = self.store.token(hash).await?;
         if let Some(token) = &found {
             let mut known = self.shared.tokens.write().await;

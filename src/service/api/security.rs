@@ -69,18 +69,24 @@ pub async fn guard(
 async fn caller_of(app: &App, address: SocketAddr, head: &Parts) -> Answer<Option<Caller>> {
     let is_write = !matches!(head.method, Method::GET | Method::HEAD);
     check_origin(app, &head.headers, is_write)?;
-    let token = token_of(&head.headers);
-    let known = match token {
-        Some(token) if app.security.needs_token => app.token(&hash(token)).await?,
-        _ => None,
+    let token = token_of(&head.headers).filter(|_| app.security.needs_token);
+    let hash = token.map(hash);
+    let fresh = match &hash {
+        Some(hash) => app.fresh_token(hash).await,
+        None => None,
     };
-    let name = known.as_ref().map(|token| &*token.name);
+    // Who guesses tokens is held to the limit of his address before the store is asked.
+    let name = fresh.as_ref().map(|token| &*token.name);
     if !app.may_ask(name, address.ip(), is_write) {
         return Err(Problem::too_many("more requests than this server takes from one caller; go slower", 1));
     }
     if !app.security.needs_token {
         return Ok(Some(Caller { name: String::new(), role: Role::Admin }));
     }
+    let known = match (fresh, &hash) {
+        (None, Some(hash)) => app.token(hash).await?,
+        (fresh, _) => fresh,
+    };
     let path = head.uri.path();
     let is_open = !(path.starts_with("/v1/") || path == "/metrics") || path == "/v1/service";
     match known {

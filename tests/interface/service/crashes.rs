@@ -173,6 +173,30 @@ fn another_worker_takes_over() {
     assert!(taken_up.clone().all(|share| share > 0.05), "{:?}", taken_up.collect::<Vec<_>>());
 }
 
+/// A worker that stood still for longer than its time is not dead: what it does afterwards must not touch its successor's result.
+#[test]
+fn a_worker_that_was_only_slow_is_fenced_off() {
+    with_each_store("fenced", |place| {
+        let dir = tempdir().unwrap();
+        let curve = undisturbed(dir.path(), SLOW);
+        let service = Server::start(place, &["--jobs", "0"]);
+        let slow = Server::worker(place, &["--jobs", "1", "--lease", "2"]);
+        let job = service.submit("predictions", &of("case", SLOW));
+        wait("on its way", || service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) > 0.02);
+        slow.signal("-STOP");
+        let mut other = Server::worker(place, &["--jobs", "1", "--lease", "2"]);
+        let done = service.succeeded(&job);
+        assert_eq!(done["attempts"], 2, "{done:#}");
+        other.stop();
+        slow.signal("-CONT");
+        // It comes to the end of what it had, sees that it was not its own any more, and is of use again.
+        let next = service.submit("predictions", &of("case", QUICK));
+        service.succeeded(&next);
+        assert_eq!(service.get(&job).json(), done, "touched");
+        assert!(service.file(&job, "a_n.csv") == curve, "another curve");
+    });
+}
+
 /// The database goes away while jobs run: requests are told so, workers hold on, nothing is lost.
 #[test]
 fn a_database_that_is_gone_for_a_while_loses_nothing() {
