@@ -1,7 +1,7 @@
 //! What `perilife check` has understood of a fracture scene, in words.
 
 use super::preview::as_input;
-use super::understood::{Line, short};
+use super::understood::{Line, count, short};
 use crate::error::Result;
 use crate::fracture::Scene;
 use crate::fracture::preview::{Preview, preview};
@@ -36,10 +36,11 @@ pub(super) fn scene_lines(scene: &Scene) -> Result<Vec<Line>> {
         line(
             "flaws",
             format!(
-                "{cracks} cracks, {} slots, {} holes, {} tips{micro_words}",
-                specimen.slots.len(),
-                specimen.holes.len(),
-                specimen.tips.len()
+                "{}, {}, {}, {}{micro_words}",
+                count(cracks, "crack"),
+                count(specimen.slots.len(), "slot"),
+                count(specimen.holes.len(), "hole"),
+                count(specimen.tips.len(), "tip")
             ),
         ),
         line(

@@ -87,12 +87,12 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         (
             "crack",
             format!(
-                "length {} mm; {} cracks, {} slots, {} holes, {} tips",
+                "length {} mm; {}, {}, {}, {}",
                 mm(specimen.crack_length),
-                specimen.cracks.len(),
-                specimen.slots.len(),
-                specimen.holes.len(),
-                specimen.tips.len()
+                count(specimen.cracks.len(), "crack"),
+                count(specimen.slots.len(), "slot"),
+                count(specimen.holes.len(), "hole"),
+                count(specimen.tips.len(), "tip")
             ),
         ),
         (
@@ -128,6 +128,11 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     // Hand calculation has no bonds that could age.
     let told = |what: &str| model.method == Method::Peridynamics || !["bonds", "ageing"].contains(&what);
     lines.into_iter().filter(|(what, _)| told(what)).map(|(what, value)| Line { what, value }).collect()
+}
+
+/// So many of something.
+pub(super) fn count(number: usize, name: &str) -> String {
+    format!("{number} {name}{}", if number == 1 { "" } else { "s" })
 }
 
 /// A number with at most four decimals.

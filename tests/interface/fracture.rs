@@ -149,7 +149,7 @@ fn check_understands_a_scene() {
     let (stdout, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     for words in [
-        "1 cracks, 0 slots, 0 holes, 1 tips",
+        "1 crack, 0 slots, 0 holes, 1 tip",
         "one_bond_two_parameter, kernel constant, rotation resisted",
         "400 and",
         "motion over 2e-5 s",

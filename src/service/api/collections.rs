@@ -5,6 +5,7 @@ use axum::extract::{Path, Query, Request, State as Shared};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
@@ -14,7 +15,7 @@ use super::documents::{self, Asked, submission};
 use super::security::Caller;
 use crate::service::job::{Job, JobKind, State};
 use crate::service::problem::{Answer, Problem};
-use crate::service::store::{NewJob, Role, Submitted};
+use crate::service::store::{NewJob, Role, Submitted, media_type};
 
 /// Most jobs of one part of a list.
 const LIST_MAX: u32 = 200;
@@ -32,6 +33,9 @@ pub struct JobView {
     job: Job,
     /// Files of its result.
     files: Vec<FileView>,
+    /// Files that came with it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    inputs: Option<Vec<FileView>>,
     /// TOML as submitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     input: Option<String>,
@@ -87,6 +91,9 @@ pub async fn job_of(app: &App, collection: &str, id: &str) -> Answer<Job> {
     app.store.job(kind, id).await?.ok_or_else(|| Problem::not_found(kind.name()))
 }
 
+/// What a name is written with as part of an address.
+const IN_PATHS: AsciiSet = NON_ALPHANUMERIC.remove(b'.').remove(b'_').remove(b'-');
+
 /// What is shown of a job.
 ///
 /// # Errors
@@ -104,8 +111,18 @@ pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
         })
         .collect();
     let submission = if with_input { app.store.submission(&job.id).await? } else { None };
+    let base = format!("/v1/{}/{}/inputs", job.kind.collection(), job.id);
+    let inputs = submission.as_ref().map(|submission| {
+        let view = |(name, content): &(String, Vec<u8>)| FileView {
+            href: format!("{base}/{}", utf8_percent_encode(name, &IN_PATHS)),
+            name: name.clone(),
+            media_type: media_type(name),
+            bytes: content.len() as i64,
+        };
+        submission.files.iter().map(view).collect()
+    });
     let case = submission.as_ref().and_then(|submission| serde_json::to_value(submission.document().ok()?.table).ok());
-    Ok(JobView { job, files, input: submission.map(|submission| submission.text), case })
+    Ok(JobView { job, files, inputs, input: submission.map(|submission| submission.text), case })
 }
 
 /// Submits a calibration or a prediction. With the header `Idempotency-Key` a repeated request gives the same job.
@@ -183,7 +200,8 @@ pub async fn list(
         return Err(Problem::bad_request(format!("limit = {limit} is not 1 to {LIST_MAX}")));
     }
     let listing = app.store.list(kind, part.state, part.after.as_deref(), limit).await?;
-    let items = listing.jobs.into_iter().map(|job| JobView { job, files: Vec::new(), input: None, case: None }).collect();
+    let items =
+        listing.jobs.into_iter().map(|job| JobView { job, files: Vec::new(), inputs: None, input: None, case: None }).collect();
     Ok(Json(Page { items, next: listing.next }))
 }
 

@@ -56,6 +56,7 @@ pub fn router(app: App) -> Router {
         .routes(routes!(collections::cancel))
         .routes(routes!(events::events))
         .routes(routes!(results::file))
+        .routes(routes!(results::input_file))
         .routes(routes!(results::picture))
         .routes(routes!(results::remaining))
         .split_for_parts();

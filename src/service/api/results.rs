@@ -103,6 +103,23 @@ fn must_have_result(job: &Job) -> Answer<()> {
     }
 }
 
+/// A file that came with a job, as it came: `inputs` of the job names them.
+#[utoipa::path(get, path = "/v1/{collection}/{id}/inputs/{name}", tag = "results",
+    params(("collection" = String, Path), ("id" = String, Path), ("name" = String, Path)),
+    responses((status = 200, description = "The file"), (status = 404, body = Problem)))]
+pub async fn input_file(
+    Shared(app): Shared<App>,
+    Path((collection, id, name)): Path<(String, String, String)>,
+) -> Answer<Response> {
+    job_of(&app, &collection, &id).await?;
+    let submission = app.store.submission(&id).await?.ok_or_else(|| Problem::not_found("job"))?;
+    let file = submission.files.into_iter().find(|(known, _)| *known == name);
+    let (_, content) = file.ok_or_else(|| Problem::not_found("file of this job"))?;
+    // Whatever it claims to be, it is somebody's upload: saved, never shown.
+    let fixed = [(header::CONTENT_TYPE, "application/octet-stream"), (header::CONTENT_DISPOSITION, "attachment")];
+    Ok((fixed, content).into_response())
+}
+
 /// The plate of a running prediction as it was last seen: damage and crack paths.
 #[utoipa::path(get, path = "/v1/{collection}/{id}/live/damage.png", tag = "results",
     params(("collection" = String, Path), ("id" = String, Path)),

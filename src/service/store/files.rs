@@ -1,5 +1,7 @@
 //! Files of finished jobs.
 
+use std::path::Path;
+
 use serde::Serialize;
 use sqlx::Row;
 use utoipa::ToSchema;
@@ -26,6 +28,17 @@ pub struct FileEntry {
     pub media_type: String,
     /// Its size.
     pub bytes: i64,
+}
+
+/// What a file of this name is.
+#[must_use]
+pub fn media_type(name: &str) -> String {
+    match Path::new(name).extension().and_then(|extension| extension.to_str()) {
+        // Not registered, so not guessed.
+        Some("parquet") => "application/vnd.apache.parquet".to_owned(),
+        Some("toml") => "application/toml".to_owned(),
+        _ => mime_guess::from_path(name).first_or_octet_stream().to_string(),
+    }
 }
 
 impl Store {

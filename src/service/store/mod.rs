@@ -13,10 +13,11 @@ mod tokens;
 use std::path::Path;
 use std::time::Duration;
 
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 use sqlx::any::AnyPoolOptions;
 use sqlx::{AnyPool, Connection};
 
-pub use files::{File, FileEntry};
+pub use files::{File, FileEntry, media_type};
 pub use jobs::{Listing, NewJob, Submitted};
 pub use queue::{Beat, Claim, Growth, Outcome};
 pub use tokens::{Role, Token, hash, hex};
@@ -78,10 +79,8 @@ impl Dialect {
 /// URL of the database file of a data folder.
 #[must_use]
 pub fn url_of_file(path: &Path) -> String {
-    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"/-_.~".contains(&byte);
-    let bytes = path.as_os_str().as_encoded_bytes().iter();
-    let encoded: String = bytes.map(|&b| if plain(b) { (b as char).to_string() } else { format!("%{b:02X}") }).collect();
-    format!("sqlite://{encoded}?mode=rwc")
+    const IN_FILES: AsciiSet = NON_ALPHANUMERIC.remove(b'/');
+    format!("sqlite://{}?mode=rwc", percent_encode(path.as_os_str().as_encoded_bytes(), &IN_FILES))
 }
 
 impl Store {

@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::predict::Prediction;
 use crate::report::run::PARAVIEW;
 use crate::report::{fit, run};
-use crate::service::store::File;
+use crate::service::store::{File, media_type};
 use crate::units::MM;
 
 /// Summary and files of a result.
@@ -99,13 +99,7 @@ fn collected(folder: &Path) -> Result<Vec<File>> {
 }
 
 fn file(name: String, content: Vec<u8>) -> File {
-    let media_type = match Path::new(&name).extension().and_then(|extension| extension.to_str()) {
-        // Not registered, so not guessed.
-        Some("parquet") => "application/vnd.apache.parquet".to_owned(),
-        Some("toml") => "application/toml".to_owned(),
-        _ => mime_guess::from_path(&name).first_or_octet_stream().to_string(),
-    };
-    File { name, media_type, content }
+    File { media_type: media_type(&name), name, content }
 }
 
 fn archive(folder: &Path) -> Result<Vec<u8>> {

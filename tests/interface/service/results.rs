@@ -160,6 +160,10 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         service.succeeded(&again);
         assert_eq!(service.file(&again, "fitted.toml"), service.file(&job, "fitted.toml"), "{name}: as a form");
 
+        let came = &service.get(&again).json()["inputs"][0];
+        assert_eq!((&came["name"], &came["media_type"]), (&"curve.csv".into(), &"text/csv".into()));
+        assert_eq!(service.get(came["href"].as_str().unwrap()).expect(200).text(), curve);
+
         // A case with this law, whatever its own.
         let case = if name == "hand" {
             QUICK.replace("[model]\nspacing_mm = 1.5\n", "[model]\nmethod = \"handbook\"\n")
