@@ -27,6 +27,9 @@ pub struct Args {
     /// Most jobs of one owner that wait
     #[arg(long, value_name = "COUNT", default_value_t = 1000, help_heading = "Limits")]
     pub queued: u32,
+    /// Most connections at a time; the others wait
+    #[arg(long, value_name = "COUNT", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Limits")]
+    pub connections: u32,
     /// Most requests a second of one caller
     #[arg(long, value_name = "COUNT", default_value = "5000", help_heading = "Limits")]
     pub requests_per_second: NonZeroU32,
@@ -50,6 +53,7 @@ pub fn run(args: &Args) -> Result<()> {
         body_bytes: (args.body_mib as usize) << 20,
         points: f64::from(args.points),
         queued: i64::from(args.queued),
+        connections: args.connections as usize,
         requests_per_second: args.requests_per_second,
         writes_per_second: args.writes_per_second,
         ..Limits::default()

@@ -10,6 +10,7 @@
 
 pub mod api;
 pub mod job;
+mod listen;
 pub mod problem;
 pub mod store;
 pub mod worker;
@@ -33,8 +34,6 @@ use worker::Workers;
 const CONNECTIONS: u32 = 8;
 /// Time between two forgettings of callers that were not heard of.
 const FORGET_EVERY: Duration = Duration::from_secs(60);
-/// Time that requests have to end when the process is to stop.
-const LAST_ANSWERS: Duration = Duration::from_secs(10);
 
 /// What a service is to do.
 #[derive(Debug, Clone)]
@@ -76,32 +75,16 @@ pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> 
         let forgetting = tokio::spawn(forget_callers(app.clone()));
         ready(address);
 
-        let stop_app = app.clone();
-        let stopped = async move {
+        let stopping = async {
             asked_to_stop().await;
-            stop_app.stop();
+            app.stop();
         };
-        let service = api::router(app).into_make_service_with_connect_info::<SocketAddr>();
-        let (said, heard) = tokio::sync::oneshot::channel::<()>();
-        let stopping = async move {
-            stopped.await;
-            let _ = said.send(());
-        };
-        let serving = axum::serve(listener, service).with_graceful_shutdown(stopping);
-        // Who keeps a connection open for ever does not keep the process.
-        let late = async {
-            let _ = heard.await;
-            tokio::time::sleep(LAST_ANSWERS).await;
-        };
-        let served = tokio::select! {
-            served = serving => served,
-            () = late => Ok(()),
-        };
+        listen::serve(listener, api::router(app.clone()), settings.limits.connections, stopping).await;
         tracing::info!("stopping: jobs go on from their checkpoints at the next start");
         forgetting.abort();
         workers.stop().await;
         store.close().await;
-        served.map_err(cannot)
+        Ok(())
     })
 }
 

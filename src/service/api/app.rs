@@ -28,6 +28,8 @@ pub struct Limits {
     pub writes_per_second: NonZeroU32,
     /// Bodies read and checked at a time, so that memory is bounded: the others wait.
     pub bodies_at_once: usize,
+    /// Connections at a time.
+    pub connections: usize,
     /// Time in which an answer must begin.
     pub answer_within: Duration,
 }
@@ -44,6 +46,7 @@ impl Default for Limits {
             requests_per_second: READS,
             writes_per_second: WRITES,
             bodies_at_once: 8,
+            connections: 1000,
             answer_within: Duration::from_secs(60),
         }
     }

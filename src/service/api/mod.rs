@@ -69,6 +69,7 @@ pub fn router(app: App) -> Router {
             Problem::new(StatusCode::METHOD_NOT_ALLOWED, "Method not allowed", "this address does not take that method")
         })
         .layer(DefaultBodyLimit::max(limits.body_bytes))
+        .layer(from_fn_with_state(limits.body_bytes, security::in_size))
         .layer(from_fn_with_state(app.clone(), security::guard))
         .layer(from_fn(watching::measure))
         .layer(from_fn_with_state(limits.answer_within, security::in_time))

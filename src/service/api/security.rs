@@ -9,6 +9,7 @@ use axum::http::uri::Authority;
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use tokio_stream::StreamExt;
 
 use super::App;
 use crate::service::problem::{Answer, Problem};
@@ -138,6 +139,26 @@ pub async fn in_time(State(limit): State<Duration>, request: Request, next: Next
         let detail = format!("no answer within {} s; try again when the server has less to do", limit.as_secs());
         Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Too slow", detail).into_response()
     })
+}
+
+/// Bytes of a body that is too large that are read and forgotten: who sends it hears an answer only when all is sent.
+const FORGOTTEN_BYTES: usize = 256 << 20;
+
+/// Refuses a body that says itself that it is too large, once it has come.
+pub async fn in_size(State(limit): State<usize>, request: Request, next: Next) -> Response {
+    let length = request.headers().get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse::<usize>().ok());
+    if length.is_none_or(|length| length <= limit) {
+        return next.run(request).await;
+    }
+    let mut rest = request.into_body().into_data_stream();
+    let mut forgotten = 0;
+    while let Some(Ok(piece)) = rest.next().await {
+        forgotten += piece.len();
+        if forgotten > FORGOTTEN_BYTES {
+            break;
+        }
+    }
+    Problem::too_large(format!("the body is larger than the {limit} bytes this server takes")).into_response()
 }
 
 /// What the page may load: only what comes from here.

@@ -59,7 +59,7 @@ fn requests_that_cannot_be_read_are_refused() {
         ("/v1/predictions", json, b"{}".to_vec(), 400, "no `input`"),
         ("/v1/predictions", json, b"{\"inputs\": \"\"}".to_vec(), 400, "unknown field `inputs`"),
         ("/v1/predictions", json, vec![b'['; 100_000], 400, "not JSON"),
-        ("/v1/predictions", json, vec![b' '; 2 << 20], 413, "larger than this server takes"),
+        ("/v1/predictions", json, vec![b' '; 2 << 20], 413, "larger than the 1048576 bytes this server takes"),
         ("/v1/predictions", json, of("case\n", QUICK).to_string().into_bytes(), 422, "is no name"),
         ("/v1/predictions", json, of("case", &fine).to_string().into_bytes(), 422, "model.spacing_mm = 0.1: gives the plate"),
         ("/v1/check", json, of("case", &fine).to_string().into_bytes(), 422, "more than the 1.000e5"),
@@ -159,6 +159,28 @@ fn the_service_describes_itself() {
     ] {
         assert!(counted.contains(line), "{line} in {counted}");
     }
+}
+
+/// Who opens connections and says nothing is shown out; others are served meanwhile.
+#[test]
+fn idle_talkers_do_not_block_the_door() {
+    use std::io::{Read, Write};
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--connections", "40"]);
+    let address = service.url.trim_start_matches("http://").to_owned();
+    let begun = std::time::Instant::now();
+    let mut idle: Vec<_> = (0..39).map(|_| std::net::TcpStream::connect(&address).unwrap()).collect();
+    idle.iter_mut().for_each(|stream| stream.write_all(b"GET /healthz HTTP/1.1\r\nHost: local").unwrap());
+    service.get("/healthz").expect(200);
+    for stream in &mut idle {
+        // An answer that says so, or nothing; then the end.
+        let mut rest = Vec::new();
+        stream.read_to_end(&mut rest).unwrap();
+        assert!(rest.is_empty() || rest.starts_with(b"HTTP/1.1 4"), "{}", String::from_utf8_lossy(&rest));
+    }
+    let seconds = begun.elapsed().as_secs_f64();
+    assert!((9.0..60.0).contains(&seconds), "{seconds} s");
 }
 
 /// More than a caller may ask for is refused with the time after which he may ask again.

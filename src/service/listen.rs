@@ -1,0 +1,75 @@
+//! Connections: so many at a time, none that only pretends to ask, all ended in order when the process stops.
+
+use std::convert::Infallible;
+use std::future::Future;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::ConnectInfo;
+use axum::http::Request;
+use hyper::body::Incoming;
+use hyper::server::conn::http1;
+use hyper::service::service_fn;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::server::graceful::GracefulShutdown;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tower::ServiceExt;
+
+/// Time in which the head of a request must have come; also that for which an idle connection is kept.
+const HEAD_WITHIN: Duration = Duration::from_secs(10);
+/// Time that requests have to end when the process is to stop.
+const LAST_ANSWERS: Duration = Duration::from_secs(10);
+/// Time before another try when the system gives no connection, most likely because it has no more file handles.
+const TRY_EVERY: Duration = Duration::from_millis(200);
+
+/// Serves until `stop` is ready, then lets requests end.
+pub async fn serve(listener: TcpListener, router: Router, connections: usize, stop: impl Future<Output = ()>) {
+    let graceful = GracefulShutdown::new();
+    let room = Arc::new(Semaphore::new(connections));
+    tokio::pin!(stop);
+    loop {
+        // Whoever comes when all are taken waits in the queue of the system.
+        let next = async {
+            let place = Arc::clone(&room).acquire_owned().await;
+            (listener.accept().await, place)
+        };
+        tokio::select! {
+            () = &mut stop => break,
+            (accepted, place) = next => match (accepted, place) {
+                (Ok((stream, address)), Ok(place)) => take(stream, address, place, router.clone(), &graceful),
+                (Err(error), _) => {
+                    tracing::warn!("no connection can be taken: {error}");
+                    tokio::time::sleep(TRY_EVERY).await;
+                }
+                // Never closed.
+                (_, Err(_)) => break,
+            },
+        }
+    }
+    drop(listener);
+    // Who keeps a connection open for ever does not keep the process.
+    let _ = tokio::time::timeout(LAST_ANSWERS, graceful.shutdown()).await;
+}
+
+fn take(stream: TcpStream, address: SocketAddr, place: OwnedSemaphorePermit, router: Router, graceful: &GracefulShutdown) {
+    // Answers are small and whole: waiting for more to send would only cost time.
+    let _ = stream.set_nodelay(true);
+    let service = service_fn(move |request: Request<Incoming>| {
+        let mut request = request.map(Body::new);
+        request.extensions_mut().insert(ConnectInfo(address));
+        let answer = router.clone().oneshot(request);
+        async move { Ok::<_, Infallible>(answer.await.unwrap_or_else(|never| match never {})) }
+    });
+    let mut builder = http1::Builder::new();
+    builder.timer(TokioTimer::new()).header_read_timeout(HEAD_WITHIN);
+    let connection = graceful.watch(builder.serve_connection(TokioIo::new(stream), service));
+    tokio::spawn(async move {
+        // Its trouble is the client's, who is gone.
+        let _ = connection.await;
+        drop(place);
+    });
+}
