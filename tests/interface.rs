@@ -8,6 +8,8 @@ mod noise;
 mod postgres;
 #[path = "support/server.rs"]
 mod server;
+#[path = "support/slurm.rs"]
+mod slurm;
 
 #[path = "interface/bad_csv.rs"]
 mod bad_csv;
@@ -35,3 +37,5 @@ mod hand_calculation;
 mod service;
 #[path = "interface/sif.rs"]
 mod sif;
+#[path = "interface/sweep.rs"]
+mod sweep;
