@@ -171,6 +171,10 @@ fn run_part(args: &Args, shard: Shard, sweep: &Sweep, cases: &[DrawnCase], plan:
 pub fn finish(folder: &SweepFolder, begun: Instant, console: &Console) -> Result<()> {
     let outcomes: Vec<Option<Outcome>> = (1..=folder.plan.cases.len()).map(|number| folder.outcome(number)).collect();
     let figures = write(&folder.path, &folder.plan, &outcomes, begun.elapsed().as_secs_f64())?;
+    for warning in first(&figures, "warnings") {
+        let (case, text) = (warning["first"].as_str().unwrap_or_default(), warning["warning"].as_str().unwrap_or_default());
+        console.warn(&format!("in {} cases, {case} the first: {text}", warning["cases"]));
+    }
     summary(&folder.path, &folder.plan, &figures).iter().for_each(|line| console.say(line));
     console.object(&figures)?;
     verdict(&folder.plan.name, &figures)

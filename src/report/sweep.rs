@@ -162,15 +162,6 @@ pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value 
     let missing: Vec<String> =
         outcomes.iter().enumerate().filter(|(_, outcome)| outcome.is_none()).map(|(i, _)| label(i + 1)).collect();
     let run_out = |outcome: &&Outcome| outcome.stop_reason.as_deref() == Some(StopReason::RunOut.name());
-    let mut warnings: BTreeMap<&str, usize> = BTreeMap::new();
-    for warning in there().flat_map(|outcome| &outcome.warnings) {
-        *warnings.entry(warning).or_default() += 1;
-    }
-    let mut warnings: Vec<(&str, usize)> = warnings.into_iter().collect();
-    // The most frequent first; equally frequent ones stay in the order of the alphabet.
-    warnings.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let warnings: Vec<Value> =
-        warnings.iter().take(WARNINGS_MAX).map(|(text, cases)| json!({ "cases": cases, "warning": text })).collect();
     json!({
         "name": plan.name,
         "cases": plan.cases.len(),
@@ -187,13 +178,28 @@ pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value 
         },
         "failures": failures.iter().take(FAILURES_MAX).collect::<Vec<_>>(),
         "missing_cases": missing,
-        "warnings": warnings,
+        "warnings": warnings(outcomes),
         "columns": plan.columns,
         "design": plan.design,
         "version": plan.version,
         "wall_s": wall_s,
         "computing_s": there().map(|outcome| outcome.wall_s).sum::<f64>(),
     })
+}
+
+/// Warnings by number of cases; those that differ in their numbers only are one, told by the first case that has it.
+fn warnings(outcomes: &[Option<Outcome>]) -> Vec<Value> {
+    let mut found: BTreeMap<String, (usize, usize, &str)> = BTreeMap::new();
+    for (i, outcome) in outcomes.iter().enumerate() {
+        for warning in outcome.iter().flat_map(|outcome| &outcome.warnings) {
+            let words = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
+            found.entry(words).or_insert((0, i + 1, warning)).0 += 1;
+        }
+    }
+    let mut found: Vec<(usize, usize, &str)> = found.into_values().collect();
+    found.sort_by_key(|(cases, first, _)| (std::cmp::Reverse(*cases), *first));
+    let told = |(cases, first, text): (usize, usize, &str)| json!({ "cases": cases, "first": label(first), "warning": text });
+    found.into_iter().take(WARNINGS_MAX).map(told).collect()
 }
 
 /// Lives of the cases that have one, upwards.

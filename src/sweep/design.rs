@@ -86,7 +86,8 @@ impl Sweep {
     /// # Errors
     /// Wrong input; files that cannot be read.
     pub fn from_file(path: &Path, overrides: &[String], most: usize) -> Result<Self> {
-        let of_sweep = |text: &String| ["design", "vary"].iter().any(|section| text.trim_start().starts_with(section));
+        let section = |text: &str| text.split(['.', '[', '=']).next().unwrap_or_default().trim().to_owned();
+        let of_sweep = |text: &String| ["design", "vary"].contains(&section(text).as_str());
         let (own, of_case): (Vec<String>, Vec<String>) = overrides.iter().cloned().partition(of_sweep);
         let document = Document::read(path, &own)?;
         let read = || -> Result<(String, Design)> {

@@ -106,13 +106,15 @@ fn a_finished_case_is_not_run_again() {
     // As after a crash: cases that are missing, one that was being written, no tables.
     fs::remove_dir_all(here.join("out/cases/0004")).unwrap();
     fs::create_dir(here.join("out/cases/.0005.partial-1-0")).unwrap();
-    ["sweep.csv", "sweep.json", "life.svg"].map(|file| fs::remove_file(here.join("out").join(file)).unwrap());
+    for file in ["sweep.csv", "sweep.json", "life.svg"] {
+        fs::remove_file(here.join("out").join(file)).unwrap();
+    }
     let output = perilife(here, &["sweep", "sweep.toml", "--out", "out"]);
     assert!(texts(&output).1.contains("5 of 6 cases are there already"), "{}", texts(&output).1);
     assert_eq!((rows(&here.join("out")), outcome("0002").unwrap()), (whole.clone(), before));
     assert_eq!(fs::read_dir(here.join("out/cases")).unwrap().count(), 6);
-    // Another load is another input; fewer cases leave no others behind.
-    let set = ["--set", "loading.stress_ratio=0.5", "--set", "vary[1].count=2"];
+    // Another law is another input; fewer cases leave no others behind.
+    let set = ["--set", "fatigue.paris_m=3.0", "--set", "vary[1].count=2"];
     done(here, &[&["sweep", "sweep.toml", "--out", "out"][..], &set].concat());
     let other = rows(&here.join("out"));
     assert_eq!((other.len(), fs::read_dir(here.join("out/cases")).unwrap().count()), (5, 4));
@@ -153,22 +155,32 @@ fn a_killed_sweep_goes_on() {
     assert!(here.join("out/cases/0003/paraview/run.pvd").is_file());
 }
 
+/// Far outside the fitted range of ΔK a run does not count.
 #[test]
 fn a_failing_case_is_a_row() {
-    // Under the highest load the toughness is passed at once.
-    let dir = folder_with(&GRID.replace("to = 60", "to = 400"));
+    let panel = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/sweeps/panel.toml");
+    let design = "[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nvalues = [48.28, 20.0]\n";
+    let dir = folder_with(&format!("case = {:?}\n{design}", panel.display().to_string()));
     let here = dir.path();
-    let tough = ["--set", "material.toughness_mpa_sqrt_m=30"];
-    let stdout = done(here, &[&["sweep", "sweep.toml", "--out", "out"][..], &tough].concat());
-    let rows = rows(&here.join("out"));
-    println!("{stdout}{rows:?}");
+    let stdout = done(here, &["sweep", "sweep.toml", "--out", "out"]);
     assert!(
-        rows[1..].iter().any(|row| row[3].is_empty() && !row[6].is_empty()) || rows[1..].iter().any(|row| row[4] == "toughness")
+        stdout.contains("1 succeeded, 1 failed") && stdout.contains("failed         0002: fatigue.allow_extrapolation"),
+        "{stdout}"
     );
-    // Where no case has a result the sweep has none.
-    let outside = ["--set", "vary[1].from=399", "--set", "material.yield_strength_mpa=100"];
-    let output = perilife(here, &[&["sweep", "sweep.toml", "--out", "none"][..], &outside].concat());
-    println!("{:?}", texts(&output));
+    let table = fs::read_to_string(here.join("out/sweep.csv")).unwrap();
+    let row = table.lines().nth(2).unwrap();
+    assert!(row.starts_with("0002,20.00000000,,,,") && row.contains("outside the fitted range of ΔK"), "{row}");
+    assert_eq!(json(&here.join("out/sweep.json"))["failures"][0]["case"], "0002");
+    // It is not tried again, and where no case has a result the sweep has none.
+    assert!(texts(&perilife(here, &["sweep", "sweep.toml", "--out", "out"])).1.contains("2 of 2 cases are there already"));
+    let output = perilife(here, &["sweep", "sweep.toml", "--out", "none", "--set", "vary[0].values=[20.0]"]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(
+        texts(&output).1.contains("error: sweep: no case has a result; the first says: fatigue.allow"),
+        "{}",
+        texts(&output).1
+    );
+    assert!(here.join("none/sweep.csv").is_file());
 }
 
 #[test]
@@ -184,7 +196,9 @@ fn shards_and_collect_give_the_same_table() {
     assert!(texts(&output).1.contains("3 of 6 cases are missing: 0002, 0004, 0006;"), "{}", texts(&output).1);
     assert_eq!(json(&here.join("parts/sweep.json"))["missing_cases"], serde_json::json!(["0002", "0004", "0006"]));
     assert!(fs::read_to_string(here.join("parts/sweep.csv")).unwrap().contains("0002,8.000000000,50.00000000,,,,,not run yet"));
-    ["2/4", "4/4"].map(part);
+    for i in ["2/4", "4/4"] {
+        part(i);
+    }
     done(here, &["collect", "parts"]);
     assert_eq!(rows(&here.join("parts")), rows(&here.join("whole")));
     // A part of another sweep has no place there.
@@ -336,7 +350,7 @@ fn bad_designs_are_refused_before_anything_runs() {
         (
             grid(&format!("{length}values = [8.0, 50.0]\n")),
             2,
-            vec!["panel.toml:18", "stop.crack_length_mm", "case 0002 of sweep.toml: specimen.crack_length_mm = 50"],
+            vec!["panel.toml:19", "stop.crack_length_mm", "case 0002 of sweep.toml: specimen.crack_length_mm = 50"],
         ),
         (
             random(&format!("{length}distribution = \"normal\"\nmean = 1\nstandard_deviation = 5\n")),

@@ -43,7 +43,7 @@ fn the_seed_decides() {
     assert!(correlation.abs() < 0.25, "{correlation}");
 }
 
-const ORDER_OF_SEED_1: [usize; 3] = [0, 1, 2];
+const ORDER_OF_SEED_1: [usize; 3] = [1, 2, 0];
 
 /// Tables give these (e.g. Wichura 1988); the middle, both sides and both tails of the approximation.
 #[test]
