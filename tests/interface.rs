@@ -13,6 +13,8 @@ mod slurm;
 
 #[path = "interface/bad_csv.rs"]
 mod bad_csv;
+#[path = "interface/bad_sweeps.rs"]
+mod bad_sweeps;
 #[path = "interface/bad_toml.rs"]
 mod bad_toml;
 #[path = "interface/bench.rs"]

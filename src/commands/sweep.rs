@@ -172,8 +172,10 @@ pub fn finish(folder: &SweepFolder, begun: Instant, console: &Console) -> Result
     let outcomes: Vec<Option<Outcome>> = (1..=folder.plan.cases.len()).map(|number| folder.outcome(number)).collect();
     let figures = write(&folder.path, &folder.plan, &outcomes, begun.elapsed().as_secs_f64())?;
     for warning in first(&figures, "warnings") {
-        let (case, text) = (warning["first"].as_str().unwrap_or_default(), warning["warning"].as_str().unwrap_or_default());
-        console.warn(&format!("in {} cases, {case} the first: {text}", warning["cases"]));
+        let [case, text] = ["first", "warning"].map(|key| warning[key].as_str().unwrap_or_default());
+        let more = warning["cases"].as_u64().unwrap_or(1).saturating_sub(1);
+        let others = if more > 0 { format!(" and {more} more") } else { String::new() };
+        console.warn(&format!("case {case}{others}: {text}"));
     }
     summary(&folder.path, &folder.plan, &figures).iter().for_each(|line| console.say(line));
     console.object(&figures)?;

@@ -19,10 +19,10 @@ const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nle
     [stop]\ncrack_length_mm = 49.8\n";
 
 /// Six cases, the last key fastest.
-const GRID: &str = "case = \"panel.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"specimen.crack_length_mm\"\n\
+pub const GRID: &str = "case = \"panel.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"specimen.crack_length_mm\"\n\
     values = [8.0, 9.5]\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nfrom = 40\nto = 60\ncount = 3\n";
 
-fn folder_with(sweep: &str) -> TempDir {
+pub fn folder_with(sweep: &str) -> TempDir {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("panel.toml"), PANEL).unwrap();
     fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
@@ -270,115 +270,41 @@ fn an_array_job_of_slurm_gives_the_same_table() {
     assert_eq!(rows(&here.join("a job's")), rows(&here.join("local")));
 }
 
+/// Panels of known scatter, measured, fitted and drawn again: lives scatter as theirs did.
 #[test]
-fn bad_designs_are_refused_before_anything_runs() {
-    let grid = |vary: &str| format!("case = \"panel.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\n{vary}");
-    let random =
-        |vary: &str| format!("case = \"panel.toml\"\n[design]\nkind = \"latin_hypercube\"\nsamples = 9\n[[vary]]\n{vary}");
-    let length = "key = \"specimen.crack_length_mm\"\n";
-    let table: Vec<(String, i32, Vec<&str>)> = vec![
-        ("[design]\nkind = \"grid\"\n".to_owned(), 2, vec!["sweep.toml", "case: is missing"]),
-        (
-            "case = \"gone.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"a.b\"\n".to_owned(),
-            2,
-            vec!["is not a key of a case"],
-        ),
-        (grid("key = \"specimen.crack_length_mm\"\nvalues = [1]\n").replace("panel", "gone"), 4, vec!["gone.toml: cannot read"]),
-        (
-            "case = \"panel.toml\"\n[design]\nkind = \"grit\"\n".to_owned(),
-            2,
-            vec!["sweep.toml:3", "\"grit\"", "grid, latin_hypercube"],
-        ),
-        ("case = \"panel.toml\"\n[design]\nkind = \"grid\"\n".to_owned(), 2, vec!["vary: is missing: nothing varies"]),
-        (
-            grid("key = \"crack_length_mm\"\nvalues = [1]\n"),
-            2,
-            vec!["sweep.toml:5", "vary[0].key = \"crack_length_mm\"", "section.key"],
-        ),
-        (grid(&format!("{length}values = []\n")), 2, vec!["vary[0].values = []: is empty"]),
-        (grid(&format!("{length}from = 8\nto = 9\n")), 2, vec!["vary[0].count: is missing"]),
-        (
-            grid(&format!("{length}from = 0\nto = 9\ncount = 3\nscale = \"log\"\n")),
-            2,
-            vec!["vary[0].from = 0: must be above zero"],
-        ),
-        (grid(&format!("{length}distribution = \"normal\"\n")), 2, vec!["vary[0].distribution", "this is a grid"]),
-        (grid(&format!("{length}values = [8]\n[[vary]]\n{length}values = [9]\n")), 2, vec!["sweep.toml:8", "varies already"]),
-        (grid(&format!("{length}from = 8\nto = 9\ncount = 20000\n")), 2, vec!["vary[0].count = 20000"]),
-        (
-            grid(&format!(
-                "{length}from = 8\nto = 9\ncount = 200\n[[vary]]\nkey = \"loading.stress_ratio\"\nfrom = 0\nto = 0.5\ncount = 51\n"
-            )),
-            2,
-            vec!["10200 cases", "--most"],
-        ),
-        (random(&format!("{length}values = [8]\n")), 2, vec!["vary[0].values", "belongs to a grid"]),
-        (
-            random(&format!("{length}distribution = \"uniform\"\nfrom = 9\nto = 8\n")),
-            2,
-            vec!["vary[0].to = 8", "is not above from = 9"],
-        ),
-        (random(&format!("{length}distribution = \"normal\"\nmean = 9\nto = 8\n")), 2, vec!["vary[0].to", "does not go with"]),
-        (
-            random(&format!("{length}distribution = \"log_normal\"\nmedian = 9\nfactor = 0.5\n")),
-            2,
-            vec!["factor = 0.5: must be above 1"],
-        ),
-        (
-            random(&format!("{length}distribution = \"uniform\"\nfrom = 8\nto = 9\n")).replace("samples = 9\n", ""),
-            2,
-            vec!["design.samples: is missing"],
-        ),
-        (
-            random(&format!("{length}distribution = \"uniform\"\nfrom = 8\nto = 9\n")).replace("samples = 9", "samples = 0"),
-            2,
-            vec!["design.samples = 0"],
-        ),
-        // Cases that are wrong: the sweep file, its line, the key of the case and its value.
-        (grid(&format!("{length}values = [8.0, 90.0]\n")), 2, vec!["sweep.toml:5", "specimen.crack_length_mm = 90", "case 0002"]),
-        (
-            grid("key = \"specimen.crack_lenght_mm\"\nvalues = [8.0]\n"),
-            2,
-            vec!["sweep.toml:5", "specimen.crack_lenght_mm", "is not a known key"],
-        ),
-        (
-            grid("key = \"model.method\"\nvalues = [\"handbook\", \"guess\"]\n"),
-            2,
-            vec!["sweep.toml:5", "model.method = \"guess\"", "case 0002"],
-        ),
-        // A key that does not vary, wrong because of one that does.
-        (
-            grid(&format!("{length}values = [8.0, 50.0]\n")),
-            2,
-            vec!["panel.toml:19", "stop.crack_length_mm", "case 0002 of sweep.toml: specimen.crack_length_mm = 50"],
-        ),
-        (
-            random(&format!("{length}distribution = \"normal\"\nmean = 1\nstandard_deviation = 5\n")),
-            2,
-            vec!["sweep.toml:6", "specimen.crack_length_mm = -", "must be above zero"],
-        ),
-        (
-            "case = \"panel.toml\"\n[design]\nkind = \"fitted_scatter\"\nsamples = 9\n".to_owned(),
-            2,
-            vec!["panel.toml", "fatigue.fitted: is missing", "design.kind"],
-        ),
-        (
-            random(&format!("{length}distribution = \"uniform\"\nfrom = 8\nto = 9\n"))
-                .replace("samples", "scatter = \"constants\"\nsamples"),
-            2,
-            vec!["design.scatter", "does not go with"],
-        ),
-    ];
-    for (text, code, words) in table {
-        let dir = folder_with(&text);
-        println!("{text}");
-        let output = perilife(dir.path(), &["sweep", "sweep.toml", "--out", "out"]);
-        assert_refused(&output, code, &words);
-        assert!(!dir.path().join("out").exists());
+fn drawn_laws_scatter_as_the_specimens_did() {
+    let design = "case = \"panel.toml\"\n[design]\nkind = \"latin_hypercube\"\nsamples = 40\nseed = 3\n\
+        [[vary]]\nkey = \"fatigue.paris_c_mm_per_cycle\"\ndistribution = \"log_normal\"\nmedian = 8.95e-8\nfactor = 1.08\n\
+        [[vary]]\nkey = \"fatigue.paris_m\"\ndistribution = \"normal\"\nmean = 2.874\nstandard_deviation = 0.02\n";
+    let dir = folder_with(design);
+    let here = dir.path();
+    done(here, &["sweep", "sweep.toml", "--out", "tests"]);
+    let mut measured = "specimen,cycles,crack_length_mm\n".to_owned();
+    for case in 1..=40 {
+        let text = fs::read_to_string(here.join(format!("tests/cases/{case:04}/a_n.csv"))).unwrap();
+        let rows: Vec<&str> = text.lines().skip(1).collect();
+        for row in rows.iter().step_by((rows.len() / 40).max(1)).chain(rows.last().filter(|_| rows.len() % 40 != 1)) {
+            let fields: Vec<&str> = row.split(',').collect();
+            measured += &format!("V{case},{},{}\n", fields[0], fields[1]);
+        }
     }
-    let dir = folder_with(GRID);
-    for shard in ["0/3", "4/3", "1", "a/b"] {
-        let output = perilife(dir.path(), &["sweep", "sweep.toml", "--out", "out", "--shard", shard]);
-        assert_eq!(output.status.code(), Some(2), "{shard}");
+    fs::write(here.join("measured.csv"), measured).unwrap();
+    let (sections, _) = PANEL.split_once("[fatigue]").unwrap();
+    let calibration = format!("[measured]\nfiles = [\"measured.csv\"]\n{sections}[fit]\nparameters = [\"a\", \"p\"]\n");
+    fs::write(here.join("calibration.toml"), calibration).unwrap();
+    done(here, &["calibrate", "calibration.toml", "--out", "fit"]);
+    let panel = format!("{sections}[fatigue]\nfitted = \"fit/fitted.toml\"\n[stop]\ncrack_length_mm = 49.8\n");
+    fs::write(here.join("panel.toml"), panel).unwrap();
+    fs::write(here.join("scatter.toml"), "case = \"panel.toml\"\n[design]\nkind = \"fitted_scatter\"\nsamples = 400\n").unwrap();
+    done(here, &["sweep", "scatter.toml", "--out", "drawn", "--summary-only"]);
+    let life = |folder: &str, key: &str| json(&here.join(folder).join("sweep.json"))["life_cycles"][key].as_f64().unwrap();
+    for key in ["p05", "p50", "p95"] {
+        let [tests, drawn] = ["tests", "drawn"].map(|folder| life(folder, key));
+        println!("{key}: {tests:.0} of the panels, {drawn:.0} drawn");
+        assert!((drawn / tests - 1.0).abs() < 0.04, "{key}: {tests} {drawn}");
     }
+    // Without the fits of the specimens there is nothing to draw from.
+    fs::remove_file(here.join("fit/fit.json")).unwrap();
+    let output = perilife(here, &["sweep", "scatter.toml", "--out", "drawn"]);
+    assert_refused(&output, 4, &["fit.json", "cannot read the fits of the specimens"]);
 }
