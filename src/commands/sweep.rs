@@ -126,6 +126,9 @@ pub fn run(args: &Args) -> Result<()> {
         #[cfg(feature = "service")]
         Engine::Service => {
             let url = args.place.url()?;
+            let place = crate::service::without_password(&url);
+            args.console
+                .note(&format!("{} jobs for the workers of {place}; they go on if this command is broken off", left.len()));
             service::run(&url, &left, &folder, !args.summary_only, &args.console.count(&sweep.name, left.len()))?;
         }
         Engine::Slurm => {

@@ -76,6 +76,9 @@ pub struct Outcome {
     /// Why there is no result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
+    /// Whether a machine was to blame and not the input, so that the next call tries again.
+    #[serde(default)]
+    pub try_again: bool,
     /// What the user should know.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -94,6 +97,7 @@ impl Outcome {
             crack_length_final_mm: None,
             wall_s,
             problem: Some(problem.to_owned()),
+            try_again: false,
             warnings: Vec::new(),
             has_files: false,
         }

@@ -3,7 +3,7 @@
 #[path = "service/crashes.rs"]
 mod crashes;
 #[path = "service/jobs.rs"]
-mod jobs;
+pub mod jobs;
 #[path = "service/refusals.rs"]
 mod refusals;
 #[path = "service/results.rs"]

@@ -11,6 +11,7 @@ use tempfile::{TempDir, tempdir};
 
 use crate::cli::{SMALL_CASE, assert_refused, perilife, texts};
 use crate::server::{PATIENCE, Server, in_folder};
+use crate::service::jobs::with_each_store;
 use crate::slurm::Slurm;
 
 const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\n\
@@ -212,29 +213,89 @@ fn shards_and_collect_give_the_same_table() {
 
 #[test]
 fn workers_of_a_service_give_the_same_table() {
-    let dir = folder_with(GRID);
-    let here = dir.path();
-    done(here, &["sweep", "sweep.toml", "--out", "local"]);
-    let place = in_folder(&here.join("service"));
-    let arguments = ["sweep", "sweep.toml", "--out", "served", "--engine", "service", &place[0], &place[1]];
-    // Broken off before there is any worker: the jobs stay.
-    let mut process =
-        Command::new(cargo_bin("perilife")).current_dir(here).args(arguments).stdout(Stdio::null()).spawn().unwrap();
-    std::thread::sleep(Duration::from_secs(2));
-    let _ = process.kill();
-    process.wait().unwrap();
-    let _worker = Server::worker(&[&place[0], &place[1]], &["--jobs", "2"]);
-    done(here, &arguments);
-    assert_eq!(rows(&here.join("served")), rows(&here.join("local")));
-    for case in ["0001", "0006"] {
-        let [served, local] = ["served", "local"].map(|folder| here.join(folder).join("cases").join(case));
-        for entry in fs::read_dir(&local).unwrap().map(Result::unwrap) {
-            assert!(served.join(entry.file_name()).exists(), "{:?}", entry.file_name());
+    with_each_store("swept", |place| {
+        let dir = folder_with(GRID);
+        let here = dir.path();
+        done(here, &["sweep", "sweep.toml", "--out", "local"]);
+        let arguments = [&["sweep", "sweep.toml", "--out", "served", "--engine", "service"], place].concat();
+        let start =
+            || Command::new(cargo_bin("perilife")).current_dir(here).args(&arguments).stderr(Stdio::null()).spawn().unwrap();
+
+        // Killed before there is any worker: the jobs stay.
+        let service = Server::start(place, &["--jobs", "0"]);
+        let jobs = || service.get("/v1/predictions?limit=200").json()["items"].as_array().unwrap().clone();
+        let wait_for = |count: usize| {
+            let begun = Instant::now();
+            while jobs().len() < count {
+                assert!(begun.elapsed() < PATIENCE, "{} jobs", jobs().len());
+                std::thread::sleep(Duration::from_millis(20));
+            }
+        };
+        let mut process = start();
+        wait_for(6);
+        let _ = process.kill();
+        process.wait().unwrap();
+        // The next call waits for the same jobs, and ends when somebody cancels one. One that is cancelled before is submitted anew.
+        let mut process = start();
+        let begun = Instant::now();
+        let ended = loop {
+            if let Some(ended) = process.try_wait().unwrap() {
+                break ended;
+            }
+            assert!(begun.elapsed() < PATIENCE, "it does not end");
+            let id = jobs()[0]["id"].as_str().unwrap().to_owned();
+            service.post(&format!("/v1/predictions/{id}/cancel"), &Value::Null);
+            std::thread::sleep(Duration::from_millis(300));
+        };
+        assert_eq!(ended.code(), Some(3));
+
+        // With workers the next one gets them all.
+        let _worker = Server::worker(place, &["--jobs", "2"]);
+        done(here, &arguments);
+        let with = |state: &str| jobs().iter().filter(|job| job["state"] == state).count();
+        assert_eq!((with("succeeded"), jobs().len()), (6, 6 + with("cancelled")));
+        assert_eq!(rows(&here.join("served")), rows(&here.join("local")));
+        for case in ["0001", "0006"] {
+            let [served, local] = ["served", "local"].map(|folder| here.join(folder).join("cases").join(case));
+            for entry in fs::read_dir(&local).unwrap().map(Result::unwrap) {
+                assert!(served.join(entry.file_name()).exists(), "{:?}", entry.file_name());
+            }
+            assert!(fs::read(served.join("a_n.csv")).unwrap() == fs::read(local.join("a_n.csv")).unwrap());
         }
-        assert!(fs::read(served.join("a_n.csv")).unwrap() == fs::read(local.join("a_n.csv")).unwrap());
+        // Everything is there: no worker is asked again.
+        assert!(texts(&perilife(here, &arguments)).1.contains("6 of 6 cases are there already"));
+    });
+}
+
+/// Cases of bonds have pictures, which come as an archive; a case that fails is a row here too.
+#[test]
+fn a_service_hands_over_all_files() {
+    let design = |case: &str, key: &str, values: &str| {
+        format!("case = {case:?}\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"{key}\"\nvalues = {values}\n")
+    };
+    let panel = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/sweeps/panel.toml");
+    let dir = folder_with(&design("small.toml", "specimen.crack_length_mm", "[12.0]"));
+    let here = dir.path();
+    let failing = design(&panel.display().to_string(), "loading.stress_range_mpa", "[48.28, 20.0]");
+    fs::write(here.join("failing.toml"), failing).unwrap();
+    let place = in_folder(&here.join("service"));
+    let _worker = Server::worker(&[&place[0], &place[1]], &["--jobs", "1"]);
+    for sweep in ["sweep", "failing"] {
+        let file = format!("{sweep}.toml");
+        let [served, local] = ["served", "local"].map(|engine| format!("{sweep}/{engine}"));
+        done(here, &["sweep", &file, "--out", &served, "--engine", "service", &place[0], &place[1]]);
+        done(here, &["sweep", &file, "--out", &local, "--threads", "1"]);
+        assert_eq!(rows(&here.join(served)), rows(&here.join(local)));
     }
-    // Everything is there: no worker is asked again.
-    assert!(texts(&perilife(here, &arguments)).1.contains("6 of 6 cases are there already"));
+    assert!(fs::read_to_string(here.join("failing/served/sweep.csv")).unwrap().contains("outside the fitted range of ΔK"));
+    let [served, local] = ["served", "local"].map(|engine| here.join("sweep").join(engine).join("cases/0001/paraview"));
+    let names = |folder: &Path| {
+        let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    assert!(names(&local).len() > 2 && names(&served) == names(&local));
+    assert!(names(&local).iter().all(|name| fs::read(local.join(name)).unwrap() == fs::read(served.join(name)).unwrap()));
 }
 
 #[test]

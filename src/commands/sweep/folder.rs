@@ -91,7 +91,10 @@ impl SweepFolder {
     /// Whether nothing is left to do for a case; one without the files that are wanted is run again, unless it failed.
     #[must_use]
     pub fn is_done(&self, number: usize, with_files: bool) -> bool {
-        self.outcome(number).is_some_and(|outcome| outcome.has_files || !with_files || outcome.problem.is_some())
+        self.outcome(number).is_some_and(|outcome| match outcome.problem {
+            Some(_) => !outcome.try_again,
+            None => outcome.has_files || !with_files,
+        })
     }
 
     /// Puts a case into its place: `make` writes its files and says what came of it.

@@ -67,6 +67,7 @@ fn outcome(case: &DrawnCase, files: Option<&Path>) -> Result<Outcome> {
             crack_length_final_mm: Some(prediction.crack_length_final() / MM),
             wall_s: prediction.figures.wall_s,
             problem: None,
+            try_again: false,
             warnings,
             has_files: files.is_some(),
         })

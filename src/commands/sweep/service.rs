@@ -81,7 +81,7 @@ async fn patiently<T>(ask: impl AsyncFn() -> store::Result<T>) -> store::Result<
     }
 }
 
-/// The job of a case: a new one, or that of an earlier call unless it was cancelled.
+/// The job of a case: a new one, or that of an earlier call unless it was cancelled or lost.
 async fn submitted(store: &Store, case: &DrawnCase) -> store::Result<String> {
     let submission =
         Submission { name: case.name.clone(), text: case.text.clone(), with_fitted: false, files: case.files.clone() };
@@ -100,7 +100,7 @@ async fn submitted(store: &Store, case: &DrawnCase) -> store::Result<String> {
             Submitted::New(id) => return Ok(id),
             Submitted::Again(id) => {
                 let job = patiently(async || store.job(JobKind::Prediction, &id).await).await?;
-                if job.is_some_and(|job| job.state != State::Cancelled) {
+                if job.is_some_and(|job| job.state != State::Cancelled && !is_lost(&job)) {
                     return Ok(id);
                 }
             }
@@ -109,6 +109,11 @@ async fn submitted(store: &Store, case: &DrawnCase) -> store::Result<String> {
         }
         tries += 1;
     }
+}
+
+/// Whether a job failed by what its workers ran into, not by its input.
+fn is_lost(job: &Job) -> bool {
+    job.problem.as_ref().is_some_and(|problem| problem.status >= 500)
 }
 
 /// Puts what came of a job into the folder of its case.
@@ -128,7 +133,7 @@ async fn fetch(
         return ended("was cancelled");
     }
     if let Some(problem) = &job.problem {
-        let outcome = Outcome::failed(case, &problem.detail, 0.0);
+        let outcome = Outcome { try_again: is_lost(&job), ..Outcome::failed(case, &problem.detail, 0.0) };
         return Ok(folder.keep(case, |_| Ok(outcome)));
     }
     let mut files = Vec::new();
@@ -159,6 +164,7 @@ fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Resu
         crack_length_final_mm: rows.last().map(|row| row.crack_length_mm),
         wall_s: summary["wall_s"].as_f64().unwrap_or(0.0),
         problem: None,
+        try_again: false,
         warnings: warnings.filter_map(|warning| warning.as_str().map(str::to_owned)).collect(),
         has_files,
     })
