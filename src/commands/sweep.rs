@@ -114,7 +114,8 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(shard) = args.shard {
         return run_part(args, shard, &sweep, &cases, plan);
     }
-    let folder = SweepFolder::open(&args.out, plan)?;
+    // Tasks of an earlier call may still run.
+    let folder = SweepFolder::open(&args.out, plan, args.engine == Engine::Slurm)?;
     let left = left(&cases, &folder, !args.summary_only);
     if left.len() < cases.len() {
         args.console.note(&format!("{}: {} of {} cases are there already", sweep.name, cases.len() - left.len(), cases.len()));

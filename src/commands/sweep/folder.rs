@@ -26,11 +26,12 @@ pub struct SweepFolder {
 
 impl SweepFolder {
     /// Opens or makes the folder for a whole sweep. Finished cases of an earlier call stay where their input is the same; tables of
-    /// another plan, and cases that it had more, go.
+    /// another plan, and cases that it had more, go; what killed processes left behind goes too, unless others may be at work on
+    /// the same folder (`is_shared`).
     ///
     /// # Errors
     /// As [`OutputFolder::create`]; files that cannot be read or written.
-    pub fn open(path: &Path, plan: Plan) -> Result<Self> {
+    pub fn open(path: &Path, plan: Plan, is_shared: bool) -> Result<Self> {
         let folder = SweepFolder { path: path.to_path_buf(), plan };
         if !is_sweep(path) {
             let new = OutputFolder::create(path)?;
@@ -45,7 +46,7 @@ impl SweepFolder {
             }
             folder.write_plan(path)?;
         }
-        folder.tidy()?;
+        folder.tidy(is_shared)?;
         Ok(folder)
     }
 
@@ -124,13 +125,15 @@ impl SweepFolder {
     }
 
     /// Removes cases beyond the plan, and what processes left behind that were killed while they wrote.
-    fn tidy(&self) -> Result<()> {
+    fn tidy(&self, is_shared: bool) -> Result<()> {
         let cases = self.path.join(CASES);
         let Ok(entries) = fs::read_dir(&cases) else { return Ok(()) };
         for entry in entries.flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
             let is_planned = name.parse::<usize>().is_ok_and(|number| (1..=self.plan.cases.len()).contains(&number));
-            if !is_planned {
+            // A temporary name: of a process that was killed, or of one that runs.
+            let may_be_used = is_shared && name.starts_with('.');
+            if !is_planned && !may_be_used {
                 let path = entry.path();
                 fs::remove_dir_all(&path).map_err(|error| Error::file(&path, "cannot remove", error))?;
             }
