@@ -28,6 +28,7 @@ pub mod fracture;
 pub mod calibration;
 pub mod verify;
 pub mod bench;
+pub mod sweep;
 pub mod report;
 pub mod check;
 #[cfg(feature = "service")]

@@ -10,9 +10,13 @@ mod noise;
 mod postgres;
 #[path = "support/server.rs"]
 mod server;
+#[path = "support/slurm.rs"]
+mod slurm;
 
 #[path = "interface/bad_csv.rs"]
 mod bad_csv;
+#[path = "interface/bad_sweeps.rs"]
+mod bad_sweeps;
 #[path = "interface/bad_toml.rs"]
 mod bad_toml;
 #[path = "interface/bench.rs"]
@@ -37,3 +41,5 @@ mod hand_calculation;
 mod service;
 #[path = "interface/sif.rs"]
 mod sif;
+#[path = "interface/sweep.rs"]
+mod sweep;

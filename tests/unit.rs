@@ -70,6 +70,8 @@ mod scene_results;
 mod scene;
 #[path = "unit/micro_cracks.rs"]
 mod micro_cracks;
+#[path = "unit/sweep.rs"]
+mod sweep;
 #[path = "unit/verification_table.rs"]
 mod verification_table;
 #[path = "unit/length_average.rs"]

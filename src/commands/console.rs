@@ -71,6 +71,17 @@ impl Console {
         RunProgress { bar }
     }
 
+    /// A bar on stderr that counts to `total`, drawn only on a terminal.
+    #[must_use]
+    pub fn count(&self, name: &str, total: usize) -> Count {
+        let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(total as u64) };
+        let style = ProgressStyle::with_template("{prefix} {bar:30} {pos} of {len}  {eta} left");
+        // As for the bar of a run.
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_prefix(name.to_owned());
+        Count { bar }
+    }
+
     /// A progress bar for each of several runs side by side, one below the other.
     #[must_use]
     pub fn progress_of_each<'a>(&self, names: impl Iterator<Item = &'a str>) -> Vec<RunProgress> {
@@ -93,6 +104,25 @@ fn to_stdout(text: &str) -> Result<()> {
 
 /// Steps of a full bar.
 const STEPS: u64 = 1000;
+
+/// Counts what is done; the bar goes when the value is dropped.
+#[derive(Debug)]
+pub struct Count {
+    bar: ProgressBar,
+}
+
+impl Count {
+    /// One more.
+    pub fn one(&self) {
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for Count {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
 
 /// Shows a run's cycles, crack length, share and time left; the bar goes when the value is dropped.
 #[derive(Debug)]

@@ -5,6 +5,7 @@
 pub mod bench;
 pub mod calibrate;
 pub mod check;
+pub mod collect;
 pub mod export;
 pub mod fracture;
 pub mod list;
@@ -13,6 +14,7 @@ pub mod rates;
 #[cfg(feature = "service")]
 pub mod serve;
 pub mod sif;
+pub mod sweep;
 #[cfg(feature = "service")]
 pub mod token;
 pub mod verify;
@@ -50,6 +52,10 @@ macro_rules! commands {
 commands! {
     /// Predict crack growth: run a case, write its a-N curve and pictures
     Predict: predict,
+    /// Run many cases of one: a grid, a random design or a law that scatters
+    Sweep: sweep,
+    /// Gather the results of a sweep whose cases were run in parts
+    Collect: collect,
     /// Run a fracture scene without cycles: static, load steps or motion in time
     Fracture: fracture,
     /// Fit the fatigue law to measured a-N curves

@@ -80,29 +80,36 @@ impl Document {
         };
         let (key, value) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
         let (key, value) = (key.trim(), value.trim());
-        let steps = path_steps(key);
-        if steps.len() < 2 || key.split('.').any(|step| step.trim().is_empty()) {
-            return Err(refuse("does not name section and key"));
-        }
         if value.is_empty() {
             return Err(refuse("has no value"));
+        }
+        self.put(key, plain_value(value)).map_err(refuse)?;
+        self.overridden.push(key.to_owned());
+        Ok(())
+    }
+
+    /// Gives a key (`section.key`, below a list by number) another value.
+    ///
+    /// # Errors
+    /// What is wrong with the key, in words that go behind it; nothing but tables above it may have been made then.
+    pub fn put(&mut self, key: &str, value: Value) -> std::result::Result<(), &'static str> {
+        const NO_TABLE: &str = "names a key below something that is not a table";
+        let steps = path_steps(key);
+        if steps.len() < 2 || key.split('.').any(|step| step.trim().is_empty()) {
+            return Err("does not name section and key");
         }
         let (last, parents) = (&steps[steps.len() - 1], &steps[..steps.len() - 1]);
         let mut place = self.table.entry(parents[0].clone()).or_insert_with(|| Value::Table(Table::new()));
         for step in &parents[1..] {
-            place = child(place, step).ok_or_else(|| refuse("names a key below something that is not a table"))?;
+            place = child(place, step).ok_or(NO_TABLE)?;
         }
         match place {
             Value::Table(table) => {
-                table.insert(last.clone(), plain_value(value));
+                table.insert(last.clone(), value);
             }
-            Value::Array(_) => {
-                let slot = child(place, last).ok_or_else(|| refuse("names an entry the list does not have"))?;
-                *slot = plain_value(value);
-            }
-            _ => return Err(refuse("names a key below something that is not a table")),
+            Value::Array(_) => *child(place, last).ok_or("names an entry the list does not have")? = value,
+            _ => return Err(NO_TABLE),
         }
-        self.overridden.push(key.to_owned());
         Ok(())
     }
 }

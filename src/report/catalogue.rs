@@ -23,6 +23,7 @@ use crate::predict::StopReason;
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
 use crate::stress_intensity::StressIntensityMethod;
+use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
 use crate::verify::TOPICS;
 
 /// Every line, in the order of an input file: key, name, meaning.
@@ -70,6 +71,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         StopReason::lines(),
         beside(&StopReason::lines(), SceneEnd::lines()),
     ];
+    let of_sweeps = [DesignKind::lines(), Scatter::lines(), Scale::lines(), DistributionKind::lines()];
     let of_the_tips = StressIntensityMethod::lines();
     let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
     let mut all: Vec<_> = of_the_test.into_iter().flatten().map(words).collect();
@@ -82,6 +84,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     }));
     all.extend(of_the_model.into_iter().flatten().map(words));
     all.extend(of_calibration.into_iter().flatten().map(words));
+    all.extend(of_sweeps.into_iter().flatten().map(words));
     all.extend(of_the_tips.into_iter().map(words));
     all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
     all.extend(GROUPS.iter().map(|group| ("bench NAME".to_owned(), group.name.to_owned(), group.about.to_owned())));

@@ -18,6 +18,7 @@ pub mod residual_strength;
 pub mod run;
 pub mod speed_chart;
 pub mod specimen_picture;
+pub mod sweep;
 pub mod verification;
 pub mod vtk;
 

@@ -78,6 +78,20 @@ impl OutputFolder {
         self.finished = true;
         Ok(())
     }
+
+    /// Puts the folder in its place if nothing stands there but perhaps an empty folder; whether it did. What another process put
+    /// there in the same moment stays.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it cannot be renamed for another reason.
+    pub fn finish_new(mut self) -> Result<bool> {
+        match fs::rename(&self.partial, &self.target) {
+            Ok(()) => self.finished = true,
+            Err(error) if matches!(error.kind(), io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::AlreadyExists) => {}
+            Err(error) => return Err(Error::file(&self.name, "cannot put the results in place", error)),
+        }
+        Ok(self.finished)
+    }
 }
 
 impl Drop for OutputFolder {

@@ -5,7 +5,7 @@ mod crashes;
 #[path = "service/fuzzed.rs"]
 mod fuzzed;
 #[path = "service/jobs.rs"]
-mod jobs;
+pub mod jobs;
 #[path = "service/page.rs"]
 mod page;
 #[path = "service/refusals.rs"]

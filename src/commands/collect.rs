@@ -1,0 +1,27 @@
+//! `perilife collect`: the results of a sweep whose cases were run in parts.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use super::console::Console;
+use super::sweep::{SweepFolder, finish};
+use crate::error::Result;
+
+/// Arguments of `perilife collect`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Folder of the sweep
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// Runs `perilife collect`.
+///
+/// # Errors
+/// A folder that is not one of a sweep; cases that are missing, after what is there has been written.
+pub fn run(args: &Args) -> Result<()> {
+    finish(&SweepFolder::existing(&args.dir)?, Instant::now(), &args.console)
+}

@@ -1,0 +1,240 @@
+//! `perilife sweep`: many cases of one, run here, by a service or by Slurm, to one table.
+
+mod folder;
+mod local;
+#[cfg(feature = "service")]
+mod service;
+mod slurm;
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::Instant;
+
+use serde_json::Value;
+
+use super::console::Console;
+#[cfg(feature = "service")]
+use super::worker::Place;
+use crate::error::{Error, Result};
+use crate::report::sweep::{Outcome, Plan, write};
+use crate::sweep::design::CASES_MAX;
+use crate::sweep::{DrawnCase, Sweep};
+pub use folder::SweepFolder;
+
+/// Failed or missing cases that a message names.
+const NAMED: usize = 5;
+
+/// Arguments of `perilife sweep`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Sweep file
+    #[arg(value_name = "SWEEP.toml")]
+    pub sweep: PathBuf,
+    /// Folder for the results; a sweep that was broken off goes on there
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: PathBuf,
+    /// Override a key of the case, or of design or vary (repeatable), e.g. --set design.samples=50
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
+    pub set: Vec<String>,
+    /// Most cases that there may be
+    #[arg(long, value_name = "COUNT", default_value_t = CASES_MAX, help_heading = "Input")]
+    pub most: usize,
+    /// Keep no files of the cases, only what the table says of them
+    #[arg(long, help_heading = "Output")]
+    pub summary_only: bool,
+    /// Who runs the cases
+    #[arg(long, value_enum, default_value_t = Engine::Local, help_heading = "Who runs the cases")]
+    pub engine: Engine,
+    /// Cases at a time on this machine [default: one for each core]
+    #[arg(long, value_name = "COUNT", help_heading = "Who runs the cases")]
+    pub threads: Option<usize>,
+    /// Run only part i of n, into a folder that other processes may share; `perilife collect` gathers the parts
+    #[arg(long, value_name = "I/N", help_heading = "Who runs the cases")]
+    pub shard: Option<Shard>,
+    /// How Slurm is asked.
+    #[command(flatten)]
+    pub slurm: slurm::Args,
+    /// Where a service keeps its jobs.
+    #[cfg(feature = "service")]
+    #[command(flatten)]
+    pub place: Place,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// Who runs the cases.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Engine {
+    /// The cores of this machine
+    Local,
+    /// The workers of a service, here or elsewhere, through its database (--database or --data)
+    #[cfg(feature = "service")]
+    Service,
+    /// An array job of Slurm, whose nodes share the folder
+    Slurm,
+}
+
+/// Part of a sweep: every n-th case from the i-th on, so that neighbours, which take about as long, go to different parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// Number, from 1.
+    pub number: usize,
+    /// Of so many.
+    pub of: usize,
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let parsed = text.split_once('/').and_then(|(i, n)| Some(Shard { number: i.parse().ok()?, of: n.parse().ok()? }));
+        let fits = |shard: &Shard| (1..=shard.of).contains(&shard.number);
+        parsed.filter(fits).ok_or_else(|| format!("`{text}` is not I/N with I from 1 to N, such as 3/16"))
+    }
+}
+
+impl Shard {
+    /// Whether it has the case of this number.
+    #[must_use]
+    pub fn has(self, number: usize) -> bool {
+        (number - 1) % self.of == self.number - 1
+    }
+}
+
+/// Runs `perilife sweep`.
+///
+/// # Errors
+/// Wrong input, no case with a result, or files that cannot be read or written.
+pub fn run(args: &Args) -> Result<()> {
+    let begun = Instant::now();
+    let sweep = Sweep::from_file(&args.sweep, &args.set, args.most)?;
+    let cases = sweep.cases()?;
+    let plan = Plan::new(&sweep, &cases);
+    if let Some(shard) = args.shard {
+        return run_part(args, shard, &sweep, &cases, plan);
+    }
+    // Tasks of an earlier call may still run.
+    let folder = SweepFolder::open(&args.out, plan, args.engine == Engine::Slurm)?;
+    let left = left(&cases, &folder, !args.summary_only);
+    if left.len() < cases.len() {
+        args.console.note(&format!("{}: {} of {} cases are there already", sweep.name, cases.len() - left.len(), cases.len()));
+    }
+    match args.engine {
+        Engine::Local => {
+            local::run(&left, &folder, threads(args), !args.summary_only, &args.console.count(&sweep.name, left.len()))?
+        }
+        #[cfg(feature = "service")]
+        Engine::Service => {
+            let url = args.place.url()?;
+            let place = crate::service::without_password(&url);
+            args.console
+                .note(&format!("{} jobs for the workers of {place}; they go on if this command is broken off", left.len()));
+            service::run(&url, &left, &folder, !args.summary_only, &args.console.count(&sweep.name, left.len()))?;
+        }
+        Engine::Slurm => {
+            let wait = slurm::submit(args, &folder, &left)?;
+            if !wait {
+                return Ok(());
+            }
+        }
+    }
+    finish(&folder, begun, &args.console)
+}
+
+/// Cases that are not done yet.
+fn left<'a>(cases: &'a [DrawnCase], folder: &SweepFolder, with_files: bool) -> Vec<&'a DrawnCase> {
+    cases.iter().filter(|case| !folder.is_done(case.number, with_files)).collect()
+}
+
+fn threads(args: &Args) -> usize {
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    args.threads.unwrap_or_else(cores).max(1)
+}
+
+/// Runs one part and leaves the gathering to `perilife collect`.
+fn run_part(args: &Args, shard: Shard, sweep: &Sweep, cases: &[DrawnCase], plan: Plan) -> Result<()> {
+    let folder = SweepFolder::open_part(&args.out, plan)?;
+    let own = || cases.iter().filter(|case| shard.has(case.number));
+    let left: Vec<&DrawnCase> = own().filter(|case| !folder.is_done(case.number, !args.summary_only)).collect();
+    let name = format!("{} {}/{}", sweep.name, shard.number, shard.of);
+    local::run(&left, &folder, threads(args), !args.summary_only, &args.console.count(&name, left.len()))?;
+    let failed = own().filter(|case| folder.outcome(case.number).is_some_and(|outcome| outcome.problem.is_some())).count();
+    let line = format!("{name}: {} cases, {} of them run now, {failed} failed", own().count(), left.len());
+    args.console.say(&line);
+    args.console.object(&serde_json::json!({
+        "name": sweep.name, "shard": shard.number, "shards": shard.of,
+        "cases": own().count(), "run": left.len(), "failed": failed,
+    }))
+}
+
+/// Writes table, figures and picture of what is there, and says what it is.
+///
+/// # Errors
+/// [`Error::Mechanics`] if cases are missing or none has a result; files that cannot be written.
+pub fn finish(folder: &SweepFolder, begun: Instant, console: &Console) -> Result<()> {
+    let outcomes: Vec<Option<Outcome>> = (1..=folder.plan.cases.len()).map(|number| folder.outcome(number)).collect();
+    let figures = write(&folder.path, &folder.plan, &outcomes, begun.elapsed().as_secs_f64())?;
+    for warning in first(&figures, "warnings") {
+        let [case, text] = ["first", "warning"].map(|key| warning[key].as_str().unwrap_or_default());
+        let more = warning["cases"].as_u64().unwrap_or(1).saturating_sub(1);
+        let others = if more > 0 { format!(" and {more} more") } else { String::new() };
+        console.warn(&format!("case {case}{others}: {text}"));
+    }
+    summary(&folder.path, &folder.plan, &figures).iter().for_each(|line| console.say(line));
+    console.object(&figures)?;
+    verdict(&folder.plan.name, &figures)
+}
+
+fn summary(path: &Path, plan: &Plan, figures: &Value) -> Vec<String> {
+    let life = |key: &str| figures["life_cycles"][key].as_f64();
+    let counts = ["succeeded", "failed", "missing"].map(|key| figures[key].as_u64().unwrap_or(0));
+    let mut lines = vec![format!(
+        "{}: {} cases, {} succeeded, {} failed, {} missing",
+        plan.name,
+        plan.cases.len(),
+        counts[0],
+        counts[1],
+        counts[2]
+    )];
+    if let (Some(low), Some(middle), Some(high)) = (life("p05"), life("p50"), life("p95")) {
+        lines.push(format!("  life           5 % {low:.0}, median {middle:.0}, 95 % {high:.0} cycles"));
+    }
+    if let Some(count) = figures["run_outs"].as_u64().filter(|count| *count > 0) {
+        lines.push(format!("  run-outs       {count}: their lives end at stop.cycles_max"));
+    }
+    lines.extend(first(figures, "failures").iter().map(|failure| {
+        format!(
+            "  failed         {}: {}",
+            failure["case"].as_str().unwrap_or_default(),
+            failure["problem"].as_str().unwrap_or_default()
+        )
+    }));
+    lines.push(format!("  computed       {:.1} s of one core", figures["computing_s"].as_f64().unwrap_or(0.0)));
+    lines.push(format!("  results        {}", path.display()));
+    lines
+}
+
+fn first<'f>(figures: &'f Value, key: &str) -> &'f [Value] {
+    let all = figures[key].as_array().map_or(&[][..], Vec::as_slice);
+    &all[..all.len().min(NAMED)]
+}
+
+fn verdict(name: &str, figures: &Value) -> Result<()> {
+    let missing = figures["missing"].as_u64().unwrap_or(0);
+    if missing > 0 {
+        let named: Vec<&str> = first(figures, "missing_cases").iter().filter_map(Value::as_str).collect();
+        let more = if missing > NAMED as u64 { ", ..." } else { "" };
+        let text = format!(
+            "{name}: {missing} of {} cases are missing: {}{more}; run `perilife sweep` again with the same --out",
+            figures["cases"],
+            named.join(", ")
+        );
+        return Err(Error::Mechanics(text));
+    }
+    if figures["succeeded"] == 0 {
+        let why = first(figures, "failures").first().and_then(|failure| failure["problem"].as_str()).unwrap_or_default();
+        return Err(Error::Mechanics(format!("{name}: no case has a result; the first says: {why}")));
+    }
+    Ok(())
+}

@@ -1,0 +1,193 @@
+//! Cases of a sweep by the workers of a service, wherever they are.
+//!
+//! Every case is a prediction, submitted under the hash of its input: one that was submitted before, by a call that was broken off
+//! or by another sweep, is not run again. What this process holds is nothing that could be lost; jobs go on without it.
+
+use std::collections::VecDeque;
+use std::fs;
+use std::io::{Cursor, Read as _};
+use std::path::Path;
+use std::time::Duration;
+
+use super::folder::SweepFolder;
+use crate::commands::console::Count;
+use crate::error::{Error, Result};
+use crate::report::csv::{A_N_FILE, parse_a_n};
+use crate::report::output::write_file;
+use crate::report::run::PARAVIEW;
+use crate::report::sweep::Outcome;
+use crate::service::job::{Job, JobKind, State, Submission};
+use crate::service::store::{self, File, NewJob, Store, Submitted, is_gone};
+use crate::service::with_store;
+use crate::sweep::DrawnCase;
+
+/// Who submits, as listings of jobs show it.
+const OWNER: &str = "sweep";
+/// Time between two looks at jobs.
+const LOOK_EVERY: Duration = Duration::from_millis(250);
+/// Time before another try of a database that does not answer.
+const TRY_EVERY: Duration = Duration::from_secs(1);
+/// Jobs looked at each time: they are taken in their order, so that those behind have hardly begun.
+const LOOKED_AT: usize = 64;
+
+/// Has cases run, and fetches what comes of them.
+///
+/// # Errors
+/// A database that cannot be used; [`Error::File`] if results cannot be written; a job that somebody cancelled or deleted.
+pub fn run(url: &str, cases: &[&DrawnCase], folder: &SweepFolder, with_files: bool, count: &Count) -> Result<()> {
+    if cases.is_empty() {
+        return Ok(());
+    }
+    with_store(url, async |store| {
+        let mut waiting: VecDeque<(String, &DrawnCase)> = VecDeque::with_capacity(cases.len());
+        for case in cases {
+            waiting.push_back((submitted(store, case).await?, case));
+        }
+        while !waiting.is_empty() {
+            let mut is_news = false;
+            for _ in 0..waiting.len().min(LOOKED_AT) {
+                let Some((id, case)) = waiting.pop_front() else { break };
+                match patiently(async || store.job(JobKind::Prediction, &id).await).await? {
+                    Some(job) if !job.state.is_final() => waiting.push_back((id, case)),
+                    job => {
+                        is_news = true;
+                        if let Err(error) = fetch(store, job, case, folder, with_files).await? {
+                            return Ok(Err(error));
+                        }
+                        count.one();
+                    }
+                }
+            }
+            // Those that were looked at went to the end; back to their order.
+            waiting.make_contiguous().sort_by_key(|(_, case)| case.number);
+            if !is_news {
+                tokio::time::sleep(LOOK_EVERY).await;
+            }
+        }
+        Ok(Ok(()))
+    })?
+}
+
+/// Asks the database until it answers.
+async fn patiently<T>(ask: impl AsyncFn() -> store::Result<T>) -> store::Result<T> {
+    loop {
+        match ask().await {
+            Err(error) if is_gone(&error) => {
+                tracing::warn!("the database does not answer: {error}");
+                tokio::time::sleep(TRY_EVERY).await;
+            }
+            answer => return answer,
+        }
+    }
+}
+
+/// The job of a case: a new one, or that of an earlier call unless it was cancelled or lost.
+async fn submitted(store: &Store, case: &DrawnCase) -> store::Result<String> {
+    let submission =
+        Submission { name: case.name.clone(), text: case.text.clone(), with_fitted: false, files: case.files.clone() };
+    let mut tries = 0;
+    loop {
+        let key = if tries == 0 { format!("sweep {}", case.hash) } else { format!("sweep {} {tries}", case.hash) };
+        let new = NewJob {
+            kind: JobKind::Prediction,
+            owner: OWNER,
+            calibration: None,
+            idempotency_key: Some(&key),
+            fingerprint: &case.hash,
+            submission: &submission,
+        };
+        match patiently(async || store.submit(&new, i64::MAX).await).await? {
+            Submitted::New(id) => return Ok(id),
+            Submitted::Again(id) => {
+                let job = patiently(async || store.job(JobKind::Prediction, &id).await).await?;
+                if job.is_some_and(|job| job.state != State::Cancelled && !is_lost(&job)) {
+                    return Ok(id);
+                }
+            }
+            // The key names its request, and the queue has no end here; another key is as good.
+            Submitted::KeyTaken | Submitted::QueueFull => {}
+        }
+        tries += 1;
+    }
+}
+
+/// Whether a job failed by what its workers ran into, not by its input.
+fn is_lost(job: &Job) -> bool {
+    job.problem.as_ref().is_some_and(|problem| problem.status >= 500)
+}
+
+/// Puts what came of a job into the folder of its case.
+async fn fetch(
+    store: &Store,
+    job: Option<Job>,
+    case: &DrawnCase,
+    folder: &SweepFolder,
+    with_files: bool,
+) -> store::Result<Result<()>> {
+    let ended = |why: &str| {
+        let text = format!("{}: its job {why}; run the same command again to submit it anew", case.name);
+        Ok(Err(Error::Mechanics(text)))
+    };
+    let Some(job) = job else { return ended("was deleted") };
+    if job.state == State::Cancelled {
+        return ended("was cancelled");
+    }
+    if let Some(problem) = &job.problem {
+        let outcome = Outcome { try_again: is_lost(&job), ..Outcome::failed(case, &problem.detail, 0.0) };
+        return Ok(folder.keep(case, |_| Ok(outcome)));
+    }
+    let mut files = Vec::new();
+    for entry in patiently(async || store.file_entries(&job.id).await).await? {
+        if with_files || entry.name == A_N_FILE {
+            files.extend(patiently(async || store.file(&job.id, &entry.name).await).await?);
+        }
+    }
+    Ok(folder.keep(case, |path| {
+        if with_files {
+            files.iter().try_for_each(|file| unpacked(path, file))?;
+        }
+        outcome(case, &job, &files, with_files)
+    }))
+}
+
+/// What the table says, from the a-N curve: the digits of JSON may lose the last bit.
+fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Result<Outcome> {
+    let curve = files.iter().find(|file| file.name == A_N_FILE);
+    let text = curve.map(|file| String::from_utf8_lossy(&file.content)).unwrap_or_default();
+    let rows = parse_a_n(&text, Path::new(A_N_FILE))?;
+    let summary = job.summary.clone().unwrap_or_default();
+    let warnings = summary["warnings"].as_array().into_iter().flatten();
+    Ok(Outcome {
+        input: case.hash.clone(),
+        life_cycles: rows.last().map(|row| row.cycles),
+        stop_reason: summary["stop_reason"].as_str().map(str::to_owned),
+        crack_length_final_mm: rows.last().map(|row| row.crack_length_mm),
+        wall_s: summary["wall_s"].as_f64().unwrap_or(0.0),
+        problem: None,
+        try_again: false,
+        warnings: warnings.filter_map(|warning| warning.as_str().map(str::to_owned)).collect(),
+        has_files,
+    })
+}
+
+/// Writes a file of a job; the archive of ParaView files becomes the folder that it was made of.
+fn unpacked(folder: &Path, file: &File) -> Result<()> {
+    let path = folder.join(&file.name);
+    if file.name != format!("{PARAVIEW}.zip") {
+        return write_file(&path, &file.content);
+    }
+    let failed = |error: &dyn std::fmt::Display| Error::file(&path, "cannot unpack", std::io::Error::other(error.to_string()));
+    let into = folder.join(PARAVIEW);
+    fs::create_dir(&into).map_err(|error| Error::file(&into, "cannot create the folder", error))?;
+    let mut archive = zip::ZipArchive::new(Cursor::new(&file.content)).map_err(|error| failed(&error))?;
+    for i in 0..archive.len() {
+        let mut entry = archive.by_index(i).map_err(|error| failed(&error))?;
+        // Only names of this program stand in there; whatever comes is put into this folder and nowhere else.
+        let name = entry.name().map_err(|error| failed(&error))?.into_owned();
+        let name = Path::new(&name).file_name().map(std::ffi::OsStr::to_owned).unwrap_or_default();
+        let mut content = Vec::new();
+        entry.read_to_end(&mut content).map_err(|error| failed(&error))?;
+        write_file(&into.join(name), &content)?;
+    }
+    Ok(())
+}
