@@ -131,16 +131,18 @@ struct Seed {
     path: &'static str,
     kind: &'static str,
     inner: String,
-    around: fn(&str) -> String,
+    around: Around,
 }
+
+type Around = fn(&str) -> String;
 
 fn seeds() -> Vec<Seed> {
     let quick = QUICK.replace("spacing_mm = 1.5", "spacing_mm = 6");
     let object = quick.parse::<toml::Table>().map(|table| json!({ "name": "x", "input": table }).to_string()).unwrap();
     let (json, toml, multipart) = ("application/json", "application/toml", "multipart/form-data; boundary=XX");
-    let plain: fn(&str) -> String = str::to_owned;
-    let text: fn(&str) -> String = |inner| json!({ "input": inner }).to_string();
-    let seeds: [(&str, &str, &str, fn(&str) -> String); 11] = [
+    let plain: Around = str::to_owned;
+    let text: Around = |inner| json!({ "input": inner }).to_string();
+    let seeds: [(&str, &str, &str, Around); 11] = [
         ("/v1/measured", multipart, CSV, |inner| form("curve.csv", inner)),
         ("/v1/measured", multipart, WIDE, |inner| form("curve.csv", inner)),
         ("/v1/measured", multipart, "PAR1 nothing PAR1", |inner| form("curve.parquet", inner)),
