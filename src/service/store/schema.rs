@@ -32,9 +32,16 @@ const STEPS: &[&[&str]] = &[&[
     "CREATE TABLE pictures (
         job TEXT PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, revision BIGINT NOT NULL, about TEXT NOT NULL,
         content {bytes} NOT NULL)",
+    // What is packed already is not packed once more.
+    "postgres: ALTER TABLE files ALTER COLUMN content SET STORAGE EXTERNAL",
+    "postgres: ALTER TABLE checkpoints ALTER COLUMN content SET STORAGE EXTERNAL",
+    "postgres: ALTER TABLE pictures ALTER COLUMN content SET STORAGE EXTERNAL",
     "CREATE TABLE tokens (
         hash TEXT PRIMARY KEY, name TEXT NOT NULL UNIQUE, role TEXT NOT NULL, created_ms BIGINT NOT NULL, expires_ms BIGINT)",
 ]];
+
+/// What a statement begins with that SQLite has no need of.
+const POSTGRES_ONLY: &str = "postgres: ";
 
 /// Number by which processes that start together agree who lays the tables in PostgreSQL.
 const LOCK: i64 = 0x7065_7269_6c69_6665;
@@ -56,6 +63,11 @@ impl Store {
         }
         for (number, step) in STEPS.iter().enumerate().skip(done) {
             for statement in *step {
+                let statement = match statement.strip_prefix(POSTGRES_ONLY) {
+                    Some(_) if self.dialect == super::Dialect::Sqlite => continue,
+                    Some(theirs) => theirs,
+                    None => statement,
+                };
                 sqlx::query(self.sql(statement)).execute(&mut *transaction).await?;
             }
             let number = number as i64 + 1;
