@@ -19,6 +19,9 @@ pub const SPECIMEN: &str = "specimen";
 /// Name of the column of cycles.
 pub const CYCLES: &str = "cycles";
 
+/// Most rows of a table of readings.
+const ROWS_MAX: usize = 1_000_000;
+
 /// Values of one column.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
@@ -128,7 +131,13 @@ pub fn read_parquet(bytes: &[u8], path: &Path) -> Result<Cells> {
             ..InputError::default()
         }))
     };
-    let table = ParquetReader::new(std::io::Cursor::new(bytes)).finish().map_err(broken)?;
+    let mut reader = ParquetReader::new(std::io::Cursor::new(bytes));
+    // A file of a few bytes can stand for any number of equal rows.
+    let rows = reader.num_rows().map_err(broken)?;
+    if rows > ROWS_MAX {
+        return Err(broken(PolarsError::ComputeError(format!("{rows} rows are more than {ROWS_MAX}").into())));
+    }
+    let table = reader.finish().map_err(broken)?;
     let mut rows = vec![Vec::with_capacity(table.width()); table.height()];
     for column in table.columns() {
         for (index, row) in rows.iter_mut().enumerate() {

@@ -34,7 +34,7 @@ pub enum Task {
         #[arg(long, value_enum)]
         role: Role,
         /// Days until it ends [default: never]
-        #[arg(long, value_name = "DAYS")]
+        #[arg(long, value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..=36_500))]
         days: Option<u32>,
     },
     /// List names, roles and ends

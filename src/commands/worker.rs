@@ -1,5 +1,7 @@
 //! `perilife worker`: works for a service, from this or another machine.
 
+use std::fs::DirBuilder;
+use std::os::unix::fs::DirBuilderExt;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -30,7 +32,8 @@ impl Place {
             return Ok(url.clone());
         }
         let cannot = |error| Error::file(&self.data, "cannot create the folder", error);
-        std::fs::create_dir_all(&self.data).map_err(cannot)?;
+        // Measured data and results are nobody else's business.
+        DirBuilder::new().recursive(true).mode(0o700).create(&self.data).map_err(cannot)?;
         Ok(url_of_file(&std::fs::canonicalize(&self.data).map_err(cannot)?.join("perilife.sqlite")))
     }
 }
@@ -58,13 +61,18 @@ pub struct Work {
     #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     pub attempts: u32,
     /// Delete finished jobs after so many days [default: never]
-    #[arg(long, value_name = "DAYS")]
+    #[arg(long, value_name = "DAYS", value_parser = days)]
     pub keep_days: Option<f64>,
 }
 
 fn threads(text: &str) -> std::result::Result<usize, String> {
     let count = text.parse().ok().filter(|count| (1..=1024).contains(count));
     count.ok_or_else(|| format!("`{text}` is not 1 to 1024"))
+}
+
+fn days(text: &str) -> std::result::Result<f64, String> {
+    let days = text.parse().ok().filter(|days| *days > 0.0 && *days < 1e6);
+    days.ok_or_else(|| format!("`{text}` is no time in days above 0"))
 }
 
 impl Work {

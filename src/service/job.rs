@@ -77,6 +77,9 @@ impl JobKind {
 }
 
 impl State {
+    /// All of them.
+    pub const ALL: [State; 5] = [State::Queued, State::Running, State::Succeeded, State::Failed, State::Cancelled];
+
     /// Whether nothing more will happen.
     #[must_use]
     pub fn is_final(self) -> bool {

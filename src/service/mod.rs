@@ -166,5 +166,6 @@ async fn forget_callers(app: App) {
     loop {
         tokio::time::sleep(FORGET_EVERY).await;
         app.forget_callers();
+        api::sum_up();
     }
 }

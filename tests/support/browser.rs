@@ -100,7 +100,19 @@ impl Browser {
     /// Waits until there is something to see for a selector.
     #[track_caller]
     pub fn see(&self, selector: &str) {
-        self.until(&format!("[...document.querySelectorAll({})].some((e) => e.getClientRects().length)", json!(selector)));
+        self.until(&seen(selector));
+    }
+
+    /// Whether there is something to see for a selector within a time.
+    pub fn comes(&self, selector: &str, within: Duration) -> bool {
+        let begun = Instant::now();
+        while self.run(&format!("return {}", seen(selector))) != true {
+            if begun.elapsed() > within {
+                return false;
+            }
+            std::thread::sleep(Duration::from_millis(40));
+        }
+        true
     }
 
     pub fn text(&self, selector: &str) -> String {
@@ -170,6 +182,12 @@ impl Browser {
         cdp("Emulation.setEmulatedMedia", preferred);
     }
 
+    /// Puts what is downloaded into a folder.
+    pub fn download_into(&self, folder: &Path) {
+        let params = json!({ "behavior": "allow", "downloadPath": folder });
+        self.command("goog/cdp/execute", &json!({ "cmd": "Browser.setDownloadBehavior", "params": params }));
+    }
+
     /// The whole page as PNG.
     pub fn picture(&self) -> Vec<u8> {
         let params = json!({ "captureBeyondViewport": true });
@@ -191,6 +209,11 @@ impl Drop for Browser {
         let _ = self.driver.kill();
         let _ = self.driver.wait();
     }
+}
+
+/// Expression: something can be seen for a selector.
+fn seen(selector: &str) -> String {
+    format!("[...document.querySelectorAll({})].some((e) => e.getClientRects().length)", json!(selector))
 }
 
 /// Bytes of base64 text.

@@ -55,7 +55,10 @@ impl Postgres {
     /// URL of a new, empty database.
     pub fn database(&self, name: &str) -> String {
         let url = format!("postgres://perilife@127.0.0.1:{}", self.port);
-        run(Command::new(self.programs.join("createdb")).args(["--maintenance-db", &format!("{url}/postgres"), name])).unwrap();
+        // In a language that sorts otherwise than bytes do, as most servers are.
+        let language = ["-T", "template0", "--locale-provider=icu", "--icu-locale=en-US", "--locale=C.UTF-8"];
+        let place = format!("{url}/postgres");
+        run(Command::new(self.programs.join("createdb")).args(language).args(["--maintenance-db", &place, name])).unwrap();
         format!("{url}/{name}")
     }
 

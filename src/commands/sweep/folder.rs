@@ -40,7 +40,7 @@ impl SweepFolder {
             return Ok(folder);
         }
         // A plan that cannot be read is one of another version, and replaced as such.
-        if read_plan(path).ok().flatten().as_ref() != Some(&folder.plan) {
+        if read_plan(path).ok().flatten().as_ref() != Some(&folder.plan.as_read()) {
             for file in [TABLE_FILE, FIGURES_FILE, CHART_FILE] {
                 remove(&path.join(file))?;
             }
@@ -62,7 +62,7 @@ impl SweepFolder {
             // Another part may have been first.
             new.finish_new()?;
         }
-        if read_plan(path)?.as_ref() != Some(&folder.plan) {
+        if read_plan(path)?.as_ref() != Some(&folder.plan.as_read()) {
             let problem = "holds something else than this sweep, or the sweep has changed since it began";
             return Err(input("--out", path.display(), problem, "give another folder, or begin anew without --shard"));
         }
@@ -135,7 +135,8 @@ impl SweepFolder {
             let may_be_used = is_shared && name.starts_with('.');
             if !is_planned && !may_be_used {
                 let path = entry.path();
-                fs::remove_dir_all(&path).map_err(|error| Error::file(&path, "cannot remove", error))?;
+                let removed = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+                removed.map_err(|error| Error::file(&path, "cannot remove", error))?;
             }
         }
         Ok(())

@@ -41,7 +41,7 @@ impl Default for Limits {
         Limits {
             body_bytes: 32 << 20,
             files: 64,
-            points: 4e6,
+            points: 1e6,
             queued: 1000,
             requests_per_second: READS,
             writes_per_second: WRITES,
@@ -121,9 +121,17 @@ impl App {
 
     /// The token with this hash, if it was looked up a moment ago.
     pub async fn fresh_token(&self, hash: &str) -> Option<Token> {
+        self.known_token(hash).await.filter(|(_, at)| at.elapsed() < TOKEN_FRESH).map(|(token, _)| token)
+    }
+
+    /// Whose token with this hash was when it was last looked up: enough to count his requests.
+    pub async fn known_name(&self, hash: &str) -> Option<String> {
+        self.known_token(hash).await.map(|(token, _)| token.name)
+    }
+
+    async fn known_token(&self, hash: &str) -> Option<(Token, Instant)> {
         let known = self.shared.tokens.read().await;
-        let found = known.iter().find(|(known, _, at)| known == hash && at.elapsed() < TOKEN_FRESH);
-        found.map(|(_, token, _)| token.clone())
+        known.iter().find(|(known, ..)| known == hash).map(|(_, token, at)| (token.clone(), *at))
     }
 
     /// The token with this hash, if there is one that has not ended.
@@ -132,9 +140,9 @@ impl App {
     /// The database does not answer.
     pub async fn token(&self, hash: &str) -> crate::service::store::Result<Option<Token>> {
         let found = self.store.token(hash).await?;
+        let mut known = self.shared.tokens.write().await;
+        known.retain(|(other, ..)| other != hash);
         if let Some(token) = &found {
-            let mut known = self.shared.tokens.write().await;
-            known.retain(|(other, _, at)| other != hash && at.elapsed() < TOKEN_FRESH);
             if known.len() < TOKENS_REMEMBERED {
                 known.push((hash.to_owned(), token.clone(), Instant::now()));
             }

@@ -82,12 +82,21 @@ pub fn kind_of(collection: &str) -> Answer<JobKind> {
     kinds.into_iter().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
 }
 
+/// Whether a job can have this id. Anything else never gets to the database.
+#[must_use]
+pub fn is_id(id: &str) -> bool {
+    uuid::Uuid::try_parse(id).is_ok()
+}
+
 /// A job of a collection.
 ///
 /// # Errors
 /// 404, 503.
 pub async fn job_of(app: &App, collection: &str, id: &str) -> Answer<Job> {
     let kind = kind_of(collection)?;
+    if !is_id(id) {
+        return Err(Problem::not_found(kind.name()));
+    }
     app.store.job(kind, id).await?.ok_or_else(|| Problem::not_found(kind.name()))
 }
 
@@ -121,7 +130,7 @@ pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
         };
         submission.files.iter().map(view).collect()
     });
-    let case = submission.as_ref().and_then(|submission| serde_json::to_value(submission.document().ok()?.table).ok());
+    let case = submission.as_ref().and_then(|submission| serde_json::to_value(submission.text.parse::<toml::Table>().ok()?).ok());
     Ok(JobView { job, files, inputs, input: submission.map(|submission| submission.text), case })
 }
 
@@ -198,6 +207,9 @@ pub async fn list(
     let limit = part.limit.unwrap_or(LIST);
     if !(1..=LIST_MAX).contains(&limit) {
         return Err(Problem::bad_request(format!("limit = {limit} is not 1 to {LIST_MAX}")));
+    }
+    if let Some(after) = part.after.as_deref().filter(|after| !is_id(after)) {
+        return Err(Problem::bad_request(format!("after = {after:?} is not what `next` of an earlier part gave")));
     }
     let listing = app.store.list(kind, part.state, part.after.as_deref(), limit).await?;
     let items =

@@ -1,6 +1,7 @@
 //! The body of a request to what is to be run or checked: JSON or a form, a table or TOML text, files beside it.
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use axum::body::Bytes;
 use axum::extract::multipart::MultipartRejection;
@@ -13,6 +14,7 @@ use tokio::sync::OwnedSemaphorePermit;
 use utoipa::ToSchema;
 
 use super::App;
+use super::collections::is_id;
 use crate::calibration::case::CalibrationCase;
 use crate::case::{Case, Method};
 use crate::check::is_calibration;
@@ -21,6 +23,12 @@ use crate::service::job::{FITTED, JobKind, State, Submission};
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::hex;
 
+/// Longest input, bytes; files beside it may be as large as bodies are.
+const INPUT_MAX: usize = 1 << 20;
+/// Most parts of a JSON body: each takes a hundred times its room in memory.
+const PARTS_MAX: usize = 200_000;
+/// Time in which a body must have come: until then it takes up room.
+const BODY_WITHIN: Duration = Duration::from_secs(20);
 /// Longest name of a case or file, bytes.
 const NAME_MAX: usize = 200;
 
@@ -98,9 +106,15 @@ pub async fn read(app: &App, request: Request) -> Answer<Body> {
         let bytes = bytes(request).await?;
         let fingerprint = hex(&Sha256::digest(&bytes));
         let asked = if kind.starts_with("application/toml") {
+            if bytes.len() > INPUT_MAX {
+                return Err(too_long());
+            }
             let text = String::from_utf8(bytes.into()).map_err(|_| Problem::bad_request("the body is not UTF-8 text"))?;
             Asked { input: Some(Value::String(text)), ..Asked::default() }
         } else {
+            if parts(&bytes) > PARTS_MAX {
+                return Err(Problem::too_large(format!("the body has more than {PARTS_MAX} parts; send readings as files")));
+            }
             serde_json::from_slice(&bytes).map_err(|error| {
                 let detail =
                     format!("the body is not JSON of the expected form: {error}; known are input, name, calibration, files");
@@ -123,7 +137,13 @@ pub async fn room(app: &App) -> Answer<OwnedSemaphorePermit> {
 }
 
 async fn bytes(request: Request) -> Answer<Bytes> {
-    Bytes::from_request(request, &()).await.map_err(|rejection| refused(rejection.status(), &rejection.body_text()))
+    let read = tokio::time::timeout(BODY_WITHIN, Bytes::from_request(request, &())).await.map_err(|_| too_slow())?;
+    read.map_err(|rejection| refused(rejection.status(), &rejection.body_text()))
+}
+
+fn too_slow() -> Problem {
+    let detail = format!("the body did not come within {} s", BODY_WITHIN.as_secs());
+    Problem::new(StatusCode::REQUEST_TIMEOUT, "Too slow", detail)
 }
 
 fn refused(status: StatusCode, text: &str) -> Problem {
@@ -138,6 +158,10 @@ fn refused(status: StatusCode, text: &str) -> Problem {
 /// # Errors
 /// 400 and 413.
 pub async fn form(app: &App, request: Request) -> Answer<Fields> {
+    tokio::time::timeout(BODY_WITHIN, parts_of_form(app, request)).await.map_err(|_| too_slow())?
+}
+
+async fn parts_of_form(app: &App, request: Request) -> Answer<Fields> {
     let mut parts = Multipart::from_request(request, &()).await.map_err(|rejection: MultipartRejection| {
         Problem::bad_request(format!("the body is no multipart form: {}", rejection.body_text()))
     })?;
@@ -205,9 +229,29 @@ pub async fn submission(app: &App, kind: Option<JobKind>, asked: Asked) -> Answe
     checked.map_err(|problem| if is_text { problem } else { problem.without_line() })
 }
 
+fn too_long() -> Problem {
+    Problem::too_large(format!("the input is longer than {INPUT_MAX} bytes; send readings as files"))
+}
+
+/// Values of a JSON text and what separates them, roughly: commas, colons and brackets outside of strings.
+fn parts(json: &[u8]) -> usize {
+    let (mut count, mut in_string, mut is_escaped) = (0, false, false);
+    for &byte in json {
+        match (in_string, byte) {
+            (true, _) if is_escaped => is_escaped = false,
+            (true, b'\\') => is_escaped = true,
+            (_, b'"') => in_string = !in_string,
+            (false, b',' | b':' | b'[' | b'{') => count += 1,
+            _ => {}
+        }
+    }
+    count
+}
+
 /// TOML of the input.
 fn text_of(given: Value) -> Answer<String> {
     match given {
+        Value::String(text) if text.len() > INPUT_MAX => Err(too_long()),
         Value::String(text) => Ok(text),
         Value::Object(_) => {
             let refused = |error: &dyn std::fmt::Display| Problem::bad_request(format!("`input` has no form in TOML: {error}"));
@@ -234,7 +278,8 @@ fn with_readings(mut table: toml::Table, files: &[(String, Vec<u8>)]) -> Answer<
 /// The record of a finished calibration.
 async fn record_of(app: &App, id: &str) -> Answer<Vec<u8>> {
     let refused = |problem: &str, remedy: &str| Problem::from(input("calibration", format!("\"{id}\""), problem, remedy));
-    let Some(job) = app.store.job(JobKind::Calibration, id).await? else {
+    let known = if is_id(id) { app.store.job(JobKind::Calibration, id).await? } else { None };
+    let Some(job) = known else {
         return Err(refused("is no calibration here", "give the id of one that GET /v1/calibrations lists"));
     };
     match app.store.file(id, FITTED).await? {

@@ -61,7 +61,7 @@ pub async fn events(
     let seen = headers.get("last-event-id").and_then(|id| id.to_str().ok()).and_then(Seen::of).unwrap_or_default();
     let (events, reader) = channel(WAITING);
     tokio::spawn(async move {
-        let mut follower = Follower { app, kind, id, seen, events };
+        let mut follower = Follower { app, kind, id, seen, has_told: false, events };
         let mut answered = Instant::now();
         loop {
             match follower.look().await {
@@ -85,6 +85,7 @@ struct Follower {
     kind: JobKind,
     id: String,
     seen: Seen,
+    has_told: bool,
     events: Sender<Result<Event, Infallible>>,
 }
 
@@ -92,7 +93,8 @@ impl Follower {
     /// Looks once; whether there may be more to come.
     async fn look(&mut self) -> Answer<bool> {
         let Some(revision) = self.app.store.revision(&self.id).await? else { return Ok(false) };
-        if revision == self.seen.revision {
+        // Whoever comes is told where the job stands, even if he has heard it before: it may have ended.
+        if std::mem::replace(&mut self.has_told, true) && revision == self.seen.revision {
             return Ok(true);
         }
         let Some(job) = self.app.store.job(self.kind, &self.id).await? else { return Ok(false) };
@@ -112,7 +114,7 @@ impl Follower {
             // Another worker took the job up, perhaps further back.
             (self.seen.fence, self.seen.entries) = (fence, 0);
         }
-        for growth in self.app.store.growth(&self.id, self.seen.entries).await? {
+        for growth in self.app.store.growth(&self.id, self.seen.entries, Some(fence)).await? {
             if growth.cycles.is_empty() {
                 continue;
             }

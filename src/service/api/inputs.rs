@@ -77,7 +77,7 @@ struct Readings {
     request_body(content = inline(Readings), content_type = "multipart/form-data"),
     responses((status = 200, body = Found), (status = 400, body = Problem), (status = 413, body = Problem)))]
 pub async fn measured(State(app): State<App>, request: Request) -> Answer<Json<Found>> {
-    let _room = documents::room(&app).await?;
+    let room = documents::room(&app).await?;
     let (fields, files) = documents::form(&app, request).await?;
     if let Some(name) = fields.keys().find(|name| !["length_unit", "cycle_unit"].contains(&name.as_str())) {
         return Err(Problem::bad_request(format!("the form has a field `{name}`; known are file, length_unit and cycle_unit")));
@@ -91,7 +91,11 @@ pub async fn measured(State(app): State<App>, request: Request) -> Answer<Json<F
         length: length.map(|name| named(LengthUnit::ALL, LengthUnit::name, "length_unit", name)).transpose()?,
         cycles: cycles.map(|name| named(CycleUnit::ALL, CycleUnit::name, "cycle_unit", name)).transpose()?,
     };
-    let look = move || Found { files: files.into_iter().map(|(file, content)| found(file, &content, units)).collect() };
+    let look = move || {
+        // Taken up until the work is done, even if nobody waits for it any more.
+        let _room = room;
+        Found { files: files.into_iter().map(|(file, content)| found(file, &content, units)).collect() }
+    };
     tokio::task::spawn_blocking(look).await.map(Json).map_err(|_| Problem::internal())
 }
 
@@ -135,7 +139,9 @@ pub async fn check(State(app): State<App>, request: Request) -> Answer<Json<Valu
     let is_text = body.asked.input.as_ref().is_some_and(Value::is_string);
     let submission = submission(&app, None, body.asked).await?;
     let points = app.limits.points;
+    let room = body.room;
     let look = move || -> Answer<Value> {
+        let _room = room;
         let document = submission.document()?;
         if !is_scene(&document.table) && !check::is_calibration(&document.table) {
             check_points(&Case::from_document(&document)?, points)?;
@@ -146,6 +152,5 @@ pub async fn check(State(app): State<App>, request: Request) -> Answer<Json<Valu
         Ok(object)
     };
     let looked = tokio::task::spawn_blocking(look).await.map_err(|_| Problem::internal())?;
-    drop(body.room);
     looked.map(Json).map_err(|problem| if is_text { problem } else { problem.without_line() })
 }

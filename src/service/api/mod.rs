@@ -12,7 +12,7 @@ mod security;
 mod watching;
 
 pub use app::{App, Limits, Security};
-pub use watching::start as start_counting;
+pub use watching::{start as start_counting, sum_up};
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;

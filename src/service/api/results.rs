@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
 use super::App;
-use super::collections::job_of;
+use super::collections::{is_id, job_of};
 use crate::error::input;
 use crate::report::csv::{self, A_N_FILE, Row};
 use crate::report::resample::Sampling;
@@ -42,7 +42,10 @@ pub async fn file(
     wanted: Result<Query<Wanted>, QueryRejection>,
 ) -> Answer<Response> {
     let Query(wanted) = wanted.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
-    let Some(file) = app.store.file(&id, &name).await? else {
+    // No file of a result has another name, and not every database takes every character.
+    let can_be = is_id(&id) && name.bytes().all(|byte| byte.is_ascii_graphic());
+    let found = if can_be { app.store.file(&id, &name).await? } else { None };
+    let Some(file) = found else {
         let job = job_of(&app, &collection, &id).await?;
         must_have_result(&job)?;
         return Err(Problem::not_found("file of this job"));
@@ -126,6 +129,9 @@ pub async fn input_file(
     responses((status = 200, description = "PNG", content_type = "image/png"), (status = 404, body = Problem)))]
 pub async fn picture(Shared(app): Shared<App>, Path((collection, id)): Path<(String, String)>) -> Answer<Response> {
     super::collections::kind_of(&collection)?;
+    if !is_id(&id) {
+        return Err(Problem::not_found("picture"));
+    }
     let picture = app.store.picture(&id).await?.ok_or_else(|| Problem::not_found("picture"))?;
     Ok(([(header::CONTENT_TYPE, "image/png")], picture).into_response())
 }
@@ -173,7 +179,8 @@ pub async fn remaining(
     if !(factor.is_finite() && factor >= 1.0) {
         return Err(input("factor", factor, "is not 1 or more", "give for example 2").into());
     }
-    let Some(file) = app.store.file(&id, A_N_FILE).await? else {
+    let found = if is_id(&id) { app.store.file(&id, A_N_FILE).await? } else { None };
+    let Some(file) = found else {
         must_have_result(&job_of(&app, "predictions", &id).await?)?;
         return Err(Problem::not_found("curve"));
     };

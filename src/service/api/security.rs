@@ -72,13 +72,13 @@ async fn caller_of(app: &App, address: SocketAddr, head: &Parts) -> Answer<Optio
     check_origin(app, &head.headers, is_write)?;
     let token = token_of(&head.headers).filter(|_| app.security.needs_token);
     let hash = token.map(hash);
-    let fresh = match &hash {
-        Some(hash) => app.fresh_token(hash).await,
-        None => None,
+    let (fresh, name) = match &hash {
+        Some(hash) => (app.fresh_token(hash).await, app.known_name(hash).await),
+        None => (None, None),
     };
-    // Who guesses tokens is held to the limit of his address before the store is asked.
-    let name = fresh.as_ref().map(|token| &*token.name);
-    if !app.may_ask(name, address.ip(), is_write) {
+    // Who guesses tokens is held to the limit of his address before the store is asked; who is known has his own, even behind
+    // the same proxy.
+    if !app.may_ask(name.as_deref(), address.ip(), is_write) {
         return Err(Problem::too_many("more requests than this server takes from one caller; go slower", 1));
     }
     if !app.security.needs_token {

@@ -3,13 +3,14 @@
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use axum::extract::{MatchedPath, Request, State};
+use axum::extract::{MatchedPath, Request, State as Shared};
 use axum::http::header;
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 
 use super::App;
+use crate::service::job::State;
 use crate::service::problem::Answer;
 
 /// Bounds of the histogram of answer times, s.
@@ -25,11 +26,16 @@ fn recorder() -> Option<&'static PrometheusHandle> {
     RECORDER.get_or_init(install).as_ref()
 }
 
-/// Starts counting.
-pub fn start() {
+/// Sums up what was measured; now and then, or it piles up where nobody asks for it.
+pub fn sum_up() {
     if let Some(recorder) = recorder() {
         recorder.run_upkeep();
     }
+}
+
+/// Starts counting.
+pub fn start() {
+    sum_up();
     metrics::describe_counter!("perilife_http_requests_total", "Requests by route, method and status.");
     metrics::describe_histogram!("perilife_http_request_seconds", "Time to the beginning of the answer, s.");
     metrics::describe_counter!("perilife_jobs_finished_total", "Jobs ended by the workers of this process.");
@@ -52,15 +58,18 @@ pub async fn measure(request: Request, next: Next) -> Response {
 }
 
 /// `/healthz`: 200 while the store answers, else 503.
-pub async fn health(State(app): State<App>) -> Answer<&'static str> {
+pub async fn health(Shared(app): Shared<App>) -> Answer<&'static str> {
     app.store.ping().await?;
     Ok("ok\n")
 }
 
 /// `/metrics` in the text format of Prometheus.
-pub async fn metrics(State(app): State<App>) -> Answer<Response> {
-    for (state, count) in app.store.counts().await? {
-        metrics::gauge!("perilife_jobs", "state" => state).set(count as f64);
+pub async fn metrics(Shared(app): Shared<App>) -> Answer<Response> {
+    let counts = app.store.counts().await?;
+    // Those that no job is in as well.
+    for state in State::ALL {
+        let count = counts.iter().find(|(name, _)| name == state.name()).map_or(0, |(_, count)| *count);
+        metrics::gauge!("perilife_jobs", "state" => state.name()).set(count as f64);
     }
     let text = recorder().map(PrometheusHandle::render).unwrap_or_default();
     Ok(([(header::CONTENT_TYPE, "text/plain; version=0.0.4")], text).into_response())

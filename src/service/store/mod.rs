@@ -67,6 +67,14 @@ impl Dialect {
         }
     }
 
+    /// Type of ids and names that are compared: by bytes, whatever the language of the server.
+    fn key(self) -> &'static str {
+        match self {
+            Dialect::Sqlite => "TEXT",
+            Dialect::Postgres => "TEXT COLLATE \"C\"",
+        }
+    }
+
     /// Begins a transaction that writes: SQLite must know before it reads, or two could wait for each other.
     fn begin(self) -> &'static str {
         match self {
@@ -137,13 +145,14 @@ impl Store {
         self.pool.close().await;
     }
 
-    /// A statement with the fragments of this database filled in: `{now}`, `{skip_locked}`, `{bytes}`.
+    /// A statement with the fragments of this database filled in: `{now}`, `{skip_locked}`, `{bytes}`, `{key}`.
     fn sql(&self, statement: &str) -> sqlx::AssertSqlSafe<String> {
         let dialect = self.dialect;
         let filled = statement
             .replace("{now}", dialect.now())
             .replace("{skip_locked}", dialect.skip_locked())
-            .replace("{bytes}", dialect.bytes());
+            .replace("{bytes}", dialect.bytes())
+            .replace("{key}", dialect.key());
         sqlx::AssertSqlSafe(filled)
     }
 

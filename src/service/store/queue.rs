@@ -64,6 +64,8 @@ impl Store {
     /// # Errors
     /// The database does not answer.
     pub async fn claim(&self, worker: &str, lease_ms: i64) -> Result<Option<Claim>> {
+        // Within a transaction, since only its end tells that the claim has got to the disk.
+        let mut transaction = self.begin().await?;
         let row = sqlx::query(self.sql(
             "UPDATE jobs SET state = 'running', worker = $1, fence = fence + 1, attempts = attempts + 1,
                 lease_until_ms = {now} + $2, started_ms = COALESCE(started_ms, {now}), revision = revision + 1
@@ -73,8 +75,9 @@ impl Store {
         ))
         .bind(worker)
         .bind(lease_ms)
-        .fetch_optional(&self.pool)
+        .fetch_optional(&mut *transaction)
         .await?;
+        transaction.commit().await?;
         let Some(row) = row else { return Ok(None) };
         let kind: String = row.try_get("kind")?;
         Ok(Some(Claim {
@@ -101,6 +104,7 @@ impl Store {
     /// The database does not answer; the claim may still hold.
     pub async fn beat(&self, claim: &Claim, lease_ms: i64, progress: Option<&JobProgress>) -> Result<Beat> {
         let progress = progress.and_then(|progress| serde_json::to_string(progress).ok());
+        let mut transaction = self.begin().await?;
         let asked: Option<i64> = sqlx::query_scalar(self.sql(
             "UPDATE jobs SET lease_until_ms = {now} + $3, revision = revision + CASE WHEN $4 IS NULL OR $4 = progress THEN 0 ELSE 1 END,
                 progress = COALESCE($4, progress)
@@ -110,8 +114,9 @@ impl Store {
         .bind(claim.fence)
         .bind(lease_ms)
         .bind(progress)
-        .fetch_optional(&self.pool)
+        .fetch_optional(&mut *transaction)
         .await?;
+        transaction.commit().await?;
         Ok(asked.map_or(Beat::Lost, |asked| if asked == 0 { Beat::Held } else { Beat::Cancel }))
     }
 
@@ -148,11 +153,12 @@ impl Store {
             sqlx::query("DELETE FROM growth WHERE job = $1").bind(&claim.id).execute(&mut *transaction).await?;
         }
         sqlx::query(
-            "INSERT INTO growth (job, first, entries) VALUES ($1, $2, $3)
-             ON CONFLICT (job, first) DO UPDATE SET entries = excluded.entries",
+            "INSERT INTO growth (job, first, fence, entries) VALUES ($1, $2, $3, $4)
+             ON CONFLICT (job, first) DO UPDATE SET fence = excluded.fence, entries = excluded.entries",
         )
         .bind(&claim.id)
         .bind(growth.from as i64)
+        .bind(claim.fence)
         .bind(serde_json::to_string(growth).unwrap_or_default())
         .execute(&mut *transaction)
         .await?;
@@ -160,16 +166,19 @@ impl Store {
         Ok(true)
     }
 
-    /// Pieces of the growing curve of a job from entry `from` on.
+    /// Pieces of the growing curve of a job from entry `from` on, of one claim or of all.
     ///
     /// # Errors
     /// The database does not answer.
-    pub async fn growth(&self, id: &str, from: i64) -> Result<Vec<Growth>> {
-        let pieces: Vec<String> = sqlx::query_scalar("SELECT entries FROM growth WHERE job = $1 AND first >= $2 ORDER BY first")
-            .bind(id)
-            .bind(from)
-            .fetch_all(&self.pool)
-            .await?;
+    pub async fn growth(&self, id: &str, from: i64, fence: Option<i64>) -> Result<Vec<Growth>> {
+        let pieces: Vec<String> = sqlx::query_scalar(
+            "SELECT entries FROM growth WHERE job = $1 AND first >= $2 AND ($3 < 0 OR fence = $3) ORDER BY first",
+        )
+        .bind(id)
+        .bind(from)
+        .bind(fence.unwrap_or(-1))
+        .fetch_all(&self.pool)
+        .await?;
         Ok(pieces.iter().filter_map(|piece| serde_json::from_str(piece).ok()).collect())
     }
 
@@ -250,19 +259,18 @@ impl Store {
         Ok(true)
     }
 
-    /// Gives a job back to the queue; a blameless one is not counted as having been tried.
+    /// Gives a job back to the queue, not counted as having been tried: it is not to blame.
     ///
     /// # Errors
     /// The database does not answer; the job goes on elsewhere once its time has run out.
-    pub async fn release(&self, claim: &Claim, is_blameless: bool) -> Result<()> {
+    pub async fn release(&self, claim: &Claim) -> Result<()> {
         sqlx::query(
-            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, attempts = attempts - $3,
+            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, attempts = attempts - 1,
                 revision = revision + 1
              WHERE id = $1 AND fence = $2 AND state = 'running'",
         )
         .bind(&claim.id)
         .bind(claim.fence)
-        .bind(i64::from(is_blameless))
         .execute(&self.pool)
         .await
         .map(drop)

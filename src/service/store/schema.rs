@@ -8,7 +8,7 @@ const STEPS: &[&[&str]] = &[&[
     // claim he holds, so that a worker taken for dead that is not cannot write over its successor. `attempts` counts the claims
     // since the last checkpoint. `revision` grows with every change that somebody may be watching for.
     "CREATE TABLE jobs (
-        id TEXT PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL, owner TEXT NOT NULL, state TEXT NOT NULL,
+        id {key} PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL, owner TEXT NOT NULL, state TEXT NOT NULL,
         calibration TEXT, created_ms BIGINT NOT NULL, started_ms BIGINT, finished_ms BIGINT,
         worker TEXT, fence BIGINT NOT NULL DEFAULT 0, lease_until_ms BIGINT, attempts BIGINT NOT NULL DEFAULT 0,
         cancel_asked BIGINT NOT NULL DEFAULT 0, revision BIGINT NOT NULL DEFAULT 0,
@@ -16,21 +16,22 @@ const STEPS: &[&[&str]] = &[&[
     "CREATE INDEX jobs_by_state ON jobs (state, id)",
     "CREATE INDEX jobs_by_kind ON jobs (kind, id)",
     "CREATE INDEX jobs_finished ON jobs (finished_ms)",
-    "CREATE TABLE submissions (job TEXT PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, content {bytes} NOT NULL)",
+    "CREATE TABLE submissions (job {key} PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, content {bytes} NOT NULL)",
     "CREATE TABLE idempotency (
         owner TEXT NOT NULL, key TEXT NOT NULL, fingerprint TEXT NOT NULL,
-        job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, PRIMARY KEY (owner, key))",
+        job {key} NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, PRIMARY KEY (owner, key))",
     "CREATE INDEX idempotency_by_job ON idempotency (job)",
-    "CREATE TABLE checkpoints (job TEXT PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, content {bytes} NOT NULL)",
+    "CREATE TABLE checkpoints (job {key} PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, content {bytes} NOT NULL)",
     "CREATE TABLE files (
-        job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, name TEXT NOT NULL, media_type TEXT NOT NULL,
+        job {key} NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, name TEXT NOT NULL, media_type TEXT NOT NULL,
         size BIGINT NOT NULL, content {bytes} NOT NULL, PRIMARY KEY (job, name))",
     // What a running job shows of itself: pieces of its curve, and its latest picture.
     "CREATE TABLE growth (
-        job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, first BIGINT NOT NULL, entries TEXT NOT NULL,
+        job {key} NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, first BIGINT NOT NULL, fence BIGINT NOT NULL,
+        entries TEXT NOT NULL,
         PRIMARY KEY (job, first))",
     "CREATE TABLE pictures (
-        job TEXT PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, revision BIGINT NOT NULL, about TEXT NOT NULL,
+        job {key} PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE, revision BIGINT NOT NULL, about TEXT NOT NULL,
         content {bytes} NOT NULL)",
     // What is packed already is not packed once more.
     "postgres: ALTER TABLE files ALTER COLUMN content SET STORAGE EXTERNAL",

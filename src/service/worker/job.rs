@@ -7,7 +7,7 @@ use std::time::Duration;
 use axum::http::StatusCode;
 
 use super::results::{Results, of_fit, of_run};
-use super::watch::{Stop, Watch};
+use super::watch::{Keep, Stop, Watch};
 use super::{Shared, TRY_EVERY, milliseconds};
 use crate::calibration::case::CalibrationCase;
 use crate::case::Case;
@@ -68,7 +68,9 @@ pub fn work(shared: &Shared, pool: &rayon::ThreadPool, claim: &Claim) {
         Task::Calibration(calibration) => &calibration.case.specimen.cracks,
     }
     .to_vec();
-    let watch = Watch::new(&cracks, &growth, &keep, shared.settings.checkpoint_every);
+    // A fit begins anew: it takes some runs, and only one of them would be kept.
+    let keep = (claim.kind == JobKind::Prediction).then_some(&keep as Keep<'_>);
+    let watch = Watch::new(&cracks, &growth, keep, shared.settings.checkpoint_every);
     let outcome = run_watched(shared, pool, claim, task, &watch);
     conclude(shared, claim, outcome, watch.stopped());
 }
@@ -99,7 +101,7 @@ fn growth_so_far(shared: &Shared, claim: &Claim, task: &Task) -> Growth {
     }
     if let Task::Prediction(_, Some(checkpoint)) = task {
         let until = checkpoint.progress().cycles;
-        let pieces = shared.handle.block_on(shared.store.growth(&claim.id, 0)).unwrap_or_default();
+        let pieces = shared.handle.block_on(shared.store.growth(&claim.id, 0, None)).unwrap_or_default();
         for piece in pieces {
             let kept = piece.cycles.iter().take_while(|cycles| **cycles <= until).count();
             all.cycles.extend_from_slice(&piece.cycles[..kept]);
@@ -195,12 +197,14 @@ fn conclude(shared: &Shared, claim: &Claim, outcome: Option<Result<Results>>, st
         (Some(Err(_)), Some(Stop::Lost)) => {
             return tracing::warn!(job = claim.id, "the job is another worker's: this one was not heard of for too long");
         }
-        (Some(Err(_)), Some(Stop::Shutdown)) => return give_back(shared, claim, true),
+        (Some(Err(_)), Some(Stop::Shutdown)) => return give_back(shared, claim),
         (Some(Err(error @ Error::File { .. })), None) => {
             // The disk of this machine, not the job.
             tracing::error!(job = claim.id, "results cannot be written: {error}");
-            shared.handle.block_on(shared.pause(TRY_EVERY));
-            return give_back(shared, claim, false);
+            // Longer each time, so that a disk that stays full costs little.
+            let tries = u32::try_from(claim.fence.clamp(1, 30)).unwrap_or(1);
+            shared.handle.block_on(shared.pause(TRY_EVERY * tries));
+            return give_back(shared, claim);
         }
         (Some(Err(error)), None) => ended(State::Failed, Some(&error.into())),
         (None, _) => {
@@ -244,8 +248,8 @@ fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome) {
     }
 }
 
-fn give_back(shared: &Shared, claim: &Claim, is_blameless: bool) {
-    match shared.handle.block_on(shared.store.release(claim, is_blameless)) {
+fn give_back(shared: &Shared, claim: &Claim) {
+    match shared.handle.block_on(shared.store.release(claim)) {
         Ok(()) => tracing::info!(job = claim.id, "job given back"),
         Err(error) => tracing::warn!(job = claim.id, "the job cannot be given back, others take it later: {error}"),
     }

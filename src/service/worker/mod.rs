@@ -7,6 +7,7 @@ mod job;
 mod results;
 mod watch;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -135,7 +136,10 @@ fn take_jobs(shared: &Arc<Shared>) {
             Ok(Some(claim)) => {
                 // There may be more where this came from.
                 shared.wake.notify_one();
-                work(shared, &pool, &claim);
+                if catch_unwind(AssertUnwindSafe(|| work(shared, &pool, &claim))).is_err() {
+                    // Its time will run out, and it will be tried again, so many times; this worker goes on.
+                    tracing::error!(job = claim.id, "a worker panicked over a job");
+                }
             }
             Ok(None) => shared.handle.block_on(shared.pause(LOOK_EVERY)),
             Err(error) => {
@@ -154,7 +158,7 @@ async fn expire(shared: Arc<Shared>, keep: Duration) {
             Ok(count) => tracing::info!(count, "finished jobs deleted: their time is over"),
             Err(error) => tracing::warn!("finished jobs cannot be deleted: {error}"),
         }
-        tokio::time::sleep(EXPIRE_EVERY.min(keep)).await;
+        tokio::time::sleep(keep.clamp(TRY_EVERY, EXPIRE_EVERY)).await;
     }
 }
 

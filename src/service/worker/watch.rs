@@ -66,7 +66,7 @@ pub type Keep<'a> = &'a (dyn Fn(Vec<u8>) -> bool + Sync);
 /// Watches one run.
 pub struct Watch<'a> {
     cracks: &'a [Crack],
-    keep: Keep<'a>,
+    keep: Option<Keep<'a>>,
     keep_every: Duration,
     started: Instant,
     /// 0 or a [`Stop`].
@@ -97,7 +97,7 @@ const OVER_COST: u32 = 20;
 impl<'a> Watch<'a> {
     /// Watches a run of a plate with these cracks, whose curve so far is `growth`.
     #[must_use]
-    pub fn new(cracks: &'a [Crack], growth: &Growth, keep: Keep<'a>, keep_every: Duration) -> Self {
+    pub fn new(cracks: &'a [Crack], growth: &Growth, keep: Option<Keep<'a>>, keep_every: Duration) -> Self {
         let tips = growth.tips.first().map_or(0, Vec::len);
         let path = |tip: usize| growth.tips.iter().filter_map(|entry| Some(entry.get(tip)?.map(|mm| mm * MM))).collect();
         let told = Told {
@@ -201,6 +201,7 @@ impl Observer for Watch<'_> {
     }
 
     fn may_keep(&self, checkpoint: &dyn Fn() -> Checkpoint) {
+        let Some(keep) = self.keep else { return };
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         if told.kept.elapsed() < self.keep_every.max(OVER_COST * told.keep_cost) {
             return;
@@ -208,7 +209,7 @@ impl Observer for Watch<'_> {
         let begun = Instant::now();
         // Others may ask how far the run is meanwhile.
         drop(told);
-        (self.keep)(checkpoint().to_bytes());
+        keep(checkpoint().to_bytes());
         told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         (told.kept, told.keep_cost) = (Instant::now(), begun.elapsed());
     }

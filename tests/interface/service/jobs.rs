@@ -50,8 +50,10 @@ fn a_job_is_watched_to_its_end() {
             events.iter().any(|(name, picture)| name == "picture" && picture["href"].as_str().unwrap().ends_with("damage.png"))
         );
         // Whoever comes late, or back with the last id, is told the end.
-        for headers in [&[][..], &[("last-event-id", "3.1.9.1")], &[("last-event-id", "what?")]] {
-            let late = service.events(&job, headers);
+        let id = format!("{}.1.9.1", last["revision"]);
+        for id in [None, Some(&*id), Some("3.1.9.1"), Some("what?")] {
+            let headers: Vec<(&str, &str)> = id.into_iter().map(|id| ("last-event-id", id)).collect();
+            let late = service.events(&job, &headers);
             assert_eq!(late.last().unwrap().1["state"], "succeeded");
         }
     });
@@ -148,6 +150,21 @@ fn many_clients_at_once_lose_nothing() {
         }
         let other = [("content-type", "application/json"), ("idempotency-key", "key 7")];
         service.send("POST", "/v1/predictions", &other, of("another", &hand).to_string().as_bytes()).expect(409);
+    });
+}
+
+/// Finished jobs go when their time is over; what waits or runs stays.
+#[test]
+fn results_are_kept_for_their_time() {
+    with_each_store("expired", |place| {
+        let service = Server::start(place, &["--jobs", "1", "--keep-days", "2e-5"]);
+        let job = service.submit("predictions", &of("quick", QUICK));
+        let begun = Instant::now();
+        while service.get(&job).status != 404 {
+            assert!(begun.elapsed() < PATIENCE, "it is kept for ever");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        assert!(begun.elapsed() > Duration::from_secs_f64(2e-5 * 86_400.0), "it went too early");
     });
 }
 

@@ -59,6 +59,7 @@ fn requests_that_cannot_be_read_are_refused() {
         ("/v1/predictions", json, b"{}".to_vec(), 400, "no `input`"),
         ("/v1/predictions", json, b"{\"inputs\": \"\"}".to_vec(), 400, "unknown field `inputs`"),
         ("/v1/predictions", json, vec![b'['; 100_000], 400, "not JSON"),
+        ("/v1/check", json, format!("{{\"input\":{{\"a\":[{}0]}}}}", "0,".repeat(250_000)).into_bytes(), 413, "more than 200000 parts"),
         ("/v1/predictions", json, vec![b' '; 2 << 20], 413, "larger than the 1048576 bytes this server takes"),
         ("/v1/predictions", json, of("case\n", QUICK).to_string().into_bytes(), 422, "is no name"),
         ("/v1/predictions", json, of("case", &fine).to_string().into_bytes(), 422, "model.spacing_mm = 0.1: gives the plate"),
@@ -83,7 +84,12 @@ fn requests_that_cannot_be_read_are_refused() {
         assert!(problem["detail"].as_str().unwrap().contains(words), "{words} in {problem}");
         assert!(problem["status"] == status && !problem["title"].as_str().unwrap().is_empty());
     }
+    service.get("/v1/predictions?after=%00").expect(400);
+    let nul = "/v1/predictions/01a202b2-bf2d-75fe-996b-265c5720d3fc/files/%00";
     for path in [
+        nul,
+        "/v1/predictions/%00",
+        "/v1/predictions/%00/live/damage.png",
         "/v1/predictions/no",
         "/v1/predictions/no/events",
         "/v1/predictions/no/files/a_n.csv",
