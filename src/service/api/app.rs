@@ -142,10 +142,10 @@ impl App {
         let found = self.store.token(hash).await?;
         let mut known = self.shared.tokens.write().await;
         known.retain(|(other, ..)| other != hash);
-        if let Some(token) = &found {
-            if known.len() < TOKENS_REMEMBERED {
-                known.push((hash.to_owned(), token.clone(), Instant::now()));
-            }
+        if let Some(token) = &found
+            && known.len() < TOKENS_REMEMBERED
+        {
+            known.push((hash.to_owned(), token.clone(), Instant::now()));
         }
         Ok(found)
     }
