@@ -10,6 +10,7 @@ pub mod kinds;
 pub mod tables;
 pub mod units;
 pub mod quadrature;
+pub mod sealed;
 pub mod input;
 
 pub mod specimen;

@@ -13,6 +13,8 @@ mod shared;
 
 #[path = "unit/bench.rs"]
 mod bench;
+#[path = "unit/bench_parts.rs"]
+mod bench_parts;
 #[path = "unit/block.rs"]
 mod block;
 #[path = "unit/collinear.rs"]

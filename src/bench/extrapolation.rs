@@ -108,7 +108,8 @@ impl History {
 }
 
 /// Places of measured blocks among `blocks`: [`BLOCKS`] or as many as `affordable` in the middle of equal parts.
-fn places(blocks: usize, affordable: usize) -> Vec<usize> {
+#[must_use]
+pub fn places(blocks: usize, affordable: usize) -> Vec<usize> {
     let count = affordable.clamp(BLOCKS_LEAST, BLOCKS).min(blocks);
     (0..count).map(|i| (2 * i + 1) * blocks / (2 * count)).collect()
 }
@@ -138,43 +139,5 @@ impl Sampled {
             (Some((_, only)), None) | (None, Some((_, only))) => *only,
             (Some((from, t)), Some((to, s))) => t + (s - t) * (block - from) as f64 / (to - from) as f64,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn sampled(blocks: &[(usize, f64)]) -> Sampled {
-        Sampled { start_s: 3.0, blocks: blocks.to_vec(), work: f64::NAN, broken_bonds: 0 }
-    }
-
-    #[test]
-    fn equal_blocks_add_up() {
-        assert!((sampled(&[(2, 0.5), (7, 0.5)]).whole(10) - 8.0).abs() < 1e-12);
-        assert_eq!(sampled(&[(4, 0.5)]).whole(0), 3.0, "a run without a break has its first solve");
-    }
-
-    #[test]
-    fn blocks_between_lie_on_the_line() {
-        // 1, 1 (level before), then 1, 2, 3 (line), then 3 (level after).
-        assert!((sampled(&[(1, 1.0), (3, 3.0)]).whole(5) - (3.0 + 1.0 + 1.0 + 2.0 + 3.0 + 3.0)).abs() < 1e-12);
-        // Time that grows linearly along the run is summed exactly when sampled in the middle of equal parts, but for the ends.
-        let line: Vec<(usize, f64)> = places(100, 20).into_iter().map(|block| (block, block as f64)).collect();
-        let exact = (0..100).sum::<usize>() as f64;
-        assert!((sampled(&line).whole(100) - 3.0 - exact).abs() < 0.01 * exact);
-    }
-
-    #[test]
-    fn nothing_measured_gives_no_number() {
-        assert!(sampled(&[]).whole(4).is_nan());
-    }
-
-    #[test]
-    fn places_are_spread_over_the_run() {
-        assert_eq!(places(100, 20), (0..20).map(|i| 2 + 5 * i).collect::<Vec<_>>());
-        assert_eq!(places(10, 0), [1, 3, 5, 7, 9]);
-        assert_eq!(places(3, 20), [0, 1, 2]);
-        assert!(places(0, 20).is_empty());
     }
 }

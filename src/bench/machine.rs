@@ -49,15 +49,3 @@ impl WithSimd for Lanes {
         S::F64_LANES
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn vectors_hold_whole_doubles() {
-        let machine = Machine::here();
-        assert!(machine.simd_bits >= 64 && machine.simd_bits.is_power_of_two() && machine.threads > 0, "{machine}");
-        assert!(!machine.instruction_set.contains('('), "{machine}");
-    }
-}

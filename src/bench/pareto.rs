@@ -27,26 +27,3 @@ pub(super) fn mark(rows: &mut [Row]) {
     let places: Vec<(f64, f64)> = rows.iter().map(|row| row.place().unwrap_or((f64::NAN, f64::NAN))).collect();
     front(&places).into_iter().for_each(|i| rows[i].on_front = true);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn beaten_points_are_left_out() {
-        let points = [(1.0, 3.0), (2.0, 4.0), (0.5, 8.0), (4.0, 1.0), (3.0, 1.0), (5.0, f64::NAN), (9.0, 2.0)];
-        assert_eq!(front(&points), [2, 0, 4]);
-    }
-
-    #[test]
-    fn round_off_earns_no_place() {
-        assert_eq!(front(&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-6))]), [0]);
-        assert_eq!(front(&[(1.0, 2.0), (3.0, 2.0 * (1.0 - 1e-2))]), [0, 1]);
-        assert_eq!(front(&[(1.0, 2.0), (2.0, 0.0), (3.0, 0.0)]), [0, 1], "no error at all earns one, but once");
-    }
-
-    #[test]
-    fn nothing_has_no_front() {
-        assert!(front(&[]).is_empty() && front(&[(f64::INFINITY, 1.0), (1.0, f64::NAN)]).is_empty());
-    }
-}

@@ -1,9 +1,10 @@
 //! A calibration from its file to the fit, by the model that `model.method` names.
 
 use crate::calibration::case::CalibrationCase;
+use crate::calibration::finished::FinishedRuns;
 use crate::calibration::fit::{Fit, FitTask, fit};
 use crate::calibration::model::ForwardModel;
-use crate::calibration::pd_model::PdModel;
+use crate::calibration::pd_model::{KeepRuns, PdModel};
 use crate::calibration::power_law::PowerLaw;
 use crate::case::Method;
 use crate::error::Result;
@@ -14,6 +15,20 @@ use crate::predict::Observer;
 /// # Errors
 /// Mechanics without a result, or a window in which the handbook has no K.
 pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Result<Fit> {
+    calibrate_from(calibration, FinishedRuns::default(), &|_| {}, observer)
+}
+
+/// [`calibrate`] with runs that an earlier one finished before it was broken off; `keep` is told of them and of every new one.
+/// The fit is the same.
+///
+/// # Errors
+/// As [`calibrate`]; runs of another calibration.
+pub fn calibrate_from(
+    calibration: &CalibrationCase,
+    finished: FinishedRuns,
+    keep: KeepRuns<'_>,
+    observer: &dyn Observer,
+) -> Result<Fit> {
     let delta_k = |length: f64| calibration.delta_k(length);
     let task = FitTask {
         curves: &calibration.curves,
@@ -24,7 +39,7 @@ pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
     let fit_with = |model: &dyn ForwardModel| fit(&task, model);
     let case = &calibration.case;
     match case.model.method {
-        Method::Peridynamics => fit_with(&PdModel::new(case, observer)?),
+        Method::Peridynamics => fit_with(&PdModel::with_finished(case, finished, keep, observer)?),
         Method::Handbook => {
             let mut fit = fit_with(&PowerLaw::new(case.specimen.crack_length, case.stop.crack_length, &delta_k)?)?;
             // The fitted constants are C and m themselves; no line has to be drawn through rates.

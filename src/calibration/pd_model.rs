@@ -1,17 +1,23 @@
 //! The peridynamic engine as forward model of a calibration, with replays of what it did.
 
-use super::model::{ForwardModel, RecordedRun, UnitCurve};
-use crate::body::Bond;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::finished::{FinishedRun, FinishedRuns};
+use super::model::{ForwardModel, RecordedRun};
+use super::recording::Recording;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fatigue::FatigueLaw;
-use crate::fatigue::ageing::AgeingBond;
-use crate::fatigue::length_average::LengthAverage;
-use crate::predict::{CurvePoint, Observer, Recorder, StopReason, run};
+use crate::predict::{CurvePoint, Observer, StopReason, run};
+
+/// Takes the finished runs of a calibration to where they are kept.
+pub type KeepRuns<'a> = &'a (dyn Fn(&FinishedRuns) + Sync);
 
 /// Runs a case with A = 1 and any p.
 pub struct PdModel<'a> {
     case: Case,
+    finished: Mutex<FinishedRuns>,
+    keep: KeepRuns<'a>,
     observer: &'a dyn Observer,
 }
 
@@ -21,15 +27,22 @@ impl<'a> PdModel<'a> {
     /// # Errors
     /// None yet: the body is built anew by every run.
     pub fn new(case: &Case, observer: &'a dyn Observer) -> Result<Self> {
+        Self::with_finished(case, FinishedRuns::default(), &|_| {}, observer)
+    }
+
+    /// The same where some runs are `finished` already, which are not made again; `keep` is told of every new one.
+    ///
+    /// # Errors
+    /// The finished runs are those of another case.
+    pub fn with_finished(case: &Case, finished: FinishedRuns, keep: KeepRuns<'a>, observer: &'a dyn Observer) -> Result<Self> {
+        let finished = Mutex::new(finished.checked(case)?);
         let mut case = case.clone();
         // With A = 1 cycles are counted in units of 1/A: a limit on cycles would mean nothing.
         case.stop.cycles_max = f64::INFINITY;
-        Ok(PdModel { case, observer })
+        Ok(PdModel { case, finished, keep, observer })
     }
-}
 
-impl ForwardModel for PdModel<'_> {
-    fn run(&self, p: f64) -> Result<RecordedRun> {
+    fn run_anew(&self, p: f64) -> Result<FinishedRun> {
         let mut recording = Recording::default();
         let done = run(&self.case, |horizon| Ok(FatigueLaw { a: 1.0, p, horizon }), &mut recording, self.observer)?;
         if done.stop == StopReason::NoConvergence {
@@ -47,58 +60,41 @@ impl ForwardModel for PdModel<'_> {
                 done.crack_length_final() / crate::units::MM
             )));
         }
-        let curve: UnitCurve =
-            done.curve.iter().map(|CurvePoint { cycles, crack_length, .. }| (*cycles, *crack_length)).collect();
-        let end = done.crack_length_final();
-        let figures = done.figures;
-        let replay = move |p: f64| recording.replay(p, end, figures.spacing);
-        let mut recorded = RecordedRun::new(curve, figures.horizon, figures.spacing, replay);
-        recorded.warnings = done.warnings;
-        Ok(recorded)
+        Ok(FinishedRun {
+            p,
+            curve: done.curve.iter().map(|CurvePoint { cycles, crack_length, .. }| (*cycles, *crack_length)).collect(),
+            end: done.crack_length_final(),
+            horizon: done.figures.horizon,
+            spacing: done.figures.spacing,
+            warnings: done.warnings,
+            recording: Arc::new(recording),
+        })
     }
 }
 
-/// What a run did, block by block.
-#[derive(Debug, Default)]
-struct Recording {
-    blocks: Vec<RecordedBlock>,
-}
-
-#[derive(Debug)]
-struct RecordedBlock {
-    ageing: Vec<AgeingBond>,
-    spent: Vec<Bond>,
-    crack_length: f64,
-}
-
-impl Recorder for Recording {
-    fn block(&mut self, ageing: &[AgeingBond], spent: &[Bond], crack_length: f64) {
-        self.blocks.push(RecordedBlock { ageing: ageing.to_vec(), spent: spent.to_vec(), crack_length });
-    }
-}
-
-impl Recording {
-    /// The same sequence of breaks at another exponent, with the strains as recorded: each block lasts until its bonds are
-    /// spent. Good to about 1 % of life for a change of p by 0.3, since the order of breaks hardly depends on p.
-    fn replay(&self, p: f64, end: f64, spacing: f64) -> UnitCurve {
-        let mut life: std::collections::HashMap<Bond, f64> = std::collections::HashMap::new();
-        let mut cycles = 0.0;
-        let (mut all_cycles, mut lengths) = (Vec::new(), Vec::new());
-        for block in &self.blocks {
-            let spending: Vec<(Bond, f64)> = block.ageing.iter().map(|b| (b.bond, b.strain.powf(p))).collect();
-            let to_spend = |(bond, rate): &(Bond, f64)| life.get(bond).copied().unwrap_or(1.0).max(0.0) / rate;
-            let lasts =
-                spending.iter().filter(|(bond, _)| block.spent.contains(bond)).map(to_spend).fold(f64::INFINITY, f64::min);
-            // A block that spent no bond (fixed cycles) has no length of its own at another p.
-            let lasts = if lasts.is_finite() { lasts } else { 0.0 };
-            for (bond, rate) in spending {
-                *life.entry(bond).or_insert(1.0) -= lasts * rate;
+impl ForwardModel for PdModel<'_> {
+    fn run(&self, p: f64) -> Result<RecordedRun> {
+        // Runs are put in whole.
+        let finished = || self.finished.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = finished().at(p).cloned();
+        let run = match known {
+            Some(run) => run,
+            None => {
+                let run = self.run_anew(p)?;
+                let mut finished = finished();
+                finished.add(run.clone());
+                (self.keep)(&finished);
+                run
             }
-            cycles += lasts;
-            all_cycles.push(cycles);
-            lengths.push(block.crack_length.min(end));
-        }
-        let averaged = LengthAverage::new(&all_cycles, &lengths, spacing).of_rising(&lengths);
-        all_cycles.into_iter().zip(averaged).collect()
+        };
+        Ok(recorded(run))
     }
+}
+
+fn recorded(run: FinishedRun) -> RecordedRun {
+    let FinishedRun { curve, end, horizon, spacing, warnings, recording, .. } = run;
+    let replay = move |p: f64| recording.replay(p, end, spacing);
+    let mut recorded = RecordedRun::new(curve, horizon, spacing, replay);
+    recorded.warnings = warnings;
+    recorded
 }

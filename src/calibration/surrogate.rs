@@ -90,7 +90,7 @@ impl<'a> Surrogate<'a> {
 }
 
 /// How many exponents lie apart from each other.
-fn apart(exponents: &[f64]) -> usize {
+pub(super) fn apart(exponents: &[f64]) -> usize {
     let mut sorted = exponents.to_vec();
     sorted.sort_by(f64::total_cmp);
     let mut last = f64::NEG_INFINITY;

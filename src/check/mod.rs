@@ -4,12 +4,14 @@ mod preview;
 mod scene;
 mod understood;
 
+use std::path::Path;
+
 use serde_json::map::Entry;
 use serde_json::{Map, Value, json};
 
 use self::preview::preview;
 use self::scene::{scene_drawing, scene_lines};
-use self::understood::{case_lines, curves_line};
+use self::understood::{case_lines, curves_line, sweep_lines};
 use crate::calibration::case::CalibrationCase;
 use crate::case::Case;
 use crate::error::Result;
@@ -17,13 +19,15 @@ use crate::fracture::Scene;
 use crate::fracture::read::is_scene;
 use crate::input::Document;
 use crate::report::specimen_picture::specimen_svg;
+use crate::sweep::Sweep;
+use crate::sweep::design::{self, CASES_MAX, is_sweep};
 
 pub use self::understood::Line;
 
 /// What a file asks for, checked.
 #[derive(Debug)]
 pub struct Checked {
-    /// `case`, `calibration` or `fracture`.
+    /// `case`, `calibration`, `fracture` or `sweep`.
     pub kind: &'static str,
     /// Its name.
     pub name: String,
@@ -76,6 +80,26 @@ pub fn check(document: Document) -> Result<Checked> {
     }
     let case = Case::from_document(&document)?;
     checked_case(&document, "case", &case, case.warnings.clone())
+}
+
+/// [`check`] of a file, which may also be a sweep: then every case of it is read. Overrides are those of the command that runs it.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_file(path: &Path, overrides: &[String]) -> Result<Checked> {
+    if !is_sweep(&Document::read(path, &[])?.table) {
+        return check(Document::read(path, overrides)?);
+    }
+    let sweep = Sweep::from_file(path, overrides, CASES_MAX)?;
+    let cases = sweep.cases()?;
+    let lines = sweep_lines(&sweep, &cases);
+    // A sweep has one case at least; what they have in common shows in any of them.
+    let first = cases[0].read()?;
+    let mut checked = checked_case(&sweep.base, "sweep", &first, first.warnings.clone())?;
+    checked.name.clone_from(&sweep.name);
+    checked.echo = design::echo(&sweep.document.table);
+    checked.lines.splice(0..0, lines);
+    Ok(checked)
 }
 
 /// Whether these are the sections of a calibration.

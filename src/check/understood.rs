@@ -1,10 +1,13 @@
 //! What `perilife check` has understood of a file, in words.
 
+use toml::Value;
+
 use crate::calibration::measured::MeasuredCurve;
 use crate::case::{Case, LawSource, Method};
 use crate::report::fit_use;
 use crate::specimen::handbook::handbook;
 use crate::specimen::{LoadMeasure, Support};
+use crate::sweep::{DesignKind, DrawnCase, Sweep};
 use crate::units::{GPA, KN, MM, MM_PER_CYCLE, MPA};
 
 /// One line of what was understood.
@@ -28,6 +31,39 @@ pub(super) fn curves_line(curves: &[MeasuredCurve]) -> Line {
         if curves.len() == 1 { format!("specimen {}", curves[0].specimen) } else { format!("{} specimens", curves.len()) };
     let value = format!("{specimens}: {readings} readings from {} to {} mm in {lives} cycles", short(shortest), short(longest));
     Line { what: "measured", value }
+}
+
+/// The design of a sweep, and what its cases have for each key that varies; that of the first case follows.
+pub(super) fn sweep_lines(sweep: &Sweep, cases: &[DrawnCase]) -> Vec<Line> {
+    let design = &sweep.design;
+    let seed = if design.kind == DesignKind::Grid { String::new() } else { format!(", seed {}", design.seed) };
+    let number = count(cases.len(), "case");
+    let mut lines = vec![Line { what: "sweep", value: format!("{number} of {}, {}{seed}", sweep.base.name, design.kind) }];
+    for (column, key) in sweep.columns().iter().enumerate() {
+        let numbers: Option<Vec<f64>> = cases
+            .iter()
+            .map(|case| match &case.values[column] {
+                Value::Integer(number) => Some(*number as f64),
+                Value::Float(number) => Some(*number),
+                _ => None,
+            })
+            .collect();
+        let values = match numbers {
+            Some(numbers) => {
+                let (low, high) = numbers.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+                format!("{} to {}", figures(low), figures(high))
+            }
+            None => {
+                let mut words: Vec<String> = cases.iter().map(|case| case.values[column].to_string()).collect();
+                words.sort();
+                words.dedup();
+                words.join(", ")
+            }
+        };
+        lines.push(Line { what: "varies", value: format!("{key}: {values}") });
+    }
+    lines.push(Line { what: "first case", value: cases[0].name.clone() });
+    lines
 }
 
 /// What the program understood of a case, one line each; `points` says how it is divided.
@@ -139,4 +175,10 @@ pub(super) fn count(number: usize, name: &str) -> String {
 pub(super) fn short(value: f64) -> String {
     let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A number of any size in a few figures.
+fn figures(value: f64) -> String {
+    let is_plain = value == 0.0 || (1e-2..1e7).contains(&value.abs());
+    if is_plain { short(value) } else { format!("{value:.4e}") }
 }

@@ -7,8 +7,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::console::Console;
-use super::predict;
-use crate::calibration::calibrate::calibrate;
+use super::{checkpoint, predict};
 use crate::calibration::case::{CalibrationCase, remove_law};
 use crate::calibration::record::FittedRecord;
 use crate::calibration::results::{FitReport, record};
@@ -34,6 +33,9 @@ pub struct Args {
     /// Override a key of the calibration file (repeatable), e.g. --set model.spacing_mm=2
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
+    /// Keeping the fit for later.
+    #[command(flatten)]
+    pub keeping: checkpoint::FitArgs,
     /// What is printed.
     #[command(flatten)]
     pub console: Console,
@@ -53,10 +55,7 @@ pub fn run(args: &Args) -> Result<()> {
         console.warn(warning);
     }
     let started = Instant::now();
-    let fitted = {
-        let progress = console.progress(&calibration.case.name);
-        calibrate(&calibration, &progress)?
-    };
+    let fitted = args.keeping.run(&calibration, console)?;
     let report = FitReport::new(&calibration, &fitted, started.elapsed().as_secs_f64());
     for warning in &fitted.warnings {
         console.warn(warning);
@@ -64,6 +63,7 @@ pub fn run(args: &Args) -> Result<()> {
     let law = record(&calibration, &fitted);
     fit::write(folder.path(), &calibration, &fitted, &report, &law)?;
     folder.finish()?;
+    args.keeping.done()?;
     for line in summary(&report, &args.out) {
         console.say(&line);
     }

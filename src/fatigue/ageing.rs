@@ -1,5 +1,7 @@
 //! Which bonds age, and by how much strain a cycle.
 
+use serde::{Deserialize, Serialize};
+
 use super::crack_tip::{CrackTip, ROUND_OFF};
 use super::tip_strain::dilatation_factor;
 use super::{Ageing, FatigueSettings};
@@ -16,7 +18,7 @@ use crate::state::Bonds;
 const CORE_STRAIN: f64 = 0.93;
 
 /// A bond that ages and its cyclic strain ε.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AgeingBond {
     /// Which bond.
     pub bond: Bond,

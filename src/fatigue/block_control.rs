@@ -14,7 +14,7 @@
 //!
 //! A solver whose solves are as fast as foreseeing ([`crate::solver::SolverKind::Window`]) solves after every break: exact.
 
-mod foresight;
+pub mod foresight;
 
 use serde::{Deserialize, Serialize};
 

@@ -13,17 +13,13 @@ use super::snapshot::Album;
 use super::{Progress, Snapshot};
 use crate::body::{Body, Bond};
 use crate::case::Case;
-use crate::error::{Error, InputError, Result};
+use crate::error::Result;
 use crate::fatigue::FatigueLaw;
 use crate::fatigue::block_control::BlockControl;
 use crate::fatigue::crack_tip::CrackTip;
+use crate::sealed::{Seal, refused};
 
-/// First bytes of a checkpoint.
-const MAGIC: &[u8] = b"perilife checkpoint\n";
-/// Form of what follows; one higher with every change of it, or of what a run does with it.
-const FORM: u32 = 1;
-/// Program by which a checkpoint can be taken up.
-const VERSION: &str = env!("CARGO_PKG_VERSION");
+const SEAL: Seal = Seal { magic: b"perilife checkpoint\n", form: 1 };
 
 /// State of a run at one of the places where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -134,7 +130,7 @@ impl Checkpoint {
     /// Refuses the checkpoint of another case.
     ///
     /// # Errors
-    /// [`Error::Input`].
+    /// [`crate::Error::Input`].
     pub fn check(&self, case: &Case) -> Result<()> {
         if self.belongs_to(case) { Ok(()) } else { Err(refused("belongs to another case, or to this one before it was changed")) }
     }
@@ -142,31 +138,15 @@ impl Checkpoint {
     /// As bytes, with a checksum.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        // Numbers, lists and options of known length can always be written to memory.
-        let content = postcard::to_stdvec(self).unwrap_or_default();
-        let head = [MAGIC, &FORM.to_le_bytes(), &[VERSION.len() as u8], VERSION.as_bytes(), &Sha256::digest(&content)];
-        [&head.concat()[..], &content].concat()
+        SEAL.to_bytes(self)
     }
 
     /// From what [`Checkpoint::to_bytes`] gave.
     ///
     /// # Errors
-    /// [`Error::Input`] that says what is wrong: no checkpoint at all, one of another version of the program, or a damaged one.
+    /// As [`Seal::read`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Checkpoint> {
-        let damaged = || refused("is damaged");
-        let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| refused("is no checkpoint of this program"))?;
-        let (form, rest) = rest.split_first_chunk().ok_or_else(damaged)?;
-        let (length, rest) = rest.split_first().ok_or_else(damaged)?;
-        let (version, rest) = rest.split_at_checked(usize::from(*length)).ok_or_else(damaged)?;
-        if (u32::from_le_bytes(*form), version) != (FORM, VERSION.as_bytes()) {
-            let other = String::from_utf8_lossy(version);
-            return Err(refused(format!("was written by perilife {other}, another version than this {VERSION}")));
-        }
-        let (sum, content) = rest.split_first_chunk::<32>().ok_or_else(damaged)?;
-        if Sha256::digest(content)[..] != sum[..] {
-            return Err(damaged());
-        }
-        postcard::from_bytes(content).map_err(|_| damaged())
+        SEAL.read(bytes)
     }
 }
 
@@ -198,18 +178,9 @@ fn constants(law: &FatigueLaw) -> [f64; 3] {
 }
 
 /// Hash of all that decides how the run of a case goes.
-pub(super) fn hash(case: &Case) -> [u8; 32] {
+pub(crate) fn hash(case: &Case) -> [u8; 32] {
     let Case { specimen, material, loading, model, fatigue, law, stop, .. } = case;
     // Debug output of floats says them to the last bit.
     let all = format!("{:?}", (specimen, material, loading, model, fatigue, law, stop));
     Sha256::digest(all).into()
-}
-
-/// A checkpoint that cannot be taken up.
-fn refused(problem: impl Into<String>) -> Error {
-    Error::Input(Box::new(InputError {
-        problem: problem.into(),
-        remedy: "remove it, or name another file, to begin the run anew".to_owned(),
-        ..InputError::default()
-    }))
 }

@@ -191,14 +191,3 @@ fn number(value: f64) -> String {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_have_three_digits_and_a_unit_that_suits() {
-        let looks = [(12.345, "12.3 s"), (0.01234, "12.3 ms"), (2.5e-4, "250 µs"), (f64::NAN, "-"), (1234.0, "1234 s")];
-        looks.iter().for_each(|(value, text)| assert_eq!(seconds(*value), *text));
-    }
-}

@@ -102,23 +102,3 @@ pub fn json() -> Value {
 fn beside(first: &[KindLine], second: Vec<KindLine>) -> Vec<KindLine> {
     second.into_iter().filter(|line| first.iter().all(|known| (known.key, known.name) != (line.key, line.name))).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_line_says_something_once() {
-        let lines = lines();
-        let mut names: Vec<_> = lines.iter().map(|(key, name, _)| (key, name)).collect();
-        names.sort();
-        names.dedup();
-        assert_eq!(names.len(), lines.len());
-        assert!(lines.iter().all(|(key, _, meaning)| !key.is_empty() && meaning.len() > 5));
-        assert!(
-            lines.iter().any(|(key, name, meaning)| key == "specimen.kind"
-                && name.contains("part-through")
-                && meaning.contains("refused"))
-        );
-    }
-}

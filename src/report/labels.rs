@@ -2,7 +2,7 @@
 
 /// An upright rectangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Box2 {
+pub struct Box2 {
     /// Corner of smallest coordinates.
     pub low: [f64; 2],
     /// Corner of largest coordinates.
@@ -20,33 +20,34 @@ const LINE_STEP: f64 = 6.0;
 
 impl Box2 {
     /// Middle.
-    pub(super) fn centre(self) -> [f64; 2] {
+    #[must_use]
+    pub fn centre(self) -> [f64; 2] {
         [0, 1].map(|i| 0.5 * (self.low[i] + self.high[i]))
     }
 
     /// Point of the rectangle nearest to another point.
-    pub(super) fn nearest(self, to: [f64; 2]) -> [f64; 2] {
+    #[must_use]
+    pub fn nearest(self, to: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| to[i].clamp(self.low[i], self.high[i]))
     }
 
-    fn overlaps(self, other: Box2) -> bool {
+    /// Whether they share room.
+    #[must_use]
+    pub fn overlaps(self, other: Box2) -> bool {
         (0..2).all(|i| self.low[i] < other.high[i] && other.low[i] < self.high[i])
     }
 
-    fn contains(self, other: Box2) -> bool {
+    /// Whether the other lies within.
+    #[must_use]
+    pub fn contains(self, other: Box2) -> bool {
         (0..2).all(|i| self.low[i] <= other.low[i] && other.high[i] <= self.high[i])
     }
 }
 
 /// Rectangles of the given sizes beside the `named` ones of `points`, inside the frame and off the `line`. Where all tried places
 /// are taken, the one that covers least is.
-pub(super) fn place_labels(
-    frame: Box2,
-    points: &[[f64; 2]],
-    line: &[[f64; 2]],
-    named: &[usize],
-    sizes: &[[f64; 2]],
-) -> Vec<Box2> {
+#[must_use]
+pub fn place_labels(frame: Box2, points: &[[f64; 2]], line: &[[f64; 2]], named: &[usize], sizes: &[[f64; 2]]) -> Vec<Box2> {
     let around = |p: [f64; 2], room: f64| Box2 { low: p.map(|v| v - room), high: p.map(|v| v + room) };
     let mut taken: Vec<Box2> = points.iter().map(|p| around(*p, POINT)).collect();
     taken.extend(line.windows(2).flat_map(|ends| along(ends[0], ends[1])).map(|p| around(p, 1.0)));
@@ -77,7 +78,8 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Points along a straight stretch, some pixels apart.
-fn along(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
+#[must_use]
+pub fn along(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
     let count = (distance(from, to) / LINE_STEP).ceil().max(1.0);
     (0..=count as usize).map(|i| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * i as f64 / count)).collect()
 }
@@ -86,28 +88,4 @@ fn along(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
 fn beside(point: [f64; 2], size: [f64; 2], gap: f64, way: [f64; 2]) -> Box2 {
     let centre = [0, 1].map(|i| point[i] + way[i] * (gap + 0.5 * size[i]));
     Box2 { low: [0, 1].map(|i| centre[i] - 0.5 * size[i]), high: [0, 1].map(|i| centre[i] + 0.5 * size[i]) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_cover_nothing_where_there_is_room() {
-        let frame = Box2 { low: [0.0; 2], high: [600.0, 400.0] };
-        // A crowd of points in the middle and two at the edges.
-        let mut points: Vec<[f64; 2]> =
-            (0..12).map(|i| [280.0 + 9.0 * f64::from(i % 4), 190.0 + 9.0 * f64::from(i / 4)]).collect();
-        points.extend([[595.0, 200.0], [4.0, 397.0]]);
-        let named = [0, 3, 5, 12, 13];
-        let sizes = [[90.0, 16.0]; 5];
-        let line = [points[0], points[3], points[12]];
-        let boxes = place_labels(frame, &points, &line, &named, &sizes);
-        for (i, spot) in boxes.iter().enumerate() {
-            assert!(frame.contains(*spot), "{spot:?}");
-            let free = |p: &[f64; 2]| !spot.overlaps(Box2 { low: *p, high: *p });
-            assert!(line.windows(2).flat_map(|ends| along(ends[0], ends[1])).all(|p| free(&p)), "{spot:?} on the line");
-            assert!(points.iter().all(free) && boxes[..i].iter().all(|other| !spot.overlaps(*other)), "{spot:?}");
-        }
-    }
 }

@@ -25,5 +25,5 @@ pub mod vtk;
 mod axis;
 mod colour;
 mod glyphs;
-mod labels;
+pub mod labels;
 mod raster;

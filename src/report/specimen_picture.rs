@@ -1,7 +1,7 @@
 //! The specimen of a case as a drawing to scale: outline, holes, slots, cracks, loads, supports, sizes in mm.
 
 mod scene;
-mod sketch;
+pub mod sketch;
 
 pub use scene::scene_svg;
 use sketch::{CRACK, EDGE, HELD, LOAD, PLATE, Sketch, WORDS};
@@ -336,43 +336,5 @@ fn draw_legend(sketch: &mut Sketch, rows: &[String], top: f64) {
     for (i, row) in rows.iter().enumerate() {
         let x = if i == 0 { 66.0 } else { 30.0 };
         sketch.text([x, top + 4.0 + 21.0 * i as f64], row, "start", 12, WORDS);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CASE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\n\
-        holes = [{ x_mm = 20, y_mm = 40, diameter_mm = 10 }]\nnotches = [{ from_mm = [-50, 0], to_mm = [-40, 0], width_mm = 2 }]\n\
-        cracks = [{ from_mm = [0, 0], to_mm = [10, 5] }]\n[material]\nname = \"q345\"\n[loading]\nstress_max_mpa = 70\nstress_ratio = 0.1\n\
-        [supports]\nbottom = { rows_mm = 3, fix = [\"x\", \"y\"] }\n[fatigue]\na = 1\np = 2\nhorizon_mm = 3";
-
-    #[test]
-    fn everything_of_the_specimen_is_drawn() {
-        let case = Case::from_toml(CASE, "a < b & c", std::path::Path::new(""), &[]).unwrap();
-        let svg = specimen_svg(&case);
-        assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.contains("a &lt; b &amp; c"));
-        // Three tips, one dot in the legend.
-        assert_eq!(svg.matches(&format!(r#"r="3.6" fill="{CRACK}""#)).count(), case.specimen.tips.len() + 1);
-        for words in [
-            "100 mm",
-            "200 mm",
-            "thickness 2 mm",
-            "between 7 and 70 MPa",
-            "held in x and y",
-            "diameter 10 mm",
-            "slot with tip 2",
-            "tips 0 and 1: 11.18 mm",
-        ] {
-            assert!(svg.contains(words), "{words}");
-        }
-        assert!(!svg.contains("NaN"));
-    }
-
-    #[test]
-    fn drawn_to_scale_with_y_up() {
-        let sketch = Sketch::new(1000.0, [100.0, 500.0]);
-        assert_eq!(sketch.place([0.01, 0.02]), [110.0, 480.0]);
     }
 }

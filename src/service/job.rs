@@ -148,7 +148,8 @@ pub struct Submission {
     pub text: String,
     /// Whether the law is that of the file [`FITTED`], whatever the text says.
     pub with_fitted: bool,
-    /// Files that the text names.
+    /// Files that the text names; stored beside it.
+    #[serde(skip)]
     pub files: Vec<(String, Vec<u8>)>,
 }
 

@@ -17,10 +17,13 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio_io_timeout::TimeoutStream;
 use tower::ServiceExt;
 
 /// Time in which the head of a request must have come; also that for which an idle connection is kept.
 const HEAD_WITHIN: Duration = Duration::from_secs(10);
+/// Time for which an answer may wait for its reader to take some of it.
+const TAKEN_WITHIN: Duration = Duration::from_secs(30);
 /// Time that requests have to end when the process is to stop.
 const LAST_ANSWERS: Duration = Duration::from_secs(10);
 /// Time before another try when the system gives no connection, most likely because it has no more file handles.
@@ -66,7 +69,9 @@ fn take(stream: TcpStream, address: SocketAddr, place: OwnedSemaphorePermit, rou
     });
     let mut builder = http1::Builder::new();
     builder.timer(TokioTimer::new()).header_read_timeout(HEAD_WITHIN);
-    let connection = graceful.watch(builder.serve_connection(TokioIo::new(stream), service));
+    let mut stream = TimeoutStream::new(stream);
+    stream.set_write_timeout(Some(TAKEN_WITHIN));
+    let connection = graceful.watch(builder.serve_connection(TokioIo::new(Box::pin(stream)), service));
     tokio::spawn(async move {
         // Its trouble is the client's, who is gone.
         let _ = connection.await;

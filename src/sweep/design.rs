@@ -59,6 +59,12 @@ pub struct Sweep {
     pub design: Design,
 }
 
+/// Whether these are the sections of a sweep.
+#[must_use]
+pub fn is_sweep(table: &Table) -> bool {
+    table.contains_key("design")
+}
+
 /// The sweep file as a whole.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -89,14 +95,21 @@ impl Sweep {
         let section = |text: &str| text.split(['.', '[', '=']).next().unwrap_or_default().trim().to_owned();
         let of_sweep = |text: &String| ["design", "vary"].contains(&section(text).as_str());
         let (own, of_case): (Vec<String>, Vec<String>) = overrides.iter().cloned().partition(of_sweep);
-        let document = Document::read(path, &own)?;
+        Self::from_document(Document::read(path, &own)?, &of_case, most)
+    }
+
+    /// The same for a document; the overrides are those of the base case.
+    ///
+    /// # Errors
+    /// Wrong input; files that cannot be read.
+    pub fn from_document(document: Document, of_case: &[String], most: usize) -> Result<Self> {
         let read = || -> Result<(String, Design)> {
             let input: Input = slice(&Value::Table(document.table.clone()), "file").map_err(at_top)?;
             Ok((input.case, read_design(&input.design, &input.vary, most)?))
         };
         let (case, design) = read().map_err(|error| document.locate(error))?;
         let base = match &document.folder {
-            Folder::Disk(folder) => Document::read(&folder.join(&case), &of_case)?,
+            Folder::Disk(folder) => Document::read(&folder.join(&case), of_case)?,
             // A document that was read from a path lies on disk.
             Folder::AtHand(_) => document.folder.document(&case)?,
         };

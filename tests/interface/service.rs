@@ -8,6 +8,8 @@ mod fuzzed;
 pub mod jobs;
 #[path = "service/page.rs"]
 mod page;
+#[path = "service/queue.rs"]
+mod queue;
 #[path = "service/refusals.rs"]
 mod refusals;
 #[path = "service/results.rs"]

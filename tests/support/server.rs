@@ -1,6 +1,7 @@
 //! The service as a process, and requests to it.
 
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -133,6 +134,26 @@ impl Server {
     /// A file of a job.
     pub fn file(&self, job: &str, name: &str) -> Vec<u8> {
         self.get(&format!("{job}/files/{name}")).expect(200).body
+    }
+
+    /// A file at an address.
+    pub fn file_of(&self, path: &str) -> Vec<u8> {
+        self.get(path).expect(200).body
+    }
+
+    /// Asks for something and does not read the answer; the connection stays open as long as what is returned.
+    pub fn ask_and_do_not_read(&self, path: &str) -> TcpStream {
+        let address = self.url.trim_start_matches("http://");
+        let mut stream = TcpStream::connect(address).unwrap();
+        write!(stream, "GET {path} HTTP/1.1\r\nHost: {address}\r\n\r\n").unwrap();
+        stream
+    }
+
+    /// Memory that the process has now, MB.
+    pub fn memory_mb(&self) -> f64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.process.id())).unwrap();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+        line.trim().trim_end_matches(" kB").parse::<f64>().unwrap() / 1000.0
     }
 
     /// Events of a job until its end: names and data.

@@ -1,11 +1,11 @@
 //! What the commands do around the engine: which runs are kept, and how errors are told.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use perilife::case::Case;
 use perilife::commands::console::Console;
-use perilife::commands::{message, predict};
+use perilife::commands::{check, message, predict};
 use perilife::error::InputError;
 use perilife::predict::{Prediction, StopReason};
 use perilife::report::catalogue::lines;
@@ -100,4 +100,54 @@ fn the_list_misses_no_kind() {
         }
     }
     assert!(keys > 20, "the test reads the sources: {keys} keys");
+}
+
+/// Every shipped case passes, with a picture; a picture that cannot be written leaves nothing behind.
+#[test]
+fn shipped_cases_pass() {
+    let folder = tempdir().unwrap();
+    let files = ["/data/cases", "/data/cases/fracture", "/data/sweeps"].into_iter().filter_map(|below| {
+        Some(fs::read_dir(format!("{}{below}", env!("CARGO_MANIFEST_DIR"))).ok()?.map(|entry| entry.unwrap().path()))
+    });
+    let is_toml = |file: &PathBuf| file.extension().is_some_and(|extension| extension == "toml");
+    let files: Vec<PathBuf> = files.flatten().filter(is_toml).collect();
+    assert!(files.len() > 2);
+    for file in files {
+        let picture = folder.path().join("picture.svg");
+        let args = check::Args { file, picture: Some(picture.clone()), set: vec![], console: QUIET };
+        check::run(&args).unwrap();
+        assert!(fs::read_to_string(&picture).unwrap().ends_with("</svg>\n"));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        let nowhere = check::Args { picture: Some(folder.path().join("no/such/folder.svg")), ..args };
+        assert_eq!(check::run(&nowhere).unwrap_err().exit_code(), 4);
+    }
+}
+
+/// The measured files of a calibration are read and checked, and the case of it is.
+#[test]
+fn shipped_calibrations_pass() {
+    for entry in fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/calibration")).unwrap() {
+        let file = entry.unwrap().path().join("case.toml");
+        if file.is_file() {
+            let args = check::Args { file, picture: None, set: vec![], console: QUIET };
+            check::run(&args).unwrap();
+            let set = vec!["measured.files=[\"nowhere.csv\"]".to_owned()];
+            assert_eq!(check::run(&check::Args { set, ..args }).unwrap_err().exit_code(), 4);
+        }
+    }
+}
+
+#[test]
+fn every_line_says_something_once() {
+    let lines = lines();
+    let mut names: Vec<_> = lines.iter().map(|(key, name, _)| (key, name)).collect();
+    names.sort();
+    names.dedup();
+    assert_eq!(names.len(), lines.len());
+    assert!(lines.iter().all(|(key, _, meaning)| !key.is_empty() && meaning.len() > 5));
+    assert!(
+        lines
+            .iter()
+            .any(|(key, name, meaning)| key == "specimen.kind" && name.contains("part-through") && meaning.contains("refused"))
+    );
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use perilife::fracture::Scene;
+use perilife::fracture::read::micro_cracks::SplitMix64;
 use perilife::specimen::Crack;
 use perilife::specimen::geometry::{distance, distance_to_polygon, distance_to_segment};
 
@@ -63,4 +64,12 @@ fn length_angle_and_place_are_those_asked_for() {
         let middle = [0, 1].map(|i| 0.5 * (from[i] + to[i]));
         assert!((-15e-3..0.0).contains(&middle[0]) && (5e-3..12e-3).contains(&middle[1]));
     }
+}
+
+/// First outputs for seed 1234567 as in the Rosetta Code task "Pseudo-random numbers/Splitmix64".
+#[test]
+fn generator_gives_the_published_numbers() {
+    let mut random = SplitMix64(1_234_567);
+    let published = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
+    assert_eq!([random.next(), random.next(), random.next()], published);
 }

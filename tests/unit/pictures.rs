@@ -2,8 +2,12 @@
 
 use std::fs;
 
+use perilife::case::Case;
 use perilife::report::chart::{self, Mark, Series};
 use perilife::report::damage::{DamagePicture, cycles_and_length};
+use perilife::report::labels::{Box2, along, place_labels};
+use perilife::report::specimen_picture::sketch::{CRACK, Sketch};
+use perilife::report::specimen_picture::specimen_svg;
 use perilife::report::{csv, vtk};
 use perilife::specimen::Point;
 use tempfile::tempdir;
@@ -155,4 +159,55 @@ fn places_outside_the_material_are_hidden() {
     let ghosts = array(&file, "vtkGhostType").1;
     assert_eq!(ghosts.len(), run.grid.point_at.len());
     assert!(ghosts.iter().zip(&run.grid.point_at).all(|(ghost, point)| (*ghost == 2) == point.is_none()));
+}
+
+#[test]
+fn names_cover_nothing_where_there_is_room() {
+    let frame = Box2 { low: [0.0; 2], high: [600.0, 400.0] };
+    // A crowd of points in the middle and two at the edges.
+    let mut points: Vec<[f64; 2]> = (0..12).map(|i| [280.0 + 9.0 * f64::from(i % 4), 190.0 + 9.0 * f64::from(i / 4)]).collect();
+    points.extend([[595.0, 200.0], [4.0, 397.0]]);
+    let named = [0, 3, 5, 12, 13];
+    let sizes = [[90.0, 16.0]; 5];
+    let line = [points[0], points[3], points[12]];
+    let boxes = place_labels(frame, &points, &line, &named, &sizes);
+    for (i, spot) in boxes.iter().enumerate() {
+        assert!(frame.contains(*spot), "{spot:?}");
+        let free = |p: &[f64; 2]| !spot.overlaps(Box2 { low: *p, high: *p });
+        assert!(line.windows(2).flat_map(|ends| along(ends[0], ends[1])).all(|p| free(&p)), "{spot:?} on the line");
+        assert!(points.iter().all(free) && boxes[..i].iter().all(|other| !spot.overlaps(*other)), "{spot:?}");
+    }
+}
+
+const CASE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\n\
+    holes = [{ x_mm = 20, y_mm = 40, diameter_mm = 10 }]\nnotches = [{ from_mm = [-50, 0], to_mm = [-40, 0], width_mm = 2 }]\n\
+    cracks = [{ from_mm = [0, 0], to_mm = [10, 5] }]\n[material]\nname = \"q345\"\n[loading]\nstress_max_mpa = 70\nstress_ratio = 0.1\n\
+    [supports]\nbottom = { rows_mm = 3, fix = [\"x\", \"y\"] }\n[fatigue]\na = 1\np = 2\nhorizon_mm = 3";
+
+#[test]
+fn everything_of_the_specimen_is_drawn() {
+    let case = Case::from_toml(CASE, "a < b & c", std::path::Path::new(""), &[]).unwrap();
+    let svg = specimen_svg(&case);
+    assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.contains("a &lt; b &amp; c"));
+    // Three tips, one dot in the legend.
+    assert_eq!(svg.matches(&format!(r#"r="3.6" fill="{CRACK}""#)).count(), case.specimen.tips.len() + 1);
+    for words in [
+        "100 mm",
+        "200 mm",
+        "thickness 2 mm",
+        "between 7 and 70 MPa",
+        "held in x and y",
+        "diameter 10 mm",
+        "slot with tip 2",
+        "tips 0 and 1: 11.18 mm",
+    ] {
+        assert!(svg.contains(words), "{words}");
+    }
+    assert!(!svg.contains("NaN"));
+}
+
+#[test]
+fn drawn_to_scale_with_y_up() {
+    let sketch = Sketch::new(1000.0, [100.0, 500.0]);
+    assert_eq!(sketch.place([0.01, 0.02]), [110.0, 480.0]);
 }

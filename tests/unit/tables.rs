@@ -1,10 +1,13 @@
 //! Data frames against the plain arithmetic they stand beside.
 
+use std::path::Path;
+
 use perilife::calibration::frames::{SHARES, cycle_quantiles, fit_curves, long, specimens, wide};
 use perilife::calibration::measured::{MeasuredCurve, Units, read};
 use perilife::calibration::median::pointwise_median_at;
-use perilife::tables::{DataFrame, csv, join_by_specimen, numbers, parquet, wide_to_long};
+use perilife::tables::{DataFrame, csv, join_by_specimen, numbers, parquet, read_parquet, wide_to_long};
 use perilife::units::MM;
+use polars::prelude::Column;
 
 use super::misfit::{exact_curve, fit_to, lengths, paris_model};
 
@@ -86,5 +89,22 @@ fn a_file_that_only_claims_to_be_parquet_is_refused_with_words() {
         let error = read(&[path], Units::default()).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("claims.parquet: is not a Parquet table"), "{error}");
+    }
+}
+
+/// Some hundred bytes can stand for any number of equal rows: refused before they take up memory.
+#[test]
+fn a_parquet_file_of_too_many_rows_is_refused() {
+    for (rows, is_fine) in [(1_000_000, true), (1_000_001, false)] {
+        let column = |name: &str| Column::new(name.into(), vec![9.0; rows]);
+        let table = DataFrame::new_infer_height(vec![column("cycles"), column("crack_length_mm")]).unwrap();
+        let bytes = parquet(&table).unwrap();
+        let read = read_parquet(&bytes, Path::new("many.parquet"));
+        if is_fine {
+            assert_eq!(read.unwrap().rows.len(), rows);
+        } else {
+            let error = read.map(|cells| cells.rows.len()).unwrap_err().to_string();
+            assert!(error.contains("many.parquet") && error.contains("rows are more than 1000000"), "{error}");
+        }
     }
 }

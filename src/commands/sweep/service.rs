@@ -17,7 +17,7 @@ use crate::report::output::write_file;
 use crate::report::run::PARAVIEW;
 use crate::report::sweep::Outcome;
 use crate::service::job::{Job, JobKind, State, Submission};
-use crate::service::store::{self, File, NewJob, Store, Submitted, is_gone};
+use crate::service::store::{self, File, FileEntry, NewJob, Origin, Store, Submitted, is_gone};
 use crate::service::with_store;
 use crate::sweep::DrawnCase;
 
@@ -137,9 +137,10 @@ async fn fetch(
         return Ok(folder.keep(case, |_| Ok(outcome)));
     }
     let mut files = Vec::new();
-    for entry in patiently(async || store.file_entries(&job.id).await).await? {
-        if with_files || entry.name == A_N_FILE {
-            files.extend(patiently(async || store.file(&job.id, &entry.name).await).await?);
+    for FileEntry { name, .. } in patiently(async || store.file_entries(&job.id, Origin::Result).await).await? {
+        if with_files || name == A_N_FILE {
+            let content = patiently(async || store.whole_file(&job.id, Origin::Result, &name).await).await?;
+            files.extend(content.map(|content| File { name, content }));
         }
     }
     Ok(folder.keep(case, |path| {

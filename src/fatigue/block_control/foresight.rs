@@ -13,7 +13,7 @@ const LEAST_SPREAD: f64 = 0.3;
 
 /// Growth of a tip within the block at hand, and the error to expect of strains foreseen.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct Foresight {
+pub struct Foresight {
     /// Growth since the last solve, m.
     pub grown: f64,
     /// Growth since the first block, m.
@@ -38,34 +38,37 @@ struct Sums {
 
 impl Foresight {
     /// Takes in growth and the work that it brought.
-    pub(super) fn grow(&mut self, growth: f64, work: f64) {
+    pub fn grow(&mut self, growth: f64, work: f64) {
         self.grown += growth;
         self.grown_in_all += growth;
         self.released += work;
     }
 
     /// Begins a block.
-    pub(super) fn open(&mut self) {
+    pub fn open(&mut self) {
         (self.grown, self.released) = (0.0, 0.0);
     }
 
     /// Whether nothing has broken here since the last solve.
-    pub(super) fn is_at_rest(&self) -> bool {
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
         self.released == 0.0
     }
 
     /// Whether a block has shown how good it is.
-    pub(super) fn is_known(&self) -> bool {
+    #[must_use]
+    pub fn is_known(&self) -> bool {
         self.sums.one > 0.0
     }
 
     /// Logarithm of the factor by which strains are foreseen too low, as past blocks say.
-    pub(super) fn correction(&self) -> f64 {
+    #[must_use]
+    pub fn correction(&self) -> f64 {
         if self.is_known() { self.released * self.sums.line(0.5 * self.released) } else { 0.0 }
     }
 
     /// Learns from the mean logarithm of strains solved for over those foreseen, uncorrected.
-    pub(super) fn learn(&mut self, mean: f64) {
+    pub fn learn(&mut self, mean: f64) {
         if self.released > 0.0 {
             self.sums.add(self.released, mean / self.released);
         }
@@ -97,46 +100,5 @@ impl Sums {
         self.beta += g * beta;
         self.x_beta += g * x * beta;
         self.last = w;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Blocks of any size with a β that falls along a line: the next block is foreseen within a percent of what is corrected.
-    #[test]
-    fn a_falling_bias_is_carried_on() {
-        let beta = |w: f64| 6.0 - 0.8 * w;
-        let (mut tip, mut at) = (Foresight::default(), 0.0);
-        for (i, w) in [0.01, 0.1, 0.05, 0.2, 0.3, 0.25, 0.4, 0.3, 0.5].into_iter().enumerate() {
-            tip.open();
-            assert!(tip.is_at_rest());
-            tip.grow(1e-3, 0.5 * w);
-            tip.grow(1e-3, 0.5 * w);
-            let truth = w * beta(at + 0.5 * w);
-            if i > 4 {
-                assert!((tip.correction() / truth - 1.0).abs() < 0.02, "block {i}: {} and {truth}", tip.correction());
-            }
-            tip.learn(truth);
-            assert!(tip.is_known());
-            at += w;
-        }
-        assert!((tip.grown - 2e-3).abs() < 1e-15 && (tip.grown_in_all - 18e-3).abs() < 1e-15);
-    }
-
-    /// A constant bias is found from the first block, however small.
-    #[test]
-    fn a_constant_bias_is_found_at_once() {
-        let mut tip = Foresight::default();
-        assert_eq!(tip.correction(), 0.0);
-        for w in [1e-6, 0.3, 2.0] {
-            tip.grow(1e-3, w);
-            if tip.is_known() {
-                assert!((tip.correction() / (4.0 * w) - 1.0).abs() < 1e-9);
-            }
-            tip.learn(4.0 * w);
-            tip.open();
-        }
     }
 }

@@ -39,7 +39,7 @@ mod checks;
 mod damage;
 mod load;
 mod loading;
-mod micro_cracks;
+pub mod micro_cracks;
 mod model;
 mod region;
 mod supports;

@@ -52,6 +52,9 @@ impl Default for Limits {
     }
 }
 
+/// Whole curves in memory at a time.
+const CURVES_AT_ONCE: usize = 16;
+
 /// Who is let in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Security {
@@ -79,6 +82,8 @@ pub struct App {
     pub workers: usize,
     /// Room for bodies.
     pub bodies: Arc<Semaphore>,
+    /// Room for whole curves that something is computed from.
+    pub curves: Arc<Semaphore>,
     shared: Arc<Shared>,
 }
 
@@ -102,7 +107,8 @@ impl App {
             stopping: AtomicBool::new(false),
         };
         let bodies = Arc::new(Semaphore::new(limits.bodies_at_once));
-        App { store, limits, security, wake, workers, bodies, shared: Arc::new(shared) }
+        let curves = Arc::new(Semaphore::new(CURVES_AT_ONCE));
+        App { store, limits, security, wake, workers, bodies, curves, shared: Arc::new(shared) }
     }
 
     /// Whether a caller may ask once more just now.

@@ -15,7 +15,7 @@ use super::documents::{self, Asked, submission};
 use super::security::Caller;
 use crate::service::job::{Job, JobKind, State};
 use crate::service::problem::{Answer, Problem};
-use crate::service::store::{NewJob, Role, Submitted, media_type};
+use crate::service::store::{FileEntry, NewJob, Origin, Role, Submitted};
 
 /// Most jobs of one part of a list.
 const LIST_MAX: u32 = 200;
@@ -108,28 +108,25 @@ const IN_PATHS: AsciiSet = NON_ALPHANUMERIC.remove(b'.').remove(b'_').remove(b'-
 /// # Errors
 /// 503.
 pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
-    let entries = if job.state == State::Succeeded { app.store.file_entries(&job.id).await? } else { Vec::new() };
-    let base = format!("/v1/{}/{}/files", job.kind.collection(), job.id);
-    let files = entries
-        .into_iter()
-        .map(|entry| FileView {
-            href: format!("{base}/{}", entry.name),
-            name: entry.name,
-            media_type: entry.media_type,
-            bytes: entry.bytes,
-        })
-        .collect();
-    let submission = if with_input { app.store.submission(&job.id).await? } else { None };
-    let base = format!("/v1/{}/{}/inputs", job.kind.collection(), job.id);
-    let inputs = submission.as_ref().map(|submission| {
-        let view = |(name, content): &(String, Vec<u8>)| FileView {
-            href: format!("{base}/{}", utf8_percent_encode(name, &IN_PATHS)),
-            name: name.clone(),
-            media_type: media_type(name),
-            bytes: content.len() as i64,
+    let views = |entries: Vec<FileEntry>, place: &str| -> Vec<FileView> {
+        let base = format!("/v1/{}/{}/{place}", job.kind.collection(), job.id);
+        let view = |FileEntry { name, media_type, bytes }| FileView {
+            href: format!("{base}/{}", utf8_percent_encode(&name, &IN_PATHS)),
+            name,
+            media_type,
+            bytes,
         };
-        submission.files.iter().map(view).collect()
-    });
+        entries.into_iter().map(view).collect()
+    };
+    let has_result = job.state == State::Succeeded;
+    let files = if has_result { app.store.file_entries(&job.id, Origin::Result).await? } else { Vec::new() };
+    let files = views(files, "files");
+    let (submission, inputs) = if with_input {
+        let inputs = app.store.file_entries(&job.id, Origin::Input).await?;
+        (app.store.submission(&job.id).await?, Some(views(inputs, "inputs")))
+    } else {
+        (None, None)
+    };
     let case = submission.as_ref().and_then(|submission| serde_json::to_value(submission.text.parse::<toml::Table>().ok()?).ok());
     Ok(JobView { job, files, inputs, input: submission.map(|submission| submission.text), case })
 }
@@ -155,17 +152,24 @@ pub async fn submit(
     caller.must_be(Role::Run)?;
     let key = key_of(&headers)?;
     let body = documents::read(&app, request).await?;
+    let fingerprint = format!("{kind} {}", body.fingerprint);
     let calibration = body.asked.calibration.clone();
-    let submission = submission(&app, Some(kind), body.asked).await?;
-    let new = NewJob {
-        kind,
-        owner: &caller.name,
-        calibration: calibration.as_deref(),
-        idempotency_key: key.as_deref(),
-        fingerprint: &format!("{kind} {}", body.fingerprint),
-        submission: &submission,
+    // Asked before the body is looked into: what it refers to may be gone since it was accepted.
+    let submitted = match app.store.submitted(&caller.name, key.as_deref(), &fingerprint).await? {
+        Some(earlier) => earlier,
+        None => {
+            let new = NewJob {
+                kind,
+                owner: &caller.name,
+                calibration: calibration.as_deref(),
+                idempotency_key: key.as_deref(),
+                fingerprint: &fingerprint,
+                submission: &submission(&app, Some(kind), body.asked).await?,
+            };
+            app.store.submit(&new, app.limits.queued).await?
+        }
     };
-    let (id, status) = match app.store.submit(&new, app.limits.queued).await? {
+    let (id, status) = match submitted {
         Submitted::New(id) => {
             app.wake.notify_one();
             (id, StatusCode::ACCEPTED)

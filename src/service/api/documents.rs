@@ -8,6 +8,7 @@ use axum::extract::multipart::MultipartRejection;
 use axum::extract::{FromRequest, Multipart, Request};
 use axum::http::{StatusCode, header};
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use tokio::sync::OwnedSemaphorePermit;
@@ -21,7 +22,7 @@ use crate::check::is_calibration;
 use crate::error::input;
 use crate::service::job::{FITTED, JobKind, State, Submission};
 use crate::service::problem::{Answer, Problem};
-use crate::service::store::hex;
+use crate::service::store::{Origin, hex};
 
 /// Longest input, bytes; files beside it may be as large as bodies are.
 const INPUT_MAX: usize = 1 << 20;
@@ -93,7 +94,7 @@ pub async fn read(app: &App, request: Request) -> Answer<Body> {
         let mut field = |name: &str| fields.remove(name);
         let asked = Asked {
             name: field("name"),
-            input: field("input").map(Value::String),
+            input: field("input").map(input_of_form).transpose()?,
             calibration: field("calibration"),
             files: files.into_iter().map(|(name, content)| (name, FileText(content))).collect(),
         };
@@ -112,14 +113,7 @@ pub async fn read(app: &App, request: Request) -> Answer<Body> {
             let text = String::from_utf8(bytes.into()).map_err(|_| Problem::bad_request("the body is not UTF-8 text"))?;
             Asked { input: Some(Value::String(text)), ..Asked::default() }
         } else {
-            if parts(&bytes) > PARTS_MAX {
-                return Err(Problem::too_large(format!("the body has more than {PARTS_MAX} parts; send readings as files")));
-            }
-            serde_json::from_slice(&bytes).map_err(|error| {
-                let detail =
-                    format!("the body is not JSON of the expected form: {error}; known are input, name, calibration, files");
-                Problem::bad_request(detail)
-            })?
+            json(&bytes, "the body", "known are input, name, calibration, files")?
         };
         (asked, fingerprint)
     };
@@ -128,6 +122,24 @@ pub async fn read(app: &App, request: Request) -> Answer<Body> {
         return Err(Problem::too_large(format!("{} files are more than the {most} this server takes", asked.files.len())));
     }
     Ok(Body { asked, fingerprint, room })
+}
+
+/// JSON of bounded size in memory.
+fn json<T: DeserializeOwned>(bytes: &[u8], what: &str, known: &str) -> Answer<T> {
+    if parts(bytes) > PARTS_MAX {
+        return Err(Problem::too_large(format!("{what} has more than {PARTS_MAX} parts; send readings as files")));
+    }
+    let refused = |error| Problem::bad_request(format!("{what} is not JSON of the expected form: {error}; {known}"));
+    serde_json::from_slice(bytes).map_err(refused)
+}
+
+/// The input of a form: TOML, or what no TOML begins with, an object in JSON.
+fn input_of_form(text: String) -> Answer<Value> {
+    match text.trim_start().starts_with('{') {
+        true if text.len() > INPUT_MAX => Err(too_long()),
+        true => json(text.as_bytes(), "`input`", "give an object of the keys of the TOML"),
+        false => Ok(Value::String(text)),
+    }
 }
 
 /// Waits for room for one more body.
@@ -282,8 +294,8 @@ async fn record_of(app: &App, id: &str) -> Answer<Vec<u8>> {
     let Some(job) = known else {
         return Err(refused("is no calibration here", "give the id of one that GET /v1/calibrations lists"));
     };
-    match app.store.file(id, FITTED).await? {
-        Some(file) => Ok(file.content),
+    match app.store.whole_file(id, Origin::Result, FITTED).await? {
+        Some(record) => Ok(record),
         None => Err(refused(&format!("has no result: it is {}", job.state), &format!("wait until it has {}", State::Succeeded))),
     }
 }

@@ -3,11 +3,15 @@
 use std::path::Path as FilePath;
 
 use axum::Json;
+use axum::body::Body;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State as Shared};
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
+use tokio::sync::OwnedSemaphorePermit;
+use tokio::sync::mpsc::channel;
+use tokio_stream::wrappers::ReceiverStream;
 use utoipa::{IntoParams, ToSchema};
 
 use super::App;
@@ -17,6 +21,7 @@ use crate::report::csv::{self, A_N_FILE, Row};
 use crate::report::resample::Sampling;
 use crate::service::job::{Job, State};
 use crate::service::problem::{Answer, Problem};
+use crate::service::store::{FileEntry, Origin, Store};
 
 /// Rows of a resampled curve: as many as a table can show.
 const POINTS: std::ops::RangeInclusive<u64> = 2..=100_000;
@@ -42,14 +47,6 @@ pub async fn file(
     wanted: Result<Query<Wanted>, QueryRejection>,
 ) -> Answer<Response> {
     let Query(wanted) = wanted.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
-    // No file of a result has another name, and not every database takes every character.
-    let can_be = is_id(&id) && name.bytes().all(|byte| byte.is_ascii_graphic());
-    let found = if can_be { app.store.file(&id, &name).await? } else { None };
-    let Some(file) = found else {
-        let job = job_of(&app, &collection, &id).await?;
-        must_have_result(&job)?;
-        return Err(Problem::not_found("file of this job"));
-    };
     // Names of other collections lead nowhere, even if the id is right.
     super::collections::kind_of(&collection)?;
     let sampling = match (wanted.points, wanted.every_cycles) {
@@ -58,30 +55,60 @@ pub async fn file(
         (None, Some(step)) => Some(Sampling::EveryCycles(step)),
         (Some(_), Some(_)) => return Err(Problem::bad_request("give points or every_cycles, not both")),
     };
-    let content = match sampling {
-        None => file.content,
-        Some(_) if name != A_N_FILE => return Err(Problem::bad_request("points and every_cycles are for a_n.csv only")),
-        Some(sampling) => resampled(&file.content, sampling).await?.into_bytes(),
+    if sampling.is_some() && name != A_N_FILE {
+        return Err(Problem::bad_request("points and every_cycles are for a_n.csv only"));
+    }
+    // No file of a result has another name, and not every database takes every character.
+    let can_be = is_id(&id) && name.bytes().all(|byte| byte.is_ascii_graphic());
+    let found = if can_be { app.store.open_file(&id, Origin::Result, &name).await? } else { None };
+    let Some((entry, first)) = found else {
+        must_have_result(&job_of(&app, &collection, &id).await?)?;
+        return Err(Problem::not_found("file of this job"));
     };
-    let shown = matches!(&*file.media_type, "image/png" | "image/svg+xml" | "application/json");
-    let disposition = format!("{}; filename=\"{}\"", if shown { "inline" } else { "attachment" }, file.name);
+    let shown = matches!(&*entry.media_type, "image/png" | "image/svg+xml" | "application/json");
+    let disposition = format!("{}; filename=\"{}\"", if shown { "inline" } else { "attachment" }, entry.name);
     let fixed = [
-        (header::CONTENT_TYPE, file.media_type),
+        (header::CONTENT_TYPE, entry.media_type.clone()),
         (header::CONTENT_DISPOSITION, disposition),
         // A result never changes.
         (header::CACHE_CONTROL, "private, max-age=86400, immutable".to_owned()),
     ];
-    Ok((fixed, content).into_response())
+    Ok(match sampling {
+        None => (fixed, sent(app.store, id, Origin::Result, entry, first)).into_response(),
+        Some(sampling) => (fixed, resampled(&app, &id, sampling).await?).into_response(),
+    })
 }
 
-async fn resampled(table: &[u8], sampling: Sampling) -> Answer<String> {
+/// A stored file as it goes out, a part at a time: none is read before its reader has taken the last but one.
+fn sent(store: Store, job: String, origin: Origin, entry: FileEntry, first: Vec<u8>) -> Response {
+    if first.len() as i64 == entry.bytes {
+        return first.into_response();
+    }
+    let (parts, reader) = channel(1);
+    let length = entry.bytes;
+    tokio::spawn(async move {
+        let (mut next, mut number) = (Ok(Some(first)), 0);
+        while let Some(part) = next.transpose() {
+            let has_failed = part.is_err();
+            // Who went away needs no more; who gets less than was announced knows that something is missing.
+            if parts.send(part).await.is_err() || has_failed {
+                return;
+            }
+            number += 1;
+            next = store.file_part(&job, origin, &entry.name, number).await;
+        }
+    });
+    ([(header::CONTENT_LENGTH, length)], Body::from_stream(ReceiverStream::new(reader))).into_response()
+}
+
+async fn resampled(app: &App, id: &str, sampling: Sampling) -> Answer<String> {
     if let Sampling::Points(points) = sampling
         && !POINTS.contains(&points)
     {
         let problem = format!("is not {} to {}", POINTS.start(), POINTS.end());
         return Err(input("points", points, problem, "give for example 400").into());
     }
-    let rows = rows(table)?;
+    let (rows, room) = rows(app, id).await?.ok_or_else(|| Problem::not_found("curve"))?;
     if let Sampling::EveryCycles(step) = sampling {
         let count = (rows[rows.len() - 1].cycles - rows[0].cycles) / step;
         if count > *POINTS.end() as f64 {
@@ -89,14 +116,23 @@ async fn resampled(table: &[u8], sampling: Sampling) -> Answer<String> {
             return Err(input("every_cycles", step, problem, "give a larger step").into());
         }
     }
-    let work = move || Ok(csv::table(&sampling.of(&rows, "every_cycles")?));
+    let work = move || {
+        let _room = room;
+        Ok(csv::table(&sampling.of(&rows, "every_cycles")?))
+    };
     tokio::task::spawn_blocking(work).await.map_err(|_| Problem::internal())?
 }
 
-/// Rows of a stored curve, at least one.
-fn rows(table: &[u8]) -> Answer<Vec<Row>> {
-    let text = std::str::from_utf8(table).map_err(|_| Problem::internal())?;
-    Ok(csv::parse_a_n(text, FilePath::new(A_N_FILE))?)
+/// Rows of a stored curve, at least one, with their room among those that may be in memory; `None` if there is no curve.
+async fn rows(app: &App, id: &str) -> Answer<Option<(Vec<Row>, OwnedSemaphorePermit)>> {
+    if !is_id(id) {
+        return Ok(None);
+    }
+    // Never closed.
+    let room = app.curves.clone().acquire_owned().await.map_err(|_| Problem::internal())?;
+    let Some(table) = app.store.whole_file(id, Origin::Result, A_N_FILE).await? else { return Ok(None) };
+    let text = String::from_utf8(table).map_err(|_| Problem::internal())?;
+    Ok(Some((csv::parse_a_n(&text, FilePath::new(A_N_FILE))?, room)))
 }
 
 fn must_have_result(job: &Job) -> Answer<()> {
@@ -115,12 +151,13 @@ pub async fn input_file(
     Path((collection, id, name)): Path<(String, String, String)>,
 ) -> Answer<Response> {
     job_of(&app, &collection, &id).await?;
-    let submission = app.store.submission(&id).await?.ok_or_else(|| Problem::not_found("job"))?;
-    let file = submission.files.into_iter().find(|(known, _)| *known == name);
-    let (_, content) = file.ok_or_else(|| Problem::not_found("file of this job"))?;
+    // Names are text without line breaks; the rest would be none of a database's.
+    let can_be = !name.chars().any(char::is_control);
+    let found = if can_be { app.store.open_file(&id, Origin::Input, &name).await? } else { None };
+    let (entry, first) = found.ok_or_else(|| Problem::not_found("file of this job"))?;
     // Whatever it claims to be, it is somebody's upload: saved, never shown.
     let fixed = [(header::CONTENT_TYPE, "application/octet-stream"), (header::CONTENT_DISPOSITION, "attachment")];
-    Ok((fixed, content).into_response())
+    Ok((fixed, sent(app.store, id, Origin::Input, entry, first)).into_response())
 }
 
 /// The plate of a running prediction as it was last seen: damage and crack paths.
@@ -179,12 +216,10 @@ pub async fn remaining(
     if !(factor.is_finite() && factor >= 1.0) {
         return Err(input("factor", factor, "is not 1 or more", "give for example 2").into());
     }
-    let found = if is_id(&id) { app.store.file(&id, A_N_FILE).await? } else { None };
-    let Some(file) = found else {
+    let Some((rows, _room)) = rows(&app, &id).await? else {
         must_have_result(&job_of(&app, "predictions", &id).await?)?;
         return Err(Problem::not_found("curve"));
     };
-    let rows = rows(&file.content)?;
     let (cycles_at, life_cycles) = (cycles_at(&rows, from.crack_length_mm)?, rows[rows.len() - 1].cycles);
     let remaining_cycles = life_cycles - cycles_at;
     Ok(Json(Remaining {

@@ -124,8 +124,20 @@ export async function postJson(path, body, { key, signal } = {}) {
   return response.status === 204 ? null : response.json();
 }
 
-export async function postForm(path, form, signal) {
-  return (await request(path, { method: "POST", body: form, signal })).json();
+export async function postForm(path, form, { key, signal } = {}) {
+  const headers = key ? { "Idempotency-Key": key } : {};
+  return (await request(path, { method: "POST", headers, body: form, signal })).json();
+}
+
+/** Posts {input, name, calibration, files}; with files as a form, so that they go as they are. */
+export function postInput(path, { files, ...body }, options) {
+  if (!files) return postJson(path, body, options);
+  const form = new FormData();
+  for (const [name, value] of Object.entries(body)) {
+    if (value !== undefined) form.append(name, typeof value === "string" ? value : JSON.stringify(value));
+  }
+  for (const { name, file } of files) form.append("file", file, name);
+  return postForm(path, form, options);
 }
 
 export async function remove(path) {

@@ -1,6 +1,6 @@
 // Checks the input while the user types: draws the plate, says what was understood, and puts a problem where it belongs.
 
-import { Problem, postJson } from "./api.js";
+import { Problem, postInput } from "./api.js";
 import { debounce, element, show, terms } from "./dom.js";
 import { excerpt } from "./excerpt.js";
 import { sentence, words } from "./format.js";
@@ -60,7 +60,7 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
     running = own;
     tell("Checking …", "running");
     try {
-      const result = await postJson("/v1/check", body, { signal: own.signal });
+      const result = await postInput("/v1/check", body, { signal: own.signal });
       if (own.signal.aborted) return false;
       await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
       show(details, result.warnings.length > 0 && warningList(result.warnings),
@@ -97,7 +97,8 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
 function sourceOf(body, input) {
   if (!input?.line) return null;
   const name = String(input.file ?? "").split("/").pop();
-  if (body.files?.[name]) return { name, text: body.files[name] };
+  const file = body.files?.find((one) => one.name === name);
+  if (file) return { name, text: file.text };
   return typeof body.input === "string" ? { name: "input", text: body.input } : null;
 }
 

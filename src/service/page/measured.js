@@ -48,7 +48,7 @@ export function createMeasured(onChange) {
     if (cycleUnit.value) form.append("cycle_unit", cycleUnit.value);
     if (answer.length === 0) show(result, element("p", { class: "quiet", role: "status" }, "Reading …"));
     try {
-      const found = await postForm("/v1/measured", form, own.signal);
+      const found = await postForm("/v1/measured", form, { signal: own.signal });
       if (own.signal.aborted) return;
       answer = found.files;
       draw();
@@ -168,8 +168,8 @@ export function createMeasured(onChange) {
   root.dataset.measured = "empty";
 
   return {
-    /** Texts by file name, as a calibration takes them; null before anything is there. */
-    files: () => (curves().length === 0 ? null : Object.fromEntries(files.map(({ name, text }) => [name, text]))),
+    /** The files {name, file, text}, as a calibration takes them; null before anything is there. */
+    files: () => (curves().length === 0 ? null : files),
     names: () => files.map((file) => file.name),
     units: () => ({ length_unit: lengthUnit.value || undefined, cycle_unit: cycleUnit.value || undefined }),
     /** Crack lengths that every curve covers. */

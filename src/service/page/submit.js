@@ -1,6 +1,6 @@
 // Starts a run: one key for one press of the button, repeated when the answer got lost, so that no press starts two runs.
 
-import { postJson, pressKey } from "./api.js";
+import { postInput, pressKey } from "./api.js";
 
 const ATTEMPTS = 3;
 
@@ -18,7 +18,7 @@ export async function startRun(path, body, { button, status, refuse }) {
   try {
     for (let attempt = 1; ; attempt += 1) {
       try {
-        const job = await postJson(path, body, { key });
+        const job = await postInput(path, body, { key });
         status.textContent = "";
         location.hash = `#/${job.kind === "calibration" ? "calibrations" : "predictions"}/${encodeURIComponent(job.id)}`;
         return;

@@ -1,4 +1,4 @@
-//! Files of finished jobs.
+//! Files of jobs, those that came with them and those of their results, in parts: no reader holds more than one at a time.
 
 use std::path::Path;
 
@@ -8,13 +8,14 @@ use utoipa::ToSchema;
 
 use super::{Result, Store};
 
-/// A file of a finished job.
+/// Bytes of a part.
+const PART: usize = 256 << 10;
+
+/// A file to be stored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct File {
-    /// Its name.
+    /// Its name, by which it is also known what it is.
     pub name: String,
-    /// What it is.
-    pub media_type: String,
     /// Its bytes.
     pub content: Vec<u8>,
 }
@@ -28,6 +29,25 @@ pub struct FileEntry {
     pub media_type: String,
     /// Its size.
     pub bytes: i64,
+}
+
+/// Whose a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// It came with the job.
+    Input,
+    /// The job made it.
+    Result,
+}
+
+impl Origin {
+    /// As the database calls it.
+    fn name(self) -> &'static str {
+        match self {
+            Origin::Input => "input",
+            Origin::Result => "result",
+        }
+    }
 }
 
 /// What a file of this name is.
@@ -46,22 +66,90 @@ impl Store {
     ///
     /// # Errors
     /// The database does not answer.
-    pub async fn file_entries(&self, job: &str) -> Result<Vec<FileEntry>> {
-        let rows = sqlx::query("SELECT name, media_type, size FROM files WHERE job = $1 ORDER BY name").bind(job);
-        let entry = |row: &sqlx::any::AnyRow| {
-            Ok(FileEntry { name: row.try_get(0)?, media_type: row.try_get(1)?, bytes: row.try_get(2)? })
-        };
+    pub async fn file_entries(&self, job: &str, origin: Origin) -> Result<Vec<FileEntry>> {
+        let rows = sqlx::query("SELECT name, media_type, size FROM job_files WHERE job = $1 AND origin = $2 ORDER BY name")
+            .bind(job)
+            .bind(origin.name());
         rows.fetch_all(&self.pool).await?.iter().map(entry).collect()
     }
 
-    /// A file of a job.
+    /// A file of a job, and its first part.
     ///
     /// # Errors
     /// The database does not answer.
-    pub async fn file(&self, job: &str, name: &str) -> Result<Option<File>> {
-        let row = sqlx::query("SELECT name, media_type, content FROM files WHERE job = $1 AND name = $2").bind(job).bind(name);
-        let file =
-            |row: sqlx::any::AnyRow| Ok(File { name: row.try_get(0)?, media_type: row.try_get(1)?, content: row.try_get(2)? });
-        row.fetch_optional(&self.pool).await?.map(file).transpose()
+    pub async fn open_file(&self, job: &str, origin: Origin, name: &str) -> Result<Option<(FileEntry, Vec<u8>)>> {
+        let row = sqlx::query(
+            "SELECT f.name, f.media_type, f.size, p.content FROM job_files f
+             JOIN file_parts p ON p.job = f.job AND p.origin = f.origin AND p.name = f.name AND p.number = 0
+             WHERE f.job = $1 AND f.origin = $2 AND f.name = $3",
+        );
+        let row = row.bind(job).bind(origin.name()).bind(name).fetch_optional(&self.pool).await?;
+        row.map(|row| Ok((entry(&row)?, row.try_get(3)?))).transpose()
     }
+
+    /// A part of a file of a job; `None` behind the last.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn file_part(&self, job: &str, origin: Origin, name: &str, number: i64) -> Result<Option<Vec<u8>>> {
+        sqlx::query_scalar("SELECT content FROM file_parts WHERE job = $1 AND origin = $2 AND name = $3 AND number = $4")
+            .bind(job)
+            .bind(origin.name())
+            .bind(name)
+            .bind(number)
+            .fetch_optional(&self.pool)
+            .await
+    }
+
+    /// A whole file of a job.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn whole_file(&self, job: &str, origin: Origin, name: &str) -> Result<Option<Vec<u8>>> {
+        let Some((entry, mut content)) = self.open_file(job, origin, name).await? else { return Ok(None) };
+        let mut number = 1;
+        while (content.len() as i64) < entry.bytes {
+            // Deleted meanwhile, so as good as never there.
+            let Some(part) = self.file_part(job, origin, name, number).await? else { return Ok(None) };
+            content.extend(part);
+            number += 1;
+        }
+        Ok(Some(content))
+    }
+}
+
+/// Stores a file of a job.
+pub(super) async fn add(
+    transaction: &mut sqlx::Transaction<'static, sqlx::Any>,
+    job: &str,
+    origin: Origin,
+    name: &str,
+    content: &[u8],
+) -> Result<()> {
+    sqlx::query("INSERT INTO job_files (job, origin, name, media_type, size) VALUES ($1, $2, $3, $4, $5)")
+        .bind(job)
+        .bind(origin.name())
+        .bind(name)
+        .bind(media_type(name))
+        .bind(content.len() as i64)
+        .execute(&mut **transaction)
+        .await?;
+    // An empty file has a part as well, so that every file opens alike.
+    let empty = content.is_empty().then_some(&[][..]);
+    for (number, part) in content.chunks(PART).chain(empty).enumerate() {
+        sqlx::query("INSERT INTO file_parts (job, origin, name, number, content) VALUES ($1, $2, $3, $4, $5)")
+            .bind(job)
+            .bind(origin.name())
+            .bind(name)
+            .bind(number as i64)
+            .bind(part)
+            .execute(&mut **transaction)
+            .await?;
+    }
+    Ok(())
+}
+
+/// A row of name, media type and size.
+fn entry(row: &sqlx::any::AnyRow) -> Result<FileEntry> {
+    Ok(FileEntry { name: row.try_get(0)?, media_type: row.try_get(1)?, bytes: row.try_get(2)? })
 }

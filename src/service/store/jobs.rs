@@ -3,7 +3,7 @@
 use sqlx::Row;
 use sqlx::any::AnyRow;
 
-use super::{Result, Store};
+use super::{Dialect, Origin, Result, Store, files};
 use crate::service::job::{Job, JobKind, State, Submission, time};
 
 /// A job to be stored.
@@ -58,19 +58,18 @@ impl Store {
     /// # Errors
     /// The database cannot take it; nothing is stored then.
     pub async fn submit(&self, new: &NewJob<'_>, queued_max: i64) -> Result<Submitted> {
-        // Without failure: text, numbers and bytes.
+        // Without failure: text and numbers.
         let content = postcard::to_stdvec(new.submission).unwrap_or_default();
         let mut transaction = self.begin().await?;
-        if let Some(key) = new.idempotency_key {
-            let earlier = sqlx::query("SELECT fingerprint, job FROM idempotency WHERE owner = $1 AND key = $2")
+        if self.dialect == Dialect::Postgres {
+            // One of an owner's submissions at a time, or two could both find the last place free. SQLite has one writer anyway.
+            sqlx::query("SELECT pg_advisory_xact_lock(hashtextextended($1, 0))")
                 .bind(new.owner)
-                .bind(key)
-                .fetch_optional(&mut *transaction)
+                .execute(&mut *transaction)
                 .await?;
-            if let Some(row) = earlier {
-                let same = row.try_get::<String, _>(0)? == new.fingerprint;
-                return Ok(if same { Submitted::Again(row.try_get(1)?) } else { Submitted::KeyTaken });
-            }
+        }
+        if let Some(earlier) = earlier(&mut transaction, new.owner, new.idempotency_key, new.fingerprint).await? {
+            return Ok(earlier);
         }
         let queued: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM jobs WHERE state = 'queued' AND owner = $1")
             .bind(new.owner)
@@ -79,15 +78,18 @@ impl Store {
         if queued >= queued_max {
             return Ok(Submitted::QueueFull);
         }
+        let turn = turn(&mut transaction, new.owner).await?;
         let id = uuid::Uuid::now_v7().to_string();
         sqlx::query(self.sql(
-            "INSERT INTO jobs (id, kind, name, owner, state, calibration, created_ms) VALUES ($1, $2, $3, $4, 'queued', $5, {now})",
+            "INSERT INTO jobs (id, kind, name, owner, state, calibration, turn, created_ms)
+             VALUES ($1, $2, $3, $4, 'queued', $5, $6, {now})",
         ))
         .bind(&id)
         .bind(new.kind.name())
         .bind(&new.submission.name)
         .bind(new.owner)
         .bind(new.calibration)
+        .bind(turn)
         .execute(&mut *transaction)
         .await?;
         sqlx::query("INSERT INTO submissions (job, content) VALUES ($1, $2)")
@@ -95,23 +97,28 @@ impl Store {
             .bind(content)
             .execute(&mut *transaction)
             .await?;
+        for (name, content) in &new.submission.files {
+            files::add(&mut transaction, &id, Origin::Input, name, content).await?;
+        }
         if let Some(key) = new.idempotency_key {
-            let stored = sqlx::query("INSERT INTO idempotency (owner, key, fingerprint, job) VALUES ($1, $2, $3, $4)")
+            sqlx::query("INSERT INTO idempotency (owner, key, fingerprint, job) VALUES ($1, $2, $3, $4)")
                 .bind(new.owner)
                 .bind(key)
                 .bind(new.fingerprint)
                 .bind(&id)
                 .execute(&mut *transaction)
-                .await;
-            // Somebody else sent the same key in the same moment: his job counts.
-            if stored.as_ref().is_err_and(|error| error.as_database_error().is_some_and(|e| e.is_unique_violation())) {
-                transaction.rollback().await?;
-                return Box::pin(self.submit(new, queued_max)).await;
-            }
-            stored?;
+                .await?;
         }
         transaction.commit().await?;
         Ok(Submitted::New(id))
+    }
+
+    /// What an earlier request with this key has become, if there was one.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn submitted(&self, owner: &str, key: Option<&str>, fingerprint: &str) -> Result<Option<Submitted>> {
+        earlier(&mut *self.pool.acquire().await?, owner, key, fingerprint).await
     }
 
     /// A job.
@@ -123,7 +130,10 @@ impl Store {
         let row = sqlx::query(self.sql(&statement)).bind(id).bind(kind.name()).fetch_optional(&self.pool).await?;
         let Some(mut job) = row.map(|row| job_of(&row)).transpose()? else { return Ok(None) };
         if job.state == State::Queued {
-            let before = sqlx::query_scalar("SELECT COUNT(*) FROM jobs WHERE state = 'queued' AND id < $1");
+            let before = sqlx::query_scalar(
+                "SELECT COUNT(*) FROM jobs WHERE state = 'queued'
+                 AND (turn, id) < (SELECT turn, id FROM jobs WHERE id = $1)",
+            );
             job.position = Some(before.bind(id).fetch_one(&self.pool).await?);
         }
         Ok(Some(job))
@@ -214,6 +224,36 @@ impl Store {
         let rows = sqlx::query("SELECT state, COUNT(*) FROM jobs GROUP BY state").fetch_all(&self.pool).await?;
         rows.iter().map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).collect()
     }
+}
+
+/// What an earlier request of the same owner with the same key has become.
+async fn earlier(
+    connection: &mut sqlx::AnyConnection,
+    owner: &str,
+    key: Option<&str>,
+    fingerprint: &str,
+) -> Result<Option<Submitted>> {
+    let Some(key) = key else { return Ok(None) };
+    let earlier = sqlx::query("SELECT fingerprint, job FROM idempotency WHERE owner = $1 AND key = $2").bind(owner).bind(key);
+    let Some(row) = earlier.fetch_optional(connection).await? else { return Ok(None) };
+    let is_same = row.try_get::<String, _>(0)? == fingerprint;
+    Ok(Some(if is_same { Submitted::Again(row.try_get(1)?) } else { Submitted::KeyTaken }))
+}
+
+/// Place of an owner's next job in the queue: behind those he has there, and not before what runs now, so that owners take turns
+/// and one who comes late does not make up for it (start-time fair queueing: Goyal, Vin and Cheng, 1996).
+async fn turn(connection: &mut sqlx::AnyConnection, owner: &str) -> Result<i64> {
+    let row = sqlx::query(
+        "SELECT (SELECT MAX(turn) FROM jobs WHERE owner = $1 AND state = 'queued'),
+                (SELECT MAX(turn) FROM jobs WHERE owner = $1 AND state = 'running'),
+                (SELECT MAX(turn) FROM jobs WHERE state = 'running'),
+                (SELECT MIN(turn) FROM jobs WHERE state = 'queued')",
+    );
+    let row = row.bind(owner).fetch_one(connection).await?;
+    let number = |column: usize| row.try_get::<Option<i64>, _>(column);
+    let own = number(0)?.max(number(1)?);
+    let now = number(2)?.or(number(3)?);
+    Ok(own.map_or(0, |own| own + 1).max(now.unwrap_or(0)))
 }
 
 /// A row of [`COLUMNS`].

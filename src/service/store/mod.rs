@@ -17,7 +17,7 @@ use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 use sqlx::any::AnyPoolOptions;
 use sqlx::{AnyPool, Connection};
 
-pub use files::{File, FileEntry, media_type};
+pub use files::{File, FileEntry, Origin, media_type};
 pub use jobs::{Listing, NewJob, Submitted};
 pub use queue::{Beat, Claim, Growth, Outcome};
 pub use tokens::{Role, Token, hash, hex};

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use sqlx::Row;
 
-use super::{File, Result, Store};
+use super::{File, FileEntry, Origin, Result, Store, files};
 use crate::service::job::{JobKind, JobProgress, State, Submission};
 
 /// A job that a worker holds.
@@ -59,7 +59,7 @@ pub struct Growth {
 }
 
 impl Store {
-    /// The next job that waits, or whose worker has given no sign of life for as long as it was granted.
+    /// A job whose worker has given no sign of life for as long as it was granted, or else the next that waits.
     ///
     /// # Errors
     /// The database does not answer.
@@ -69,8 +69,9 @@ impl Store {
         let row = sqlx::query(self.sql(
             "UPDATE jobs SET state = 'running', worker = $1, fence = fence + 1, attempts = attempts + 1,
                 lease_until_ms = {now} + $2, started_ms = COALESCE(started_ms, {now}), revision = revision + 1
-             WHERE id = (SELECT id FROM jobs WHERE state = 'queued' OR (state = 'running' AND lease_until_ms < {now})
-                         ORDER BY id LIMIT 1 {skip_locked})
+             WHERE id = COALESCE(
+                (SELECT id FROM jobs WHERE state = 'running' AND lease_until_ms < {now} ORDER BY turn, id LIMIT 1 {skip_locked}),
+                (SELECT id FROM jobs WHERE state = 'queued' ORDER BY turn, id LIMIT 1 {skip_locked}))
              RETURNING id, kind, fence, attempts, cancel_asked",
         ))
         .bind(worker)
@@ -95,7 +96,13 @@ impl Store {
     /// The database does not answer, or what stands there cannot be read.
     pub async fn content(&self, claim: &Claim) -> Result<(Option<Submission>, Option<Vec<u8>>)> {
         let checkpoint = sqlx::query_scalar("SELECT content FROM checkpoints WHERE job = $1").bind(&claim.id);
-        Ok((self.submission(&claim.id).await?, checkpoint.fetch_optional(&self.pool).await?))
+        let Some(mut submission) = self.submission(&claim.id).await? else { return Ok((None, None)) };
+        for FileEntry { name, .. } in self.file_entries(&claim.id, Origin::Input).await? {
+            // Deleted meanwhile, with the job.
+            let Some(content) = self.whole_file(&claim.id, Origin::Input, &name).await? else { return Ok((None, None)) };
+            submission.files.push((name, content));
+        }
+        Ok((Some(submission), checkpoint.fetch_optional(&self.pool).await?))
     }
 
     /// A sign of life: the claim holds on for `lease_ms`.
@@ -242,15 +249,8 @@ impl Store {
         if changed.rows_affected() == 0 {
             return Ok(false);
         }
-        for file in &outcome.files {
-            sqlx::query("INSERT INTO files (job, name, media_type, size, content) VALUES ($1, $2, $3, $4, $5)")
-                .bind(&claim.id)
-                .bind(&file.name)
-                .bind(&file.media_type)
-                .bind(file.content.len() as i64)
-                .bind(&file.content[..])
-                .execute(&mut *transaction)
-                .await?;
+        for File { name, content } in &outcome.files {
+            files::add(&mut transaction, &claim.id, Origin::Result, name, content).await?;
         }
         for leftover in ["DELETE FROM checkpoints WHERE job = $1", "DELETE FROM growth WHERE job = $1"] {
             sqlx::query(leftover).bind(&claim.id).execute(&mut *transaction).await?;

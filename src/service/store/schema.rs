@@ -1,9 +1,15 @@
 //! The tables, and how they came to be: each step runs once, in order.
 
+use sqlx::Row;
+
+use super::files::{self, Origin};
 use super::{Result, Store};
+use crate::service::job::Submission;
 
 /// Steps so far. What stands here is never changed again; what is to change gets a step of its own.
-const STEPS: &[&[&str]] = &[&[
+const STEPS: &[&[&str]] = &[FIRST, PARTS_AND_TURNS];
+
+const FIRST: &[&str] = &[
     // `id` is a UUID of version 7: sorted by it jobs are sorted by time. `fence` counts the claims: whoever writes must name the
     // claim he holds, so that a worker taken for dead that is not cannot write over its successor. `attempts` counts the claims
     // since the last checkpoint. `revision` grows with every change that somebody may be watching for.
@@ -39,7 +45,31 @@ const STEPS: &[&[&str]] = &[&[
     "postgres: ALTER TABLE pictures ALTER COLUMN content SET STORAGE EXTERNAL",
     "CREATE TABLE tokens (
         hash TEXT PRIMARY KEY, name TEXT NOT NULL UNIQUE, role TEXT NOT NULL, created_ms BIGINT NOT NULL, expires_ms BIGINT)",
-]];
+];
+
+/// Files in parts, inputs among them, so that no reader holds a whole one; turns, so that no owner keeps the others waiting.
+const PARTS_AND_TURNS: &[&str] = &[
+    "CREATE TABLE job_files (
+        job {key} NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, origin TEXT NOT NULL, name {key} NOT NULL,
+        media_type TEXT NOT NULL, size BIGINT NOT NULL, PRIMARY KEY (job, origin, name))",
+    "CREATE TABLE file_parts (
+        job {key} NOT NULL, origin TEXT NOT NULL, name {key} NOT NULL, number BIGINT NOT NULL, content {bytes} NOT NULL,
+        PRIMARY KEY (job, origin, name, number),
+        FOREIGN KEY (job, origin, name) REFERENCES job_files (job, origin, name) ON DELETE CASCADE)",
+    "postgres: ALTER TABLE file_parts ALTER COLUMN content SET STORAGE EXTERNAL",
+    // A part may be of any size; what was whole stays so.
+    "INSERT INTO job_files SELECT job, 'result', name, media_type, size FROM files",
+    "INSERT INTO file_parts SELECT job, 'result', name, 0, content FROM files",
+    "DROP TABLE files",
+    // `turn` orders the queue, and jobs of one turn are ordered by time.
+    "ALTER TABLE jobs ADD COLUMN turn BIGINT NOT NULL DEFAULT 0",
+    "DROP INDEX jobs_by_state",
+    "CREATE INDEX jobs_by_turn ON jobs (state, turn, id)",
+    "CREATE INDEX jobs_by_owner ON jobs (owner, state, turn)",
+];
+
+/// Step behind which inputs stand among the files, no longer within the submissions.
+const INPUTS_MOVED: usize = 2;
 
 /// What a statement begins with that SQLite has no need of.
 const POSTGRES_ONLY: &str = "postgres: ";
@@ -71,9 +101,34 @@ impl Store {
                 };
                 sqlx::query(self.sql(statement)).execute(&mut *transaction).await?;
             }
-            let number = number as i64 + 1;
-            sqlx::query("INSERT INTO perilife_schema (version) VALUES ($1)").bind(number).execute(&mut *transaction).await?;
+            let number = number + 1;
+            if number == INPUTS_MOVED {
+                move_inputs(&mut transaction).await?;
+            }
+            let version = number as i64;
+            sqlx::query("INSERT INTO perilife_schema (version) VALUES ($1)").bind(version).execute(&mut *transaction).await?;
         }
         transaction.commit().await
     }
+}
+
+/// Takes the files out of the submissions, behind whose text they stood.
+async fn move_inputs(transaction: &mut sqlx::Transaction<'static, sqlx::Any>) -> Result<()> {
+    let jobs: Vec<String> = sqlx::query_scalar("SELECT job FROM submissions").fetch_all(&mut **transaction).await?;
+    for job in jobs {
+        let row = sqlx::query("SELECT content FROM submissions WHERE job = $1").bind(&job).fetch_one(&mut **transaction).await?;
+        let content: Vec<u8> = row.try_get(0)?;
+        let broken = |error: postcard::Error| sqlx::Error::Decode(error.into());
+        let (text, with_files): (Submission, Vec<(String, Vec<u8>)>) = postcard::from_bytes(&content).map_err(broken)?;
+        for (name, content) in with_files {
+            files::add(transaction, &job, Origin::Input, &name, &content).await?;
+        }
+        let text = postcard::to_stdvec(&text).map_err(broken)?;
+        sqlx::query("UPDATE submissions SET content = $2 WHERE job = $1")
+            .bind(&job)
+            .bind(text)
+            .execute(&mut **transaction)
+            .await?;
+    }
+    Ok(())
 }

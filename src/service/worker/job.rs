@@ -7,9 +7,10 @@ use std::time::Duration;
 use axum::http::StatusCode;
 
 use super::results::{Results, of_fit, of_run};
-use super::watch::{Keep, Stop, Watch};
+use super::watch::{Stop, Watch};
 use super::{Shared, TRY_EVERY, milliseconds};
 use crate::calibration::case::CalibrationCase;
+use crate::calibration::finished::FinishedRuns;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::checkpoint::Checkpoint;
@@ -26,7 +27,7 @@ const LAST_TRIES: u32 = 3;
 /// What is to be run.
 enum Task {
     Prediction(Box<Case>, Option<Box<Checkpoint>>),
-    Calibration(Box<CalibrationCase>),
+    Calibration(Box<CalibrationCase>, FinishedRuns),
 }
 
 /// Works on a claimed job until it has ended, or is not this worker's any more.
@@ -65,12 +66,14 @@ pub fn work(shared: &Shared, pool: &rayon::ThreadPool, claim: &Claim) {
     };
     let cracks = match &task {
         Task::Prediction(case, _) => &case.specimen.cracks[..],
-        Task::Calibration(calibration) => &calibration.case.specimen.cracks,
+        Task::Calibration(calibration, _) => &calibration.case.specimen.cracks,
     }
     .to_vec();
-    // A fit begins anew: it takes some runs, and only one of them would be kept.
-    let keep = (claim.kind == JobKind::Prediction).then_some(&keep as Keep<'_>);
-    let watch = Watch::new(&cracks, &growth, keep, shared.settings.checkpoint_every);
+    let finished = match &task {
+        Task::Prediction(..) => None,
+        Task::Calibration(_, finished) => Some(finished.len() as u32),
+    };
+    let watch = Watch::new(&cracks, &growth, finished, &keep, shared.settings.checkpoint_every);
     let outcome = run_watched(shared, pool, claim, task, &watch);
     conclude(shared, claim, outcome, watch.stopped());
 }
@@ -79,18 +82,24 @@ pub fn work(shared: &Shared, pool: &rayon::ThreadPool, claim: &Claim) {
 fn task(kind: JobKind, submission: &Submission, checkpoint: Option<Vec<u8>>) -> Result<Task> {
     let document = submission.document()?;
     if kind == JobKind::Calibration {
-        return Ok(Task::Calibration(Box::new(CalibrationCase::from_document(document)?)));
+        let calibration = CalibrationCase::from_document(document)?;
+        let finished = taken_up(checkpoint, FinishedRuns::from_bytes, |runs| runs.belong_to(&calibration.case));
+        return Ok(Task::Calibration(Box::new(calibration), finished.unwrap_or_default()));
     }
     let case = Case::from_document(&document)?;
-    let taken = checkpoint.and_then(|bytes| match Checkpoint::from_bytes(&bytes) {
-        Ok(checkpoint) if checkpoint.belongs_to(&case) => Some(Box::new(checkpoint)),
-        Ok(_) => None,
+    let taken = taken_up(checkpoint, Checkpoint::from_bytes, |checkpoint| checkpoint.belongs_to(&case));
+    Ok(Task::Prediction(Box::new(case), taken.map(Box::new)))
+}
+
+/// A kept checkpoint, if it can be read and is one of this input.
+fn taken_up<T>(bytes: Option<Vec<u8>>, read: fn(&[u8]) -> Result<T>, belongs: impl Fn(&T) -> bool) -> Option<T> {
+    match read(&bytes?) {
+        Ok(checkpoint) => belongs(&checkpoint).then_some(checkpoint),
         Err(error) => {
             tracing::warn!("the run begins anew: {error}");
             None
         }
-    });
-    Ok(Task::Prediction(Box::new(case), taken))
+    }
 }
 
 /// The curve that earlier workers have shown, as far as the checkpoint confirms it.
@@ -124,7 +133,6 @@ fn run_watched(
     task: Task,
     watch: &Watch<'_>,
 ) -> Option<Result<Results>> {
-    let several = claim.kind == JobKind::Calibration;
     let (done, end) = channel();
     pool.in_place_scope(|scope| {
         scope.spawn(move |_| {
@@ -136,7 +144,7 @@ fn run_watched(
             match end.recv_timeout(BEAT) {
                 Ok(outcome) => break outcome,
                 Err(RecvTimeoutError::Disconnected) => break None,
-                Err(RecvTimeoutError::Timeout) => tell(shared, claim, watch, several),
+                Err(RecvTimeoutError::Timeout) => tell(shared, claim, watch),
             }
         }
     })
@@ -147,16 +155,16 @@ fn run(task: Task, watch: &Watch<'_>) -> Result<Results> {
     match task {
         Task::Prediction(case, None) => of(&case, predict(&case, watch)),
         Task::Prediction(case, Some(checkpoint)) => of(&case, resume(&case, *checkpoint, watch)),
-        Task::Calibration(calibration) => of_fit(&calibration, watch),
+        Task::Calibration(calibration, finished) => of_fit(&calibration, finished, watch),
     }
 }
 
 /// Tells the store how far the run is, and the run what the store says.
-fn tell(shared: &Shared, claim: &Claim, watch: &Watch<'_>, several: bool) {
+fn tell(shared: &Shared, claim: &Claim, watch: &Watch<'_>) {
     if shared.is_stopping() {
         watch.stop(Stop::Shutdown);
     }
-    let news = watch.news(several);
+    let news = watch.news();
     let lease_ms = milliseconds(shared.settings.lease);
     let told = shared.handle.block_on(async {
         match shared.store.beat(claim, lease_ms, news.progress.as_ref()).await {

@@ -8,15 +8,16 @@ use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
 
 use super::watch::Watch;
-use crate::calibration::calibrate::calibrate;
+use crate::calibration::calibrate::calibrate_from;
 use crate::calibration::case::CalibrationCase;
+use crate::calibration::finished::FinishedRuns;
 use crate::calibration::results::{FitReport, record};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::Prediction;
 use crate::report::run::PARAVIEW;
 use crate::report::{fit, run};
-use crate::service::store::{File, media_type};
+use crate::service::store::File;
 use crate::units::MM;
 
 /// Summary and files of a result.
@@ -55,14 +56,15 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Result<Results> {
     Ok((Value::Object(summary), collected(folder.path())?))
 }
 
-/// Fits a calibration and writes its files.
+/// Fits a calibration, from the runs that an earlier worker finished, and writes its files.
 ///
 /// # Errors
-/// As [`calibrate`] and [`fit::write`].
-pub fn of_fit(calibration: &CalibrationCase, watch: &Watch<'_>) -> Result<Results> {
+/// As [`calibrate_from`] and [`fit::write`].
+pub fn of_fit(calibration: &CalibrationCase, finished: FinishedRuns, watch: &Watch<'_>) -> Result<Results> {
     let folder = temporary()?;
     let started = Instant::now();
-    let fitted = calibrate(calibration, watch)?;
+    let keep = |runs: &FinishedRuns| watch.run_finished(runs);
+    let fitted = calibrate_from(calibration, finished, &keep, watch)?;
     let report = FitReport::new(calibration, &fitted, started.elapsed().as_secs_f64());
     fit::write(folder.path(), calibration, &fitted, &report, &record(calibration, &fitted))?;
     let mut summary = json!(report);
@@ -90,16 +92,12 @@ fn collected(folder: &Path) -> Result<Vec<File>> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() {
             debug_assert_eq!(name, PARAVIEW);
-            files.push(file(format!("{name}.zip"), archive(&path)?));
+            files.push(File { name: format!("{name}.zip"), content: archive(&path)? });
         } else {
-            files.push(file(name, read(&path)?));
+            files.push(File { name, content: read(&path)? });
         }
     }
     Ok(files)
-}
-
-fn file(name: String, content: Vec<u8>) -> File {
-    File { media_type: media_type(&name), name, content }
 }
 
 fn archive(folder: &Path) -> Result<Vec<u8>> {

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use crate::calibration::finished::FinishedRuns;
 use crate::predict::checkpoint::Checkpoint;
 use crate::predict::{Observer, PointGrid, Progress, Snapshot, TipRecord};
 use crate::report::damage::{DamagePicture, cycles_and_length};
@@ -66,7 +67,8 @@ pub type Keep<'a> = &'a (dyn Fn(Vec<u8>) -> bool + Sync);
 /// Watches one run.
 pub struct Watch<'a> {
     cracks: &'a [Crack],
-    keep: Option<Keep<'a>>,
+    is_fit: bool,
+    keep: Keep<'a>,
     keep_every: Duration,
     started: Instant,
     /// 0 or a [`Stop`].
@@ -95,15 +97,16 @@ struct Told {
 const OVER_COST: u32 = 20;
 
 impl<'a> Watch<'a> {
-    /// Watches a run of a plate with these cracks, whose curve so far is `growth`.
+    /// Watches a run of a plate with these cracks, whose curve so far is `growth`, or the runs of a fit, of which so many are
+    /// finished.
     #[must_use]
-    pub fn new(cracks: &'a [Crack], growth: &Growth, keep: Option<Keep<'a>>, keep_every: Duration) -> Self {
+    pub fn new(cracks: &'a [Crack], growth: &Growth, finished: Option<u32>, keep: Keep<'a>, keep_every: Duration) -> Self {
         let tips = growth.tips.first().map_or(0, Vec::len);
         let path = |tip: usize| growth.tips.iter().filter_map(|entry| Some(entry.get(tip)?.map(|mm| mm * MM))).collect();
         let told = Told {
             progress: None,
             first_share: f64::NAN,
-            runs: 0,
+            runs: finished.unwrap_or(0),
             tips: Vec::new(),
             paths: (0..tips).map(path).collect(),
             entries: Growth { from: growth.cycles.len(), ..Growth::default() },
@@ -112,7 +115,20 @@ impl<'a> Watch<'a> {
             kept: Instant::now(),
             keep_cost: Duration::ZERO,
         };
-        Watch { cracks, keep, keep_every, started: Instant::now(), stop: AtomicU8::new(0), told: Mutex::new(told) }
+        Watch {
+            cracks,
+            is_fit: finished.is_some(),
+            keep,
+            keep_every,
+            started: Instant::now(),
+            stop: AtomicU8::new(0),
+            told: Mutex::new(told),
+        }
+    }
+
+    /// Takes note of the runs of a fit that have ended, so that they need not be made again.
+    pub fn run_finished(&self, finished: &FinishedRuns) {
+        (self.keep)(finished.to_bytes());
     }
 
     /// Asks the run to end; the first reason counts.
@@ -127,18 +143,21 @@ impl<'a> Watch<'a> {
         [Stop::Cancelled, Stop::Lost, Stop::Shutdown].into_iter().find(|stop| *stop as u8 == why)
     }
 
-    /// What was told since the last time; `several` for a job that makes runs nobody knows the number of.
+    /// What was told since the last time.
     #[must_use]
-    pub fn news(&self, several: bool) -> News {
+    pub fn news(&self) -> News {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         let elapsed_s = self.started.elapsed().as_secs_f64();
         let (first_share, runs) = (told.first_share, told.runs);
         let progress = told.progress.map(|Progress { cycles, crack_length, share }| {
             let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
             // A fit takes some three runs, and ends when it is done.
-            let share =
-                if several { ((f64::from(runs) + share) / (f64::from(runs) + 1.0).max(RUNS_OF_A_FIT)).min(0.99) } else { share };
-            let done = share - if several { 0.0 } else { first_share };
+            let share = if self.is_fit {
+                ((f64::from(runs) + share) / (f64::from(runs) + 1.0).max(RUNS_OF_A_FIT)).min(0.99)
+            } else {
+                share
+            };
+            let done = share - if self.is_fit { 0.0 } else { first_share };
             let seconds_left = (done > 0.0).then(|| elapsed_s * (1.0 - share) / done);
             JobProgress { cycles, crack_length_mm: crack_length / MM, share, elapsed_s, seconds_left }
         });
@@ -201,7 +220,10 @@ impl Observer for Watch<'_> {
     }
 
     fn may_keep(&self, checkpoint: &dyn Fn() -> Checkpoint) {
-        let Some(keep) = self.keep else { return };
+        // Of a fit only whole runs are kept.
+        if self.is_fit {
+            return;
+        }
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         if told.kept.elapsed() < self.keep_every.max(OVER_COST * told.keep_cost) {
             return;
@@ -209,7 +231,7 @@ impl Observer for Watch<'_> {
         let begun = Instant::now();
         // Others may ask how far the run is meanwhile.
         drop(told);
-        keep(checkpoint().to_bytes());
+        (self.keep)(checkpoint().to_bytes());
         told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         (told.kept, told.keep_cost) = (Instant::now(), begun.elapsed());
     }

@@ -6,6 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use perilife::tables::{DataFrame, parquet};
+use polars::prelude::Column;
 use tempfile::tempdir;
 
 use crate::browser::Browser;
@@ -36,6 +38,14 @@ if (innerWidth < 600) for (const e of document.querySelectorAll("main button, ma
     if (seen(e) && e.type !== "checkbox" && e.getBoundingClientRect().height < 43 && !e.closest("td, p")) flaws.push("small: " + e.outerHTML.slice(0, 90));
 return flaws;
 "#;
+
+/// Readings of another specimen beside the example.
+fn more() -> DataFrame {
+    let lengths: Vec<f64> = (0..30).map(|i| 9.0 + f64::from(i)).collect();
+    let cycles: Vec<f64> = (0..30).map(|i| 300_000.0 * (1.0 - 0.9_f64.powi(i))).collect();
+    let columns = vec![Column::new("crack_length_mm".into(), lengths), Column::new("cycles".into(), cycles)];
+    DataFrame::new_infer_height(columns).unwrap()
+}
 
 struct Walk {
     browser: Browser,
@@ -97,9 +107,27 @@ fn the_page_leads_from_readings_to_remaining_life() {
     );
     walk.look("02_problems");
     page.click("[aria-label='Remove broken.csv']");
+    page.run(
+        "const data = new DataTransfer();
+        data.items.add(new File(['cycles;crack_length_mm\\n0;9,0\\n20000;10,5\\n35000;12,5\\n'], 'dropped.csv'));
+        document.querySelector('#measured-drop').dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true }));",
+    );
+    page.see("[data-file='dropped.csv']");
+    assert!(page.text("[data-file='dropped.csv']").contains("decimal commas"));
+    page.click("[aria-label='Remove dropped.csv']");
 
     // A good file, the test it is of, a fit.
     page.click("#example");
+    page.see("#calibrate:not([disabled])");
+    // Tables that are no text go up as they are.
+    let table = dir.path().join("more.parquet");
+    fs::write(&table, parquet(&more()).unwrap()).unwrap();
+    page.fill("#measured-input", table.to_str().unwrap());
+    page.see("[data-file='more.parquet']");
+    page.until("document.querySelector('#test-check .understood')?.textContent.includes('2 specimens')");
+    page.see("#calibrate:not([disabled])");
+    page.click("[aria-label='Remove more.parquet']");
+    page.until("!document.querySelector('#test-check .understood')?.textContent.includes('2 specimens')");
     page.see("#calibrate:not([disabled])");
     page.fill("#view-measure [data-key='specimen.width_mm']", "15");
     page.until("document.querySelectorAll('#view-measure [aria-invalid=true]').length === 1");

@@ -1,0 +1,206 @@
+//! Who comes when, how many may wait, and what a repeated request finds.
+
+use serde_json::{Value, json};
+use tempfile::tempdir;
+
+use super::jobs::with_each_store;
+use super::{QUICK, of};
+use crate::cli::{perilife, texts};
+use crate::server::{Answer, Server};
+
+/// A token of this name in the store at `place`.
+fn token(place: &[&str], name: &str) -> String {
+    let output = perilife(std::path::Path::new("."), &[&["token"], place, &["add", name, "--role", "run"]].concat());
+    assert!(output.status.success(), "{}", texts(&output).1);
+    texts(&output).0.trim().to_owned()
+}
+
+/// Somebody with many jobs does not keep the others waiting: owners take turns, each with his own jobs in his order.
+#[test]
+fn owners_take_turns() {
+    with_each_store("turns", |place| {
+        let tokens = ["ann", "bob", "cy"].map(|name| (name, token(place, name)));
+        let mut service = Server::start(place, &["--jobs", "0", "--require-token"]);
+        let mut jobs: Vec<(String, String)> = Vec::new();
+        for (owner, number) in [(0, 5), (1, 2), (2, 1)] {
+            let (name, secret) = &tokens[owner];
+            service = service.with_token(secret);
+            jobs.extend((0..number).map(|i| (format!("{name} {i}"), service.submit("predictions", &of(name, QUICK)))));
+        }
+        let place_of = |(name, job): &(String, String)| (service.get(job).json()["position"].as_i64().unwrap(), name.clone());
+        let mut queue: Vec<(i64, String)> = jobs.iter().map(place_of).collect();
+        queue.sort();
+        let names: Vec<&str> = queue.iter().map(|(_, name)| name.as_str()).collect();
+        assert_eq!(names, ["ann 0", "bob 0", "cy 0", "ann 1", "bob 1", "ann 2", "ann 3", "ann 4"]);
+        assert!(queue.iter().enumerate().all(|(place, (position, _))| *position == place as i64), "{queue:?}");
+
+        let _worker = Server::worker(place, &["--jobs", "1"]);
+        let mut started: Vec<(Value, String)> =
+            jobs.iter().map(|(name, job)| (service.succeeded(job)["started"].clone(), name.clone())).collect();
+        started.sort_by_key(|(time, _)| time.as_str().map(str::to_owned));
+        let order: Vec<&str> = started.iter().map(|(_, name)| name.as_str()).collect();
+        assert_eq!(order, names, "run in the order of the queue");
+
+        // Who had nothing to do for a while has no claim to catch up.
+        service = service.with_token(&tokens[0].1);
+        let late: Vec<String> = (0..2).map(|_| service.submit("predictions", &of("late", QUICK))).collect();
+        late.iter().for_each(|job| drop(service.succeeded(job)));
+    });
+}
+
+/// However many ask in the same moment, no more jobs wait than may.
+#[test]
+fn the_queue_has_an_end_for_everybody_together() {
+    with_each_store("bounded", |place| {
+        let service = Server::start(place, &["--jobs", "0", "--queued", "6"]);
+        let answers: Vec<Answer> = std::thread::scope(|scope| {
+            let ask = || service.post("/v1/predictions", &of("case", QUICK));
+            let clients: Vec<_> = (0..40).map(|_| scope.spawn(ask)).collect();
+            clients.into_iter().map(|client| client.join().unwrap()).collect()
+        });
+        let count = |status: u16| answers.iter().filter(|answer| answer.status == status).count();
+        assert_eq!((count(202), count(429)), (6, 34));
+        assert_eq!(service.get("/v1/predictions?state=queued").json()["items"].as_array().unwrap().len(), 6);
+    });
+}
+
+const BY_HAND: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\n\
+    length_mm = 120\nthickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\n\
+    stress_range_mpa = 60\nstress_ratio = 0.1\n[model]\nmethod = \"handbook\"\n";
+
+/// A request that was accepted is answered with its job however often it comes, even if what it refers to has gone since.
+#[test]
+fn a_repeated_request_finds_its_job() {
+    with_each_store("repeated", |place| {
+        let service = Server::start(place, &["--jobs", "1"]);
+        let curve = "cycles,crack_length_mm\n0,9\n20000,10\n37000,11\n51000,12\n63000,13\n";
+        let fit = service.submit("calibrations", &json!({ "input": BY_HAND, "files": { "curve.csv": curve } }));
+        let law = service.succeeded(&fit)["id"].clone();
+        let case = QUICK.replace("[model]\nspacing_mm = 1.5\n", "[model]\nmethod = \"handbook\"\n");
+        let body = json!({ "name": "case", "input": case, "calibration": law }).to_string();
+        let ask = |key: &str| {
+            let headers = [("content-type", "application/json"), ("idempotency-key", key)];
+            service.send("POST", "/v1/predictions", &headers, body.as_bytes())
+        };
+        let job = ask("first").expect(202).json()["id"].clone();
+        service.send("DELETE", &fit, &[], b"").expect(204);
+        assert_eq!(ask("first").expect(200).json()["id"], job);
+        ask("second").expect(422);
+    });
+}
+
+/// A file that takes many parts comes back as it went in, and readers who never read cost no more than a part each.
+#[test]
+fn large_files_go_in_parts() {
+    with_each_store("parts", |place| {
+        let service = Server::start(place, &["--jobs", "0"]);
+        // No two parts alike, no part's end at the end, and an empty file beside it.
+        let numbers = (0_u32..2_500_000).map(|i| i.wrapping_mul(2_654_435_761));
+        let large: String = numbers.map(|number| format!("{number:08x}")).collect();
+        assert_eq!(large.len(), 20_000_000);
+        let files = json!({ "large.csv": large, "empty.csv": "" });
+        let job = service.submit("predictions", &json!({ "input": QUICK, "files": files }));
+        let inputs = service.get(&job).json()["inputs"].clone();
+        let sizes: Vec<(&str, i64)> = inputs
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|file| (file["name"].as_str().unwrap(), file["bytes"].as_i64().unwrap()))
+            .collect();
+        assert_eq!(sizes, [("empty.csv", 0), ("large.csv", 20_000_000)]);
+        let came = |index: usize| service.get(inputs[index]["href"].as_str().unwrap()).expect(200);
+        assert!(came(0).body.is_empty());
+        let large_again = came(1);
+        assert!(large_again.body == large.as_bytes(), "another file");
+        assert_eq!(large_again.header("content-length"), Some("20000000"));
+
+        let before = service.memory_mb();
+        let idle: Vec<_> = (0..100).map(|_| service.ask_and_do_not_read(inputs[1]["href"].as_str().unwrap())).collect();
+        // All of them are being served.
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        let after = service.memory_mb();
+        drop(idle);
+        // Whole files would take 2000 MB.
+        assert!(after - before < 300.0, "{before} MB before, {after} MB with 100 readers of 20 MB who do not read");
+        println!("{before:.0} MB before, {after:.0} MB with 100 readers of 20 MB who do not read");
+    });
+}
+
+/// A store that an earlier version of the program laid is brought up to date, and what stands in it goes on to be there.
+#[test]
+fn a_store_of_an_earlier_version_is_taken_on() {
+    with_each_store("earlier", |place| {
+        let dir = tempdir().unwrap();
+        // Laid by this program, then taken back to what the first version knew.
+        let mut service = Server::start(place, &["--jobs", "1"]);
+        let done = service.submit("predictions", &json!({ "input": QUICK, "files": { "notes.csv": "1,2\n" } }));
+        let life = service.succeeded(&done)["summary"]["life_cycles"].clone();
+        let curve = service.file(&done, "a_n.csv");
+        service.stop();
+        let mut service = Server::start(place, &["--jobs", "0"]);
+        let waiting = service.submit("predictions", &json!({ "input": QUICK, "files": { "notes.csv": "3,4\n" } }));
+        service.stop();
+        drop(service);
+        set_back(place, &[(&done, "1,2\n"), (&waiting, "3,4\n")]);
+
+        let service = Server::start(place, &["--jobs", "1"]);
+        assert_eq!(service.get(&done).json()["summary"]["life_cycles"], life);
+        assert!(service.file(&done, "a_n.csv") == curve, "another curve");
+        for (job, notes) in [(&done, "1,2\n"), (&waiting, "3,4\n")] {
+            assert_eq!(service.file_of(&format!("{job}/inputs/notes.csv")), notes.as_bytes());
+        }
+        service.succeeded(&waiting);
+        assert!(service.file(&waiting, "a_n.csv") == curve, "another curve");
+        drop(dir);
+    });
+}
+
+/// Takes a store back to its first version, in which a submission ended with its files and a result's files were whole.
+fn set_back(place: &[&str], inputs: &[(&str, &str)]) {
+    let is_postgres = place[0] == "--database";
+    let url = if is_postgres { place[1].to_owned() } else { format!("sqlite://{}/perilife.sqlite", place[1]) };
+    let (key, bytes) = if is_postgres { ("TEXT COLLATE \"C\"", "BYTEA") } else { ("TEXT", "BLOB") };
+    let back = [
+        format!(
+            "CREATE TABLE files (job {key} NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, name TEXT NOT NULL, \
+             media_type TEXT NOT NULL, size BIGINT NOT NULL, content {bytes} NOT NULL, PRIMARY KEY (job, name))"
+        ),
+        // The results of this test are of one part each but the archive, which is left out.
+        "INSERT INTO files SELECT f.job, f.name, f.media_type, f.size, p.content FROM job_files f JOIN file_parts p \
+         ON p.job = f.job AND p.origin = f.origin AND p.name = f.name WHERE f.origin = 'result' AND f.name NOT LIKE '%.zip'"
+            .to_owned(),
+        "DROP TABLE file_parts".to_owned(),
+        "DROP TABLE job_files".to_owned(),
+        "DROP INDEX jobs_by_turn".to_owned(),
+        "DROP INDEX jobs_by_owner".to_owned(),
+        "CREATE INDEX jobs_by_state ON jobs (state, id)".to_owned(),
+        "ALTER TABLE jobs DROP COLUMN turn".to_owned(),
+        "DELETE FROM perilife_schema WHERE version > 1".to_owned(),
+    ];
+    sqlx::any::install_default_drivers();
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    runtime.block_on(async {
+        use sqlx::Connection;
+        let mut connection = sqlx::AnyConnection::connect(&url).await.unwrap();
+        for statement in back {
+            sqlx::query(sqlx::AssertSqlSafe(statement)).execute(&mut connection).await.unwrap();
+        }
+        for (job, content) in inputs {
+            let id = job.rsplit('/').next().unwrap();
+            let submission: Vec<u8> = sqlx::query_scalar("SELECT content FROM submissions WHERE job = $1")
+                .bind(id)
+                .fetch_one(&mut connection)
+                .await
+                .unwrap();
+            // A list of one pair: its length, and two texts with theirs.
+            let files = postcard::to_stdvec(&vec![("notes.csv", content.as_bytes())]).unwrap();
+            sqlx::query("UPDATE submissions SET content = $2 WHERE job = $1")
+                .bind(id)
+                .bind([submission, files].concat())
+                .execute(&mut connection)
+                .await
+                .unwrap();
+        }
+        connection.close().await.unwrap();
+    });
+}
