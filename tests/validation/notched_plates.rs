@@ -59,6 +59,7 @@ fn load_curves() {
 /// Level notches of 10 mm, 0, 10 and 20 mm apart in height: straight through, past each other, to the far sides; the plate lasts
 /// the longer the farther they are apart.
 #[test]
+#[ignore = "long: three plates of 0.5 mm, a minute"]
 fn notches_apart_in_height() {
     let level = run("q345_offset_0", &[]);
     for tip in 0..2 {
@@ -98,6 +99,7 @@ fn notches_of_other_lengths() {
 
 /// A level notch and a slanting one: cracks leave the slanting one first; its angle changes neither the way nor the life much.
 #[test]
+#[ignore = "long: three plates of 0.5 mm, a minute"]
 fn slanting_notches() {
     let plates = [("q345_angle_30", Some(2220.0)), ("q345_angle_45", None), ("q345_angle_60", Some(2150.0))];
     let separated = plates.map(|(name, source)| {

@@ -130,20 +130,21 @@ fn cycles_later(run: &Prediction) -> f64 {
 }
 
 /// Grows the crack of a case by every solver, a solve a break: the same bonds break at the same cycles, to 1e-6 of life, and for
-/// dynamic relaxation, which ends at a residual of 1e-6 and not 1e-11 of the load, to `relaxed`.
-fn assert_same_growth(name: &str, specimen: &str, set: &[&str], relaxed: f64) {
+/// dynamic relaxation, which ends at a residual of 1e-6 and not 1e-11 of the load, to `relaxed`; without that it is left out.
+fn assert_same_growth(name: &str, specimen: &str, set: &[&str], relaxed: Option<f64>) {
     let grown_by = |solver: &SolverKind| {
         let chosen = format!("model.solver={solver}");
         let run = grow(specimen, &[set, &[&*chosen, "fatigue.block=until_next_break"]].concat());
         let last = run.curve.last().unwrap();
         (*solver, run.life_cycles(), last.broken_bonds, last.crack_length, run.stop)
     };
-    let runs: Vec<_> = SolverKind::ALL.iter().map(grown_by).collect();
+    let is_asked = |solver: &&SolverKind| **solver != SolverKind::AdaptiveDynamicRelaxation || relaxed.is_some();
+    let runs: Vec<_> = SolverKind::ALL.iter().filter(is_asked).map(grown_by).collect();
     println!("{name}: {runs:?}");
     let (_, life, broken, length, stop) = runs[0];
     assert!(life > 0.0 && broken > 0, "{name}: {runs:?}");
     for &(solver, other_life, other_broken, other_length, other_stop) in &runs[1..] {
-        let bound = if solver == SolverKind::AdaptiveDynamicRelaxation { relaxed } else { 1e-6 };
+        let bound = relaxed.filter(|_| solver == SolverKind::AdaptiveDynamicRelaxation).unwrap_or(1e-6);
         assert!((other_life / life - 1.0).abs() < bound, "{name}: {runs:?}");
         assert!((other_length / length - 1.0).abs() < bound, "{name}: {runs:?}");
         assert_eq!((other_broken, other_stop), (broken, stop), "{name}, {solver}");
@@ -167,9 +168,15 @@ fn every_solver_grows_the_same_crack() {
         ("state-based", SLANT, vec!["model.bond_law=state_based", "material.poisson_ratio=0.4", "stop.crack_length_mm=26"]),
         ("state-based, low ν", PANEL, vec!["model.bond_law=state_based", "material.poisson_ratio=0", "stop.crack_length_mm=18"]),
     ] {
-        // Two bonds whose spending agrees to 1e-5 may break in the other order before N = 0, which then is a bond earlier or later:
-        // reached 1.2e-3 where the law is state-based.
-        assert_same_growth(name, specimen, &set, if name == "state-based" { 2e-3 } else { 1e-4 });
+        // Relaxation takes the most time by far, and goes through the coarse plates below by every law. Two bonds whose spending
+        // agrees to 1e-5 may break in the other order before N = 0, which then is a bond earlier or later: reached 1.2e-3 where the
+        // law is state-based.
+        let relaxed = match name {
+            "slant" => Some(1e-4),
+            "state-based" => Some(2e-3),
+            _ => None,
+        };
+        assert_same_growth(name, specimen, &set, relaxed);
     }
 }
 
@@ -195,7 +202,7 @@ fn every_solver_grows_the_same_crack_by_every_law() {
             // Coarse, so that the direct solver takes milliseconds; no growth before N = 0, so that all of it counts. Strains of
             // dynamic relaxation are right to 1e-5, cycles to p times that.
             let set = [&*law, ratio, stop, "model.spacing_mm=3", "fatigue.precrack=none"];
-            assert_same_growth(&format!("{name}, {kind}"), specimen, &set, 3e-5);
+            assert_same_growth(&format!("{name}, {kind}"), specimen, &set, Some(3e-5));
         }
     }
 }

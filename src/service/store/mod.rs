@@ -108,15 +108,17 @@ impl Store {
             .acquire_timeout(PATIENCE)
             .after_connect(move |connection, _| {
                 Box::pin(async move {
-                    if dialect == Dialect::Sqlite {
+                    let patience = PATIENCE.as_millis();
+                    let settings = match dialect {
                         // Readers and the writer do not wait for each other; what was committed outlives a loss of power.
-                        let settings = format!(
-                            "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA busy_timeout = {};",
-                            PATIENCE.as_millis()
-                        );
-                        sqlx::raw_sql(sqlx::AssertSqlSafe(settings)).execute(connection).await?;
-                    }
-                    Ok(())
+                        Dialect::Sqlite => {
+                            format!("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA busy_timeout = {patience};")
+                        }
+                        // A process that stands still in the middle of a transaction would keep others from its job for as long as
+                        // its connection seems to be there.
+                        Dialect::Postgres => format!("SET idle_in_transaction_session_timeout = {patience};"),
+                    };
+                    sqlx::raw_sql(sqlx::AssertSqlSafe(settings)).execute(connection).await.map(drop)
                 })
             })
             .before_acquire(|connection, _| {
@@ -168,10 +170,10 @@ pub fn is_gone(error: &sqlx::Error) -> bool {
     use sqlx::Error as E;
     match error {
         E::Io(_) | E::Tls(_) | E::Protocol(_) | E::PoolTimedOut | E::PoolClosed | E::WorkerCrashed => true,
-        // PostgreSQL: connection lost (08), out of room (53), being shut down or not up yet (57); SQLite: busy, locked, no memory,
+        // PostgreSQL: connection lost (08), out of room (53), being shut down or not up yet (57), stood still for too long (25P03); SQLite: busy, locked, no memory,
         // read-only, disk error, full, cannot open.
         E::Database(database) => database.code().is_some_and(|code| {
-            ["08", "53", "57"].iter().any(|class| code.len() == 5 && code.starts_with(class))
+            ["08", "53", "57", "25P03"].iter().any(|class| code.len() == 5 && code.starts_with(class))
                 || code.parse::<u32>().is_ok_and(|code| code < 10_000 && [5, 6, 7, 8, 10, 13, 14].contains(&(code & 0xff)))
         }),
         _ => false,

@@ -184,7 +184,7 @@ fn a_worker_that_was_only_slow_is_fenced_off() {
         let slow = Server::worker(place, &["--jobs", "1", "--lease", "2"]);
         let job = service.submit("predictions", &of("case", SLOW));
         wait("on its way", || service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) > 0.02);
-        slow.signal("-STOP");
+        stop_between_writings(&service, &slow);
         let mut other = Server::worker(place, &["--jobs", "1", "--lease", "2"]);
         let done = service.succeeded(&job);
         assert_eq!(done["attempts"], 2, "{done:#}");
@@ -195,6 +195,21 @@ fn a_worker_that_was_only_slow_is_fenced_off() {
         service.succeeded(&next);
         assert_eq!(service.get(&job).json(), done, "touched");
         assert!(service.file(&job, "a_n.csv") == curve, "another curve");
+    });
+}
+
+/// Stops a process where it does not hold the only right to write that a database file has: nobody could go on then.
+fn stop_between_writings(service: &Server, process: &Server) {
+    wait("stopped between two writings", || {
+        process.signal("-STOP");
+        let probe = service.post("/v1/predictions", &of("probe", QUICK));
+        if probe.status != 202 {
+            process.signal("-CONT");
+            return false;
+        }
+        let job = format!("/v1/predictions/{}", probe.json()["id"].as_str().unwrap());
+        service.send("DELETE", &job, &[], b"").expect(204);
+        true
     });
 }
 
