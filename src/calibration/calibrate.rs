@@ -30,6 +30,7 @@ pub fn calibrate_from(
     observer: &dyn Observer,
 ) -> Result<Fit> {
     let delta_k = |length: f64| calibration.delta_k(length);
+    let finished = finished.checked(calibration)?;
     let task = FitTask {
         curves: &calibration.curves,
         fixed_p: calibration.exponent.fixed,

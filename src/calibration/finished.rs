@@ -4,11 +4,12 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
+use super::case::CalibrationCase;
 use super::model::UnitCurve;
 use super::recording::Recording;
 use super::surrogate::apart;
-use crate::case::Case;
 use crate::error::Result;
 use crate::predict::checkpoint;
 use crate::sealed::{Seal, refused};
@@ -18,8 +19,8 @@ const SEAL: Seal = Seal { magic: b"perilife calibration checkpoint\n", form: 1 }
 /// Runs of a calibration that have ended.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct FinishedRuns {
-    /// Hash of what the case says; `None` before the first run.
-    case: Option<[u8; 32]>,
+    /// Hash of what the calibration says; `None` before the first run.
+    calibration: Option<[u8; 32]>,
     runs: Vec<FinishedRun>,
 }
 
@@ -53,21 +54,21 @@ impl FinishedRuns {
         self.runs.is_empty()
     }
 
-    /// Whether they are those of this case, by all that decides how a run goes.
+    /// Whether they are those of this calibration, by all that decides how its search goes.
     #[must_use]
-    pub fn belong_to(&self, case: &Case) -> bool {
-        self.case.is_none_or(|hash| hash == checkpoint::hash(case))
+    pub fn belong_to(&self, calibration: &CalibrationCase) -> bool {
+        self.calibration.is_none_or(|known| known == hash(calibration))
     }
 
-    /// These runs, if they are those of this case.
+    /// These runs, if they are those of this calibration.
     ///
     /// # Errors
     /// [`crate::Error::Input`].
-    pub fn checked(mut self, case: &Case) -> Result<Self> {
-        if !self.belong_to(case) {
+    pub fn checked(mut self, calibration: &CalibrationCase) -> Result<Self> {
+        let own = hash(calibration);
+        if *self.calibration.get_or_insert(own) != own {
             return Err(refused("belongs to another calibration, or to this one before it was changed"));
         }
-        self.case = Some(checkpoint::hash(case));
         Ok(self)
     }
 
@@ -90,15 +91,22 @@ impl FinishedRuns {
         self.runs.iter().find(|run| run.p.to_bits() == p.to_bits())
     }
 
-    /// Adds a run. Once runs at two exponents tell how cycles depend on p nothing is replayed any more (see
-    /// [`super::surrogate`]), so what later ones did is forgotten.
-    pub(super) fn add(&mut self, mut run: FinishedRun) {
-        let exponents: Vec<f64> = self.runs.iter().map(|run| run.p).chain([run.p]).collect();
-        if apart(&exponents) > 1 {
+    /// Adds a run of a search that has asked for these exponents so far. Once two of them tell how cycles depend on p nothing is
+    /// replayed any more (see [`super::surrogate`]), so what the run did is forgotten.
+    pub(super) fn add(&mut self, mut run: FinishedRun, asked: &[f64]) {
+        if apart(asked) > 1 {
             run.recording = Arc::default();
         }
         self.runs.push(run);
     }
+}
+
+/// Hash of all that decides how a search goes.
+fn hash(calibration: &CalibrationCase) -> [u8; 32] {
+    let CalibrationCase { case, curves, criterion, exponent, .. } = calibration;
+    // Debug output of floats says them to the last bit.
+    let search = format!("{:?}", (curves, criterion, exponent.fixed));
+    Sha256::new().chain_update(checkpoint::hash(case)).chain_update(search).finalize().into()
 }
 
 /// What several hold, written as if one did.

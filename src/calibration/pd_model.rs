@@ -16,9 +16,16 @@ pub type KeepRuns<'a> = &'a (dyn Fn(&FinishedRuns) + Sync);
 /// Runs a case with A = 1 and any p.
 pub struct PdModel<'a> {
     case: Case,
-    finished: Mutex<FinishedRuns>,
+    runs: Mutex<Runs>,
     keep: KeepRuns<'a>,
     observer: &'a dyn Observer,
+}
+
+/// Runs that have ended, and the exponents of those that were asked for.
+#[derive(Default)]
+struct Runs {
+    finished: FinishedRuns,
+    asked: Vec<f64>,
 }
 
 impl<'a> PdModel<'a> {
@@ -33,13 +40,13 @@ impl<'a> PdModel<'a> {
     /// The same where some runs are `finished` already, which are not made again; `keep` is told of every new one.
     ///
     /// # Errors
-    /// The finished runs are those of another case.
+    /// As [`PdModel::new`].
     pub fn with_finished(case: &Case, finished: FinishedRuns, keep: KeepRuns<'a>, observer: &'a dyn Observer) -> Result<Self> {
-        let finished = Mutex::new(finished.checked(case)?);
         let mut case = case.clone();
         // With A = 1 cycles are counted in units of 1/A: a limit on cycles would mean nothing.
         case.stop.cycles_max = f64::INFINITY;
-        Ok(PdModel { case, finished, keep, observer })
+        let runs = Mutex::new(Runs { finished, asked: Vec::new() });
+        Ok(PdModel { case, runs, keep, observer })
     }
 
     fn run_anew(&self, p: f64) -> Result<FinishedRun> {
@@ -75,15 +82,19 @@ impl<'a> PdModel<'a> {
 impl ForwardModel for PdModel<'_> {
     fn run(&self, p: f64) -> Result<RecordedRun> {
         // Runs are put in whole.
-        let finished = || self.finished.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = finished().at(p).cloned();
+        let runs = || self.runs.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = {
+            let mut runs = runs();
+            runs.asked.push(p);
+            runs.finished.at(p).cloned()
+        };
         let run = match known {
             Some(run) => run,
             None => {
                 let run = self.run_anew(p)?;
-                let mut finished = finished();
-                finished.add(run.clone());
-                (self.keep)(&finished);
+                let Runs { finished, asked } = &mut *runs();
+                finished.add(run.clone(), asked);
+                (self.keep)(finished);
                 run
             }
         };

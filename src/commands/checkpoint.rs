@@ -92,12 +92,13 @@ impl FitArgs {
     pub fn run(&self, calibration: &CalibrationCase, console: &Console) -> Result<Fit> {
         let progress = console.progress(&calibration.case.name);
         let Some(path) = &self.checkpoint else { return calibrate(calibration, &progress) };
-        let known = |bytes: Vec<u8>| FinishedRuns::from_bytes(&bytes)?.checked(&calibration.case);
+        let known = |bytes: Vec<u8>| FinishedRuns::from_bytes(&bytes)?.checked(calibration);
         let finished = contents(path)?.map(known).transpose().map_err(|error| error.in_file(path))?;
         let file = Replaced::claim(path)?;
         if let Some(finished) = &finished {
-            let runs = finished.len();
-            console.note(&format!("{}: goes on from {}: {runs} finished runs", calibration.case.name, path.display()));
+            let runs =
+                if finished.len() == 1 { "1 finished run".to_owned() } else { format!("{} finished runs", finished.len()) };
+            console.note(&format!("{}: goes on from {}: {runs}", calibration.case.name, path.display()));
         }
         let keep = |runs: &FinishedRuns| {
             if let Err(error) = file.write(&runs.to_bytes()) {

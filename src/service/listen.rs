@@ -59,7 +59,7 @@ pub async fn serve(listener: TcpListener, router: Router, connections: usize, st
 }
 
 fn take(stream: TcpStream, address: SocketAddr, place: OwnedSemaphorePermit, router: Router, graceful: &GracefulShutdown) {
-    // Answers are small and whole: waiting for more to send would only cost time.
+    // Waiting for more to send would only cost time: what is large comes in large parts.
     let _ = stream.set_nodelay(true);
     let service = service_fn(move |request: Request<Incoming>| {
         let mut request = request.map(Body::new);

@@ -22,6 +22,7 @@ use axum::response::IntoResponse;
 use axum::routing::get;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::CompressionLayer;
+use tower_http::compression::predicate::{DefaultPredicate, NotForContentType, Predicate};
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -42,6 +43,12 @@ use super::problem::Problem;
     components(schemas(Problem))
 )]
 struct Description;
+
+/// What is not packed already.
+fn worth_packing() -> impl Predicate {
+    let not = NotForContentType::const_new;
+    DefaultPredicate::new().and(not("application/zip")).and(not("application/vnd.apache.parquet"))
+}
 
 /// All routes.
 pub fn router(app: App) -> Router {
@@ -73,7 +80,7 @@ pub fn router(app: App) -> Router {
         .layer(from_fn_with_state(app.clone(), security::guard))
         .layer(from_fn(watching::measure))
         .layer(from_fn_with_state(limits.answer_within, security::in_time))
-        .layer(CompressionLayer::new())
+        .layer(CompressionLayer::new().compress_when(worth_packing()))
         .layer(CatchPanicLayer::custom(|_| Problem::internal().into_response()))
         .layer(from_fn(security::headers))
         .with_state(app)

@@ -21,7 +21,7 @@ use crate::report::csv::{self, A_N_FILE, Row};
 use crate::report::resample::Sampling;
 use crate::service::job::{Job, State};
 use crate::service::problem::{Answer, Problem};
-use crate::service::store::{FileEntry, Origin, Store};
+use crate::service::store::{FileEntry, Origin, Store, media_type};
 
 /// Rows of a resampled curve: as many as a table can show.
 const POINTS: std::ops::RangeInclusive<u64> = 2..=100_000;
@@ -58,25 +58,31 @@ pub async fn file(
     if sampling.is_some() && name != A_N_FILE {
         return Err(Problem::bad_request("points and every_cycles are for a_n.csv only"));
     }
-    // No file of a result has another name, and not every database takes every character.
-    let can_be = is_id(&id) && name.bytes().all(|byte| byte.is_ascii_graphic());
-    let found = if can_be { app.store.open_file(&id, Origin::Result, &name).await? } else { None };
-    let Some((entry, first)) = found else {
-        must_have_result(&job_of(&app, &collection, &id).await?)?;
-        return Err(Problem::not_found("file of this job"));
+    let is_missing = async || -> Problem {
+        match job_of(&app, &collection, &id).await.and_then(|job| must_have_result(&job)) {
+            Ok(()) => Problem::not_found("file of this job"),
+            Err(problem) => problem,
+        }
     };
-    let shown = matches!(&*entry.media_type, "image/png" | "image/svg+xml" | "application/json");
-    let disposition = format!("{}; filename=\"{}\"", if shown { "inline" } else { "attachment" }, entry.name);
+    let (media_type, content) = if let Some(sampling) = sampling {
+        let Some(table) = resampled(&app, &id, sampling).await? else { return Err(is_missing().await) };
+        (media_type(&name), table.into_response())
+    } else {
+        // No file of a result has another name, and not every database takes every character.
+        let can_be = is_id(&id) && name.bytes().all(|byte| byte.is_ascii_graphic());
+        let found = if can_be { app.store.open_file(&id, Origin::Result, &name).await? } else { None };
+        let Some((entry, first)) = found else { return Err(is_missing().await) };
+        (entry.media_type.clone(), sent(app.store, id, Origin::Result, entry, first))
+    };
+    let shown = matches!(&*media_type, "image/png" | "image/svg+xml" | "application/json");
+    let disposition = format!("{}; filename=\"{name}\"", if shown { "inline" } else { "attachment" });
     let fixed = [
-        (header::CONTENT_TYPE, entry.media_type.clone()),
+        (header::CONTENT_TYPE, media_type),
         (header::CONTENT_DISPOSITION, disposition),
         // A result never changes.
         (header::CACHE_CONTROL, "private, max-age=86400, immutable".to_owned()),
     ];
-    Ok(match sampling {
-        None => (fixed, sent(app.store, id, Origin::Result, entry, first)).into_response(),
-        Some(sampling) => (fixed, resampled(&app, &id, sampling).await?).into_response(),
-    })
+    Ok((fixed, content).into_response())
 }
 
 /// A stored file as it goes out, a part at a time: none is read before its reader has taken the last but one.
@@ -87,28 +93,31 @@ fn sent(store: Store, job: String, origin: Origin, entry: FileEntry, first: Vec<
     let (parts, reader) = channel(1);
     let length = entry.bytes;
     tokio::spawn(async move {
-        let (mut next, mut number) = (Ok(Some(first)), 0);
-        while let Some(part) = next.transpose() {
-            let has_failed = part.is_err();
-            // Who went away needs no more; who gets less than was announced knows that something is missing.
-            if parts.send(part).await.is_err() || has_failed {
+        let (mut part, mut number, mut left) = (Ok(Some(first)), 0, entry.bytes);
+        loop {
+            // Deleted meanwhile: an error, since a packed answer does not show that something is missing.
+            let next = part.and_then(|part| part.ok_or(sqlx::Error::RowNotFound));
+            left -= next.as_ref().map_or(left, |bytes| bytes.len() as i64);
+            // Who went away needs no more.
+            if parts.send(next).await.is_err() || left <= 0 {
                 return;
             }
             number += 1;
-            next = store.file_part(&job, origin, &entry.name, number).await;
+            part = store.file_part(&job, origin, &entry.name, number).await;
         }
     });
     ([(header::CONTENT_LENGTH, length)], Body::from_stream(ReceiverStream::new(reader))).into_response()
 }
 
-async fn resampled(app: &App, id: &str, sampling: Sampling) -> Answer<String> {
+/// A curve at other cycles; `None` if there is none.
+async fn resampled(app: &App, id: &str, sampling: Sampling) -> Answer<Option<String>> {
     if let Sampling::Points(points) = sampling
         && !POINTS.contains(&points)
     {
         let problem = format!("is not {} to {}", POINTS.start(), POINTS.end());
         return Err(input("points", points, problem, "give for example 400").into());
     }
-    let (rows, room) = rows(app, id).await?.ok_or_else(|| Problem::not_found("curve"))?;
+    let Some((rows, room)) = rows(app, id).await? else { return Ok(None) };
     if let Sampling::EveryCycles(step) = sampling {
         let count = (rows[rows.len() - 1].cycles - rows[0].cycles) / step;
         if count > *POINTS.end() as f64 {
@@ -118,7 +127,7 @@ async fn resampled(app: &App, id: &str, sampling: Sampling) -> Answer<String> {
     }
     let work = move || {
         let _room = room;
-        Ok(csv::table(&sampling.of(&rows, "every_cycles")?))
+        Ok(Some(csv::table(&sampling.of(&rows, "every_cycles")?)))
     };
     tokio::task::spawn_blocking(work).await.map_err(|_| Problem::internal())?
 }

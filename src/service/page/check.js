@@ -98,7 +98,7 @@ function sourceOf(body, input) {
   if (!input?.line) return null;
   const name = String(input.file ?? "").split("/").pop();
   const file = body.files?.find((one) => one.name === name);
-  if (file) return { name, text: file.text };
+  if (file) return file.text === null ? null : { name, text: file.text };
   return typeof body.input === "string" ? { name: "input", text: body.input } : null;
 }
 

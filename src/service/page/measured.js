@@ -25,11 +25,20 @@ export function createMeasured(onChange) {
   let chart = null;
 
   async function add(list) {
-    const fresh = await Promise.all([...list].map(async (file) => ({ name: file.name, file, text: await file.text() })));
+    const fresh = await Promise.all([...list].map(keep));
     if (fresh.length === 0) return;
     // The same name again is a corrected file.
     files = [...files.filter((old) => !fresh.some((one) => one.name === old.name)), ...fresh];
     read();
+  }
+
+  /** The file as it is now: what is run must be what is shown, whatever becomes of the file meanwhile. */
+  async function keep(file) {
+    const bytes = await file.arrayBuffer();
+    // Quotation marks and line ends do not come through a form as they are.
+    const name = file.name.replace(/["\r\n]/g, "'");
+    const isTable = /\.parquet$/i.test(name);
+    return { name, file: new Blob([bytes]), text: isTable ? null : new TextDecoder().decode(bytes) };
   }
 
   async function read() {
@@ -116,7 +125,7 @@ export function createMeasured(onChange) {
 
   function wrongLines({ name, text }) {
     const lines = problems().filter((one) => one.file === name && one.line).map((one) => one.line);
-    return lines.length > 0 && excerpt(text, lines, name);
+    return lines.length > 0 && text !== null && excerpt(text, lines, name);
   }
 
   function jump({ file, line }) {

@@ -118,6 +118,9 @@ impl Store {
     /// # Errors
     /// The database does not answer.
     pub async fn submitted(&self, owner: &str, key: Option<&str>, fingerprint: &str) -> Result<Option<Submitted>> {
+        if key.is_none() {
+            return Ok(None);
+        }
         earlier(&mut *self.pool.acquire().await?, owner, key, fingerprint).await
     }
 
@@ -240,20 +243,17 @@ async fn earlier(
     Ok(Some(if is_same { Submitted::Again(row.try_get(1)?) } else { Submitted::KeyTaken }))
 }
 
-/// Place of an owner's next job in the queue: behind those he has there, and not before what runs now, so that owners take turns
-/// and one who comes late does not make up for it (start-time fair queueing: Goyal, Vin and Cheng, 1996).
+/// Turn of an owner's next job: the one after that of his last, and not before the latest that anybody had, so that owners take
+/// turns and one who comes late does not make up for it (start-time fair queueing: Goyal, Vin and Cheng, 1996).
 async fn turn(connection: &mut sqlx::AnyConnection, owner: &str) -> Result<i64> {
     let row = sqlx::query(
         "SELECT (SELECT MAX(turn) FROM jobs WHERE owner = $1 AND state = 'queued'),
-                (SELECT MAX(turn) FROM jobs WHERE owner = $1 AND state = 'running'),
-                (SELECT MAX(turn) FROM jobs WHERE state = 'running'),
-                (SELECT MIN(turn) FROM jobs WHERE state = 'queued')",
+                (SELECT turn FROM turns WHERE owner = $1), (SELECT MAX(turn) FROM turns)",
     );
     let row = row.bind(owner).fetch_one(connection).await?;
     let number = |column: usize| row.try_get::<Option<i64>, _>(column);
     let own = number(0)?.max(number(1)?);
-    let now = number(2)?.or(number(3)?);
-    Ok(own.map_or(0, |own| own + 1).max(now.unwrap_or(0)))
+    Ok(own.map_or(0, |own| own + 1).max(number(2)?.unwrap_or(0)))
 }
 
 /// A row of [`COLUMNS`].

@@ -72,14 +72,23 @@ impl Store {
              WHERE id = COALESCE(
                 (SELECT id FROM jobs WHERE state = 'running' AND lease_until_ms < {now} ORDER BY turn, id LIMIT 1 {skip_locked}),
                 (SELECT id FROM jobs WHERE state = 'queued' ORDER BY turn, id LIMIT 1 {skip_locked}))
-             RETURNING id, kind, fence, attempts, cancel_asked",
+             RETURNING id, kind, fence, attempts, cancel_asked, owner, turn",
         ))
         .bind(worker)
         .bind(lease_ms)
         .fetch_optional(&mut *transaction)
         .await?;
-        transaction.commit().await?;
         let Some(row) = row else { return Ok(None) };
+        // One taken up again had its turn long ago.
+        sqlx::query(
+            "INSERT INTO turns (owner, turn) VALUES ($1, $2) ON CONFLICT (owner) DO UPDATE
+                SET turn = CASE WHEN turns.turn < excluded.turn THEN excluded.turn ELSE turns.turn END",
+        )
+        .bind(row.try_get::<String, _>("owner")?)
+        .bind(row.try_get::<i64, _>("turn")?)
+        .execute(&mut *transaction)
+        .await?;
+        transaction.commit().await?;
         let kind: String = row.try_get("kind")?;
         Ok(Some(Claim {
             id: row.try_get("id")?,

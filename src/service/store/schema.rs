@@ -57,19 +57,17 @@ const PARTS_AND_TURNS: &[&str] = &[
         PRIMARY KEY (job, origin, name, number),
         FOREIGN KEY (job, origin, name) REFERENCES job_files (job, origin, name) ON DELETE CASCADE)",
     "postgres: ALTER TABLE file_parts ALTER COLUMN content SET STORAGE EXTERNAL",
-    // A part may be of any size; what was whole stays so.
-    "INSERT INTO job_files SELECT job, 'result', name, media_type, size FROM files",
-    "INSERT INTO file_parts SELECT job, 'result', name, 0, content FROM files",
-    "DROP TABLE files",
     // `turn` orders the queue, and jobs of one turn are ordered by time.
     "ALTER TABLE jobs ADD COLUMN turn BIGINT NOT NULL DEFAULT 0",
     "DROP INDEX jobs_by_state",
     "CREATE INDEX jobs_by_turn ON jobs (state, turn, id)",
     "CREATE INDEX jobs_by_owner ON jobs (owner, state, turn)",
+    // The turn of the job of each owner that was taken last.
+    "CREATE TABLE turns (owner {key} PRIMARY KEY, turn BIGINT NOT NULL)",
 ];
 
-/// Step behind which inputs stand among the files, no longer within the submissions.
-const INPUTS_MOVED: usize = 2;
+/// Step at whose end files are moved into parts.
+const FILES_MOVED: usize = 2;
 
 /// What a statement begins with that SQLite has no need of.
 const POSTGRES_ONLY: &str = "postgres: ";
@@ -92,6 +90,11 @@ impl Store {
             let problem = format!("the database is at version {done}, this program knows {} only: use a newer one", STEPS.len());
             return Err(sqlx::Error::Configuration(problem.into()));
         }
+        if (1..STEPS.len()).contains(&done) && self.is_worked_for(&mut transaction).await? {
+            let problem =
+                "jobs are being run by an earlier version of this program: stop all of its processes, and try again in a minute";
+            return Err(sqlx::Error::Configuration(problem.into()));
+        }
         for (number, step) in STEPS.iter().enumerate().skip(done) {
             for statement in *step {
                 let statement = match statement.strip_prefix(POSTGRES_ONLY) {
@@ -102,7 +105,8 @@ impl Store {
                 sqlx::query(self.sql(statement)).execute(&mut *transaction).await?;
             }
             let number = number + 1;
-            if number == INPUTS_MOVED {
+            if number == FILES_MOVED {
+                move_results(&mut transaction).await?;
                 move_inputs(&mut transaction).await?;
             }
             let version = number as i64;
@@ -110,6 +114,27 @@ impl Store {
         }
         transaction.commit().await
     }
+
+    /// Whether a worker holds a job.
+    async fn is_worked_for(&self, transaction: &mut sqlx::Transaction<'static, sqlx::Any>) -> Result<bool> {
+        let held = self.sql("SELECT COUNT(*) FROM jobs WHERE state = 'running' AND lease_until_ms > {now}");
+        Ok(sqlx::query_scalar::<_, i64>(held).fetch_one(&mut **transaction).await? > 0)
+    }
+}
+
+/// Takes the files of results, which were whole, into parts.
+async fn move_results(transaction: &mut sqlx::Transaction<'static, sqlx::Any>) -> Result<()> {
+    let names = sqlx::query("SELECT job, name FROM files").fetch_all(&mut **transaction).await?;
+    for row in names {
+        let (job, name): (String, String) = (row.try_get(0)?, row.try_get(1)?);
+        let content: Vec<u8> = sqlx::query_scalar("SELECT content FROM files WHERE job = $1 AND name = $2")
+            .bind(&job)
+            .bind(&name)
+            .fetch_one(&mut **transaction)
+            .await?;
+        files::add(transaction, &job, Origin::Result, &name, &content).await?;
+    }
+    sqlx::query("DROP TABLE files").execute(&mut **transaction).await.map(drop)
 }
 
 /// Takes the files out of the submissions, behind whose text they stood.

@@ -83,7 +83,7 @@ fn task(kind: JobKind, submission: &Submission, checkpoint: Option<Vec<u8>>) -> 
     let document = submission.document()?;
     if kind == JobKind::Calibration {
         let calibration = CalibrationCase::from_document(document)?;
-        let finished = taken_up(checkpoint, FinishedRuns::from_bytes, |runs| runs.belong_to(&calibration.case));
+        let finished = taken_up(checkpoint, FinishedRuns::from_bytes, |runs| runs.belong_to(&calibration));
         return Ok(Task::Calibration(Box::new(calibration), finished.unwrap_or_default()));
     }
     let case = Case::from_document(&document)?;

@@ -67,7 +67,8 @@ pub type Keep<'a> = &'a (dyn Fn(Vec<u8>) -> bool + Sync);
 /// Watches one run.
 pub struct Watch<'a> {
     cracks: &'a [Crack],
-    is_fit: bool,
+    /// Runs of a fit that were finished before; `None` for a prediction.
+    finished: Option<u32>,
     keep: Keep<'a>,
     keep_every: Duration,
     started: Instant,
@@ -115,15 +116,7 @@ impl<'a> Watch<'a> {
             kept: Instant::now(),
             keep_cost: Duration::ZERO,
         };
-        Watch {
-            cracks,
-            is_fit: finished.is_some(),
-            keep,
-            keep_every,
-            started: Instant::now(),
-            stop: AtomicU8::new(0),
-            told: Mutex::new(told),
-        }
+        Watch { cracks, finished, keep, keep_every, started: Instant::now(), stop: AtomicU8::new(0), told: Mutex::new(told) }
     }
 
     /// Takes note of the runs of a fit that have ended, so that they need not be made again.
@@ -152,12 +145,13 @@ impl<'a> Watch<'a> {
         let progress = told.progress.map(|Progress { cycles, crack_length, share }| {
             let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
             // A fit takes some three runs, and ends when it is done.
-            let share = if self.is_fit {
-                ((f64::from(runs) + share) / (f64::from(runs) + 1.0).max(RUNS_OF_A_FIT)).min(0.99)
-            } else {
-                share
+            let of_fit =
+                |runs: u32, share: f64| ((f64::from(runs) + share) / (f64::from(runs) + 1.0).max(RUNS_OF_A_FIT)).min(0.99);
+            let (share, first_share) = match self.finished {
+                Some(finished) => (of_fit(runs, share), of_fit(finished, 0.0)),
+                None => (share, first_share),
             };
-            let done = share - if self.is_fit { 0.0 } else { first_share };
+            let done = share - first_share;
             let seconds_left = (done > 0.0).then(|| elapsed_s * (1.0 - share) / done);
             JobProgress { cycles, crack_length_mm: crack_length / MM, share, elapsed_s, seconds_left }
         });
@@ -221,7 +215,7 @@ impl Observer for Watch<'_> {
 
     fn may_keep(&self, checkpoint: &dyn Fn() -> Checkpoint) {
         // Of a fit only whole runs are kept.
-        if self.is_fit {
+        if self.finished.is_some() {
             return;
         }
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);

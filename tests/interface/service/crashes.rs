@@ -8,6 +8,7 @@ use tempfile::tempdir;
 
 use super::jobs::with_each_store;
 use super::{QUICK, SLOW, of};
+use crate::checkpoint::{CALIBRATION, READINGS};
 use crate::cli::perilife;
 use crate::noise::Noise;
 use crate::postgres::Postgres;
@@ -172,6 +173,32 @@ fn another_worker_takes_over() {
     let taken_up = events.iter().filter(|(name, _)| name == "job").filter_map(|(_, job)| job["progress"]["share"].as_f64());
     let taken_up: Vec<f64> = taken_up.collect();
     assert!(!taken_up.is_empty() && taken_up.iter().all(|share| *share > 0.05), "{taken_up:?}");
+}
+
+/// A server is killed within a calibration: the next one goes on with the runs that are left, to the same fit.
+#[test]
+fn a_killed_calibration_goes_on() {
+    with_each_store("fit_killed", |place| {
+        let dir = tempdir().unwrap();
+        let folder = dir.path();
+        fs::write(folder.join("fit.toml"), CALIBRATION).unwrap();
+        fs::write(folder.join("curve.csv"), READINGS).unwrap();
+        assert!(perilife(folder, &["calibrate", "fit.toml", "--out", "fit"]).status.success());
+        let mut service = Server::start(place, &EAGER);
+        let body = serde_json::json!({ "name": "fit", "input": CALIBRATION, "files": { "curve.csv": READINGS } });
+        let job = service.submit("calibrations", &body);
+        // A run of three and a half is 0.29 of the way.
+        wait("one run done", || service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) > 0.3);
+        service.kill();
+        service = Server::start(place, &EAGER);
+        let events = service.events(&job, &[]);
+        let done = service.succeeded(&job);
+        assert_eq!(done["attempts"], 2, "{done:#}");
+        assert!(service.file(&job, "fitted.toml") == fs::read(folder.join("fit/fitted.toml")).unwrap(), "another fit");
+        let shares = events.iter().filter(|(name, _)| name == "job").filter_map(|(_, job)| job["progress"]["share"].as_f64());
+        let taken_up: Vec<f64> = shares.skip(1).collect();
+        assert!(taken_up.iter().all(|share| *share > 0.28), "begun anew: {taken_up:?}");
+    });
 }
 
 /// A worker that stood still for longer than its time is not dead: what it does afterwards must not touch its successor's result.

@@ -34,17 +34,27 @@ fn owners_take_turns() {
         assert_eq!(names, ["ann 0", "bob 0", "cy 0", "ann 1", "bob 1", "ann 2", "ann 3", "ann 4"]);
         assert!(queue.iter().enumerate().all(|(place, (position, _))| *position == place as i64), "{queue:?}");
 
-        let _worker = Server::worker(place, &["--jobs", "1"]);
+        let worker = Server::worker(place, &["--jobs", "1"]);
         let mut started: Vec<(Value, String)> =
             jobs.iter().map(|(name, job)| (service.succeeded(job)["started"].clone(), name.clone())).collect();
         started.sort_by_key(|(time, _)| time.as_str().map(str::to_owned));
         let order: Vec<&str> = started.iter().map(|(_, name)| name.as_str()).collect();
         assert_eq!(order, names, "run in the order of the queue");
 
-        // Who had nothing to do for a while has no claim to catch up.
-        service = service.with_token(&tokens[0].1);
-        let late: Vec<String> = (0..2).map(|_| service.submit("predictions", &of("late", QUICK))).collect();
-        late.iter().for_each(|job| drop(service.succeeded(job)));
+        // Who asks for the next as soon as he has the last comes no oftener than the others, and who had nothing to do for a while
+        // has no claim to catch up: his first job comes behind those of the turn at hand, his second behind the next turn's.
+        drop(worker);
+        let place_in_queue = |service: &Server, job: &str| service.get(job).json()["position"].as_i64().unwrap();
+        let [ann, bob, cy] = [0, 1, 2].map(|owner: usize| tokens[owner].1.clone());
+        service = service.with_token(&ann);
+        let batch: Vec<String> = (0..2).map(|_| service.submit("predictions", &of("ann", QUICK))).collect();
+        service = service.with_token(&bob);
+        let again: Vec<String> = (0..2).map(|_| service.submit("predictions", &of("bob", QUICK))).collect();
+        service = service.with_token(&cy);
+        let late: Vec<String> = (0..2).map(|_| service.submit("predictions", &of("cy", QUICK))).collect();
+        let places: Vec<i64> = [&batch, &again, &late].into_iter().flatten().map(|job| place_in_queue(&service, job)).collect();
+        // Ann has had five turns: the others begin with her fifth, she with her sixth.
+        assert_eq!(places, [2, 5, 0, 3, 1, 4]);
     });
 }
 
@@ -122,6 +132,14 @@ fn large_files_go_in_parts() {
         drop(idle);
         // Whole files would take 2000 MB.
         assert!(after - before < 300.0, "{before} MB before, {after} MB with 100 readers of 20 MB who do not read");
+        // Who is cut off, because the file goes away under him, can tell.
+        let mut reader = service.ask_and_do_not_read(inputs[1]["href"].as_str().unwrap());
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        service.send("DELETE", &job, &[], b"").expect(204);
+        let mut got = Vec::new();
+        let _ = std::io::Read::read_to_end(&mut reader, &mut got);
+        let head = String::from_utf8_lossy(&got[..400]).into_owned();
+        assert!(head.contains("content-length: 20000000") && got.len() < 20_000_000, "{} bytes of {head}", got.len());
         println!("{before:.0} MB before, {after:.0} MB with 100 readers of 20 MB who do not read");
     });
 }
@@ -171,6 +189,7 @@ fn set_back(place: &[&str], inputs: &[(&str, &str)]) {
             .to_owned(),
         "DROP TABLE file_parts".to_owned(),
         "DROP TABLE job_files".to_owned(),
+        "DROP TABLE turns".to_owned(),
         "DROP INDEX jobs_by_turn".to_owned(),
         "DROP INDEX jobs_by_owner".to_owned(),
         "CREATE INDEX jobs_by_state ON jobs (state, id)".to_owned(),
