@@ -134,18 +134,22 @@ pub(super) async fn add(
         .bind(content.len() as i64)
         .execute(&mut **transaction)
         .await?;
-    // An empty file has a part as well, so that every file opens alike.
-    let empty = content.is_empty().then_some(&[][..]);
-    for (number, part) in content.chunks(PART).chain(empty).enumerate() {
-        sqlx::query("INSERT INTO file_parts (job, origin, name, number, content) VALUES ($1, $2, $3, $4, $5)")
-            .bind(job)
-            .bind(origin.name())
-            .bind(name)
-            .bind(number as i64)
-            .bind(part)
-            .execute(&mut **transaction)
-            .await?;
-    }
+    // In one statement, which the database takes apart: a result has a hundred parts. An empty file has one as well, so that every
+    // file opens alike.
+    let last = content.len().saturating_sub(1) / PART;
+    let statement = format!(
+        "INSERT INTO file_parts (job, origin, name, number, content)
+         WITH RECURSIVE numbers(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM numbers WHERE i < $5)
+         SELECT $1, $2, $3, i, COALESCE(substr($4, i * {PART} + 1, {PART}), $4) FROM numbers"
+    );
+    sqlx::query(sqlx::AssertSqlSafe(statement))
+        .bind(job)
+        .bind(origin.name())
+        .bind(name)
+        .bind(content)
+        .bind(last as i64)
+        .execute(&mut **transaction)
+        .await?;
     Ok(())
 }
 
