@@ -5,7 +5,7 @@ use tempfile::tempdir;
 
 use super::jobs::with_each_store;
 use super::{QUICK, of};
-use crate::cli::{perilife, texts};
+use crate::cli::{assert_refused, perilife, texts};
 use crate::server::{Answer, Server};
 
 /// A token of this name in the store at `place`.
@@ -161,6 +161,14 @@ fn a_store_of_an_earlier_version_is_taken_on() {
         drop(service);
         set_back(place, &[(&done, "1,2\n"), (&waiting, "3,4\n")]);
 
+        // Not while a worker of that version is at it.
+        let held = "UPDATE jobs SET state = 'running', lease_until_ms = 9999999999999 WHERE state = 'queued'";
+        on_store(place, async |connection| run_all(connection, &[held.to_owned()]).await);
+        let refused = perilife(dir.path(), &[&["token"], place, &["list"]].concat());
+        assert_refused(&refused, 4, &["jobs are being run by an earlier version", "stop all of its processes"]);
+        let released = "UPDATE jobs SET state = 'queued', lease_until_ms = NULL WHERE state = 'running'";
+        on_store(place, async |connection| run_all(connection, &[released.to_owned()]).await);
+
         let service = Server::start(place, &["--jobs", "1"]);
         assert_eq!(service.get(&done).json()["summary"]["life_cycles"], life);
         assert!(service.file(&done, "a_n.csv") == curve, "another curve");
@@ -175,9 +183,7 @@ fn a_store_of_an_earlier_version_is_taken_on() {
 
 /// Takes a store back to its first version, in which a submission ended with its files and a result's files were whole.
 fn set_back(place: &[&str], inputs: &[(&str, &str)]) {
-    let is_postgres = place[0] == "--database";
-    let url = if is_postgres { place[1].to_owned() } else { format!("sqlite://{}/perilife.sqlite", place[1]) };
-    let (key, bytes) = if is_postgres { ("TEXT COLLATE \"C\"", "BYTEA") } else { ("TEXT", "BLOB") };
+    let (key, bytes) = if place[0] == "--database" { ("TEXT COLLATE \"C\"", "BYTEA") } else { ("TEXT", "BLOB") };
     let back = [
         format!(
             "CREATE TABLE files (job {key} NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, name TEXT NOT NULL, \
@@ -196,19 +202,13 @@ fn set_back(place: &[&str], inputs: &[(&str, &str)]) {
         "ALTER TABLE jobs DROP COLUMN turn".to_owned(),
         "DELETE FROM perilife_schema WHERE version > 1".to_owned(),
     ];
-    sqlx::any::install_default_drivers();
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
-    runtime.block_on(async {
-        use sqlx::Connection;
-        let mut connection = sqlx::AnyConnection::connect(&url).await.unwrap();
-        for statement in back {
-            sqlx::query(sqlx::AssertSqlSafe(statement)).execute(&mut connection).await.unwrap();
-        }
+    on_store(place, async |connection| {
+        run_all(connection, &back).await;
         for (job, content) in inputs {
             let id = job.rsplit('/').next().unwrap();
             let submission: Vec<u8> = sqlx::query_scalar("SELECT content FROM submissions WHERE job = $1")
                 .bind(id)
-                .fetch_one(&mut connection)
+                .fetch_one(&mut *connection)
                 .await
                 .unwrap();
             // A list of one pair: its length, and two texts with theirs.
@@ -216,10 +216,28 @@ fn set_back(place: &[&str], inputs: &[(&str, &str)]) {
             sqlx::query("UPDATE submissions SET content = $2 WHERE job = $1")
                 .bind(id)
                 .bind([submission, files].concat())
-                .execute(&mut connection)
+                .execute(&mut *connection)
                 .await
                 .unwrap();
         }
+    });
+}
+
+async fn run_all(connection: &mut sqlx::AnyConnection, statements: &[String]) {
+    for statement in statements {
+        sqlx::query(sqlx::AssertSqlSafe(statement.clone())).execute(&mut *connection).await.unwrap();
+    }
+}
+
+/// Does something with the database of a store.
+fn on_store(place: &[&str], task: impl AsyncFnOnce(&mut sqlx::AnyConnection)) {
+    use sqlx::Connection;
+    let url = if place[0] == "--database" { place[1].to_owned() } else { format!("sqlite://{}/perilife.sqlite", place[1]) };
+    sqlx::any::install_default_drivers();
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    runtime.block_on(async {
+        let mut connection = sqlx::AnyConnection::connect(&url).await.unwrap();
+        task(&mut connection).await;
         connection.close().await.unwrap();
     });
 }
