@@ -1,8 +1,9 @@
 //! From measured curves to the constants of the fatigue law.
 //!
-//! In the order data flows: [`measured`] readings, their [`median`] and [`rates`]; the forward [`model`] that is
-//! fitted, what a run [`recording`] holds and what is kept of [`finished`] ones; [`criterion`], [`misfit`], [`search`] and [`confidence`]; [`fit`], the page that calls them in turn; what it means as C and m
-//! ([`paris`]); [`results`] as they are written and the [`record`] that predictions read. [`case`] reads the input file.
+//! In the order data flows: [`measured`] readings, their [`median`] and [`rates`]; the forward [`model`] that is fitted, what a
+//! run [`recording`] holds and what is kept of [`finished`] ones; [`criterion`], [`misfit`], [`search`] and [`confidence`];
+//! [`fit`], the page that calls them in turn; what it means as C and m ([`paris`]); [`results`] as they are written and the
+//! [`record`] that predictions read. [`case`] reads the input file.
 
 pub mod calibrate;
 pub mod case;

@@ -63,7 +63,7 @@ pub fn run(args: &Args) -> Result<()> {
     let law = record(&calibration, &fitted);
     fit::write(folder.path(), &calibration, &fitted, &report, &law)?;
     folder.finish()?;
-    args.keeping.done()?;
+    checkpoint::remove(args.keeping.checkpoint.as_deref())?;
     for line in summary(&report, &args.out) {
         console.say(&line);
     }

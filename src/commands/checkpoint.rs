@@ -65,14 +65,6 @@ impl Args {
         ));
         resume(case, checkpoint, &keeper)
     }
-
-    /// Removes the file of a run that is done.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it is there and cannot be removed.
-    pub fn done(&self) -> Result<()> {
-        self.checkpoint.as_deref().map_or(Ok(()), remove)
-    }
 }
 
 /// Options of a calibration.
@@ -107,14 +99,6 @@ impl FitArgs {
         };
         calibrate_from(calibration, finished.unwrap_or_default(), &keep, &progress)
     }
-
-    /// Removes the file of a fit that is done.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it is there and cannot be removed.
-    pub fn done(&self) -> Result<()> {
-        self.checkpoint.as_deref().map_or(Ok(()), remove)
-    }
 }
 
 /// The checkpoint of a case, if there is one.
@@ -134,7 +118,12 @@ fn contents(path: &Path) -> Result<Option<Vec<u8>>> {
     }
 }
 
-fn remove(path: &Path) -> Result<()> {
+/// Removes the file, if one was given, of a run or fit that is done.
+///
+/// # Errors
+/// [`Error::File`] if it is there and cannot be removed.
+pub fn remove(checkpoint: Option<&Path>) -> Result<()> {
+    let Some(path) = checkpoint else { return Ok(()) };
     match fs::remove_file(path) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::file(path, "cannot remove", error)),
         _ => Ok(()),

@@ -47,7 +47,7 @@ pub fn run(args: &Args) -> Result<()> {
     let case = Case::from_file(&args.case, &args.set)?;
     let extras = Extras { residual_strength: args.residual_strength, keeping: args.keeping.clone() };
     let done = run_case(&case, &args.out, &extras, &args.console)?;
-    args.keeping.done()?;
+    checkpoint::remove(args.keeping.checkpoint.as_deref())?;
     args.console.object(&done.result)
 }
 

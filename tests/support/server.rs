@@ -133,7 +133,7 @@ impl Server {
 
     /// A file of a job.
     pub fn file(&self, job: &str, name: &str) -> Vec<u8> {
-        self.get(&format!("{job}/files/{name}")).expect(200).body
+        self.file_of(&format!("{job}/files/{name}"))
     }
 
     /// A file at an address.

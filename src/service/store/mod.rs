@@ -170,8 +170,8 @@ pub fn is_gone(error: &sqlx::Error) -> bool {
     use sqlx::Error as E;
     match error {
         E::Io(_) | E::Tls(_) | E::Protocol(_) | E::PoolTimedOut | E::PoolClosed | E::WorkerCrashed => true,
-        // PostgreSQL: connection lost (08), out of room (53), being shut down or not up yet (57), stood still for too long (25P03); SQLite: busy, locked, no memory,
-        // read-only, disk error, full, cannot open.
+        // PostgreSQL: connection lost (08), out of room (53), being shut down or not up yet (57), stood still for too long (25P03);
+        // SQLite: busy, locked, no memory, read-only, disk error, full, cannot open.
         E::Database(database) => database.code().is_some_and(|code| {
             ["08", "53", "57", "25P03"].iter().any(|class| code.len() == 5 && code.starts_with(class))
                 || code.parse::<u32>().is_ok_and(|code| code < 10_000 && [5, 6, 7, 8, 10, 13, 14].contains(&(code & 0xff)))
