@@ -24,6 +24,7 @@ pub mod solver;
 pub mod fatigue;
 pub mod case;
 pub mod stress_intensity;
+pub mod growth;
 pub mod predict;
 pub mod fracture;
 pub mod calibration;

@@ -5,6 +5,7 @@
 //! calibration all come through here.
 
 pub mod checkpoint;
+mod by_tips;
 mod course;
 mod curve;
 mod end_of_life;
@@ -13,7 +14,6 @@ pub mod memory;
 mod outcome;
 mod overload;
 pub mod plastic_zone;
-pub mod plate;
 pub mod residual_strength;
 mod snapshot;
 mod start;
@@ -33,14 +33,14 @@ use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share,
 use crate::fatigue::block_control::Around;
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
-use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
+use crate::fatigue::{Block, Driver, FatigueLaw, FatigueSettings};
 use crate::solver::Focus;
 use crate::state::Bonds;
 use checkpoint::Checkpoint;
 use course::Course;
 use end_of_life::first_end;
 use overload::{are_within, overstretched, stretched};
-use plate::Plate;
+use crate::growth::plate::Plate;
 use start::Start;
 use tip_end::{break_through, retire_tips};
 
@@ -50,6 +50,7 @@ use tip_end::{break_through, retire_tips};
 /// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
     match case.model.method {
+        Method::Peridynamics if case.fatigue.driver == Driver::TipField => by_tips::run(case, observer),
         Method::Peridynamics => run(case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer),
         Method::Handbook => handbook::run(case, observer),
     }

@@ -7,7 +7,7 @@
 use super::pre_crack::bonds_across;
 use super::{Body, Bond};
 use crate::specimen::geometry::{along, direction, distance, meeting_share, turn};
-use crate::specimen::{Crack, Point};
+use crate::specimen::{Crack, CrackLine, Point};
 
 /// Length of crack before its end, in horizons, over which severed bonds are counted at the most.
 const WINDOW_HORIZONS: f64 = 4.0;
@@ -63,6 +63,57 @@ pub fn represented_end(body: &Body, crack: &Crack, at_to: bool, length: f64) -> 
     let ahead = body.lattice.to_axes(direction(start, tip));
     let excess = counted / severed_per_length(body, [-ahead[1], ahead[0]]) - (1.0 - 0.5 * FADE) * window;
     RepresentedEnd { excess, aside: if counted > 0.0 { moment / counted } else { 0.0 } }
+}
+
+/// Turn between two pieces of a line, rad, from which bonds around the corner no longer count as those of a straight crack.
+const CORNER: f64 = 0.1;
+/// Least straight length before an end, in horizons, whose bonds tell where it reaches.
+const STRAIGHT_HORIZONS: f64 = 0.7;
+
+/// How much farther a crack reaches at one of its ends, once cut into bonds, than its line does, m: [`represented_end`] of a line
+/// that may bend. Zero where the line has a corner so near that its bonds do not tell.
+///
+/// `length` is the length of crack that belongs to this end, as there.
+#[must_use]
+pub fn represented_excess(body: &Body, line: &CrackLine, at_last: bool, length: f64) -> f64 {
+    let mut pieces: Vec<[Point; 2]> = line.pieces().collect();
+    if at_last {
+        pieces.reverse();
+    }
+    // Pieces in their own sense, from the end on, with the way back to their nearer ends.
+    let window_most = length.min(WINDOW_HORIZONS * body.horizon());
+    let (mut near, mut last): (Vec<([Point; 2], f64)>, Option<Point>) = (Vec::new(), None);
+    let mut way = 0.0;
+    for [a, b] in pieces {
+        let ahead = direction(a, b);
+        if last.is_some_and(|last| last[0] * ahead[0] + last[1] * ahead[1] < CORNER.cos()) || way >= window_most {
+            break;
+        }
+        near.push(([a, b], way));
+        way += distance(a, b);
+        last = Some(ahead);
+    }
+    let window = window_most.min(way);
+    if window < STRAIGHT_HORIZONS * body.horizon() {
+        return 0.0;
+    }
+    let mut seen = std::collections::HashSet::new();
+    let mut counted = 0.0;
+    for ([a, b], back) in near {
+        let piece = distance(a, b);
+        let kept = (window - back).min(piece);
+        // The part of the piece within the window.
+        let (from, to) = if at_last { (along(b, a, kept / piece), b) } else { (a, along(a, b, kept / piece)) };
+        let ahead = body.lattice.to_axes(direction(a, b));
+        let per_length = severed_per_length(body, [-ahead[1], ahead[0]]);
+        for bond in bonds_across(body, from, to).into_iter().filter(|&bond| seen.insert(bond)) {
+            let (tip, start) = if at_last { (to, from) } else { (from, to) };
+            let share = 1.0 - crossing(body, bond, start, tip);
+            let left = 1.0 - (back + share.clamp(0.0, 1.0) * kept) / window;
+            counted += severed_weight(body, body.ends(bond).0) * smooth_step(left / FADE) / per_length;
+        }
+    }
+    counted - (1.0 - 0.5 * FADE) * window
 }
 
 /// Where a bond crosses the crack, as share of the way from `start` to `tip`.

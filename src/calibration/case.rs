@@ -12,6 +12,7 @@ use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurv
 use crate::calibration::record::SourceFile;
 use crate::case::{Case, LAW_KEYS, LawSource, Method};
 use crate::error::{input, input_missing};
+use crate::fatigue::Driver;
 use crate::input::{Document, Folder, LENGTH, slice};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
@@ -104,6 +105,11 @@ impl CalibrationCase {
         if !matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
             let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
+        }
+        if case.fatigue.driver == Driver::TipField && case.model.method == Method::Peridynamics {
+            let problem = "needs no bonds fitted: it grows cracks by C and m of K";
+            let remedy = "fit C and m with model.method = \"handbook\", or A and p with driver = \"bond_strain\"";
+            return Err(input("fatigue.driver", "\"tip_field\"", problem, remedy));
         }
         check_walker(&case)?;
         let formula = handbook(&case.specimen).ok_or_else(|| {

@@ -9,7 +9,7 @@ use super::{LawSource, Stop};
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::lattice_direction::LatticeDirection;
-use crate::fatigue::{Ageing, Block, BlockKind, FatigueSettings, OVERLOAD_STRETCH, Precrack};
+use crate::fatigue::{Ageing, Block, BlockKind, Driver, FatigueSettings, OVERLOAD_STRETCH, Precrack};
 use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
 use crate::specimen::{LengthConvention, Specimen};
 
@@ -29,6 +29,7 @@ struct Input {
     horizon_mm: Option<f64>,
     paris_c_mm_per_cycle: Option<f64>,
     paris_m: Option<f64>,
+    driver: Option<Driver>,
     ageing: Option<Ageing>,
     zone_radius_horizons: Option<f64>,
     precrack: Option<Precrack>,
@@ -69,7 +70,9 @@ pub(super) fn from_value(value: &Value, method: Method, folder: &Folder, choices
         "fatigue.delta_k_threshold_mpa_sqrt_m",
         input.delta_k_threshold_mpa_sqrt_m.filter(|value| *value != 0.0),
     )?;
+    let driver = read_driver(&input, method)?;
     let settings = FatigueSettings {
+        driver,
         ageing: choices.ageing.unwrap_or(Ageing::CrackTip),
         zone_radius_horizons: choices.zone_radius_horizons.unwrap_or(ZONE_RADIUS),
         precrack: input.precrack.unwrap_or(Precrack::SteadyProfile),
@@ -89,7 +92,39 @@ pub(super) fn from_value(value: &Value, method: Method, folder: &Folder, choices
         paris_m: input.paris_m,
     };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
-    Ok(Fatigue { settings, law: law.read(method, folder)?, allow_extrapolation })
+    Ok(Fatigue { settings, law: law.read(method, settings.driver, folder)?, allow_extrapolation })
+}
+
+/// The driver asked for, or the one that the constants of the law are for: C and m belong to the K of a tip, A and p to bonds.
+/// Keys of bonds that age do not go with tips that are driven by their K.
+fn read_driver(input: &Input, method: Method) -> Result<Driver> {
+    const KEY: &str = "fatigue.driver";
+    let has_paris_alone = input.paris_m.is_some() && input.p.is_none() && input.fitted.is_none();
+    let driver = input.driver.unwrap_or(if has_paris_alone { Driver::TipField } else { Driver::BondStrain });
+    if method != Method::Peridynamics || driver == Driver::BondStrain {
+        return Ok(driver);
+    }
+    if let Some(p) = input.p.filter(|_| input.paris_m.is_none()) {
+        let problem = "is a constant of bonds, and driver \"tip_field\" paces a crack by the K of its tip";
+        return Err(crate::error::input("fatigue.p", p, problem, "give paris_c_mm_per_cycle and paris_m, or fitted; or driver = \"bond_strain\""));
+    }
+    let of_bonds = [
+        ("ageing", input.ageing.is_some()),
+        ("zone_radius_horizons", input.zone_radius_horizons.is_some()),
+        ("precrack", input.precrack.is_some()),
+        ("block", input.block.is_some()),
+        ("block_cycles", input.block_cycles.is_some()),
+        ("bonds_per_block", input.bonds_per_block.is_some()),
+        ("block_error_percent", input.block_error_percent.is_some()),
+        ("critical_stretch", input.critical_stretch.is_some()),
+        ("lattice_direction", input.lattice_direction.is_some()),
+        ("finite_horizon", input.finite_horizon.is_some()),
+    ];
+    if let Some((key, _)) = of_bonds.iter().find(|(_, given)| *given) {
+        let problem = format!("belongs to bonds that age, and {KEY} is \"{driver}\"");
+        return Err(input_missing(&format!("fatigue.{key}"), problem, "leave it out, or use driver = \"bond_strain\""));
+    }
+    Ok(driver)
 }
 
 /// Reads the cycle block: every kind has one key of its own, and no other takes it.

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::{Case, LawSource, Method};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
-use crate::fatigue::FatigueLaw;
+use crate::fatigue::{Driver, FatigueLaw};
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{LENGTH, MODULUS, number};
 use crate::material::{Material, Plane};
@@ -33,7 +33,7 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
 /// Takes the record as the law of the case. Where the case is silent the record decides; where both speak they must agree.
 pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
     check_record(&record)?;
-    if case.model.method == Method::Handbook {
+    if !case.spends_bond_life() {
         // C and m belong to ΔK, whatever bonds they were fitted with.
         check_stress_ratio(case, &record)?;
         case.law = LawSource::Fitted(Box::new(record));
@@ -106,7 +106,7 @@ fn recorded_modulus(record: &FittedRecord) -> Result<f64> {
 /// What the user should know about a record used in this case.
 pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<String>> {
     let mut lines = Vec::new();
-    let bonds = case.model.method == Method::Peridynamics;
+    let bonds = case.spends_bond_life();
     if bonds && (case.model.horizon_ratio - record.horizon_ratio).abs() > 1e-9 {
         let (given, recorded) = (case.model.horizon_ratio, record.horizon_ratio);
         lines.push(format!(
@@ -140,6 +140,12 @@ fn material_line(material: &Material, record: &FittedRecord) -> Result<Option<St
 }
 
 impl Case {
+    /// Whether its crack grows as bonds spend their life, not by the K of its tips.
+    #[must_use]
+    pub fn spends_bond_life(&self) -> bool {
+        self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::BondStrain
+    }
+
     /// A and p at the body's actual horizon (m).
     ///
     /// A moves over the horizon by [`FatigueLaw::at_horizon`]. A record keeps its measured growth rate (C and m) in a plate

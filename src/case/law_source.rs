@@ -8,7 +8,7 @@ use super::choices::Method;
 use super::{LawSource, law};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
-use crate::fatigue::FatigueLaw;
+use crate::fatigue::{Driver, FatigueLaw};
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{Folder, LENGTH, number, slice};
 use crate::units::MM_PER_CYCLE;
@@ -29,7 +29,7 @@ pub const LAW_KEYS: [&str; 6] = ["fitted", "a", "p", "horizon_mm", "paris_c_mm_p
 
 impl LawKeys {
     /// The law that `method` needs; `None` where the file gives none at all, as in a calibration.
-    pub(super) fn read(&self, method: Method, folder: &Folder) -> Result<Option<LawSource>> {
+    pub(super) fn read(&self, method: Method, driver: Driver, folder: &Folder) -> Result<Option<LawSource>> {
         if let Some(fitted) = &self.fitted {
             let all = self.bond().into_iter().chain(self.paris());
             if let Some((key, value)) = all.filter_map(|(key, value)| Some((key, value?))).next() {
@@ -40,6 +40,7 @@ impl LawKeys {
         }
         let (bond, paris) = (self.bond_law()?, self.paris_law()?);
         match method {
+            Method::Peridynamics if driver == Driver::TipField => Ok(paris.map(LawSource::Paris)),
             Method::Peridynamics => match (bond, paris) {
                 (None, Some(_)) => Err(wrong_law(self.paris(), method)),
                 (bond, _) => Ok(bond.map(LawSource::Inline)),
@@ -97,8 +98,8 @@ fn wrong_law(keys: Vec<(&str, Option<f64>)>, method: Method) -> Error {
     let (key, value) = keys.into_iter().find_map(|(key, value)| Some((key, value?))).unwrap_or_default();
     let (problem, remedy) = match method {
         Method::Peridynamics => (
-            "is a constant of hand calculation, and method \"peridynamics\" needs the law of its bonds",
-            "give fitted, or a, p and horizon_mm; or set model.method = \"handbook\"",
+            "is a constant of hand calculation, and method \"peridynamics\" needs the law of its bonds where fatigue.driver is \"bond_strain\"",
+            "give fitted, or a, p and horizon_mm; or set fatigue.driver = \"tip_field\", or model.method = \"handbook\"",
         ),
         Method::Handbook => (
             "is a constant of bonds, and method \"handbook\" needs the Paris law",

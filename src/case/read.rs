@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::choices::Choices;
-use super::{Case, LAW_KEYS, LawSource, Method, fatigue, law, model};
+use super::{Case, LAW_KEYS, LawSource, fatigue, law, model};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::finite_horizon::life_shortfall;
@@ -87,6 +87,9 @@ impl Case {
             allow_extrapolation: fatigue.allow_extrapolation,
             choices,
         };
+        if !case.spends_bond_life() && case.choices.surface_correction.is_none() {
+            case.model.take_most_accurate_rim();
+        }
         match fatigue.law {
             Some(LawSource::Fitted(record)) => law::adopt(&mut case, *record)?,
             Some(source) => case.law = source,
@@ -142,7 +145,7 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
             lines.push(format!("{} does not exist yet: write it with `perilife calibrate` before predicting", path.display()));
         }
     }
-    if case.model.method == Method::Peridynamics {
+    if case.spends_bond_life() {
         lines.extend(horizon_line(case));
         lines.extend(coarse_line(case));
     }

@@ -7,7 +7,7 @@ use crate::error::{Error, InputError, Result};
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::no_fail::stuck;
 use crate::fatigue::pieces::{Cut, set_aside};
-use crate::predict::plate::Plate;
+use crate::growth::plate::Plate;
 use crate::state::Bonds;
 use crate::units::MM;
 

@@ -47,6 +47,8 @@ pub enum TipState {
     LeftPlate,
     /// Has run into a hole or a slot.
     EnteredHole,
+    /// Has run into another crack.
+    LinkedUp,
 }
 
 /// Centre of bonds that broke together near a tip, and the length of crack they stand for.

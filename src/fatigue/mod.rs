@@ -4,6 +4,7 @@ pub mod ageing;
 pub mod block_control;
 pub mod crack_tip;
 pub mod finite_horizon;
+pub mod growth_law;
 pub mod growth_rate;
 pub mod lattice_direction;
 pub mod length_average;
@@ -19,6 +20,14 @@ use lattice_direction::LatticeDirection;
 /// Critical stretch s_t where a case gives none: 5 %, which no plate bears within linear elasticity. It lets the last
 /// ligament of a plate break by overload instead of hanging on bonds that no tip spends.
 pub const OVERLOAD_STRETCH: f64 = 0.05;
+
+crate::kinds! {
+    /// What drives a crack of method `peridynamics`.
+    pub enum Driver for "fatigue.driver" {
+        TipField = "tip_field": "K_I and K_II of every tip, from the field around it, steer and pace it; bonds that its line crosses are cut",
+        BondStrain = "bond_strain": "every bond spends its life by its own strain, and the crack goes where bonds break",
+    }
+}
 
 crate::kinds! {
     /// Which bonds age.
@@ -97,6 +106,8 @@ impl Block {
 /// What a case says about fatigue, except the constants of the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FatigueSettings {
+    /// What drives a crack.
+    pub driver: Driver,
     /// Which bonds age.
     pub ageing: Ageing,
     /// Radius of the `crack_tip` zone in horizons.

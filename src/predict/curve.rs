@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::end_of_life::End;
 use super::outcome::{CurvePoint, Progress, TipRecord};
+use super::snapshot::Moment;
 use crate::body::Body;
 use crate::case::Case;
 use crate::fatigue::finite_horizon::FiniteHorizon;
@@ -42,8 +43,18 @@ impl Row {
         &self.tips
     }
 
-    /// Growth of all tips together, m.
-    pub fn growth(&self) -> f64 {
+}
+
+impl Moment for Row {
+    fn cycles(&self) -> f64 {
+        self.cycles
+    }
+
+    fn crack_length(&self) -> f64 {
+        self.crack_length
+    }
+
+    fn growth(&self) -> f64 {
         self.tips.iter().map(|tip| tip.growth).sum()
     }
 }

@@ -49,13 +49,18 @@ impl Row {
 }
 
 /// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
-/// (load squared times compliance) and, per tip, position and growth.
+/// (load squared times compliance) and, per tip, position and growth, and K_I and K_II at maximum load where they are known.
 #[must_use]
 pub fn a_n(prediction: &Prediction) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
+    // Bonds that age by their own strain know no K of a tip.
+    let has_factors = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.factors[0].is_finite());
     for tip in 0..prediction.curve.first().map_or(0, |point| point.tips.len()) {
         let _ = write!(text, ",tip{tip}_x_mm,tip{tip}_y_mm,tip{tip}_growth_mm"); // writing to a String cannot fail
+        if has_factors {
+            let _ = write!(text, ",tip{tip}_k_i_mpa_sqrt_m,tip{tip}_k_ii_mpa_sqrt_m");
+        }
     }
     text.push('\n');
     for point in &prediction.curve {
@@ -63,6 +68,9 @@ pub fn a_n(prediction: &Prediction) -> String {
         for tip in &point.tips {
             for length in [tip.position[0], tip.position[1], tip.growth] {
                 let _ = write!(text, ",{}", number(length / MM));
+            }
+            for factor in tip.factors.iter().filter(|_| has_factors) {
+                let _ = write!(text, ",{}", number(factor / MPA_SQRT_M));
             }
         }
         text.push('\n');

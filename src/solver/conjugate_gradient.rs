@@ -31,6 +31,8 @@ pub struct MultigridSolver<const N: usize> {
     stale: bool,
     /// Iterations above those of a fresh hierarchy at which it is rebuilt.
     slack: usize,
+    /// Residual over load at which a solve ends.
+    tolerance: f64,
     r: Vec<f64>,
     p: Vec<f64>,
     q: Vec<f64>,
@@ -46,6 +48,7 @@ impl<const N: usize> MultigridSolver<N> {
             broken_since: 0,
             stale: false,
             slack: ITERATIONS_SLACK,
+            tolerance: TOLERANCE,
             r: layout.zeros(),
             p: layout.zeros(),
             q: layout.zeros(),
@@ -63,7 +66,7 @@ impl<const N: usize> MultigridSolver<N> {
     /// The iteration does not converge.
     pub(super) fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let System { body, bonds, product, f } = system;
-        let is_rough = tolerance > TOLERANCE;
+        let is_rough = tolerance > self.tolerance;
         if self.stale && !is_rough {
             self.multigrid = Multigrid::new(body, bonds, product);
             self.stale = false;
@@ -144,7 +147,11 @@ fn update<T: Copy + Sync + std::convert::Into<f64>>(v: &mut [f64], w: &[T], new:
 
 impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        self.solve_to(TOLERANCE, system, u)
+        self.solve_to(self.tolerance, system, u)
+    }
+
+    fn set_tolerance(&mut self, tolerance: f64) {
+        self.tolerance = tolerance;
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {

@@ -34,6 +34,7 @@ pub(super) struct Mirrored {
     kind: SolverKind,
     load: f64,
     foresees: bool,
+    tolerance: Option<f64>,
 }
 
 /// An unknown of the plate that is, but for its sign, one of the part.
@@ -63,6 +64,7 @@ impl Mirrored {
             kind,
             load,
             foresees: false,
+            tolerance: None,
         })
     }
 
@@ -111,6 +113,11 @@ fn for_copies(part: &Part, whole: &Body, places: &[u32], mut take: impl FnMut(Co
 }
 
 impl Balance for Mirrored {
+    fn set_tolerance(&mut self, tolerance: f64) {
+        self.tolerance = Some(tolerance);
+        self.inner.set_tolerance(tolerance);
+    }
+
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
         if self.is_lost {
             return self.inner.solve(body, bonds, displacement);
@@ -125,6 +132,9 @@ impl Balance for Mirrored {
             tracing::info!("the crack is not symmetric any more: the whole plate is solved from now on");
             self.is_lost = true;
             self.inner = sides::balance(self.kind, body, bonds, self.load);
+            if let Some(tolerance) = self.tolerance {
+                self.inner.set_tolerance(tolerance);
+            }
             if self.foresees {
                 self.inner.get_ready_to_foresee();
             }

@@ -83,6 +83,8 @@ trait LinearSolver<const N: usize>: Send {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
     /// Told which bonds broke since the last solve.
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
+    /// Told to what residual over load to solve; direct and explicit solvers have one of their own.
+    fn set_tolerance(&mut self, _: f64) {}
     /// Makes `u` right at the ends of `watched` bonds, and gets ready for breaks around the tips; what a solve of the whole plate
     /// took and gave if that needed one.
     fn reach(&mut self, _: System<'_, N>, _u: &mut [f64], _watched: &[Bond], _tips: &[Focus]) -> Result<Option<Solved>> {
@@ -128,6 +130,7 @@ pub struct Equilibrium {
 
 /// Both sides of the system, with the number of unknowns and mirror images hidden.
 trait Balance: Send {
+    fn set_tolerance(&mut self, tolerance: f64);
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]);
     fn work(&self) -> f64;
@@ -176,6 +179,13 @@ impl Equilibrium {
     #[must_use]
     pub fn of_levels(kind: SolverKind, plate: Arc<Levelled>, body: &Body, bonds: &Bonds, load: f64) -> Self {
         Equilibrium { inner: in_pool(|| sides::balance_levels(kind, plate, body, bonds, load)), solves: 0 }
+    }
+
+    /// Solves iteratively to this residual over load instead of what bonds that break one by one need.
+    #[must_use]
+    pub fn to_tolerance(mut self, tolerance: f64) -> Self {
+        self.inner.set_tolerance(tolerance);
+        self
     }
 
     /// Points that are solved for: those of the body, or of the part of it that stands for all by symmetry.

@@ -201,6 +201,10 @@ impl<const N: usize> Sides<N> {
 }
 
 impl<const N: usize> Balance for Sides<N> {
+    fn set_tolerance(&mut self, tolerance: f64) {
+        self.solver.set_tolerance(tolerance);
+    }
+
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
         self.drag_grips(bonds);
         let (solver, system, u, rim) = self.parts(body, bonds);

@@ -4,6 +4,7 @@
 //! nothing in a run changes it. Cracks go through the thickness; part-through and corner cracks are refused by name.
 
 mod compact_tension;
+mod crack_line;
 mod edge;
 mod edge_tension;
 pub mod geometry;
@@ -14,6 +15,7 @@ mod placement;
 mod plate;
 mod read;
 
+pub use crack_line::{CrackLine, LineEnd};
 pub use edge::{Component, Edge};
 pub use read::{PART_THROUGH, from_value, plate_from_value};
 
@@ -253,6 +255,20 @@ impl Specimen {
             LengthConvention::MeanOfTips => self.crack_length + sum / growth_of_tips.len().max(1) as f64,
             LengthConvention::SumOfTips => self.crack_length + sum,
         }
+    }
+
+    /// The cracks as lines, in their order.
+    #[must_use]
+    pub fn crack_lines(&self) -> Vec<CrackLine> {
+        self.cracks.iter().map(|crack| CrackLine::straight(crack.from, crack.to)).collect()
+    }
+
+    /// Which end of which of the [`Specimen::crack_lines`] a tip is; `None` for the end face of a slot.
+    #[must_use]
+    pub fn line_end(&self, tip: usize) -> Option<LineEnd> {
+        let seed = self.tips.get(tip).filter(|seed| !seed.from_slot)?;
+        let line = self.cracks.iter().position(|crack| crack.from == seed.position || crack.to == seed.position)?;
+        Some(LineEnd { line, at_last: self.cracks[line].to == seed.position })
     }
 
     /// Moves every tip, and the end of its crack with it, by its growth, m; negative growth makes a crack shorter. The

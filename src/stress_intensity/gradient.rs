@@ -6,46 +6,47 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{CrackedPlate, Field, TipFrame};
-use crate::body::Bond;
+use super::TipFrame;
+use crate::body::{Body, Bond};
 use crate::solver::field::Layout;
 use crate::specimen::Point;
+use crate::state::Bonds;
 
 /// Unknowns of the quadratic: two of the gradient, three of the curvature.
 const TERMS: usize = 5;
 
 /// Displacement of a place in a frame's axes, m.
 #[must_use]
-pub fn displacement_at(plate: &CrackedPlate, layout: &Layout, displacement: &[f64], frame: &TipFrame, place: usize) -> Point {
+pub fn displacement_at(body: &Body, layout: &Layout, displacement: &[f64], frame: &TipFrame, place: usize) -> Point {
     let at = layout.index(place);
-    frame.vector(plate.body.lattice.from_axes([displacement[at], displacement[at + layout.stride]]))
+    frame.vector(body.lattice.from_axes([displacement[at], displacement[at + layout.stride]]))
 }
 
 /// `∂u_i/∂x_j` at a place in a frame's axes; `None` where too few bonds are left to tell.
 #[must_use]
 pub fn gradient_at(
-    plate: &CrackedPlate,
+    body: &Body,
+    bonds: &Bonds,
     layout: &Layout,
-    field: &Field,
+    displacement: &[f64],
     frame: &TipFrame,
     place: usize,
 ) -> Option<[[f64; 2]; 2]> {
-    let body = &plate.body;
     let (places, spacing) = (body.places(), body.lattice.spacing);
-    let here = displacement_at(plate, layout, &field.displacement, frame, place);
+    let here = displacement_at(body, layout, displacement, frame, place);
     let mut normal = SMatrix::<f64, TERMS, TERMS>::zeros();
     let mut right = SMatrix::<f64, TERMS, 2>::zeros();
     for (k, bond) in body.stencil.bonds.iter().enumerate() {
         let step = body.steps[k];
         let behind = place.wrapping_add_signed(-step);
         for (sign, owner, other) in [(1.0, place, place.wrapping_add_signed(step)), (-1.0, behind, behind)] {
-            if !field.bonds.is_intact((k * places + owner) as Bond) {
+            if !bonds.is_intact((k * places + owner) as Bond) {
                 continue;
             }
             // In spacings, so that the five columns are of one size.
             let [x, y] = frame.vector(body.lattice.from_axes([sign * f64::from(bond.dx), sign * f64::from(bond.dy)]));
-            let weight = (1.0 - bond.length / (body.horizon() + spacing)).powi(2);
-            let there = displacement_at(plate, layout, &field.displacement, frame, other);
+            let weight = (-(bond.length / (0.9 * spacing)).powi(2)).exp();
+            let there = displacement_at(body, layout, displacement, frame, other);
             let basis = SVector::from([x, y, 0.5 * x * x, x * y, 0.5 * y * y]);
             let difference = SMatrix::<f64, 1, 2>::from([[there[0] - here[0]], [there[1] - here[1]]]);
             normal += weight * basis * basis.transpose();

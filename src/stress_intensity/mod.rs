@@ -14,6 +14,7 @@ mod energy_release;
 mod face_loads;
 mod gradient;
 mod near_tip;
+pub mod ring;
 mod tip_frame;
 pub mod williams;
 
@@ -138,7 +139,7 @@ impl Straddling {
             let frame = plate.frame(&field.specimen, tip);
             let excess = frame.local(asked)[0];
             let factors = match method {
-                StressIntensityMethod::DomainIntegral => domain_integral::factors(plate, field, tip, &frame)?,
+                StressIntensityMethod::DomainIntegral => domain_integral::factors(plate, field, tip)?,
                 _ => near_tip::factors(plate, field, tip, &frame)?,
             };
             Ok((-excess, factors))

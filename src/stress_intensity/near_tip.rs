@@ -46,7 +46,7 @@ pub fn factors(plate: &CrackedPlate, field: &Field, tip: usize, frame: &TipFrame
         if r < inner {
             continue;
         }
-        let measured = displacement_at(plate, &layout, &field.displacement, frame, place);
+        let measured = displacement_at(&plate.body, &layout, &field.displacement, frame, place);
         let terms: Vec<[f64; 2]> =
             functions.iter().map(|function| function.displacement(elasticity.kappa, r / outer, theta)).collect();
         for i in 0..2 {

@@ -49,6 +49,8 @@ pub(in crate::solver) trait Whole<const N: usize>: Send {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
     /// The same to a residual of `tolerance` times the load.
     fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
+    /// Told to what residual over load to solve.
+    fn set_tolerance(&mut self, _: f64) {}
     /// Told which bonds broke.
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
     /// Condenses the plate with its present bonds onto some places; `None` where that cannot be done in these digits.
@@ -59,6 +61,10 @@ pub(in crate::solver) trait Whole<const N: usize>: Send {
 pub(in crate::solver) struct Alone<const N: usize>(MultigridSolver<N>);
 
 impl<const N: usize> Whole<N> for Alone<N> {
+    fn set_tolerance(&mut self, tolerance: f64) {
+        self.0.set_tolerance(tolerance);
+    }
+
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         // A part that hangs on a few bonds is nearly a mechanism, on which the iteration breaks down; a factorisation does not.
         self.0.solve(system, u).or_else(|_| DirectSolver::default().solve(system, u))
@@ -195,6 +201,10 @@ impl<const N: usize, W: Whole<N>> LinearSolver<N> for WindowSolver<N, W> {
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
         self.whole.broke(body, bonds, product, broken);
         self.broken.extend(broken);
+    }
+
+    fn set_tolerance(&mut self, tolerance: f64) {
+        self.whole.set_tolerance(tolerance);
     }
 
     fn reach(&mut self, system: System<'_, N>, u: &mut [f64], watched: &[Bond], tips: &[Focus]) -> Result<Option<Solved>> {

@@ -3,8 +3,6 @@
 
 use std::sync::Arc;
 
-use super::Snapshot;
-use super::curve::Row;
 use crate::body::lattice::LANES;
 use crate::body::{Body, Bond};
 use crate::case::Model;
@@ -106,13 +104,13 @@ impl Plate {
         )
     }
 
-    /// A picture of it: displacement in the layout of its [`Equilibrium`], damage of every point.
-    pub(super) fn snapshot(&self, bonds: &Bonds, displacement: &[f64], row: &Row) -> Snapshot {
-        let (displacement, damage) = match &self.levels {
+    /// Displacement (x, y) in plate axes, m, and damage of every point, from a displacement in the layout of its [`Equilibrium`].
+    #[must_use]
+    pub fn fields(&self, bonds: &Bonds, displacement: &[f64]) -> (Vec<[f64; 2]>, Vec<f64>) {
+        match &self.levels {
             None => of_body(&self.body, bonds, displacement),
             Some(levels) => of_levels(levels, &self.body, bonds, displacement),
-        };
-        Snapshot { cycles: row.cycles, crack_length: row.crack_length, displacement, damage }
+        }
     }
 }
 

@@ -1,0 +1,461 @@
+//! Cracks driven by the stress intensity of their own tips.
+//!
+//! Per cycle block one equilibrium; K_I and K_II of every tip by the interaction integral on a ring around it
+//! ([`crate::stress_intensity::ring`]); direction by the largest circumferential stress ([`steering`]); growth of every tip by
+//! its own rate `da/dN` over the same cycles; every bond that a new piece of crack crosses is cut. A tip is a point of a
+//! continuous line, so that neither path nor rate know the rows of points.
+//!
+//! The block is as long as the fastest tip takes for a step. With its length as independent variable the other tips follow
+//! `da_i/da = r_i/r`, by the rates of this block and the last one extrapolated to the middle of the step (Adams and Bashforth),
+//! and the cycles are `∫ da/r` with ln r linear over the step between the rates at both of its ends.
+
+mod ahead;
+mod readings;
+pub mod steering;
+
+use serde::{Deserialize, Serialize};
+
+use super::TipNow;
+use super::plate::Plate;
+use crate::body::pre_crack::bonds_across;
+use crate::body::severed::represented_excess;
+use crate::body::{Body, Bond};
+use crate::case::Case;
+use crate::error::{Error, Result, input};
+use crate::fatigue::crack_tip::TipState;
+use crate::fatigue::growth_law::GrowthLaw;
+use crate::fatigue::pieces::{Cut, set_aside};
+use crate::solver::Equilibrium;
+use crate::specimen::geometry::{along, distance};
+use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
+use crate::state::Bonds;
+use crate::stress_intensity::ring::{Balanced, Surroundings};
+use crate::units::MM;
+use readings::Readings;
+use steering::{Steering, equivalent_factor};
+
+/// Outer radius of the ring, in horizons.
+const RING_HORIZONS: f64 = 2.5;
+/// Outer radius below which a ring says nothing, in horizons.
+const RING_HORIZONS_MIN: f64 = 1.2;
+/// Growth of the fastest tip in a block, in horizons.
+const STEP_HORIZONS: f64 = 0.25;
+/// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate: K is held where it
+/// is read to fall.
+const CORE_HORIZONS: f64 = 0.6;
+/// Distance from an edge, in spacings, from which points cannot resolve what is left.
+const THROUGH_SPACINGS: f64 = 0.75;
+/// Residual over load of an equilibrium: factors are right to some 1e-8.
+const TOLERANCE: f64 = 1e-9;
+/// Relative difference of factors of mirror twins.
+const ROUND_OFF: f64 = 1e-6;
+
+/// A tip that grows by its own K.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Tip {
+    /// Which crack it ends.
+    pub end: LineEnd,
+    /// What has become of it.
+    pub state: TipState,
+    /// Growth since the start, m.
+    pub growth: f64,
+    /// K_I and K_II, Pa√m, at the present length.
+    pub factors: [f64; 2],
+    /// da/dN at the present length, m/cycle.
+    pub rate: f64,
+    /// That of the block before, and the growth of the fastest tip since.
+    before: Option<[f64; 2]>,
+    /// Length of crack that belonged to it at the start, m.
+    length: f64,
+    readings: Readings,
+    steering: Steering,
+}
+
+impl Tip {
+    /// K_eq at maximum load of the requested length, Pa√m.
+    fn equivalent(&self) -> f64 {
+        equivalent_factor(self.factors)
+    }
+}
+
+/// All that a run carries from block to block but the displacement, which the solver makes of the bonds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TipFieldState {
+    /// Cracks.
+    pub lines: Vec<CrackLine>,
+    /// Their tips.
+    pub tips: Vec<Tip>,
+}
+
+/// Why growth ends by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// No tip is above the threshold.
+    NothingGrows,
+    /// No tip is left.
+    NoTipLeft,
+    /// A tip came to the rim of the finest points.
+    LeftRefinement,
+    /// The plate is in two.
+    Severed,
+    /// No equilibrium was found.
+    NoConvergence,
+}
+
+/// What a block did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// Cycles it took.
+    pub cycles: f64,
+    /// Work of the loads at its end, J; NaN where there is no equilibrium.
+    pub work: f64,
+    /// Bonds cut.
+    pub cut: usize,
+    /// Why there is no next one.
+    pub end: Option<End>,
+}
+
+/// Growth by the field of every tip.
+pub struct TipField<'a> {
+    case: &'a Case,
+    plate: &'a Plate,
+    law: &'a dyn GrowthLaw,
+    surroundings: Surroundings,
+    /// Which bonds carry.
+    pub bonds: Bonds,
+    /// Cracks and tips.
+    pub state: TipFieldState,
+    equilibrium: Equilibrium,
+    /// In the layout of the equilibrium, m.
+    pub displacement: Vec<f64>,
+    /// Equilibrium solves.
+    pub solves: usize,
+    /// Solver iterations.
+    pub iterations: usize,
+}
+
+impl<'a> TipField<'a> {
+    /// The plate with its initial cracks in equilibrium.
+    ///
+    /// # Errors
+    /// A specimen without sharp crack, cracks that cut the plate in two, no equilibrium.
+    pub fn start(case: &'a Case, plate: &'a Plate, law: &'a dyn GrowthLaw) -> Result<Self> {
+        let specimen = &case.specimen;
+        let tip = |tip: usize| {
+            let end = specimen.line_end(tip).ok_or_else(|| {
+                let problem = "needs sharp cracks: the end of a slot has no stress intensity factor";
+                input("fatigue.driver", "\"tip_field\"", problem, "start a crack in the slot, or use driver = \"bond_strain\"")
+            })?;
+            Ok(Tip {
+                end,
+                state: TipState::Active,
+                growth: 0.0,
+                factors: [0.0; 2],
+                rate: 0.0,
+                before: None,
+                length: length_of(specimen, end),
+                readings: Readings::default(),
+                steering: Steering::default(),
+            })
+        };
+        let tips = (0..specimen.tips.len()).map(tip).collect::<Result<Vec<_>>>()?;
+        let state = TipFieldState { lines: specimen.crack_lines(), tips };
+        let body = &plate.body;
+        let mut bonds = Bonds::new(body);
+        if set_aside(body, &mut bonds, &body.pre_cut) == Cut::Severed {
+            return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
+        }
+        let surroundings = Surroundings::new(body, specimen, &case.material);
+        let equilibrium = balance(case, plate, &bonds);
+        let mut growth = TipField {
+            case,
+            plate,
+            law,
+            surroundings,
+            bonds,
+            state,
+            equilibrium,
+            displacement: Vec::new(),
+            solves: 0,
+            iterations: 0,
+        };
+        growth.settle(&[])?;
+        growth.read_factors();
+        if let Some(tip) = growth.state.tips.iter().find(|tip| !tip.equivalent().is_finite()) {
+            let [x, y] = growth.position(tip).map(|metres| metres / MM);
+            let problem = format!("{}: no stress intensity can be read at the crack tip at ({x:.4}, {y:.4}) mm", case.name);
+            return Err(Error::Mechanics(format!("{problem}; give a smaller model.spacing_mm")));
+        }
+        Ok(growth)
+    }
+
+    /// Work of the loads, J.
+    #[must_use]
+    pub fn work(&self) -> f64 {
+        self.equilibrium.work()
+    }
+
+    /// Tips in the order of `Specimen::tips`.
+    #[must_use]
+    pub fn tips(&self) -> Vec<TipNow> {
+        let now = |tip: &Tip| TipNow { position: self.position(tip), growth: tip.growth, factors: tip.factors, rate: tip.rate };
+        self.state.tips.iter().map(now).collect()
+    }
+
+    fn position(&self, tip: &Tip) -> Point {
+        self.state.lines[tip.end.line].end(tip.end.at_last)
+    }
+
+    /// Whether a tip is left that grows.
+    #[must_use]
+    pub fn is_growing(&self) -> bool {
+        self.fastest().is_some()
+    }
+
+    /// What the user should know about the rings of the initial tips.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let horizon = self.plate.body.horizon();
+        let ends: Vec<LineEnd> = self.state.tips.iter().map(|tip| tip.end).collect();
+        let short = ends.iter().filter(|&&end| {
+            let wanted = RING_HORIZONS * horizon;
+            self.surroundings.radius(&self.plate.body, &self.state.lines, end, &ends, wanted) < RING_HORIZONS_MIN * horizon
+        });
+        let words = |count: usize| {
+            format!(
+                "{count} of {} crack tips lie within {:.3} mm of another tip or a support: the ring that reads K is too narrow there,                  and K may err by some percent; give a smaller model.spacing_mm",
+                ends.len(),
+                (RING_HORIZONS_MIN + 0.2) * horizon / MM
+            )
+        };
+        Some(short.count()).filter(|&count| count > 0).map(words).into_iter().collect()
+    }
+
+    /// Points that are solved for.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.equilibrium.points(&self.plate.body)
+    }
+
+    /// One block: all tips grow, over the same cycles, until the crack has the length `until` at the latest.
+    pub fn advance(&mut self, until: f64) -> Step {
+        let none = |end: End, work: f64| Step { cycles: 0.0, work, cut: 0, end: Some(end) };
+        if self.state.tips.iter().all(|tip| tip.state != TipState::Active) {
+            return none(End::NoTipLeft, self.work());
+        }
+        let body = &self.plate.body;
+        let (horizon, spacing) = (body.horizon(), body.lattice.spacing);
+        let Some(fastest) = self.fastest() else { return none(End::NothingGrows, self.work()) };
+        let at_rim = |tip: &Tip| tip.state == TipState::Active && body.is_near_rim(self.position(tip), RING_HORIZONS * horizon);
+        if self.state.tips.iter().any(at_rim) {
+            return none(End::LeftRefinement, self.work());
+        }
+        let rate = self.state.tips[fastest].rate;
+
+        // How far every tip goes while the fastest goes a step.
+        let step = STEP_HORIZONS * horizon;
+        let ahead = |tip: &Tip| {
+            let (now, lead) = (tip.rate, &self.state.tips[fastest]);
+            let Some(([before, since], [lead_before, _])) = tip.before.zip(lead.before) else { return now / rate };
+            let (ratio, ratio_before) = (now / rate, before / lead_before);
+            if before > 0.0 && lead_before > 0.0 && since > 0.0 {
+                // ln of the ratio is linear in the growth of the fastest.
+                ratio * (ratio / ratio_before).powf(0.5 * step / since)
+            } else {
+                ratio
+            }
+        };
+        let is_active = |tip: &&Tip| tip.state == TipState::Active && tip.rate > 0.0;
+        let mut ways: Vec<f64> =
+            self.state.tips.iter().map(|tip| if is_active(&tip) { step * ahead(tip).min(1.5) } else { 0.0 }).collect();
+        let after = |ways: &[f64]| {
+            let growth: Vec<f64> = self.state.tips.iter().zip(ways).map(|(tip, way)| tip.growth + way).collect();
+            self.case.specimen.crack_length_after(&growth)
+        };
+        let (now, then) = (after(&vec![0.0; ways.len()]), after(&ways));
+        if then > until {
+            let share = ((until - now) / (then - now)).clamp(0.0, 1.0);
+            ways.iter_mut().for_each(|way| *way *= share);
+        }
+
+        // New pieces of crack.
+        let mut cut: Vec<Bond> = Vec::new();
+        let mut pieces = Vec::new();
+        for (tip, way) in self.state.tips.iter().zip(&mut ways).filter(|(_, way)| **way > 0.0) {
+            let line = &self.state.lines[tip.end.line];
+            let (from, direction) = (line.end(tip.end.at_last), line.direction(tip.end.at_last));
+            let direction = tip.steering.direction(tip.growth, *way, direction, horizon);
+            let reach = *way + THROUGH_SPACINGS * spacing;
+            let to = [0, 1].map(|i| from[i] + reach * direction[i]);
+            let rim = ahead::first_rim(&self.case.specimen, &self.state.lines, tip.end.line, from, to);
+            let near = ahead::nearest_crack(&self.state.lines, tip.end.line, from).filter(|(d, _)| *d < THROUGH_SPACINGS * spacing);
+            let (to, state) = match (rim, near) {
+                (Some((share, state)), _) => (along(from, to, share), state),
+                (None, Some((_, near))) => (near, TipState::LinkedUp),
+                (None, None) => ([0, 1].map(|i| from[i] + *way * direction[i]), TipState::Active),
+            };
+            *way = distance(from, to);
+            pieces.push((from, to, state));
+        }
+        let grown = ways[fastest];
+        let mut next = pieces.into_iter();
+        for (tip, way) in self.state.tips.iter_mut().zip(&ways) {
+            tip.before = Some([tip.rate, grown]);
+            if !(*way > 0.0) {
+                continue;
+            }
+            let Some((from, to, state)) = next.next() else { continue };
+            cut.extend(across(body, from, to, tip.end.at_last, state));
+            self.state.lines[tip.end.line].grow(tip.end.at_last, to);
+            tip.growth += way;
+            tip.state = state;
+        }
+        cut.retain(|&bond| self.bonds.is_intact(bond));
+        cut.sort_unstable();
+        cut.dedup();
+
+        // Equilibrium and factors at the end of the step.
+        cut.iter().for_each(|&bond| self.bonds.cut(body, bond));
+        let aside = set_aside(body, &mut self.bonds, &cut);
+        let severed = matches!(aside, Cut::Severed);
+        if let Cut::Whole(aside) = aside {
+            cut.extend(aside);
+        }
+        let end = if severed {
+            Some(End::Severed)
+        } else {
+            match self.settle(&cut) {
+                Ok(()) => None,
+                Err(_) => Some(End::NoConvergence),
+            }
+        };
+        if end.is_none() {
+            self.read_factors();
+            if self.state.tips.iter().any(|tip| !tip.equivalent().is_finite()) {
+                return none(End::NoConvergence, f64::NAN);
+            }
+        }
+        let lead = &self.state.tips[fastest];
+        let rate_then = if lead.state == TipState::Active && end.is_none() && lead.rate > 0.0 { lead.rate } else { rate };
+        let left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
+        Step {
+            cycles: grown * mean_inverse(rate, rate_then),
+            work: if end.is_none() { self.work() } else { f64::NAN },
+            cut: cut.len(),
+            end: end.or((!left).then_some(End::NoTipLeft)),
+        }
+    }
+
+    /// The fastest of the tips that grow.
+    fn fastest(&self) -> Option<usize> {
+        let tips = self.state.tips.iter().enumerate();
+        let growing = tips.filter(|(_, tip)| tip.state == TipState::Active && tip.rate > 0.0);
+        growing.max_by(|a, b| a.1.rate.total_cmp(&b.1.rate).then(b.0.cmp(&a.0))).map(|(index, _)| index)
+    }
+
+    /// Equilibrium after bonds were cut.
+    fn settle(&mut self, cut: &[Bond]) -> Result<()> {
+        let body = &self.plate.body;
+        self.equilibrium.broke(body, &self.bonds, cut);
+        self.iterations += self.equilibrium.solve(body, &self.bonds, &mut self.displacement)?;
+        self.solves += 1;
+        Ok(())
+    }
+
+    /// Factors, rates and aims of all tips that are left.
+    fn read_factors(&mut self) {
+        let body = &self.plate.body;
+        let horizon = body.horizon();
+        let active: Vec<LineEnd> =
+            self.state.tips.iter().filter(|tip| tip.state == TipState::Active).map(|tip| tip.end).collect();
+        let (maximum, ratio) = (self.case.loading.maximum, self.case.loading.ratio);
+        let plate = Balanced {
+            body,
+            bonds: &self.bonds,
+            displacement: &self.displacement,
+            load: maximum,
+            lines: &self.state.lines,
+        };
+        let read = |end: LineEnd| {
+            let radius = self.surroundings.radius(body, &self.state.lines, end, &active, RING_HORIZONS * horizon);
+            self.surroundings.factors(plate, end, radius.max(RING_HORIZONS_MIN * horizon)).factors
+        };
+        let mut factors: Vec<[f64; 2]> = active.iter().map(|&end| read(end)).collect();
+        pair_twins(&mut factors);
+        let mut factors = factors.into_iter();
+        for tip in self.state.tips.iter_mut() {
+            tip.rate = 0.0;
+            if tip.state != TipState::Active {
+                continue;
+            }
+            let Some(read) = factors.next() else { continue };
+            let specimen = &self.case.specimen;
+            let line = &self.state.lines[tip.end.line];
+            let excess = represented_excess(body, line, tip.end.at_last, tip.length + tip.growth);
+            let ahead = line.direction(tip.end.at_last);
+            tip.steering.read(read, tip.growth, ahead, horizon);
+            tip.readings.take(equivalent_factor(read), tip.growth, excess, tip.steering.corner(), horizon);
+            // Both modes alike: what the cut bonds lack or have too much is length.
+            let share = tip.readings.share(excess, tip.length + tip.growth);
+            let factors = read.map(|factor| share * factor);
+            let near = tip.growth > 0.0 && is_near_rim(specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
+            let falls = !(equivalent_factor(factors) >= tip.equivalent());
+            if !(near && falls) {
+                tip.factors = factors;
+            }
+            tip.rate = self.law.rate(tip.equivalent(), ratio);
+        }
+    }
+}
+
+/// Whether a rim or another crack lies within `reach` straight ahead of a tip or 45° to either side.
+fn is_near_rim(specimen: &Specimen, lines: &[CrackLine], end: LineEnd, reach: f64) -> bool {
+    let (from, [x, y]) = (lines[end.line].end(end.at_last), lines[end.line].direction(end.at_last));
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    [[x, y], [half * (x - y), half * (x + y)], [half * (x + y), half * (y - x)]]
+        .into_iter()
+        .map(|[x, y]| [from[0] + reach * x, from[1] + reach * y])
+        .any(|to| ahead::first_rim(specimen, lines, end.line, from, to).is_some())
+}
+
+/// Length of crack that belongs to one of its ends, m: all, or half where both are tips.
+fn length_of(specimen: &Specimen, end: LineEnd) -> f64 {
+    let crack = specimen.cracks[end.line];
+    let tips = specimen.tips.iter().filter(|tip| tip.position == crack.from || tip.position == crack.to).count();
+    distance(crack.from, crack.to) / tips.max(1) as f64
+}
+
+/// Mean of 1/r between two rates with ln r linear between them, cycles/m.
+fn mean_inverse(from: f64, to: f64) -> f64 {
+    let fall = (from / to).ln();
+    // (1/to - 1/from) / ln(from/to), whose difference loses digits where the rates are nearly equal.
+    if fall.abs() < 1e-4 { (1.0 + 0.5 * fall) / from } else { (fall.exp_m1() / fall) / from }
+}
+
+/// Gives tips whose factors agree but for round-off and sign the same factors: mirror twins stay twins.
+fn pair_twins(factors: &mut [[f64; 2]]) {
+    for i in 1..factors.len() {
+        for j in 0..i {
+            let size = factors[j][0].abs().max(factors[j][1].abs());
+            let equal = |a: f64, b: f64| (a.abs() - b.abs()).abs() <= ROUND_OFF * size;
+            if equal(factors[i][0], factors[j][0]) && equal(factors[i][1], factors[j][1]) {
+                factors[i] = [0, 1].map(|mode| factors[j][mode].abs().copysign(factors[i][mode]));
+                break;
+            }
+        }
+    }
+}
+
+/// Bonds that a new piece of crack crosses, in the sense of its line, so that points on it stay on one side; beyond a rim, all
+/// that is left of it.
+fn across(body: &Body, from: Point, to: Point, at_last: bool, state: TipState) -> Vec<Bond> {
+    let beyond = if state == TipState::Active { 0.0 } else { body.lattice.spacing };
+    let length = distance(from, to).max(f64::MIN_POSITIVE);
+    let end = along(from, to, 1.0 + beyond / length);
+    if at_last { bonds_across(body, from, end) } else { bonds_across(body, end, from) }
+}
+
+/// Solver of a run.
+fn balance(case: &Case, plate: &Plate, bonds: &Bonds) -> Equilibrium {
+    plate.equilibrium(&case.model, bonds, case.loading.maximum).to_tolerance(TOLERANCE)
+}

@@ -1,0 +1,42 @@
+//! What lies ahead of a tip: the outline, a hole, a slot, another crack.
+
+use crate::fatigue::crack_tip::TipState;
+use crate::specimen::geometry::{along, distance, edges, meeting_share, segments_touch};
+use crate::specimen::{CrackLine, Point, Specimen};
+
+/// Way from `from` straight to `to` up to the first rim or crack, as share of it, and what the tip becomes there.
+pub(super) fn first_rim(specimen: &Specimen, lines: &[CrackLine], own: usize, from: Point, to: Point) -> Option<(f64, TipState)> {
+    let walls = |polygon: &[Point], state: TipState| {
+        let meets = edges(polygon).filter(|(a, b)| segments_touch(from, to, *a, *b));
+        meets.filter_map(|(a, b)| meeting_share(from, to, a, b)).map(|share| (share, state)).collect::<Vec<_>>()
+    };
+    let outline = walls(&specimen.outline, TipState::LeftPlate);
+    let slots = specimen.slots.iter().flat_map(|slot| walls(&slot.corners(), TipState::EnteredHole));
+    let holes = specimen.holes.iter().filter_map(|hole| {
+        let (d, f) = ([to[0] - from[0], to[1] - from[1]], [from[0] - hole.centre[0], from[1] - hole.centre[1]]);
+        let (dd, df, ff) = (d[0] * d[0] + d[1] * d[1], d[0] * f[0] + d[1] * f[1], f[0] * f[0] + f[1] * f[1]);
+        let root = (df * df - dd * (ff - hole.radius * hole.radius)).sqrt();
+        // NaN where the line passes the hole.
+        let share = (-df - root) / dd;
+        (0.0..=1.0).contains(&share).then_some((share, TipState::EnteredHole))
+    });
+    let cracks = lines.iter().enumerate().filter(|(index, _)| *index != own).flat_map(|(_, line)| {
+        let meets = line.pieces().filter(|[a, b]| segments_touch(from, to, *a, *b));
+        meets.filter_map(|[a, b]| meeting_share(from, to, a, b)).map(|share| (share, TipState::LinkedUp)).collect::<Vec<_>>()
+    });
+    let all = outline.into_iter().chain(slots).chain(holes).chain(cracks);
+    all.map(|(share, state)| (share.clamp(0.0, 1.0), state)).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Nearest point of another crack, and its distance, m.
+pub(super) fn nearest_crack(lines: &[CrackLine], own: usize, at: Point) -> Option<(f64, Point)> {
+    let others = lines.iter().enumerate().filter(|(index, _)| *index != own).flat_map(|(_, line)| line.pieces());
+    others.map(|[a, b]| nearest_of_segment(at, a, b)).map(|near| (distance(at, near), near)).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+fn nearest_of_segment(p: Point, a: Point, b: Point) -> Point {
+    let ab = [b[0] - a[0], b[1] - a[1]];
+    let squared = ab[0] * ab[0] + ab[1] * ab[1];
+    let t = if squared > 0.0 { (((p[0] - a[0]) * ab[0] + (p[1] - a[1]) * ab[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    along(a, b, t)
+}

@@ -1,0 +1,43 @@
+//! K at the length that a line has, from K at the lengths that the cut bonds stand for.
+//!
+//! A crack cut into bonds reaches farther than its line or less far, by up to half a spacing and by another amount at every step.
+//! What is read belongs to the length that the bonds stand for. It is brought to that of the line along the slope of ln K over
+//! that length, taken from the readings of the last horizons of growth.
+
+use serde::{Deserialize, Serialize};
+
+/// Growth, in horizons, whose readings show how K changes.
+const MEMORY_HORIZONS: f64 = 2.0;
+/// Slope over that of a long crack far from everything, K ~ √a, at the most: a single odd reading is not followed farther.
+const SLOPE_MOST: f64 = 12.0;
+
+/// Readings of a tip.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Readings {
+    /// Growth that the cut bonds stand for, and ln K.
+    taken: Vec<[f64; 2]>,
+}
+
+impl Readings {
+    /// Takes in K of a tip that has grown by `growth` and whose bonds stand for `excess` more; what was read before a corner tells
+    /// nothing about the crack after it.
+    pub fn take(&mut self, k: f64, growth: f64, excess: f64, corner: Option<f64>, horizon: f64) {
+        if k > 0.0 {
+            self.taken.push([growth + excess, k.ln()]);
+        }
+        let oldest = corner.map_or(f64::NEG_INFINITY, |corner| corner + 0.1 * horizon).max(growth - MEMORY_HORIZONS * horizon);
+        self.taken.retain(|reading| reading[0] > oldest);
+    }
+
+    /// Factor that brings K to `excess` less length of a crack that is `length` long, m.
+    pub fn share(&self, excess: f64, length: f64) -> f64 {
+        let usual = 0.5 / length;
+        // As if half a spacing of a crack far from everything were known: with few readings their scatter is no slope.
+        let count = self.taken.len() as f64;
+        let [x, y] = [0, 1].map(|i| self.taken.iter().map(|reading| reading[i]).sum::<f64>() / count.max(1.0));
+        let product = |i: usize| self.taken.iter().map(|r| (r[0] - x) * (r[i] - [x, y][i])).sum::<f64>();
+        let slope = if count >= 3.0 { product(1) / product(0) } else { usual };
+        let slope = if slope.is_finite() { slope.clamp(-SLOPE_MOST * usual, SLOPE_MOST * usual) } else { usual };
+        (-slope * excess).exp()
+    }
+}

@@ -1,0 +1,94 @@
+//! Where a tip turns to: maximum circumferential stress (Erdogan and Sih 1963, J. Basic Eng. 85:519).
+//!
+//! `K_I sin θ + K_II (3 cos θ - 1) = 0`, and the factor that opens the crack in that direction is
+//! `K_eq = cos(θ/2) [K_I cos²(θ/2) - 3/2 K_II sin θ]`.
+//!
+//! A single reading of K_II scatters with how the bonds around the tip lie. The direction is read at the tip off a straight line
+//! through the aims of the last two horizons of growth: a mean over that length would trail behind a curving crack by half of
+//! it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::specimen::Point;
+
+/// Growth, in horizons, whose aims show where the crack is heading.
+const MEMORY_HORIZONS: f64 = 2.0;
+/// Spread of growth, in horizons, below which the slope of the aims says nothing.
+const SLOPE_HORIZONS: f64 = 0.15;
+/// Turn from which a crack has a corner, rad: nothing before it says where it heads after it.
+const CORNER: f64 = 8.0 * std::f64::consts::PI / 180.0;
+/// Growth after a corner, in horizons, over which the direction is held: the core of the tip has to leave the corner first.
+const HELD_HORIZONS: f64 = 1.2;
+
+/// Angle θ of the largest circumferential stress, rad, counter-clockwise from straight ahead.
+#[must_use]
+pub fn kink_angle([k_i, k_ii]: [f64; 2]) -> f64 {
+    if k_ii == 0.0 {
+        return 0.0;
+    }
+    // The root with the larger stress, for either sign of K_II; in this form nothing cancels.
+    -2.0 * (2.0 * k_ii).atan2(k_i + k_i.hypot(8.0_f64.sqrt() * k_ii))
+}
+
+/// K_eq, Pa√m: the opening factor in the direction of [`kink_angle`]; none where the flanks are in contact.
+#[must_use]
+pub fn equivalent_factor(factors: [f64; 2]) -> f64 {
+    let (k_i, k_ii) = (factors[0].max(0.0), factors[1]);
+    let theta = kink_angle([k_i, k_ii]);
+    let half = (0.5 * theta).cos();
+    (half * (k_i * half * half - 1.5 * k_ii * theta.sin())).max(0.0)
+}
+
+/// What a tip has aimed at.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Steering {
+    /// Growth and aim, as angle from x, rad, since the last corner.
+    aims: Vec<[f64; 2]>,
+    /// Growth at the last corner, m.
+    corner: Option<f64>,
+}
+
+impl Steering {
+    /// Takes in the factors of a tip that has grown by `growth` along `ahead`.
+    pub fn read(&mut self, factors: [f64; 2], growth: f64, ahead: Point, horizon: f64) {
+        if self.corner.is_some_and(|corner| growth < corner + HELD_HORIZONS * horizon) {
+            return;
+        }
+        let turn = kink_angle([factors[0].max(0.0), factors[1]]);
+        // Counted on from the last aim, so that angles beyond ±180° are no jump.
+        let heading = ahead[1].atan2(ahead[0]);
+        let last = self.aims.last().map_or(heading, |aim| aim[1]);
+        let turns = ((last - heading) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        let aim = heading + turns + turn;
+        if turn.abs() > CORNER {
+            (self.aims, self.corner) = (vec![[growth, aim]], Some(growth));
+            return;
+        }
+        if self.corner.take().is_some() {
+            self.aims.clear();
+        }
+        self.aims.push([growth, aim]);
+        self.aims.retain(|aim| aim[0] >= growth - MEMORY_HORIZONS * horizon);
+    }
+
+    /// Direction for the next `step` of growth, m: the aim at its middle.
+    #[must_use]
+    pub fn direction(&self, growth: f64, step: f64, ahead: Point, horizon: f64) -> Point {
+        if self.aims.is_empty() {
+            return ahead;
+        }
+        let count = self.aims.len() as f64;
+        let [x, y] = [0, 1].map(|i| self.aims.iter().map(|aim| aim[i]).sum::<f64>() / count);
+        let product = |i: usize| self.aims.iter().map(|aim| (aim[0] - x) * (aim[i] - [x, y][i])).sum::<f64>();
+        let slope = product(1) / (product(0) + count * (SLOPE_HORIZONS * horizon).powi(2));
+        let at = if self.corner.is_some() { x } else { growth + 0.5 * step };
+        let (sin, cos) = (y + slope * (at - x)).sin_cos();
+        [cos, sin]
+    }
+
+    /// Growth at the last corner, m, while the direction after it is held.
+    #[must_use]
+    pub fn corner(&self) -> Option<f64> {
+        self.corner
+    }
+}

@@ -1,0 +1,320 @@
+//! Interaction integral around a tip of a crack that may bend, with holes, edges and other cracks nearby.
+//!
+//! With an auxiliary near-tip field of one pure mode (Yau, Wang and Corten 1980, J. Appl. Mech. 47:335; domain form Shih,
+//! Moran and Nakamura 1986, Int. J. Fract. 30:79)
+//!
+//! `K = (E'/2) [ ∫_A P_j q_,j dA - ∫_S P_j m_j q ds ]`, `P_j = σ_ij u^aux_i,1 + σ^aux_ij u_i,1 - σ_ik ε^aux_ik δ_1j`,
+//!
+//! for K^aux = 1, q being 1 inside the ring and 0 outside it. P is free of divergence, so that the second integral, over all
+//! rims of the material within the outer radius with outward normal m, makes up for what is not ring: faces of the own crack
+//! where it leaves the line straight behind its tip, holes, edges, faces of other cracks. Real tractions there are those of the
+//! loads: `P_j m_j = t_i u^aux_i,1 + σ^aux_ij m_j u_i,1 - σ_ik ε^aux_ik m_1`. On the faces of a straight crack it vanishes.
+//!
+//! The auxiliary field is continued across ±π to the faces of the real crack: angles are counted from x₁ to the face on the
+//! side of a point, wherever it lies. It stays in equilibrium there and only its tractions on the faces are not zero.
+//!
+//! The bonds near the tip, where the displacement of a nonlocal body is not that of a sharp crack, lie inside the ring and take
+//! no part.
+
+use std::f64::consts::{PI, TAU};
+
+use super::TipFrame;
+use super::gradient::gradient_at;
+use super::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use crate::body::boundary::{LoadPiece, load_pieces};
+use crate::body::facets::{Facet, facets};
+use crate::body::pre_crack::{places_near, tie_break};
+use crate::body::{Body, Bond};
+use crate::material::Material;
+use crate::solver::field::Layout;
+use crate::specimen::geometry::distance;
+use crate::specimen::{CrackLine, LineEnd, Point, Specimen, Support};
+use crate::state::Bonds;
+
+/// Inner radius over outer radius.
+const INNER_SHARE: f64 = 0.4;
+/// Distance from a tip, in horizons, within which faces are not read: the core is not that of a sharp crack.
+const CORE_HORIZONS: f64 = 0.75;
+/// Pieces of a crack face per spacing.
+const PIECES_PER_SPACING: f64 = 2.0;
+/// Room left, in horizons, between a ring and what it cannot take in: another tip, a support.
+const ROOM_HORIZONS: f64 = 0.2;
+
+/// What does not change around the tips of a plate.
+#[derive(Debug, Clone)]
+pub struct Surroundings {
+    layout: Layout,
+    elasticity: Elasticity,
+    /// Pieces of the rim, and whether nothing presses on them.
+    rim: Vec<(Facet, bool)>,
+    loads: Vec<LoadPiece>,
+    supports: Vec<[Point; 2]>,
+    thickness: f64,
+}
+
+/// Plate in equilibrium around its tips.
+#[derive(Clone, Copy)]
+pub struct Balanced<'a> {
+    /// Points and bonds.
+    pub body: &'a Body,
+    /// Which of them carry.
+    pub bonds: &'a Bonds,
+    /// Displacement in the layout of [`Layout::of`], m.
+    pub displacement: &'a [f64],
+    /// Nominal load, Pa or N.
+    pub load: f64,
+    /// All cracks as they are cut.
+    pub lines: &'a [CrackLine],
+}
+
+/// K_I and K_II, and the ring they were read on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RingFactors {
+    /// K_I and K_II, Pa√m.
+    pub factors: [f64; 2],
+    /// Outer radius of the ring, m.
+    pub radius: f64,
+}
+
+impl Surroundings {
+    /// Rim, loads and supports of a specimen.
+    #[must_use]
+    pub fn new(body: &Body, specimen: &Specimen, material: &Material) -> Self {
+        let spacing = body.lattice.spacing;
+        let held = specimen.supports.iter().filter_map(|support| match *support {
+            Support::Fixed { from, to, .. } => Some([from, to]),
+            _ => None,
+        });
+        let loads = load_pieces(specimen, spacing);
+        let is_free = |facet: &Facet| loads.iter().all(|load| distance(load.facet.at, facet.at) > 0.25 * spacing);
+        let rim = facets(specimen, spacing).into_iter().map(|facet| (facet, is_free(&facet))).collect();
+        Surroundings {
+            layout: Layout::of(&body.lattice, body.stencil.unknowns),
+            elasticity: Elasticity::of(material),
+            rim,
+            loads,
+            supports: held.collect(),
+            thickness: specimen.thickness,
+        }
+    }
+
+    /// Largest outer radius for a tip, m: up to `wanted`, short of the other end of its crack, other tips and supports.
+    #[must_use]
+    pub fn radius(&self, body: &Body, lines: &[CrackLine], end: LineEnd, tips: &[LineEnd], wanted: f64) -> f64 {
+        let here = lines[end.line].end(end.at_last);
+        let others = tips.iter().filter(|other| **other != end).map(|other| distance(here, lines[other.line].end(other.at_last)));
+        let supports = self.supports.iter().map(|[a, b]| crate::specimen::geometry::distance_to_segment(here, *a, *b));
+        others.chain(supports).fold(f64::INFINITY, f64::min).min(wanted + ROOM_HORIZONS * body.horizon())
+            - ROOM_HORIZONS * body.horizon()
+    }
+
+    /// K_I and K_II of a tip by a ring of some outer radius, m.
+    #[must_use]
+    pub fn factors(&self, plate: Balanced<'_>, end: LineEnd, outer: f64) -> RingFactors {
+        let Balanced { body, lines, .. } = plate;
+        let line = &lines[end.line];
+        let frame = TipFrame { origin: line.end(end.at_last), ahead: line.direction(end.at_last), line: 0.0 };
+        let own = Behind::new(body, line, end.at_last, &frame);
+        let around = Around { surroundings: self, plate, frame, own, inner: INNER_SHARE * outer, outer };
+        let mut sums = [0.0; 2];
+        let mut add = |part: [f64; 2]| sums = [sums[0] + part[0], sums[1] + part[1]];
+        for place in places_near(body, frame.origin, frame.origin, outer) {
+            add(around.area(place));
+        }
+        let near = |at: Point| distance(at, frame.origin) < outer;
+        self.rim.iter().filter(|(facet, _)| near(facet.at)).for_each(|(facet, free)| add(around.rim(facet, *free)));
+        self.loads.iter().filter(|piece| near(piece.facet.at)).for_each(|piece| add(around.load(piece)));
+        for (index, line) in lines.iter().enumerate() {
+            // The way back from the tip in the sense of its own line.
+            for piece in line.pieces().filter(|[a, b]| crate::specimen::geometry::distance_to_segment(frame.origin, *a, *b) < outer) {
+                faces(body, piece).filter(|facet| near(facet.at)).for_each(|facet| {
+                    if index != end.line || distance(facet.at, frame.origin) > CORE_HORIZONS * body.horizon() {
+                        add(around.rim(&facet, true));
+                    }
+                });
+            }
+        }
+        RingFactors { factors: sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum), radius: outer }
+    }
+}
+
+/// Both faces of a straight piece of crack, as the bonds see it: a trifle aside of the line that was asked for.
+fn faces(body: &Body, [a, b]: [Point; 2]) -> impl Iterator<Item = Facet> {
+    let length = distance(a, b);
+    let count = (PIECES_PER_SPACING * length / body.lattice.spacing).ceil().max(1.0);
+    let shift = tie_break(body, a, b);
+    let [x, y] = [0, 1].map(|i| (b[i] - a[i]) / length.max(f64::MIN_POSITIVE));
+    (0..count as usize).flat_map(move |i| {
+        let share = (i as f64 + 0.5) / count;
+        let at = [0, 1].map(|i| a[i] + share * (b[i] - a[i]) + shift[i]);
+        // Outward from the material on the left of the line is to its right, and the other way round.
+        [[y, -x], [-y, x]].map(|normal| Facet { at, normal, length: length / count })
+    })
+}
+
+/// The crack behind a tip in its frame.
+struct Behind {
+    /// Pieces from the tip on, as the bonds see them.
+    pieces: Vec<[Point; 2]>,
+}
+
+impl Behind {
+    fn new(body: &Body, line: &CrackLine, at_last: bool, frame: &TipFrame) -> Self {
+        let piece = |[a, b]: [Point; 2]| {
+            let shift = tie_break(body, a, b);
+            let ends = [a, b].map(|p| frame.local([p[0] + shift[0], p[1] + shift[1]]));
+            if at_last { [ends[1], ends[0]] } else { ends }
+        };
+        let mut pieces: Vec<[Point; 2]> = line.pieces().map(piece).collect();
+        if at_last {
+            pieces.reverse();
+        }
+        Behind { pieces }
+    }
+
+    /// Angle by which the crack at a distance r behind the tip lies off the line straight behind it, counter-clockwise.
+    fn bend(&self, r: f64) -> f64 {
+        let size = |p: Point| p[0].hypot(p[1]);
+        // The mouth lies outside the ring, or there is no material behind it.
+        let piece = self.pieces.iter().find(|[_, far]| size(*far) >= r).or(self.pieces.last());
+        let Some(&[a, b]) = piece else { return 0.0 };
+        let d = [b[0] - a[0], b[1] - a[1]];
+        // |a + t d| = r, the later of both.
+        let (aa, ad, dd) = (a[0] * a[0] + a[1] * a[1], a[0] * d[0] + a[1] * d[1], d[0] * d[0] + d[1] * d[1]);
+        let t = (-ad + (ad * ad + dd * (r * r - aa)).max(0.0).sqrt()) / dd;
+        let at = [a[0] + t * d[0], a[1] + t * d[1]];
+        (-at[1]).atan2(-at[0])
+    }
+
+    /// Distance from the tip and angle from x₁ to a point of the frame, counted to the face of the crack on its side.
+    fn polar(&self, [x, y]: Point) -> (f64, f64) {
+        let r = x.hypot(y);
+        let bend = self.bend(r);
+        let theta = y.atan2(x) - bend;
+        let wrapped = if theta > PI { theta - TAU } else if theta <= -PI { theta + TAU } else { theta };
+        (r, wrapped + bend)
+    }
+}
+
+/// A ring around a tip.
+struct Around<'a> {
+    surroundings: &'a Surroundings,
+    plate: Balanced<'a>,
+    frame: TipFrame,
+    own: Behind,
+    inner: f64,
+    outer: f64,
+}
+
+impl Around<'_> {
+    /// q and its slope over r: 1 - 3t² + 2t³ over the ring.
+    fn weight(&self, r: f64) -> (f64, f64) {
+        let t = ((r - self.inner) / (self.outer - self.inner)).clamp(0.0, 1.0);
+        (1.0 - t * t * (3.0 - 2.0 * t), -6.0 * t * (1.0 - t) / (self.outer - self.inner))
+    }
+
+    /// Gradients of both auxiliary displacements, K = 1, in the frame.
+    fn auxiliary(&self, r: f64, theta: f64) -> [[[f64; 2]; 2]; 2] {
+        let Elasticity { kappa, shear_modulus, .. } = self.surroundings.elasticity;
+        [Symmetry::Opening, Symmetry::Sliding].map(|symmetry| {
+            let scale = coefficient_of_unit_factor(symmetry) / (2.0 * shear_modulus);
+            Eigenfunction { order: 1, symmetry }.gradient(kappa, r, theta).map(|row| row.map(|g| scale * g))
+        })
+    }
+
+    fn gradient(&self, place: usize) -> Option<[[f64; 2]; 2]> {
+        let Balanced { body, bonds, displacement, .. } = self.plate;
+        gradient_at(body, bonds, &self.surroundings.layout, displacement, &self.frame, place)
+    }
+
+    /// P_j q_,j of a point times its area.
+    fn area(&self, place: usize) -> [f64; 2] {
+        let lattice = &self.plate.body.lattice;
+        let (r, theta) = self.own.polar(self.frame.local(lattice.position(place)));
+        let (_, slope) = self.weight(r);
+        if slope == 0.0 {
+            return [0.0; 2];
+        }
+        let Some(gradient) = self.gradient(place) else { return [0.0; 2] };
+        let q = [slope * theta.cos(), slope * theta.sin()];
+        let area = lattice.spacing * lattice.spacing;
+        self.auxiliary(r, theta).map(|auxiliary| area * self.interaction(&gradient, &auxiliary, q))
+    }
+
+    /// -P_j m_j q of a piece of free rim times its length.
+    fn rim(&self, facet: &Facet, is_free: bool) -> [f64; 2] {
+        let lattice = &self.plate.body.lattice;
+        let inside = [0, 1].map(|i| facet.at[i] - 1e-6 * lattice.spacing * facet.normal[i]);
+        let (r, theta) = self.own.polar(self.frame.local(inside));
+        let (q, _) = self.weight(r);
+        let Some(gradient) = self.place_behind(facet).and_then(|place| self.gradient(place)) else { return [0.0; 2] };
+        let normal @ [m1, m2] = self.frame.vector(facet.normal);
+        let elasticity = &self.surroundings.elasticity;
+        let gradient = if is_free { without_traction(&gradient, normal, elasticity) } else { gradient };
+        let stress = elasticity.stress(&gradient);
+        self.auxiliary(r, theta).map(|auxiliary| {
+            let [xx, yy, xy] = elasticity.stress(&auxiliary);
+            let traction = [xx * m1 + xy * m2, xy * m1 + yy * m2];
+            let flow = traction[0] * gradient[0][0] + traction[1] * gradient[1][0] - mutual_energy(&stress, &auxiliary) * m1;
+            -flow * q * facet.length
+        })
+    }
+
+    /// The same of a load on the rim: -t_i u^aux_i,1 q.
+    fn load(&self, piece: &LoadPiece) -> [f64; 2] {
+        let (r, theta) = self.own.polar(self.frame.local(piece.facet.at));
+        let (q, _) = self.weight(r);
+        let scale = self.plate.load / self.surroundings.thickness;
+        let [t1, t2] = self.frame.vector(piece.force).map(|force| scale * force);
+        self.auxiliary(r, theta).map(|auxiliary| -(t1 * auxiliary[0][0] + t2 * auxiliary[1][0]) * q)
+    }
+
+    /// The point of the material nearest to a piece of rim, on its side.
+    fn place_behind(&self, facet: &Facet) -> Option<usize> {
+        let body = self.plate.body;
+        let spacing = body.lattice.spacing;
+        let depth = |place: usize| {
+            let at = body.lattice.position(place);
+            (facet.at[0] - at[0]) * facet.normal[0] + (facet.at[1] - at[1]) * facet.normal[1]
+        };
+        let wanted = [0, 1].map(|i| facet.at[i] - 0.5 * spacing * facet.normal[i]);
+        places_near(body, wanted, wanted, 1.5 * spacing)
+            .filter(|&place| depth(place) > 0.0)
+            .map(|place| (distance(body.lattice.position(place), wanted), place))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, place)| place)
+    }
+
+    /// `P_j q_,j`.
+    fn interaction(&self, field: &[[f64; 2]; 2], auxiliary: &[[f64; 2]; 2], q: [f64; 2]) -> f64 {
+        let elasticity = &self.surroundings.elasticity;
+        let (stress, stress_aux) = (elasticity.stress(field), elasticity.stress(auxiliary));
+        let flow = |s: [f64; 3], h: &[[f64; 2]; 2]| [s[0] * h[0][0] + s[2] * h[1][0], s[2] * h[0][0] + s[1] * h[1][0]];
+        let (a, b) = (flow(stress, auxiliary), flow(stress_aux, field));
+        (a[0] + b[0] - mutual_energy(&stress, auxiliary)) * q[0] + (a[1] + b[1]) * q[1]
+    }
+}
+
+/// The gradient on a rim without traction: derivatives along it as they are, those across it from `σ m = 0`. Close to a rim the
+/// neighbours of a point lie on one side, and tell the former better than the latter.
+fn without_traction(gradient: &[[f64; 2]; 2], [m1, m2]: [f64; 2], elasticity: &Elasticity) -> [[f64; 2]; 2] {
+    let (t1, t2) = (-m2, m1);
+    let along = gradient.map(|row| row[0] * t1 + row[1] * t2);
+    let (stretch, turn) = (along[0] * t1 + along[1] * t2, along[0] * m1 + along[1] * m2);
+    // Strain across over strain along in uniaxial stress, -ν or -ν/(1-ν): (κ-3)/(κ+1).
+    let across = (elasticity.kappa - 3.0) / (elasticity.kappa + 1.0) * stretch;
+    let normal = [across * m1 - turn * t1, across * m2 - turn * t2];
+    [0, 1].map(|i| [along[i] * t1 + normal[i] * m1, along[i] * t2 + normal[i] * m2])
+}
+
+/// `σ_ik ε^aux_ik`.
+fn mutual_energy(stress: &[f64; 3], auxiliary: &[[f64; 2]; 2]) -> f64 {
+    stress[0] * auxiliary[0][0] + stress[1] * auxiliary[1][1] + stress[2] * (auxiliary[0][1] + auxiliary[1][0])
+}
+
+/// Number of the first bond that crosses a line and still carries; for tests that a crack is cut through.
+#[must_use]
+pub fn bridge(body: &Body, bonds: &Bonds, line: &CrackLine) -> Option<Bond> {
+    let cut = line.pieces().flat_map(|[a, b]| crate::body::pre_crack::bonds_across(body, a, b));
+    cut.into_iter().find(|&bond| bonds.is_intact(bond))
+}
