@@ -34,13 +34,13 @@ use crate::fatigue::block_control::Around;
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::fatigue::{Block, Driver, FatigueLaw, FatigueSettings};
+use crate::growth::plate::Plate;
 use crate::solver::Focus;
 use crate::state::Bonds;
 use checkpoint::Checkpoint;
 use course::Course;
 use end_of_life::first_end;
 use overload::{are_within, overstretched, stretched};
-use crate::growth::plate::Plate;
 use start::Start;
 use tip_end::{break_through, retire_tips};
 

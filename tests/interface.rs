@@ -13,6 +13,8 @@ mod server;
 #[path = "support/slurm.rs"]
 mod slurm;
 
+#[path = "interface/tip_field.rs"]
+mod tip_field;
 #[path = "interface/bad_csv.rs"]
 mod bad_csv;
 #[path = "interface/bad_sweeps.rs"]

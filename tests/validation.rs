@@ -3,6 +3,8 @@
 #[path = "support/shared.rs"]
 mod shared;
 
+#[path = "validation/fe_plates.rs"]
+mod fe_plates;
 #[path = "validation/examples.rs"]
 mod examples;
 #[path = "validation/fracture_scenes.rs"]

@@ -21,6 +21,8 @@ mod correspondence;
 mod disc;
 #[path = "verification/elasticity.rs"]
 mod elasticity;
+#[path = "verification/tip_field.rs"]
+mod tip_field;
 #[path = "verification/tension_plate.rs"]
 mod tension_plate;
 #[path = "verification/product.rs"]

@@ -106,7 +106,12 @@ fn read_driver(input: &Input, method: Method) -> Result<Driver> {
     }
     if let Some(p) = input.p.filter(|_| input.paris_m.is_none()) {
         let problem = "is a constant of bonds, and driver \"tip_field\" paces a crack by the K of its tip";
-        return Err(crate::error::input("fatigue.p", p, problem, "give paris_c_mm_per_cycle and paris_m, or fitted; or driver = \"bond_strain\""));
+        return Err(crate::error::input(
+            "fatigue.p",
+            p,
+            problem,
+            "give paris_c_mm_per_cycle and paris_m, or fitted; or driver = \"bond_strain\"",
+        ));
     }
     let of_bonds = [
         ("ageing", input.ageing.is_some()),

@@ -8,8 +8,8 @@ use super::choices::Method;
 use super::{LawSource, law};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
-use crate::fatigue::{Driver, FatigueLaw};
 use crate::fatigue::paris::ParisLaw;
+use crate::fatigue::{Driver, FatigueLaw};
 use crate::input::{Folder, LENGTH, number, slice};
 use crate::units::MM_PER_CYCLE;
 

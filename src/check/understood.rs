@@ -151,6 +151,7 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         ),
         ("points", points),
         ("fatigue", law),
+        ("driver", fatigue.driver.to_string()),
         (
             "ageing",
             format!(
@@ -161,8 +162,12 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         ("handbook K", formula),
         ("stop", format!("{stop}{} cycles", case.stop.cycles_max)),
     ];
-    // Hand calculation has no bonds that could age.
-    let told = |what: &str| model.method == Method::Peridynamics || !["bonds", "ageing"].contains(&what);
+    // Hand calculation has no bonds, and tips driven by their K have none that age.
+    let told = |what: &str| match what {
+        "bonds" | "driver" => model.method == Method::Peridynamics,
+        "ageing" => case.spends_bond_life(),
+        _ => true,
+    };
     lines.into_iter().filter(|(what, _)| told(what)).map(|(what, value)| Line { what, value }).collect()
 }
 

@@ -38,17 +38,28 @@ use steering::{Steering, equivalent_factor};
 const RING_HORIZONS: f64 = 2.5;
 /// Outer radius below which a ring says nothing, in horizons.
 const RING_HORIZONS_MIN: f64 = 1.2;
-/// Growth of the fastest tip in a block, in horizons.
-const STEP_HORIZONS: f64 = 0.25;
+/// Growth of a tip in a block at the most, in horizons: life and path hardly change below it (see `tests/verification/tip_field.rs`).
+const STEP_HORIZONS: f64 = 0.4;
+/// The same where a rim or another crack lies within the ring, and K changes fast.
+const STEP_NEAR_HORIZONS: f64 = 0.2;
+/// Turn of a tip in a block at the most, rad, unless that makes the block shorter than the step near rims.
+const TURN: f64 = 1.0 * std::f64::consts::PI / 180.0;
 /// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate: K is held where it
 /// is read to fall.
 const CORE_HORIZONS: f64 = 0.6;
 /// Distance from an edge, in spacings, from which points cannot resolve what is left.
 const THROUGH_SPACINGS: f64 = 0.75;
-/// Residual over load of an equilibrium: factors are right to some 1e-8.
-const TOLERANCE: f64 = 1e-9;
-/// Relative difference of factors of mirror twins.
-const ROUND_OFF: f64 = 1e-6;
+/// Distance of a rim beside a tip, in spacings, from which nothing is left between them that carries.
+const BESIDE_SPACINGS: f64 = 0.5;
+/// Residual over load of an equilibrium: factors are right to some 1e-9.
+const TOLERANCE: f64 = 1e-10;
+/// Way to a rim straight ahead, in horizons, that is gone in one block where it takes less than [`SHARE_LEFT`] of the cycles so far:
+/// what is left of the plate there is nearly a mechanism, and says nothing about its life.
+const LEFT_HORIZONS: f64 = 2.0;
+const SHARE_LEFT: f64 = 1e-3;
+/// Relative difference within which factors are those of mirror twins: far above what solver and tie breaks make of equal ones, far
+/// below what shows in a life.
+const ROUND_OFF: f64 = 1e-4;
 
 /// A tip that grows by its own K.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -237,8 +248,8 @@ impl<'a> TipField<'a> {
         self.equilibrium.points(&self.plate.body)
     }
 
-    /// One block: all tips grow, over the same cycles, until the crack has the length `until` at the latest.
-    pub fn advance(&mut self, until: f64) -> Step {
+    /// One block after so many `cycles`: all tips grow, over the same cycles, until the crack has the length `until` at the latest.
+    pub fn advance(&mut self, cycles: f64, until: f64) -> Step {
         let none = |end: End, work: f64| Step { cycles: 0.0, work, cut: 0, end: Some(end) };
         if self.state.tips.iter().all(|tip| tip.state != TipState::Active) {
             return none(End::NoTipLeft, self.work());
@@ -253,7 +264,7 @@ impl<'a> TipField<'a> {
         let rate = self.state.tips[fastest].rate;
 
         // How far every tip goes while the fastest goes a step.
-        let step = STEP_HORIZONS * horizon;
+        let step = self.last_way(fastest).filter(|way| *way / rate < SHARE_LEFT * cycles).unwrap_or_else(|| self.step(rate));
         let ahead = |tip: &Tip| {
             let (now, lead) = (tip.rate, &self.state.tips[fastest]);
             let Some(([before, since], [lead_before, _])) = tip.before.zip(lead.before) else { return now / rate };
@@ -288,11 +299,11 @@ impl<'a> TipField<'a> {
             let reach = *way + THROUGH_SPACINGS * spacing;
             let to = [0, 1].map(|i| from[i] + reach * direction[i]);
             let rim = ahead::first_rim(&self.case.specimen, &self.state.lines, tip.end.line, from, to);
-            let near = ahead::nearest_crack(&self.state.lines, tip.end.line, from).filter(|(d, _)| *d < THROUGH_SPACINGS * spacing);
-            let (to, state) = match (rim, near) {
-                (Some((share, state)), _) => (along(from, to, share), state),
-                (None, Some((_, near))) => (near, TipState::LinkedUp),
-                (None, None) => ([0, 1].map(|i| from[i] + *way * direction[i]), TipState::Active),
+            let next = [0, 1].map(|i| from[i] + *way * direction[i]);
+            let (to, state) = match rim {
+                Some((share, state)) => (along(from, to, share), state),
+                None => ahead::beside(&self.case.specimen, &self.state.lines, tip.end.line, next, BESIDE_SPACINGS * spacing)
+                    .unwrap_or((next, TipState::Active)),
             };
             *way = distance(from, to);
             pieces.push((from, to, state));
@@ -346,6 +357,32 @@ impl<'a> TipField<'a> {
         }
     }
 
+    /// Growth of the fastest tip, of this rate, in the next block, m: no tip takes a longer step than its surroundings allow.
+    fn step(&self, rate: f64) -> f64 {
+        let horizon = self.plate.body.horizon();
+        let of_tip = |tip: &Tip| {
+            let near = is_near_rim(&self.case.specimen, &self.state.lines, tip.end, RING_HORIZONS * horizon);
+            let most = if near { STEP_NEAR_HORIZONS } else { STEP_HORIZONS } * horizon;
+            let turning = (TURN / tip.steering.curvature(horizon).abs()).max(STEP_NEAR_HORIZONS * horizon);
+            most.min(turning) * rate / tip.rate
+        };
+        self.state
+            .tips
+            .iter()
+            .filter(|tip| tip.state == TipState::Active && tip.rate > 0.0)
+            .map(of_tip)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Way of a tip straight ahead to a rim or another crack, m, if it is short.
+    fn last_way(&self, tip: usize) -> Option<f64> {
+        let tip = &self.state.tips[tip];
+        let (from, [x, y]) = (self.position(tip), self.state.lines[tip.end.line].direction(tip.end.at_last));
+        let reach = LEFT_HORIZONS * self.plate.body.horizon();
+        let to = [from[0] + reach * x, from[1] + reach * y];
+        ahead::first_rim(&self.case.specimen, &self.state.lines, tip.end.line, from, to).map(|(share, _)| share * reach)
+    }
+
     /// The fastest of the tips that grow.
     fn fastest(&self) -> Option<usize> {
         let tips = self.state.tips.iter().enumerate();
@@ -369,30 +406,33 @@ impl<'a> TipField<'a> {
         let active: Vec<LineEnd> =
             self.state.tips.iter().filter(|tip| tip.state == TipState::Active).map(|tip| tip.end).collect();
         let (maximum, ratio) = (self.case.loading.maximum, self.case.loading.ratio);
-        let plate = Balanced {
-            body,
-            bonds: &self.bonds,
-            displacement: &self.displacement,
-            load: maximum,
-            lines: &self.state.lines,
-        };
-        let read = |end: LineEnd| {
-            let radius = self.surroundings.radius(body, &self.state.lines, end, &active, RING_HORIZONS * horizon);
+        let excesses: Vec<f64> = self
+            .state
+            .tips
+            .iter()
+            .filter(|tip| tip.state == TipState::Active)
+            .map(|tip| represented_excess(body, &self.state.lines[tip.end.line], tip.end.at_last, tip.length + tip.growth))
+            .collect();
+        let read = |(&end, &excess): (&LineEnd, &f64)| {
+            // The ring stands around the place to which the cut bonds reach.
+            let mut lines = self.state.lines.clone();
+            lines[end.line].stretch(end.at_last, excess);
+            let (bonds, displacement) = (&self.bonds, &*self.displacement);
+            let plate = Balanced { body, bonds, displacement, load: maximum, lines: &lines };
+            let radius = self.surroundings.radius(body, &lines, end, &active, RING_HORIZONS * horizon);
             self.surroundings.factors(plate, end, radius.max(RING_HORIZONS_MIN * horizon)).factors
         };
-        let mut factors: Vec<[f64; 2]> = active.iter().map(|&end| read(end)).collect();
+        let mut factors: Vec<[f64; 2]> = active.iter().zip(&excesses).map(read).collect();
         pair_twins(&mut factors);
-        let mut factors = factors.into_iter();
+        let mut factors = factors.into_iter().zip(excesses);
         for tip in self.state.tips.iter_mut() {
             tip.rate = 0.0;
             if tip.state != TipState::Active {
                 continue;
             }
-            let Some(read) = factors.next() else { continue };
+            let Some((read, excess)) = factors.next() else { continue };
             let specimen = &self.case.specimen;
-            let line = &self.state.lines[tip.end.line];
-            let excess = represented_excess(body, line, tip.end.at_last, tip.length + tip.growth);
-            let ahead = line.direction(tip.end.at_last);
+            let ahead = self.state.lines[tip.end.line].direction(tip.end.at_last);
             tip.steering.read(read, tip.growth, ahead, horizon);
             tip.readings.take(equivalent_factor(read), tip.growth, excess, tip.steering.corner(), horizon);
             // Both modes alike: what the cut bonds lack or have too much is length.

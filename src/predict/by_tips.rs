@@ -43,7 +43,7 @@ pub(super) fn run(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
         if let Some(reason) = reason_to_stop(case, end, &growth, last) {
             break reason;
         }
-        let step = growth.advance(until);
+        let step = growth.advance(last.cycles, until);
         let (next, ended) = after(case, &growth, last, &step);
         if step.cut > 0 || step.cycles > 0.0 {
             curve.push(next);

@@ -42,7 +42,6 @@ impl Row {
     pub fn tips(&self) -> &[TipRecord] {
         &self.tips
     }
-
 }
 
 impl Moment for Row {

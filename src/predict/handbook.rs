@@ -161,7 +161,11 @@ impl<'a> Growth<'a> {
             growth_rate: if grows || delta_k.is_nan() { self.rate(crack_length) } else { 0.0 },
             work: f64::NAN,
             broken_bonds: 0,
-            tips: specimen.tips.iter().map(|seed| TipRecord { position: ahead(seed), growth, factors: [delta_k / loading.range_share(), 0.0] }).collect(),
+            tips: specimen
+                .tips
+                .iter()
+                .map(|seed| TipRecord { position: ahead(seed), growth, factors: [delta_k / loading.range_share(), 0.0] })
+                .collect(),
         }
     }
 

@@ -11,7 +11,7 @@ use crate::calibration::rates::RateMethod;
 use crate::case::{Failure, Method};
 use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::lattice_direction::LatticeDirection;
-use crate::fatigue::{Ageing, BlockKind, Precrack};
+use crate::fatigue::{Ageing, BlockKind, Driver, Precrack};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind, Transverse};
 use crate::fracture::scene::{Arrangement, DamageEntry, DamageLaw, PointLaw, SceneSolver, ZeroEnergyControl};
@@ -55,6 +55,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         beside(&SolverKind::lines(), SceneSolver::lines()),
         DamageLaw::lines(),
         DamageEntry::lines(),
+        Driver::lines(),
         Ageing::lines(),
         LatticeDirection::lines(),
         FiniteHorizon::lines(),

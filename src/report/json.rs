@@ -57,6 +57,7 @@ fn model(case: &Case, prediction: &Prediction) -> Value {
     let (model, figures) = (&case.model, &prediction.figures);
     let values = json!({
         "method": model.method.name(),
+        "driver": case.fatigue.driver.name(),
         "bond_law": model.bond_law.kind.name(),
         "kernel": model.bond_law.kernel.name(),
         "rotation": model.bond_law.rotation.name(),
@@ -133,7 +134,7 @@ const BEYOND_SPRINGS: &str = "chosen: springs alone cannot have this Poisson's r
 
 fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> String {
     let given = case.echo.get("model").and_then(|model| model.get(key)).is_some();
-    let recorded = matches!(case.law, LawSource::Fitted(_)) && FIXED_BY_RECORD.contains(&key);
+    let recorded = matches!(case.law, LawSource::Fitted(_)) && case.spends_bond_life() && FIXED_BY_RECORD.contains(&key);
     let source = match (given, recorded) {
         (true, _) => "given in the case",
         (false, true) => "as in the fitted record: the law holds for this choice only",
@@ -170,7 +171,7 @@ const FIXED_BY_RECORD: [&str; 5] = ["bond_law", "kernel", "rotation", "surface_c
 
 /// The constants as given, and A as it was used: at this run's horizon, modulus and stress ratio.
 fn law(case: &Case, prediction: &Prediction) -> Value {
-    let hand = case.model.method == Method::Handbook;
+    let hand = !case.spends_bond_life();
     let used = case.fatigue_law(prediction.figures.horizon).ok().filter(|_| !hand).map(|law| law.a);
     let c_used = case.paris_law().ok().filter(|_| hand).map(|law| clean(law.c / MM_PER_CYCLE));
     match &case.law {

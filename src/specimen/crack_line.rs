@@ -46,6 +46,15 @@ impl CrackLine {
         if at_last { direction(self.points[n - 2], self.points[n - 1]) } else { direction(self.points[1], self.points[0]) }
     }
 
+    /// Moves one of its ends along its last piece, m; back by nine tenths of it at the most.
+    pub fn stretch(&mut self, at_last: bool, by: f64) {
+        let n = self.points.len();
+        let (end, before) = if at_last { (n - 1, n - 2) } else { (0, 1) };
+        let piece = distance(self.points[before], self.points[end]);
+        let (ahead, by) = (self.direction(at_last), by.max(-0.9 * piece));
+        self.points[end] = [0, 1].map(|i| self.points[end][i] + by * ahead[i]);
+    }
+
     /// Adds a straight piece at one of its ends.
     pub fn grow(&mut self, at_last: bool, to: Point) {
         if at_last { self.points.push(to) } else { self.points.insert(0, to) }

@@ -126,7 +126,9 @@ impl Surroundings {
         self.loads.iter().filter(|piece| near(piece.facet.at)).for_each(|piece| add(around.load(piece)));
         for (index, line) in lines.iter().enumerate() {
             // The way back from the tip in the sense of its own line.
-            for piece in line.pieces().filter(|[a, b]| crate::specimen::geometry::distance_to_segment(frame.origin, *a, *b) < outer) {
+            for piece in
+                line.pieces().filter(|[a, b]| crate::specimen::geometry::distance_to_segment(frame.origin, *a, *b) < outer)
+            {
                 faces(body, piece).filter(|facet| near(facet.at)).for_each(|facet| {
                     if index != end.line || distance(facet.at, frame.origin) > CORE_HORIZONS * body.horizon() {
                         add(around.rim(&facet, true));
@@ -191,7 +193,13 @@ impl Behind {
         let r = x.hypot(y);
         let bend = self.bend(r);
         let theta = y.atan2(x) - bend;
-        let wrapped = if theta > PI { theta - TAU } else if theta <= -PI { theta + TAU } else { theta };
+        let wrapped = if theta > PI {
+            theta - TAU
+        } else if theta <= -PI {
+            theta + TAU
+        } else {
+            theta
+        };
         (r, wrapped + bend)
     }
 }

@@ -21,6 +21,7 @@ pub mod static_scenes;
 pub mod stress_intensity;
 pub mod table;
 pub mod tension_plate;
+mod tip_field;
 pub mod uniform_tension;
 
 use std::num::NonZero;
@@ -75,6 +76,11 @@ pub const TOPICS: &[Topic] = &[
         name: "poissons_ratio",
         about: "one growth rate at equal K whatever Poisson's ratio and plane state",
         fill: growth::poissons_ratio,
+    },
+    Topic {
+        name: "tip_field",
+        about: "cracks driven by the K of their tips: first kinks, lives against quadrature",
+        fill: tip_field::all,
     },
     Topic { name: "paths", about: "kinks, cracks that join or turn into a hole, clean curved cracks", fill: paths::all },
     Topic { name: "biaxial", about: "stress along the crack does not count", fill: growth::biaxial },

@@ -28,10 +28,20 @@ pub(super) fn first_rim(specimen: &Specimen, lines: &[CrackLine], own: usize, fr
     all.map(|(share, state)| (share.clamp(0.0, 1.0), state)).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Nearest point of another crack, and its distance, m.
-pub(super) fn nearest_crack(lines: &[CrackLine], own: usize, at: Point) -> Option<(f64, Point)> {
+/// The nearest point of a hole, slot, edge or other crack within `reach` of a place, and what a tip there becomes by it.
+pub(super) fn beside(specimen: &Specimen, lines: &[CrackLine], own: usize, at: Point, reach: f64) -> Option<(Point, TipState)> {
+    let of_segment = |a: Point, b: Point, state: TipState| (nearest_of_segment(at, a, b), state);
+    let outline = edges(&specimen.outline).map(|(a, b)| of_segment(a, b, TipState::LeftPlate));
+    let corners: Vec<[Point; 4]> = specimen.slots.iter().map(|slot| slot.corners()).collect();
+    let slots = corners.iter().flat_map(|corners| edges(corners)).map(|(a, b)| of_segment(a, b, TipState::EnteredHole));
+    let holes = specimen.holes.iter().map(|hole| {
+        let from_centre = distance(hole.centre, at).max(f64::MIN_POSITIVE);
+        (along(hole.centre, at, hole.radius / from_centre), TipState::EnteredHole)
+    });
     let others = lines.iter().enumerate().filter(|(index, _)| *index != own).flat_map(|(_, line)| line.pieces());
-    others.map(|[a, b]| nearest_of_segment(at, a, b)).map(|near| (distance(at, near), near)).min_by(|a, b| a.0.total_cmp(&b.0))
+    let cracks = others.map(|[a, b]| of_segment(a, b, TipState::LinkedUp));
+    let all = outline.chain(slots).chain(holes).chain(cracks).map(|near| (distance(at, near.0), near));
+    all.filter(|(gap, _)| *gap < reach).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, near)| near)
 }
 
 fn nearest_of_segment(p: Point, a: Point, b: Point) -> Point {

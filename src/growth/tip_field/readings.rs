@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Growth, in horizons, whose readings show how K changes.
-const MEMORY_HORIZONS: f64 = 2.0;
+const MEMORY_HORIZONS: f64 = 2.1;
 /// Slope over that of a long crack far from everything, K ~ √a, at the most: a single odd reading is not followed farther.
 const SLOPE_MOST: f64 = 12.0;
 

@@ -11,14 +11,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::specimen::Point;
 
-/// Growth, in horizons, whose aims show where the crack is heading.
-const MEMORY_HORIZONS: f64 = 2.0;
+/// Growth, in horizons, whose aims show where the crack is heading. Like all lengths here no multiple of a step: on a limit round-off
+/// would tell mirror twins apart.
+const MEMORY_HORIZONS: f64 = 2.1;
 /// Spread of growth, in horizons, below which the slope of the aims says nothing.
 const SLOPE_HORIZONS: f64 = 0.15;
 /// Turn from which a crack has a corner, rad: nothing before it says where it heads after it.
 const CORNER: f64 = 8.0 * std::f64::consts::PI / 180.0;
 /// Growth after a corner, in horizons, over which the direction is held: the core of the tip has to leave the corner first.
-const HELD_HORIZONS: f64 = 1.2;
+const HELD_HORIZONS: f64 = 1.15;
 
 /// Angle θ of the largest circumferential stress, rad, counter-clockwise from straight ahead.
 #[must_use]
@@ -77,13 +78,24 @@ impl Steering {
         if self.aims.is_empty() {
             return ahead;
         }
-        let count = self.aims.len() as f64;
-        let [x, y] = [0, 1].map(|i| self.aims.iter().map(|aim| aim[i]).sum::<f64>() / count);
-        let product = |i: usize| self.aims.iter().map(|aim| (aim[0] - x) * (aim[i] - [x, y][i])).sum::<f64>();
-        let slope = product(1) / (product(0) + count * (SLOPE_HORIZONS * horizon).powi(2));
+        let ([x, y], slope) = self.line(horizon);
         let at = if self.corner.is_some() { x } else { growth + 0.5 * step };
         let (sin, cos) = (y + slope * (at - x)).sin_cos();
         [cos, sin]
+    }
+
+    /// Curvature of the crack ahead, rad/m, counter-clockwise.
+    #[must_use]
+    pub fn curvature(&self, horizon: f64) -> f64 {
+        if self.aims.is_empty() { 0.0 } else { self.line(horizon).1 }
+    }
+
+    /// Middle and slope of the straight line through the aims.
+    fn line(&self, horizon: f64) -> ([f64; 2], f64) {
+        let count = self.aims.len() as f64;
+        let [x, y] = [0, 1].map(|i| self.aims.iter().map(|aim| aim[i]).sum::<f64>() / count);
+        let product = |i: usize| self.aims.iter().map(|aim| (aim[0] - x) * (aim[i] - [x, y][i])).sum::<f64>();
+        ([x, y], product(1) / (product(0) + count * (SLOPE_HORIZONS * horizon).powi(2)))
     }
 
     /// Growth at the last corner, m, while the direction after it is held.

@@ -1,0 +1,107 @@
+//! Cracks driven by the K of their tips: first kinks on turned lattices, lives of standard specimens against quadrature.
+
+use super::scene::case;
+use super::table::Table;
+use crate::error::Result;
+use crate::growth::tip_field::steering::kink_angle;
+use crate::predict::{Silent, predict};
+
+const REST: &str = "
+[material]
+youngs_modulus_gpa = 70.0
+poisson_ratio = 0.3
+plane = \"stress\"
+[fatigue]
+paris_c_mm_per_cycle = 1e-8
+paris_m = 3.0
+[stop]
+cycles_max = 1e14
+";
+const PULL: &str = "[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n";
+
+/// All rows of the topic.
+///
+/// # Errors
+/// As [`predict`].
+pub fn all(table: &mut Table) -> Result<()> {
+    kinks(table)?;
+    lives(table)
+}
+
+/// First kinks of a crack of half length 36 mm, six horizons, at β to the load in a plate 240 mm wide, whatever the lattice.
+fn kinks(table: &mut Table) -> Result<()> {
+    const BOUND_DEGREES: f64 = 1.5;
+    for beta in [15.0_f64, 45.0, 75.0] {
+        for lattice in [0.0, 10.0, 22.5, 37.0, 45.0] {
+            let (sin, cos) = beta.to_radians().sin_cos();
+            let [x, y] = [36.0 * sin, 36.0 * cos];
+            let crack = format!("cracks = [{{ from_mm = [{}, {}], to_mm = [{x}, {y}] }}]", -x, -y);
+            let text = format!(
+                "[specimen]\nkind = \"plate\"\nwidth_mm = 240\nlength_mm = 240\nthickness_mm = 2\n{crack}\n{PULL}[model]\nspacing_mm = 2\n{REST}"
+            );
+            let case = case(&text, &[&format!("model.lattice_angle_deg={lattice}"), "stop.crack_length_mm=73"])?;
+            let run = predict(&case, &Silent)?;
+            let [a, b] = case.specimen.tips[1].direction;
+            let [from, to] = [0, 1].map(|row: usize| run.curve[row].tips[1].position);
+            let [u, v] = [0, 1].map(|i| to[i] - from[i]);
+            let kink = (a * v - b * u).atan2(a * u + b * v).to_degrees();
+            let theory = kink_angle([sin * sin, sin * cos]).to_degrees();
+            table.compare(
+                format!("crack at {beta}° to the load, lattice turned by {lattice}°: first kink of tip_field, degrees"),
+                kink,
+                theory,
+                100.0 * BOUND_DEGREES / theory.abs(),
+                "maximum circumferential stress (Erdogan and Sih 1963)",
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Lives with given C and m against quadrature with handbook K, at default resolution; nothing is fitted.
+fn lives(table: &mut Table) -> Result<()> {
+    let specimens = [
+        ("M(T)", format!("kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10\n{PULL}"), 38.0),
+        (
+            "C(T)",
+            "kind = \"compact_tension\"\nwidth_mm = 50\nthickness_mm = 10\ncrack_length_mm = 15\n[loading]\nforce_max_n = 5000\nstress_ratio = 0.1\n"
+                .to_owned(),
+            35.0,
+        ),
+        (
+            "SE(T)",
+            format!("kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 50\nlength_mm = 150\nthickness_mm = 2\ncrack_length_mm = 8\n{PULL}"),
+            28.0,
+        ),
+        ("DE(T)", format!("kind = \"double_edge_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 12\n{PULL}"), 38.0),
+    ];
+    for (name, specimen, end) in specimens {
+        for (m, nu, lattice) in
+            [(2.0, 0.3, 0.0), (3.0, 0.3, 0.0), (4.5, 0.3, 0.0), (6.0, 0.3, 0.0), (3.0, 0.1, 0.0), (3.0, 0.3, 22.5)]
+        {
+            let end = format!("stop.crack_length_mm={end}");
+            let set = [
+                &*end,
+                &format!("fatigue.paris_m={m}"),
+                &format!("material.poisson_ratio={nu}"),
+                &format!("model.lattice_angle_deg={lattice}"),
+            ];
+            let life = |more: &[&str]| -> Result<f64> {
+                let case = case(&format!("[specimen]\n{specimen}{REST}"), &[&set[..], more].concat())?;
+                Ok(predict(&case, &Silent)?.life_cycles())
+            };
+            table.compare(
+                format!("{name}, m {m}, nu {nu}, lattice {lattice}°: life of tip_field over quadrature with handbook K"),
+                life(&[])?,
+                life(&["model.method=handbook"])?,
+                1.0,
+                "Tada, Paris and Irwin 2000; ASTM E647",
+            );
+            table.known_miss(
+                "K in the plate lies 0.3 to 0.9 % above the handbook, so that lives are short by m times that: the ring reads exact fields \
+                 within 0.3 %, and the surface correction decides the rest (volume_and_surface: K 0.2 to 1.1 % low, by the angle of the rows)",
+            );
+        }
+    }
+    Ok(())
+}
