@@ -49,6 +49,8 @@ const TURN: f64 = 1.0 * std::f64::consts::PI / 180.0;
 const CORE_HORIZONS: f64 = 0.6;
 /// Distance from an edge, in spacings, from which points cannot resolve what is left.
 const THROUGH_SPACINGS: f64 = 0.75;
+/// Growth of a tip over that of the fastest, at the most, where rates are extrapolated.
+const SHARE_MOST: f64 = 1.5;
 /// Distance of a rim beside a tip, in spacings, from which nothing is left between them that carries.
 const BESIDE_SPACINGS: f64 = 0.5;
 /// Residual over load of an equilibrium: factors are right to some 1e-9.
@@ -124,6 +126,13 @@ pub struct Step {
     pub cut: usize,
     /// Why there is no next one.
     pub end: Option<End>,
+}
+
+/// A new straight piece of crack, and what becomes of the tip at its end.
+struct Piece {
+    from: Point,
+    to: Point,
+    state: TipState,
 }
 
 /// Growth by the field of every tip.
@@ -234,7 +243,8 @@ impl<'a> TipField<'a> {
         });
         let words = |count: usize| {
             format!(
-                "{count} of {} crack tips lie within {:.3} mm of another tip or a support: the ring that reads K is too narrow there,                  and K may err by some percent; give a smaller model.spacing_mm",
+                "{count} of {} crack tips lie within {:.3} mm of another tip or a support: the ring that reads K is too narrow there, \
+                 and K may err by some percent; give a smaller model.spacing_mm",
                 ends.len(),
                 (RING_HORIZONS_MIN + 0.2) * horizon / MM
             )
@@ -255,7 +265,7 @@ impl<'a> TipField<'a> {
             return none(End::NoTipLeft, self.work());
         }
         let body = &self.plate.body;
-        let (horizon, spacing) = (body.horizon(), body.lattice.spacing);
+        let horizon = body.horizon();
         let Some(fastest) = self.fastest() else { return none(End::NothingGrows, self.work()) };
         let at_rim = |tip: &Tip| tip.state == TipState::Active && body.is_near_rim(self.position(tip), RING_HORIZONS * horizon);
         if self.state.tips.iter().any(at_rim) {
@@ -263,62 +273,20 @@ impl<'a> TipField<'a> {
         }
         let rate = self.state.tips[fastest].rate;
 
-        // How far every tip goes while the fastest goes a step.
         let step = self.last_way(fastest).filter(|way| *way / rate < SHARE_LEFT * cycles).unwrap_or_else(|| self.step(rate));
-        let ahead = |tip: &Tip| {
-            let (now, lead) = (tip.rate, &self.state.tips[fastest]);
-            let Some(([before, since], [lead_before, _])) = tip.before.zip(lead.before) else { return now / rate };
-            let (ratio, ratio_before) = (now / rate, before / lead_before);
-            if before > 0.0 && lead_before > 0.0 && since > 0.0 {
-                // ln of the ratio is linear in the growth of the fastest.
-                ratio * (ratio / ratio_before).powf(0.5 * step / since)
-            } else {
-                ratio
-            }
-        };
-        let is_active = |tip: &&Tip| tip.state == TipState::Active && tip.rate > 0.0;
-        let mut ways: Vec<f64> =
-            self.state.tips.iter().map(|tip| if is_active(&tip) { step * ahead(tip).min(1.5) } else { 0.0 }).collect();
-        let after = |ways: &[f64]| {
-            let growth: Vec<f64> = self.state.tips.iter().zip(ways).map(|(tip, way)| tip.growth + way).collect();
-            self.case.specimen.crack_length_after(&growth)
-        };
-        let (now, then) = (after(&vec![0.0; ways.len()]), after(&ways));
-        if then > until {
-            let share = ((until - now) / (then - now)).clamp(0.0, 1.0);
-            ways.iter_mut().for_each(|way| *way *= share);
-        }
+        let ways = self.ways(fastest, step, until);
 
         // New pieces of crack.
         let mut cut: Vec<Bond> = Vec::new();
-        let mut pieces = Vec::new();
-        for (tip, way) in self.state.tips.iter().zip(&mut ways).filter(|(_, way)| **way > 0.0) {
-            let line = &self.state.lines[tip.end.line];
-            let (from, direction) = (line.end(tip.end.at_last), line.direction(tip.end.at_last));
-            let direction = tip.steering.direction(tip.growth, *way, direction, horizon);
-            let reach = *way + THROUGH_SPACINGS * spacing;
-            let to = [0, 1].map(|i| from[i] + reach * direction[i]);
-            let rim = ahead::first_rim(&self.case.specimen, &self.state.lines, tip.end.line, from, to);
-            let next = [0, 1].map(|i| from[i] + *way * direction[i]);
-            let (to, state) = match rim {
-                Some((share, state)) => (along(from, to, share), state),
-                None => ahead::beside(&self.case.specimen, &self.state.lines, tip.end.line, next, BESIDE_SPACINGS * spacing)
-                    .unwrap_or((next, TipState::Active)),
-            };
-            *way = distance(from, to);
-            pieces.push((from, to, state));
-        }
-        let grown = ways[fastest];
-        let mut next = pieces.into_iter();
-        for (tip, way) in self.state.tips.iter_mut().zip(&ways) {
+        let piece = |(tip, way): (&Tip, &f64)| (*way > 0.0).then(|| self.piece(tip, *way));
+        let pieces: Vec<Option<Piece>> = self.state.tips.iter().zip(&ways).map(piece).collect();
+        let grown = pieces[fastest].as_ref().map_or(0.0, |piece| distance(piece.from, piece.to));
+        for (tip, piece) in self.state.tips.iter_mut().zip(pieces) {
             tip.before = Some([tip.rate, grown]);
-            if !(*way > 0.0) {
-                continue;
-            }
-            let Some((from, to, state)) = next.next() else { continue };
+            let Some(Piece { from, to, state }) = piece else { continue };
             cut.extend(across(body, from, to, tip.end.at_last, state));
             self.state.lines[tip.end.line].grow(tip.end.at_last, to);
-            tip.growth += way;
+            tip.growth += distance(from, to);
             tip.state = state;
         }
         cut.retain(|&bond| self.bonds.is_intact(bond));
@@ -355,6 +323,48 @@ impl<'a> TipField<'a> {
             cut: cut.len(),
             end: end.or((!left).then_some(End::NoTipLeft)),
         }
+    }
+
+    /// How far every tip goes while the fastest goes a step, m, all less where the crack would become longer than `until`.
+    fn ways(&self, fastest: usize, step: f64, until: f64) -> Vec<f64> {
+        let lead = &self.state.tips[fastest];
+        let share = |tip: &Tip| {
+            let now = tip.rate / lead.rate;
+            let Some(([before, since], [lead_before, _])) = tip.before.zip(lead.before) else { return now };
+            // ln of the ratio is linear in the growth of the fastest.
+            let known = before > 0.0 && lead_before > 0.0 && since > 0.0;
+            if known { now * (now * lead_before / before).powf(0.5 * step / since) } else { now }
+        };
+        let grows = |tip: &Tip| tip.state == TipState::Active && tip.rate > 0.0;
+        let way = |tip: &Tip| if grows(tip) { step * share(tip).min(SHARE_MOST) } else { 0.0 };
+        let mut ways: Vec<f64> = self.state.tips.iter().map(way).collect();
+        let length_after = |ways: &[f64]| {
+            let growth: Vec<f64> = self.state.tips.iter().zip(ways).map(|(tip, way)| tip.growth + way).collect();
+            self.case.specimen.crack_length_after(&growth)
+        };
+        let (now, then) = (length_after(&vec![0.0; ways.len()]), length_after(&ways));
+        if then > until {
+            let share = ((until - now) / (then - now)).clamp(0.0, 1.0);
+            ways.iter_mut().for_each(|way| *way *= share);
+        }
+        ways
+    }
+
+    /// The next piece of crack at a tip: straight on, up to a rim or another crack if one lies on the way or right beside its end.
+    fn piece(&self, tip: &Tip, way: f64) -> Piece {
+        let (specimen, lines, body) = (&self.case.specimen, &self.state.lines, &self.plate.body);
+        let spacing = body.lattice.spacing;
+        let (from, ahead) = (self.position(tip), lines[tip.end.line].direction(tip.end.at_last));
+        let direction = tip.steering.direction(tip.growth, way, ahead, body.horizon());
+        let at = |way: f64| [0, 1].map(|i| from[i] + way * direction[i]);
+        let (reach, next) = (at(way + THROUGH_SPACINGS * spacing), at(way));
+        let (to, state) = match ahead::first_rim(specimen, lines, tip.end.line, from, reach) {
+            Some((share, state)) => (along(from, reach, share), state),
+            None => {
+                ahead::beside(specimen, lines, tip.end.line, next, BESIDE_SPACINGS * spacing).unwrap_or((next, TipState::Active))
+            }
+        };
+        Piece { from, to, state }
     }
 
     /// Growth of the fastest tip, of this rate, in the next block, m: no tip takes a longer step than its surroundings allow.
