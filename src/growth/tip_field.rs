@@ -449,8 +449,8 @@ impl<'a> TipField<'a> {
             let share = tip.readings.share(excess, tip.length + tip.growth);
             let factors = read.map(|factor| share * factor);
             let near = tip.growth > 0.0 && is_near_rim(specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
-            let falls = !(equivalent_factor(factors) >= tip.equivalent());
-            if !(near && falls) {
+            let has_risen = equivalent_factor(factors) >= tip.equivalent();
+            if has_risen || !near {
                 tip.factors = factors;
             }
             tip.rate = self.law.rate(tip.equivalent(), ratio);
