@@ -71,7 +71,7 @@ fn what_does_not_go_with_the_driver_is_refused() {
     let bonds = PLATE.replace("paris_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874", "a = 6450.0\np = 2.87\nhorizon_mm = 3.015");
     fs::write(dir.path().join("bonds.toml"), bonds).unwrap();
     let refused = |arguments: &[&str], words: &[&str]| {
-        let all = [&arguments[..], &["--out", "run"]].concat();
+        let all = [arguments, &["--out", "run"]].concat();
         assert_refused(&perilife(dir.path(), &all), 2, words);
         assert!(!dir.path().join("run").exists(), "{arguments:?}");
     };
