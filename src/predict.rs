@@ -33,7 +33,7 @@ use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share,
 use crate::fatigue::block_control::Around;
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::pieces::{Cut, set_aside};
-use crate::fatigue::{Block, Driver, FatigueLaw, FatigueSettings};
+use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
 use crate::growth::plate::Plate;
 use crate::solver::Focus;
 use crate::state::Bonds;
@@ -50,7 +50,7 @@ use tip_end::{break_through, retire_tips};
 /// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
     match case.model.method {
-        Method::Peridynamics if case.fatigue.driver == Driver::TipField => by_tips::run(case, observer),
+        Method::Peridynamics if case.is_driven_by_tips() => by_tips::run(case, observer),
         Method::Peridynamics => run(case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer),
         Method::Handbook => handbook::run(case, observer),
     }

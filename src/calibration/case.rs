@@ -12,7 +12,6 @@ use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurv
 use crate::calibration::record::SourceFile;
 use crate::case::{Case, LAW_KEYS, LawSource, Method};
 use crate::error::{input, input_missing};
-use crate::fatigue::Driver;
 use crate::input::{Document, Folder, LENGTH, slice};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
@@ -106,7 +105,7 @@ impl CalibrationCase {
             let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
         }
-        if case.fatigue.driver == Driver::TipField && case.model.method == Method::Peridynamics {
+        if case.is_driven_by_tips() {
             let problem = "needs no bonds fitted: it grows cracks by C and m of K";
             let remedy = "fit C and m with model.method = \"handbook\", or A and p with driver = \"bond_strain\"";
             return Err(input("fatigue.driver", "\"tip_field\"", problem, remedy));

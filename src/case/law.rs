@@ -146,6 +146,12 @@ impl Case {
         self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::BondStrain
     }
 
+    /// Whether its crack grows by the K of its tips on a lattice of points.
+    #[must_use]
+    pub fn is_driven_by_tips(&self) -> bool {
+        self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::TipField
+    }
+
     /// A and p at the body's actual horizon (m).
     ///
     /// A moves over the horizon by [`FatigueLaw::at_horizon`]. A record keeps its measured growth rate (C and m) in a plate

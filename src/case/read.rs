@@ -87,7 +87,7 @@ impl Case {
             allow_extrapolation: fatigue.allow_extrapolation,
             choices,
         };
-        if !case.spends_bond_life() && case.choices.surface_correction.is_none() {
+        if case.is_driven_by_tips() && case.choices.surface_correction.is_none() {
             case.model.take_most_accurate_rim();
         }
         match fatigue.law {

@@ -21,10 +21,10 @@ use std::f64::consts::{PI, TAU};
 use super::TipFrame;
 use super::gradient::gradient_at;
 use super::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use crate::body::Body;
 use crate::body::boundary::{LoadPiece, load_pieces};
 use crate::body::facets::{Facet, facets};
 use crate::body::pre_crack::{places_near, tie_break};
-use crate::body::{Body, Bond};
 use crate::material::Material;
 use crate::solver::field::Layout;
 use crate::specimen::geometry::distance;
@@ -318,11 +318,4 @@ fn without_traction(gradient: &[[f64; 2]; 2], [m1, m2]: [f64; 2], elasticity: &E
 /// `σ_ik ε^aux_ik`.
 fn mutual_energy(stress: &[f64; 3], auxiliary: &[[f64; 2]; 2]) -> f64 {
     stress[0] * auxiliary[0][0] + stress[1] * auxiliary[1][1] + stress[2] * (auxiliary[0][1] + auxiliary[1][0])
-}
-
-/// Number of the first bond that crosses a line and still carries; for tests that a crack is cut through.
-#[must_use]
-pub fn bridge(body: &Body, bonds: &Bonds, line: &CrackLine) -> Option<Bond> {
-    let cut = line.pieces().flat_map(|[a, b]| crate::body::pre_crack::bonds_across(body, a, b));
-    cut.into_iter().find(|&bond| bonds.is_intact(bond))
 }
