@@ -6,15 +6,13 @@ use crate::error::Result;
 
 /// Outer radius of the ring in horizons, where the plate leaves that room.
 const OUTER_HORIZONS: f64 = 6.0;
-/// Outer radius in horizons where rims lie nearer than the ring needs, and are taken into it.
-const OUTER_HORIZONS_WANTED: f64 = 2.4;
 /// Least outer radius in horizons: below it most of the ring lies in the disturbed core.
 const OUTER_HORIZONS_MIN: f64 = 1.5;
 
 /// K_I and K_II of a tip, Pa√m.
 ///
 /// # Errors
-/// No room for a ring between the core of the tip and another tip or a support.
+/// No room for a ring between the core of the tip and whatever is next to it.
 pub fn factors(plate: &CrackedPlate, field: &Field, tip: usize) -> Result<[f64; 2]> {
     let (body, specimen, horizon) = (&plate.body, &field.specimen, plate.body.horizon());
     let mut lines = specimen.crack_lines();
@@ -25,7 +23,6 @@ pub fn factors(plate: &CrackedPlate, field: &Field, tip: usize) -> Result<[f64; 
     lines[end.line].stretch(end.at_last, plate.represented(specimen, tip).excess);
     let surroundings = Surroundings::new(body, specimen, &plate.case.material);
     let clear = plate.clear_radius(specimen, tip).min(OUTER_HORIZONS * horizon);
-    let clear = if clear < OUTER_HORIZONS_MIN * horizon { OUTER_HORIZONS_WANTED * horizon } else { clear };
     let outer = surroundings.radius(body, &lines, end, &ends, clear);
     if outer < OUTER_HORIZONS_MIN * horizon {
         return Err(too_close("there is no room for the ring of the domain integral", position));
