@@ -220,13 +220,13 @@ fn mirror_images_stay_mirror_images() {
     let (up, down) = (path(1.0), path(-1.0));
     assert_eq!(up.curve.len(), down.curve.len());
     for (a, b) in up.curve.iter().zip(&down.curve) {
-        assert!((a.cycles - b.cycles).abs() <= 1e-4 * a.cycles, "{} {}", a.cycles, b.cycles);
+        assert!((a.cycles - b.cycles).abs() <= 1e-6 * a.cycles, "{} {}", a.cycles, b.cycles);
         for tip in 0..2 {
             let ([x, y], [u, v]) = (a.tips[tip].position, b.tips[tip].position);
-            assert!((x - u).abs() < 1e-6 && (y + v).abs() < 1e-6, "{x} {y} against {u} {v}");
+            assert!((x - u).abs() < 1e-9 && (y + v).abs() < 1e-9, "{x} {y} against {u} {v}");
         }
         let [[x, y], [u, v]] = [0, 1].map(|tip: usize| a.tips[tip].position);
-        assert!((x + u).abs() < 1e-6 && (y + v).abs() < 1e-6, "{x} {y} against {u} {v}");
+        assert!((x + u).abs() < 1e-9 && (y + v).abs() < 1e-9, "{x} {y} against {u} {v}");
     }
 }
 
