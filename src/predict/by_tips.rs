@@ -98,7 +98,10 @@ fn row(case: &Case, growth: &TipField, cycles: f64, work: f64, broken_bonds: usi
         growth_rate: fastest.filter(|_| is_open).map_or(f64::NAN, |tip| tip.rate),
         work,
         broken_bonds,
-        tips: tips.iter().map(|&TipNow { position, growth, factors, .. }| TipRecord { position, growth, factors }).collect(),
+        tips: tips
+            .iter()
+            .map(|&TipNow { position, growth, factors, .. }| TipRecord { position, growth, factors: Some(factors) })
+            .collect(),
     }
 }
 
@@ -142,7 +145,7 @@ fn between(last: &CurvePoint, next: CurvePoint, share: f64) -> CurvePoint {
     let tip = |(a, b): (&TipRecord, &TipRecord)| TipRecord {
         position: [0, 1].map(|i| mix(a.position[i], b.position[i])),
         growth: mix(a.growth, b.growth),
-        factors: [0, 1].map(|i| mix(a.factors[i], b.factors[i])),
+        factors: a.factors.zip(b.factors).map(|(a, b)| [0, 1].map(|i| mix(a[i], b[i]))),
     };
     CurvePoint {
         cycles: mix(last.cycles, next.cycles),

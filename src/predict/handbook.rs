@@ -164,7 +164,7 @@ impl<'a> Growth<'a> {
             tips: specimen
                 .tips
                 .iter()
-                .map(|seed| TipRecord { position: ahead(seed), growth, factors: [delta_k / loading.range_share(), 0.0] })
+                .map(|seed| TipRecord { position: ahead(seed), growth, factors: Some([delta_k / loading.range_share(), 0.0]) })
                 .collect(),
         }
     }

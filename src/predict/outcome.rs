@@ -29,8 +29,8 @@ pub struct TipRecord {
     pub position: Point,
     /// Growth since N = 0, m.
     pub growth: f64,
-    /// K_I and K_II at maximum load, Pa√m; NaN where nobody reads them.
-    pub factors: [f64; 2],
+    /// K_I and K_II at maximum load, Pa√m; `None` where nobody reads them.
+    pub factors: Option<[f64; 2]>,
 }
 
 /// One cycle block of a finished run.

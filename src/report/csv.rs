@@ -55,7 +55,7 @@ pub fn a_n(prediction: &Prediction) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
     // Bonds that age by their own strain know no K of a tip.
-    let has_factors = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.factors[0].is_finite());
+    let has_factors = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.factors.is_some());
     for tip in 0..prediction.curve.first().map_or(0, |point| point.tips.len()) {
         let _ = write!(text, ",tip{tip}_x_mm,tip{tip}_y_mm,tip{tip}_growth_mm"); // writing to a String cannot fail
         if has_factors {
@@ -69,7 +69,7 @@ pub fn a_n(prediction: &Prediction) -> String {
             for length in [tip.position[0], tip.position[1], tip.growth] {
                 let _ = write!(text, ",{}", number(length / MM));
             }
-            for factor in tip.factors.iter().filter(|_| has_factors) {
+            for factor in tip.factors.unwrap_or([f64::NAN; 2]).into_iter().filter(|_| has_factors) {
                 let _ = write!(text, ",{}", number(factor / MPA_SQRT_M));
             }
         }

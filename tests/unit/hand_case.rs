@@ -35,7 +35,11 @@ fn a_wrong_law_is_refused_with_the_right_one() {
     };
     let rows: [(String, Vec<&str>, &[&str]); 6] = [
         (only_bonds(&text), bonds.to_vec(), &["fatigue.a = 6450", "handbook", "paris_c_mm_per_cycle and paris_m"]),
-        (text.clone(), vec!["model.method=peridynamics"], &["fatigue.paris_c_mm_per_cycle", "a, p and horizon_mm"]),
+        (
+            text.clone(),
+            vec!["model.method=peridynamics", "fatigue.driver=bond_strain"],
+            &["fatigue.paris_c_mm_per_cycle", "a, p and horizon_mm"],
+        ),
         (text.replace("paris_m = 3\n", ""), vec![], &["fatigue.paris_m", "missing", "together"]),
         (text.clone(), vec!["fatigue.fitted=fitted.toml"], &["fatigue.paris_c_mm_per_cycle", "given twice"]),
         (only_bonds(&text), vec![], &["fatigue.fitted", "no fatigue law", "paris_c_mm_per_cycle and paris_m"]),
