@@ -38,7 +38,8 @@ use steering::{Steering, equivalent_factor};
 const RING_HORIZONS: f64 = 2.5;
 /// Outer radius below which a ring says nothing, in horizons.
 const RING_HORIZONS_MIN: f64 = 1.2;
-/// Growth of a tip in a block at the most, in horizons: life and path hardly change below it (see `tests/verification/tip_field.rs`).
+/// Growth of a tip in a block at the most, in horizons. A compact plate whose crack turns into a hole (spacing 0.2 mm): steps of 0.13,
+/// 0.25 and 0.5 horizons gave lives of 782, 783 and 780 cycles.
 const STEP_HORIZONS: f64 = 0.4;
 /// The same where a rim or another crack lies within the ring, and K changes fast.
 const STEP_NEAR_HORIZONS: f64 = 0.2;

@@ -109,8 +109,7 @@ fn first_kink(case: &Case, run: &Prediction, tip: usize) -> f64 {
 }
 
 /// First kinks of slanted cracks are those of the largest circumferential stress (Erdogan and Sih 1963) of K_I and K_II of the
-/// plate without end, on every lattice and at both tips. The plate is not without end (a/W = 0.15): its K_II/K_I is some percent
-/// larger, which turns a crack at 75° to the load by 0.3° more.
+/// plate without end, on every lattice and at both tips.
 #[test]
 fn first_kinks_are_those_of_circumferential_stress() {
     for beta in [30.0_f64, 60.0, 75.0] {
