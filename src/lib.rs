@@ -9,6 +9,7 @@ pub mod kinds;
 #[cfg(feature = "tables")]
 pub mod tables;
 pub mod units;
+pub mod parallel;
 pub mod quadrature;
 pub mod sealed;
 pub mod input;

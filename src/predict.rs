@@ -4,12 +4,15 @@
 //! that age, choose the cycle block, spend bond life, break spent bonds, follow the crack tips. Command, service and
 //! calibration all come through here.
 
-pub mod checkpoint;
+pub mod bond_rate;
 mod by_tips;
+pub mod checkpoint;
 mod course;
 mod curve;
 mod end_of_life;
+pub mod factor_curve;
 mod handbook;
+pub mod laws;
 pub mod memory;
 mod outcome;
 mod overload;
@@ -50,8 +53,8 @@ use tip_end::{break_through, retire_tips};
 /// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
     match case.model.method {
-        Method::Peridynamics if case.is_driven_by_tips() => by_tips::run(case, observer),
-        Method::Peridynamics => run(case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer),
+        Method::Peridynamics if case.is_driven_by_tips() => by_tips::run(case, None, &laws::growth_law(case)?, observer),
+        Method::Peridynamics => run(case, |horizon| laws::bond_law(case, horizon), &mut Unrecorded, observer),
         Method::Handbook => handbook::run(case, observer),
     }
 }
@@ -63,7 +66,10 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 /// As [`predict`]; [`Error::Input`] if the checkpoint is not one of this case.
 pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
     checkpoint.check(case)?;
-    run_from(Some(checkpoint), case, |horizon| case.fatigue_law(horizon), &mut Unrecorded, observer)
+    if case.is_driven_by_tips() {
+        return by_tips::run(case, Some(checkpoint), &laws::growth_law(case)?, observer);
+    }
+    run_from(Some(checkpoint), case, |horizon| laws::bond_law(case, horizon), &mut Unrecorded, observer)
 }
 
 /// Takes down what a run does, block by block, so that it can be replayed.

@@ -22,6 +22,7 @@ const ASKED: f64 = 3.5;
 pub fn median(bench: &mut Bench<'_>) -> Result<()> {
     let spacing = if bench.effort.quick { 3 } else { 1 };
     let text = CALIBRATION.replace("spacing_mm = 1.0", &format!("spacing_mm = {spacing}.0"));
+    let text = format!("{text}\n[fatigue]\ndriver = \"bond_strain\"\n");
     let calibration = CalibrationCase::from_text(&text, "al2024-t3", at_hand(READINGS))?;
     let about = format!("Virkler panel, 9 to 49.8 mm, {spacing} mm");
     let (fit, fitted) = bench.time(|| calibrate(&calibration, &Silent))?;

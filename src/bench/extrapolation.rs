@@ -12,6 +12,7 @@ use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fatigue::ageing::AgeingBond;
 use crate::fatigue::pieces::{Cut, set_aside};
+use crate::predict::laws::bond_law;
 use crate::predict::{Prediction, Recorder, Silent, run};
 use crate::solver::{Equilibrium, SolverKind, Symmetry};
 use crate::state::Bonds;
@@ -61,7 +62,7 @@ impl History {
     /// As [`crate::predict::predict`].
     pub fn of(case: &Case) -> Result<(Self, Prediction)> {
         let mut history = History::default();
-        let prediction = run(case, |horizon| case.fatigue_law(horizon), &mut history, &Silent)?;
+        let prediction = run(case, |horizon| bond_law(case, horizon), &mut history, &Silent)?;
         Ok((history, prediction))
     }
 

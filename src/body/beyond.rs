@@ -6,6 +6,7 @@
 use super::Body;
 use super::pre_crack::places_near;
 use crate::specimen::Point;
+use crate::specimen::geometry::distance;
 
 /// Pieces of coarser points around a body.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -64,10 +65,20 @@ impl Body {
     /// Whether a place of the material lies within `reach` (m) of what is beyond the body, or there.
     #[must_use]
     pub fn is_near_rim(&self, at: Point, reach: f64) -> bool {
+        self.rim_distance(at, reach).is_some()
+    }
+
+    /// Distance of a place of the material from what is beyond the body, m, if it is at most `reach`; 0 there.
+    #[must_use]
+    pub fn rim_distance(&self, at: Point, reach: f64) -> Option<f64> {
         if self.beyond.pieces() == 0 {
-            return false;
+            return None;
         }
         let mut near = places_near(self, at, at, reach.max(self.lattice.spacing)).peekable();
-        near.peek().is_none() || near.any(|place| self.beyond.is_rim(place))
+        if near.peek().is_none() {
+            return Some(0.0);
+        }
+        let rims = near.filter(|&place| self.beyond.is_rim(place));
+        rims.map(|place| distance(self.lattice.position(place), at)).min_by(f64::total_cmp)
     }
 }

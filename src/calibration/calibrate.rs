@@ -1,6 +1,7 @@
 //! A calibration from its file to the fit, by the model that `model.method` names.
 
 use crate::calibration::case::CalibrationCase;
+use crate::calibration::field_model::{FieldModel, in_terms_of_bonds};
 use crate::calibration::finished::FinishedRuns;
 use crate::calibration::fit::{Fit, FitTask, fit};
 use crate::calibration::model::ForwardModel;
@@ -40,6 +41,11 @@ pub fn calibrate_from(
     let fit_with = |model: &dyn ForwardModel| fit(&task, model);
     let case = &calibration.case;
     match case.model.method {
+        Method::Peridynamics if case.is_driven_by_tips() => {
+            let mut fit = fit_with(&FieldModel::new(case, observer)?)?;
+            in_terms_of_bonds(&mut fit, case)?;
+            Ok(fit)
+        }
         Method::Peridynamics => fit_with(&PdModel::with_finished(case, finished, keep, observer)?),
         Method::Handbook => {
             let mut fit = fit_with(&PowerLaw::new(case.specimen.crack_length, case.stop.crack_length, &delta_k)?)?;

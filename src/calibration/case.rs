@@ -105,11 +105,6 @@ impl CalibrationCase {
             let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
         }
-        if case.is_driven_by_tips() {
-            let problem = "needs no bonds fitted: it grows cracks by C and m of K";
-            let remedy = "fit C and m with model.method = \"handbook\", or A and p with driver = \"bond_strain\"";
-            return Err(input("fatigue.driver", "\"tip_field\"", problem, remedy));
-        }
         check_walker(&case)?;
         let formula = handbook(&case.specimen).ok_or_else(|| {
             input(

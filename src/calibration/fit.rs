@@ -58,6 +58,8 @@ pub struct Fit {
     pub confidence: Confidence,
     /// Paris equivalents of the record.
     pub paris: Paris,
+    /// β of the record's exponent, where cracks grew by K ([`crate::predict::bond_rate`]).
+    pub rate_constant: Option<f64>,
     /// Horizon that A belongs to, m.
     pub horizon: f64,
     /// Actual lattice spacing, m.
@@ -117,7 +119,17 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
              widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
-    Ok(Fit { record, specimens: each, confidence, paris, horizon, spacing, evaluations: runs.len(), warnings })
+    Ok(Fit {
+        record,
+        specimens: each,
+        confidence,
+        paris,
+        rate_constant: None,
+        horizon,
+        spacing,
+        evaluations: runs.len(),
+        warnings,
+    })
 }
 
 /// Each specimen's own fit, reusing (and where needed adding to) the true runs; of a single specimen the record's.

@@ -11,6 +11,7 @@ pub mod columns;
 pub mod confidence;
 pub mod criterion;
 pub mod exponent;
+pub mod field_model;
 pub mod finished;
 pub mod fit;
 #[cfg(feature = "tables")]

@@ -34,7 +34,7 @@ impl PowerLaw {
     }
 
     /// Cycles for A = 1: ∫ da / ΔK^p by Simpson's rule over pairs of intervals.
-    fn curve(&self, p: f64) -> UnitCurve {
+    pub(super) fn curve(&self, p: f64) -> UnitCurve {
         let slowness: Vec<f64> = self.delta_k.iter().map(|k| k.powf(-p)).collect();
         let mut cycles = 0.0;
         let mut curve = vec![(0.0, self.lengths[0])];

@@ -21,6 +21,10 @@ pub struct FittedRecord {
     pub horizon_ratio: f64,
     /// How A moves to another horizon, in words.
     pub scaling: String,
+    /// β of da/dN = β A δ^(1-p/2) (ΔK/E')^p, K by the field of the tip: what the crack that was fitted to grew by. Absent where it
+    /// grew as bonds were spent, and in records of older versions: C and m then stand for its rate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_constant: Option<f64>,
     /// Paris constant of the same material: da/dN = C ΔK^m in mm/cycle and MPa√m.
     pub paris_c_mm_per_cycle: f64,
     /// Paris exponent m (not the same as p).

@@ -168,6 +168,7 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         spacing_mm: tidy(fit.spacing / MM),
         horizon_ratio: case.model.horizon_ratio,
         scaling: "a at another horizon = a * (horizon / horizon_mm)^((p - 2) / 2)".to_owned(),
+        rate_constant: fit.rate_constant,
         paris_c_mm_per_cycle: fit.paris.c,
         paris_m: fit.paris.m,
         paris_m_error: Some(fit.paris.m_error.max(calibration.exponent.error)),

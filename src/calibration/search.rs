@@ -15,9 +15,9 @@ use crate::calibration::surrogate::Surrogate;
 use crate::error::{Error, Result};
 
 /// Exponents a fit can give.
-pub const P_MIN: f64 = 1.0;
+pub const P_MIN: f64 = *crate::fatigue::STEADY_EXPONENTS.start();
 /// See [`P_MIN`].
-pub const P_MAX: f64 = 8.0;
+pub const P_MAX: f64 = *crate::fatigue::STEADY_EXPONENTS.end();
 
 /// p stands still when it moves less than this: the noise of runs (0.1 % in cycles, in which bonds break one by one) moves
 /// the best p by as much, and its standard error is several times larger.

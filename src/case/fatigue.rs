@@ -57,7 +57,13 @@ pub(super) struct Fatigue {
 
 /// Reads `[fatigue]` with the law that `method` needs; a fitted record is looked for from `folder`. Explicit choices go into
 /// `choices`.
-pub(super) fn from_value(value: &Value, method: Method, folder: &Folder, choices: &mut Choices) -> Result<Fatigue> {
+pub(super) fn from_value(
+    value: &Value,
+    method: Method,
+    specimen: &Specimen,
+    folder: &Folder,
+    choices: &mut Choices,
+) -> Result<Fatigue> {
     let input: Input = slice(value, "fatigue")?;
     choices.ageing = input.ageing;
     choices.lattice_direction = input.lattice_direction;
@@ -70,7 +76,7 @@ pub(super) fn from_value(value: &Value, method: Method, folder: &Folder, choices
         "fatigue.delta_k_threshold_mpa_sqrt_m",
         input.delta_k_threshold_mpa_sqrt_m.filter(|value| *value != 0.0),
     )?;
-    let driver = read_driver(&input, method)?;
+    let driver = read_driver(&input, method, specimen)?;
     let settings = FatigueSettings {
         driver,
         ageing: choices.ageing.unwrap_or(Ageing::CrackTip),
@@ -95,24 +101,9 @@ pub(super) fn from_value(value: &Value, method: Method, folder: &Folder, choices
     Ok(Fatigue { settings, law: law.read(method, settings.driver, folder)?, allow_extrapolation })
 }
 
-/// The driver asked for, or the one that the constants of the law are for: C and m belong to the K of a tip, A and p to bonds.
-/// Keys of bonds that age do not go with tips that are driven by their K.
-fn read_driver(input: &Input, method: Method) -> Result<Driver> {
-    const KEY: &str = "fatigue.driver";
-    let has_paris_alone = input.paris_m.is_some() && input.p.is_none() && input.fitted.is_none();
-    let driver = input.driver.unwrap_or(if has_paris_alone { Driver::TipField } else { Driver::BondStrain });
-    if method != Method::Peridynamics || driver == Driver::BondStrain {
-        return Ok(driver);
-    }
-    if let Some(p) = input.p.filter(|_| input.paris_m.is_none()) {
-        let problem = "is a constant of bonds, and driver \"tip_field\" paces a crack by the K of its tip";
-        return Err(crate::error::input(
-            "fatigue.p",
-            p,
-            problem,
-            "give paris_c_mm_per_cycle and paris_m, or fitted; or driver = \"bond_strain\"",
-        ));
-    }
+/// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of
+/// bonds that age do not go with tips that are driven by their K.
+fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Driver> {
     let of_bonds = [
         ("ageing", input.ageing.is_some()),
         ("zone_radius_horizons", input.zone_radius_horizons.is_some()),
@@ -125,11 +116,16 @@ fn read_driver(input: &Input, method: Method) -> Result<Driver> {
         ("lattice_direction", input.lattice_direction.is_some()),
         ("finite_horizon", input.finite_horizon.is_some()),
     ];
-    if let Some((key, _)) = of_bonds.iter().find(|(_, given)| *given) {
-        let problem = format!("belongs to bonds that age, and {KEY} is \"{driver}\"");
-        return Err(input_missing(&format!("fatigue.{key}"), problem, "leave it out, or use driver = \"bond_strain\""));
+    let of_bonds = of_bonds.iter().find(|(_, given)| *given);
+    match (input.driver, of_bonds) {
+        (Some(Driver::TipField), Some((key, _))) if method == Method::Peridynamics => {
+            let problem = "belongs to bonds that age, and fatigue.driver is \"tip_field\"";
+            Err(input_missing(&format!("fatigue.{key}"), problem, "leave it out, or use driver = \"bond_strain\""))
+        }
+        (Some(driver), _) => Ok(driver),
+        (None, None) if specimen.has_sharp_tips() => Ok(Driver::TipField),
+        (None, _) => Ok(Driver::BondStrain),
     }
-    Ok(driver)
 }
 
 /// Reads the cycle block: every kind has one key of its own, and no other takes it.

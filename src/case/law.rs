@@ -33,15 +33,16 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
 /// Takes the record as the law of the case. Where the case is silent the record decides; where both speak they must agree.
 pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
     check_record(&record)?;
-    if !case.spends_bond_life() {
+    let by_hand = Method::from_str(&record.method)? == Method::Handbook;
+    if case.model.method == Method::Handbook || by_hand && case.is_driven_by_tips() {
         // C and m belong to ΔK, whatever bonds they were fitted with.
         check_stress_ratio(case, &record)?;
         case.law = LawSource::Fitted(Box::new(record));
         return Ok(());
     }
-    if Method::from_str(&record.method)? == Method::Handbook {
+    if by_hand {
         let problem = "was fitted by hand calculation: it holds C and m, but no A of bonds";
-        let remedy = "calibrate with model.method = \"peridynamics\", or use model.method = \"handbook\" here";
+        let remedy = "calibrate with model.method = \"peridynamics\", or use fatigue.driver = \"tip_field\" here";
         return Err(input("fatigue.fitted", &record.material, problem, remedy));
     }
     let choices = case.choices;
@@ -49,7 +50,23 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
     law.kind = agree("model.bond_law", choices.bond_law, &record.bond_law)?;
     law.kernel = agree("model.kernel", choices.kernel, &record.kernel)?;
     law.rotation = agree("model.rotation", choices.rotation, &record.rotation)?;
-    law.surface_correction = agree("model.surface_correction", choices.surface_correction, &record.surface_correction)?;
+    let correction = agree("model.surface_correction", choices.surface_correction, &record.surface_correction)?;
+    // A record of bonds that aged tells C and m, and K of a tip is read best with the default of its driver.
+    if case.fatigue.driver == Driver::BondStrain || record.rate_constant.is_some() || choices.surface_correction.is_some() {
+        law.surface_correction = correction;
+    }
+    case.model.horizon_ratio = choices.horizon_ratio.unwrap_or(record.horizon_ratio);
+    if case.spends_bond_life() {
+        adopt_ageing(case, &record)?;
+    }
+    check_stress_ratio(case, &record)?;
+    case.law = LawSource::Fitted(Box::new(record));
+    Ok(())
+}
+
+/// The part of a record that says how bonds age.
+fn adopt_ageing(case: &mut Case, record: &FittedRecord) -> Result<()> {
+    let choices = case.choices;
     case.fatigue.ageing = agree("fatigue.ageing", choices.ageing, &record.ageing)?;
     case.fatigue.lattice_direction = agree("fatigue.lattice_direction", choices.lattice_direction, &record.lattice_direction)?;
     case.fatigue.finite_horizon = agree("fatigue.finite_horizon", choices.finite_horizon, &record.finite_horizon)?;
@@ -59,9 +76,6 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
         return Err(disagree("fatigue.zone_radius_horizons", &given.to_string(), &record.zone_radius_horizons.to_string()));
     }
     case.fatigue.zone_radius_horizons = record.zone_radius_horizons;
-    case.model.horizon_ratio = choices.horizon_ratio.unwrap_or(record.horizon_ratio);
-    check_stress_ratio(case, &record)?;
-    case.law = LawSource::Fitted(Box::new(record));
     Ok(())
 }
 
@@ -94,6 +108,11 @@ fn check_stress_ratio(case: &Case, record: &FittedRecord) -> Result<()> {
     Err(input("loading.stress_ratio", case.loading.ratio, problem, remedy))
 }
 
+/// A and p as recorded.
+fn bonds_of(record: &FittedRecord) -> FatigueLaw {
+    FatigueLaw { a: record.a, p: record.p, horizon: record.horizon_mm * MM }
+}
+
 /// E' = E (plane stress) or E/(1-ν²) (plane strain) of the calibration, Pa.
 fn recorded_modulus(record: &FittedRecord) -> Result<f64> {
     let e = record.youngs_modulus_gpa * GPA;
@@ -117,14 +136,14 @@ pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<Str
         let (given, recorded, gamma) = (case.loading.ratio, record.stress_ratio, case.fatigue.walker_gamma);
         lines.push(format!("law calibrated at stress ratio {recorded} used at {given} with walker_gamma = {gamma}: an assumption, not a measurement"));
     }
-    if bonds {
-        lines.extend(material_line(&case.material, record)?);
+    if case.model.method == Method::Peridynamics {
+        lines.extend(material_line(&case.material, record, bonds)?);
     }
     Ok(lines)
 }
 
-/// One line about a plate of other elastic constants than the calibrated one; `None` where they agree.
-fn material_line(material: &Material, record: &FittedRecord) -> Result<Option<String>> {
+/// One line about a plate of other elastic constants than the calibrated one, for bonds or tips; `None` where they agree.
+fn material_line(material: &Material, record: &FittedRecord, bonds: bool) -> Result<Option<String>> {
     let (e, nu) = (material.youngs_modulus / GPA, material.poisson_ratio);
     let same = (e - record.youngs_modulus_gpa).abs() < 1e-9 * e
         && (nu - record.poisson_ratio).abs() < 1e-9
@@ -133,8 +152,9 @@ fn material_line(material: &Material, record: &FittedRecord) -> Result<Option<St
         return Ok(None);
     }
     let factor = (material.plane_modulus() / recorded_modulus(record)?).powf(record.p);
+    let bonds = if bonds { format!(", A times (E'2/E'1)^p = {factor:.4}") } else { String::new() };
     Ok(Some(format!(
-        "law of {} (E {} GPa, nu {}, plane {}) used at E {e} GPa, nu {nu}, plane {}: growth rate per ΔK is kept, A times (E'2/E'1)^p = {factor:.4}",
+        "law of {} (E {} GPa, nu {}, plane {}) used at E {e} GPa, nu {nu}, plane {}: growth rate per ΔK is kept{bonds}",
         record.material, record.youngs_modulus_gpa, record.poisson_ratio, record.plane, material.plane
     )))
 }
@@ -164,10 +184,10 @@ impl Case {
                 let modulus = (self.material.plane_modulus() / recorded_modulus(record)?).powf(record.p);
                 let range = 1.0 - record.stress_ratio.max(0.0);
                 let walker = range.powf(record.p * (1.0 - self.fatigue.walker_gamma));
-                let law = FatigueLaw { a: record.a * modulus * walker, p: record.p, horizon: record.horizon_mm * MM };
-                Ok(law.at_horizon(horizon))
+                let law = bonds_of(record);
+                Ok(FatigueLaw { a: law.a * modulus * walker, ..law }.at_horizon(horizon))
             }
-            // A case of method "peridynamics" is not read with such a law.
+            // What it stands for takes a computation (`predict::laws`).
             LawSource::Paris(_) => Err(missing(Method::Peridynamics, Path::new(""))),
             LawSource::Missing(path) => Err(missing(Method::Peridynamics, path)),
         }
@@ -181,9 +201,14 @@ impl Case {
         match &self.law {
             LawSource::Paris(law) => Ok(*law),
             LawSource::Fitted(record) => {
+                // K of the tip's field and K of the handbook are not quite the same: each law stays with its own.
+                let law = match record.rate_constant.filter(|_| self.is_driven_by_tips()) {
+                    Some(beta) => ParisLaw::of_bonds(&bonds_of(record), beta, recorded_modulus(record)?),
+                    None => ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m },
+                };
                 let range = 1.0 - record.stress_ratio.max(0.0);
-                let walker = range.powf(record.paris_m * (1.0 - self.fatigue.walker_gamma));
-                Ok(ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE * walker, m: record.paris_m })
+                let walker = range.powf(law.m * (1.0 - self.fatigue.walker_gamma));
+                Ok(ParisLaw { c: law.c * walker, m: law.m })
             }
             LawSource::Inline(_) => Err(missing(Method::Handbook, Path::new(""))),
             LawSource::Missing(path) => Err(missing(Method::Handbook, path)),

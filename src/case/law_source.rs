@@ -1,6 +1,7 @@
 //! The law of `[fatigue]`: inline constants, or a record that `perilife calibrate` wrote.
 //!
-//! The constants of both methods may stand side by side, so that one file serves `model.method` either way.
+//! A law of bonds (A, p) and one over K (C, m) may stand side by side: a driver takes its own kind, and where only the other is
+//! given, what that stands for.
 
 use toml::Value;
 
@@ -9,7 +10,7 @@ use super::{LawSource, law};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::paris::ParisLaw;
-use crate::fatigue::{Driver, FatigueLaw};
+use crate::fatigue::{Driver, FatigueLaw, STEADY_EXPONENTS, unsteady};
 use crate::input::{Folder, LENGTH, number, slice};
 use crate::units::MM_PER_CYCLE;
 
@@ -38,17 +39,17 @@ impl LawKeys {
             }
             return read_record(fitted, folder).map(Some);
         }
-        let (bond, paris) = (self.bond_law()?, self.paris_law()?);
-        match method {
-            Method::Peridynamics if driver == Driver::TipField => Ok(paris.map(LawSource::Paris)),
-            Method::Peridynamics => match (bond, paris) {
-                (None, Some(_)) => Err(wrong_law(self.paris(), method)),
-                (bond, _) => Ok(bond.map(LawSource::Inline)),
-            },
-            Method::Handbook => match (bond, paris) {
-                (Some(_), None) => Err(wrong_law(self.bond(), method)),
-                (_, paris) => Ok(paris.map(LawSource::Paris)),
-            },
+        let bond = self.bond_law()?.map(LawSource::Inline);
+        let paris = self.paris_law()?.map(LawSource::Paris);
+        let by_bonds = method == Method::Peridynamics && driver == Driver::BondStrain;
+        let law = if by_bonds { bond.or(paris) } else { paris.or(bond) };
+        // What a driver cannot use as it is has to be translated.
+        match &law {
+            Some(LawSource::Inline(law)) if !by_bonds && !STEADY_EXPONENTS.contains(&law.p) => Err(unsteady("fatigue.p", law.p)),
+            Some(LawSource::Paris(law)) if by_bonds && !STEADY_EXPONENTS.contains(&law.m) => {
+                Err(unsteady("fatigue.paris_m", law.m))
+            }
+            _ => Ok(law),
         }
     }
 
@@ -91,22 +92,6 @@ fn together<const N: usize>(keys: Vec<(&str, Option<f64>)>, remedy: &str) -> Res
         *slot = value.ok_or_else(|| input_missing(&format!("fatigue.{key}"), format!("is missing{why}"), remedy))?;
     }
     Ok(Some(values))
-}
-
-/// Constants of the other method than the one that is to run; `keys` holds what was given.
-fn wrong_law(keys: Vec<(&str, Option<f64>)>, method: Method) -> Error {
-    let (key, value) = keys.into_iter().find_map(|(key, value)| Some((key, value?))).unwrap_or_default();
-    let (problem, remedy) = match method {
-        Method::Peridynamics => (
-            "is a constant of hand calculation, and method \"peridynamics\" needs the law of its bonds where fatigue.driver is \"bond_strain\"",
-            "give fitted, or a, p and horizon_mm; or set fatigue.driver = \"tip_field\", or model.method = \"handbook\"",
-        ),
-        Method::Handbook => (
-            "is a constant of bonds, and method \"handbook\" needs the Paris law",
-            "give fitted, or paris_c_mm_per_cycle and paris_m; or set model.method = \"peridynamics\"",
-        ),
-    };
-    input(&format!("fatigue.{key}"), value, problem, remedy)
 }
 
 /// Reads a `fitted.toml`; one that does not exist (yet) is [`LawSource::Missing`].

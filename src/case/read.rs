@@ -71,7 +71,7 @@ impl Case {
         let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
         let refinement = sections.given("refinement");
         let model = model::from_values(sections.optional("model"), refinement, &specimen, &material, &mut choices)?;
-        let fatigue = fatigue::from_value(sections.optional("fatigue"), model.method, folder, &mut choices)?;
+        let fatigue = fatigue::from_value(sections.optional("fatigue"), model.method, &specimen, folder, &mut choices)?;
         let stop = fatigue::stop_from_value(sections.optional("stop"), &specimen)?;
         let mut case = Case {
             name: name.to_owned(),

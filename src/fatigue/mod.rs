@@ -14,6 +14,7 @@ pub mod pieces;
 pub mod remaining_life;
 pub mod tip_strain;
 
+use crate::error::{Error, input};
 use finite_horizon::FiniteHorizon;
 use lattice_direction::LatticeDirection;
 
@@ -53,6 +54,17 @@ crate::kinds! {
         UntilNextBreak = "until_next_break": "cycles until the next bond, or the next bonds_per_block bonds, are spent",
         Fixed = "fixed": "block_cycles cycles",
     }
+}
+
+/// Exponents p of bonds for which a crack was seen to grow steadily, so that its rate is known (`predict::bond_rate`).
+pub const STEADY_EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=8.0;
+
+/// The error of an exponent outside [`STEADY_EXPONENTS`].
+#[must_use]
+pub fn unsteady(key: &str, p: f64) -> Error {
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    let problem = format!("is outside {low} to {high}, where it is known how fast a crack grows whose bonds age with it");
+    input(key, p, problem, "give paris_c_mm_per_cycle and paris_m, or fatigue.driver = \"bond_strain\"")
 }
 
 /// Constants of the law and the horizon they belong to.

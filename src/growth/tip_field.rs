@@ -35,9 +35,14 @@ use readings::Readings;
 use steering::{Steering, equivalent_factor};
 
 /// Outer radius of the ring, in horizons.
-const RING_HORIZONS: f64 = 2.5;
+const RING_HORIZONS: f64 = 3.0;
 /// Outer radius below which a ring says nothing, in horizons.
 const RING_HORIZONS_MIN: f64 = 1.2;
+/// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.06 to 0.08 at ν = 0.3, 0.04 at ν = 0.1,
+/// whatever the spacing.
+const AHEAD_HORIZONS: f64 = 0.15;
+/// Distance from coarser points, in horizons, at which a run ends: the ring, which must not reach them, would be too narrow.
+const RING_HORIZONS_IN_LEVELS: f64 = 1.5;
 /// Growth of a tip in a block at the most, in horizons. A compact plate whose crack turns into a hole (spacing 0.2 mm): steps of 0.13,
 /// 0.25 and 0.5 horizons gave lives of 782, 783 and 780 cycles.
 const STEP_HORIZONS: f64 = 0.4;
@@ -101,6 +106,15 @@ pub struct TipFieldState {
     pub tips: Vec<Tip>,
 }
 
+impl TipFieldState {
+    /// Whether it may be a later state of the same cracks.
+    #[must_use]
+    pub fn fits(&self, start: &TipFieldState) -> bool {
+        let ends = |state: &TipFieldState| state.tips.iter().map(|tip| tip.end).collect::<Vec<_>>();
+        self.lines.len() == start.lines.len() && ends(self) == ends(start)
+    }
+}
+
 /// Why growth ends by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
@@ -156,10 +170,10 @@ pub struct TipField<'a> {
 }
 
 impl<'a> TipField<'a> {
-    /// The plate with its initial cracks in equilibrium.
+    /// The plate with its initial cracks, before its first equilibrium ([`TipField::open`]).
     ///
     /// # Errors
-    /// A specimen without sharp crack, cracks that cut the plate in two, no equilibrium.
+    /// A specimen without sharp crack, cracks that cut the plate in two.
     pub fn start(case: &'a Case, plate: &'a Plate, law: &'a dyn GrowthLaw) -> Result<Self> {
         let specimen = &case.specimen;
         let tip = |tip: usize| {
@@ -188,7 +202,7 @@ impl<'a> TipField<'a> {
         }
         let surroundings = Surroundings::new(body, specimen, &case.material);
         let equilibrium = balance(case, plate, &bonds);
-        let mut growth = TipField {
+        Ok(TipField {
             case,
             plate,
             law,
@@ -199,15 +213,53 @@ impl<'a> TipField<'a> {
             displacement: Vec::new(),
             solves: 0,
             iterations: 0,
-        };
-        growth.settle(&[])?;
-        growth.read_factors();
-        if let Some(tip) = growth.state.tips.iter().find(|tip| !tip.equivalent().is_finite()) {
-            let [x, y] = growth.position(tip).map(|metres| metres / MM);
-            let problem = format!("{}: no stress intensity can be read at the crack tip at ({x:.4}, {y:.4}) mm", case.name);
+        })
+    }
+
+    /// The first equilibrium and its factors.
+    ///
+    /// # Errors
+    /// No equilibrium, or no factor where a tip is too near to something else.
+    pub fn open(&mut self) -> Result<()> {
+        self.settle(&[])?;
+        self.read_factors();
+        if let Some(tip) = self.state.tips.iter().find(|tip| !tip.equivalent().is_finite()) {
+            let [x, y] = self.position(tip).map(|metres| metres / MM);
+            let problem = format!("{}: no stress intensity can be read at the crack tip at ({x:.4}, {y:.4}) mm", self.case.name);
             return Err(Error::Mechanics(format!("{problem}; give a smaller model.spacing_mm")));
         }
-        Ok(growth)
+        Ok(())
+    }
+
+    /// Where an earlier run stood when it began anew ([`TipField::begin_anew`]), in place of the start; whether that fits.
+    pub fn go_on_from(
+        &mut self,
+        state: TipFieldState,
+        broken: &[Bond],
+        displacement: Vec<f64>,
+        (solves, iterations): (usize, usize),
+    ) -> bool {
+        let body = &self.plate.body;
+        broken.iter().for_each(|&bond| self.bonds.cut(body, bond));
+        self.state = state;
+        (self.solves, self.iterations) = (solves, iterations);
+        self.displacement = displacement;
+        self.begin_anew().is_ok()
+    }
+
+    /// Builds the solver anew from the bonds, so that what follows depends on them, on the state and on the displacement alone.
+    ///
+    /// # Errors
+    /// No equilibrium.
+    pub fn begin_anew(&mut self) -> Result<()> {
+        self.equilibrium = balance(self.case, self.plate, &self.bonds);
+        self.settle(&[])
+    }
+
+    /// Points and bonds.
+    #[must_use]
+    pub fn body(&self) -> &Body {
+        &self.plate.body
     }
 
     /// Work of the loads, J.
@@ -268,7 +320,8 @@ impl<'a> TipField<'a> {
         let body = &self.plate.body;
         let horizon = body.horizon();
         let Some(fastest) = self.fastest() else { return none(End::NothingGrows, self.work()) };
-        let at_rim = |tip: &Tip| tip.state == TipState::Active && body.is_near_rim(self.position(tip), RING_HORIZONS * horizon);
+        let at_rim =
+            |tip: &Tip| tip.state == TipState::Active && body.is_near_rim(self.position(tip), RING_HORIZONS_IN_LEVELS * horizon);
         if self.state.tips.iter().any(at_rim) {
             return none(End::LeftRefinement, self.work());
         }
@@ -431,9 +484,13 @@ impl<'a> TipField<'a> {
             let (bonds, displacement) = (&self.bonds, &*self.displacement);
             let plate = Balanced { body, bonds, displacement, load: maximum, lines: &lines };
             let radius = self.surroundings.radius(body, &lines, end, &active, RING_HORIZONS * horizon);
-            self.surroundings.factors(plate, end, radius.max(RING_HORIZONS_MIN * horizon)).factors
+            let clear = body.rim_distance(self.state.lines[end.line].end(end.at_last), radius).unwrap_or(radius);
+            let ring = self.surroundings.factors(plate, end, clear.max(RING_HORIZONS_MIN * horizon));
+            // Beside a rim what is read as a shift may be something else.
+            let ahead = if ring.ahead.abs() < AHEAD_HORIZONS * horizon { ring.ahead } else { 0.0 };
+            (ring.factors, excess + ahead)
         };
-        let mut factors: Vec<[f64; 2]> = active.iter().zip(&excesses).map(read).collect();
+        let (mut factors, excesses): (Vec<[f64; 2]>, Vec<f64>) = active.iter().zip(&excesses).map(read).unzip();
         pair_twins(&mut factors);
         let mut factors = factors.into_iter().zip(excesses);
         for tip in self.state.tips.iter_mut() {
@@ -446,7 +503,7 @@ impl<'a> TipField<'a> {
             let ahead = self.state.lines[tip.end.line].direction(tip.end.at_last);
             tip.steering.read(read, tip.growth, ahead, horizon);
             tip.readings.take(equivalent_factor(read), tip.growth, excess, tip.steering.corner(), horizon);
-            // Both modes alike: what the cut bonds lack or have too much is length.
+            // Both modes alike: what the tip's field lacks or has too much is length.
             let share = tip.readings.share(excess, tip.length + tip.growth);
             let factors = read.map(|factor| share * factor);
             let near = tip.growth > 0.0 && is_near_rim(specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);

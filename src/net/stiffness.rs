@@ -41,6 +41,7 @@ impl Stiffness {
         let trouble = |e: String| Error::Mechanics(format!("the stiffness matrix could not be built: {e}"));
         let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(free.len(), free.len(), &entries)
             .map_err(|e| trouble(format!("{e:?}")))?;
+        crate::parallel::fix_parts();
         let symbolic = SymbolicLlt::try_new(matrix.symbolic(), faer::Side::Lower).map_err(|e| trouble(format!("{e:?}")))?;
         let (columns, rows) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx());
         let slot = |row: usize, column: usize| -> u32 {

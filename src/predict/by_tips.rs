@@ -2,13 +2,14 @@
 
 use std::time::Instant;
 
+use super::checkpoint::{self, Checkpoint};
 use super::end_of_life::{End, first_end};
 use super::snapshot::Album;
 use super::{CurvePoint, Observer, Prediction, Progress, RunFigures, StopReason, TipRecord, memory, plastic_zone};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fatigue::crack_tip::TipState;
-use crate::fatigue::growth_law::Walker;
+use crate::fatigue::growth_law::GrowthLaw;
 use crate::growth::TipNow;
 use crate::growth::plate::Plate;
 use crate::growth::tip_field::steering::equivalent_factor;
@@ -17,31 +18,57 @@ use crate::growth::tip_field::{self, Step, TipField};
 /// Relative difference between lengths that are equal but for round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Predicts the a-N curve of a case of driver `tip_field`.
+/// Blocks after which a run begins anew from its bonds, so that it can be taken up there.
+const BLOCKS_ANEW: usize = 10;
+
+/// Predicts the a-N curve of a case of driver `tip_field` with a law over K, from its start or from where an earlier run stood.
 ///
 /// # Errors
 /// As [`super::predict`], and a specimen without sharp crack.
-pub(super) fn run(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
+pub(super) fn run(
+    case: &Case,
+    checkpoint: Option<Checkpoint>,
+    law: &dyn GrowthLaw,
+    observer: &dyn Observer,
+) -> Result<Prediction> {
     let started = Instant::now();
+    let hash = checkpoint::hash(case);
     let mut case = case.clone();
     case.model.spacing = case.model.fitting_spacing(&case.specimen);
     let case = &case;
-    let law = Walker { paris: case.paris_law()?, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold };
     let plate = Plate::build(&case.specimen, &case.specimen, &case.material, &case.model)?;
-    let mut growth = TipField::start(case, &plate, &law)?;
+    let mut growth = TipField::start(case, &plate, law)?;
     let end = first_end(case);
     let until = end.map_or(f64::INFINITY, |end| end.crack_length);
 
     let mut warnings = plate.warnings();
     warnings.extend(growth.warnings());
-    let mut curve = vec![row(case, &growth, 0.0, growth.work(), 0)];
-    let mut album = Album::default();
-    album.open(&plate, &growth.bonds, &growth.displacement, &curve[0]);
-    album.show(&plate, observer);
+    let (mut curve, mut album, earlier_s) = match checkpoint {
+        Some(checkpoint) => checkpoint.restore_tips(&mut growth)?,
+        None => {
+            growth.open()?;
+            let curve = vec![row(case, &growth, 0.0, growth.work(), 0)];
+            let mut album = Album::default();
+            album.open(&plate, &growth.bonds, &growth.displacement, &curve[0]);
+            album.show(&plate, observer);
+            (curve, album, 0.0)
+        }
+    };
+    // A run that was taken up stands where the earlier one had begun anew.
+    let mut anew = curve.len();
     let stop = loop {
         let last = &curve[curve.len() - 1];
         if let Some(reason) = reason_to_stop(case, end, &growth, last) {
             break reason;
+        }
+        if curve.len() >= anew + BLOCKS_ANEW {
+            anew = curve.len();
+            let elapsed_s = earlier_s + started.elapsed().as_secs_f64();
+            observer.may_keep(&|| Checkpoint::of_tips(hash, &growth, (&curve, &album), &progress(case, until, last), elapsed_s));
+            if let Err(error) = growth.begin_anew() {
+                tracing::debug!(%error, "no equilibrium from the bonds alone");
+                break StopReason::NoConvergence;
+            }
         }
         let step = growth.advance(last.cycles, until);
         let (next, ended) = after(case, &growth, last, &step);
@@ -77,7 +104,7 @@ pub(super) fn run(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
             iterations: growth.iterations,
             spacing: body.lattice.spacing,
             horizon: body.horizon(),
-            wall_s: started.elapsed().as_secs_f64(),
+            wall_s: earlier_s + started.elapsed().as_secs_f64(),
             memory_mb: memory::peak_mb(),
         },
         curve,

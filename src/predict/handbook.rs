@@ -6,7 +6,9 @@
 use std::time::Instant;
 
 use super::end_of_life::{End, first_end};
-use super::{CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, StopReason, TipRecord, memory, plastic_zone};
+use super::{
+    CurvePoint, Observer, PointGrid, Prediction, Progress, RunFigures, StopReason, TipRecord, laws, memory, plastic_zone,
+};
 use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::ageing::strain_share;
@@ -75,7 +77,7 @@ impl<'a> Growth<'a> {
     fn of(case: &'a Case) -> Result<Self> {
         let formula = handbook(&case.specimen)
             .ok_or_else(|| input_missing("model.method", "\"handbook\" has no K(a) for this specimen", "use \"peridynamics\""))?;
-        Ok(Growth { case, formula, law: case.paris_law()?, share: strain_share(&case.loading, &case.fatigue) })
+        Ok(Growth { case, formula, law: laws::paris_law(case)?, share: strain_share(&case.loading, &case.fatigue) })
     }
 
     fn k_max(&self, crack_length: f64) -> f64 {

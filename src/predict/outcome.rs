@@ -34,7 +34,7 @@ pub struct TipRecord {
 }
 
 /// One cycle block of a finished run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint {
     /// Cycles since N = 0.
     pub cycles: f64,

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use crate::bond_law::BondLawKind;
 use crate::case::{Case, LawSource, Method};
 use crate::net::Refinement;
+use crate::predict::laws::paris_law;
 use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
 use crate::specimen::handbook::handbook;
@@ -134,7 +135,13 @@ const BEYOND_SPRINGS: &str = "chosen: springs alone cannot have this Poisson's r
 
 fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> String {
     let given = case.echo.get("model").and_then(|model| model.get(key)).is_some();
-    let recorded = matches!(case.law, LawSource::Fitted(_)) && case.spends_bond_life() && FIXED_BY_RECORD.contains(&key);
+    let recorded = match &case.law {
+        LawSource::Fitted(record) => {
+            FIXED_BY_RECORD.contains(&key)
+                && (key != "surface_correction" || case.spends_bond_life() || record.rate_constant.is_some())
+        }
+        _ => false,
+    };
     let source = match (given, recorded) {
         (true, _) => "given in the case",
         (false, true) => "as in the fitted record: the law holds for this choice only",
@@ -173,17 +180,18 @@ const FIXED_BY_RECORD: [&str; 5] = ["bond_law", "kernel", "rotation", "surface_c
 fn law(case: &Case, prediction: &Prediction) -> Value {
     let hand = !case.spends_bond_life();
     let used = case.fatigue_law(prediction.figures.horizon).ok().filter(|_| !hand).map(|law| law.a);
-    let c_used = case.paris_law().ok().filter(|_| hand).map(|law| clean(law.c / MM_PER_CYCLE));
+    let c_used = paris_law(case).ok().filter(|_| hand).map(|law| clean(law.c / MM_PER_CYCLE));
     match &case.law {
         LawSource::Inline(law) => {
-            json!({ "source": "inline", "a": law.a, "p": law.p, "horizon_mm": clean(law.horizon / MM), "a_used": used })
+            json!({ "source": "inline", "a": law.a, "p": law.p, "horizon_mm": clean(law.horizon / MM), "a_used": used,
+                "paris_c_used_mm_per_cycle": c_used })
         }
         LawSource::Paris(law) => json!({
             "source": "inline", "paris_c_mm_per_cycle": clean(law.c / MM_PER_CYCLE), "paris_m": law.m,
             "paris_c_used_mm_per_cycle": c_used,
         }),
         LawSource::Fitted(record) => json!({
-            "source": "fitted", "a": record.a, "p": record.p, "horizon_mm": record.horizon_mm, "a_used": used,
+            "source": "fitted", "a": record.a, "p": record.p, "rate_constant": record.rate_constant, "horizon_mm": record.horizon_mm, "a_used": used,
             "paris_c_mm_per_cycle": record.paris_c_mm_per_cycle, "paris_m": record.paris_m,
             "paris_m_error": record.paris_m_error, "paris_c_used_mm_per_cycle": c_used, "p_error": record.p_error,
             "pivot_delta_k_mpa_sqrt_m": record.pivot_delta_k_mpa_sqrt_m,

@@ -271,6 +271,12 @@ impl Specimen {
         Some(LineEnd { line, at_last: self.cracks[line].to == seed.position })
     }
 
+    /// Whether it has tips, and all of them are those of sharp cracks.
+    #[must_use]
+    pub fn has_sharp_tips(&self) -> bool {
+        !self.tips.is_empty() && (0..self.tips.len()).all(|tip| self.line_end(tip).is_some())
+    }
+
     /// Moves every tip, and the end of its crack with it, by its growth, m; negative growth makes a crack shorter. The
     /// crack length stays the one that was read.
     pub fn move_tips(&mut self, growth_of_tips: &[f64]) {

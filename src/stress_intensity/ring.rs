@@ -13,6 +13,10 @@
 //! The auxiliary field is continued across ±π to the faces of the real crack: angles are counted from x₁ to the face on the
 //! side of a point, wherever it lies. It stays in equilibrium there and only its tractions on the faces are not zero.
 //!
+//! Outside its core a nonlocal body has the field of a sharp crack whose tip lies a little ahead of where the cut bonds end. A field
+//! shifted by x is `u - x u_,1`, so with an auxiliary field `U` whose derivative `U_,1` is that of K^aux = 1 (the term r^{3/2} of
+//! Williams' series, which is orthogonal to all others of the field) the same integral gives K x.
+//!
 //! The bonds near the tip, where the displacement of a nonlocal body is not that of a sharp crack, lie inside the ring and take
 //! no part.
 
@@ -31,14 +35,24 @@ use crate::specimen::geometry::distance;
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen, Support};
 use crate::state::Bonds;
 
-/// Inner radius over outer radius.
-const INNER_SHARE: f64 = 0.4;
+/// Inner radius over outer radius. With these and the smooth weight an exact field on rows at 0, 22.5 and 45° is read 0.1 % low on a
+/// ring of three horizons, wherever its tip lies between the points, within 0.02 %.
+const INNER_SHARE: f64 = 0.3;
+/// Inner radius at least, in horizons, where that leaves half of the ring.
+const INNER_HORIZONS: f64 = 0.75;
 /// Distance from a tip, in horizons, within which faces are not read: the core is not that of a sharp crack.
 const CORE_HORIZONS: f64 = 0.75;
 /// Pieces of a crack face per spacing.
 const PIECES_PER_SPACING: f64 = 2.0;
 /// Room left, in horizons, between a ring and what it cannot take in: another tip, a support.
 const ROOM_HORIZONS: f64 = 0.2;
+
+/// Auxiliary fields: of K_I and K_II, and those whose derivatives over x₁ they are.
+const AUXILIARY: [(i32, Symmetry); 4] =
+    [(1, Symmetry::Opening), (1, Symmetry::Sliding), (3, Symmetry::Opening), (3, Symmetry::Sliding)];
+
+/// A value for each of the [`AUXILIARY`] fields.
+type PerAuxiliary = [f64; 4];
 
 /// What does not change around the tips of a plate.
 #[derive(Debug, Clone)]
@@ -72,6 +86,8 @@ pub struct Balanced<'a> {
 pub struct RingFactors {
     /// K_I and K_II, Pa√m.
     pub factors: [f64; 2],
+    /// How far ahead of the end of the line the field has its tip, m.
+    pub ahead: f64,
     /// Outer radius of the ring, m.
     pub radius: f64,
 }
@@ -115,9 +131,10 @@ impl Surroundings {
         let line = &lines[end.line];
         let frame = TipFrame { origin: line.end(end.at_last), ahead: line.direction(end.at_last), line: 0.0 };
         let own = Behind::new(body, line, end.at_last, &frame);
-        let around = Around { surroundings: self, plate, frame, own, inner: INNER_SHARE * outer, outer };
-        let mut sums = [0.0; 2];
-        let mut add = |part: [f64; 2]| sums = [sums[0] + part[0], sums[1] + part[1]];
+        let inner = (INNER_SHARE * outer).max((INNER_HORIZONS * body.horizon()).min(0.5 * outer));
+        let around = Around { surroundings: self, plate, frame, own, inner, outer };
+        let mut sums: PerAuxiliary = [0.0; 4];
+        let mut add = |part: PerAuxiliary| sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
         for place in places_near(body, frame.origin, frame.origin, outer) {
             add(around.area(place));
         }
@@ -136,7 +153,9 @@ impl Surroundings {
                 });
             }
         }
-        RingFactors { factors: sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum), radius: outer }
+        let [k_i, k_ii, shifted_i, shifted_ii] = sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum);
+        let ahead = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
+        RingFactors { factors: [k_i, k_ii], ahead, radius: outer }
     }
 }
 
@@ -215,18 +234,20 @@ struct Around<'a> {
 }
 
 impl Around<'_> {
-    /// q and its slope over r: 1 - 3t² + 2t³ over the ring.
+    /// q and its slope over r: 1 - 10t³ + 15t⁴ - 6t⁵ over the ring, whose curvature is continuous at both of its rims.
     fn weight(&self, r: f64) -> (f64, f64) {
         let t = ((r - self.inner) / (self.outer - self.inner)).clamp(0.0, 1.0);
-        (1.0 - t * t * (3.0 - 2.0 * t), -6.0 * t * (1.0 - t) / (self.outer - self.inner))
+        let [square, rest] = [t * t, 1.0 - t];
+        (1.0 - t * square * (10.0 - 15.0 * t + 6.0 * square), -30.0 * square * rest * rest / (self.outer - self.inner))
     }
 
-    /// Gradients of both auxiliary displacements, K = 1, in the frame.
-    fn auxiliary(&self, r: f64, theta: f64) -> [[[f64; 2]; 2]; 2] {
+    /// Gradients of the auxiliary displacements in the frame.
+    fn auxiliary(&self, r: f64, theta: f64) -> [[[f64; 2]; 2]; 4] {
         let Elasticity { kappa, shear_modulus, .. } = self.surroundings.elasticity;
-        [Symmetry::Opening, Symmetry::Sliding].map(|symmetry| {
-            let scale = coefficient_of_unit_factor(symmetry) / (2.0 * shear_modulus);
-            Eigenfunction { order: 1, symmetry }.gradient(kappa, r, theta).map(|row| row.map(|g| scale * g))
+        AUXILIARY.map(|(order, symmetry)| {
+            // The derivative over x₁ of the function of order 3 is 3/2 of that of order 1.
+            let scale = coefficient_of_unit_factor(symmetry) / (2.0 * shear_modulus) / if order == 3 { 1.5 } else { 1.0 };
+            Eigenfunction { order, symmetry }.gradient(kappa, r, theta).map(|row| row.map(|g| scale * g))
         })
     }
 
@@ -236,26 +257,26 @@ impl Around<'_> {
     }
 
     /// P_j q_,j of a point times its area.
-    fn area(&self, place: usize) -> [f64; 2] {
+    fn area(&self, place: usize) -> PerAuxiliary {
         let lattice = &self.plate.body.lattice;
         let (r, theta) = self.own.polar(self.frame.local(lattice.position(place)));
         let (_, slope) = self.weight(r);
         if slope == 0.0 {
-            return [0.0; 2];
+            return [0.0; 4];
         }
-        let Some(gradient) = self.gradient(place) else { return [0.0; 2] };
+        let Some(gradient) = self.gradient(place) else { return [0.0; 4] };
         let q = [slope * theta.cos(), slope * theta.sin()];
         let area = lattice.spacing * lattice.spacing;
         self.auxiliary(r, theta).map(|auxiliary| area * self.interaction(&gradient, &auxiliary, q))
     }
 
     /// -P_j m_j q of a piece of free rim times its length.
-    fn rim(&self, facet: &Facet, is_free: bool) -> [f64; 2] {
+    fn rim(&self, facet: &Facet, is_free: bool) -> PerAuxiliary {
         let lattice = &self.plate.body.lattice;
         let inside = [0, 1].map(|i| facet.at[i] - 1e-6 * lattice.spacing * facet.normal[i]);
         let (r, theta) = self.own.polar(self.frame.local(inside));
         let (q, _) = self.weight(r);
-        let Some(gradient) = self.place_behind(facet).and_then(|place| self.gradient(place)) else { return [0.0; 2] };
+        let Some(gradient) = self.place_behind(facet).and_then(|place| self.gradient(place)) else { return [0.0; 4] };
         let normal @ [m1, m2] = self.frame.vector(facet.normal);
         let elasticity = &self.surroundings.elasticity;
         let gradient = if is_free { without_traction(&gradient, normal, elasticity) } else { gradient };
@@ -269,7 +290,7 @@ impl Around<'_> {
     }
 
     /// The same of a load on the rim: -t_i u^aux_i,1 q.
-    fn load(&self, piece: &LoadPiece) -> [f64; 2] {
+    fn load(&self, piece: &LoadPiece) -> PerAuxiliary {
         let (r, theta) = self.own.polar(self.frame.local(piece.facet.at));
         let (q, _) = self.weight(r);
         let scale = self.plate.load / self.surroundings.thickness;

@@ -30,6 +30,7 @@ spacing_mm = 1.0
 a = 6450.0
 p = 2.86
 horizon_mm = 3.015
+driver = "bond_strain"
 [stop]
 crack_length_mm = 32.0
 "#;

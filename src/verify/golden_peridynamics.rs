@@ -17,7 +17,7 @@ use crate::units::MM;
 /// Bound of the golden lives by peridynamics, percent.
 const BOUND: f64 = 5.0;
 /// Any A will do: lives are scaled to the one that fits.
-const BONDS: [&str; 3] = ["model.method=peridynamics", "fatigue.a=1e4", "fatigue.horizon_mm=3.015"];
+const BONDS: [&str; 4] = ["model.method=peridynamics", "fatigue.driver=bond_strain", "fatigue.a=1e4", "fatigue.horizon_mm=3.015"];
 /// Lengths at which a panel is compared with its hand calculation, mm apart.
 const STEP_MM: usize = 1;
 

@@ -8,6 +8,7 @@ use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::Result;
 use crate::fatigue::ageing::AgeingBond;
+use crate::predict::laws::bond_law;
 use crate::predict::{Prediction, Recorder, Silent, run};
 use crate::specimen::Point;
 use crate::specimen::geometry::distance;
@@ -38,7 +39,7 @@ impl Recorder for Broken {
 /// As [`run`].
 pub fn grow(case: &Case) -> Result<Grown> {
     let mut broken = Broken::default();
-    let run = run(case, |horizon| case.fatigue_law(horizon), &mut broken, &Silent)?;
+    let run = run(case, |horizon| bond_law(case, horizon), &mut broken, &Silent)?;
     let (specimen, model) = (&case.specimen, &case.model);
     let body = Body::build(specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
     // A run starts with shorter cracks and grows them to their length: that is no growth.

@@ -100,6 +100,7 @@ stress_ratio = 0.2
 a = 1.6e4
 p = 2.87
 horizon_mm = 3.015
+driver = "bond_strain"
 [stop]
 crack_length_mm = 60.0
 "#;

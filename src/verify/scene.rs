@@ -30,6 +30,7 @@ spacing_mm = 1.0
 a = 1.6e4
 p = 2.87
 horizon_mm = 3.015
+driver = "bond_strain"
 "#;
 
 /// Turns [`PANEL`] into one small enough for fine lattices, its crack long enough for wide horizons.

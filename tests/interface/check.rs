@@ -46,7 +46,8 @@ fn a_tip_held_by_a_no_fail_zone_is_told() {
     assert_eq!(stderr.matches("crack tip at").count(), 2, "the other crack is free: {stderr}");
     // Where no tip can grow there is no result.
     let only = "specimen.cracks=[{ from_mm = [-15, -57], to_mm = [5, -57] }]";
-    let output = perilife(dir.path(), &["predict", "held.toml", "--set", only, "--out", "run"]);
+    let bonds = "fatigue.driver=bond_strain";
+    let output = perilife(dir.path(), &["predict", "held.toml", "--set", only, "--set", bonds, "--out", "run"]);
     let (stdout, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(3), "{stdout}{stderr}");
     assert!(stderr.contains("load or support") && stderr.contains("held: "), "{stderr}");
@@ -72,7 +73,7 @@ fn mechanics_that_show_before_a_run_are_wrong_input() {
 fn coarse_models_are_told_their_error() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
-    let check = |set: &str| perilife(dir.path(), &["check", "small.toml", "--set", set]);
+    let check = |set: &str| perilife(dir.path(), &["check", "small.toml", "--set", "fatigue.driver=bond_strain", "--set", set]);
     for (set, words) in [
         ("specimen.crack_length_mm=4", "the life about 26 % too short until the crack has doubled"),
         ("model.horizon_ratio=1.5", "leaves a point few neighbours: with the same A the life is about 40 % too short"),

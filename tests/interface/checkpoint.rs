@@ -31,6 +31,7 @@ spacing_mm = 1.0
 a = 6450.0
 p = 2.86
 horizon_mm = 3.015
+driver = "bond_strain"
 "#;
 
 const KEEP: [&str; 4] = ["--checkpoint", "run.ckpt", "--checkpoint-every", "0"];
@@ -120,7 +121,7 @@ fn places_and_times_for_a_checkpoint_are_checked_first() {
 
 pub const CALIBRATION: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\n\
     thickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.1\n\
-    [model]\nspacing_mm = 0.75\nsymmetry = \"off\"\n";
+    [model]\nspacing_mm = 0.75\nsymmetry = \"off\"\n[fatigue]\ndriver = \"bond_strain\"\n";
 pub const READINGS: &str =
     "cycles,crack_length_mm\n0,9\n20000,10\n37000,11\n51000,12\n63000,13\n73000,14\n82000,15.2\n89000,16.4\n95000,18\n";
 

@@ -93,7 +93,18 @@ fn the_engine_writes_plastic_zone_and_residual_strength_too() {
     assert_eq!((output.status.code(), stdout.as_str()), (Some(2), ""), "{stderr}");
     assert!(stderr.contains("error: --residual-strength: needs") && stderr.contains("toughness_mpa_sqrt_m"), "{stderr}");
     assert!(!dir.path().join("run").exists());
-    let call = [&call[..], &["--set", "material.yield_strength_mpa=300", "--set", "material.toughness_mpa_sqrt_m=30"]].concat();
+    let call = [
+        &call[..],
+        &[
+            "--set",
+            "fatigue.driver=bond_strain",
+            "--set",
+            "material.yield_strength_mpa=300",
+            "--set",
+            "material.toughness_mpa_sqrt_m=30",
+        ],
+    ]
+    .concat();
     let output = perilife(dir.path(), &call);
     let (stdout, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");

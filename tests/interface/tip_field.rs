@@ -76,14 +76,13 @@ fn what_does_not_go_with_the_driver_is_refused() {
         assert!(!dir.path().join("run").exists(), "{arguments:?}");
     };
     refused(
-        &["predict", "plate.toml", "--set", "fatigue.precrack=none"],
+        &["predict", "plate.toml", "--set", "fatigue.driver=tip_field", "--set", "fatigue.precrack=none"],
         &["fatigue.precrack", "belongs to bonds that age", "bond_strain"],
     );
-    refused(&["predict", "plate.toml", "--set", "fatigue.driver=bond_strain"], &["fatigue.paris_c_mm_per_cycle", "tip_field"]);
     refused(&["predict", "plate.toml", "--set", "fatigue.driver=tips"], &["fatigue.driver", "tip_field, bond_strain"]);
-    refused(&["predict", "slot.toml"], &["fatigue.driver", "sharp cracks", "bond_strain"]);
+    refused(&["predict", "slot.toml", "--set", "fatigue.driver=tip_field"], &["fatigue.driver", "sharp cracks", "bond_strain"]);
     refused(
-        &["predict", "bonds.toml", "--set", "fatigue.driver=tip_field"],
-        &["fatigue.p", "constant of bonds", "paris_c_mm_per_cycle"],
+        &["predict", "bonds.toml", "--set", "fatigue.driver=tip_field", "--set", "fatigue.p=9"],
+        &["fatigue.p = 9", "1 to 8", "paris_c_mm_per_cycle"],
     );
 }

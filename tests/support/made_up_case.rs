@@ -29,6 +29,7 @@ spacing_mm = 1.01
 a = 1e5
 p = 3.0
 horizon_mm = 3.015
+driver = "bond_strain"
 [stop]
 cycles_max = 1e7
 "#;
@@ -50,6 +51,7 @@ pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
         spacing_mm: 1.0,
         horizon_ratio: 3.015,
         scaling: String::new(),
+        rate_constant: None,
         paris_c_mm_per_cycle: 1e-8,
         paris_m: 3.0,
         paris_m_error: None,

@@ -17,6 +17,7 @@ spacing_mm = 2.0
 a = 6450.0
 p = 2.86
 horizon_mm = 3.015
+driver = "bond_strain"
 "#;
 
 const STRESS: &str = "[loading]\nstress_max_mpa = 70.0\nstress_ratio = 0.1\n";

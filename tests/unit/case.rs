@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use perilife::Error;
-use perilife::bond_law::{BondLawKind, Kernel, Rotation};
+use perilife::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use perilife::calibration::record::FittedRecord;
 use perilife::case::{Case, LawSource};
 use perilife::input::Folder;
@@ -11,7 +11,7 @@ use perilife::material::library;
 
 const TEXT: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\ncrack_length_mm = 9\n\
                     [material]\nyoungs_modulus_gpa = 73.1\npoisson_ratio = 0.33\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n";
-const INLINE: &str = "[fatigue]\na = 6450\np = 2.86\nhorizon_mm = 3\n";
+const INLINE: &str = "[fatigue]\na = 6450\np = 2.86\nhorizon_mm = 3\ndriver = \"bond_strain\"\n";
 
 fn read(extra: &str, overrides: &[&str]) -> Result<Case, Error> {
     let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
@@ -27,6 +27,7 @@ fn record() -> FittedRecord {
         spacing_mm: 1.0,
         horizon_ratio: 3.015,
         scaling: "horizon".into(),
+        rate_constant: None,
         paris_c_mm_per_cycle: 1e-7,
         paris_m: 2.9,
         paris_m_error: None,
@@ -109,6 +110,13 @@ fn a_silent_case_takes_the_models_of_the_record() {
     assert!(case.echo["fatigue"].get("a").is_none() && case.echo["fatigue"]["fitted"]["p"] == 3.0);
     let law = case.fatigue_law(3e-3).unwrap();
     assert!((law.a / 5000.0 - 1.0).abs() < 1e-12 && law.p == 3.0);
+    let tips = read(INLINE, &["fatigue.driver=tip_field"]).unwrap().with_law(record()).unwrap();
+    assert_eq!(tips.model.bond_law.kernel, Kernel::Constant);
+    assert_eq!(
+        tips.model.bond_law.surface_correction,
+        SurfaceCorrection::Balanced,
+        "the record aged bonds: K has its own default"
+    );
 }
 
 #[test]
@@ -126,6 +134,11 @@ fn an_explicit_choice_must_agree_with_the_record() {
         let (key, value) = choice.split_once('=').unwrap();
         let error = read(INLINE, &[choice]).unwrap().with_law(record()).unwrap_err().to_string();
         assert!(error.contains(key) && error.contains(value) && error.contains(recorded), "{choice}: {error}");
+        // K of a tip is read off the same bonds.
+        if key.starts_with("model") {
+            let tips = read(INLINE, &[choice, "fatigue.driver=tip_field"]).unwrap().with_law(record()).unwrap_err().to_string();
+            assert_eq!(tips, error);
+        }
     }
     read(INLINE, &["model.kernel=constant", "fatigue.zone_radius_horizons=0.6"]).unwrap().with_law(record()).unwrap();
 }

@@ -16,8 +16,9 @@ fn the_method_is_a_kind_and_peridynamics_the_default() {
     assert!(case.warnings.is_empty(), "{:?}", case.warnings);
     let bonds = ["fatigue.a=6450", "fatigue.p=2.86", "fatigue.horizon_mm=3"];
     // The constants of both methods side by side serve either.
-    let peridynamics = hand_case(PANEL, &[&bonds[..], &["model.method=peridynamics"]].concat());
-    assert!(matches!(peridynamics.law, LawSource::Inline(_)));
+    let by = |driver: &str| hand_case(PANEL, &[&bonds[..], &["model.method=peridynamics", driver]].concat()).law;
+    assert!(matches!(by("fatigue.driver=bond_strain"), LawSource::Inline(_)));
+    assert!(matches!(by("fatigue.driver=tip_field"), LawSource::Paris(_)));
     assert!(matches!(hand_case(PANEL, &bonds).law, LawSource::Paris(_)));
 }
 
@@ -34,11 +35,16 @@ fn a_wrong_law_is_refused_with_the_right_one() {
         Case::from_toml(text, "hand", Path::new("."), &set)
     };
     let rows: [(String, Vec<&str>, &[&str]); 6] = [
-        (only_bonds(&text), bonds.to_vec(), &["fatigue.a = 6450", "handbook", "paris_c_mm_per_cycle and paris_m"]),
+        // What one kind of law means for the other is known for usual exponents.
+        (
+            only_bonds(&text),
+            [&bonds[..], &["fatigue.p=9"]].concat(),
+            &["fatigue.p = 9", "1 to 8", "paris_c_mm_per_cycle and paris_m"],
+        ),
         (
             text.clone(),
-            vec!["model.method=peridynamics", "fatigue.driver=bond_strain"],
-            &["fatigue.paris_c_mm_per_cycle", "a, p and horizon_mm"],
+            vec!["model.method=peridynamics", "fatigue.driver=bond_strain", "fatigue.paris_m=8.5"],
+            &["fatigue.paris_m = 8.5", "1 to 8"],
         ),
         (text.replace("paris_m = 3\n", ""), vec![], &["fatigue.paris_m", "missing", "together"]),
         (text.clone(), vec!["fatigue.fitted=fitted.toml"], &["fatigue.paris_c_mm_per_cycle", "given twice"]),
@@ -90,7 +96,8 @@ fn a_record_gives_c_and_m_whatever_bonds_it_was_fitted_with() {
     let mut by_hand = (*record).clone();
     (by_hand.method, by_hand.a, by_hand.horizon_mm) = ("handbook".to_owned(), f64::NAN, f64::NAN);
     hand_case(PANEL, &set).with_law(by_hand.clone()).unwrap();
-    let bonds = ["fatigue.a=6450", "fatigue.p=2.86", "fatigue.horizon_mm=3", "model.method=peridynamics"];
+    let bonds =
+        ["fatigue.a=6450", "fatigue.p=2.86", "fatigue.horizon_mm=3", "model.method=peridynamics", "fatigue.driver=bond_strain"];
     let error = hand_case(PANEL, &[&bonds[..], &set].concat()).with_law(by_hand).unwrap_err().to_string();
-    assert!(error.contains("hand calculation") && error.contains("method = \"peridynamics\""), "{error}");
+    assert!(error.contains("hand calculation") && error.contains("driver = \"tip_field\""), "{error}");
 }

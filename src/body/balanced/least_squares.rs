@@ -85,6 +85,7 @@ impl<'a> Problem<'a> {
         if self.links.is_empty() {
             return Some(Vec::new());
         }
+        crate::parallel::fix_parts();
         let symbolic = SymbolicLlt::try_new(self.symbolic.as_ref(), faer::Side::Lower).ok()?;
         SOFTNESS.iter().find_map(|&softness| self.newton(&symbolic, softness, bounds))
     }

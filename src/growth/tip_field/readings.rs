@@ -1,7 +1,7 @@
-//! K at the length that a line has, from K at the lengths that the cut bonds stand for.
+//! K at the length that a line has, from K at the lengths at which the field of the tip stands.
 //!
-//! A crack cut into bonds reaches farther than its line or less far, by up to half a spacing and by another amount at every step.
-//! What is read belongs to the length that the bonds stand for. It is brought to that of the line along the slope of ln K over
+//! A crack cut into bonds reaches farther than its line or less far, by up to half a spacing and by another amount at every step, and
+//! the field of its tip stands a fifth of a spacing ahead of that ([`crate::stress_intensity::ring`]). What is read belongs to that length. It is brought to that of the line along the slope of ln K over
 //! that length, taken from the readings of the last horizons of growth.
 
 use serde::{Deserialize, Serialize};
@@ -14,12 +14,12 @@ const SLOPE_MOST: f64 = 12.0;
 /// Readings of a tip.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Readings {
-    /// Growth that the cut bonds stand for, and ln K.
+    /// Growth at which the field stands, and ln K.
     taken: Vec<[f64; 2]>,
 }
 
 impl Readings {
-    /// Takes in K of a tip that has grown by `growth` and whose bonds stand for `excess` more; what was read before a corner tells
+    /// Takes in K of a tip that has grown by `growth` and whose field stands `excess` ahead; what was read before a corner tells
     /// nothing about the crack after it.
     pub fn take(&mut self, k: f64, growth: f64, excess: f64, corner: Option<f64>, horizon: f64) {
         if k > 0.0 {
