@@ -2,6 +2,7 @@
 
 mod choices;
 mod fatigue;
+pub mod growth_law;
 mod law;
 mod law_source;
 pub mod model;
@@ -14,6 +15,7 @@ pub use read::SECTIONS;
 use crate::body::lattice::fitting_spacing;
 use crate::bond_law::{BondLaw, BondLawKind, SurfaceCorrection};
 use crate::calibration::record::FittedRecord;
+use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
 use crate::loading::Loading;
@@ -93,6 +95,8 @@ pub enum LawSource {
     Inline(FatigueLaw),
     /// Given in the case for growth by K: `paris_c_mm_per_cycle`, `paris_m`.
     Paris(ParisLaw),
+    /// Given in the case for growth by K, and no power of it.
+    Factor(FactorLaw),
     /// A record written by `perilife calibrate`.
     Fitted(Box<FittedRecord>),
     /// A record that does not exist yet (only `check` accepts this), or, with an empty path, no law at all (a calibration).

@@ -53,7 +53,7 @@ use tip_end::{break_through, retire_tips};
 /// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
     match case.model.method {
-        Method::Peridynamics if case.is_driven_by_tips() => by_tips::run(case, None, &laws::growth_law(case)?, observer),
+        Method::Peridynamics if case.is_driven_by_tips() => by_tips::run(case, None, &*laws::growth_law(case)?, observer),
         Method::Peridynamics => run(case, |horizon| laws::bond_law(case, horizon), &mut Unrecorded, observer),
         Method::Handbook => handbook::run(case, observer),
     }
@@ -67,7 +67,7 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
     checkpoint.check(case)?;
     if case.is_driven_by_tips() {
-        return by_tips::run(case, Some(checkpoint), &laws::growth_law(case)?, observer);
+        return by_tips::run(case, Some(checkpoint), &*laws::growth_law(case)?, observer);
     }
     run_from(Some(checkpoint), case, |horizon| laws::bond_law(case, horizon), &mut Unrecorded, observer)
 }

@@ -51,6 +51,8 @@ mod case;
 mod exponent;
 #[path = "unit/fit_use.rs"]
 mod fit_use;
+#[path = "unit/growth_law.rs"]
+mod growth_law;
 #[path = "unit/growth_rate.rs"]
 mod growth_rate;
 #[path = "unit/hand_case.rs"]

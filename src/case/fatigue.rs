@@ -4,13 +4,17 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::choices::{Choices, Failure, Method};
+use super::growth_law::{FactorKeys, Setting, TableEnds};
 use super::law_source::LawKeys;
 use super::{LawSource, Stop};
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::finite_horizon::FiniteHorizon;
+use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::lattice_direction::LatticeDirection;
 use crate::fatigue::{Ageing, Block, BlockKind, Driver, FatigueSettings, OVERLOAD_STRETCH, Precrack};
 use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
+use crate::loading::Loading;
+use crate::material::Material;
 use crate::specimen::{LengthConvention, Specimen};
 
 /// Radius of the ageing zone: a narrower zone breaks bonds beside the crack path less often, see the growth law.
@@ -30,6 +34,20 @@ struct Input {
     paris_c_mm_per_cycle: Option<f64>,
     paris_m: Option<f64>,
     driver: Option<Driver>,
+    growth_law: Option<GrowthLawKind>,
+    forman_c_mm_per_cycle: Option<f64>,
+    forman_m: Option<f64>,
+    nasgro_c_mm_per_cycle: Option<f64>,
+    nasgro_n: Option<f64>,
+    nasgro_p: Option<f64>,
+    nasgro_q: Option<f64>,
+    nasgro_alpha: Option<f64>,
+    nasgro_smax_over_flow: Option<f64>,
+    nasgro_delta_k_0_mpa_sqrt_m: Option<f64>,
+    nasgro_c_th: Option<f64>,
+    k_c_mpa_sqrt_m: Option<f64>,
+    growth_table: Option<String>,
+    growth_table_ends: Option<TableEnds>,
     ageing: Option<Ageing>,
     zone_radius_horizons: Option<f64>,
     precrack: Option<Precrack>,
@@ -60,7 +78,7 @@ pub(super) struct Fatigue {
 pub(super) fn from_value(
     value: &Value,
     method: Method,
-    specimen: &Specimen,
+    (specimen, material, loading): (&Specimen, &Material, &Loading),
     folder: &Folder,
     choices: &mut Choices,
 ) -> Result<Fatigue> {
@@ -89,6 +107,28 @@ pub(super) fn from_value(
         lattice_direction: choices.lattice_direction.unwrap_or(LatticeDirection::Corrected),
         finite_horizon: choices.finite_horizon.unwrap_or(FiniteHorizon::Corrected),
     };
+    let factor = FactorKeys {
+        forman_c_mm_per_cycle: input.forman_c_mm_per_cycle,
+        forman_m: input.forman_m,
+        nasgro_c_mm_per_cycle: input.nasgro_c_mm_per_cycle,
+        nasgro_n: input.nasgro_n,
+        nasgro_p: input.nasgro_p,
+        nasgro_q: input.nasgro_q,
+        nasgro_alpha: input.nasgro_alpha,
+        nasgro_smax_over_flow: input.nasgro_smax_over_flow,
+        nasgro_delta_k_0_mpa_sqrt_m: input.nasgro_delta_k_0_mpa_sqrt_m,
+        nasgro_c_th: input.nasgro_c_th,
+        k_c_mpa_sqrt_m: input.k_c_mpa_sqrt_m,
+        growth_table: input.growth_table,
+        growth_table_ends: input.growth_table_ends,
+    };
+    let setting = Setting {
+        material,
+        ratio: loading.ratio,
+        folder,
+        has_walker: input.walker_gamma.is_some(),
+        has_threshold: input.delta_k_threshold_mpa_sqrt_m.is_some(),
+    };
     let law = LawKeys {
         fitted: input.fitted,
         a: input.a,
@@ -98,7 +138,8 @@ pub(super) fn from_value(
         paris_m: input.paris_m,
     };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
-    Ok(Fatigue { settings, law: law.read(method, settings.driver, folder)?, allow_extrapolation })
+    let law = law.read(input.growth_law, (method, settings.driver), (&factor, &setting))?;
+    Ok(Fatigue { settings, law, allow_extrapolation })
 }
 
 /// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of

@@ -188,7 +188,7 @@ impl Case {
                 Ok(FatigueLaw { a: law.a * modulus * walker, ..law }.at_horizon(horizon))
             }
             // What it stands for takes a computation (`predict::laws`).
-            LawSource::Paris(_) => Err(missing(Method::Peridynamics, Path::new(""))),
+            LawSource::Paris(_) | LawSource::Factor(_) => Err(missing(Method::Peridynamics, Path::new(""))),
             LawSource::Missing(path) => Err(missing(Method::Peridynamics, path)),
         }
     }
@@ -210,7 +210,7 @@ impl Case {
                 let walker = range.powf(law.m * (1.0 - self.fatigue.walker_gamma));
                 Ok(ParisLaw { c: law.c * walker, m: law.m })
             }
-            LawSource::Inline(_) => Err(missing(Method::Handbook, Path::new(""))),
+            LawSource::Inline(_) | LawSource::Factor(_) => Err(missing(Method::Handbook, Path::new(""))),
             LawSource::Missing(path) => Err(missing(Method::Handbook, path)),
         }
     }

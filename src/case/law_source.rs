@@ -6,9 +6,11 @@
 use toml::Value;
 
 use super::choices::Method;
+use super::growth_law::{FactorKeys, Setting};
 use super::{LawSource, law};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
+use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{Driver, FatigueLaw, STEADY_EXPONENTS, unsteady};
 use crate::input::{Folder, LENGTH, number, slice};
@@ -25,15 +27,82 @@ pub(super) struct LawKeys {
     pub paris_m: Option<f64>,
 }
 
-/// All of them, for those who take the law out of a file.
-pub const LAW_KEYS: [&str; 6] = ["fitted", "a", "p", "horizon_mm", "paris_c_mm_per_cycle", "paris_m"];
+/// All keys that give a law, for those who take it out of a file.
+pub const LAW_KEYS: [&str; 20] = [
+    "fitted",
+    "a",
+    "p",
+    "horizon_mm",
+    "paris_c_mm_per_cycle",
+    "paris_m",
+    "growth_law",
+    "forman_c_mm_per_cycle",
+    "forman_m",
+    "nasgro_c_mm_per_cycle",
+    "nasgro_n",
+    "nasgro_p",
+    "nasgro_q",
+    "nasgro_alpha",
+    "nasgro_smax_over_flow",
+    "nasgro_delta_k_0_mpa_sqrt_m",
+    "nasgro_c_th",
+    "k_c_mpa_sqrt_m",
+    "growth_table",
+    "growth_table_ends",
+];
 
 impl LawKeys {
-    /// The law that `method` needs; `None` where the file gives none at all, as in a calibration.
-    pub(super) fn read(&self, method: Method, driver: Driver, folder: &Folder) -> Result<Option<LawSource>> {
+    /// The law that the method and driver need, of the kind that is asked for or else whose constants are given; `None` where the
+    /// file gives none at all, as in a calibration.
+    pub(super) fn read(
+        &self,
+        kind: Option<GrowthLawKind>,
+        (method, driver): (Method, Driver),
+        (factor, setting): (&FactorKeys, &Setting<'_>),
+    ) -> Result<Option<LawSource>> {
+        const KEY: &str = "fatigue.growth_law";
+        let by_bonds = method == Method::Peridynamics && driver == Driver::BondStrain;
+        let powers = self.bond().into_iter().chain(self.paris());
+        let of_power = powers.filter_map(|(key, value)| Some((key, value?))).next();
+        let given = factor.given()?;
+        let kind = kind.or(given.map(|(kind, _)| kind));
+        if let Some(kind @ (GrowthLawKind::Forman | GrowthLawKind::Nasgro | GrowthLawKind::Table)) = kind {
+            let twice = of_power.map(|(key, _)| key).or(self.fitted.as_ref().map(|_| "fitted"));
+            let other = given.filter(|(other, _)| *other != kind).map(|(_, key)| key);
+            if let Some(key) = twice.or(other) {
+                let problem = format!("is no constant of growth_law \"{kind}\": the law is given twice");
+                return Err(input_missing(&format!("fatigue.{key}"), problem, "give the constants of one law"));
+            }
+            if by_bonds {
+                let problem = "is no law of bonds, whose rate is a power of their strain";
+                let remedy = "use fatigue.driver = \"tip_field\", or model.method = \"handbook\"";
+                return Err(input(KEY, format!("\"{kind}\""), problem, remedy));
+            }
+            return factor.read(kind, setting).map(Some);
+        }
+        if let Some(key) = given.map(|(_, key)| key).or(factor.k_c_mpa_sqrt_m.map(|_| "k_c_mpa_sqrt_m")) {
+            let problem = "is no constant of this growth law";
+            return Err(input_missing(
+                &format!("fatigue.{key}"),
+                problem,
+                "leave it out, or choose its law by fatigue.growth_law",
+            ));
+        }
+        let lacks = match kind {
+            Some(GrowthLawKind::Paris | GrowthLawKind::Walker) if self.fitted.is_none() && self.paris_m.is_none() => {
+                Some("paris_c_mm_per_cycle")
+            }
+            Some(GrowthLawKind::Walker) if !setting.has_walker => Some("walker_gamma"),
+            Some(GrowthLawKind::BondLaw) if self.fitted.is_none() && self.a.is_none() => Some("a"),
+            _ => None,
+        };
+        if let (Some(key), Some(kind)) = (lacks, kind) {
+            let problem = format!("is missing, and growth_law is \"{kind}\"");
+            return Err(input_missing(&format!("fatigue.{key}"), problem, "give all constants of the law"));
+        }
+        let folder = setting.folder;
         if let Some(fitted) = &self.fitted {
-            let all = self.bond().into_iter().chain(self.paris());
-            if let Some((key, value)) = all.filter_map(|(key, value)| Some((key, value?))).next() {
+            if let Some((key, value)) = of_power {
                 let remedy = "give fitted, or constants, not both";
                 return Err(input(&format!("fatigue.{key}"), value, "stands beside fitted: the law is given twice", remedy));
             }
@@ -41,8 +110,8 @@ impl LawKeys {
         }
         let bond = self.bond_law()?.map(LawSource::Inline);
         let paris = self.paris_law()?.map(LawSource::Paris);
-        let by_bonds = method == Method::Peridynamics && driver == Driver::BondStrain;
-        let law = if by_bonds { bond.or(paris) } else { paris.or(bond) };
+        let wants_bonds = kind.map_or(by_bonds, |kind| kind == GrowthLawKind::BondLaw);
+        let law = if wants_bonds { bond.or(paris) } else { paris.or(bond) };
         // What a driver cannot use as it is has to be translated.
         match &law {
             Some(LawSource::Inline(law)) if !by_bonds && !STEADY_EXPONENTS.contains(&law.p) => Err(unsteady("fatigue.p", law.p)),

@@ -9,9 +9,11 @@ use super::{Case, LAW_KEYS, LawSource, fatigue, law, model};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::finite_horizon::life_shortfall;
+use crate::fatigue::growth_law::GrowthLawKind;
+use crate::fatigue::paris::ParisLaw;
 use crate::input::{Document, Folder, OF_SCENES, Sections, Strangers, value_at};
 use crate::loading::LoadingKind;
-use crate::units::MPA;
+use crate::units::{MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use crate::{loading, material, specimen};
 
 /// Sections of a case file.
@@ -71,7 +73,13 @@ impl Case {
         let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
         let refinement = sections.given("refinement");
         let model = model::from_values(sections.optional("model"), refinement, &specimen, &material, &mut choices)?;
-        let fatigue = fatigue::from_value(sections.optional("fatigue"), model.method, &specimen, folder, &mut choices)?;
+        let fatigue = fatigue::from_value(
+            sections.optional("fatigue"),
+            model.method,
+            (&specimen, &material, &loading),
+            folder,
+            &mut choices,
+        )?;
         let stop = fatigue::stop_from_value(sections.optional("stop"), &specimen)?;
         let mut case = Case {
             name: name.to_owned(),
@@ -92,6 +100,12 @@ impl Case {
         }
         match fatigue.law {
             Some(LawSource::Fitted(record)) => law::adopt(&mut case, *record)?,
+            Some(LawSource::Factor(law)) => {
+                // Where the rate has no limit the plate breaks.
+                let limits = [case.material.toughness, law.toughness()];
+                case.material.toughness = limits.into_iter().flatten().min_by(f64::total_cmp);
+                case.law = LawSource::Factor(law);
+            }
             Some(source) => case.law = source,
             None => {}
         }
@@ -138,18 +152,47 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
     let mut lines = Vec::new();
     match &case.law {
         LawSource::Inline(_) => lines.extend(inline_line(case)),
-        LawSource::Paris(_) => {}
+        LawSource::Paris(law) => lines.extend(units_line(law)),
+        LawSource::Factor(_) => {}
         LawSource::Fitted(record) => lines.extend(law::record_lines(case, record)?),
         LawSource::Missing(path) if path.as_os_str().is_empty() => {}
         LawSource::Missing(path) => {
             lines.push(format!("{} does not exist yet: write it with `perilife calibrate` before predicting", path.display()));
         }
     }
+    lines.extend(compression_line(case));
     if case.spends_bond_life() {
         lines.extend(horizon_line(case));
         lines.extend(coarse_line(case));
     }
     Ok(lines)
+}
+
+/// ΔK at which metals are compared, Pa√m, and the rates that they have there, mm/cycle, with room on both sides.
+const USUAL: (f64, [f64; 2]) = (10.0 * MPA_SQRT_M, [1e-6, 1e-2]);
+
+/// C in other units than those asked for makes a life wrong by powers of ten.
+fn units_line(law: &ParisLaw) -> Option<String> {
+    let (delta_k, [low, high]) = USUAL;
+    let rate = law.rate(delta_k) / MM_PER_CYCLE;
+    (!(low..=high).contains(&rate)).then(|| {
+        format!(
+            "C and m give {rate:.1e} mm/cycle at ΔK = 10 MPa√m, where metals have {low:.0e} to {high:.0e}: is C in mm/cycle and MPa√m? \
+             (C in m/cycle is to be multiplied by 1000; that for ksi√in and inch/cycle by 25.4 / 1.0988^m)"
+        )
+    })
+}
+
+/// Compression in a cycle counts as nothing, whatever Walker's exponent.
+fn compression_line(case: &Case) -> Option<String> {
+    let counts = matches!(&case.law, LawSource::Factor(law) if law.kind() == GrowthLawKind::Nasgro);
+    let ratio = case.loading.ratio;
+    (ratio < 0.0 && !counts).then(|| {
+        format!(
+            "stress ratio {ratio}: the compression in a cycle counts as nothing, as if the ratio were 0; growth_law = \"nasgro\" takes \
+             it into account"
+        )
+    })
 }
 
 /// An inline `a` belongs to the default law, kernel and zone; another choice is the user's to answer for.

@@ -90,6 +90,7 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     let law = match &case.law {
         LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
         LawSource::Paris(law) => format!("da/dN = {:e} ΔK^{} (mm/cycle, MPa√m)", law.c / MM_PER_CYCLE, law.m),
+        LawSource::Factor(law) => format!("{}: {}", law.kind(), law.in_words()),
         LawSource::Fitted(_) if model.method == Method::Handbook => fit_use::law_line(case).unwrap_or_default(),
         LawSource::Fitted(record) => format!(
             "{}; a = {:e} per cycle at horizon {} mm",

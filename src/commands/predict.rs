@@ -115,7 +115,10 @@ pub fn keep(case: &Case, prediction: Prediction, folder: OutputFolder, console: 
 fn summary(case: &Case, prediction: &Prediction, out: &Path) -> Vec<String> {
     let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
     let mut lines = vec![
-        format!("{}: life {:.1} cycles", case.name, prediction.life_cycles()),
+        match prediction.life() {
+            Some(life) => format!("{}: life {life:.1} cycles", case.name),
+            None => format!("{}: life unlimited", case.name),
+        },
         format!("  crack length   {from:.3} mm to {to:.3} mm"),
         format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
     ];

@@ -1,11 +1,122 @@
-//! Growth laws over K: da/dN of a cycle between R K_max and K_max.
+//! Growth laws over K: da/dN of a cycle between R K_max and K_max. One file each.
+
+pub mod forman;
+pub mod nasgro;
+pub mod table;
+
+use serde::Serialize;
 
 use super::paris::ParisLaw;
+use crate::units::MPA_SQRT_M;
+use forman::Forman;
+use nasgro::Nasgro;
+use table::Table;
+
+crate::kinds! {
+    /// Which law of growth a case has.
+    pub enum GrowthLawKind for "fatigue.growth_law" {
+        BondLaw = "bond_law": "A and p of bonds, dλ/dN = -A ε^p: inline, or fitted",
+        Paris = "paris": "da/dN = C ΔK^m (Paris and Erdogan 1963)",
+        Walker = "walker": "da/dN = C (K_max (1-R)^γ)^m (Walker 1970)",
+        Forman = "forman": "da/dN = C ΔK^m / ((1-R) K_c - ΔK) (Forman, Kearney and Engle 1967)",
+        Nasgro = "nasgro": "crack closure, threshold and instability in one equation (Forman and Mettu 1992)",
+        Table = "table": "da/dN over ΔK, and over R, as rows of a CSV file",
+    }
+}
 
 /// How fast a crack grows at the stress intensity of its tip.
 pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
     /// da/dN, m/cycle, at K_max, Pa√m, and stress ratio R; 0 where the crack does not grow.
     fn rate(&self, k_max: f64, ratio: f64) -> f64;
+
+    /// In words, why the law says nothing about this K; its rate is then that at the end of what it knows.
+    fn beyond(&self, _k_max: f64, _ratio: f64) -> Option<String> {
+        None
+    }
+
+    /// Whether a run ends in an error there.
+    fn is_refused_beyond(&self) -> bool {
+        false
+    }
+}
+
+/// Laws that are no power of ΔK.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "growth_law", rename_all = "snake_case")]
+pub enum FactorLaw {
+    /// [`Forman`].
+    Forman(Forman),
+    /// [`Nasgro`].
+    Nasgro(Nasgro),
+    /// [`Table`].
+    Table(Table),
+}
+
+impl FactorLaw {
+    /// Which one it is.
+    #[must_use]
+    pub fn kind(&self) -> GrowthLawKind {
+        match self {
+            FactorLaw::Forman(_) => GrowthLawKind::Forman,
+            FactorLaw::Nasgro(_) => GrowthLawKind::Nasgro,
+            FactorLaw::Table(_) => GrowthLawKind::Table,
+        }
+    }
+
+    /// K_max at which the law lets a crack grow without limit, Pa√m.
+    #[must_use]
+    pub fn toughness(&self) -> Option<f64> {
+        match self {
+            FactorLaw::Forman(law) => Some(law.k_c),
+            FactorLaw::Nasgro(law) => Some(law.k_c),
+            FactorLaw::Table(_) => None,
+        }
+    }
+
+    /// In words, with its constants.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        match self {
+            FactorLaw::Forman(law) => format!("m = {}, K_c = {:.4} MPa√m", law.m, law.k_c / MPA_SQRT_M),
+            FactorLaw::Nasgro(law) => format!("n = {}, K_c = {:.4} MPa√m", law.n, law.k_c / MPA_SQRT_M),
+            FactorLaw::Table(table) => {
+                let rows: usize = table.curves.iter().map(|curve| curve.rows.len()).sum();
+                format!("{rows} rows at {} stress ratios", table.curves.len())
+            }
+        }
+    }
+
+    fn law(&self) -> &dyn GrowthLaw {
+        match self {
+            FactorLaw::Forman(law) => law,
+            FactorLaw::Nasgro(law) => law,
+            FactorLaw::Table(law) => law,
+        }
+    }
+}
+
+/// A law that is no power of ΔK, above a threshold of ΔK.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounded {
+    /// The law.
+    pub law: FactorLaw,
+    /// ΔK below which nothing grows, Pa√m.
+    pub threshold: f64,
+}
+
+impl GrowthLaw for Bounded {
+    fn rate(&self, k_max: f64, ratio: f64) -> f64 {
+        if k_max * (1.0 - ratio.max(0.0)) <= self.threshold { 0.0 } else { self.law.law().rate(k_max, ratio) }
+    }
+
+    fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
+        let grows = k_max * (1.0 - ratio.max(0.0)) > self.threshold;
+        self.law.law().beyond(k_max, ratio).filter(|_| grows)
+    }
+
+    fn is_refused_beyond(&self) -> bool {
+        self.law.law().is_refused_beyond()
+    }
 }
 
 /// `da/dN = C (K_max (1-R)^γ)^m` above a threshold of ΔK (Walker 1970, ASTM STP 462; γ = 1: Paris and Erdogan 1963); compression

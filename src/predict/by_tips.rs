@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::checkpoint::{self, Checkpoint};
 use super::end_of_life::{End, first_end};
 use super::snapshot::Album;
-use super::{CurvePoint, Observer, Prediction, Progress, RunFigures, StopReason, TipRecord, memory, plastic_zone};
+use super::{CurvePoint, Observer, Prediction, Progress, RunFigures, StopReason, TipRecord, laws, memory, plastic_zone};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fatigue::crack_tip::TipState;
@@ -48,6 +48,7 @@ pub(super) fn run(
         None => {
             growth.open()?;
             let curve = vec![row(case, &growth, 0.0, growth.work(), 0)];
+            laws::check_within(case, law, &curve[0])?;
             let mut album = Album::default();
             album.open(&plate, &growth.bonds, &growth.displacement, &curve[0]);
             album.show(&plate, observer);
@@ -75,6 +76,9 @@ pub(super) fn run(
         if step.cut > 0 || step.cycles > 0.0 {
             curve.push(next);
         }
+        if ended.is_none() {
+            laws::check_within(case, law, &curve[curve.len() - 1])?;
+        }
         let now = &curve[curve.len() - 1];
         if album.is_due(now) && step.end.is_none() {
             album.look(&plate, &growth.bonds, &growth.displacement, now);
@@ -89,6 +93,7 @@ pub(super) fn run(
         }
     };
     album.finish(&plate, &growth.bonds, &growth.displacement, &curve[curve.len() - 1]);
+    warnings.extend(laws::beyond_warning(case, law, &curve));
     warnings.extend(plastic_zone::warnings(case, &curve));
     let body = &plate.body;
     Ok(Prediction {

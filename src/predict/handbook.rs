@@ -1,7 +1,6 @@
 //! Life by hand calculation: handbook K(a) of a standard specimen, Paris law, quadrature.
 //!
-//! `N(a) = ∫ da / (C ΔK_eff(a)^m)` from the initial crack length, `ΔK_eff = K_max (1-R)^γ` (Walker 1970); no growth at or below
-//! the threshold. Costs less than a millisecond.
+//! `N(a) = ∫ da / (da/dN)` from the initial crack length, by the law over K of the case; no growth at or below the threshold. Costs less than a millisecond.
 
 use std::time::Instant;
 
@@ -11,8 +10,7 @@ use super::{
 };
 use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
-use crate::fatigue::ageing::strain_share;
-use crate::fatigue::paris::ParisLaw;
+use crate::fatigue::growth_law::GrowthLaw;
 use crate::quadrature::integrate;
 use crate::specimen::geometry::along;
 use crate::specimen::handbook::{HandbookFormula, handbook};
@@ -32,7 +30,9 @@ pub(super) fn run(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
     let started = Instant::now();
     let growth = Growth::of(case)?;
     let (curve, stop) = growth.curve()?;
+    curve[..curve.len() - 1].iter().chain(&curve[..1]).try_for_each(|row| laws::check_within(case, &*growth.law, row))?;
     let mut warnings = growth.warnings(&curve);
+    warnings.extend(laws::beyond_warning(case, &*growth.law, &curve));
     warnings.extend(plastic_zone::warnings(case, &curve));
     let prediction = Prediction {
         figures: figures(curve.len() - 1, started),
@@ -68,16 +68,14 @@ fn figures(blocks: usize, started: Instant) -> RunFigures {
 struct Growth<'a> {
     case: &'a Case,
     formula: HandbookFormula,
-    law: ParisLaw,
-    /// Share of K_max that counts in the law.
-    share: f64,
+    law: Box<dyn GrowthLaw>,
 }
 
 impl<'a> Growth<'a> {
     fn of(case: &'a Case) -> Result<Self> {
         let formula = handbook(&case.specimen)
             .ok_or_else(|| input_missing("model.method", "\"handbook\" has no K(a) for this specimen", "use \"peridynamics\""))?;
-        Ok(Growth { case, formula, law: laws::paris_law(case)?, share: strain_share(&case.loading, &case.fatigue) })
+        Ok(Growth { case, formula, law: laws::growth_law(case)? })
     }
 
     fn k_max(&self, crack_length: f64) -> f64 {
@@ -86,7 +84,7 @@ impl<'a> Growth<'a> {
 
     /// da/dN, m/cycle.
     fn rate(&self, crack_length: f64) -> f64 {
-        self.law.rate(self.k_max(crack_length) * self.share)
+        self.law.rate(self.k_max(crack_length), self.case.loading.ratio)
     }
 
     /// Cycles between two crack lengths.
@@ -108,7 +106,7 @@ impl<'a> Growth<'a> {
             return Ok((curve, end.reason));
         }
         // K of every formula rises with crack length: a crack above the threshold at its start stays above it.
-        if curve[0].delta_k <= self.case.fatigue.threshold {
+        if curve[0].growth_rate == 0.0 {
             return Ok((curve, StopReason::NothingAges));
         }
         let cycles_max = self.case.stop.cycles_max;
@@ -152,7 +150,6 @@ impl<'a> Growth<'a> {
     fn point(&self, cycles: f64, crack_length: f64) -> CurvePoint {
         let (specimen, loading) = (&self.case.specimen, &self.case.loading);
         let delta_k = self.formula.delta_k(crack_length, loading.maximum, loading.range_share());
-        let grows = delta_k > self.case.fatigue.threshold;
         let growth = crack_length - specimen.crack_length;
         let ahead =
             |seed: &crate::specimen::TipSeed| along(seed.position, [0, 1].map(|i| seed.position[i] + seed.direction[i]), growth);
@@ -160,7 +157,7 @@ impl<'a> Growth<'a> {
             cycles,
             crack_length,
             delta_k,
-            growth_rate: if grows || delta_k.is_nan() { self.rate(crack_length) } else { 0.0 },
+            growth_rate: self.rate(crack_length),
             work: f64::NAN,
             broken_bonds: 0,
             tips: specimen

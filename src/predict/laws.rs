@@ -1,18 +1,54 @@
 //! The law of a case in the form that its driver needs: of bonds, or over K.
 
+use super::CurvePoint;
 use super::bond_rate::Family;
 use crate::case::{Case, LawSource};
-use crate::error::Result;
+use crate::error::{Result, input_missing};
 use crate::fatigue::FatigueLaw;
-use crate::fatigue::growth_law::Walker;
+use crate::fatigue::growth_law::{Bounded, GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
+use crate::units::MM;
 
 /// The law over K of a case, for driver `tip_field` and method `handbook`.
 ///
 /// # Errors
 /// A case without law; as [`Family::rate_constant`] where it is one of bonds.
-pub fn growth_law(case: &Case) -> Result<Walker> {
-    Ok(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold })
+pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
+    let threshold = case.fatigue.threshold;
+    Ok(match &case.law {
+        LawSource::Factor(law) => Box::new(Bounded { law: law.clone(), threshold }),
+        _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold }),
+    })
+}
+
+/// Refuses a row whose K lies beyond what the law says, where the law wants that.
+///
+/// # Errors
+/// [`crate::Error::Input`].
+pub fn check_within(case: &Case, law: &dyn GrowthLaw, row: &CurvePoint) -> Result<()> {
+    let Some(problem) = beyond(case, law, row).filter(|_| law.is_refused_beyond()) else { return Ok(()) };
+    let at = format!("{problem}, at a crack length of {:.3} mm", row.crack_length / MM);
+    Err(input_missing(
+        "fatigue.growth_table",
+        at,
+        "give a longer table, or growth_table_ends = \"held\" to hold the rate of its end",
+    ))
+}
+
+fn beyond(case: &Case, law: &dyn GrowthLaw, row: &CurvePoint) -> Option<String> {
+    law.beyond(row.delta_k / case.loading.range_share(), case.loading.ratio)
+}
+
+/// What the user should know: how much of a life was spent where the law holds the rate of its end.
+#[must_use]
+pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) -> Option<String> {
+    let life = curve.last()?.cycles;
+    let outside = |pair: &&[CurvePoint]| pair.iter().any(|row| beyond(case, law, row).is_some());
+    let cycles: f64 = curve.windows(2).filter(outside).map(|pair| pair[1].cycles - pair[0].cycles).sum();
+    (cycles > 0.0).then(|| {
+        let share = 100.0 * cycles / life;
+        format!("{share:.2} % of the life is spent at ΔK beyond the table of rates, where the rate of its end is held")
+    })
 }
 
 /// C and m of a case; a law of bonds stands for those that [`ParisLaw::of_bonds`] gives.

@@ -16,7 +16,7 @@ crate::kinds! {
         LeftPlate = "left_plate": "every crack tip has left the plate",
         EnteredHole = "entered_hole": "the last crack tip ran into a hole",
         LeftRefinement = "left_refinement": "a crack tip came to the rim of the finest level of points: the refined region is too small",
-        NothingAges = "nothing_ages": "no bond is left that fatigue can spend",
+        NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
         RunOut = "run_out": "cycles_max was reached",
         NoConvergence = "no_convergence": "the equilibrium solver did not converge",
     }
@@ -109,6 +109,12 @@ pub struct Prediction {
 }
 
 impl Prediction {
+    /// The life, cycles; `None` where the cracks stand still under these loads, so that it has no end.
+    #[must_use]
+    pub fn life(&self) -> Option<f64> {
+        (self.stop != StopReason::NothingAges).then(|| self.life_cycles())
+    }
+
     /// Cycles from N = 0 to the end of the run.
     #[must_use]
     pub fn life_cycles(&self) -> f64 {

@@ -28,7 +28,7 @@ pub struct Zone {
 pub struct PlasticZone {
     /// At the first row whose K is known.
     pub first: Zone,
-    /// At the last one.
+    /// At the last one, or at the first at which it is as large as the ligament.
     pub last: Zone,
     /// Crack length from which small-scale yielding does not hold, m; `None` where it holds to the end.
     pub too_large_from: Option<f64>,
@@ -49,7 +49,9 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
         .filter(|point| point.delta_k.is_finite())
         .map(|point| (point, zone(case, point, point.delta_k / share, strength)))
         .collect();
-    let (first, last) = (known.first()?.1, known.last()?.1);
+    // Once the zone has outgrown the ligament, K says nothing about either.
+    let yielded = known.iter().find(|(_, zone)| zone.size >= zone.ligament);
+    let (first, last) = (known.first()?.1, yielded.or(known.last())?.1);
     let outgrown = known.iter().find(|(_, zone)| !small(case, zone, strength));
     let life = curve.last()?.cycles;
     Some(PlasticZone {

@@ -8,8 +8,10 @@ use crate::calibration::case::Parameter;
 use crate::calibration::columns::{CycleUnit, LengthUnit};
 use crate::calibration::criterion::Criterion;
 use crate::calibration::rates::RateMethod;
+use crate::case::growth_law::TableEnds;
 use crate::case::{Failure, Method};
 use crate::fatigue::finite_horizon::FiniteHorizon;
+use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::lattice_direction::LatticeDirection;
 use crate::fatigue::{Ageing, BlockKind, Driver, Precrack};
 use crate::fracture::SceneEnd;
@@ -56,6 +58,8 @@ pub fn lines() -> Vec<(String, String, String)> {
         DamageLaw::lines(),
         DamageEntry::lines(),
         Driver::lines(),
+        GrowthLawKind::lines(),
+        TableEnds::lines(),
         Ageing::lines(),
         LatticeDirection::lines(),
         FiniteHorizon::lines(),

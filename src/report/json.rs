@@ -25,7 +25,7 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
     let warnings: Vec<&String> = case.warnings.iter().chain(&prediction.warnings).chain(&labels).collect();
     json!({
         "name": case.name,
-        "life_cycles": prediction.life_cycles(),
+        "life_cycles": prediction.life(),
         "stop_reason": prediction.stop.name(),
         "stop_meaning": prediction.stop.meaning(),
         "converged": prediction.stop != StopReason::NoConvergence,
@@ -200,6 +200,7 @@ fn law(case: &Case, prediction: &Prediction) -> Value {
             "delta_k_min_mpa_sqrt_m": record.delta_k_min_mpa_sqrt_m, "delta_k_max_mpa_sqrt_m": record.delta_k_max_mpa_sqrt_m,
             "near_threshold_below_mpa_sqrt_m": NEAR_THRESHOLD * record.delta_k_min_mpa_sqrt_m,
         }),
+        LawSource::Factor(law) => json!({ "source": "inline", "constants_si": law }),
         LawSource::Missing(path) => json!({ "source": "missing", "file": path }),
     }
 }

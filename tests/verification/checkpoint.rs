@@ -48,6 +48,7 @@ fn bits(run: &Prediction) -> Vec<u64> {
         all.extend([row.cycles, row.crack_length, row.delta_k, row.growth_rate, row.work].map(f64::to_bits));
         all.push(row.broken_bonds as u64);
         all.extend(row.tips.iter().flat_map(|tip| [tip.position[0], tip.position[1], tip.growth]).map(f64::to_bits));
+        all.extend(row.tips.iter().filter_map(|tip| tip.factors).flatten().map(f64::to_bits));
     }
     for picture in &run.snapshots {
         all.extend([picture.cycles, picture.crack_length].map(f64::to_bits));
@@ -88,6 +89,7 @@ const HOLE: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n
                     holes=[{x_mm=3,y_mm=6,diameter_mm=10}]\ncracks=[{from_mm=[-17,0],to_mm=[-9,0]}]\n";
 
 const FINE: &str = "model.spacing_mm=1";
+const TIPS: &str = "fatigue.driver=tip_field";
 const SINGLE: &str = "fatigue.block=until_next_break";
 const FIXED: &str = "fatigue.block=fixed";
 const LEVELS: [&str; 2] = ["model.discretisation=dual_horizon", "refinement.regions=[{box_mm=[[-45,-24],[45,24]],levels=1}]"];
@@ -119,6 +121,10 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
             vec!["model.solver=multigrid", "fatigue.ageing=everywhere", SINGLE, "stop.crack_length_mm=28"],
         ),
         ("direct, two cracks", TWO, vec!["model.spacing_mm=2.5", "model.solver=direct", "stop.crack_length_mm=22"]),
+        ("tips, slant", SLANT, vec![TIPS, FINE]),
+        ("tips, two cracks, state-based", TWO, vec![TIPS, FINE, "model.bond_law=state_based"]),
+        ("tips, hole, window", HOLE, vec![TIPS, "model.spacing_mm=0.8", "model.solver=window"]),
+        ("tips, levels", BROAD, vec![TIPS, LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=30"]),
         ("relaxation, hole", HOLE, vec!["model.spacing_mm=2", "model.solver=adaptive_dynamic_relaxation", SINGLE]),
     ]
 }
@@ -255,7 +261,7 @@ fn measured(exponents: &[f64]) -> CalibrationCase {
     let text = format!(
         "[measured]\nfiles=[\"curves.csv\"]\nfrom_crack_length_mm=11\nto_crack_length_mm=24\n[specimen]\n{PANEL}\n\
          [material]\nyoungs_modulus_gpa=72\npoisson_ratio=0.3\n[loading]\nstress_max_mpa=70\nstress_ratio=0.1\n\
-         [model]\nspacing_mm=1.5\n"
+         [model]\nspacing_mm=1.5\n[fatigue]\ndriver=\"bond_strain\"\n"
     );
     CalibrationCase::from_text(&text, "panel", Folder::at_hand([("curves.csv".to_owned(), table.into_bytes())])).unwrap()
 }

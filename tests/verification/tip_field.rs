@@ -94,11 +94,11 @@ fn a_ring_reads_an_exact_field() {
                 println!(
                     "lattice {angle}°, tip at {end}, ring {horizons}: {read:.4?} of {wanted:?}, ahead {ahead:+.4} off {shift}"
                 );
-                let bound = if horizons > 2.5 { 0.003 } else { 0.006 };
+                let [bound, bound_ahead] = if horizons > 2.5 { [0.003, 0.03] } else { [0.006, 0.08] };
                 for mode in 0..2 {
                     assert!((read[mode] - wanted[mode] / 1e6).abs() < bound, "{angle} {end} {horizons} {read:?} {wanted:?}");
                 }
-                assert!(ahead.abs() < 0.03, "{angle} {end} {horizons} {ahead}");
+                assert!(ahead.abs() < bound_ahead, "{angle} {end} {horizons} {ahead}");
             }
         }
     }
@@ -179,15 +179,15 @@ const STANDARD: [(&str, &str, f64); 4] = [
 ];
 
 /// Lives of all standard specimens at default resolution against quadrature with handbook K and the same C and m, nothing fitted
-/// and nothing corrected for direction, Poisson's ratio or exponent. K lies 0.4 to 0.9 % above the handbook, so lives are short by
-/// that times m.
+/// and nothing corrected for direction, Poisson's ratio or exponent. The secant of middle tension is 0.1 to 0.25 % too high and the
+/// formula of double edge tension good to 1 %, m times that in life.
 #[test]
 fn lives_of_standard_specimens() {
     for (specimen, loading, end) in STANDARD {
         for (set, bound) in [
-            (["fatigue.paris_m=3", "material.poisson_ratio=0.3"], 3.0),
-            (["fatigue.paris_m=6", "material.poisson_ratio=0.3"], 5.0),
-            (["fatigue.paris_m=3", "material.poisson_ratio=0.1"], 3.0),
+            (["fatigue.paris_m=3", "material.poisson_ratio=0.3"], 1.5),
+            (["fatigue.paris_m=6", "material.poisson_ratio=0.3"], 4.2),
+            (["fatigue.paris_m=3", "material.poisson_ratio=0.1"], 1.5),
         ] {
             let end_key = format!("stop.crack_length_mm={end}");
             let set = [&set[..], &[&end_key]].concat();

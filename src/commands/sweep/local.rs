@@ -62,7 +62,7 @@ fn outcome(case: &DrawnCase, files: Option<&Path>) -> Result<Outcome> {
         let warnings = [&read.warnings, &prediction.warnings, &judged].into_iter().flatten().cloned().collect();
         Ok(Outcome {
             input: case.hash.clone(),
-            life_cycles: Some(prediction.life_cycles()),
+            life_cycles: prediction.life(),
             stop_reason: Some(prediction.stop.name().to_owned()),
             crack_length_final_mm: Some(prediction.crack_length_final() / MM),
             wall_s: prediction.figures.wall_s,

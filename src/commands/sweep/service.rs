@@ -160,7 +160,8 @@ fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Resu
     let warnings = summary["warnings"].as_array().into_iter().flatten();
     Ok(Outcome {
         input: case.hash.clone(),
-        life_cycles: rows.last().map(|row| row.cycles),
+        // The summary says whether there is an end.
+        life_cycles: rows.last().map(|row| row.cycles).filter(|_| !summary["life_cycles"].is_null()),
         stop_reason: summary["stop_reason"].as_str().map(str::to_owned),
         crack_length_final_mm: rows.last().map(|row| row.crack_length_mm),
         wall_s: summary["wall_s"].as_f64().unwrap_or(0.0),

@@ -229,6 +229,10 @@ pub async fn remaining(
         must_have_result(&job_of(&app, "predictions", &id).await?)?;
         return Err(Problem::not_found("curve"));
     };
+    let summary = job_of(&app, "predictions", &id).await?.summary;
+    if summary.is_some_and(|summary| summary["life_cycles"].is_null()) {
+        return Err(Problem::conflict("the cracks stand still under these loads: the life is unlimited"));
+    }
     let (cycles_at, life_cycles) = (cycles_at(&rows, from.crack_length_mm)?, rows[rows.len() - 1].cycles);
     let remaining_cycles = life_cycles - cycles_at;
     Ok(Json(Remaining {

@@ -3,7 +3,7 @@
 import { getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { element, readCsv, section, show, showPage, table } from "./dom.js";
-import { cycles, fixed, sentence, significant, words } from "./format.js";
+import { cycles, fixed, lifeOf, sentence, significant, words } from "./format.js";
 import { hrefOf, nameOf, pathOf } from "./job.js";
 import { COMPARE_MAX } from "./runs.js";
 
@@ -53,7 +53,7 @@ function tableOf(jobs, names, baseId) {
     number("Final length", "mm"), { title: "Stopped because" }, number("Warnings")];
   const rows = jobs.map((job, index) => {
     const s = job.summary;
-    return [element("a", { href: hrefOf(job) }, names[index]), cycles(Math.round(s.life_cycles)), significant(s.life_cycles / base, 3),
+    return [element("a", { href: hrefOf(job) }, names[index]), lifeOf(s), s.life_cycles && base ? significant(s.life_cycles / base, 3) : "",
       fixed(s.crack_length_initial_mm, 2), fixed(s.crack_length_final_mm, 2), sentence(s.stop_meaning ?? words(s.stop_reason)),
       String(s.warnings?.length ?? 0)];
   });

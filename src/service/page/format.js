@@ -55,6 +55,11 @@ export function powerOf(exponent) {
   return String(exponent).replace(/./g, (sign) => SUPERSCRIPT[sign]);
 }
 
+/** The life of a summary: cycles, or that it has no end. */
+export function lifeOf(summary) {
+  return summary.life_cycles === null ? "unlimited" : cycles(Math.round(summary.life_cycles));
+}
+
 /** Cycles: whole above a hundred, else with decimals. */
 export function cycles(value) {
   return Math.abs(value) >= 100 || Number.isInteger(value) ? whole(value) : significant(value, 3);

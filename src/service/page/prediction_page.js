@@ -5,7 +5,7 @@ import { createChart } from "./chart.js";
 import { warningList } from "./check.js";
 import { button, element, readCsv, section, show, showPage, terms } from "./dom.js";
 import { follow } from "./events.js";
-import { cycles, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
+import { cycles, duration, fixed, lifeOf, scientific, sentence, significant, whole, words } from "./format.js";
 import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
@@ -177,7 +177,7 @@ function result(s) {
   return element("section", { class: "result", "aria-labelledby": "result-title", "data-part": "result" },
     element("h2", { id: "result-title", class: "visually-hidden" }, "Result"),
     terms([
-      ["Life", element("strong", { class: "large", "data-value": "life_cycles" }, `${cycles(Math.round(s.life_cycles))} cycles`)],
+      ["Life", element("strong", { class: "large", "data-value": "life_cycles" }, s.life_cycles === null ? lifeOf(s) : `${lifeOf(s)} cycles`)],
       ["Crack length", `${fixed(s.crack_length_initial_mm, 2)} to ${fixed(s.crack_length_final_mm, 2)} mm`],
       ["Stopped because", sentence(s.stop_meaning ?? words(s.stop_reason))],
       ["Computed", `${whole(s.points)} points in ${duration(s.wall_s)}`],

@@ -2,7 +2,7 @@
 
 import { getJson } from "./api.js";
 import { button, byId, element, show } from "./dom.js";
-import { count, cycles, duration, fixed, moment, percent, scientific, words } from "./format.js";
+import { count, duration, fixed, lifeOf, moment, percent, scientific, words } from "./format.js";
 import { cancelJob, confirmDelete, hrefOf, isFinal, nameOf, stateBadge } from "./job.js";
 import { problemBox } from "./notices.js";
 
@@ -91,7 +91,7 @@ export function createRunsView() {
     const took = job.started && job.finished ? (new Date(job.finished) - new Date(job.started)) / 1000 : NaN;
     const known = (text) => (s ? text() : ""); // a run that is not done has no figures
     const figures = predictions
-      ? [number(known(() => cycles(Math.round(s.life_cycles)))), number(known(() => fixed(s.crack_length_final_mm, 2))),
+      ? [number(known(() => lifeOf(s))), number(known(() => fixed(s.crack_length_final_mm, 2))),
         element("td", { title: s?.stop_meaning }, known(() => words(s.stop_reason)))]
       : [number(known(() => scientific(s.rate_at_pivot_mm_per_cycle, 4))), number(known(() => fixed(s.paris_m, 3))),
         number(known(() => percent(s.rms_life_error, 2)))];

@@ -1,0 +1,201 @@
+//! Laws over K: their formulas at points that can be done by hand, their files, and what is refused.
+
+use std::path::Path;
+
+use perilife::case::{Case, LawSource};
+use perilife::fatigue::growth_law::forman::Forman;
+use perilife::fatigue::growth_law::nasgro::Nasgro;
+use perilife::fatigue::growth_law::table::{Curve, Table};
+use perilife::fatigue::growth_law::{GrowthLaw, GrowthLawKind};
+use perilife::input::Folder;
+use perilife::predict::{Silent, predict};
+use perilife::quadrature::integrate;
+use perilife::units::{MM, MPA_SQRT_M};
+
+fn near(a: f64, b: f64, relative: f64) {
+    assert!((a / b - 1.0).abs() < relative, "{a} against {b}");
+}
+
+#[test]
+fn forman_becomes_unstable_at_its_toughness() {
+    let law = Forman { c: 1e-8, m: 2.5, k_c: 60.0 * MPA_SQRT_M };
+    // ΔK = 18 of K_max = 20 at R = 0.1: 1e-8 18^2.5 / (0.9 60 - 18).
+    near(law.rate(20.0 * MPA_SQRT_M, 0.1), 1e-8 * 18.0_f64.powf(2.5) / 36.0, 1e-12);
+    assert_eq!(law.rate(20.0 * MPA_SQRT_M, -1.0), law.rate(20.0 * MPA_SQRT_M, 0.0), "compression does not count");
+    assert_eq!(law.rate(60.0 * MPA_SQRT_M, 0.1), f64::INFINITY);
+}
+
+/// Newman (1984) as Forman and Mettu (1992) use it.
+#[test]
+fn nasgro_closes_and_opens() {
+    let law = Nasgro {
+        c: 1e-10,
+        n: 3.0,
+        p: 0.5,
+        q: 1.0,
+        alpha: 1.5,
+        stress_over_flow: 0.3,
+        threshold: 3.0 * MPA_SQRT_M,
+        threshold_slope: 1.5,
+        k_c: 80.0 * MPA_SQRT_M,
+    };
+    // A₀ = (0.825 - 0.51 + 0.1125) cos(0.15 π)^(2/3), A₁ = (0.415 - 0.1065) 0.3, by hand.
+    let a0 = 0.4275 * (0.15 * std::f64::consts::PI).cos().powf(1.0 / 1.5);
+    let (f, opening) = law.opening(0.0);
+    near(f, a0, 1e-12);
+    near(opening, a0, 1e-12);
+    near(law.opening(-1.0).0, a0 - 0.09255, 1e-12);
+    // At R -> 1 the crack is always open: f = R.
+    near(law.opening(0.999).0, 0.999, 1e-3);
+    near(law.threshold_at(0.0), 3.0 * MPA_SQRT_M, 1e-12);
+    assert!(law.threshold_at(0.5) < law.threshold_at(0.0) && law.threshold_at(-1.0) > law.threshold_at(0.0));
+    // Far above the threshold and below K_c it is nearly Paris growth of the effective range.
+    let (k, rate) = (20.0, law.rate(20.0 * MPA_SQRT_M, 0.0));
+    near(rate, 1e-10 * ((1.0 - a0) * k).powi(3) * (1.0 - 3.0 / k).sqrt() / (1.0 - k / 80.0), 1e-12);
+    assert_eq!(law.rate(2.9 * MPA_SQRT_M, 0.0), 0.0);
+    assert_eq!(law.rate(80.0 * MPA_SQRT_M, 0.0), f64::INFINITY);
+    assert_eq!(law.rate(-1.0, 0.0), 0.0);
+}
+
+#[test]
+fn a_table_is_straight_in_logarithms() {
+    let curve = |ratio: f64, scale: f64| Curve {
+        ratio,
+        rows: [5.0, 10.0, 40.0].map(|k: f64| [k * MPA_SQRT_M, scale * 1e-10 * k.powi(3)]).to_vec(),
+    };
+    let one = Table { curves: vec![curve(0.1, 1.0)], holds_ends: false };
+    // Three rows of a power law give that power law between them, at any ratio.
+    for (k, ratio) in [(7.0, 0.1), (23.0, 0.1), (23.0, 0.4)] {
+        near(one.rate(k / (1.0 - ratio) * MPA_SQRT_M, ratio), 1e-10 * f64::powi(k, 3), 1e-12);
+    }
+    assert!(one.beyond(7.0 * MPA_SQRT_M, 0.0).is_none());
+    assert!(one.beyond(41.0 * MPA_SQRT_M, 0.0).unwrap().contains("5.0000 to 40.0000"));
+    near(one.rate(80.0 * MPA_SQRT_M, 0.0), 1e-10 * 40.0_f64.powi(3), 1e-12);
+    let two = Table { curves: vec![curve(0.0, 1.0), curve(0.5, 4.0)], holds_ends: true };
+    near(two.rate(20.0 * MPA_SQRT_M, 0.25), 2.0 * 1e-10 * 15.0_f64.powi(3), 1e-12);
+    assert!(two.knows(0.5) && !two.knows(0.6) && one.knows(0.6));
+}
+
+const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncrack_length_mm = 12\n\
+    [material]\nyoungs_modulus_gpa = 71\npoisson_ratio = 0.3\n[loading]\nstress_max_mpa = 80\nstress_ratio = 0.1\n\
+    [stop]\ncrack_length_mm = 30\n";
+
+const FORMAN: &str = "forman_c_mm_per_cycle = 3e-5\nforman_m = 2.5\nk_c_mpa_sqrt_m = 60\n";
+const NASGRO: &str = "nasgro_c_mm_per_cycle = 2e-7\nnasgro_n = 3\nnasgro_p = 0.5\nnasgro_q = 1\nnasgro_alpha = 1.5\n\
+    nasgro_smax_over_flow = 0.3\nnasgro_delta_k_0_mpa_sqrt_m = 3\nnasgro_c_th = 1.5\nk_c_mpa_sqrt_m = 80\n";
+const TABLE: &str = "growth_table = \"rates.csv\"\n";
+const RATES: &str = "# rates of a sheet\ndelta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n20,9e-4\n40,1.2e-2\n";
+
+fn read_with(rates: &str, fatigue: &str, set: &[&str]) -> perilife::Result<Case> {
+    let folder = Folder::at_hand([("rates.csv".to_owned(), rates.as_bytes().to_vec())]);
+    let set: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
+    Case::from_toml(&format!("{PANEL}[fatigue]\n{fatigue}"), "panel", folder, &set)
+}
+
+fn read(fatigue: &str, set: &[&str]) -> perilife::Result<Case> {
+    read_with(RATES, fatigue, set)
+}
+
+/// The same law drives points and hand calculation, and both agree with quadrature of its formula.
+#[test]
+fn every_law_drives_points_and_hand_calculation() {
+    for (text, kind) in [(FORMAN, GrowthLawKind::Forman), (NASGRO, GrowthLawKind::Nasgro), (TABLE, GrowthLawKind::Table)] {
+        let case = read(text, &["model.spacing_mm=1.5"]).unwrap();
+        let LawSource::Factor(law) = &case.law else { panic!("{text}") };
+        assert_eq!(law.kind(), kind);
+        let named = read(&format!("growth_law = \"{kind}\"\n{text}"), &["model.spacing_mm=1.5"]).unwrap();
+        assert_eq!(named.law, case.law);
+        let by_points = predict(&case, &Silent).unwrap();
+        let by_hand = predict(&read(text, &["model.method=handbook"]).unwrap(), &Silent).unwrap();
+        println!("{kind}: {:.1} by points, {:.1} by hand", by_points.life_cycles(), by_hand.life_cycles());
+        assert_eq!((by_points.stop, by_hand.stop), (by_hand.stop, perilife::predict::StopReason::CrackLengthReached));
+        near(by_points.life_cycles(), by_hand.life_cycles(), 0.02);
+        let last = by_hand.curve.last().unwrap();
+        assert!(last.growth_rate > by_hand.curve[0].growth_rate && last.growth_rate.is_finite());
+        // The secant formula of the panel, with the law of the case at each length.
+        let rate = |a: f64| {
+            let k = case.loading.maximum * (std::f64::consts::PI * a / (std::f64::consts::PI * a / 0.1).cos()).sqrt();
+            let LawSource::Factor(law) = &case.law else { return f64::NAN };
+            perilife::fatigue::growth_law::Bounded { law: law.clone(), threshold: 0.0 }.rate(k, 0.1)
+        };
+        near(by_hand.life_cycles(), integrate(|a| 1.0 / rate(a), 12.0 * MM, 30.0 * MM, 1e-9).value, 1e-4);
+    }
+}
+
+#[test]
+fn k_c_is_where_the_plate_breaks() {
+    let case = read(FORMAN, &["fatigue.k_c_mpa_sqrt_m=20", "model.spacing_mm=1.5"]).unwrap();
+    assert_eq!(case.material.toughness, Some(20.0 * MPA_SQRT_M));
+    for method in ["peridynamics", "handbook"] {
+        let method = format!("model.method={method}");
+        let run =
+            predict(&read(FORMAN, &["fatigue.k_c_mpa_sqrt_m=20", "model.spacing_mm=1.5", &method]).unwrap(), &Silent).unwrap();
+        assert_eq!(run.stop, perilife::predict::StopReason::Toughness, "{method}");
+        let last = run.curve.iter().rev().find(|row| row.delta_k.is_finite()).unwrap();
+        assert!(last.delta_k <= 18.0 * MPA_SQRT_M * 1.01 && run.life_cycles() > 0.0, "{method}: {}", last.delta_k);
+    }
+    let tough = read(FORMAN, &["material.toughness_mpa_sqrt_m=30"]).unwrap();
+    assert_eq!(tough.material.toughness, Some(30.0 * MPA_SQRT_M), "the lower of both");
+}
+
+/// The ends of a table: an error that names the length, or the rate of the end, and how often.
+#[test]
+fn beyond_a_table() {
+    let short = "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n18,6e-4\n";
+    for method in ["peridynamics", "handbook"] {
+        let set = [&*format!("model.method={method}"), "model.spacing_mm=1.5"];
+        let error = predict(&read_with(short, TABLE, &set).unwrap(), &Silent).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        for words in ["growth_table", "18.0000 MPa√m", "at a crack length of", "held"] {
+            assert!(error.to_string().contains(words), "{words} in {error}");
+        }
+        let held = read_with(short, &format!("{TABLE}growth_table_ends = \"held\"\n"), &set).unwrap();
+        let run = predict(&held, &Silent).unwrap();
+        assert!(run.warnings.iter().any(|line| line.contains("beyond the table of rates")), "{:?}", run.warnings);
+    }
+}
+
+#[test]
+fn wrong_laws_are_refused() {
+    let twice = format!("{FORMAN}paris_c_mm_per_cycle = 1e-7\nparis_m = 3\n");
+    let two = format!("{FORMAN}nasgro_n = 3\n");
+    let ratios = "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n10,1e-4,0.3\n20,9e-4,0.3\n10,2e-4,0.5\n20,2e-3,0.5\n";
+    let rows: [(&str, &str, &[&str], &[&str]); 19] = [
+        (RATES, &twice, &[], &["fatigue.paris_c_mm_per_cycle", "given twice"]),
+        (RATES, &two, &[], &["fatigue.nasgro_n", "given twice"]),
+        (RATES, FORMAN, &["fatigue.driver=bond_strain"], &["fatigue.growth_law", "no law of bonds", "tip_field"]),
+        (RATES, FORMAN, &["fatigue.walker_gamma=0.5"], &["fatigue.walker_gamma", "forman"]),
+        (RATES, FORMAN, &["fatigue.forman_m=0.1"], &["fatigue.forman_m", "0.1"]),
+        (RATES, "forman_m = 3\n", &[], &["fatigue.forman_c_mm_per_cycle", "missing"]),
+        (RATES, "forman_m = 3\nforman_c_mm_per_cycle = 1e-5\n", &[], &["fatigue.k_c_mpa_sqrt_m", "missing", "toughness"]),
+        (RATES, NASGRO, &["fatigue.nasgro_alpha=4"], &["fatigue.nasgro_alpha", "1 to 3"]),
+        (RATES, NASGRO, &["loading.stress_ratio=-3"], &["loading.stress_ratio", "-2"]),
+        (RATES, NASGRO, &["fatigue.delta_k_threshold_mpa_sqrt_m=2"], &["fatigue.delta_k_threshold_mpa_sqrt_m", "own threshold"]),
+        (RATES, "growth_law = \"table\"\n", &[], &["fatigue.growth_table", "missing", "delta_k_mpa_sqrt_m"]),
+        (RATES, "growth_law = \"walker\"\nparis_c_mm_per_cycle = 1e-7\nparis_m = 3\n", &[], &["fatigue.walker_gamma", "missing"]),
+        (RATES, "growth_law = \"paris\"\na = 1\np = 3\nhorizon_mm = 1\n", &[], &["fatigue.paris_c_mm_per_cycle", "missing"]),
+        (
+            RATES,
+            "paris_c_mm_per_cycle = 1e-7\nparis_m = 3\nk_c_mpa_sqrt_m = 3\n",
+            &[],
+            &["fatigue.k_c_mpa_sqrt_m", "no constant"],
+        ),
+        (ratios, TABLE, &[], &["loading.stress_ratio", "rates.csv", "0.3 to 0.5"]),
+        ("delta_k_mpa_sqrt_m,rate\n1,2\n", TABLE, &[], &["rates.csv", "da_dn_mm_per_cycle", "lacks"]),
+        ("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n9,2e-4\n", TABLE, &[], &["rates.csv:3", "delta_k_mpa_sqrt_m", "rise"]),
+        (
+            "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n12,x\n",
+            TABLE,
+            &[],
+            &["rates.csv:3", "da_dn_mm_per_cycle = \"x\"", "number"],
+        ),
+        ("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n12,-1\n", TABLE, &[], &["rates.csv:3", "above zero"]),
+    ];
+    for (rates, text, set, words) in rows {
+        let error = read_with(rates, text, set).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{error}");
+        words.iter().for_each(|word| assert!(error.to_string().contains(word), "{word} in {error}"));
+    }
+    let missing = Case::from_toml(&format!("{PANEL}[fatigue]\n{TABLE}"), "panel", Path::new("/nowhere"), &[]).unwrap_err();
+    assert_eq!(missing.exit_code(), 4, "{missing}");
+}
