@@ -31,6 +31,7 @@ pub(super) struct FactorKeys {
     pub nasgro_smax_over_flow: Option<f64>,
     pub nasgro_delta_k_0_mpa_sqrt_m: Option<f64>,
     pub nasgro_c_th: Option<f64>,
+    pub nasgro_c_th_negative: Option<f64>,
     pub k_c_mpa_sqrt_m: Option<f64>,
     pub growth_table: Option<String>,
     pub growth_table_ends: Option<TableEnds>,
@@ -60,6 +61,7 @@ impl FactorKeys {
             ("nasgro_smax_over_flow", self.nasgro_smax_over_flow.is_some()),
             ("nasgro_delta_k_0_mpa_sqrt_m", self.nasgro_delta_k_0_mpa_sqrt_m.is_some()),
             ("nasgro_c_th", self.nasgro_c_th.is_some()),
+            ("nasgro_c_th_negative", self.nasgro_c_th_negative.is_some()),
         ];
         let table = [("growth_table", self.growth_table.is_some()), ("growth_table_ends", self.growth_table_ends.is_some())];
         let kinds: [(GrowthLawKind, &[(&'static str, bool)]); 3] =
@@ -113,6 +115,9 @@ impl FactorKeys {
         let exponent = |key: &str, value: Option<f64>, least: f64| {
             number("an exponent", least, 20.0).read(&format!("fatigue.{key}"), needed(key, value)?)
         };
+        let slope = |key: &str, value: Option<f64>| {
+            number("a slope of the threshold over R", -10.0, 10.0).read(key, value.unwrap_or(0.0))
+        };
         let (alpha, stress) = ("fatigue.nasgro_alpha", "fatigue.nasgro_smax_over_flow");
         let threshold = needed("nasgro_delta_k_0_mpa_sqrt_m", self.nasgro_delta_k_0_mpa_sqrt_m)?;
         let c = needed("nasgro_c_mm_per_cycle", self.nasgro_c_mm_per_cycle)?;
@@ -125,8 +130,10 @@ impl FactorKeys {
             stress_over_flow: number("a share of the flow stress", 0.0, 0.99)
                 .read(stress, needed("nasgro_smax_over_flow", self.nasgro_smax_over_flow)?)?,
             threshold: INTENSITY.read("fatigue.nasgro_delta_k_0_mpa_sqrt_m", threshold)?,
-            threshold_slope: number("a slope of the threshold over R", -10.0, 10.0)
-                .read("fatigue.nasgro_c_th", self.nasgro_c_th.unwrap_or(0.0))?,
+            threshold_slopes: [
+                slope("fatigue.nasgro_c_th_negative", self.nasgro_c_th_negative)?,
+                slope("fatigue.nasgro_c_th", self.nasgro_c_th)?,
+            ],
             k_c: self.k_c(setting)?,
         })
     }

@@ -28,7 +28,7 @@ pub(super) struct LawKeys {
 }
 
 /// All keys that give a law, for those who take it out of a file.
-pub const LAW_KEYS: [&str; 20] = [
+pub const LAW_KEYS: [&str; 21] = [
     "fitted",
     "a",
     "p",
@@ -46,6 +46,7 @@ pub const LAW_KEYS: [&str; 20] = [
     "nasgro_smax_over_flow",
     "nasgro_delta_k_0_mpa_sqrt_m",
     "nasgro_c_th",
+    "nasgro_c_th_negative",
     "k_c_mpa_sqrt_m",
     "growth_table",
     "growth_table_ends",

@@ -160,9 +160,10 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
             100.0 * report.rms_life_error
         ),
         format!(
-            "  specimens      {}, with {} runs of the model in {:.1} s",
+            "  specimens      {}, with {} run{} of the model in {:.1} s",
             report.specimens.len(),
             report.evaluations,
+            if report.evaluations == 1 { "" } else { "s" },
             report.wall_s
         ),
         format!("  results        {}", out.display()),

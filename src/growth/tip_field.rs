@@ -63,8 +63,8 @@ const BESIDE_SPACINGS: f64 = 0.5;
 const TOLERANCE: f64 = 1e-10;
 /// Way to a rim straight ahead, in horizons, that is gone in one block where it takes less than [`SHARE_LEFT`] of the cycles so far:
 /// what is left of the plate there is nearly a mechanism, and says nothing about its life.
-const LEFT_HORIZONS: f64 = 2.0;
-const SHARE_LEFT: f64 = 1e-3;
+const LEFT_HORIZONS: f64 = 4.0;
+const SHARE_LEFT: f64 = 5e-4;
 /// Relative difference within which factors are those of mirror twins: far above what solver and tie breaks make of equal ones, far
 /// below what shows in a life.
 const ROUND_OFF: f64 = 1e-4;

@@ -124,7 +124,7 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
         ("tips, slant", SLANT, vec![TIPS, FINE]),
         ("tips, two cracks, state-based", TWO, vec![TIPS, FINE, "model.bond_law=state_based"]),
         ("tips, hole, window", HOLE, vec![TIPS, "model.spacing_mm=0.8", "model.solver=window"]),
-        ("tips, levels", BROAD, vec![TIPS, LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=30"]),
+        ("tips, levels", BROAD, vec![TIPS, LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=45"]),
         ("relaxation, hole", HOLE, vec!["model.spacing_mm=2", "model.solver=adaptive_dynamic_relaxation", SINGLE]),
     ]
 }

@@ -14,7 +14,7 @@ use crate::units::MPA_SQRT_M;
 /// `A₀ = (0.825 - 0.34 α + 0.05 α²) cos(π S/2)^(1/α)`, `A₁ = (0.415 - 0.071 α) S`, `A₂ = 1 - A₀ - A₁ - A₃`, `A₃ = 2 A₀ + A₁ - 1`,
 ///
 /// S being S_max over the flow stress, and the threshold of long cracks
-/// `ΔK_th = ΔK₀ [(1-f) / ((1-A₀)(1-R))]^-(1 + C_th R)`. ΔK = (1-R) K_max, also at R < 0, down to R = -2.
+/// `ΔK_th = ΔK₀ [(1-f) / ((1-A₀)(1-R))]^-(1 + C_th R)`, C_th having one value for R ≥ 0 and one below. ΔK = (1-R) K_max, also at R < 0, down to R = -2.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Nasgro {
     /// C as the rate at ΔK = 1 MPa√m, m/cycle.
@@ -31,8 +31,8 @@ pub struct Nasgro {
     pub stress_over_flow: f64,
     /// Threshold ΔK₀ at R = 0, Pa√m.
     pub threshold: f64,
-    /// C_th.
-    pub threshold_slope: f64,
+    /// C_th for R below 0, and from 0 on.
+    pub threshold_slopes: [f64; 2],
     /// K_c, Pa√m.
     pub k_c: f64,
 }
@@ -58,7 +58,8 @@ impl Nasgro {
     pub fn threshold_at(&self, ratio: f64) -> f64 {
         let (f, a0) = self.opening(ratio);
         let base = (1.0 - f) / ((1.0 - a0) * (1.0 - ratio));
-        self.threshold * base.powf(-(1.0 + self.threshold_slope * ratio))
+        let [below, above] = self.threshold_slopes;
+        self.threshold * base.powf(-(1.0 + if ratio < 0.0 { below } else { above } * ratio))
     }
 }
 
