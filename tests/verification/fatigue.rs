@@ -157,15 +157,15 @@ fn every_solver_grows_the_same_crack() {
     let clamped = EDGE.replace("uniform_stress", "clamped");
     for (name, specimen, set) in [
         ("panel", PANEL, vec!["stop.crack_length_mm=20"]),
-        ("slant", SLANT, vec!["stop.crack_length_mm=26"]),
-        ("slant, held", SLANT, vec!["stop.crack_length_mm=26", "supports.bottom={rows_mm=4,fix=[\"x\",\"y\"]}"]),
+        ("slant", SLANT, vec!["stop.crack_length_mm=22"]),
+        ("slant, held", SLANT, vec!["stop.crack_length_mm=22", "supports.bottom={rows_mm=4,fix=[\"x\",\"y\"]}"]),
         ("clamped", &clamped, vec!["stop.crack_length_mm=18"]),
         ("compact", COMPACT, vec!["stop.crack_length_mm=28"]),
         ("slot", SLOT, vec![]),
-        ("two cracks", TWO, vec!["stop.crack_length_mm=60"]),
-        ("resisted", SLANT, vec!["model.rotation=resisted", "stop.crack_length_mm=26"]),
-        ("turned", PANEL, vec!["model.lattice_angle_deg=30", "stop.crack_length_mm=18"]),
-        ("state-based", SLANT, vec!["model.bond_law=state_based", "material.poisson_ratio=0.4", "stop.crack_length_mm=26"]),
+        ("two cracks", TWO, vec!["stop.crack_length_mm=44"]),
+        ("resisted", SLANT, vec!["model.rotation=resisted", "stop.crack_length_mm=22"]),
+        ("turned", PANEL, vec!["model.lattice_angle_deg=30", "stop.crack_length_mm=15"]),
+        ("state-based", SLANT, vec!["model.bond_law=state_based", "material.poisson_ratio=0.4", "stop.crack_length_mm=22"]),
         ("state-based, low ν", PANEL, vec!["model.bond_law=state_based", "material.poisson_ratio=0", "stop.crack_length_mm=18"]),
     ] {
         // Relaxation takes the most time by far, and goes through the coarse plates below by every law.
@@ -246,7 +246,7 @@ fn life_does_not_depend_on_how_the_lattice_lies() {
             grow(panel, &["stop.crack_length_mm=40", "model.spacing_mm=1", &set[0], &set[1], &set[2]])
         };
         let upright = run(0, "corrected").life_cycles();
-        for angle in [15, 30, 45] {
+        for angle in [15, 45] {
             let turned = run(angle, "corrected");
             for tip in &turned.curve.last().unwrap().tips {
                 let (way, y) = (tip.position[0].abs() - 20.0 * MM, tip.position[1]);
