@@ -1,8 +1,9 @@
 //! THE MAIN PAGE: from a case to its a-N curve.
 //!
-//! Build the body; until there is a reason to stop: find equilibrium at maximum load, take the cyclic strain of the bonds
-//! that age, choose the cycle block, spend bond life, break spent bonds, follow the crack tips. Command, service and
-//! calibration all come through here.
+//! Build the plate; until there is a reason to stop: find equilibrium at maximum load, let what drives the cracks act over a block
+//! of cycles, cut the bonds that this takes. What drives them is K of their tips (`by_tips`, the default), or bonds that age by their
+//! own strain (here: take the cyclic strain of the bonds that age, choose the cycle block, spend bond life, break spent bonds, follow
+//! the crack tips), or K of a handbook, without any plate (`handbook`). Command, service and calibration all come through here.
 
 pub mod bond_rate;
 mod by_tips;

@@ -11,9 +11,10 @@
 
 mod ahead;
 mod readings;
+mod state;
 pub mod steering;
 
-use serde::{Deserialize, Serialize};
+pub use state::{End, Step, Tip, TipFieldState};
 
 use super::TipNow;
 use super::plate::Plate;
@@ -68,80 +69,6 @@ const SHARE_LEFT: f64 = 5e-4;
 /// Relative difference within which factors are those of mirror twins: far above what solver and tie breaks make of equal ones, far
 /// below what shows in a life.
 const ROUND_OFF: f64 = 1e-4;
-
-/// A tip that grows by its own K.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Tip {
-    /// Which crack it ends.
-    pub end: LineEnd,
-    /// What has become of it.
-    pub state: TipState,
-    /// Growth since the start, m.
-    pub growth: f64,
-    /// K_I and K_II, Pa√m, at the present length.
-    pub factors: [f64; 2],
-    /// da/dN at the present length, m/cycle.
-    pub rate: f64,
-    /// That of the block before, and the growth of the fastest tip since.
-    before: Option<[f64; 2]>,
-    /// Length of crack that belonged to it at the start, m.
-    length: f64,
-    readings: Readings,
-    steering: Steering,
-}
-
-impl Tip {
-    /// K_eq at maximum load of the requested length, Pa√m.
-    fn equivalent(&self) -> f64 {
-        equivalent_factor(self.factors)
-    }
-}
-
-/// All that a run carries from block to block but the displacement, which the solver makes of the bonds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TipFieldState {
-    /// Cracks.
-    pub lines: Vec<CrackLine>,
-    /// Their tips.
-    pub tips: Vec<Tip>,
-}
-
-impl TipFieldState {
-    /// Whether it may be a later state of the same cracks.
-    #[must_use]
-    pub fn fits(&self, start: &TipFieldState) -> bool {
-        let ends = |state: &TipFieldState| state.tips.iter().map(|tip| tip.end).collect::<Vec<_>>();
-        self.lines.len() == start.lines.len() && ends(self) == ends(start)
-    }
-}
-
-/// Why growth ends by itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
-    /// No tip is above the threshold.
-    NothingGrows,
-    /// No tip is left.
-    NoTipLeft,
-    /// A tip came to the rim of the finest points.
-    LeftRefinement,
-    /// The plate is in two.
-    Severed,
-    /// No equilibrium was found.
-    NoConvergence,
-}
-
-/// What a block did.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
-    /// Cycles it took.
-    pub cycles: f64,
-    /// Work of the loads at its end, J; NaN where there is no equilibrium.
-    pub work: f64,
-    /// Bonds cut.
-    pub cut: usize,
-    /// Why there is no next one.
-    pub end: Option<End>,
-}
 
 /// A new straight piece of crack, and what becomes of the tip at its end.
 struct Piece {
@@ -535,6 +462,9 @@ fn length_of(specimen: &Specimen, end: LineEnd) -> f64 {
 
 /// Mean of 1/r between two rates with ln r linear between them, cycles/m.
 fn mean_inverse(from: f64, to: f64) -> f64 {
+    if to.is_infinite() {
+        return 0.5 / from;
+    }
     let fall = (from / to).ln();
     // (1/to - 1/from) / ln(from/to), whose difference loses digits where the rates are nearly equal.
     if fall.abs() < 1e-4 { (1.0 + 0.5 * fall) / from } else { (fall.exp_m1() / fall) / from }

@@ -45,8 +45,8 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
             );
         }
         // Under the threshold nothing ages either, which is an answer.
-        StopReason::NothingAges if !grown && case.fatigue.threshold > 0.0 => {
-            let why = "no bond ages: the crack stays below fatigue.delta_k_threshold_mpa_sqrt_m and does not grow";
+        StopReason::NothingAges if !grown && (case.fatigue.threshold > 0.0 || !case.spends_bond_life()) => {
+            let why = "nothing grows: every crack stays closed or below the threshold of its growth law";
             warnings.push(why.to_owned());
         }
         StopReason::LeftRefinement if !grown => {

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::cli::{assert_refused, perilife, texts};
+use crate::cli::{SMALL_CASE, assert_refused, perilife, texts};
 
 const PLATE: &str = r#"
 [specimen]
@@ -85,4 +85,23 @@ fn what_does_not_go_with_the_driver_is_refused() {
         &["predict", "bonds.toml", "--set", "fatigue.driver=tip_field", "--set", "fatigue.p=9"],
         &["fatigue.p = 9", "1 to 8", "paris_c_mm_per_cycle"],
     );
+}
+
+/// A crack below its threshold is not told to be dead after 0 cycles: its life has no end, whatever computes it.
+#[test]
+fn a_crack_that_stands_still_has_no_life_that_ends() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    for set in ["fatigue.driver=tip_field", "fatigue.driver=bond_strain", "model.method=handbook"] {
+        let threshold = "fatigue.delta_k_threshold_mpa_sqrt_m=90";
+        let call = ["predict", "small.toml", "--out", "run", "--set", set, "--set", threshold];
+        let output = perilife(dir.path(), &[&call[..], &["--json"]].concat());
+        let (stdout, stderr) = texts(&output);
+        assert_eq!(output.status.code(), Some(0), "{set}: {stderr}");
+        let result: Value = serde_json::from_str(&stdout).unwrap();
+        assert_eq!(result["stop_reason"], "nothing_ages", "{set}");
+        assert!(result["life_cycles"].is_null() && result.get("life_cycles").is_some(), "{set}: {stdout}");
+        let (stdout, _) = texts(&perilife(dir.path(), &call));
+        assert!(stdout.contains("small: life unlimited") && stdout.contains("nothing is left that grows"), "{set}: {stdout}");
+    }
 }
