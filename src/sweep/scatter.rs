@@ -132,6 +132,7 @@ impl LawScatter {
         let m = record.paris_m + m_per_p * more;
         Ok(FittedRecord {
             a: record.a * (change - slope(record)? * more).exp(),
+            rate_constant: record.rate_constant.map(|beta| beta * (BETA_SLOPE * more).exp()),
             p,
             paris_c_mm_per_cycle: (ln_rate - m * record.pivot_delta_k_mpa_sqrt_m.ln()).exp(),
             paris_m: m,
