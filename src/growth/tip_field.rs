@@ -39,7 +39,7 @@ use steering::{Steering, equivalent_factor};
 const RING_HORIZONS: f64 = 3.0;
 /// Outer radius below which a ring says nothing, in horizons.
 const RING_HORIZONS_MIN: f64 = 1.2;
-/// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.06 to 0.08 at ν = 0.3, 0.04 at ν = 0.1,
+/// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.05 to 0.09 at ν = 0.3, 0.04 at ν = 0.1,
 /// whatever the spacing.
 const AHEAD_HORIZONS: f64 = 0.15;
 /// Distance from coarser points, in horizons, at which a run ends: the ring, which must not reach them, would be too narrow.
