@@ -20,8 +20,6 @@ use crate::specimen::{LengthConvention, Specimen};
 /// Radius of the ageing zone: a narrower zone breaks bonds beside the crack path less often, see the growth law.
 const ZONE_RADIUS: f64 = 0.5;
 const CYCLES_MAX: f64 = 1e9;
-/// Error of life that a `controlled` run may make, percent.
-const BLOCK_ERROR_PERCENT: f64 = 1.0;
 
 /// Keys of `[fatigue]`.
 #[derive(Deserialize)]
@@ -101,7 +99,7 @@ pub(super) fn from_value(
         ageing: choices.ageing.unwrap_or(Ageing::CrackTip),
         zone_radius_horizons: choices.zone_radius_horizons.unwrap_or(ZONE_RADIUS),
         precrack: input.precrack.unwrap_or(Precrack::SteadyProfile),
-        block: read_block(&input)?,
+        block: read_block(&input, driver)?,
         critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
@@ -151,10 +149,9 @@ fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Dri
         ("ageing", input.ageing.is_some()),
         ("zone_radius_horizons", input.zone_radius_horizons.is_some()),
         ("precrack", input.precrack.is_some()),
-        ("block", input.block.is_some()),
+        ("block", input.block.is_some_and(|block| block != BlockKind::Controlled)),
         ("block_cycles", input.block_cycles.is_some()),
         ("bonds_per_block", input.bonds_per_block.is_some()),
-        ("block_error_percent", input.block_error_percent.is_some()),
         ("critical_stretch", input.critical_stretch.is_some()),
         ("lattice_direction", input.lattice_direction.is_some()),
         ("finite_horizon", input.finite_horizon.is_some()),
@@ -172,14 +169,14 @@ fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Dri
 }
 
 /// Reads the cycle block: every kind has one key of its own, and no other takes it.
-fn read_block(slice: &Input) -> Result<Block> {
+fn read_block(slice: &Input, driver: Driver) -> Result<Block> {
     use BlockKind::{Controlled, Fixed, UntilNextBreak};
     let kind = slice.block.unwrap_or(Controlled);
     let cycles = number("a number of cycles", 1e-3, 1e12).read_optional("fatigue.block_cycles", slice.block_cycles)?;
     let bonds = slice.bonds_per_block.map(f64::from);
     let bonds = number("a number of bonds", 1.0, 1e6).read_optional("fatigue.bonds_per_block", bonds)?;
     let error = slice.block_error_percent;
-    let error = number("an error in percent", 0.01, 10.0).read_optional("fatigue.block_error_percent", error)?;
+    let error = number("an error in percent", 0.001, 10.0).read_optional("fatigue.block_error_percent", error)?;
     for (key, value, of) in
         [("block_cycles", cycles, Fixed), ("bonds_per_block", bonds, UntilNextBreak), ("block_error_percent", error, Controlled)]
     {
@@ -198,7 +195,7 @@ fn read_block(slice: &Input) -> Result<Block> {
         kind,
         cycles: cycles.unwrap_or(f64::INFINITY),
         bonds: bonds.unwrap_or(1.0) as usize,
-        error_percent: error.unwrap_or(BLOCK_ERROR_PERCENT),
+        error_percent: error.unwrap_or(driver.block_error_percent()),
     })
 }
 

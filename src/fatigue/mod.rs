@@ -30,6 +30,18 @@ crate::kinds! {
     }
 }
 
+impl Driver {
+    /// `fatigue.block_error_percent` where a file gives none: error of a block's cycles that growth by K keeps to, or that
+    /// strains not solved for may make in a life of bonds.
+    #[must_use]
+    pub fn block_error_percent(self) -> f64 {
+        match self {
+            Driver::TipField => 0.2,
+            Driver::BondStrain => 1.0,
+        }
+    }
+}
+
 crate::kinds! {
     /// Which bonds age.
     pub enum Ageing for "fatigue.ageing" {

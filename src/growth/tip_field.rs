@@ -23,6 +23,7 @@ use crate::body::severed::represented_excess;
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::{Error, Result, input};
+use crate::fatigue::Driver;
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::{Cut, set_aside};
@@ -44,13 +45,20 @@ const RING_HORIZONS_MIN: f64 = 1.2;
 const AHEAD_HORIZONS: f64 = 0.15;
 /// Distance from coarser points, in horizons, at which a run ends: the ring, which must not reach them, would be too narrow.
 const RING_HORIZONS_IN_LEVELS: f64 = 1.5;
-/// Growth of a tip in a block at the most, in horizons. A compact plate whose crack turns into a hole (spacing 0.2 mm): steps of 0.13,
+/// Growth of a tip in the first block, and in any block at the most, in horizons. A compact plate whose crack turns into a hole (spacing 0.2 mm): steps of 0.13,
 /// 0.25 and 0.5 horizons gave lives of 782, 783 and 780 cycles.
-const STEP_HORIZONS: f64 = 0.4;
+const STEP_FIRST_HORIZONS: f64 = 0.2;
+/// The same after a corner, until the aims since then show how the crack curves.
+const STEP_TURNING_HORIZONS: f64 = 0.4;
+const STEP_HORIZONS: f64 = 1.0;
+/// Next step over the last one, at the most.
+const STEP_RISE: f64 = 1.6;
+/// Share of a block's cycles that the parabola may add: beyond it the rates lie on none.
+const BEND_MOST: f64 = 0.02;
 /// The same where a rim or another crack lies within the ring, and K changes fast.
 const STEP_NEAR_HORIZONS: f64 = 0.2;
 /// Turn of a tip in a block at the most, rad, unless that makes the block shorter than the step near rims.
-const TURN: f64 = 1.0 * std::f64::consts::PI / 180.0;
+const TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate: K is held where it
 /// is read to fall.
 const CORE_HORIZONS: f64 = 0.6;
@@ -60,8 +68,9 @@ const THROUGH_SPACINGS: f64 = 0.75;
 const SHARE_MOST: f64 = 1.5;
 /// Distance of a rim beside a tip, in spacings, from which nothing is left between them that carries.
 const BESIDE_SPACINGS: f64 = 0.5;
-/// Residual over load of an equilibrium: factors are right to some 1e-9.
-const TOLERANCE: f64 = 1e-10;
+/// Residual over load of an equilibrium: factors are right to some 1e-8. Round-off allows no less where what is left of a plate is
+/// nearly a mechanism.
+const TOLERANCE: f64 = 1e-8;
 /// Way to a rim straight ahead, in horizons, that is gone in one block where it takes less than [`SHARE_LEFT`] of the cycles so far:
 /// what is left of the plate there is nearly a mechanism, and says nothing about its life.
 const LEFT_HORIZONS: f64 = 4.0;
@@ -83,6 +92,8 @@ pub struct TipField<'a> {
     plate: &'a Plate,
     law: &'a dyn GrowthLaw,
     surroundings: Surroundings,
+    /// Measure of steps, m: the horizon, less where a smaller error is asked for than by default.
+    measure: f64,
     /// Which bonds carry.
     pub bonds: Bonds,
     /// Cracks and tips.
@@ -115,14 +126,17 @@ impl<'a> TipField<'a> {
                 factors: [0.0; 2],
                 rate: 0.0,
                 before: None,
+                past: None,
                 length: length_of(specimen, end),
                 readings: Readings::default(),
                 steering: Steering::default(),
             })
         };
         let tips = (0..specimen.tips.len()).map(tip).collect::<Result<Vec<_>>>()?;
-        let state = TipFieldState { lines: specimen.crack_lines(), tips };
         let body = &plate.body;
+        let measure =
+            (case.fatigue.block.error_percent / Driver::TipField.block_error_percent()).sqrt().min(1.0) * body.horizon();
+        let state = TipFieldState { lines: specimen.crack_lines(), tips, step: STEP_FIRST_HORIZONS * measure };
         let mut bonds = Bonds::new(body);
         if set_aside(body, &mut bonds, &body.pre_cut) == Cut::Severed {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
@@ -134,6 +148,7 @@ impl<'a> TipField<'a> {
             plate,
             law,
             surroundings,
+            measure,
             bonds,
             state,
             equilibrium,
@@ -262,8 +277,12 @@ impl<'a> TipField<'a> {
         let piece = |(tip, way): (&Tip, &f64)| (*way > 0.0).then(|| self.piece(tip, *way));
         let pieces: Vec<Option<Piece>> = self.state.tips.iter().zip(&ways).map(piece).collect();
         let grown = pieces[fastest].as_ref().map_or(0.0, |piece| distance(piece.from, piece.to));
+        // Rate at the start of the last step, and its length, of the tip whose cycles count.
+        let past = self.state.tips[fastest].past;
         for (tip, piece) in self.state.tips.iter_mut().zip(pieces) {
             tip.before = Some([tip.rate, grown]);
+            let way = piece.as_ref().map_or(0.0, |piece| distance(piece.from, piece.to));
+            tip.past = (way > 0.0 && tip.steering.corner().is_none()).then_some([tip.rate, way]);
             let Some(Piece { from, to, state }) = piece else { continue };
             cut.extend(across(body, from, to, tip.end.at_last, state));
             self.state.lines[tip.end.line].grow(tip.end.at_last, to);
@@ -298,8 +317,15 @@ impl<'a> TipField<'a> {
         let lead = &self.state.tips[fastest];
         let rate_then = if lead.state == TipState::Active && end.is_none() && lead.rate > 0.0 { lead.rate } else { rate };
         let left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
+        let bend = past.map_or(0.0, |[before, way]| bend([before, rate, rate_then], [way, grown]));
+        let error = bend.abs().max(f64::MIN_POSITIVE);
+        if grown > 0.0 && end.is_none() {
+            let most = (0.01 * self.case.fatigue.block.error_percent / error).sqrt().min(STEP_RISE) * grown;
+            self.state.step = most.clamp(STEP_NEAR_HORIZONS * self.measure, STEP_HORIZONS * self.measure);
+        }
+        let bend = if error < BEND_MOST { bend } else { 0.0 };
         Step {
-            cycles: grown * mean_inverse(rate, rate_then),
+            cycles: grown * mean_inverse(rate, rate_then) * (1.0 + bend),
             work: if end.is_none() { self.work() } else { f64::NAN },
             cut: cut.len(),
             end: end.or((!left).then_some(End::NoTipLeft)),
@@ -353,8 +379,15 @@ impl<'a> TipField<'a> {
         let horizon = self.plate.body.horizon();
         let of_tip = |tip: &Tip| {
             let near = is_near_rim(&self.case.specimen, &self.state.lines, tip.end, RING_HORIZONS * horizon);
-            let most = if near { STEP_NEAR_HORIZONS } else { STEP_HORIZONS } * horizon;
-            let turning = (TURN / tip.steering.curvature(horizon).abs()).max(STEP_NEAR_HORIZONS * horizon);
+            let most = if near {
+                STEP_NEAR_HORIZONS * self.measure
+            } else if tip.steering.is_turning(tip.growth, horizon) {
+                self.state.step.min(STEP_TURNING_HORIZONS * self.measure)
+            } else {
+                self.state.step
+            };
+            let turn = TURN * self.measure / horizon;
+            let turning = (turn / tip.steering.curvature(horizon).abs()).max(STEP_NEAR_HORIZONS * self.measure);
             most.min(turning) * rate / tip.rate
         };
         self.state
@@ -468,6 +501,15 @@ fn mean_inverse(from: f64, to: f64) -> f64 {
     let fall = (from / to).ln();
     // (1/to - 1/from) / ln(from/to), whose difference loses digits where the rates are nearly equal.
     if fall.abs() < 1e-4 { (1.0 + 0.5 * fall) / from } else { (fall.exp_m1() / fall) / from }
+}
+
+/// Share by which a parabola of ln r through three rates raises `∫ da/r` over the second of the `ways` between them, m, above that
+/// of the straight line: `c h²/6` with c the second divided difference.
+fn bend([before, from, to]: [f64; 3], [first, second]: [f64; 2]) -> f64 {
+    let slope = |a: f64, b: f64, way: f64| (b / a).ln() / way;
+    let curvature = (slope(from, to, second) - slope(before, from, first)) / (first + second);
+    let share = curvature * second * second / 6.0;
+    if share.is_finite() { share } else { 0.0 }
 }
 
 /// Gives tips whose factors agree but for round-off and sign the same factors: mirror twins stay twins.

@@ -19,7 +19,7 @@ use crate::growth::tip_field::{self, Step, TipField};
 const ROUND_OFF: f64 = 1e-12;
 
 /// Blocks after which a run begins anew from its bonds, so that it can be taken up there.
-const BLOCKS_ANEW: usize = 10;
+const BLOCKS_ANEW: usize = 32;
 
 /// Predicts the a-N curve of a case of driver `tip_field` with a law over K, from its start or from where an earlier run stood.
 ///

@@ -22,6 +22,8 @@ pub struct Tip {
     pub rate: f64,
     /// That of the block before, and the growth of the fastest tip since.
     pub(super) before: Option<[f64; 2]>,
+    /// Its rate at the start of the last block and its own growth in it, where no corner lies between.
+    pub(super) past: Option<[f64; 2]>,
     /// Length of crack that belonged to it at the start, m.
     pub(super) length: f64,
     pub(super) readings: Readings,
@@ -42,6 +44,8 @@ pub struct TipFieldState {
     pub lines: Vec<CrackLine>,
     /// Their tips.
     pub tips: Vec<Tip>,
+    /// Growth of a tip in the next block at the most, m.
+    pub(super) step: f64,
 }
 
 impl TipFieldState {

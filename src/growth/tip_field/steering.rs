@@ -20,6 +20,8 @@ const SLOPE_HORIZONS: f64 = 0.15;
 const CORNER: f64 = 8.0 * std::f64::consts::PI / 180.0;
 /// Growth after a corner, in horizons, over which the direction is held: the core of the tip has to leave the corner first.
 const HELD_HORIZONS: f64 = 1.15;
+/// Growth after that, in horizons, until the aims since then show how the crack curves.
+const FOUND_HORIZONS: f64 = 1.0;
 
 /// Angle θ of the largest circumferential stress, rad, counter-clockwise from straight ahead.
 #[must_use]
@@ -45,14 +47,17 @@ pub fn equivalent_factor(factors: [f64; 2]) -> f64 {
 pub struct Steering {
     /// Growth and aim, as angle from x, rad, since the last corner.
     aims: Vec<[f64; 2]>,
-    /// Growth at the last corner, m.
+    /// Growth at the last corner, m, while the direction after it is held.
     corner: Option<f64>,
+    /// Growth at which the direction after a corner was last held, m.
+    held: Option<f64>,
 }
 
 impl Steering {
     /// Takes in the factors of a tip that has grown by `growth` along `ahead`.
     pub fn read(&mut self, factors: [f64; 2], growth: f64, ahead: Point, horizon: f64) {
         if self.corner.is_some_and(|corner| growth < corner + HELD_HORIZONS * horizon) {
+            self.held = Some(growth);
             return;
         }
         let turn = kink_angle([factors[0].max(0.0), factors[1]]);
@@ -62,7 +67,7 @@ impl Steering {
         let turns = ((last - heading) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
         let aim = heading + turns + turn;
         if turn.abs() > CORNER {
-            (self.aims, self.corner) = (vec![[growth, aim]], Some(growth));
+            (self.aims, self.corner, self.held) = (vec![[growth, aim]], Some(growth), Some(growth));
             return;
         }
         if self.corner.take().is_some() {
@@ -96,6 +101,12 @@ impl Steering {
         let [x, y] = [0, 1].map(|i| self.aims.iter().map(|aim| aim[i]).sum::<f64>() / count);
         let product = |i: usize| self.aims.iter().map(|aim| (aim[0] - x) * (aim[i] - [x, y][i])).sum::<f64>();
         ([x, y], product(1) / (product(0) + count * (SLOPE_HORIZONS * horizon).powi(2)))
+    }
+
+    /// Whether a tip that has grown by `growth` has come round a corner so lately that its aims do not show yet how it curves.
+    #[must_use]
+    pub fn is_turning(&self, growth: f64, horizon: f64) -> bool {
+        self.held.is_some_and(|held| growth < held + FOUND_HORIZONS * horizon)
     }
 
     /// Growth at the last corner, m, while the direction after it is held.
