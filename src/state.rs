@@ -38,6 +38,13 @@ impl Bonds {
         bonds
     }
 
+    /// Bonds of the body that are cut, ascending.
+    #[must_use]
+    pub fn broken(&self, body: &Body) -> Vec<Bond> {
+        let is_broken = |bond: Bond| body.multiplier[bond as usize] > 0.0 && !self.is_intact(bond);
+        (0..body.multiplier.len()).map(|bond| bond as Bond).filter(|&bond| is_broken(bond)).collect()
+    }
+
     fn is_regular(&self, body: &Body, first: usize) -> bool {
         let places = body.places();
         (first..first + LANES).all(|place| {

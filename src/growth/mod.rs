@@ -1,19 +1,144 @@
 //! What drives a crack: from the plate as it stands to the plate a cycle block later.
+//!
+//! [`crate::predict::predict`] asks one [`CrackGrowth`] for block after block until it has a reason to stop: K of every tip
+//! ([`tip_field`]), bonds that age by their own strain ([`bond_strain`]), or K of a handbook without any plate
+//! ([`hand_calculation`]).
 
+pub mod bond_strain;
+mod end_of_life;
+pub mod hand_calculation;
 pub mod plate;
+pub mod record;
 pub mod tip_field;
 
-use crate::specimen::Point;
+use std::sync::Arc;
 
-/// A tip as a step leaves it.
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::fatigue::growth_law::GrowthLaw;
+use plate::Plate;
+use record::{CurvePoint, StopReason, TipRecord};
+
+/// Drives the cracks of one plate, block by block.
+pub trait CrackGrowth {
+    /// Makes the first row: the plate with its initial cracks, in equilibrium.
+    ///
+    /// # Errors
+    /// No equilibrium, or nothing can be read at a tip.
+    fn open(&mut self) -> Result<()>;
+
+    /// One cycle block, which makes one row; the reason why there is no next one. A block that finds that reason before anything
+    /// happens makes no row.
+    ///
+    /// # Errors
+    /// Mechanics that fail where nothing of the run can be kept.
+    fn advance(&mut self) -> Result<Option<StopReason>>;
+
+    /// The last row.
+    fn now(&self) -> Now<'_>;
+
+    /// The discretised plate, where there is one.
+    fn plate(&self) -> Option<Arc<Plate>>;
+
+    /// Displacement and damage of its points as they stand.
+    ///
+    /// # Errors
+    /// No equilibrium.
+    fn fields(&mut self) -> Result<Option<Fields>>;
+
+    /// The law over K that rates come from, where there is one.
+    fn law(&self) -> Option<&dyn GrowthLaw>;
+
+    /// Whether the solver is best built anew before the next block, so that what follows depends on [`CrackGrowth::state`] alone. It
+    /// depends on the case and its blocks, never on time.
+    fn is_due(&self) -> bool;
+
+    /// Builds the solver anew from the bonds.
+    ///
+    /// # Errors
+    /// No equilibrium.
+    fn begin_anew(&mut self) -> Result<()>;
+
+    /// All that the next blocks depend on where the solver is built anew.
+    fn state(&self) -> State;
+
+    /// Goes on from a state of an earlier run, in place of [`CrackGrowth::open`]; whether it is one of this plate and law.
+    ///
+    /// # Errors
+    /// No equilibrium.
+    fn restore(&mut self, state: State) -> Result<bool>;
+
+    /// Ends the run for a reason, or for one that had come before it.
+    ///
+    /// # Errors
+    /// No equilibrium of the whole plate.
+    fn close(&mut self, stop: StopReason) -> Result<StopReason>;
+
+    /// The rows from N = 0 on, and the cycles of the run at which that was.
+    fn curve(&mut self) -> (Vec<CurvePoint>, f64);
+
+    /// What the run took.
+    fn effort(&self) -> Effort;
+
+    /// What the user should know of the driver's own.
+    fn warnings(&self) -> Vec<String>;
+}
+
+/// Where a run stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TipNow {
-    /// Position, m.
-    pub position: Point,
-    /// Growth since the start, m.
-    pub growth: f64,
-    /// K_I and K_II at maximum load, Pa√m.
-    pub factors: [f64; 2],
-    /// da/dN, m/cycle.
-    pub rate: f64,
+pub struct Now<'a> {
+    /// Cycles since N = 0; none before.
+    pub cycles: f64,
+    /// The same since the start of the run, which is before N = 0 where cracks are first grown to their initial lengths.
+    pub cycles_of_run: f64,
+    /// Crack length in the specimen's convention, m.
+    pub crack_length: f64,
+    /// Range of the stress intensity factor, Pa√m; NaN where it is known at the end only.
+    pub delta_k: f64,
+    /// Tips, in the order of `Specimen::tips`.
+    pub tips: &'a [TipRecord],
+    /// Whether cycles count: all cracks have their initial lengths.
+    pub is_counting: bool,
+    /// Whether the plate is in equilibrium, not within a block that is still open.
+    pub is_settled: bool,
+}
+
+impl Now<'_> {
+    /// Growth of all tips together, m.
+    #[must_use]
+    pub fn growth(&self) -> f64 {
+        self.tips.iter().map(|tip| tip.growth).sum()
+    }
+}
+
+/// Displacement (x, y), m, and damage, 0 to 1, of every point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fields {
+    /// Displacement at maximum load, m.
+    pub displacement: Vec<[f64; 2]>,
+    /// Share of a point's bonds that are broken.
+    pub damage: Vec<f64>,
+}
+
+/// What a run took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Effort {
+    /// Points that were solved for.
+    pub points_solved: usize,
+    /// Equilibrium solves.
+    pub solves: usize,
+    /// Solver iterations.
+    pub iterations: usize,
+}
+
+/// State of a run at a place where its solver is built anew.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum State {
+    /// Of bonds that age.
+    Bonds(bond_strain::BondStrainState),
+    /// Of tips driven by their K.
+    Tips(tip_field::run::TipsState),
+    /// Of a hand calculation: its rows.
+    Rows(Vec<CurvePoint>),
 }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::Fields;
 use crate::body::lattice::LANES;
 use crate::body::{Body, Bond};
 use crate::case::Model;
@@ -106,7 +107,7 @@ impl Plate {
 
     /// Displacement (x, y) in plate axes, m, and damage of every point, from a displacement in the layout of its [`Equilibrium`].
     #[must_use]
-    pub fn fields(&self, bonds: &Bonds, displacement: &[f64]) -> (Vec<[f64; 2]>, Vec<f64>) {
+    pub fn fields(&self, bonds: &Bonds, displacement: &[f64]) -> Fields {
         match &self.levels {
             None => of_body(&self.body, bonds, displacement),
             Some(levels) => of_levels(levels, &self.body, bonds, displacement),
@@ -115,7 +116,7 @@ impl Plate {
 }
 
 /// Displacement in plate axes and damage of the points of a body: share of their bonds that are broken.
-fn of_body(body: &Body, bonds: &Bonds, displacement: &[f64]) -> (Vec<[f64; 2]>, Vec<f64>) {
+fn of_body(body: &Body, bonds: &Bonds, displacement: &[f64]) -> Fields {
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let places = body.places();
     let damage = |place: usize| {
@@ -138,11 +139,11 @@ fn of_body(body: &Body, bonds: &Bonds, displacement: &[f64]) -> (Vec<[f64; 2]>, 
         body.lattice.from_axes([displacement[at], displacement[at + layout.stride]])
     };
     let points = || body.points.iter().map(|&place| place as usize);
-    (points().map(motion).collect(), points().map(damage).collect())
+    Fields { displacement: points().map(motion).collect(), damage: points().map(damage).collect() }
 }
 
 /// The same for all points of a net.
-fn of_levels(levels: &Levelled, body: &Body, bonds: &Bonds, displacement: &[f64]) -> (Vec<[f64; 2]>, Vec<f64>) {
+fn of_levels(levels: &Levelled, body: &Body, bonds: &Bonds, displacement: &[f64]) -> Fields {
     let net = &levels.net;
     let layout = Layout::of(&body.lattice, net.unknowns);
     let mut share = vec![1.0; net.bonds.len()];
@@ -157,5 +158,5 @@ fn of_levels(levels: &Levelled, body: &Body, bonds: &Bonds, displacement: &[f64]
         };
         body.lattice.from_axes([displacement[first], displacement[first + stride]])
     };
-    (levels.ids.iter().map(motion).collect(), net.damage(&share))
+    Fields { displacement: levels.ids.iter().map(motion).collect(), damage: net.damage(&share) }
 }

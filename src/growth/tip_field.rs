@@ -11,13 +11,16 @@
 
 mod ahead;
 mod readings;
+pub mod run;
 mod state;
 pub mod steering;
 
-pub use state::{End, Step, Tip, TipFieldState};
+pub use state::{Step, Tip, TipFieldState};
 
-use super::TipNow;
+use std::sync::Arc;
+
 use super::plate::Plate;
+use super::record::{StopReason, TipRecord};
 use crate::body::pre_crack::bonds_across;
 use crate::body::severed::represented_excess;
 use crate::body::{Body, Bond};
@@ -62,6 +65,8 @@ const TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate: K is held where it
 /// is read to fall.
 const CORE_HORIZONS: f64 = 0.6;
+/// Growth after a corner, in horizons, below which points do not resolve the kink: K would be read up to 5 % low.
+const KINK_HORIZONS: f64 = 0.5;
 /// Distance from an edge, in spacings, from which points cannot resolve what is left.
 const THROUGH_SPACINGS: f64 = 0.75;
 /// Growth of a tip over that of the fastest, at the most, where rates are extrapolated.
@@ -89,8 +94,8 @@ struct Piece {
 /// Growth by the field of every tip.
 pub struct TipField<'a> {
     case: &'a Case,
-    plate: &'a Plate,
-    law: &'a dyn GrowthLaw,
+    plate: Arc<Plate>,
+    law: Box<dyn GrowthLaw>,
     surroundings: Surroundings,
     /// Measure of steps, m: the horizon, less where a smaller error is asked for than by default.
     measure: f64,
@@ -112,7 +117,7 @@ impl<'a> TipField<'a> {
     ///
     /// # Errors
     /// A specimen without sharp crack, cracks that cut the plate in two.
-    pub fn start(case: &'a Case, plate: &'a Plate, law: &'a dyn GrowthLaw) -> Result<Self> {
+    pub fn start(case: &'a Case, plate: Arc<Plate>, law: Box<dyn GrowthLaw>) -> Result<Self> {
         let specimen = &case.specimen;
         let tip = |tip: usize| {
             let end = specimen.line_end(tip).ok_or_else(|| {
@@ -142,10 +147,9 @@ impl<'a> TipField<'a> {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
         let surroundings = Surroundings::new(body, specimen, &case.material);
-        let equilibrium = balance(case, plate, &bonds);
+        let equilibrium = balance(case, &plate, &bonds);
         Ok(TipField {
             case,
-            plate,
             law,
             surroundings,
             measure,
@@ -155,6 +159,7 @@ impl<'a> TipField<'a> {
             displacement: Vec::new(),
             solves: 0,
             iterations: 0,
+            plate,
         })
     }
 
@@ -181,8 +186,8 @@ impl<'a> TipField<'a> {
         displacement: Vec<f64>,
         (solves, iterations): (usize, usize),
     ) -> bool {
-        let body = &self.plate.body;
-        broken.iter().for_each(|&bond| self.bonds.cut(body, bond));
+        let plate = self.plate.clone();
+        broken.iter().for_each(|&bond| self.bonds.cut(&plate.body, bond));
         self.state = state;
         (self.solves, self.iterations) = (solves, iterations);
         self.displacement = displacement;
@@ -194,7 +199,7 @@ impl<'a> TipField<'a> {
     /// # Errors
     /// No equilibrium.
     pub fn begin_anew(&mut self) -> Result<()> {
-        self.equilibrium = balance(self.case, self.plate, &self.bonds);
+        self.equilibrium = balance(self.case, &self.plate, &self.bonds);
         self.settle(&[])
     }
 
@@ -202,6 +207,18 @@ impl<'a> TipField<'a> {
     #[must_use]
     pub fn body(&self) -> &Body {
         &self.plate.body
+    }
+
+    /// The plate.
+    #[must_use]
+    pub fn plate(&self) -> &Arc<Plate> {
+        &self.plate
+    }
+
+    /// Law of growth.
+    #[must_use]
+    pub fn law(&self) -> &dyn GrowthLaw {
+        &*self.law
     }
 
     /// Work of the loads, J.
@@ -212,9 +229,21 @@ impl<'a> TipField<'a> {
 
     /// Tips in the order of `Specimen::tips`.
     #[must_use]
-    pub fn tips(&self) -> Vec<TipNow> {
-        let now = |tip: &Tip| TipNow { position: self.position(tip), growth: tip.growth, factors: tip.factors, rate: tip.rate };
+    pub fn tips(&self) -> Vec<TipRecord> {
+        let now = |tip: &Tip| TipRecord { position: self.position(tip), growth: tip.growth, factors: Some(tip.factors) };
         self.state.tips.iter().map(now).collect()
+    }
+
+    /// K_eq at maximum load, Pa√m, and da/dN, m/cycle, of the fastest tip; `None` where none grows.
+    #[must_use]
+    pub fn leading(&self) -> Option<(f64, f64)> {
+        self.fastest().map(|tip| (self.state.tips[tip].equivalent(), self.state.tips[tip].rate))
+    }
+
+    /// Why growth ends where no tip is left.
+    fn gone(&self) -> StopReason {
+        let entered = self.state.tips.iter().any(|tip| matches!(tip.state, TipState::EnteredHole | TipState::LinkedUp));
+        if entered { StopReason::EnteredHole } else { StopReason::LeftPlate }
     }
 
     fn position(&self, tip: &Tip) -> Point {
@@ -255,17 +284,18 @@ impl<'a> TipField<'a> {
 
     /// One block after so many `cycles`: all tips grow, over the same cycles, until the crack has the length `until` at the latest.
     pub fn advance(&mut self, cycles: f64, until: f64) -> Step {
-        let none = |end: End, work: f64| Step { cycles: 0.0, work, cut: 0, end: Some(end) };
+        let none = |end: StopReason, work: f64| Step { cycles: 0.0, work, cut: 0, end: Some(end) };
         if self.state.tips.iter().all(|tip| tip.state != TipState::Active) {
-            return none(End::NoTipLeft, self.work());
+            return none(self.gone(), self.work());
         }
-        let body = &self.plate.body;
+        let plate = self.plate.clone();
+        let body = &plate.body;
         let horizon = body.horizon();
-        let Some(fastest) = self.fastest() else { return none(End::NothingGrows, self.work()) };
+        let Some(fastest) = self.fastest() else { return none(StopReason::NothingAges, self.work()) };
         let at_rim =
             |tip: &Tip| tip.state == TipState::Active && body.is_near_rim(self.position(tip), RING_HORIZONS_IN_LEVELS * horizon);
         if self.state.tips.iter().any(at_rim) {
-            return none(End::LeftRefinement, self.work());
+            return none(StopReason::LeftRefinement, self.work());
         }
         let rate = self.state.tips[fastest].rate;
 
@@ -301,17 +331,17 @@ impl<'a> TipField<'a> {
             cut.extend(aside);
         }
         let end = if severed {
-            Some(End::Severed)
+            Some(StopReason::Severed)
         } else {
             match self.settle(&cut) {
                 Ok(()) => None,
-                Err(_) => Some(End::NoConvergence),
+                Err(_) => Some(StopReason::NoConvergence),
             }
         };
         if end.is_none() {
             self.read_factors();
             if self.state.tips.iter().any(|tip| !tip.equivalent().is_finite()) {
-                return none(End::NoConvergence, f64::NAN);
+                return none(StopReason::NoConvergence, f64::NAN);
             }
         }
         let lead = &self.state.tips[fastest];
@@ -328,7 +358,7 @@ impl<'a> TipField<'a> {
             cycles: grown * mean_inverse(rate, rate_then) * (1.0 + bend),
             work: if end.is_none() { self.work() } else { f64::NAN },
             cut: cut.len(),
-            end: end.or((!left).then_some(End::NoTipLeft)),
+            end: end.or_else(|| (!left).then(|| self.gone())),
         }
     }
 
@@ -416,7 +446,8 @@ impl<'a> TipField<'a> {
 
     /// Equilibrium after bonds were cut.
     fn settle(&mut self, cut: &[Bond]) -> Result<()> {
-        let body = &self.plate.body;
+        let plate = self.plate.clone();
+        let body = &plate.body;
         self.equilibrium.broke(body, &self.bonds, cut);
         self.iterations += self.equilibrium.solve(body, &self.bonds, &mut self.displacement)?;
         self.solves += 1;
@@ -425,7 +456,8 @@ impl<'a> TipField<'a> {
 
     /// Factors, rates and aims of all tips that are left.
     fn read_factors(&mut self) {
-        let body = &self.plate.body;
+        let plate = self.plate.clone();
+        let body = &plate.body;
         let horizon = body.horizon();
         let active: Vec<LineEnd> =
             self.state.tips.iter().filter(|tip| tip.state == TipState::Active).map(|tip| tip.end).collect();
@@ -464,7 +496,11 @@ impl<'a> TipField<'a> {
             tip.steering.read(read, tip.growth, ahead, horizon);
             tip.readings.take(equivalent_factor(read), tip.growth, excess, tip.steering.corner(), horizon);
             // Both modes alike: what the tip's field lacks or has too much is length.
-            let share = tip.readings.share(excess, tip.length + tip.growth);
+            let mut share = tip.readings.share(excess, tip.length + tip.growth);
+            // K that opens a kink starts at that of its direction; until the bonds show the kink, less is read.
+            if tip.steering.corner().is_some_and(|corner| tip.growth < corner + KINK_HORIZONS * horizon && tip.growth > corner) {
+                share = share.max(tip.equivalent() / equivalent_factor(read));
+            }
             let factors = read.map(|factor| share * factor);
             let near = tip.growth > 0.0 && is_near_rim(specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
             let has_risen = equivalent_factor(factors) >= tip.equivalent();

@@ -20,11 +20,12 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::factor_curve::FactorCurve;
-use super::{Silent, StopReason, Unrecorded, run};
+use super::{Silent, StopReason, run};
 use crate::bond_law::Kernel;
 use crate::case::{Case, Model};
 use crate::error::{Error, Result};
 use crate::fatigue::{FatigueLaw, STEADY_EXPONENTS, unsteady};
+use crate::growth::bond_strain::Unrecorded;
 use crate::quadrature::integrate;
 
 /// Size of the reference plate, crack length (half) before and after, in horizons.

@@ -4,7 +4,7 @@
 //! A crack that no law can turn aside, as that of a standard specimen, has one K(a) whatever its growth law, so one run serves
 //! every pair of C and m.
 
-use super::{Observer, RunFigures, StopReason, by_tips};
+use super::{Observer, RunFigures, StopReason, run_by_tips};
 use crate::case::{Case, LawSource};
 use crate::error::{Error, Result};
 use crate::fatigue::Driver;
@@ -37,7 +37,7 @@ impl FactorCurve {
         case.fatigue.driver = Driver::TipField;
         (case.fatigue.threshold, case.fatigue.walker_gamma) = (0.0, 1.0);
         case.stop.cycles_max = f64::INFINITY;
-        let done = by_tips::run(&case, None, &Walker { paris, gamma: 1.0, threshold: 0.0 }, observer)?;
+        let done = run_by_tips(&case, Box::new(Walker { paris, gamma: 1.0, threshold: 0.0 }), observer)?;
         if done.stop != StopReason::CrackLengthReached {
             return Err(Error::Mechanics(format!(
                 "{}: the crack ended as {} at a length of {:.3} mm, before {:.3} mm, to which its K is needed",

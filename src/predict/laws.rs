@@ -7,6 +7,7 @@ use crate::error::{Result, input_missing};
 use crate::fatigue::FatigueLaw;
 use crate::fatigue::growth_law::{Bounded, GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
+use crate::growth::CrackGrowth;
 use crate::units::MM;
 
 /// The law over K of a case, for driver `tip_field` and method `handbook`.
@@ -21,13 +22,15 @@ pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
     })
 }
 
-/// Refuses a row whose K lies beyond what the law says, where the law wants that.
+/// Refuses growth from a K that lies beyond what the law says, where the law wants that.
 ///
 /// # Errors
 /// [`crate::Error::Input`].
-pub fn check_within(case: &Case, law: &dyn GrowthLaw, row: &CurvePoint) -> Result<()> {
-    let Some(problem) = beyond(case, law, row).filter(|_| law.is_refused_beyond()) else { return Ok(()) };
-    let at = format!("{problem}, at a crack length of {:.3} mm", row.crack_length / MM);
+pub fn check_within(case: &Case, growth: &dyn CrackGrowth) -> Result<()> {
+    let Some(law) = growth.law().filter(|law| law.is_refused_beyond()) else { return Ok(()) };
+    let now = growth.now();
+    let Some(problem) = beyond(case, law, now.delta_k) else { return Ok(()) };
+    let at = format!("{problem}, at a crack length of {:.3} mm", now.crack_length / MM);
     Err(input_missing(
         "fatigue.growth_table",
         at,
@@ -35,15 +38,15 @@ pub fn check_within(case: &Case, law: &dyn GrowthLaw, row: &CurvePoint) -> Resul
     ))
 }
 
-fn beyond(case: &Case, law: &dyn GrowthLaw, row: &CurvePoint) -> Option<String> {
-    law.beyond(row.delta_k / case.loading.range_share(), case.loading.ratio)
+fn beyond(case: &Case, law: &dyn GrowthLaw, delta_k: f64) -> Option<String> {
+    law.beyond(delta_k / case.loading.range_share(), case.loading.ratio)
 }
 
 /// What the user should know: how much of a life was spent where the law holds the rate of its end.
 #[must_use]
 pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) -> Option<String> {
     let life = curve.last()?.cycles;
-    let outside = |pair: &&[CurvePoint]| pair.iter().any(|row| beyond(case, law, row).is_some());
+    let outside = |pair: &&[CurvePoint]| pair.iter().any(|row| beyond(case, law, row.delta_k).is_some());
     let cycles: f64 = curve.windows(2).filter(outside).map(|pair| pair[1].cycles - pair[0].cycles).sum();
     (cycles > 0.0).then(|| {
         let share = 100.0 * cycles / life;

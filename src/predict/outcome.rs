@@ -1,57 +1,12 @@
 //! What a run gives and how it reports while it goes on.
 
-use serde::{Deserialize, Serialize};
-
 use super::checkpoint::Checkpoint;
+use super::memory;
+use crate::case::Case;
+use crate::growth::plate::Plate;
+pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
+use crate::growth::{CrackGrowth, Now};
 use crate::net::PointGrid;
-use crate::specimen::Point;
-
-crate::kinds! {
-    /// Why a run ended.
-    pub enum StopReason for "stop_reason" {
-        CrackLengthReached = "crack_length_reached": "the crack reached stop.crack_length_mm",
-        Toughness = "toughness": "the stress intensity at maximum load reached the toughness",
-        NetSectionYield = "net_section_yield": "the remaining section yields throughout: its limit load at the yield strength is reached",
-        Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
-        LeftPlate = "left_plate": "every crack tip has left the plate",
-        EnteredHole = "entered_hole": "the last crack tip ran into a hole",
-        LeftRefinement = "left_refinement": "a crack tip came to the rim of the finest level of points: the refined region is too small",
-        NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
-        RunOut = "run_out": "cycles_max was reached",
-        NoConvergence = "no_convergence": "the equilibrium solver did not converge",
-    }
-}
-
-/// State of one tip at a recorded step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct TipRecord {
-    /// Position, m.
-    pub position: Point,
-    /// Growth since N = 0, m.
-    pub growth: f64,
-    /// K_I and K_II at maximum load, Pa√m; `None` where nobody reads them.
-    pub factors: Option<[f64; 2]>,
-}
-
-/// One cycle block of a finished run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CurvePoint {
-    /// Cycles since N = 0.
-    pub cycles: f64,
-    /// Crack length in the specimen's convention, m.
-    pub crack_length: f64,
-    /// Range of the stress intensity factor, Pa√m (handbook where there is one, else from the energy release rate); NaN where unknown.
-    pub delta_k: f64,
-    /// Growth rate da/dN, m/cycle.
-    pub growth_rate: f64,
-    /// Work of the loads over the displacement at maximum load, f·u, J: twice the strain energy, the load squared times the
-    /// compliance; NaN where the plate is severed and in hand calculation.
-    pub work: f64,
-    /// Bonds broken since the start, initial cracks not counted.
-    pub broken_bonds: usize,
-    /// Tips, in the order of `Specimen::tips`.
-    pub tips: Vec<TipRecord>,
-}
 
 /// Picture of the damaged plate at one moment.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,6 +44,26 @@ pub struct RunFigures {
     pub wall_s: f64,
     /// Peak memory of the process, MB.
     pub memory_mb: f64,
+}
+
+impl RunFigures {
+    /// Of a run that is over, after so many blocks and seconds.
+    pub(super) fn of(growth: &dyn CrackGrowth, blocks: usize, wall_s: f64) -> Self {
+        let (plate, effort) = (growth.plate(), growth.effort());
+        let plate = plate.as_deref();
+        RunFigures {
+            points: plate.map_or(0, Plate::points),
+            points_solved: effort.points_solved,
+            bonds: plate.map_or(0, Plate::bonds),
+            blocks,
+            solves: effort.solves,
+            iterations: effort.iterations,
+            spacing: plate.map_or(f64::NAN, |plate| plate.body.lattice.spacing),
+            horizon: plate.map_or(f64::NAN, |plate| plate.body.horizon()),
+            wall_s,
+            memory_mb: memory::peak_mb(),
+        }
+    }
 }
 
 /// What a run gives.
@@ -137,6 +112,17 @@ pub struct Progress {
     pub crack_length: f64,
     /// Share of the way from the initial to the final crack length (or of `cycles_max`), 0 to 1.
     pub share: f64,
+}
+
+impl Progress {
+    /// That of a run of a case which has come so far.
+    pub(super) fn of(case: &Case, now: &Now<'_>) -> Self {
+        let start = case.specimen.crack_length;
+        // Without a length to stop at, growth across the plate is the way.
+        let end = if case.stop.crack_length.is_finite() { case.stop.crack_length } else { start + case.specimen.gross_width };
+        let (by_length, by_cycles) = ((now.crack_length - start) / (end - start), now.cycles / case.stop.cycles_max);
+        Progress { cycles: now.cycles, crack_length: now.crack_length, share: by_length.max(by_cycles).clamp(0.0, 1.0) }
+    }
 }
 
 /// Receives progress; the engine itself never prints. Returning `false` asks the run to stop.

@@ -81,12 +81,13 @@ impl DamagePicture<'_> {
 
     /// Every pixel asks which point it belongs to, so turned lattices need nothing special.
     fn draw_points(&self, canvas: &mut Canvas, view: &View, full_scale: f64) {
+        let whole = of_share(0.0);
         for row in 0..view.height {
             for column in 0..view.width {
                 let (x, y) = (MARGIN + column, MARGIN + row);
                 let Some(point) = place_at(self.grid, view.point([x as f64 + 0.5, y as f64 + 0.5])) else { continue };
                 let damage = self.snapshot.damage.get(point).copied().unwrap_or(0.0);
-                canvas.set(x, y, of_share(damage / full_scale));
+                canvas.set(x, y, if damage == 0.0 { whole } else { of_share(damage / full_scale) });
             }
         }
     }

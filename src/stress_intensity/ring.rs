@@ -20,6 +20,7 @@
 //! The bonds near the tip, where the displacement of a nonlocal body is not that of a sharp crack, lie inside the ring and take
 //! no part.
 
+use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
 use super::TipFrame;
@@ -102,7 +103,15 @@ impl Surroundings {
             _ => None,
         });
         let loads = load_pieces(specimen, spacing);
-        let is_free = |facet: &Facet| loads.iter().all(|load| distance(load.facet.at, facet.at) > 0.25 * spacing);
+        // Loaded pieces by cells of one spacing: on a long rim, all pairs take longer than an equilibrium.
+        let cell = |at: Point| at.map(|metres| (metres / spacing).floor() as i64);
+        let mut loaded: HashMap<[i64; 2], Vec<Point>> = HashMap::new();
+        loads.iter().for_each(|load| loaded.entry(cell(load.facet.at)).or_default().push(load.facet.at));
+        let is_free = |facet: &Facet| {
+            let [column, row] = cell(facet.at);
+            let cells = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [column + i, row + j]));
+            cells.filter_map(|cell| loaded.get(&cell)).flatten().all(|&at| distance(at, facet.at) > 0.25 * spacing)
+        };
         let rim = facets(specimen, spacing).into_iter().map(|facet| (facet, is_free(&facet))).collect();
         Surroundings {
             layout: Layout::of(&body.lattice, body.stencil.unknowns),

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use std::sync::Arc;
+
 use perilife::body::pre_crack::bonds_across;
 use perilife::body::{Body, Bond};
 use perilife::case::Case;
@@ -11,6 +13,7 @@ use perilife::growth::tip_field::TipField;
 use perilife::growth::tip_field::steering::{equivalent_factor, kink_angle};
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::solver::field::Layout;
+use perilife::specimen::geometry::distance_to_segment;
 use perilife::specimen::{CrackLine, LineEnd, Point};
 use perilife::state::Bonds;
 use perilife::stress_intensity::TipFrame;
@@ -252,9 +255,9 @@ fn no_bond_is_left_across_the_crack() {
             "kind = \"plate\"\nwidth_mm = 40\nlength_mm = 60\nthickness_mm = 2\nholes = [{{ x_mm = 6, y_mm = 7, diameter_mm = 8 }}]\ncracks = [{{ from_mm = [-20, {y}], to_mm = [-8, {y}] }}]"
         );
         let case = case(&specimen, PULL, &["model.spacing_mm=1", &format!("model.lattice_angle_deg={lattice}")]);
-        let plate = Plate::build(&case.specimen, &case.specimen, &case.material, &case.model).unwrap();
+        let plate = Arc::new(Plate::build(&case.specimen, &case.specimen, &case.material, &case.model).unwrap());
         let law = Walker { paris: case.paris_law().unwrap(), gamma: 1.0, threshold: 0.0 };
-        let mut growth = TipField::start(&case, &plate, &law).unwrap();
+        let mut growth = TipField::start(&case, plate.clone(), Box::new(law)).unwrap();
         growth.open().unwrap();
         let mut turned = 0.0_f64;
         while growth.is_growing() {
@@ -297,4 +300,39 @@ fn reasons_to_stop() {
     let still = with(&["fatigue.delta_k_threshold_mpa_sqrt_m=30"]);
     assert_eq!((still.stop, still.curve.len()), (StopReason::NothingAges, 1));
     assert!(matches!(with(&[]).stop, StopReason::Severed | StopReason::LeftPlate));
+}
+
+/// Steps of default length against steps of a tenth of it: lives within 0.5 %, paths within a tenth of a spacing.
+#[test]
+fn steps_are_short_enough() {
+    let plate = "kind = \"plate\"\nwidth_mm = 60\nlength_mm = 80\nthickness_mm = 2\n";
+    let specimens = [
+        "kind = \"middle_tension\"\nwidth_mm = 80\nlength_mm = 160\nthickness_mm = 2\ncrack_length_mm = 10".to_owned(),
+        format!("{plate}cracks = [{{ from_mm = [-5.2, -5.1], to_mm = [5.2, 5.1] }}]"),
+        format!("{plate}cracks = [{{ from_mm = [-19, 0.2], to_mm = [-9, 0.2] }}, {{ from_mm = [4, -1.8], to_mm = [10, -1.8] }}]"),
+        format!(
+            "{plate}holes = [{{ x_mm = 2, y_mm = 9, diameter_mm = 10 }}]\ncracks = [{{ from_mm = [-30, 0.2], to_mm = [-21, 0.2] }}]"
+        ),
+    ];
+    for specimen in specimens {
+        let grown =
+            |error: f64| run(&case(&specimen, PULL, &["model.spacing_mm=1", &format!("fatigue.block_error_percent={error}")]));
+        let (coarse, fine) = (grown(0.2), grown(0.002));
+        let error = 100.0 * (coarse.life_cycles() / fine.life_cycles() - 1.0);
+        let tips = 0..fine.curve[0].tips.len();
+        let path = |of: &Prediction, tip: usize| of.curve.iter().map(|row| row.tips[tip].position).collect::<Vec<Point>>();
+        let off = |tip: usize| {
+            let (coarse, fine) = (path(&coarse, tip), path(&fine, tip));
+            let from_fine = |at: &Point| {
+                fine.windows(2).map(|piece| distance_to_segment(*at, piece[0], piece[1])).fold(f64::INFINITY, f64::min)
+            };
+            coarse.iter().map(from_fine).fold(0.0, f64::max)
+        };
+        let off = tips.map(off).fold(0.0, f64::max) / MM;
+        let blocks = [&coarse, &fine].map(|run| run.figures.blocks);
+        println!("{specimen:.80}: life {error:+.2} %, path {off:.3} mm, {blocks:?} blocks, {} and {}", coarse.stop, fine.stop);
+        assert!(blocks[1] > 4 * blocks[0], "{blocks:?}");
+        assert_eq!(coarse.stop, fine.stop);
+        assert!(error.abs() < 0.5 && off < 0.1, "{error} %, {off} mm");
+    }
 }

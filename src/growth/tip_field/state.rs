@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::readings::Readings;
 use super::steering::{Steering, equivalent_factor};
 use crate::fatigue::crack_tip::TipState;
+use crate::growth::record::StopReason;
 use crate::specimen::{CrackLine, LineEnd};
 
 /// A tip that grows by its own K.
@@ -57,21 +58,6 @@ impl TipFieldState {
     }
 }
 
-/// Why growth ends by itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
-    /// No tip is above the threshold.
-    NothingGrows,
-    /// No tip is left.
-    NoTipLeft,
-    /// A tip came to the rim of the finest points.
-    LeftRefinement,
-    /// The plate is in two.
-    Severed,
-    /// No equilibrium was found.
-    NoConvergence,
-}
-
 /// What a block did.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
@@ -82,5 +68,5 @@ pub struct Step {
     /// Bonds cut.
     pub cut: usize,
     /// Why there is no next one.
-    pub end: Option<End>,
+    pub end: Option<StopReason>,
 }

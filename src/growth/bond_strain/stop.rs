@@ -1,13 +1,13 @@
 //! Reasons to stop a run.
 
-use super::StopReason;
-use super::curve::Track;
-use super::end_of_life::End;
+use super::track::Track;
 use crate::body::Body;
 use crate::case::Case;
 use crate::fatigue::FatigueSettings;
 use crate::fatigue::ageing::AgeingBond;
 use crate::fatigue::crack_tip::{CrackTip, TipState};
+use crate::growth::end_of_life::End;
+use crate::growth::record::StopReason;
 use crate::net::levelled::clear_way;
 use crate::specimen::Point;
 

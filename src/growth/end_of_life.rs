@@ -1,6 +1,6 @@
 //! Crack lengths at which a standard specimen is at its end, known before any run: its K(a) and its net section are.
 
-use super::StopReason;
+use super::record::StopReason;
 use crate::case::Case;
 use crate::specimen::handbook::handbook;
 

@@ -2,14 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::end_of_life::End;
-use super::outcome::{CurvePoint, Progress, TipRecord};
-use super::snapshot::Moment;
 use crate::body::Body;
 use crate::case::Case;
 use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::growth_rate::{Sample, rates, release_rate_at_end};
 use crate::fatigue::length_average::LengthAverage;
+use crate::growth::end_of_life::End;
+use crate::growth::record::{CurvePoint, TipRecord};
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::specimen::{LengthConvention, Specimen};
 
@@ -42,17 +41,13 @@ impl Row {
     pub fn tips(&self) -> &[TipRecord] {
         &self.tips
     }
-}
 
-impl Moment for Row {
-    fn cycles(&self) -> f64 {
-        self.cycles
+    /// Whether its block goes on.
+    pub fn is_open(&self) -> bool {
+        self.is_open
     }
 
-    fn crack_length(&self) -> f64 {
-        self.crack_length
-    }
-
+    /// Growth of all tips together, m.
     fn growth(&self) -> f64 {
         self.tips.iter().map(|tip| tip.growth).sum()
     }
@@ -188,15 +183,6 @@ impl Track {
         Some((released * case.material.plane_modulus()).sqrt())
     }
 
-    pub(super) fn progress(&self, case: &Case) -> Progress {
-        let (start, now) = (self.origin, self.last().crack_length);
-        // Without a length to stop at, growth across the plate is the way.
-        let end = if case.stop.crack_length.is_finite() { case.stop.crack_length } else { start + case.specimen.gross_width };
-        let by_length = (now - start) / (end - start);
-        let by_cycles = self.cycles_since_start() / case.stop.cycles_max;
-        Progress { cycles: self.cycles_since_start(), crack_length: now, share: by_length.max(by_cycles).clamp(0.0, 1.0) }
-    }
-
     pub(super) fn warnings(&self, case: &Case, body: &Body) -> Vec<String> {
         let mut warnings = Vec::new();
         let flaw = case.specimen.smallest_flaw();
@@ -268,7 +254,7 @@ impl Track {
     }
 
     /// The curve from N = 0 to a known end, and the cycles of the run at N = 0.
-    pub(super) fn into_curve(self, case: &Case, body: &Body, end: Option<End>) -> (Vec<CurvePoint>, f64) {
+    pub(super) fn curve(&self, case: &Case, body: &Body, end: Option<End>) -> (Vec<CurvePoint>, f64) {
         let mut rows = self.averaged(body.lattice.spacing);
         let zero = self.zero_of(&rows);
         if let Some(cycles_max) = self.run_out {

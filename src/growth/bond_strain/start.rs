@@ -6,7 +6,6 @@
 //! cycles count: along its own line (`steady_profile`), whatever its bonds do, or freely (`grown`). Tips that are there wait
 //! for the others.
 
-use super::TipRecord;
 use crate::body::Body;
 use crate::body::pre_crack::bonds_cut_by;
 use crate::case::Case;
@@ -14,6 +13,7 @@ use crate::error::{Result, input};
 use crate::fatigue::Precrack;
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::pieces::{Cut, set_aside};
+use crate::growth::record::TipRecord;
 use crate::specimen::geometry::distance;
 use crate::specimen::{Specimen, TipSeed};
 use crate::state::Bonds;

@@ -1,7 +1,6 @@
 //! All that a run carries from block to block. The displacement is not among it: the solver makes it of the bonds.
 
-use super::curve::Track;
-use super::snapshot::Album;
+use super::track::Track;
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::fatigue::block_control::BlockControl;
@@ -23,8 +22,6 @@ pub(super) struct Course {
     pub control: BlockControl,
     /// The curve so far.
     pub track: Track,
-    /// Pictures so far.
-    pub album: Album,
     /// Bonds broken since the start, those set aside not counted.
     pub broken_bonds: usize,
     /// Equilibrium solves.
@@ -41,7 +38,6 @@ impl Course {
             life: BondLife::whole(bonds.multiplier.len()),
             control: BlockControl::new(&case.fatigue.block, p, tips.len()),
             track: Track::new(case),
-            album: Album::default(),
             near_limit: Vec::new(),
             broken_bonds: 0,
             solves: 0,

@@ -1,0 +1,388 @@
+//! Cracks that go where bonds break, each bond spending its life by its own strain.
+//!
+//! Per cycle block: take the cyclic strain of the bonds that age, choose the block, spend life, break spent bonds, find the new
+//! equilibrium, follow the tips. Cracks are first grown to their initial lengths ([`start`]); N = 0 is there.
+
+mod course;
+mod overload;
+mod start;
+mod stop;
+mod tip_end;
+mod track;
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::end_of_life::{End, first_end};
+use super::plate::Plate;
+use super::record::{CurvePoint, StopReason};
+use super::{CrackGrowth, Effort, Fields, Now, State};
+use crate::body::{Body, Bond};
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, threshold_strain};
+use crate::fatigue::block_control::{Around, BlockControl};
+use crate::fatigue::crack_tip::{CrackTip, share_out};
+use crate::fatigue::growth_law::GrowthLaw;
+use crate::fatigue::pieces::{Cut, set_aside};
+use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
+use crate::solver::{Equilibrium, Focus};
+use crate::state::Bonds;
+use course::Course;
+use overload::{are_within, overstretched, stretched};
+use start::Start;
+use tip_end::{break_through, retire_tips};
+use track::Past;
+
+/// Growth of the load's work by overload within one block, at constant load, from which the plate counts as severed: it has
+/// lost half of its stiffness without a cycle, and what is left only gets softer.
+const GIVEN_WAY: f64 = 2.0;
+
+/// Takes down what a run does, block by block, so that it can be replayed.
+pub trait Recorder {
+    /// The plate with its initial cracks, before its first equilibrium.
+    fn start(&mut self, _body: &Body, _bonds: &Bonds) {}
+    /// One block: the strains its bonds aged by, the bonds it spent, and the crack length after it, m. Blocks before N = 0,
+    /// in which the crack grows to its initial length, come first.
+    fn block(&mut self, ageing: &[AgeingBond], spent: &[Bond], crack_length: f64);
+}
+
+/// Takes down nothing.
+pub struct Unrecorded;
+
+impl Recorder for Unrecorded {
+    fn block(&mut self, _: &[AgeingBond], _: &[Bond], _: f64) {}
+}
+
+/// [`CrackGrowth`] by bonds that age.
+pub struct BondStrain<'a> {
+    case: &'a Case,
+    plate: Arc<Plate>,
+    law: FatigueLaw,
+    start: Start,
+    end: Option<End>,
+    /// Strain of a cycle over that at maximum load, and the range of strain below which nothing ages.
+    range: (f64, f64),
+    recorder: &'a mut dyn Recorder,
+    run: Course,
+    equilibrium: Equilibrium,
+    displacement: Vec<f64>,
+    /// Bonds that may age in the next block.
+    near: Vec<Bond>,
+    /// These and others whose displacement has to be right after every break.
+    watched: Vec<Bond>,
+    is_closed: bool,
+    /// What the user should know that came up on the way.
+    warnings: Vec<String>,
+}
+
+/// All that the next blocks depend on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BondStrainState {
+    /// A, p and horizon of the fatigue law.
+    law: [f64; 3],
+    broken: Vec<Bond>,
+    /// Lives that are not whole any more.
+    life: Vec<(Bond, f64)>,
+    tips: Vec<CrackTip>,
+    near_limit: Vec<Bond>,
+    control: BlockControl,
+    past: Past,
+    broken_bonds: usize,
+    effort: Effort,
+}
+
+impl<'a> BondStrain<'a> {
+    /// The plate with its cracks as they are cut, before its first equilibrium; the fatigue law is given the body's horizon, m.
+    ///
+    /// # Errors
+    /// As [`Plate::build`]; a crack too short to be grown, cracks that cut the plate in two, no fatigue law.
+    pub fn start(case: &'a Case, law: impl FnOnce(f64) -> Result<FatigueLaw>, recorder: &'a mut dyn Recorder) -> Result<Self> {
+        let start = Start::of(case)?;
+        let plate = Plate::build(&start.specimen, &case.specimen, &case.material, &case.model)?;
+        let body = &plate.body;
+        let law = law(body.horizon())?;
+        let share = strain_share(&case.loading, &case.fatigue);
+        let threshold = share * threshold_strain(&case.fatigue, &case.material, body.horizon()) / case.loading.range_share();
+        let mut run = Course::start(case, body, start.tips(body), law.p);
+        if start::cuts_in_two(body, &run.bonds, case) || set_aside(body, &mut run.bonds, &body.pre_cut) == Cut::Severed {
+            return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
+        }
+        Ok(BondStrain {
+            case,
+            law,
+            start,
+            end: first_end(case),
+            range: (share, threshold),
+            recorder,
+            equilibrium: solver(case, &plate, &run),
+            run,
+            displacement: Vec::new(),
+            near: Vec::new(),
+            watched: Vec::new(),
+            is_closed: false,
+            warnings: Vec::new(),
+            plate: Arc::new(plate),
+        })
+    }
+
+    /// The first equilibrium of the bonds as they stand.
+    fn settle_first(&mut self) -> Result<()> {
+        let plate = self.plate.clone();
+        self.recorder.start(&plate.body, &self.run.bonds);
+        self.run.iterations += self.equilibrium.solve(&plate.body, &self.run.bonds, &mut self.displacement)?;
+        self.run.solves += 1;
+        Ok(())
+    }
+
+    /// Lets cycles count where every crack has its initial length, and finds which bonds may age next and which others are watched.
+    fn look_around(&mut self) {
+        let (case, run) = (self.case, &mut self.run);
+        let body = &self.plate.body;
+        let counting = self.start.is_over(&run.tips);
+        if counting && run.track.begin() {
+            run.tips.iter_mut().for_each(CrackTip::leave_rails);
+        }
+        self.near = if counting {
+            candidates(body, &run.bonds, &run.tips, &case.fatigue)
+        } else {
+            candidates(body, &run.bonds, &self.start.on_the_way(&run.tips), &case.fatigue)
+        };
+        run.near_limit.retain(|&bond| run.bonds.is_intact(bond));
+        self.watched = self.near.iter().chain(&run.near_limit).copied().collect();
+    }
+
+    /// Breaks bonds, and finds the new equilibrium, until no bond is stretched beyond the critical stretch; all that broke, and
+    /// why there is no equilibrium any more.
+    fn break_bonds(&mut self, first: Vec<Bond>, counting: bool) -> (Vec<Bond>, Option<StopReason>) {
+        let plate = self.plate.clone();
+        let (body, case, run, equilibrium) = (&plate.body, self.case, &mut self.run, &mut self.equilibrium);
+        let work_before = equilibrium.work();
+        let mut spent = first.clone();
+        let mut newly = first;
+        let mut overloaded = false;
+        loop {
+            newly.iter().for_each(|&bond| run.bonds.cut(body, bond));
+            let aside = match set_aside(body, &mut run.bonds, &newly) {
+                Cut::Severed => return (spent, Some(StopReason::Severed)),
+                Cut::Whole(aside) => aside,
+            };
+            newly.extend(aside);
+            equilibrium.broke(body, &run.bonds, &newly);
+            let may_foresee = counting && !overloaded && are_within(equilibrium.window(), body, &run.near_limit);
+            let around = Around { body, bonds: &run.bonds, tips: &run.tips, watched: &self.near };
+            match run.control.settle(equilibrium, around, &newly, may_foresee, &mut self.displacement) {
+                Ok(None) => {}
+                Ok(Some(more)) => (run.solves, run.iterations) = (run.solves + 1, run.iterations + more),
+                // What is left after bonds broke by overload cannot carry the load: the plate is as good as in two.
+                Err(_) if overloaded => return (spent, Some(StopReason::Severed)),
+                Err(_) => return (spent, Some(StopReason::NoConvergence)),
+            }
+            newly = overstretched(body, &run.bonds, case, &self.displacement, equilibrium);
+            if equilibrium.is_whole() {
+                run.near_limit = stretched(body, &run.bonds, case, &self.displacement, equilibrium.window());
+            }
+            overloaded |= !newly.is_empty();
+            if overloaded && equilibrium.work() > GIVEN_WAY * work_before {
+                return (spent, Some(StopReason::Severed));
+            }
+            spent.extend(&newly);
+            if newly.is_empty() {
+                return (spent, None);
+            }
+        }
+    }
+}
+
+impl CrackGrowth for BondStrain<'_> {
+    fn open(&mut self) -> Result<()> {
+        self.settle_first()?;
+        self.run.track.open(self.start.records(&self.run.tips), self.equilibrium.work());
+        self.look_around();
+        Ok(())
+    }
+
+    fn advance(&mut self) -> Result<Option<StopReason>> {
+        let plate = self.plate.clone();
+        let (case, body, settings) = (self.case, &plate.body, &self.case.fatigue);
+        let counting = self.start.is_over(&self.run.tips);
+
+        // By how much strain a cycle bonds age.
+        let run = &mut self.run;
+        if counting {
+            retire_tips(&mut run.tips, body, &case.specimen, &self.near, settings.zone_radius_horizons);
+        }
+        let focus = focus(&run.tips, body, settings);
+        run.iterations += self.equilibrium.reach(body, &run.bonds, &self.watched, &focus, &mut self.displacement)?;
+        let mut ageing = ageing_bonds(body, &self.near, &self.displacement, &run.tips, settings, self.range);
+        run.control.correct(&self.equilibrium, body, &run.tips, &mut ageing);
+        if let Some(reason) = stop::before_block(case, self.end, &run.track, &run.tips, &ageing) {
+            return Ok(Some(reason));
+        }
+        if let Some(tip) = stop::at_rim(body, &run.tips, settings) {
+            self.warnings.push(plate.left_refinement(tip, settings.zone_radius_horizons));
+            return Ok(Some(StopReason::LeftRefinement));
+        }
+
+        // Spend life over the block; bonds at the end of theirs break.
+        // A tip within a spacing of an edge or hole breaks through at once: the lattice cannot resolve what is left.
+        let through = break_through(&mut run.tips, body, &run.bonds, &case.specimen);
+        let block = if counting { &settings.block } else { &Block::NEXT_BREAK };
+        let (cycles, first) = if through.is_empty() { run.life.next_block(&self.law, block, &ageing) } else { (0.0, through) };
+        if run.track.cycles_since_start() + cycles > case.stop.cycles_max {
+            run.track.run_out(case.stop.cycles_max);
+            return Ok(Some(StopReason::RunOut));
+        }
+        run.life.spend(&self.law, cycles, &ageing);
+        run.track.spend(cycles);
+        let (spent, reason) = self.break_bonds(first, counting);
+
+        // Follow the tips and record.
+        let run = &mut self.run;
+        run.broken_bonds += spent.len();
+        let shares = share_out(body, &run.tips, &spent);
+        let tips = run.tips.iter_mut().zip(&shares);
+        tips.for_each(|(tip, broken)| tip.advance(body, &run.bonds, &case.specimen, broken));
+        let work = if reason.is_none() { self.equilibrium.work() } else { f64::NAN };
+        let is_open = self.equilibrium.is_foreseen() && reason.is_none();
+        run.track.record(self.start.records(&run.tips), run.broken_bonds, work, is_open);
+        self.recorder.block(&ageing, &spent, run.track.last().crack_length);
+        let reason = reason.or_else(|| stop::after_block(case, self.end, &run.track));
+        if reason.is_none() {
+            self.look_around();
+        }
+        Ok(reason)
+    }
+
+    fn now(&self) -> Now<'_> {
+        let track = &self.run.track;
+        let row = track.last();
+        Now {
+            cycles: track.cycles_since_start(),
+            cycles_of_run: row.cycles,
+            crack_length: row.crack_length,
+            delta_k: f64::NAN,
+            tips: row.tips(),
+            is_counting: track.is_counting(),
+            is_settled: !row.is_open(),
+        }
+    }
+
+    fn plate(&self) -> Option<Arc<Plate>> {
+        Some(self.plate.clone())
+    }
+
+    fn fields(&mut self) -> Result<Option<Fields>> {
+        let (plate, bonds) = (&self.plate, &self.run.bonds);
+        if self.is_closed {
+            return Ok(Some(plate.fields(bonds, &self.displacement)));
+        }
+        let (picture, more) = self.equilibrium.picture(&plate.body, bonds)?;
+        self.run.iterations += more;
+        Ok(Some(plate.fields(bonds, &picture)))
+    }
+
+    fn law(&self) -> Option<&dyn GrowthLaw> {
+        None
+    }
+
+    /// Where the solver has to work on the whole plate anyway.
+    fn is_due(&self) -> bool {
+        self.equilibrium.is_due(&self.plate.body, &self.watched)
+    }
+
+    fn begin_anew(&mut self) -> Result<()> {
+        tracing::debug!(solves = self.run.solves, "the solver begins anew from the bonds");
+        let (plate, run) = (&self.plate, &mut self.run);
+        self.equilibrium = solver(self.case, plate, run);
+        let before = std::mem::take(&mut self.displacement);
+        match self.equilibrium.solve(&plate.body, &run.bonds, &mut self.displacement) {
+            Ok(more) => (run.solves, run.iterations) = (run.solves + 1, run.iterations + more),
+            Err(error) => {
+                self.displacement = before;
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    fn state(&self) -> State {
+        let run = &self.run;
+        State::Bonds(BondStrainState {
+            law: constants(&self.law),
+            broken: run.bonds.broken(&self.plate.body),
+            life: run.life.begun(),
+            tips: run.tips.clone(),
+            near_limit: run.near_limit.clone(),
+            control: run.control.clone(),
+            past: run.track.past().clone(),
+            broken_bonds: run.broken_bonds,
+            effort: self.effort(),
+        })
+    }
+
+    fn restore(&mut self, state: State) -> Result<bool> {
+        let State::Bonds(state) = state else { return Ok(false) };
+        let (plate, run) = (self.plate.clone(), &mut self.run);
+        let places = plate.body.multiplier.len();
+        let mut named = state.near_limit.iter().chain(state.life.iter().map(|(bond, _)| bond)).chain(&state.broken);
+        let known = named.all(|&bond| (bond as usize) < places);
+        let tips = run.tips.len();
+        if !(known && state.law == constants(&self.law) && state.tips.len() == tips && state.past.fits(tips)) {
+            return Ok(false);
+        }
+        state.broken.iter().for_each(|&bond| run.bonds.cut(&plate.body, bond));
+        state.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));
+        (run.tips, run.near_limit, run.control) = (state.tips, state.near_limit, state.control);
+        run.track.go_on_from(state.past);
+        (run.broken_bonds, run.solves, run.iterations) = (state.broken_bonds, state.effort.solves, state.effort.iterations);
+        self.equilibrium = solver(self.case, &plate, run);
+        self.settle_first()?;
+        self.look_around();
+        Ok(true)
+    }
+
+    fn close(&mut self, stop: StopReason) -> Result<StopReason> {
+        let (body, run) = (&self.plate.body, &mut self.run);
+        let stop = stop::settled(self.end, &run.track, stop);
+        if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
+            run.iterations += self.equilibrium.complete(body, &run.bonds, &mut self.displacement)?;
+            run.track.close(self.equilibrium.work());
+        }
+        self.warnings.extend(run.track.warnings(self.case, body));
+        self.is_closed = true;
+        Ok(stop)
+    }
+
+    fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
+        self.run.track.curve(self.case, &self.plate.body, self.end)
+    }
+
+    fn effort(&self) -> Effort {
+        let Course { solves, iterations, .. } = self.run;
+        Effort { points_solved: self.equilibrium.points(&self.plate.body), solves, iterations }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+}
+
+/// Solver of the bonds as they stand, which knows nothing of what went before.
+fn solver(case: &Case, plate: &Plate, run: &Course) -> Equilibrium {
+    let equilibrium = plate.equilibrium(&case.model, &run.bonds, case.loading.maximum);
+    if run.control.foresees() { equilibrium.foreseeing() } else { equilibrium }
+}
+
+/// Where the solver has to expect the next breaks.
+fn focus(tips: &[CrackTip], body: &Body, settings: &FatigueSettings) -> Vec<Focus> {
+    // Bonds of the zone, bridges of the wake, and a spacing in which the crack may turn.
+    let reach = (settings.zone_radius_horizons + 0.5).max(1.0) * body.horizon() + body.lattice.spacing;
+    let active = tips.iter().filter(|tip| tip.is_active());
+    active.map(|tip| Focus { position: tip.position, direction: tip.direction, wake: tip.wake.clone(), reach }).collect()
+}
+
+fn constants(law: &FatigueLaw) -> [f64; 3] {
+    [law.a, law.p, law.horizon]
+}

@@ -1,0 +1,74 @@
+//! What a run takes down block by block, whatever drives its cracks.
+
+use serde::{Deserialize, Serialize};
+
+use crate::specimen::Point;
+
+crate::kinds! {
+    /// Why a run ended.
+    pub enum StopReason for "stop_reason" {
+        CrackLengthReached = "crack_length_reached": "the crack reached stop.crack_length_mm",
+        Toughness = "toughness": "the stress intensity at maximum load reached the toughness",
+        NetSectionYield = "net_section_yield": "the remaining section yields throughout: its limit load at the yield strength is reached",
+        Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
+        LeftPlate = "left_plate": "every crack tip has left the plate",
+        EnteredHole = "entered_hole": "the last crack tip ran into a hole",
+        LeftRefinement = "left_refinement": "a crack tip came to the rim of the finest level of points: the refined region is too small",
+        NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
+        RunOut = "run_out": "cycles_max was reached",
+        NoConvergence = "no_convergence": "the equilibrium solver did not converge",
+    }
+}
+
+/// State of one tip at a recorded step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TipRecord {
+    /// Position, m.
+    pub position: Point,
+    /// Growth since N = 0, m.
+    pub growth: f64,
+    /// K_I and K_II at maximum load, Pa√m; `None` where nobody reads them.
+    pub factors: Option<[f64; 2]>,
+}
+
+/// One cycle block of a finished run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CurvePoint {
+    /// Cycles since N = 0.
+    pub cycles: f64,
+    /// Crack length in the specimen's convention, m.
+    pub crack_length: f64,
+    /// Range of the stress intensity factor, Pa√m (handbook where there is one, else from the energy release rate); NaN where unknown.
+    pub delta_k: f64,
+    /// Growth rate da/dN, m/cycle.
+    pub growth_rate: f64,
+    /// Work of the loads over the displacement at maximum load, f·u, J: twice the strain energy, the load squared times the
+    /// compliance; NaN where the plate is severed and in hand calculation.
+    pub work: f64,
+    /// Bonds broken since the start, initial cracks not counted.
+    pub broken_bonds: usize,
+    /// Tips, in the order of `Specimen::tips`.
+    pub tips: Vec<TipRecord>,
+}
+
+impl CurvePoint {
+    /// The row at a share of the way from another to this one; bonds broken are those of this one.
+    #[must_use]
+    pub fn between(self, before: &CurvePoint, share: f64) -> CurvePoint {
+        let mix = |a: f64, b: f64| a + share * (b - a);
+        let tip = |(a, b): (&TipRecord, &TipRecord)| TipRecord {
+            position: [0, 1].map(|i| mix(a.position[i], b.position[i])),
+            growth: mix(a.growth, b.growth),
+            factors: a.factors.zip(b.factors).map(|(a, b)| [0, 1].map(|i| mix(a[i], b[i]))),
+        };
+        CurvePoint {
+            cycles: mix(before.cycles, self.cycles),
+            crack_length: mix(before.crack_length, self.crack_length),
+            delta_k: mix(before.delta_k, self.delta_k),
+            growth_rate: mix(before.growth_rate, self.growth_rate),
+            work: mix(before.work, self.work),
+            broken_bonds: self.broken_bonds,
+            tips: before.tips.iter().zip(&self.tips).map(tip).collect(),
+        }
+    }
+}
