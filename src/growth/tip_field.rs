@@ -496,7 +496,7 @@ impl<'a> TipField<'a> {
             tip.steering.read(read, tip.growth, ahead, horizon);
             tip.readings.take(equivalent_factor(read), tip.growth, excess, tip.steering.corner(), horizon);
             // Both modes alike: what the tip's field lacks or has too much is length.
-            let mut share = tip.readings.share(excess, tip.length + tip.growth);
+            let mut share = tip.readings.share(excess, tip.length + tip.growth, horizon);
             // K that opens a kink starts at that of its direction; until the bonds show the kink, less is read.
             if tip.steering.corner().is_some_and(|corner| tip.growth < corner + KINK_HORIZONS * horizon && tip.growth > corner) {
                 share = share.max(tip.equivalent() / equivalent_factor(read));

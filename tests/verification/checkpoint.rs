@@ -90,6 +90,8 @@ const HOLE: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n
 
 const FINE: &str = "model.spacing_mm=1";
 const TIPS: &str = "fatigue.driver=tip_field";
+/// Short steps, so that a crack across a small plate takes some hundred blocks.
+const SHORT: &str = "fatigue.block_error_percent=0.02";
 const SINGLE: &str = "fatigue.block=until_next_break";
 const FIXED: &str = "fatigue.block=fixed";
 const LEVELS: [&str; 2] = ["model.discretisation=dual_horizon", "refinement.regions=[{box_mm=[[-45,-24],[45,24]],levels=1}]"];
@@ -121,10 +123,10 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
             vec!["model.solver=multigrid", "fatigue.ageing=everywhere", SINGLE, "stop.crack_length_mm=28"],
         ),
         ("direct, two cracks", TWO, vec!["model.spacing_mm=2.5", "model.solver=direct", "stop.crack_length_mm=22"]),
-        ("tips, slant", SLANT, vec![TIPS, FINE]),
-        ("tips, two cracks, state-based", TWO, vec![TIPS, FINE, "model.bond_law=state_based"]),
-        ("tips, hole, window", HOLE, vec![TIPS, "model.spacing_mm=0.8", "model.solver=window"]),
-        ("tips, levels", BROAD, vec![TIPS, LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=45"]),
+        ("tips, slant", SLANT, vec![TIPS, SHORT, FINE]),
+        ("tips, two cracks, state-based", TWO, vec![TIPS, SHORT, FINE, "model.bond_law=state_based"]),
+        ("tips, hole, window", HOLE, vec![TIPS, SHORT, "model.spacing_mm=0.8", "model.solver=window"]),
+        ("tips, levels", BROAD, vec![TIPS, SHORT, LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=45"]),
         ("relaxation, hole", HOLE, vec!["model.spacing_mm=2", "model.solver=adaptive_dynamic_relaxation", SINGLE]),
     ]
 }

@@ -11,6 +11,9 @@ const MEMORY_HORIZONS: f64 = 2.1;
 /// Slope over that of a long crack far from everything, K ~ √a, at the most: a single odd reading is not followed farther.
 const SLOPE_MOST: f64 = 12.0;
 
+/// Spread of readings, in horizons, whose slope counts as much as that of a crack far from everything.
+const PRIOR_HORIZONS: f64 = 0.5;
+
 /// Readings of a tip.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Readings {
@@ -30,14 +33,14 @@ impl Readings {
     }
 
     /// Factor that brings K to `excess` less length of a crack that is `length` long, m.
-    pub fn share(&self, excess: f64, length: f64) -> f64 {
+    pub fn share(&self, excess: f64, length: f64, horizon: f64) -> f64 {
         let usual = 0.5 / length;
-        // As if half a spacing of a crack far from everything were known: with few readings their scatter is no slope.
         let count = self.taken.len() as f64;
         let [x, y] = [0, 1].map(|i| self.taken.iter().map(|reading| reading[i]).sum::<f64>() / count.max(1.0));
         let product = |i: usize| self.taken.iter().map(|r| (r[0] - x) * (r[i] - [x, y][i])).sum::<f64>();
-        let slope = if count >= 3.0 { product(1) / product(0) } else { usual };
-        let slope = if slope.is_finite() { slope.clamp(-SLOPE_MOST * usual, SLOPE_MOST * usual) } else { usual };
-        (-slope * excess).exp()
+        // As if the slope of a crack far from everything had been read too: the scatter of a few readings close together is none.
+        let prior = (PRIOR_HORIZONS * horizon).powi(2);
+        let slope = (product(1) + prior * usual) / (product(0) + prior);
+        (-slope.clamp(-SLOPE_MOST * usual, SLOPE_MOST * usual) * excess).exp()
     }
 }
