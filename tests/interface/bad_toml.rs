@@ -266,7 +266,7 @@ const BAD: &[Bad] = &[
     panel("a = 6450.0", "fitted = \"fitted.toml\"", &["fatigue.p", "given twice"]),
     panel("horizon_mm = 3.015", "horizon_mm = 3.015\nblock = \"fixed\"", &["fatigue.block_cycles", "missing"]),
     panel("horizon_mm = 3.015", "horizon_mm = 3.015\nbonds_per_block = -1", &["fatigue.bonds_per_block", "whole number"]),
-    panel("horizon_mm = 3.015", "horizon_mm = 3.015\nblock_error_percent = 0", &["fatigue.block_error_percent", "0.01", "10"]),
+    panel("horizon_mm = 3.015", "horizon_mm = 3.015\nblock_error_percent = 0", &["fatigue.block_error_percent", "0.001", "10"]),
     panel("horizon_mm = 3.015", "horizon_mm = 3.015\nageing = \"slowly\"", &["fatigue.ageing", "crack_tip, everywhere"]),
     panel("a = 6450.0\np = 2.86\nhorizon_mm = 3.015", "", &["fatigue.fitted", "no fatigue law", "calibrate"]),
     panel("crack_length_mm = 49.8", "crack_length_mm = 8", &[":19:", "stop.crack_length_mm", "not beyond the initial"]),
