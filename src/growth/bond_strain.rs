@@ -1,7 +1,7 @@
 //! Cracks that go where bonds break, each bond spending its life by its own strain.
 //!
 //! Per cycle block: take the cyclic strain of the bonds that age, choose the block, spend life, break spent bonds, find the new
-//! equilibrium, follow the tips. Cracks are first grown to their initial lengths ([`start`]); N = 0 is there.
+//! equilibrium, follow the tips. Cracks are first grown to their initial lengths (`start.rs`); N = 0 is there.
 
 mod course;
 mod overload;
