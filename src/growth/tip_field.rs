@@ -48,17 +48,17 @@ const RING_HORIZONS_MIN: f64 = 1.2;
 const AHEAD_HORIZONS: f64 = 0.15;
 /// Distance from coarser points, in horizons, at which a run ends: the ring, which must not reach them, would be too narrow.
 const RING_HORIZONS_IN_LEVELS: f64 = 1.5;
-/// Growth of a tip in the first block, and in any block at the most, in horizons. A compact plate whose crack turns into a hole (spacing 0.2 mm): steps of 0.13,
-/// 0.25 and 0.5 horizons gave lives of 782, 783 and 780 cycles.
+/// Growth of a tip in the first block, in horizons: nothing is known yet of how its rate changes.
 const STEP_FIRST_HORIZONS: f64 = 0.2;
-/// The same after a corner, until the aims since then show how the crack curves.
+/// Growth in a block at the most after a corner, in horizons, until the aims since then show how the crack curves.
 const STEP_TURNING_HORIZONS: f64 = 0.4;
+/// Growth in any block at the most, in horizons. Lives and paths against steps of a tenth: `tests/verification/tip_field.rs`.
 const STEP_HORIZONS: f64 = 1.0;
 /// Next step over the last one, at the most.
 const STEP_RISE: f64 = 1.6;
 /// Share of a block's cycles that the parabola may add: beyond it the rates lie on none.
 const BEND_MOST: f64 = 0.02;
-/// The same where a rim or another crack lies within the ring, and K changes fast.
+/// Growth in a block at the most, in horizons, where a rim or another crack lies within the ring, and K changes fast.
 const STEP_NEAR_HORIZONS: f64 = 0.2;
 /// Turn of a tip in a block at the most, rad, unless that makes the block shorter than the step near rims.
 const TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
