@@ -29,7 +29,7 @@ use crate::fatigue::{Driver, FatigueLaw};
 use crate::growth::CrackGrowth;
 use crate::growth::bond_strain::{BondStrain, Unrecorded};
 use crate::growth::hand_calculation::HandCalculation;
-use crate::growth::tip_field::run::TipFieldRun;
+use crate::growth::tip_field::TipField;
 use checkpoint::Checkpoint;
 use snapshot::Album;
 
@@ -73,7 +73,7 @@ pub fn run(
 pub fn run_by_tips(case: &Case, law: Box<dyn GrowthLaw>, observer: &dyn Observer) -> Result<Prediction> {
     let run = Run::of(case, None, observer);
     let case = &fitted(case);
-    run.follow(case, &mut TipFieldRun::start(case, law)?)
+    run.follow(case, &mut TipField::start(case, law)?)
 }
 
 /// A run by what its case asks to be driven by.
@@ -82,7 +82,7 @@ fn start(case: &Case, checkpoint: Option<Checkpoint>, observer: &dyn Observer) -
     let case = &fitted(case);
     match (case.model.method, case.fatigue.driver) {
         (Method::Handbook, _) => run.follow(case, &mut HandCalculation::start(case, laws::growth_law(case)?)?),
-        (Method::Peridynamics, Driver::TipField) => run.follow(case, &mut TipFieldRun::start(case, laws::growth_law(case)?)?),
+        (Method::Peridynamics, Driver::TipField) => run.follow(case, &mut TipField::start(case, laws::growth_law(case)?)?),
         (Method::Peridynamics, Driver::BondStrain) => {
             let law = |horizon| laws::bond_law(case, horizon);
             run.follow(case, &mut BondStrain::start(case, law, &mut Unrecorded)?)

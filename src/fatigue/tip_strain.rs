@@ -15,9 +15,23 @@
 //! Brought to κ = 0, one A belongs to one growth rate whatever Poisson's ratio and plane state.
 
 use crate::body::Body;
+use crate::material::Plane;
 
 /// Loss of strain per κ/G.
 const LOSS: f64 = 0.072;
+
+/// κ/G up to which rates were compared (`perilife verify state_based`, ν = 0.34 in plane strain).
+pub const MEASURED_UP_TO: f64 = 1.2;
+
+/// Modulus of dilatation over shear modulus, κ/G = λ'/G - 1, of points with springs of shear modulus G.
+#[must_use]
+pub fn dilatation_over_shear(plane: Plane, poisson_ratio: f64) -> f64 {
+    let nu = poisson_ratio;
+    match plane {
+        Plane::Stress => 2.0 * nu / (1.0 - nu) - 1.0,
+        Plane::Strain => 2.0 * nu / (1.0 - 2.0 * nu) - 1.0,
+    }
+}
 
 /// Factor on the strain of ageing bonds; 1 for laws of springs alone.
 #[must_use]

@@ -138,7 +138,7 @@ pub enum State {
     /// Of bonds that age.
     Bonds(bond_strain::BondStrainState),
     /// Of tips driven by their K.
-    Tips(tip_field::run::TipsState),
+    Tips(tip_field::TipsState),
     /// Of a hand calculation: its rows.
     Rows(Vec<CurvePoint>),
 }

@@ -1,4 +1,5 @@
-//! Where the load acts on a `plate` and what holds it: `edges`, `pins`, `stress_parallel_ratio` and `[supports]`.
+//! Where the load acts on a `plate` and what holds it: `edges`, `pins`, `rollers` ([`super::forces`]), `stress_parallel_ratio` and
+//! `[supports]`.
 //!
 //! Without supports the plate floats, so its loads must balance; with a support only the sides that are not held are
 //! loaded. The standard specimens bring their loads and grips along and take none of these keys but the parallel stress.
@@ -6,11 +7,12 @@
 use serde::Deserialize;
 use toml::Value;
 
+use super::forces;
 use super::read::Input;
 use crate::error::{Result, input, input_missing};
 use crate::input::{number, shorten, slice, table_of};
 use crate::specimen::geometry::distance;
-use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, SNUG_PIN, Specimen, SpecimenKind, Support};
+use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
 use crate::units::MM;
 
 /// One entry of `[supports]`.
@@ -22,30 +24,18 @@ struct SupportInput {
     fix: Vec<Component>,
 }
 
-/// One entry of `pins`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PinInput {
-    hole: usize,
-    direction: [f64; 2],
-    #[serde(default = "one")]
-    share: f64,
-    /// Half angle of contact; a pin that fills its hole where it is left out.
-    contact_half_angle_deg: Option<f64>,
-}
-
-fn one() -> f64 {
-    1.0
-}
-
 /// Puts loads and supports on the specimen; returns the section that turns a force into the nominal stress, m².
 pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
     if specimen.kind == SpecimenKind::Plate {
         return apply_to_plate(input, supports, specimen, parallel_ratio);
     }
     let kind = specimen.kind;
-    let given =
-        [("loading.edges", input.edges.is_some()), ("loading.pins", input.pins.is_some()), ("supports", supports.is_some())];
+    let given = [
+        ("loading.edges", input.edges.is_some()),
+        ("loading.pins", input.pins.is_some()),
+        ("loading.rollers", input.rollers.is_some()),
+        ("supports", supports.is_some()),
+    ];
     if let Some((key, _)) = given.iter().find(|(_, given)| *given) {
         let problem = format!("does not go with {kind}, which brings its own loads and grips");
         return Err(input_missing(key, problem, "leave it out, or describe the specimen as kind = \"plate\""));
@@ -66,24 +56,31 @@ pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Spec
 
 fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
     let held = read_supports(supports, specimen)?;
-    let area = match (&input_.pins, &input_.edges) {
-        (Some(_), Some(_)) => {
+    let by_forces = forces::KEYS.into_iter().zip([&input_.pins, &input_.rollers]).find(|(_, given)| given.is_some());
+    let area = match by_forces {
+        Some((key, _)) if input_.edges.is_some() => {
             return Err(input_missing(
-                "loading.pins",
+                key,
                 "stands beside edges: one nominal load cannot be both",
-                "give pins or edges",
+                "give edges, or pins and rollers",
             ));
         }
-        (Some(pins), None) => {
-            if parallel_ratio != 0.0 {
-                return Err(input("loading.stress_parallel_ratio", parallel_ratio, "does not go with pins", "leave it out"));
+        Some((key, _)) if parallel_ratio != 0.0 => {
+            let problem = format!("does not go with {key}");
+            return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out"));
+        }
+        Some((key, _)) => {
+            specimen.load_measure = LoadMeasure::Force;
+            forces::read_pins(input_.pins.as_deref().unwrap_or_default(), specimen)?;
+            forces::read_rollers(input_.rollers.as_deref().unwrap_or_default(), specimen)?;
+            if specimen.loads.is_empty() {
+                return Err(input(key, "[]", "loads nothing", "give 1 to 100 pins { hole = 0, direction = [0, 1] }"));
             }
-            read_pins(pins, specimen)?;
             1.0
         }
-        (None, edges) => load_edges(edges.as_deref(), &held, specimen, parallel_ratio)?,
+        None => load_edges(input_.edges.as_deref(), &held, specimen, parallel_ratio)?,
     };
-    check_balance(specimen, input_.pins.is_some())?;
+    check_balance(specimen, by_forces.map_or("loading.edges", |(key, _)| key))?;
     Ok(area)
 }
 
@@ -191,44 +188,8 @@ fn push_edge_loads(specimen: &mut Specimen, edges: &[Edge], share: f64) {
     }
 }
 
-fn read_pins(pins: &[Value], specimen: &mut Specimen) -> Result<()> {
-    if pins.is_empty() || pins.len() > 100 {
-        return Err(input(
-            "loading.pins",
-            format!("{} pins", pins.len()),
-            "is no pin load",
-            "give 1 to 100 pins { hole = 0, direction = [0, 1] }",
-        ));
-    }
-    specimen.load_measure = LoadMeasure::Force;
-    for (i, value) in pins.iter().enumerate() {
-        let path = format!("loading.pins[{i}]");
-        let pin: PinInput = slice(value, &path)?;
-        if pin.hole >= specimen.holes.len() {
-            let problem = format!("is not a hole of this plate, which has {}", specimen.holes.len());
-            return Err(input(&format!("{path}.hole"), pin.hole, problem, "count specimen.holes from 0"));
-        }
-        let share = number("a share of the force", 1e-6, 1e6).read(&format!("{path}.share"), pin.share)?;
-        let [x, y] = pin.direction;
-        let size = x.hypot(y);
-        if !(1e-9..1e9).contains(&size) {
-            return Err(input(
-                &format!("{path}.direction"),
-                format!("[{x}, {y}]"),
-                "has no direction",
-                "give [x, y] of the force on the plate, for example [0, 1]",
-            ));
-        }
-        let contact = number("an angle in degrees, 90 for a pin that fills its hole", 1.0, 90.0)
-            .read_optional(&format!("{path}.contact_half_angle_deg"), pin.contact_half_angle_deg)?
-            .map_or(SNUG_PIN, f64::to_radians);
-        specimen.loads.push(Load::Pin { hole: pin.hole, direction: [x / size, y / size], force: share, contact });
-    }
-    Ok(())
-}
-
 /// Force and moment of the loads must be zero as far as no support can take them up.
-fn check_balance(specimen: &Specimen, by_pins: bool) -> Result<()> {
+fn check_balance(specimen: &Specimen, key: &str) -> Result<()> {
     let (mut held, mut turned) = ([false; 2], false);
     for support in &specimen.supports {
         if let Support::Fixed { from, to, x, y, .. } = support {
@@ -239,11 +200,10 @@ fn check_balance(specimen: &Specimen, by_pins: bool) -> Result<()> {
     }
     turned |= specimen.supports.len() > 1;
     let Imbalance { force, moment } = imbalance(specimen);
-    let key = if by_pins { "loading.pins" } else { "loading.edges" };
     for (i, axis) in ["x", "y"].iter().enumerate() {
         if !held[i] && force[i] {
             let problem = format!("is not in equilibrium: the loads leave a force along {axis} that no support takes up");
-            return Err(input_missing(key, problem, "load opposite sides or pins alike, or hold a side in [supports]"));
+            return Err(input_missing(key, problem, "load opposite sides, pins or rollers alike, or hold a side in [supports]"));
         }
     }
     // A force held along one axis only is taken up on a line somewhere: its moment is then not asked for.

@@ -1,6 +1,7 @@
 //! Load history. Constant amplitude so far.
 
 mod boundary;
+mod forces;
 mod read;
 
 pub use boundary::{Imbalance, imbalance};

@@ -52,6 +52,7 @@ pub(super) struct Input {
     stress_parallel_ratio: Option<f64>,
     pub(super) edges: Option<Vec<Edge>>,
     pub(super) pins: Option<Vec<Value>>,
+    pub(super) rollers: Option<Vec<Value>>,
 }
 
 /// Reads `[loading]` and `[supports]`, puts loads and supports of a `plate` on `specimen`, and gives the cycles.
@@ -74,7 +75,11 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
         (LoadMeasure::Stress, false) | (LoadMeasure::Force, true) => largest,
         (LoadMeasure::Stress, true) => largest / area,
         (LoadMeasure::Force, false) => {
-            let who = if specimen.kind == SpecimenKind::CompactTension { "compact_tension" } else { "a plate loaded by pins" };
+            let who = if specimen.kind == SpecimenKind::CompactTension {
+                "compact_tension"
+            } else {
+                "a plate loaded by pins or rollers"
+            };
             let problem = format!("is a stress, but {who} takes a force");
             return Err(input_error(&magnitude, problem, "give force_max_n or force_range_n (or _kn)"));
         }

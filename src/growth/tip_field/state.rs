@@ -1,12 +1,15 @@
-//! What a run by K of the tips carries from block to block, and what a block gives.
+//! What a run by K of the tips carries from block to block.
 
 use serde::{Deserialize, Serialize};
 
 use super::readings::Readings;
 use super::steering::{Steering, equivalent_factor};
+use crate::body::Bond;
 use crate::fatigue::crack_tip::TipState;
-use crate::growth::record::StopReason;
-use crate::specimen::{CrackLine, LineEnd};
+use crate::growth::Effort;
+use crate::growth::record::CurvePoint;
+use crate::specimen::geometry::distance;
+use crate::specimen::{CrackLine, LineEnd, Specimen};
 
 /// A tip that grows by its own K.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,9 +32,54 @@ pub struct Tip {
     pub(super) length: f64,
     pub(super) readings: Readings,
     pub(super) steering: Steering,
+    /// Whether the load has pressed its flanks together.
+    pub(super) in_contact: bool,
 }
 
 impl Tip {
+    pub(super) fn new(specimen: &Specimen, end: LineEnd) -> Self {
+        // All of its crack belongs to it, or half where both ends are tips.
+        let crack = specimen.cracks[end.line];
+        let tips = specimen.tips.iter().filter(|tip| tip.position == crack.from || tip.position == crack.to).count();
+        Tip {
+            end,
+            state: TipState::Active,
+            growth: 0.0,
+            factors: [0.0; 2],
+            rate: 0.0,
+            before: None,
+            past: None,
+            length: distance(crack.from, crack.to) / tips.max(1) as f64,
+            readings: Readings::default(),
+            steering: Steering::default(),
+            in_contact: false,
+        }
+    }
+
+    /// Whether it grows under this load.
+    pub(super) fn is_growing(&self) -> bool {
+        self.state == TipState::Active && self.rate > 0.0
+    }
+
+    /// Takes in a piece of crack of the length `way` in a block in which the fastest tip went `fastest`, m, and what has become of it.
+    pub(super) fn has_grown(&mut self, way: f64, fastest: f64, state: TipState) {
+        self.before = Some([self.rate, fastest]);
+        self.past = (way > 0.0 && self.steering.corner().is_none()).then_some([self.rate, way]);
+        self.growth += way;
+        self.state = state;
+    }
+
+    /// Takes in a block without growth in which the fastest tip went `fastest`, m.
+    pub(super) fn stood_still(&mut self, fastest: f64) {
+        (self.before, self.past) = (Some([self.rate, fastest]), None);
+    }
+
+    /// Forgets how K has changed and where it aimed.
+    pub(super) fn begin_anew(&mut self) {
+        (self.before, self.past) = (None, None);
+        (self.readings, self.steering) = (Readings::default(), Steering::default());
+    }
+
     /// K_eq at maximum load of the requested length, Pa√m.
     pub(super) fn equivalent(&self) -> f64 {
         equivalent_factor(self.factors)
@@ -50,6 +98,16 @@ pub struct TipFieldState {
 }
 
 impl TipFieldState {
+    /// The cracks, shorter by `back`, m, at every tip, by a quarter at the most.
+    pub(super) fn drawn_back(&self, back: f64) -> Vec<CrackLine> {
+        let mut lines = self.lines.clone();
+        self.tips.iter().for_each(|tip| {
+            let line = &self.lines[tip.end.line];
+            lines[tip.end.line].stretch(tip.end.at_last, -back.min(0.25 * line.length()));
+        });
+        lines
+    }
+
     /// Whether it may be a later state of the same cracks.
     #[must_use]
     pub fn fits(&self, start: &TipFieldState) -> bool {
@@ -58,15 +116,12 @@ impl TipFieldState {
     }
 }
 
-/// What a block did.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
-    /// Cycles it took.
-    pub cycles: f64,
-    /// Work of the loads at its end, J; NaN where there is no equilibrium.
-    pub work: f64,
-    /// Bonds cut.
-    pub cut: usize,
-    /// Why there is no next one.
-    pub end: Option<StopReason>,
+/// All that the next blocks depend on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TipsState {
+    pub(super) growth: TipFieldState,
+    pub(super) broken: Vec<Bond>,
+    pub(super) displacement: Vec<f64>,
+    pub(super) curve: Vec<CurvePoint>,
+    pub(super) effort: Effort,
 }

@@ -1,0 +1,148 @@
+//! K_I and K_II of every tip off its ring, what they say of its rate, and where it aims.
+
+use super::steering::equivalent_factor;
+use super::step::is_near_rim;
+use super::{PROBE_HORIZONS, RING_HORIZONS, Tip, TipField};
+use crate::body::severed::represented_excess;
+use crate::fatigue::crack_tip::TipState;
+use crate::specimen::geometry::distance;
+use crate::specimen::{CrackLine, LineEnd};
+use crate::stress_intensity::ring::Balanced;
+use crate::units::MM;
+
+/// Outer radius below which a ring says nothing, in horizons.
+const RING_HORIZONS_MIN: f64 = 1.2;
+/// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.05 to 0.09 at ν = 0.3, 0.04 at ν = 0.1,
+/// whatever the spacing.
+const AHEAD_HORIZONS: f64 = 0.15;
+/// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate: K is held where it
+/// is read to fall.
+const CORE_HORIZONS: f64 = 0.6;
+/// Growth after a corner, in horizons, below which points do not resolve the kink: K would be read up to 5 % low.
+const KINK_HORIZONS: f64 = 0.5;
+/// Relative difference within which factors are those of mirror twins: far above what solver and tie breaks make of equal ones, far
+/// below what shows in a life.
+const ROUND_OFF: f64 = 1e-4;
+
+/// K_I below zero, over the largest factor of all tips, that is no round-off.
+const IN_CONTACT: f64 = 0.05;
+
+impl TipField<'_> {
+    /// What the user should know about the rings of the initial tips.
+    pub(super) fn ring_warnings(&self) -> Vec<String> {
+        let horizon = self.plate.body.horizon();
+        let ends: Vec<LineEnd> = self.state.tips.iter().map(|tip| tip.end).collect();
+        let short = ends.iter().filter(|&&end| {
+            let wanted = RING_HORIZONS * horizon;
+            self.surroundings.radius(&self.plate.body, &self.state.lines, end, &ends, wanted) < RING_HORIZONS_MIN * horizon
+        });
+        let words = |count: usize| {
+            format!(
+                "{count} of {} crack tips lie within {:.3} mm of another tip or a support: the ring that reads K is too narrow there, \
+                 and K may err by some percent; give a smaller model.spacing_mm",
+                ends.len(),
+                (RING_HORIZONS_MIN + 0.2) * horizon / MM
+            )
+        };
+        Some(short.count()).filter(|&count| count > 0).map(words).into_iter().collect()
+    }
+
+    /// Flanks in contact carry nothing here.
+    pub(super) fn contact_warning(&self) -> Option<String> {
+        let tips = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.in_contact).map(|(index, _)| index.to_string());
+        let tips = tips.collect::<Vec<_>>().join(", ");
+        (!tips.is_empty()).then(|| {
+            format!(
+                "the load presses the flanks of the crack together at tip {tips}: they would carry load there, which \
+                 this model does not know: the plate is taken as more compliant than it is"
+            )
+        })
+    }
+
+    /// K_I and K_II, and how far ahead of the end of its line the crack is that has them, m, of the active tips of `lines`.
+    fn read_rings(&self, lines: &[CrackLine]) -> (Vec<[f64; 2]>, Vec<f64>) {
+        let body = &self.plate.body;
+        let horizon = body.horizon();
+        let tips = self.state.tips.iter().filter(|tip| tip.state == TipState::Active);
+        let active: Vec<LineEnd> = tips.clone().map(|tip| tip.end).collect();
+        let read = |tip: &Tip| {
+            let end = tip.end;
+            let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
+            // The ring stands around the place to which the cut bonds reach.
+            let mut lines = lines.to_vec();
+            let clear_of = lines[end.line].end(end.at_last);
+            lines[end.line].stretch(end.at_last, excess);
+            let (bonds, displacement) = (&self.bonds, &*self.displacement);
+            let plate = Balanced { body, bonds, displacement, load: self.case.loading.maximum, lines: &lines };
+            let radius = self.surroundings.radius(body, &lines, end, &active, RING_HORIZONS * horizon);
+            let clear = body.rim_distance(clear_of, radius).unwrap_or(radius);
+            let ring = self.surroundings.factors(plate, end, clear.max(RING_HORIZONS_MIN * horizon));
+            // Beside a rim what is read as a shift may be something else.
+            let ahead = if ring.ahead.abs() < AHEAD_HORIZONS * horizon { ring.ahead } else { 0.0 };
+            (ring.factors, excess + ahead)
+        };
+        let (mut factors, excesses): (Vec<[f64; 2]>, Vec<f64>) = tips.map(read).unzip();
+        pair_twins(&mut factors);
+        (factors, excesses)
+    }
+
+    /// K of the initial cracks drawn back ([`TipFieldState::drawn_back`]): with that of the cracks it tells how K changes.
+    pub(super) fn read_slopes(&mut self) {
+        let horizon = self.plate.body.horizon();
+        let lines = self.state.drawn_back(PROBE_HORIZONS * horizon);
+        let (factors, excesses) = self.read_rings(&lines);
+        for ((tip, read), excess) in self.state.tips.iter_mut().zip(factors).zip(excesses) {
+            let end = tip.end;
+            let back = distance(self.state.lines[end.line].end(end.at_last), lines[end.line].end(end.at_last));
+            tip.readings.take(equivalent_factor(read), -back, excess, None, horizon);
+        }
+    }
+
+    /// Factors, rates and aims of all tips that are left.
+    pub(super) fn read_factors(&mut self) {
+        let horizon = self.plate.body.horizon();
+        let ratio = self.case.loading.ratio;
+        let (factors, excesses) = self.read_rings(&self.state.lines);
+        let largest = factors.iter().map(|[k_i, k_ii]| k_i.hypot(*k_ii)).fold(0.0, f64::max);
+        let mut factors = factors.into_iter().zip(excesses);
+        for tip in self.state.tips.iter_mut() {
+            tip.rate = 0.0;
+            if tip.state != TipState::Active {
+                continue;
+            }
+            let Some((read, excess)) = factors.next() else { continue };
+            let specimen = &self.case.specimen;
+            let ahead = self.state.lines[tip.end.line].direction(tip.end.at_last);
+            tip.in_contact |= read[0] < -IN_CONTACT * largest;
+            tip.steering.read(read, tip.growth, ahead, horizon);
+            tip.readings.take(equivalent_factor(read), tip.growth, excess, tip.steering.corner(), horizon);
+            // Both modes alike: what the tip's field lacks or has too much is length.
+            let mut share = tip.readings.share(excess, tip.length + tip.growth, horizon);
+            // K that opens a kink starts at that of its direction; until the bonds show the kink, less is read.
+            if tip.steering.corner().is_some_and(|corner| tip.growth < corner + KINK_HORIZONS * horizon && tip.growth > corner) {
+                share = share.max(tip.equivalent() / equivalent_factor(read));
+            }
+            let factors = read.map(|factor| share * factor);
+            let near = tip.growth > 0.0 && is_near_rim(specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
+            let has_risen = equivalent_factor(factors) >= tip.equivalent();
+            if has_risen || !near {
+                tip.factors = factors;
+            }
+            tip.rate = self.law.rate(tip.equivalent(), ratio);
+        }
+    }
+}
+
+/// Gives tips whose factors agree but for round-off and sign the same factors: mirror twins stay twins.
+fn pair_twins(factors: &mut [[f64; 2]]) {
+    for i in 1..factors.len() {
+        for j in 0..i {
+            let size = factors[j][0].abs().max(factors[j][1].abs());
+            let equal = |a: f64, b: f64| (a.abs() - b.abs()).abs() <= ROUND_OFF * size;
+            if equal(factors[i][0], factors[j][0]) && equal(factors[i][1], factors[j][1]) {
+                factors[i] = [0, 1].map(|mode| factors[j][mode].abs().copysign(factors[i][mode]));
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Forces on a `plate`: `pins` press in its holes, `rollers` on its outline.
+
+use serde::Deserialize;
+use toml::Value;
+
+use crate::error::{Result, input};
+use crate::input::{number, slice};
+use crate::specimen::geometry::{along, distance, distance_to_segment};
+use crate::specimen::{Load, Point, SNUG_PIN, Specimen};
+use crate::units::MM;
+
+/// Their keys.
+pub(super) const KEYS: [&str; 2] = ["loading.pins", "loading.rollers"];
+
+/// Distance from the outline below which a place lies on it, m.
+const ON_OUTLINE: f64 = 1e-6;
+
+/// One entry of `pins`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PinInput {
+    hole: usize,
+    direction: [f64; 2],
+    #[serde(default = "one")]
+    share: f64,
+    /// Half angle of contact; a pin that fills its hole where it is left out.
+    contact_half_angle_deg: Option<f64>,
+}
+
+/// One entry of `rollers`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RollerInput {
+    at_mm: [f64; 2],
+    contact_width_mm: f64,
+    /// Straight into the plate where it is left out.
+    direction: Option<[f64; 2]>,
+    #[serde(default = "one")]
+    share: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Pins, which press on the rim of a hole.
+pub(super) fn read_pins(pins: &[Value], specimen: &mut Specimen) -> Result<()> {
+    check_count(KEYS[0], pins, "pins { hole = 0, direction = [0, 1] }")?;
+    for (i, value) in pins.iter().enumerate() {
+        let path = format!("{}[{i}]", KEYS[0]);
+        let pin: PinInput = slice(value, &path)?;
+        if pin.hole >= specimen.holes.len() {
+            let problem = format!("is not a hole of this plate, which has {}", specimen.holes.len());
+            return Err(input(&format!("{path}.hole"), pin.hole, problem, "count specimen.holes from 0"));
+        }
+        let force = read_share(&path, pin.share)?;
+        let direction = unit(&path, pin.direction)?;
+        let contact = number("an angle in degrees, 90 for a pin that fills its hole", 1.0, 90.0)
+            .read_optional(&format!("{path}.contact_half_angle_deg"), pin.contact_half_angle_deg)?
+            .map_or(SNUG_PIN, f64::to_radians);
+        specimen.loads.push(Load::Pin { hole: pin.hole, direction, force, contact });
+    }
+    Ok(())
+}
+
+/// Rollers: uniform pressure `share / (contact width x thickness)` per unit of force on a straight stretch of the outline.
+pub(super) fn read_rollers(rollers: &[Value], specimen: &mut Specimen) -> Result<()> {
+    check_count(KEYS[1], rollers, "rollers { at_mm = [0, 40], contact_width_mm = 6 }")?;
+    for (i, value) in rollers.iter().enumerate() {
+        let path = format!("{}[{i}]", KEYS[1]);
+        let roller: RollerInput = slice(value, &path)?;
+        let given = format!("[{}, {}]", roller.at_mm[0], roller.at_mm[1]);
+        let at = roller.at_mm.map(|x| x * MM);
+        let width_key = format!("{path}.contact_width_mm");
+        let width = number("a length in mm", 1e-3, 1e5).read(&width_key, roller.contact_width_mm)? * MM;
+        let share = read_share(&path, roller.share)?;
+        let sides = (0..specimen.outline.len()).map(|i| [i, (i + 1) % specimen.outline.len()].map(|i| specimen.outline[i]));
+        let Some([from, to]) = sides.into_iter().find(|[from, to]| distance_to_segment(at, *from, *to) < ON_OUTLINE) else {
+            return Err(input(
+                &format!("{path}.at_mm"),
+                given,
+                "does not lie on the outline",
+                "give [x, y] of the middle of the contact",
+            ));
+        };
+        let (side, place) = (distance(from, to), distance(from, at));
+        if place < width / 2.0 - ON_OUTLINE || side - place < width / 2.0 - ON_OUTLINE {
+            let problem = "reaches beyond the end of the straight side it lies on";
+            return Err(input(
+                &width_key,
+                roller.contact_width_mm,
+                problem,
+                "give a narrower contact, or place it farther from the corner",
+            ));
+        }
+        // The outline runs counter-clockwise: the plate lies to its left.
+        let inward = [-(to[1] - from[1]) / side, (to[0] - from[0]) / side];
+        let direction = roller.direction.map_or(Ok(inward), |direction| unit(&path, direction))?;
+        if direction[0] * inward[0] + direction[1] * inward[1] <= 0.0 {
+            let given = roller.direction.map_or(String::new(), |[x, y]| format!("[{x}, {y}]"));
+            return Err(input(&format!("{path}.direction"), given, "pulls at the plate", "a roller pushes: turn it round"));
+        }
+        let stretch = [-0.5, 0.5].map(|half| along(from, to, (place + half * width) / side));
+        let pressure = share / (width * specimen.thickness);
+        specimen.loads.push(Load::Edge { from: stretch[0], to: stretch[1], traction: direction.map(|d| pressure * d) });
+    }
+    Ok(())
+}
+
+fn check_count(key: &str, given: &[Value], example: &str) -> Result<()> {
+    if given.len() > 100 {
+        return Err(input(key, format!("{} entries", given.len()), "are too many", format!("give up to 100 {example}")));
+    }
+    Ok(())
+}
+
+fn read_share(path: &str, share: f64) -> Result<f64> {
+    number("a share of the force", 1e-6, 1e6).read(&format!("{path}.share"), share)
+}
+
+/// Direction of a force, of length 1.
+fn unit(path: &str, [x, y]: [f64; 2]) -> Result<Point> {
+    let size = x.hypot(y);
+    if !(1e-9..1e9).contains(&size) {
+        let remedy = "give [x, y] of the force on the plate, for example [0, 1]";
+        return Err(input(&format!("{path}.direction"), format!("[{x}, {y}]"), "has no direction", remedy));
+    }
+    Ok([x / size, y / size])
+}
