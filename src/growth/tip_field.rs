@@ -51,7 +51,7 @@ const BESIDE_SPACINGS: f64 = 0.5;
 /// other.
 const JOINED_HORIZONS: f64 = 1.0;
 /// Length, in horizons, by which cracks are shorter at first, to see how K changes with it; a quarter of a crack at the most.
-const PROBE_HORIZONS: f64 = 1.0;
+const PROBE_HORIZONS: f64 = 0.5;
 /// Residual over load of an equilibrium: factors are right to some 1e-8. Round-off allows no less where what is left of a plate is
 /// nearly a mechanism.
 const TOLERANCE: f64 = 1e-8;

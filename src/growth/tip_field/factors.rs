@@ -68,17 +68,22 @@ impl TipField<'_> {
         let read = |tip: &Tip| {
             let end = tip.end;
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
-            // The ring stands around the place to which the cut bonds reach.
-            let mut lines = lines.to_vec();
             let clear_of = lines[end.line].end(end.at_last);
-            lines[end.line].stretch(end.at_last, excess);
-            let (bonds, displacement) = (&self.bonds, &*self.displacement);
-            let plate = Balanced { body, bonds, displacement, load: self.case.loading.maximum, lines: &lines };
-            let radius = self.surroundings.radius(body, &lines, end, &active, RING_HORIZONS * horizon);
-            let clear = body.rim_distance(clear_of, radius).unwrap_or(radius);
-            let ring = self.surroundings.factors(plate, end, clear.max(RING_HORIZONS_MIN * horizon));
+            let ring = |excess: f64| {
+                let mut lines = lines.to_vec();
+                lines[end.line].stretch(end.at_last, excess);
+                let (bonds, displacement) = (&self.bonds, &*self.displacement);
+                let plate = Balanced { body, bonds, displacement, load: self.case.loading.maximum, lines: &lines };
+                let radius = self.surroundings.radius(body, &lines, end, &active, RING_HORIZONS * horizon);
+                let clear = body.rim_distance(clear_of, radius).unwrap_or(radius);
+                self.surroundings.factors(plate, end, clear.max(RING_HORIZONS_MIN * horizon))
+            };
+            // Around the place to which the cut bonds reach, the field shows where its tip is; around that, its factors. About another
+            // place by x the term r^{3/2} of the field counts, too: K of a short crack is read low by 3x/8a, of a deep one high.
+            let first = ring(excess);
             // Beside a rim what is read as a shift may be something else.
-            let ahead = if ring.ahead.abs() < AHEAD_HORIZONS * horizon { ring.ahead } else { 0.0 };
+            let ahead = if first.ahead.abs() < AHEAD_HORIZONS * horizon { first.ahead } else { 0.0 };
+            let ring = if ahead == 0.0 { first } else { ring(excess + ahead) };
             (ring.factors, excess + ahead)
         };
         let (mut factors, excesses): (Vec<[f64; 2]>, Vec<f64>) = tips.map(read).unzip();

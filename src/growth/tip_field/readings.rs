@@ -1,8 +1,9 @@
 //! K at the length that a line has, from K at the lengths at which the field of the tip stands.
 //!
 //! A crack cut into bonds reaches farther than its line or less far, by up to half a spacing and by another amount at every step, and
-//! the field of its tip stands a fifth of a spacing ahead of that ([`crate::stress_intensity::ring`]). What is read belongs to that length. It is brought to that of the line along the slope of ln K over
-//! that length, taken from the readings of the last horizons of growth.
+//! the field of its tip stands a fifth of a spacing ahead of that ([`crate::stress_intensity::ring`]). What is read belongs to that
+//! length. It is brought to that of the line along the slope of ln K over that length, taken from the readings of the last horizons
+//! of growth; at the start from the crack drawn back by half a horizon.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,7 @@ const MEMORY_HORIZONS: f64 = 2.1;
 const SLOPE_MOST: f64 = 12.0;
 
 /// Spread of readings, in horizons, whose slope counts as much as that of a crack far from everything.
-const PRIOR_HORIZONS: f64 = 0.5;
+const PRIOR_HORIZONS: f64 = 0.1;
 
 /// Readings of a tip.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
