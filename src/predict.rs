@@ -17,7 +17,7 @@ mod snapshot;
 
 use std::time::Instant;
 
-pub use outcome::{CurvePoint, Observer, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
+pub use outcome::{CrossCheck, CurvePoint, Observer, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 
 pub use crate::growth::bond_strain::Recorder;
 pub use crate::net::PointGrid;
@@ -147,13 +147,16 @@ impl<'a> Run<'a> {
         let (curve, zero) = growth.curve();
         album.count_from(zero, &curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
-        let warnings = warnings(case, growth, &curve);
+        let cross_check = growth.cross_check(curve.last().map_or(0.0, |row| row.cycles));
+        let mut warnings = warnings(case, growth, &curve);
+        warnings.extend(cross_check.and_then(|check| check.warning()));
         Ok(Prediction {
             stop,
             figures: RunFigures::of(growth, curve.len() - 1, wall_s),
             snapshots: album.snapshots,
             grid: growth.plate().map_or_else(PointGrid::none, |plate| plate.grid()),
             curve,
+            cross_check,
             warnings,
         })
     }

@@ -95,7 +95,7 @@ pub fn run_case(case: &Case, out: &Path, extras: &Extras, console: &Console) -> 
 /// Judges a run, writes its files and puts the folder in place.
 ///
 /// # Errors
-/// As [`run::judge`] and [`run::write`].
+/// As [`run::judge`] and [`run::write`]; with the files in place, as [`run::refusal`].
 pub fn keep(case: &Case, prediction: Prediction, folder: OutputFolder, console: &Console) -> Result<FinishedRun> {
     for warning in &prediction.warnings {
         console.warn(warning);
@@ -109,7 +109,10 @@ pub fn keep(case: &Case, prediction: Prediction, folder: OutputFolder, console: 
     for line in lines {
         console.say(&line);
     }
-    Ok(FinishedRun { prediction, result })
+    match run::refusal(case, &prediction) {
+        Some(refusal) => Err(refusal),
+        None => Ok(FinishedRun { prediction, result }),
+    }
 }
 
 fn summary(case: &Case, prediction: &Prediction, out: &Path) -> Vec<String> {

@@ -14,9 +14,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::cross_check::CrossCheck;
 use super::end_of_life::{End, first_end};
 use super::plate::Plate;
 use super::record::{CurvePoint, StopReason};
+use super::tip_field::initial_factor;
 use super::{CrackGrowth, Effort, Fields, Now, State};
 use crate::body::{Body, Bond};
 use crate::case::Case;
@@ -73,6 +75,8 @@ pub struct BondStrain<'a> {
     /// These and others whose displacement has to be right after every break.
     watched: Vec<Bond>,
     is_closed: bool,
+    /// K of the first row against that of cleanly cut cracks.
+    check: Option<CrossCheck>,
     /// What the user should know that came up on the way.
     warnings: Vec<String>,
 }
@@ -122,6 +126,7 @@ impl<'a> BondStrain<'a> {
             near: Vec::new(),
             watched: Vec::new(),
             is_closed: false,
+            check: None,
             warnings: Vec::new(),
             plate: Arc::new(plate),
         })
@@ -356,7 +361,17 @@ impl CrackGrowth for BondStrain<'_> {
     }
 
     fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
-        self.run.track.curve(self.case, &self.plate.body, self.end)
+        let (curve, zero) = self.run.track.curve(self.case, &self.plate.body, self.end);
+        let range_share = self.case.loading.range_share();
+        self.check = curve.first().filter(|row| row.delta_k.is_finite()).and_then(|row| {
+            let difference = row.delta_k / (range_share * initial_factor(self.case)?) - 1.0;
+            Some(CrossCheck { compared: 1, difference, crack_length: row.crack_length })
+        });
+        (curve, zero)
+    }
+
+    fn cross_check(&self, _cycles: f64) -> Option<CrossCheck> {
+        self.check
     }
 
     fn effort(&self) -> Effort {

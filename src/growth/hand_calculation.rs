@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use super::cross_check::CrossCheck;
 use super::end_of_life::{End, first_end};
 use super::plate::Plate;
 use super::record::{CurvePoint, StopReason, TipRecord};
@@ -179,6 +180,10 @@ impl CrackGrowth for HandCalculation<'_> {
     }
 
     /// What speaks against the formula.
+    fn cross_check(&self, _cycles: f64) -> Option<CrossCheck> {
+        None
+    }
+
     fn warnings(&self) -> Vec<String> {
         let life = self.curve.last().map_or(0.0, |point| point.cycles);
         let outside: f64 = self

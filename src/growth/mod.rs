@@ -5,6 +5,7 @@
 //! ([`hand_calculation`]).
 
 pub mod bond_strain;
+pub mod cross_check;
 mod end_of_life;
 pub mod hand_calculation;
 pub mod plate;
@@ -17,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::fatigue::growth_law::GrowthLaw;
+use cross_check::CrossCheck;
 use plate::Plate;
 use record::{CurvePoint, StopReason, TipRecord};
 
@@ -80,6 +82,9 @@ pub trait CrackGrowth {
 
     /// What the run took.
     fn effort(&self) -> Effort;
+
+    /// K of a run of so many `cycles` against an independent one, where it grew far enough for that.
+    fn cross_check(&self, cycles: f64) -> Option<CrossCheck>;
 
     /// What the user should know of the driver's own.
     fn warnings(&self) -> Vec<String>;

@@ -20,6 +20,7 @@ pub use state::{Tip, TipFieldState, TipsState};
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use super::cross_check::{CrossCheck, EnergyBalance, GivenOff};
 use super::end_of_life::{End, first_end};
 use super::plate::Plate;
 use super::record::{CurvePoint, StopReason, TipRecord};
@@ -29,7 +30,8 @@ use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
-use crate::fatigue::growth_law::GrowthLaw;
+use crate::fatigue::growth_law::{GrowthLaw, Walker};
+use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::solver::Equilibrium;
 use crate::specimen::Point;
@@ -68,6 +70,12 @@ struct Piece {
     state: TipState,
     /// The crack that it meets.
     meets: Option<usize>,
+}
+
+impl Piece {
+    fn length(&self) -> f64 {
+        distance(self.from, self.to)
+    }
 }
 
 /// What a block did.
@@ -135,7 +143,7 @@ impl<'a> TipField<'a> {
         let tips = (0..specimen.tips.len()).map(tip).collect::<Result<Vec<_>>>()?;
         let body = &plate.body;
         let steps = StepControl::new(case, body.horizon());
-        let state = TipFieldState { lines: specimen.crack_lines(), tips, step: steps.first() };
+        let state = TipFieldState { lines: specimen.crack_lines(), tips, step: steps.first(), balance: EnergyBalance::default() };
         if set_aside(body, &mut Bonds::new(body), &body.pre_cut) == Cut::Severed {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
@@ -200,11 +208,13 @@ impl<'a> TipField<'a> {
         let rate = self.state.tips[fastest].rate;
         let ways = self.next_ways(fastest, cycles, until);
 
+        let before = self.energies();
+
         // New pieces of crack.
         let mut cut: Vec<Bond> = Vec::new();
         let piece = |(tip, way): (&Tip, &f64)| (*way > 0.0).then(|| self.piece(tip, *way));
         let pieces: Vec<Option<Piece>> = self.state.tips.iter().zip(&ways).map(piece).collect();
-        let grown = pieces[fastest].as_ref().map_or(0.0, |piece| distance(piece.from, piece.to));
+        let grown = pieces[fastest].as_ref().map_or(0.0, Piece::length);
         // Rate at the start of the last step, and its length, of the tip whose cycles count.
         let past = self.state.tips[fastest].past;
         for (tip, piece) in self.state.tips.iter_mut().zip(&pieces) {
@@ -248,10 +258,45 @@ impl<'a> TipField<'a> {
         } else if grown > 0.0 && end.is_none() {
             self.state.step = self.steps.next(grown, bend);
         }
+        if has_ended || end.is_some() {
+            self.state.balance.forget();
+        } else {
+            let ways: Vec<f64> = pieces.iter().map(|piece| piece.as_ref().map_or(0.0, Piece::length)).collect();
+            self.compare_energies(&before, &ways, cycles);
+        }
         let work = if end.is_none() { self.equilibrium.work() } else { f64::NAN };
         let left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
         end = end.or_else(|| (!left).then(|| self.gone()));
         Block { cycles, work, cut: cut.len(), end }
+    }
+
+    /// Of every tip `K_eq²/E'`, J/m², and the length that its cut bonds stand for beyond that of its line, m; work of the loads, J.
+    fn energies(&self) -> (Vec<[f64; 2]>, f64) {
+        let modulus = self.case.material.plane_modulus();
+        let of_tip = |tip: &Tip| [tip.equivalent().powi(2) / modulus, tip.excess];
+        (self.state.tips.iter().map(of_tip).collect(), self.equilibrium.work())
+    }
+
+    /// Compares what the block's new pieces gave off by their K with what the plate did.
+    fn compare_energies(&mut self, (before, work): &(Vec<[f64; 2]>, f64), ways: &[f64], cycles: f64) {
+        let (now, work_now) = self.energies();
+        let of_tip = |((way, [then, excess_then]), [now, excess]): ((&f64, &[f64; 2]), [f64; 2])| {
+            0.5 * (then + now) * (way + excess - excess_then)
+        };
+        let given_off: f64 = ways.iter().zip(before).zip(now).map(of_tip).sum();
+        let length_less = |ways: &[f64]| {
+            let growths: Vec<f64> = self.state.tips.iter().zip(ways).map(|(tip, way)| tip.growth - way).collect();
+            self.case.specimen.crack_length_after(&growths)
+        };
+        let length = length_less(&vec![0.0; ways.len()]);
+        let block = GivenOff {
+            of_tips: self.case.specimen.thickness * given_off,
+            of_plate: 0.5 * (work_now - work),
+            growth: ways.iter().sum(),
+            lengthening: length - length_less(ways),
+            cycles,
+        };
+        self.state.balance.take(block, length, self.plate.body.horizon());
     }
 
     /// Joins cracks that have met, and lets the tips that are left forget what they were: the crack that they end is another one.
@@ -454,9 +499,21 @@ impl CrackGrowth for TipField<'_> {
         Effort { points_solved, solves: self.solves, iterations: self.iterations }
     }
 
+    fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {
+        self.state.balance.check(cycles)
+    }
+
     fn warnings(&self) -> Vec<String> {
         self.warnings.iter().cloned().chain(self.contact_warning()).collect()
     }
+}
+
+/// Largest K_eq of the tips at maximum load, Pa√m, of the plate with its initial cracks cleanly cut; `None` where it cannot be read.
+pub fn initial_factor(case: &Case) -> Option<f64> {
+    let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
+    let mut growth = TipField::start(case, Box::new(law)).ok()?;
+    growth.open().ok()?;
+    growth.state.tips.iter().map(Tip::equivalent).max_by(f64::total_cmp)
 }
 
 /// Bonds that a new piece of crack crosses, in the sense of its line, so that points on it stay on one side; beyond a rim, all

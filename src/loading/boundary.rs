@@ -74,7 +74,12 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
             forces::read_pins(input_.pins.as_deref().unwrap_or_default(), specimen)?;
             forces::read_rollers(input_.rollers.as_deref().unwrap_or_default(), specimen)?;
             if specimen.loads.is_empty() {
-                return Err(input(key, "[]", "loads nothing", "give 1 to 100 pins { hole = 0, direction = [0, 1] }"));
+                return Err(input(
+                    key,
+                    "[]",
+                    "loads nothing",
+                    "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }",
+                ));
             }
             1.0
         }

@@ -3,6 +3,7 @@
 use super::checkpoint::Checkpoint;
 use super::memory;
 use crate::case::Case;
+pub use crate::growth::cross_check::CrossCheck;
 use crate::growth::plate::Plate;
 pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
 use crate::growth::{CrackGrowth, Now};
@@ -79,6 +80,8 @@ pub struct Prediction {
     pub grid: PointGrid,
     /// Figures.
     pub figures: RunFigures,
+    /// K against an independent one, where there is one.
+    pub cross_check: Option<CrossCheck>,
     /// What the user should know: warnings in plain words.
     pub warnings: Vec<String>,
 }

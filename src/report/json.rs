@@ -34,6 +34,11 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "life_share_extrapolated": life_share_extrapolated(case, prediction),
         "life_share_near_threshold": life_share_near_threshold(case, prediction),
         "plastic_zone": plastic_zone(case, prediction),
+        "k_cross_check": prediction.cross_check.map(|check| json!({
+            "compared": check.compared,
+            "largest_difference_percent": 100.0 * check.difference,
+            "crack_length_mm": clean(check.crack_length / MM),
+        })),
         "points": figures.points,
         "points_solved": figures.points_solved,
         "bonds": figures.bonds,

@@ -24,8 +24,7 @@ const EXTRAPOLATION_REFUSED: f64 = 0.25;
 /// Whether a run counts as a result; what the user should know about it beyond what the run itself says.
 ///
 /// # Errors
-/// [`Error::Mechanics`] if the run ended before the crack grew; [`Error::Input`] if more than a quarter of the life lies outside
-/// the fitted ΔK range and the case does not allow that.
+/// [`Error::Mechanics`] if the run ended before the crack grew.
 pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
     let mut warnings = Vec::new();
     let start = prediction.curve.first().map_or(f64::INFINITY, |point| point.crack_length);
@@ -61,22 +60,27 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
         }
         _ => {}
     }
-    warnings.extend(extrapolated(case, prediction)?);
+    warnings.extend(extrapolated(case, prediction));
     warnings.extend(fit_use::labels(case, prediction));
     Ok(warnings)
 }
 
 /// What is to be said about life outside the fitted range of ΔK.
-fn extrapolated(case: &Case, prediction: &Prediction) -> Result<Option<String>> {
-    let share = json::life_share_extrapolated(case, prediction).unwrap_or(0.0);
-    let LawSource::Fitted(record) = &case.law else { return Ok(None) };
+fn extrapolated(case: &Case, prediction: &Prediction) -> Option<String> {
+    let share = json::life_share_extrapolated(case, prediction).filter(|share| *share > EXTRAPOLATION_WARNED)?;
+    let LawSource::Fitted(record) = &case.law else { return None };
     let (low, high) = (record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m);
-    let text = format!("{:.1} % of the life lies outside the fitted range of ΔK, {low:.2} to {high:.2} MPa√m", 100.0 * share);
-    if share > EXTRAPOLATION_REFUSED && !case.allow_extrapolation {
-        let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
-        return Err(input("fatigue.allow_extrapolation", false, format!("{}: {text}", case.name), remedy));
-    }
-    Ok((share > EXTRAPOLATION_WARNED).then_some(text))
+    Some(format!("{:.1} % of the life lies outside the fitted range of ΔK, {low:.2} to {high:.2} MPa√m", 100.0 * share))
+}
+
+/// Why a run does not count though it came to an end: more than a quarter of its life lies outside the fitted range of ΔK, and the
+/// case does not allow that. It is written all the same, marked as refused: what it cost is not thrown away.
+#[must_use]
+pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
+    let share = json::life_share_extrapolated(case, prediction).unwrap_or(0.0);
+    let text = extrapolated(case, prediction).filter(|_| share > EXTRAPOLATION_REFUSED && !case.allow_extrapolation)?;
+    let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
+    Some(input("fatigue.allow_extrapolation", false, format!("{}: {text}; the results are marked as refused", case.name), remedy))
 }
 
 /// Writes all files of a run into `folder`; returns the content of `result.json`.
@@ -84,7 +88,10 @@ fn extrapolated(case: &Case, prediction: &Prediction) -> Result<Option<String>> 
 /// # Errors
 /// [`Error::File`] if a file cannot be written.
 pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Value> {
-    let result = json::result(case, prediction);
+    let mut result = json::result(case, prediction);
+    if let (Some(refusal), Some(object)) = (refusal(case, prediction), result.as_object_mut()) {
+        object.insert("refused".to_owned(), refusal.to_string().into());
+    }
     write_file(&folder.join(csv::A_N_FILE), csv::a_n(prediction).as_bytes())?;
     write_file(&folder.join("crack_path.csv"), csv::crack_path(prediction, &case.specimen.cracks).as_bytes())?;
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;

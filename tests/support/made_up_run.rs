@@ -32,7 +32,15 @@ pub fn prediction(angle: f64) -> Prediction {
         wall_s: 12.5,
         memory_mb: 87.0,
     };
-    Prediction { curve, stop: StopReason::CrackLengthReached, snapshots, grid, figures, warnings: vec!["made up".to_owned()] }
+    Prediction {
+        curve,
+        stop: StopReason::CrackLengthReached,
+        snapshots,
+        grid,
+        figures,
+        cross_check: None,
+        warnings: vec!["made up".to_owned()],
+    }
 }
 
 fn curve() -> Vec<CurvePoint> {

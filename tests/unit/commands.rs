@@ -47,7 +47,7 @@ fn no_convergence_is_refused_only_where_there_is_no_curve() {
 }
 
 #[test]
-fn far_extrapolation_is_refused_unless_allowed() {
+fn far_extrapolation_is_refused_unless_allowed_but_kept() {
     let dir = tempdir().unwrap();
     let mut case = made_up_case::case();
     // Most of the life is spent below 12 MPa√m.
@@ -58,9 +58,15 @@ fn far_extrapolation_is_refused_unless_allowed() {
         error.to_string().contains("12.00 to 30.00 MPa√m") && error.to_string().contains("allow_extrapolation = true"),
         "{error}"
     );
-    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+    // What it cost is kept, and marked.
+    let refused = || {
+        let text = fs::read_to_string(dir.path().join("run/result.json")).unwrap();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()["refused"].as_str().map(str::to_owned)
+    };
+    assert!(refused().unwrap().contains("outside the fitted range of ΔK"));
     case.allow_extrapolation = true;
     keep(&case, made_up_run::prediction(0.0), &dir.path().join("run")).unwrap();
+    assert_eq!(refused(), None);
 }
 
 #[test]

@@ -68,6 +68,8 @@ fn loads_must_balance() {
         "stress_max_mpa = 10\nedges = [\"left\", \"right\"]",
         "force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }, { hole = 1, direction = [0, -2] }]",
         "force_max_n = 10\npins = [{ hole = 2, direction = [0, 1] }]\n[supports]\nbottom = { fix = [\"x\", \"y\"] }",
+        "force_max_n = 10\nrollers = [{ at_mm = [0, 100], contact_width_mm = 4 }, { at_mm = [-40, -100], contact_width_mm = 4, share = 0.5 }, { at_mm = [40, -100], contact_width_mm = 4, share = 0.5 }]",
+        "force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }]\nrollers = [{ at_mm = [0, 100], contact_width_mm = 4 }]",
     ];
     // Words of the answer: what is left over.
     let bad = [
@@ -76,6 +78,11 @@ fn loads_must_balance() {
         ("force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }]", "a force along y"),
         ("force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }, { hole = 2, direction = [0, -1] }]", "turn the plate"),
         ("force_max_n = 10\npins = [{ hole = 0, direction = [1, 0] }, { hole = 1, direction = [-1, 0] }]", "turn the plate"),
+        ("force_max_n = 10\nrollers = [{ at_mm = [0, 100], contact_width_mm = 4 }]", "a force along y"),
+        (
+            "force_max_n = 10\nrollers = [{ at_mm = [0, 100], contact_width_mm = 4 }, { at_mm = [9, -100], contact_width_mm = 4 }]",
+            "turn the plate",
+        ),
     ];
     let with_ratio = |text: &str| match text.split_once("\n[") {
         Some((loading, rest)) => format!("{loading}\nstress_ratio = 0\n[{rest}"),
@@ -104,4 +111,32 @@ fn a_pin_touches_over_at_most_half_its_hole() {
         let error = pins(&format!(", contact_half_angle_deg = {wrong}")).unwrap_err().to_string();
         assert!(error.contains("loading.pins[0].contact_half_angle_deg") && error.contains(wrong), "{error}");
     }
+}
+
+#[test]
+fn a_roller_presses_uniformly_on_its_contact() {
+    let rollers = |first: &str| {
+        let text = format!(
+            "force_max_n = 10\nstress_ratio = 0\nrollers = [{{ {first} }}, {{ at_mm = [10, -100], contact_width_mm = 5 }}]"
+        );
+        case(PLATE, &text)
+    };
+    let loads = rollers("at_mm = [10, 100], contact_width_mm = 8").unwrap().specimen.loads;
+    let Load::Edge { from, to, traction } = loads[0] else { panic!("{loads:?}") };
+    // 8 mm x 2 mm of contact carry the whole force, into the plate.
+    let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9;
+    assert!(near(from, [0.014, 0.1]) && near(to, [0.006, 0.1]), "{loads:?}");
+    assert!((traction[1] * 16e-6 + 1.0).abs() < 1e-9 && traction[0].abs() < 1e-9, "{loads:?}");
+    for (wrong, key) in [
+        ("at_mm = [10, 90], contact_width_mm = 8", "loading.rollers[0].at_mm"),
+        ("at_mm = [49, 100], contact_width_mm = 8", "loading.rollers[0].contact_width_mm"),
+        ("at_mm = [10, 100], contact_width_mm = 0", "loading.rollers[0].contact_width_mm"),
+        ("at_mm = [10, 100], contact_width_mm = 8, direction = [0, 1]", "loading.rollers[0].direction"),
+        ("at_mm = [10, 100], contact_width_mm = 8, direction = [0, 0]", "loading.rollers[0].direction"),
+    ] {
+        let error = rollers(wrong).unwrap_err().to_string();
+        assert!(error.contains(key), "{wrong}: {error}");
+    }
+    let none = case(PLATE, "force_max_n = 10\nstress_ratio = 0\nrollers = []").unwrap_err().to_string();
+    assert!(none.contains("loading.rollers") && none.contains("loads nothing"), "{none}");
 }

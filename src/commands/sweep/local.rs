@@ -59,6 +59,9 @@ fn outcome(case: &DrawnCase, files: Option<&Path>) -> Result<Outcome> {
         if let Some(folder) = files {
             run::write(folder, &read, &prediction)?;
         }
+        if let Some(refusal) = run::refusal(&read, &prediction) {
+            return Err(refusal);
+        }
         let warnings = [&read.warnings, &prediction.warnings, &judged].into_iter().flatten().cloned().collect();
         Ok(Outcome {
             input: case.hash.clone(),

@@ -118,6 +118,7 @@ impl TipField<'_> {
             let Some((read, excess)) = factors.next() else { continue };
             let specimen = &self.case.specimen;
             let ahead = self.state.lines[tip.end.line].direction(tip.end.at_last);
+            tip.excess = excess;
             tip.in_contact |= read[0] < -IN_CONTACT * largest;
             tip.steering.read(read, tip.growth, ahead, horizon);
             tip.readings.take(equivalent_factor(read), tip.growth, excess, tip.steering.corner(), horizon);

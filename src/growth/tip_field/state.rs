@@ -7,6 +7,7 @@ use super::steering::{Steering, equivalent_factor};
 use crate::body::Bond;
 use crate::fatigue::crack_tip::TipState;
 use crate::growth::Effort;
+use crate::growth::cross_check::EnergyBalance;
 use crate::growth::record::CurvePoint;
 use crate::specimen::geometry::distance;
 use crate::specimen::{CrackLine, LineEnd, Specimen};
@@ -30,6 +31,8 @@ pub struct Tip {
     pub(super) past: Option<[f64; 2]>,
     /// Length of crack that belonged to it at the start, m.
     pub(super) length: f64,
+    /// Length that its cut bonds stand for beyond that of its line, m.
+    pub(super) excess: f64,
     pub(super) readings: Readings,
     pub(super) steering: Steering,
     /// Whether the load has pressed its flanks together.
@@ -50,6 +53,7 @@ impl Tip {
             before: None,
             past: None,
             length: distance(crack.from, crack.to) / tips.max(1) as f64,
+            excess: 0.0,
             readings: Readings::default(),
             steering: Steering::default(),
             in_contact: false,
@@ -95,6 +99,8 @@ pub struct TipFieldState {
     pub tips: Vec<Tip>,
     /// Growth of a tip in the next block at the most, m.
     pub(super) step: f64,
+    /// K against the energy that the plate gives off.
+    pub(super) balance: EnergyBalance,
 }
 
 impl TipFieldState {

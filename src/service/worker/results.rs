@@ -24,13 +24,14 @@ use crate::units::MM;
 pub type Results = (Value, Vec<File>);
 
 /// Keys of `result.json` that a summary has.
-const FIGURES: [&str; 12] = [
+const FIGURES: [&str; 13] = [
     "life_cycles",
     "stop_reason",
     "stop_meaning",
     "crack_length_initial_mm",
     "crack_length_final_mm",
     "life_share_extrapolated",
+    "refused",
     "points",
     "points_solved",
     "blocks",
@@ -52,6 +53,9 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Result<Results> {
     let mut warnings: Vec<&str> = result["warnings"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
     let new: Vec<&str> = judged.iter().map(String::as_str).filter(|warning| !warnings.contains(warning)).collect();
     warnings.extend(new);
+    if let Some(refusal) = result["refused"].as_str() {
+        warnings.insert(0, refusal);
+    }
     summary.insert("warnings".to_owned(), json!(warnings));
     Ok((Value::Object(summary), collected(folder.path())?))
 }

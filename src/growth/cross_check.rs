@@ -1,0 +1,107 @@
+//! K of a run against an independent K of the same plate: what drives the cracks could be wrong without a sign of it otherwise.
+//!
+//! K of tips, read on rings near them, is compared with what the whole plate gives off: while cracks grow under constant load,
+//! `½ ΔW = B Σ ∫ K_eq²/E' da` with W the work of the loads (Irwin 1957), over intervals of some horizons. Bonds that age, whose K is that
+//! energy, are compared with the ring on the plate with cleanly cut initial cracks.
+
+use serde::{Deserialize, Serialize};
+
+use crate::units::MM;
+
+/// Growth over which energies are compared, in horizons: within it the cut bonds stand for a length that is right to 2 %.
+const INTERVAL_HORIZONS: f64 = 5.0;
+/// Share of the life that a comparison has to be of.
+const SHARE_LEAST: f64 = 0.03;
+/// Difference of K beyond which the user is warned, as share.
+const WARNED: f64 = 0.03;
+
+/// How far two independent K lie apart.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CrossCheck {
+    /// Places that were compared.
+    pub compared: usize,
+    /// Largest difference, the K of the run over the other one less 1.
+    pub difference: f64,
+    /// Crack length where that is, m.
+    pub crack_length: f64,
+}
+
+impl CrossCheck {
+    /// What the user should know about it.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        (self.difference.abs() > WARNED).then(|| {
+            format!(
+                "K of this run differs by {:+.1} % from an independent one at a crack length of {:.3} mm: rates err by m times that; give \
+                 a smaller model.spacing_mm",
+                100.0 * self.difference,
+                self.crack_length / MM
+            )
+        })
+    }
+}
+
+/// Growth over which energies were compared.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Interval {
+    /// K of the tips over that of the energy, less 1.
+    difference: f64,
+    /// Crack length in its middle, m.
+    crack_length: f64,
+    cycles: f64,
+}
+
+/// Growth of all tips in a block and what it gave off.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct GivenOff {
+    /// `B Σ ∫ K_eq²/E' da`, J.
+    pub of_tips: f64,
+    /// ½ ΔW, J.
+    pub of_plate: f64,
+    /// Growth of all tips, m.
+    pub growth: f64,
+    /// Growth in the convention of crack length, m.
+    pub lengthening: f64,
+    /// Cycles.
+    pub cycles: f64,
+}
+
+/// Energies of the growth since the last comparison, and the comparisons so far.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct EnergyBalance {
+    open: GivenOff,
+    intervals: Vec<Interval>,
+}
+
+impl EnergyBalance {
+    /// Takes in a block at whose end the crack has the length `crack_length`, m.
+    pub fn take(&mut self, block: GivenOff, crack_length: f64, horizon: f64) {
+        let open = &mut self.open;
+        open.of_tips += block.of_tips;
+        open.of_plate += block.of_plate;
+        open.growth += block.growth;
+        open.lengthening += block.lengthening;
+        open.cycles += block.cycles;
+        if open.growth >= INTERVAL_HORIZONS * horizon {
+            let GivenOff { of_tips, of_plate, lengthening, cycles, .. } = std::mem::take(open);
+            let difference = (of_tips / of_plate).sqrt() - 1.0;
+            // NaN where the energy falls: no K belongs to that.
+            let difference = if difference.is_finite() { difference } else { 1.0 };
+            self.intervals.push(Interval { difference, crack_length: crack_length - 0.5 * lengthening, cycles });
+        }
+    }
+
+    /// Begins a new interval.
+    pub fn forget(&mut self) {
+        self.open = GivenOff::default();
+    }
+
+    /// The comparisons that matter in a life of so many `cycles`.
+    #[must_use]
+    pub fn check(&self, cycles: f64) -> Option<CrossCheck> {
+        let matters = self.intervals.iter().filter(|interval| interval.cycles >= SHARE_LEAST * cycles);
+        let largest = matters.clone().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()))?;
+        let Interval { difference, crack_length, .. } = *largest;
+        Some(CrossCheck { compared: matters.count(), difference, crack_length })
+    }
+}
