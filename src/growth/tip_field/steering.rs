@@ -11,9 +11,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::specimen::Point;
 
-/// Growth, in horizons, whose aims show where the crack is heading. Like all lengths here no multiple of a step: on a limit round-off
-/// would tell mirror twins apart.
-const MEMORY_HORIZONS: f64 = 2.1;
+/// Growth, in steps, whose aims show where the crack is heading. Steps are short where it curves; a line through more than that would
+/// trail behind. Like all lengths here no multiple of a step: on a limit round-off would tell mirror twins apart.
+const MEMORY_STEPS: f64 = 5.3;
+/// Bounds of that growth, in horizons: aims scatter within the former with how the points lie.
+const MEMORY_HORIZONS: [f64; 2] = [0.83, 2.1];
 /// Spread of growth, in horizons, below which the slope of the aims says nothing.
 const SLOPE_HORIZONS: f64 = 0.15;
 /// Turn from which a crack has a corner, rad: nothing before it says where it heads after it.
@@ -73,8 +75,10 @@ impl Steering {
         if self.corner.take().is_some() {
             self.aims.clear();
         }
+        let step = self.aims.last().map_or(0.0, |last| growth - last[0]);
+        let [least, most] = MEMORY_HORIZONS.map(|horizons| horizons * horizon);
         self.aims.push([growth, aim]);
-        self.aims.retain(|aim| aim[0] >= growth - MEMORY_HORIZONS * horizon);
+        self.aims.retain(|aim| aim[0] >= growth - (MEMORY_STEPS * step).clamp(least, most));
     }
 
     /// Direction for the next `step` of growth, m: the aim at its middle.
