@@ -9,6 +9,7 @@
 //! begin anew with the K that the joined crack gives them.
 
 mod ahead;
+mod approach;
 mod factors;
 mod readings;
 mod state;
@@ -222,7 +223,7 @@ impl<'a> TipField<'a> {
                 tip.stood_still(grown);
                 continue;
             };
-            cut.extend(across(body, *from, *to, tip.end.at_last, *state));
+            cut.extend(across(body, *from, *to, *state));
             self.state.lines[tip.end.line].grow(tip.end.at_last, *to);
             tip.has_grown(distance(*from, *to), grown, *state);
         }
@@ -258,7 +259,8 @@ impl<'a> TipField<'a> {
         } else if grown > 0.0 && end.is_none() {
             self.state.step = self.steps.next(grown, bend);
         }
-        if has_ended || end.is_some() {
+        let closing = self.state.tips.iter().any(|tip| tip.state == TipState::Active && self.is_closing(tip));
+        if has_ended || closing || end.is_some() {
             self.state.balance.forget();
         } else {
             let ways: Vec<f64> = pieces.iter().map(|piece| piece.as_ref().map_or(0.0, Piece::length)).collect();
@@ -516,13 +518,11 @@ pub fn initial_factor(case: &Case) -> Option<f64> {
     growth.state.tips.iter().map(Tip::equivalent).max_by(f64::total_cmp)
 }
 
-/// Bonds that a new piece of crack crosses, in the sense of its line, so that points on it stay on one side; beyond a rim, all
-/// that is left of it.
-fn across(body: &Body, from: Point, to: Point, at_last: bool, state: TipState) -> Vec<Bond> {
+/// Bonds that a new piece of crack crosses; beyond a rim, all that is left of it.
+fn across(body: &Body, from: Point, to: Point, state: TipState) -> Vec<Bond> {
     let beyond = if state == TipState::Active { 0.0 } else { body.lattice.spacing };
     let length = distance(from, to).max(f64::MIN_POSITIVE);
-    let end = along(from, to, 1.0 + beyond / length);
-    if at_last { bonds_across(body, from, end) } else { bonds_across(body, end, from) }
+    bonds_across(body, from, along(from, to, 1.0 + beyond / length))
 }
 
 /// Bonds that the last [`PROBE_HORIZONS`] of the initial cracks cut, and nothing else of them, in ascending order.
@@ -532,7 +532,7 @@ fn bonds_at_tips(body: &Body, state: &TipFieldState) -> Vec<Bond> {
     let kept: HashSet<Bond> = drawn_back.iter().flat_map(|line| line.pieces()).flat_map(across).collect();
     let last = state.tips.iter().map(|tip| {
         let [from, to] = [&drawn_back[tip.end.line], &state.lines[tip.end.line]].map(|line| line.end(tip.end.at_last));
-        if tip.end.at_last { [from, to] } else { [to, from] }
+        [from, to]
     });
     let mut bonds: Vec<Bond> = last.flat_map(across).filter(|bond| !kept.contains(bond)).collect();
     bonds.sort_unstable();

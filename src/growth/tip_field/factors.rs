@@ -1,12 +1,13 @@
 //! K_I and K_II of every tip off its ring, what they say of its rate, and where it aims.
 
+use super::approach::GAP_HORIZONS;
 use super::steering::equivalent_factor;
 use super::step::is_near_rim;
 use super::{PROBE_HORIZONS, RING_HORIZONS, Tip, TipField};
 use crate::body::severed::represented_excess;
 use crate::fatigue::crack_tip::TipState;
-use crate::specimen::geometry::distance;
-use crate::specimen::{CrackLine, LineEnd};
+use crate::specimen::geometry::{direction, distance};
+use crate::specimen::{CrackLine, LineEnd, Point};
 use crate::stress_intensity::ring::Balanced;
 use crate::units::MM;
 
@@ -24,6 +25,8 @@ const KINK_HORIZONS: f64 = 0.5;
 /// below what shows in a life.
 const ROUND_OFF: f64 = 1e-4;
 
+/// Cosine of the angle between a tip and the way to another one within which they face each other.
+const FACING: f64 = 0.94;
 /// K_I below zero, over the largest factor of all tips, that is no round-off.
 const IN_CONTACT: f64 = 0.05;
 
@@ -103,6 +106,28 @@ impl TipField<'_> {
         }
     }
 
+    /// Distance of a tip from the nearest one that it faces, m.
+    fn gap(&self, tip: &Tip) -> Option<f64> {
+        let end = |tip: &Tip| {
+            let line = &self.state.lines[tip.end.line];
+            (line.end(tip.end.at_last), line.direction(tip.end.at_last))
+        };
+        let (here, ahead) = end(tip);
+        let others = self.state.tips.iter().filter(|other| other.state == TipState::Active && other.end != tip.end);
+        let gap = |other: &Tip| {
+            let (there, towards) = end(other);
+            let (way, gap) = (direction(here, there), distance(here, there));
+            let cosine = |a: Point, b: Point| a[0] * b[0] + a[1] * b[1];
+            (cosine(ahead, way) > FACING && cosine(towards, way) < -FACING).then_some(gap)
+        };
+        others.filter_map(gap).min_by(f64::total_cmp)
+    }
+
+    /// Whether a tip has come so near to another that its K is not read any more.
+    pub(super) fn is_closing(&self, tip: &Tip) -> bool {
+        self.gap(tip).is_some_and(|gap| gap < GAP_HORIZONS * self.plate.body.horizon())
+    }
+
     /// Factors, rates and aims of all tips that are left.
     pub(super) fn read_factors(&mut self) {
         let horizon = self.plate.body.horizon();
@@ -110,7 +135,8 @@ impl TipField<'_> {
         let (factors, excesses) = self.read_rings(&self.state.lines);
         let largest = factors.iter().map(|[k_i, k_ii]| k_i.hypot(*k_ii)).fold(0.0, f64::max);
         let mut factors = factors.into_iter().zip(excesses);
-        for tip in self.state.tips.iter_mut() {
+        let gaps: Vec<Option<f64>> = self.state.tips.iter().map(|tip| self.gap(tip)).collect();
+        for (tip, gap) in self.state.tips.iter_mut().zip(gaps) {
             tip.rate = 0.0;
             if tip.state != TipState::Active {
                 continue;
@@ -128,7 +154,10 @@ impl TipField<'_> {
             if tip.steering.corner().is_some_and(|corner| tip.growth < corner + KINK_HORIZONS * horizon && tip.growth > corner) {
                 share = share.max(tip.equivalent() / equivalent_factor(read));
             }
-            let factors = read.map(|factor| share * factor);
+            let mut factors = read.map(|factor| share * factor);
+            if let Some(gap) = gap {
+                factors = tip.approach.factors(factors, gap, horizon);
+            }
             let near = tip.growth > 0.0 && is_near_rim(specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
             let has_risen = equivalent_factor(factors) >= tip.equivalent();
             if has_risen || !near {

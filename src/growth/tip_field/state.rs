@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::approach::Approach;
 use super::readings::Readings;
 use super::steering::{Steering, equivalent_factor};
 use crate::body::Bond;
@@ -34,6 +35,7 @@ pub struct Tip {
     /// Length that its cut bonds stand for beyond that of its line, m.
     pub(super) excess: f64,
     pub(super) readings: Readings,
+    pub(super) approach: Approach,
     pub(super) steering: Steering,
     /// Whether the load has pressed its flanks together.
     pub(super) in_contact: bool,
@@ -55,6 +57,7 @@ impl Tip {
             length: distance(crack.from, crack.to) / tips.max(1) as f64,
             excess: 0.0,
             readings: Readings::default(),
+            approach: Approach::default(),
             steering: Steering::default(),
             in_contact: false,
         }
@@ -82,6 +85,7 @@ impl Tip {
     pub(super) fn begin_anew(&mut self) {
         (self.before, self.past) = (None, None);
         (self.readings, self.steering) = (Readings::default(), Steering::default());
+        self.approach = Approach::default();
     }
 
     /// K_eq at maximum load of the requested length, Pa√m.
