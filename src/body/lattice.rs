@@ -37,15 +37,6 @@ pub fn fitting_spacing(specimen: &Specimen, spacing: f64, angle: f64) -> f64 {
 }
 
 impl Lattice {
-    /// Its centre, m: what is symmetric about it has symmetric points.
-    #[must_use]
-    pub fn centre(&self) -> Point {
-        let half = |count: usize| 0.5 * (count as f64 - 1.0) * self.spacing;
-        let [x, y] = [half(self.columns), half(self.rows)];
-        let [cos, sin] = self.axis;
-        [self.origin[0] + x * cos - y * sin, self.origin[1] + x * sin + y * cos]
-    }
-
     /// Lattice over a specimen: the requested spacing is moved to the nearest one that divides the gross width, and rows
     /// are laid so that a central horizontal crack falls between two of them.
     ///

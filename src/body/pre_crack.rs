@@ -1,6 +1,5 @@
 //! Initial cracks as cut bonds: no point is removed, every bond that crosses the crack line is.
 
-use super::lattice::Lattice;
 use super::{Body, Bond};
 use crate::specimen::geometry::{direction, distance, distance_to_segment, segments_touch};
 use crate::specimen::{Crack, Point};
@@ -17,49 +16,25 @@ pub fn bonds_cut_by(body: &Body, cracks: &[Crack]) -> Vec<Bond> {
     cut
 }
 
-/// A straight crack as the bonds see it, in one or two pieces in its own sense: shifted aside by a trifle, away from the centre of the
-/// lattice, so that points on it all lie on one side, and those of its mirror image on the image's. A crack through the centre has no
-/// such side: its two halves are shifted to the left seen from the centre, each the other turned by half a turn.
+/// How far a crack from `a` to `b` is shifted, to its left, before bonds are cut, m.
 #[must_use]
-pub fn as_cut(lattice: &Lattice, a: Point, b: Point) -> Vec<[Point; 2]> {
-    let shifted = |[a, b]: [Point; 2]| {
-        let [x, y] = tie_break(lattice, a, b);
-        [[a[0] + x, a[1] + y], [b[0] + x, b[1] + y]]
-    };
-    match centre_between(lattice, a, b) {
-        Some(centre) => vec![shifted([a, centre]), shifted([centre, b])],
-        None => vec![shifted([a, b])],
-    }
+pub fn tie_break(body: &Body, a: Point, b: Point) -> Point {
+    aside(body.lattice.spacing, a, b)
 }
 
-/// The centre of the lattice, where a segment runs through it.
-fn centre_between(lattice: &Lattice, a: Point, b: Point) -> Option<Point> {
-    let centre = lattice.centre();
-    let near = 10.0 * TIE_BREAK * lattice.spacing;
-    let is_inside = distance(a, centre) > near && distance(b, centre) > near;
-    (is_inside && distance_to_segment(centre, a, b) < near).then_some(centre)
-}
-
-/// How far a straight crack from `a` to `b`, not across the centre of the lattice, is shifted before bonds are cut, m.
-#[must_use]
-pub fn tie_break(lattice: &Lattice, a: Point, b: Point) -> Point {
-    let ([x, y], centre) = (direction(a, b), lattice.centre());
-    let from_centre = [0.5 * (a[0] + b[0]) - centre[0], 0.5 * (a[1] + b[1]) - centre[1]];
-    let aside = x * from_centre[1] - y * from_centre[0];
-    let away = if aside.abs() > 10.0 * TIE_BREAK * lattice.spacing { aside } else { x * from_centre[0] + y * from_centre[1] };
-    let shift = (TIE_BREAK * lattice.spacing).copysign(away);
+fn aside(spacing: f64, a: Point, b: Point) -> Point {
+    let [x, y] = direction(a, b);
+    let shift = TIE_BREAK * spacing;
     [-y * shift, x * shift]
 }
 
-/// Segments that cut the bonds of a crack from `a` to `b`: as it is shifted aside, and longer by ten times that shift, so that a
-/// bond through an end of the crack is cut at both ends alike; where two halves meet, a short one across.
+/// Ends of the line that cuts bonds for a crack from `a` to `b` on points of a spacing, m: shifted aside, and longer by ten times
+/// that shift, so that a bond through an end of the crack is cut at both ends alike.
 #[must_use]
-pub fn cutting_lines(lattice: &Lattice, a: Point, b: Point) -> Vec<[Point; 2]> {
-    let more = 10.0 * TIE_BREAK * lattice.spacing;
-    let [x, y] = direction(a, b).map(|d| more * d);
-    let longer = |[a, b]: [Point; 2]| [[a[0] - x, a[1] - y], [b[0] + x, b[1] + y]];
-    let across = centre_between(lattice, a, b).map(|centre| [[centre[0] + y, centre[1] - x], [centre[0] - y, centre[1] + x]]);
-    as_cut(lattice, a, b).into_iter().map(longer).chain(across).collect()
+pub fn cutting_line(spacing: f64, a: Point, b: Point) -> [Point; 2] {
+    let aside = aside(spacing, a, b);
+    let (x, y) = (10.0 * aside[1], -10.0 * aside[0]);
+    [[a[0] + aside[0] - x, a[1] + aside[1] - y], [b[0] + aside[0] + x, b[1] + aside[1] + y]]
 }
 
 /// Bonds that cross the segment from `a` to `b`.
@@ -69,14 +44,13 @@ pub fn bonds_across(body: &Body, a: Point, b: Point) -> Vec<Bond> {
     if distance(a, b) == 0.0 {
         return Vec::new();
     }
-    let lines = cutting_lines(lattice, a, b);
+    let [a, b] = cutting_line(lattice.spacing, a, b);
     let mut cut = Vec::new();
-    for place in places_near(body, a, b, body.horizon() + lattice.spacing) {
+    for place in places_near(body, a, b, body.horizon()) {
         let here = lattice.position(place);
         for (k, &step) in body.steps.iter().enumerate() {
             let bond = k * places + place;
-            let there = lattice.position(place.wrapping_add_signed(step));
-            if body.multiplier[bond] > 0.0 && lines.iter().any(|&[a, b]| segments_touch(here, there, a, b)) {
+            if body.multiplier[bond] > 0.0 && segments_touch(here, lattice.position(place.wrapping_add_signed(step)), a, b) {
                 cut.push(bond as Bond);
             }
         }

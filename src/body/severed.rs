@@ -52,7 +52,8 @@ pub fn represented_end(body: &Body, crack: &Crack, at_to: bool, length: f64) -> 
     let window = length.min(WINDOW_HORIZONS * body.horizon());
     let (tip, other) = if at_to { (crack.to, crack.from) } else { (crack.from, crack.to) };
     let start = along(tip, other, window / distance(crack.from, crack.to));
-    let across = bonds_across(body, start, tip);
+    // In the sense of the crack: a crack through points leaves them on the side that this sense decides.
+    let across = if at_to { bonds_across(body, start, tip) } else { bonds_across(body, tip, start) };
     let (mut counted, mut moment) = (0.0, 0.0);
     for bond in across {
         let weight = severed_weight(body, body.ends(bond).0) * smooth_step(crossing(body, bond, start, tip) / FADE);

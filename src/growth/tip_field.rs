@@ -223,7 +223,7 @@ impl<'a> TipField<'a> {
                 tip.stood_still(grown);
                 continue;
             };
-            cut.extend(across(body, *from, *to, *state));
+            cut.extend(across(body, *from, *to, tip.end.at_last, *state));
             self.state.lines[tip.end.line].grow(tip.end.at_last, *to);
             tip.has_grown(distance(*from, *to), grown, *state);
         }
@@ -518,11 +518,13 @@ pub fn initial_factor(case: &Case) -> Option<f64> {
     growth.state.tips.iter().map(Tip::equivalent).max_by(f64::total_cmp)
 }
 
-/// Bonds that a new piece of crack crosses; beyond a rim, all that is left of it.
-fn across(body: &Body, from: Point, to: Point, state: TipState) -> Vec<Bond> {
+/// Bonds that a new piece of crack crosses, in the sense of its line, so that points on it stay on one side; beyond a rim, all
+/// that is left of it.
+fn across(body: &Body, from: Point, to: Point, at_last: bool, state: TipState) -> Vec<Bond> {
     let beyond = if state == TipState::Active { 0.0 } else { body.lattice.spacing };
     let length = distance(from, to).max(f64::MIN_POSITIVE);
-    bonds_across(body, from, along(from, to, 1.0 + beyond / length))
+    let end = along(from, to, 1.0 + beyond / length);
+    if at_last { bonds_across(body, from, end) } else { bonds_across(body, end, from) }
 }
 
 /// Bonds that the last [`PROBE_HORIZONS`] of the initial cracks cut, and nothing else of them, in ascending order.
@@ -532,7 +534,7 @@ fn bonds_at_tips(body: &Body, state: &TipFieldState) -> Vec<Bond> {
     let kept: HashSet<Bond> = drawn_back.iter().flat_map(|line| line.pieces()).flat_map(across).collect();
     let last = state.tips.iter().map(|tip| {
         let [from, to] = [&drawn_back[tip.end.line], &state.lines[tip.end.line]].map(|line| line.end(tip.end.at_last));
-        [from, to]
+        if tip.end.at_last { [from, to] } else { [to, from] }
     });
     let mut bonds: Vec<Bond> = last.flat_map(across).filter(|bond| !kept.contains(bond)).collect();
     bonds.sort_unstable();

@@ -30,7 +30,7 @@ use super::{Arrangement, Net, NetBond, PointGrid, Refinement};
 use crate::body::balanced::load_rows;
 use crate::body::lattice::Lattice;
 use crate::body::obstacles::Obstacles;
-use crate::body::pre_crack::cutting_lines;
+use crate::body::pre_crack::cutting_line;
 use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::bond_law::{BondLaw, BondLawKind, SurfaceCorrection};
 use crate::error::{Result, input};
@@ -106,6 +106,7 @@ pub fn build(ask: &Ask<'_>) -> Result<Built> {
     let mutual = bonds.len();
     bonds.extend(linking.across_levels());
     let of_level = |of: fn(&Stencil) -> f64| levels.leaves.iter().map(|leaf| of(&stencils[leaf.level])).collect::<Vec<f64>>();
+    let finest = levels.finest().spacing;
     let consistent = (law.surface_correction == SurfaceCorrection::Balanced).then(|| {
         let walls = &stencils[stencils.len() - 1];
         (Obstacles::of(specimen, walls.spacing, stencils[0].horizon), load_rows(&stencils[0]))
@@ -114,7 +115,7 @@ pub fn build(ask: &Ask<'_>) -> Result<Built> {
     let forces = loads::forces(specimen, &sharing, ask.floating)?;
     let loaded = loads::seats(specimen, &sharing);
     let mut net = Net {
-        pre_cut: cut_by(&specimen.cracks, &bonds, &positions, levels.finest()),
+        pre_cut: cut_by(&specimen.cracks, &bonds, &positions, finest),
         volumes: of_level(|stencil| stencil.spacing * stencil.spacing).into_iter().map(|a| a * specimen.thickness).collect(),
         spacings: of_level(|stencil| stencil.spacing),
         horizons: of_level(|stencil| stencil.horizon),
@@ -143,8 +144,8 @@ pub fn build(ask: &Ask<'_>) -> Result<Built> {
 }
 
 /// Bonds that cracks cut, ascending.
-fn cut_by(cracks: &[Crack], bonds: &[NetBond], positions: &[Point], lattice: &Lattice) -> Vec<u32> {
-    let lines: Vec<_> = cracks.iter().flat_map(|crack| cutting_lines(lattice, crack.from, crack.to)).collect();
+fn cut_by(cracks: &[Crack], bonds: &[NetBond], positions: &[Point], spacing: f64) -> Vec<u32> {
+    let lines: Vec<_> = cracks.iter().map(|crack| cutting_line(spacing, crack.from, crack.to)).collect();
     let is_cut = |bond: &NetBond| {
         let (a, b) = (positions[bond.from as usize], positions[bond.to as usize]);
         lines.iter().any(|&[from, to]| segments_touch(a, b, from, to))

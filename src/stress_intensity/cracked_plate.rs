@@ -2,7 +2,7 @@
 
 use super::TipFrame;
 use crate::body::Body;
-use crate::body::pre_crack::{as_cut, bonds_cut_by, places_near};
+use crate::body::pre_crack::{bonds_cut_by, places_near, tie_break};
 use crate::body::severed::{RepresentedEnd, represented_end};
 use crate::case::Case;
 use crate::error::{Error, Result, input};
@@ -142,10 +142,8 @@ impl<'a> CrackedPlate<'a> {
         let origin = [seed.position[0] + excess * x - aside * y, seed.position[1] + excess * y + aside * x];
         let mut frame = TipFrame { origin, ahead: seed.direction, line: 0.0 };
         // Bonds are cut by a line a trifle beside the crack.
-        let as_cut = as_cut(&self.body.lattice, crack.from, crack.to);
-        let nearest =
-            as_cut.iter().flatten().min_by(|a, b| distance(**a, seed.position).total_cmp(&distance(**b, seed.position)));
-        frame.line = nearest.map_or(0.0, |at| frame.local(*at)[1]);
+        let shift = tie_break(&self.body, crack.from, crack.to);
+        frame.line = frame.local([seed.position[0] + shift[0], seed.position[1] + shift[1]])[1];
         frame
     }
 

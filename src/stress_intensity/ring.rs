@@ -29,10 +29,10 @@ use super::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_f
 use crate::body::Body;
 use crate::body::boundary::{LoadPiece, load_pieces};
 use crate::body::facets::{Facet, facets};
-use crate::body::pre_crack::{as_cut, places_near};
+use crate::body::pre_crack::{places_near, tie_break};
 use crate::material::Material;
 use crate::solver::field::Layout;
-use crate::specimen::geometry::{along, distance};
+use crate::specimen::geometry::distance;
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen, Support};
 use crate::state::Bonds;
 
@@ -170,16 +170,15 @@ impl Surroundings {
 
 /// Both faces of a straight piece of crack, as the bonds see it: a trifle aside of the line that was asked for.
 fn faces(body: &Body, [a, b]: [Point; 2]) -> impl Iterator<Item = Facet> {
-    let spacing = body.lattice.spacing;
-    as_cut(&body.lattice, a, b).into_iter().flat_map(move |[a, b]| {
-        let length = distance(a, b);
-        let count = (PIECES_PER_SPACING * length / spacing).ceil().max(1.0);
-        let [x, y] = [0, 1].map(|i| (b[i] - a[i]) / length.max(f64::MIN_POSITIVE));
-        (0..count as usize).flat_map(move |i| {
-            let at = along(a, b, (i as f64 + 0.5) / count);
-            // Outward from the material on the left of the line is to its right, and the other way round.
-            [[y, -x], [-y, x]].map(|normal| Facet { at, normal, length: length / count })
-        })
+    let length = distance(a, b);
+    let count = (PIECES_PER_SPACING * length / body.lattice.spacing).ceil().max(1.0);
+    let shift = tie_break(body, a, b);
+    let [x, y] = [0, 1].map(|i| (b[i] - a[i]) / length.max(f64::MIN_POSITIVE));
+    (0..count as usize).flat_map(move |i| {
+        let share = (i as f64 + 0.5) / count;
+        let at = [0, 1].map(|i| a[i] + share * (b[i] - a[i]) + shift[i]);
+        // Outward from the material on the left of the line is to its right, and the other way round.
+        [[y, -x], [-y, x]].map(|normal| Facet { at, normal, length: length / count })
     })
 }
 
@@ -191,11 +190,12 @@ struct Behind {
 
 impl Behind {
     fn new(body: &Body, line: &CrackLine, at_last: bool, frame: &TipFrame) -> Self {
-        let piece = |ends: [Point; 2]| {
-            let ends = ends.map(|p| frame.local(p));
+        let piece = |[a, b]: [Point; 2]| {
+            let shift = tie_break(body, a, b);
+            let ends = [a, b].map(|p| frame.local([p[0] + shift[0], p[1] + shift[1]]));
             if at_last { [ends[1], ends[0]] } else { ends }
         };
-        let mut pieces: Vec<[Point; 2]> = line.pieces().flat_map(|[a, b]| as_cut(&body.lattice, a, b)).map(piece).collect();
+        let mut pieces: Vec<[Point; 2]> = line.pieces().map(piece).collect();
         if at_last {
             pieces.reverse();
         }
