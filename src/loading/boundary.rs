@@ -249,6 +249,8 @@ fn resultant(load: &Load, specimen: &Specimen) -> (Point, Point) {
             let length = distance(*from, *to);
             ([(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0], [traction[0] * length, traction[1] * length])
         }
-        Load::Pin { hole, direction, force, .. } => (specimen.holes[*hole].centre, [direction[0] * force, direction[1] * force]),
+        Load::Pin { hole, direction, force, .. } => {
+            (specimen.holes[*hole].centre, direction.map(|d| d * force / specimen.thickness))
+        }
     }
 }

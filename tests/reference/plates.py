@@ -32,7 +32,8 @@ class Scene:
     pins: list = field(default_factory=list)  # (hole, direction, half angle in degrees)
     rollers: list = field(default_factory=list)  # (at mm, direction, contact width mm, share)
     stop: object = None
-    step: float = 0.5
+    step: float = 0.5  # mm
+    fineness: float = 1.0
     pairs: tuple = ()  # tips that are images of each other in a half turn
 
     def corners(self):
@@ -139,11 +140,11 @@ SCENES = {
     "double_edge_notched": Scene(
         "Two edge cracks, each curving into a hole; the plate is its own image in a half turn.",
         [((-50.0, 6.0), (-40.0, 6.0)), ((50.0, -6.0), (40.0, -6.0))], size=(100.0, 200.0),
-        holes=[(-20.0, -24.0, 40.0), (20.0, 24.0, 40.0)], stress=22.0, pairs=((0, 1),)),
+        holes=[(-20.0, -24.0, 40.0), (20.0, 24.0, 40.0)], stress=22.0, fineness=2.0, pairs=((0, 1),)),
     "three_cracks": Scene(
         "Three collinear cracks that join (tips within 0.3 mm); stop 5 mm from an edge.",
         [((-30.0, 0.0), (-16.0, 0.0)), ((-8.0, 0.0), (8.0, 0.0)), ((12.0, 0.0), (20.0, 0.0))],
-        size=(100.0, 200.0), stress=55.0, stop=reach_x(45.0)),
+        size=(100.0, 200.0), stress=55.0, step=0.125, stop=reach_x(45.0)),
 }
 
 
@@ -157,7 +158,8 @@ def write(path, text):
 def run_scene(name, scene, folder, halves, note, save=True):
     """Grow a scene, with steps and elements divided by `halves`, and write its CSV (and TOML) into a folder."""
     clock = time.time()
-    settings = Run(scene.step / halves, 0.1 / halves, 0.25 / halves, 1.0 * halves, scene.stop, scene.pairs, note)
+    step = scene.step / halves
+    settings = Run(step, 0.2 * step, 0.5 * step, scene.fineness * halves, scene.stop, scene.pairs, note)
     rows, notes = grow(scene.plate(), scene.start(), Law(), settings)
     comments = [f"# {at:.1f} cycles: {text}" for at, text in notes]
     if save:

@@ -11,7 +11,7 @@ use crate::fatigue::Driver;
 use crate::specimen::{CrackLine, LineEnd, Specimen};
 
 /// Growth of a tip in the first block, in horizons: nothing is known yet of how its rate changes.
-const STEP_FIRST_HORIZONS: f64 = 0.2;
+const STEP_FIRST_HORIZONS: f64 = 0.15;
 /// Growth in a block at the most after a corner, in horizons, until the aims since then show how the crack curves.
 const STEP_TURNING_HORIZONS: f64 = 0.4;
 /// Growth in any block at the most, in horizons. Lives and paths against steps of a tenth: `tests/verification/tip_field.rs`.
