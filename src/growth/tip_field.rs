@@ -1,8 +1,8 @@
 //! Cracks driven by the stress intensity of their own tips.
 //!
 //! Per cycle block one equilibrium; K_I and K_II of every tip by the interaction integral on a ring around it
-//! ([`crate::stress_intensity::ring`], [`factors`]); direction by the largest circumferential stress ([`steering`]); growth of every
-//! tip by its own rate `da/dN` over the same cycles ([`step`]); every bond that a new piece of crack crosses is cut. A tip is a
+//! ([`crate::stress_intensity::ring`]); direction by the largest circumferential stress ([`steering`]); growth of every
+//! tip by its own rate `da/dN` over the same cycles; every bond that a new piece of crack crosses is cut. A tip is a
 //! point of a continuous line, so that neither path nor rate know the rows of points.
 //!
 //! A tip that meets another crack joins both: it is no tip any more, nor is the tip that it meets head-on, and the tips that are left

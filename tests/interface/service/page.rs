@@ -6,7 +6,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+#[cfg(feature = "tables")]
 use perilife::tables::{DataFrame, parquet};
+#[cfg(feature = "tables")]
 use polars::prelude::Column;
 use tempfile::tempdir;
 
@@ -40,6 +42,7 @@ return flaws;
 "#;
 
 /// Readings of another specimen beside the example.
+#[cfg(feature = "tables")]
 fn more() -> DataFrame {
     let lengths: Vec<f64> = (0..30).map(|i| 9.0 + f64::from(i)).collect();
     let cycles: Vec<f64> = (0..30).map(|i| 300_000.0 * (1.0 - 0.9_f64.powi(i))).collect();
@@ -119,16 +122,19 @@ fn the_page_leads_from_readings_to_remaining_life() {
     // A good file, the test it is of, a fit.
     page.click("#example");
     page.see("#calibrate:not([disabled])");
-    // Tables that are no text go up as they are.
-    let table = dir.path().join("more.parquet");
-    fs::write(&table, parquet(&more()).unwrap()).unwrap();
-    page.fill("#measured-input", table.to_str().unwrap());
-    page.see("[data-file='more.parquet']");
-    page.until("document.querySelector('#test-check').textContent.includes('2 specimens')");
-    page.see("#calibrate:not([disabled])");
-    page.click("[aria-label='Remove more.parquet']");
-    page.until("!document.querySelector('#test-check').textContent.includes('2 specimens')");
-    page.see("#calibrate:not([disabled])");
+    #[cfg(feature = "tables")]
+    {
+        // Tables that are no text go up as they are.
+        let table = dir.path().join("more.parquet");
+        fs::write(&table, parquet(&more()).unwrap()).unwrap();
+        page.fill("#measured-input", table.to_str().unwrap());
+        page.see("[data-file='more.parquet']");
+        page.until("document.querySelector('#test-check').textContent.includes('2 specimens')");
+        page.see("#calibrate:not([disabled])");
+        page.click("[aria-label='Remove more.parquet']");
+        page.until("!document.querySelector('#test-check').textContent.includes('2 specimens')");
+        page.see("#calibrate:not([disabled])");
+    }
     page.fill("#view-measure [data-key='specimen.width_mm']", "15");
     page.until("document.querySelectorAll('#view-measure [aria-invalid=true]').length === 1");
     page.fill("#view-measure [data-key='specimen.width_mm']", "152.4");
