@@ -322,12 +322,13 @@ fn steps_are_short_enough() {
         let (coarse, fine) = (grown(0.2), grown(0.002));
         let error = 100.0 * (coarse.life_cycles() / fine.life_cycles() - 1.0);
         let tips = 0..fine.curve[0].tips.len();
-        let path = |of: &Prediction, tip: usize| {
-            let before_the_last = of.curve.iter().filter(|row| row.cycles < 0.99 * of.life_cycles());
-            before_the_last.map(|row| row.tips[tip].position).collect::<Vec<Point>>()
+        // The whole of the fine path: where a tip stands at one share of life may differ by a step along it.
+        let path = |of: &Prediction, tip: usize, share: f64| {
+            let until = of.curve.iter().filter(|row| row.cycles <= share * of.life_cycles());
+            until.map(|row| row.tips[tip].position).collect::<Vec<Point>>()
         };
         let off = |tip: usize| {
-            let (coarse, fine) = (path(&coarse, tip), path(&fine, tip));
+            let (coarse, fine) = (path(&coarse, tip, 0.99), path(&fine, tip, 1.0));
             let from_fine = |at: &Point| {
                 fine.windows(2).map(|piece| distance_to_segment(*at, piece[0], piece[1])).fold(f64::INFINITY, f64::min)
             };
