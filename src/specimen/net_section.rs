@@ -45,7 +45,11 @@ impl Specimen {
                 weakened_by(crack_length / ligament)
             }
             SpecimenKind::CompactTension => weakened_by(1.0 + 2.0 * crack_length / ligament),
-            _ => 1.0,
+            // Pulled in line, or held so that they cannot turn.
+            SpecimenKind::MiddleTension
+            | SpecimenKind::DoubleEdgeTension
+            | SpecimenKind::SingleEdgeTension
+            | SpecimenKind::Plate => 1.0,
         };
         Some(factor * self.force_per_thickness(load) / ligament)
     }

@@ -37,6 +37,25 @@ fn doubling_a_halves_every_n() {
     }
 }
 
+/// The length of a plate's cracks grows by all tips; its da/dN is that of one (found by reading: twice that stood beside one ΔK).
+#[test]
+fn the_rate_of_a_plate_is_that_of_a_tip() {
+    let run = grow(TWO, &["stop.crack_length_mm=44"]);
+    let (first, last) = (&run.curve[run.curve.len() / 4], &run.curve[3 * run.curve.len() / 4]);
+    let cycles = last.cycles - first.cycles;
+    let mean = |tip: usize| (last.tips[tip].growth - first.tips[tip].growth) / cycles;
+    let fastest = (0..4).map(mean).fold(0.0, f64::max);
+    let between: Vec<f64> =
+        run.curve.iter().filter(|row| (first.cycles..=last.cycles).contains(&row.cycles)).map(|row| row.growth_rate).collect();
+    let (low, high) = between.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), rate| (low.min(*rate), high.max(*rate)));
+    let all = (last.crack_length - first.crack_length) / cycles;
+    assert!(all > 1.5 * fastest, "{all} of all tips, {fastest} of one");
+    assert!(
+        0.9 * low < fastest && fastest < 1.1 * high && high < 1.5 * fastest,
+        "{low} to {high}, mean of the fastest {fastest}"
+    );
+}
+
 /// ε is proportional to load, so N goes with load^-p, exactly for a linear plate.
 #[test]
 fn life_falls_with_the_p_th_power_of_load() {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::Body;
 use crate::case::Case;
 use crate::fatigue::finite_horizon::FiniteHorizon;
-use crate::fatigue::growth_rate::{Sample, rates, release_rate_at_end};
+use crate::fatigue::growth_rate::{Rate, Sample, rates, release_rate_at_end};
 use crate::fatigue::length_average::LengthAverage;
 use crate::growth::end_of_life::End;
 use crate::growth::record::{CurvePoint, TipRecord};
@@ -264,7 +264,17 @@ impl Track {
         if let Some(end) = end {
             end_at(&mut rows, end.crack_length);
         }
-        let rate = rates(&self.samples(&rows), RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
+        let (span, thickness) = (RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
+        let rate = rates(&self.samples(&rows), span, thickness);
+        // Where crack length sums the growth of all tips, da/dN is still that of one: the fastest.
+        let of_tip = |tip: usize| {
+            let samples = self.samples(&rows).into_iter().zip(&rows);
+            let growth: Vec<Sample> = samples.map(|(s, row)| Sample { crack_length: row.tips[tip].growth, ..s }).collect();
+            rates(&growth, span, thickness)
+        };
+        let tips = if case.specimen.convention == LengthConvention::SumOfTips { rows[0].tips.len() } else { 0 };
+        let of_tips: Vec<Vec<Rate>> = (0..tips).map(of_tip).collect();
+        let fastest = |i: usize| of_tips.iter().map(|tip| tip[i].growth_rate).reduce(f64::max).unwrap_or(rate[i].growth_rate);
         let share = case.loading.range_share();
         // The first row is the plate at N = 0 exactly, with what the row there or just after it says.
         let start = rows.partition_point(|row| row.cycles < zero).min(rows.len() - 1);
@@ -277,7 +287,7 @@ impl Track {
                 Some(formula) => formula.delta_k(crack_length, case.loading.maximum, share),
                 None => share * (rate[i].energy_release_rate * case.material.plane_modulus()).sqrt(),
             },
-            growth_rate: rate[i].growth_rate,
+            growth_rate: fastest(i),
             work: rows[i].work,
             broken_bonds: rows[i].broken_bonds - broken_before,
             tips: rows[i].tips.clone(),
