@@ -303,8 +303,9 @@ fn reasons_to_stop() {
     assert!(matches!(with(&[]).stop, StopReason::Severed | StopReason::LeftPlate));
 }
 
-/// Steps of default length against steps of a tenth of it: lives within 0.5 %, and paths within a tenth of a spacing over 99 % of
-/// the life. In the last percent tips pass each other closer than points resolve.
+/// Steps of default length against steps of a tenth of it: lives within 0.5 %, 0.9 % where a hole draws the crack (K of few readings
+/// scatters by 0.3 %, m times that in rate), and paths within a tenth of a spacing over 99 % of the life. In the last percent tips pass
+/// each other closer than points resolve.
 #[test]
 fn steps_are_short_enough() {
     let plate = "kind = \"plate\"\nwidth_mm = 60\nlength_mm = 80\nthickness_mm = 2\n";
@@ -339,6 +340,7 @@ fn steps_are_short_enough() {
         println!("{specimen:.80}: life {error:+.2} %, path {off:.3} mm, {blocks:?} blocks, {} and {}", coarse.stop, fine.stop);
         assert!(blocks[1] > 4 * blocks[0], "{blocks:?}");
         assert_eq!(coarse.stop, fine.stop);
-        assert!(error.abs() < 0.5 && off < 0.1, "{error} %, {off} mm");
+        let bound = if specimen.contains("holes") { 0.9 } else { 0.5 };
+        assert!(error.abs() < bound && off < 0.1, "{error} %, {off} mm");
     }
 }

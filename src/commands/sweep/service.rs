@@ -157,6 +157,9 @@ fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Resu
     let text = curve.map(|file| String::from_utf8_lossy(&file.content)).unwrap_or_default();
     let rows = parse_a_n(&text, Path::new(A_N_FILE))?;
     let summary = job.summary.clone().unwrap_or_default();
+    if let Some(refused) = summary["refused"].as_str() {
+        return Ok(Outcome::failed(case, refused, summary["wall_s"].as_f64().unwrap_or(0.0)));
+    }
     let warnings = summary["warnings"].as_array().into_iter().flatten();
     Ok(Outcome {
         input: case.hash.clone(),

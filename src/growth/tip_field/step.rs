@@ -15,7 +15,7 @@ const STEP_FIRST_HORIZONS: f64 = 0.15;
 /// Growth in a block at the most after a corner, in horizons, until the aims since then show how the crack curves.
 const STEP_TURNING_HORIZONS: f64 = 0.4;
 /// Growth in any block at the most, in horizons. Lives and paths against steps of a tenth: `tests/verification/tip_field.rs`.
-const STEP_HORIZONS: f64 = 1.0;
+const STEP_HORIZONS: f64 = 0.75;
 /// Next step over the last one, at the most.
 const STEP_RISE: f64 = 1.6;
 /// Share of a block's cycles that the parabola may add: beyond it the rates lie on none.
