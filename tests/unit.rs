@@ -27,6 +27,8 @@ mod calibration_case;
 mod commands;
 #[path = "unit/confidence.rs"]
 mod confidence;
+#[path = "unit/cross_check.rs"]
+mod cross_check;
 #[path = "unit/layering.rs"]
 mod layering;
 #[path = "unit/measured.rs"]

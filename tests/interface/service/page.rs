@@ -148,7 +148,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("[data-chart=fit] path[data-series].band, [data-chart=fit] path.band");
     walk.look("04_fit");
     let summary = service.get(&format!("/v1/calibrations/{fit}")).json()["summary"].clone();
-    let exponent = format!("{:.2}", summary["paris_m"].as_f64().unwrap());
+    let exponent = format!("{:.4}", summary["paris_m"].as_f64().unwrap());
     assert!(page.text("[data-table=constants]").contains(&exponent), "{exponent} in {}", page.text("[data-table=constants]"));
 
     // A plate with this law, drawn with a second crack that goes again.
