@@ -143,7 +143,7 @@ const REFERENCES: [(&str, Option<f64>, bool, f64); 9] = [
     ("double_edge_notched", None, true, 3.5),
     ("three_point_bending", Some(0.5), true, 2.0),
     // The last millimetre before two tips meet.
-    ("three_cracks", None, false, 5.0),
+    ("three_cracks", None, false, 4.0),
 ];
 
 fn reference_file(name: &str, ending: &str) -> PathBuf {

@@ -1,7 +1,7 @@
 //! K of two tips that come towards each other, from where a ring between them is too narrow until they meet.
 //!
-//! Between collinear cracks K of the inner tips rises as a power of the gap g, slowly varying (Erdogan 1962: `K √g` over a logarithm),
-//! so that ln K is continued as a straight line over ln g.
+//! Between collinear cracks K of the inner tips rises as `1 / (√g ln(c/g))` with the gap g (limit of Willmore 1949), nearly a power of
+//! it over the way that is left, so that ln K is continued as a straight line over ln g.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 pub(super) const GAP_HORIZONS: f64 = 1.6;
 /// Gap, in horizons, over whose readings the power is taken.
 const SEEN_HORIZONS: f64 = 4.0;
-/// Bounds of the power, and what is taken where too few readings tell: that of gaps of a sixtieth of the cracks.
+/// Bounds of the power, and what is taken where too few readings tell: finite elements of three collinear cracks have 0.25 to 0.32 at
+/// gaps of 0.6 to 4 mm.
 const POWER: [f64; 2] = [0.0, 0.5];
 const POWER_USUAL: f64 = 0.3;
 /// Spread of ln g below which readings tell no power.

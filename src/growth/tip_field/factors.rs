@@ -82,7 +82,7 @@ impl TipField<'_> {
                 self.surroundings.factors(plate, end, clear.max(RING_HORIZONS_MIN * horizon))
             };
             // Around the place to which the cut bonds reach, the field shows where its tip is; around that, its factors. About another
-            // place by x the term r^{3/2} of the field counts, too: K of a short crack is read low by 3x/8a, of a deep one high.
+            // place by x the term r^{3/2} of the field counts, too: K of a short central crack is read low by 3x/8a.
             let first = ring(excess);
             // Beside a rim what is read as a shift may be something else.
             let ahead = if first.ahead.abs() < AHEAD_HORIZONS * horizon { first.ahead } else { 0.0 };
