@@ -79,6 +79,7 @@ pub fn router(app: App) -> Router {
         .layer(from_fn_with_state(limits.body_bytes, security::in_size))
         .layer(from_fn_with_state(app.clone(), security::guard))
         .layer(from_fn(watching::measure))
+        .layer(from_fn(security::in_whole))
         .layer(from_fn_with_state(limits.answer_within, security::in_time))
         .layer(CompressionLayer::new().compress_when(worth_packing()))
         .layer(CatchPanicLayer::custom(|_| Problem::internal().into_response()))

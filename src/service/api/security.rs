@@ -3,6 +3,7 @@
 use std::net::SocketAddr;
 use std::time::Duration;
 
+use axum::body::{Body, HttpBody, to_bytes};
 use axum::extract::{ConnectInfo, Request, State};
 use axum::http::request::Parts;
 use axum::http::uri::Authority;
@@ -141,13 +142,40 @@ pub async fn in_time(State(limit): State<Duration>, request: Request, next: Next
     })
 }
 
+/// Largest body that is read before anything is answered.
+const SMALL_BYTES: usize = 64 << 10;
+
+/// Leaves the connection in a state that the answer tells: a small body is read whole first, so that a refusal which does not look
+/// at it does not cut off the next request on the same connection; after a refusal of a larger one the connection is closed, and
+/// the answer says so.
+pub async fn in_whole(request: Request, next: Next) -> Response {
+    if request.body().is_end_stream() {
+        return next.run(request).await;
+    }
+    if content_length(request.headers()).is_some_and(|length| length <= SMALL_BYTES) {
+        let (head, body) = request.into_parts();
+        return match to_bytes(body, SMALL_BYTES).await {
+            Ok(body) => next.run(Request::from_parts(head, Body::from(body))).await,
+            Err(error) => Problem::bad_request(format!("the body cannot be read: {error}")).into_response(),
+        };
+    }
+    let mut response = next.run(request).await;
+    if !response.status().is_success() {
+        response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
+    }
+    response
+}
+
+fn content_length(headers: &HeaderMap) -> Option<usize> {
+    headers.get(header::CONTENT_LENGTH)?.to_str().ok()?.parse().ok()
+}
+
 /// Bytes of a body that is too large that are read and forgotten: who sends it hears an answer only when all is sent.
 const FORGOTTEN_BYTES: usize = 256 << 20;
 
 /// Refuses a body that says itself that it is too large, once it has come.
 pub async fn in_size(State(limit): State<usize>, request: Request, next: Next) -> Response {
-    let length = request.headers().get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse::<usize>().ok());
-    if length.is_none_or(|length| length <= limit) {
+    if content_length(request.headers()).is_none_or(|length| length <= limit) {
         return next.run(request).await;
     }
     let mut rest = request.into_body().into_data_stream();

@@ -189,6 +189,35 @@ fn idle_talkers_do_not_block_the_door() {
     assert!((9.0..60.0).contains(&seconds), "{seconds} s");
 }
 
+/// A refusal that does not look at the body leaves the connection to the next request, however late the body comes; where it does
+/// not, the answer says so.
+#[test]
+fn a_refused_body_does_not_cut_off_the_next_request() {
+    use std::io::{BufRead, BufReader, Read, Write};
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let mut stream = std::net::TcpStream::connect(service.url.trim_start_matches("http://")).unwrap();
+    let mut lines = BufReader::new(stream.try_clone().unwrap());
+    let mut head = || {
+        let head: Vec<String> = lines.by_ref().lines().map(Result::unwrap).take_while(|line| !line.is_empty()).collect();
+        let length = head.iter().find_map(|line| line.strip_prefix("content-length: ")).map_or(0, |length| length.parse().unwrap());
+        lines.read_exact(&mut vec![0; length]).unwrap();
+        head
+    };
+    for path in ["/v1/nothing", "/v1/kinds"] {
+        write!(stream, "POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n\r\n").unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        write!(stream, "{{}}").unwrap();
+        assert!(head()[0].starts_with("HTTP/1.1 40"), "{path}");
+        write!(stream, "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").unwrap();
+        assert_eq!(head()[0], "HTTP/1.1 200 OK", "{path}");
+    }
+    write!(stream, "POST /v1/nothing HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100000\r\n\r\n").unwrap();
+    let refused = head();
+    assert!(refused[0].contains("404") && refused.contains(&"connection: close".to_owned()), "{refused:?}");
+}
+
 /// More than a caller may ask for is refused with the time after which he may ask again.
 #[test]
 fn callers_are_held_to_their_limits() {
