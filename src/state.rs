@@ -45,6 +45,13 @@ impl Bonds {
         (0..body.multiplier.len()).map(|bond| bond as Bond).filter(|&bond| is_broken(bond)).collect()
     }
 
+    /// Bonds of the body that carry by another multiplier than its own, ascending, with theirs.
+    #[must_use]
+    pub fn scaled(&self, body: &Body) -> Vec<(Bond, f32)> {
+        let both = self.multiplier.iter().zip(&body.multiplier).enumerate();
+        both.filter(|(_, (now, whole))| **now > 0.0 && now != whole).map(|(bond, (now, _))| (bond as Bond, *now)).collect()
+    }
+
     fn is_regular(&self, body: &Body, first: usize) -> bool {
         let places = body.places();
         (first..first + LANES).all(|place| {
@@ -81,7 +88,12 @@ impl Bonds {
 
     /// Breaks a bond for good.
     pub fn cut(&mut self, body: &Body, bond: Bond) {
-        self.multiplier[bond as usize] = 0.0;
+        self.set(body, bond, 0.0);
+    }
+
+    /// Gives a bond another multiplier.
+    pub fn set(&mut self, body: &Body, bond: Bond, multiplier: f32) {
+        self.multiplier[bond as usize] = multiplier;
         let (_, from, to) = body.ends(bond);
         // A mirror image's row of the stiffness is nowhere.
         for place in [from, to].into_iter().filter(|&place| body.is_point[place]) {

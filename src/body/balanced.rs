@@ -19,6 +19,7 @@
 //! Only bonds change that have an end within one row of a point that misses a neighbour; the others keep 1. Damped least squares on equilibrium, after an idea of point-wise
 //! energy matching (Madenci and Oterkus 2014, Peridynamic Theory and Its Applications, ch. 4), here with forces.
 
+pub mod flanks;
 pub mod least_squares;
 
 use super::Body;

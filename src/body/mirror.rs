@@ -372,6 +372,24 @@ impl Part {
         multiplier
     }
 
+    /// The names in the part of some bonds of the plate and of their images, and the multiplier that all of them have by the plate's:
+    /// that of one image, since round-off may tell them apart, and the stiffness of the part has to be symmetric.
+    #[must_use]
+    pub fn multipliers_of(&self, whole: &Body, bonds: &[Bond], of_whole: &[f32]) -> Vec<(Bond, f32)> {
+        let stride = self.body.lattice.stride;
+        let mut found = Vec::new();
+        for &bond in bonds {
+            let images = self.orbit(bond, |reflection, bond| reflection.bond(whole, bond));
+            let multiplier = images.clone().min().map_or(0.0, |first| of_whole[first as usize]);
+            for name in images.filter_map(|image| self.bond(whole, image)) {
+                let (k, seat) = (name as usize / self.body.places(), name as usize % self.body.places());
+                let step = &self.body.stencil.bonds[k];
+                found.push((name, multiplier * self.share([seat % stride, seat / stride], [step.dx, step.dy])));
+            }
+        }
+        found
+    }
+
     /// Share of the plate's bond between a padded seat of the part and the neighbour at `step` that the rows of the part's stiffness have.
     fn share(&self, seat: [usize; 2], step: [i32; 2]) -> f32 {
         let padding = self.body.lattice.padding as i32;

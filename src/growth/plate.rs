@@ -62,6 +62,12 @@ impl Plate {
         }
     }
 
+    /// Whether it has points of several levels.
+    #[must_use]
+    pub fn is_of_levels(&self) -> bool {
+        self.levels.is_some()
+    }
+
     /// Number of points, of all levels.
     #[must_use]
     pub fn points(&self) -> usize {

@@ -27,8 +27,10 @@ use super::cross_check::{EnergyBalance, GivenOff};
 use super::end_of_life::{End, first_end};
 use super::plate::Plate;
 use super::record::{CurvePoint, StopReason};
+use crate::body::balanced::flanks::{self, Stretch};
 use crate::body::pre_crack::bonds_across;
 use crate::body::{Body, Bond};
+use crate::bond_law::SurfaceCorrection;
 use crate::case::Case;
 use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
@@ -36,8 +38,8 @@ use crate::fatigue::growth_law::{GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::solver::Equilibrium;
-use crate::specimen::Point;
 use crate::specimen::geometry::{along, distance};
+use crate::specimen::{CrackLine, Point};
 use crate::state::Bonds;
 use crate::stress_intensity::ring::Surroundings;
 use step::StepControl;
@@ -236,8 +238,15 @@ impl<'a> TipField<'a> {
         if let Cut::Whole(aside) = aside {
             cut.extend(aside);
         }
-        let mut end =
-            if severed { Some(StopReason::Severed) } else { self.settle(&cut).err().map(|_| StopReason::NoConvergence) };
+        let broken = cut.len();
+        let mut end = severed.then_some(StopReason::Severed);
+        if end.is_none() {
+            let lines = std::mem::take(&mut self.state.lines);
+            let stretch = if has_ended { Stretch::All } else { Stretch::Tips };
+            cut.extend(self.correct_flanks(&lines, stretch));
+            self.state.lines = lines;
+            end = self.settle(&cut).err().map(|_| StopReason::NoConvergence);
+        }
         if end.is_none() {
             self.read_factors();
             if self.state.tips.iter().any(|tip| !tip.equivalent().is_finite()) {
@@ -263,7 +272,7 @@ impl<'a> TipField<'a> {
         let work = if end.is_none() { self.equilibrium.work() } else { f64::NAN };
         let left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
         end = end.or_else(|| (!left).then(|| self.gone()));
-        Block { cycles, work, cut: cut.len(), end }
+        Block { cycles, work, cut: broken, end }
     }
 
     /// Of every tip `K_eq²/E'`, J/m², and the length that its cut bonds stand for beyond that of its line, m; work of the loads, J.
@@ -333,11 +342,23 @@ impl<'a> TipField<'a> {
         })
     }
 
-    /// Equilibrium after bonds were cut.
-    fn settle(&mut self, cut: &[Bond]) -> Result<()> {
+    /// Bonds beside the flanks of the cracks that are cut; gives those that changed.
+    fn correct_flanks(&mut self, lines: &[CrackLine], stretch: Stretch) -> Vec<Bond> {
+        let is_balanced = self.case.model.bond_law.surface_correction == SurfaceCorrection::Balanced;
+        if !is_balanced || self.plate.is_of_levels() {
+            return Vec::new();
+        }
+        let end = |tip: &Tip| lines[tip.end.line].end(tip.end.at_last);
+        let ends: Vec<Point> = self.state.tips.iter().map(end).collect();
+        let tips: Vec<Point> = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).map(end).collect();
+        flanks::balance(&self.plate.body, &mut self.bonds, lines, &tips, &ends, stretch)
+    }
+
+    /// Equilibrium after bonds were cut or corrected.
+    fn settle(&mut self, changed: &[Bond]) -> Result<()> {
         let plate = self.plate.clone();
         let body = &plate.body;
-        self.equilibrium.broke(body, &self.bonds, cut);
+        self.equilibrium.broke(body, &self.bonds, changed);
         self.iterations += self.equilibrium.solve(body, &self.bonds, &mut self.displacement)?;
         self.solves += 1;
         Ok(())

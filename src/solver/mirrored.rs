@@ -49,7 +49,12 @@ impl Mirrored {
     /// The part of a plate under `load` times its unit load; `None` where the plate is not symmetric.
     pub(super) fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Option<Self> {
         let part = Part::of(body, Mirror::of(body, &bonds.multiplier))?;
-        let bonds = Bonds::with_multipliers(&part.body, part.multiplier(body, &bonds.multiplier));
+        let mut multiplier = part.multiplier(body, &bonds.multiplier);
+        let scaled: Vec<Bond> = bonds.scaled(body).into_iter().map(|(bond, _)| bond).collect();
+        for (name, of_part) in part.multipliers_of(body, &scaled, &bonds.multiplier) {
+            multiplier[name as usize] = of_part;
+        }
+        let bonds = Bonds::with_multipliers(&part.body, multiplier);
         let inner = sides::balance(kind, &part.body, &bonds, load);
         let (displacement, window_of_part, copies) = (Vec::new(), Vec::new(), Vec::new());
         Some(Mirrored {
@@ -128,7 +133,8 @@ impl Balance for Mirrored {
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
-        if !self.is_lost && !self.part.keeps(body, broken) {
+        let cut: Vec<Bond> = broken.iter().copied().filter(|&bond| !bonds.is_intact(bond)).collect();
+        if !self.is_lost && !self.part.keeps(body, &cut) {
             tracing::info!("the crack is not symmetric any more: the whole plate is solved from now on");
             self.is_lost = true;
             self.inner = sides::balance(self.kind, body, bonds, self.load);
@@ -143,7 +149,9 @@ impl Balance for Mirrored {
         if self.is_lost {
             return self.inner.broke(body, bonds, broken);
         }
-        broken.iter().filter_map(|&bond| self.part.bond(body, bond)).for_each(|bond| self.bonds.cut(&self.part.body, bond));
+        for (name, multiplier) in self.part.multipliers_of(body, broken, &bonds.multiplier) {
+            self.bonds.set(&self.part.body, name, multiplier);
+        }
         self.inner.broke(&self.part.body, &self.bonds, &self.part.bonds(body, broken));
     }
 

@@ -204,7 +204,7 @@ impl Equilibrium {
         in_pool(|| self.inner.solve(body, bonds, displacement))
     }
 
-    /// Tells the solver which bonds were cut since the last solve.
+    /// Tells the solver which bonds were cut, or got another multiplier, since the last solve.
     pub fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
         self.inner.broke(body, bonds, broken);
     }

@@ -2,8 +2,10 @@
 
 use super::TipFrame;
 use crate::body::Body;
+use crate::body::balanced::flanks::{self, Stretch};
 use crate::body::pre_crack::{bonds_cut_by, places_near, tie_break};
 use crate::body::severed::{RepresentedEnd, represented_end};
+use crate::bond_law::SurfaceCorrection;
 use crate::case::Case;
 use crate::error::{Error, Result, input};
 use crate::fatigue::pieces::{Cut, set_aside};
@@ -76,6 +78,14 @@ impl<'a> CrackedPlate<'a> {
         let mut bonds = Bonds::new(&self.body);
         if set_aside(&self.body, &mut bonds, &self.body.pre_cut) == Cut::Severed {
             return Err(Error::Mechanics(format!("{}: the cracks cut the plate in two", self.case.name)));
+        }
+        if self.case.model.bond_law.surface_correction == SurfaceCorrection::Balanced {
+            let lines = specimen.crack_lines();
+            let tips: Vec<Point> = (0..specimen.tips.len())
+                .filter_map(|tip| specimen.line_end(tip))
+                .map(|end| lines[end.line].end(end.at_last))
+                .collect();
+            flanks::balance(&self.body, &mut bonds, &lines, &tips, &tips, Stretch::All);
         }
         Ok((specimen, bonds))
     }

@@ -82,12 +82,18 @@ impl<'a> Problem<'a> {
     /// The changes within their bounds, with the smallest softness that Newton's method manages; `None` if it manages none.
     #[must_use]
     pub fn solve(&self, bounds: [f64; 2]) -> Option<Vec<f64>> {
+        self.solve_to(&SOFTNESS, bounds)
+    }
+
+    /// The same with other values of ε of the equations of force, the first of them that Newton's method manages.
+    #[must_use]
+    pub fn solve_to(&self, softness: &[f64], bounds: [f64; 2]) -> Option<Vec<f64>> {
         if self.links.is_empty() {
             return Some(Vec::new());
         }
         crate::parallel::fix_parts();
         let symbolic = SymbolicLlt::try_new(self.symbolic.as_ref(), faer::Side::Lower).ok()?;
-        SOFTNESS.iter().find_map(|&softness| self.newton(&symbolic, softness, bounds))
+        softness.iter().find_map(|&softness| self.newton(&symbolic, softness, bounds))
     }
 
     fn newton(&self, symbolic: &SymbolicLlt<usize>, softness: f64, [lo, hi]: [f64; 2]) -> Option<Vec<f64>> {

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Block, Tip, TipField, TipsState, balance};
+use super::{Block, PROBE_HORIZONS, Tip, TipField, TipsState, balance};
+use crate::body::balanced::flanks::Stretch;
 use crate::error::{Error, Result};
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::set_aside;
@@ -76,12 +77,16 @@ impl TipField<'_> {
 impl CrackGrowth for TipField<'_> {
     fn open(&mut self) -> Result<()> {
         // What is read belongs to a length that differs from the one asked for by part of a spacing: that takes the slope of K.
-        self.settle(&[])?;
+        let drawn_back = self.state.drawn_back(PROBE_HORIZONS * self.plate.body.horizon());
+        let changed = self.correct_flanks(&drawn_back, Stretch::All);
+        self.settle(&changed)?;
         self.read_slopes();
-        let cut = std::mem::take(&mut self.at_tips);
+        let mut cut = std::mem::take(&mut self.at_tips);
         let plate = self.plate.clone();
         cut.iter().for_each(|&bond| self.bonds.cut(&plate.body, bond));
         set_aside(&plate.body, &mut self.bonds, &cut);
+        let lines = self.state.lines.clone();
+        cut.extend(self.correct_flanks(&lines, Stretch::All));
         self.settle(&cut)?;
         self.read_factors();
         if let Some(tip) = self.state.tips.iter().find(|tip| !tip.equivalent().is_finite()) {
@@ -138,6 +143,7 @@ impl CrackGrowth for TipField<'_> {
         State::Tips(TipsState {
             growth: self.state.clone(),
             broken: self.bonds.broken(&self.plate.body),
+            scaled: self.bonds.scaled(&self.plate.body),
             displacement: self.displacement.clone(),
             curve: self.curve.clone(),
             effort: self.effort(),
@@ -145,14 +151,17 @@ impl CrackGrowth for TipField<'_> {
     }
 
     fn restore(&mut self, state: State) -> Result<bool> {
-        let State::Tips(TipsState { growth, broken, displacement, curve, effort }) = state else { return Ok(false) };
+        let State::Tips(TipsState { growth, broken, scaled, displacement, curve, effort }) = state else { return Ok(false) };
         let plate = self.plate.clone();
         let places = plate.body.multiplier.len();
-        let fits = growth.fits(&self.state) && !curve.is_empty() && broken.iter().all(|&bond| (bond as usize) < places);
+        let fits = growth.fits(&self.state)
+            && !curve.is_empty()
+            && broken.iter().chain(scaled.iter().map(|(bond, _)| bond)).all(|&bond| (bond as usize) < places);
         if !fits {
             return Ok(false);
         }
         broken.iter().chain(&self.at_tips).for_each(|&bond| self.bonds.cut(&plate.body, bond));
+        scaled.iter().for_each(|&(bond, multiplier)| self.bonds.set(&plate.body, bond, multiplier));
         (self.state, self.displacement, self.curve) = (growth, displacement, curve);
         (self.solves, self.iterations) = (effort.solves, effort.iterations);
         Ok(self.begin_anew().is_ok())

@@ -131,6 +131,8 @@ impl TipFieldState {
 pub struct TipsState {
     pub(super) growth: TipFieldState,
     pub(super) broken: Vec<Bond>,
+    /// Bonds beside flanks, and their multipliers.
+    pub(super) scaled: Vec<(Bond, f32)>,
     pub(super) displacement: Vec<f64>,
     pub(super) curve: Vec<CurvePoint>,
     pub(super) effort: Effort,

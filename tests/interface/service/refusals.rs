@@ -201,7 +201,8 @@ fn a_refused_body_does_not_cut_off_the_next_request() {
     let mut lines = BufReader::new(stream.try_clone().unwrap());
     let mut head = || {
         let head: Vec<String> = lines.by_ref().lines().map(Result::unwrap).take_while(|line| !line.is_empty()).collect();
-        let length = head.iter().find_map(|line| line.strip_prefix("content-length: ")).map_or(0, |length| length.parse().unwrap());
+        let length =
+            head.iter().find_map(|line| line.strip_prefix("content-length: ")).map_or(0, |length| length.parse().unwrap());
         lines.read_exact(&mut vec![0; length]).unwrap();
         head
     };
