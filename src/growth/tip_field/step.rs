@@ -5,7 +5,7 @@
 //! and the cycles are `∫ da/r` with ln r a parabola through the rates at the ends of this step and at the start of the last one.
 //! What the parabola adds to the straight line tells how long the next step may be.
 
-use super::{RING_HORIZONS, Tip, TipField, TipFieldState, ahead};
+use super::{Tip, TipField, TipFieldState, ahead};
 use crate::case::Case;
 use crate::fatigue::Driver;
 use crate::specimen::{CrackLine, LineEnd, Specimen};
@@ -20,8 +20,10 @@ const STEP_HORIZONS: f64 = 0.75;
 const STEP_RISE: f64 = 1.6;
 /// Share of a block's cycles that the parabola may add: beyond it the rates lie on none.
 const BEND_MOST: f64 = 0.02;
-/// Growth in a block at the most, in horizons, where a rim or another crack lies within the ring, and K changes fast.
+/// Growth in a block at the most, in horizons, where a rim or another crack lies near, and K changes fast.
 const STEP_NEAR_HORIZONS: f64 = 0.2;
+/// How near that is, in horizons.
+const NEAR_HORIZONS: f64 = 3.0;
 /// Turn of a tip in a block at the most, rad, unless that makes the block shorter than the step near rims.
 const TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// Growth of a tip over that of the fastest, at the most, where rates are extrapolated.
@@ -62,7 +64,7 @@ impl StepControl {
 
     /// Growth of a tip at the most in its surroundings, m.
     fn of_tip(&self, specimen: &Specimen, state: &TipFieldState, tip: &Tip) -> f64 {
-        let most = if is_near_rim(specimen, &state.lines, tip.end, RING_HORIZONS * self.horizon) {
+        let most = if is_near_rim(specimen, &state.lines, tip.end, NEAR_HORIZONS * self.horizon) {
             STEP_NEAR_HORIZONS * self.measure
         } else if tip.steering.is_turning(tip.growth, self.horizon) {
             state.step.min(STEP_TURNING_HORIZONS * self.measure)
