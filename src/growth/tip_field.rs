@@ -352,7 +352,10 @@ impl<'a> TipField<'a> {
         let end = |tip: &Tip| lines[tip.end.line].end(tip.end.at_last);
         let ends: Vec<Point> = self.state.tips.iter().map(end).collect();
         let tips: Vec<Point> = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).map(end).collect();
-        flanks::balance(&self.plate.body, &mut self.bonds, lines, &tips, &ends, stretch)
+        let body = &self.plate.body;
+        let changed = flanks::multipliers(body, &self.bonds.multiplier, lines, &tips, &ends, stretch);
+        changed.iter().for_each(|&(bond, multiplier)| self.bonds.set(body, bond, multiplier));
+        changed.into_iter().map(|(bond, _)| bond).collect()
     }
 
     /// Equilibrium after bonds were cut or corrected.

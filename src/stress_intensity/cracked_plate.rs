@@ -85,7 +85,8 @@ impl<'a> CrackedPlate<'a> {
                 .filter_map(|tip| specimen.line_end(tip))
                 .map(|end| lines[end.line].end(end.at_last))
                 .collect();
-            flanks::balance(&self.body, &mut bonds, &lines, &tips, &tips, Stretch::All);
+            let beside = flanks::multipliers(&self.body, &bonds.multiplier, &lines, &tips, &tips, Stretch::All);
+            beside.into_iter().for_each(|(bond, multiplier)| bonds.set(&self.body, bond, multiplier));
         }
         Ok((specimen, bonds))
     }

@@ -20,7 +20,6 @@ use crate::body::sharing::{WIDEN, WIDENINGS, linear_shares};
 use crate::body::{Body, Bond};
 use crate::specimen::geometry::{along, direction, distance, distance_to_segment, segments_touch};
 use crate::specimen::{CrackLine, Point};
-use crate::state::Bonds;
 
 /// ε of the equations of force. At 1e-4 and 1e-2 K of central cracks differs by 0.02 and 0.1 %.
 const SOFTNESS: [f64; 2] = [1e-3, 1e-1];
@@ -42,16 +41,17 @@ pub enum Stretch {
     Tips,
 }
 
-/// Sets the multipliers of the bonds beside cracks that are cut, `tips` being those of their ends that have not reached a rim, `ends`
-/// all; gives the bonds whose multiplier changed, ascending.
-pub fn balance(
+/// Bonds beside cracks that are cut, and their new multipliers, where these differ from those of `now`, ascending; `tips` are those of
+/// the cracks' ends that have not reached a rim, `ends` all.
+#[must_use]
+pub fn multipliers(
     body: &Body,
-    bonds: &mut Bonds,
+    now: &[f32],
     lines: &[CrackLine],
     tips: &[Point],
     ends: &[Point],
     stretch: Stretch,
-) -> Vec<Bond> {
+) -> Vec<(Bond, f32)> {
     let (places, spacing, horizon) = (body.places(), body.lattice.spacing, body.horizon());
     let followed = FOLLOWED_HORIZONS * horizon;
     let nearest = |of: &[Point], at: Point| of.iter().map(|end| distance(*end, at)).fold(f64::INFINITY, f64::min);
@@ -88,7 +88,7 @@ pub fn balance(
     let at = |k: usize, place: usize| {
         [(place, k), (place.wrapping_add_signed(-body.steps[k]), k)].map(|(owner, k)| k * places + owner)
     };
-    let is_cut = |bond: usize| body.multiplier[bond] > 0.0 && bonds.multiplier[bond] == 0.0;
+    let is_cut = |bond: usize| body.multiplier[bond] > 0.0 && now[bond] == 0.0;
     let misses: Vec<bool> =
         members.iter().map(|&place| (0..body.steps.len()).any(|k| at(k, place).into_iter().any(is_cut))).collect();
     let in_row = |place: usize| {
@@ -96,31 +96,29 @@ pub fn balance(
         sides.iter().any(|&step| number.get(&place.wrapping_add_signed(step)).is_some_and(|&i| misses[i as usize]))
     };
     let changing: Vec<bool> = members.iter().map(|&place| in_row(place)).collect();
-    let (mut links, mut names, mut changed) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut links, mut names, mut new) = (Vec::new(), Vec::new(), HashMap::new());
     for (i, &owner) in members.iter().enumerate() {
         for (k, &step) in body.steps.iter().enumerate() {
             let bond = k * places + owner;
             let Some(&other) = number.get(&owner.wrapping_add_signed(step)) else { continue };
             let j = other as usize;
-            if bonds.multiplier[bond] == 0.0 {
+            if now[bond] == 0.0 {
                 continue;
             }
             if share[i].min(share[j]) == 0.0 {
                 // Of the core of a tip, which it may not have been when the crack was shorter.
-                if bonds.multiplier[bond] != body.multiplier[bond] {
-                    bonds.set(body, bond as Bond, body.multiplier[bond]);
-                    changed.push(bond as Bond);
-                }
+                new.insert(bond, body.multiplier[bond]);
             } else if changing[i] || changing[j] {
                 links.push(Link { from: i as u32, to: other, k });
                 names.push(bond);
+                // What is sought counts as a change of the body's own.
+                new.insert(bond, body.multiplier[bond]);
             }
         }
     }
 
     // What is asked, less what bonds carry that keep the multiplier they have.
     let gains = gains(body);
-    let sought: std::collections::HashSet<usize> = names.iter().copied().collect();
     let missing: Vec<Gain> = members
         .iter()
         .enumerate()
@@ -128,11 +126,12 @@ pub fn balance(
             let (mut left, mut kept): (Gain, Gain) = (asked(areas[i]), asked([0.0; 2]));
             for (k, gain) in gains.iter().enumerate() {
                 for (bond, own) in at(k, place).into_iter().zip([gain.at_owner, gain.at_other]) {
-                    let (whole, now) = (f64::from(body.multiplier[bond]), f64::from(bonds.multiplier[bond]));
-                    if now == 0.0 {
+                    let whole = f64::from(body.multiplier[bond]);
+                    let carried = f64::from(new.get(&bond).copied().unwrap_or(now[bond]));
+                    if carried == 0.0 {
                         left.iter_mut().zip(own).for_each(|(l, g)| *l += whole * g);
-                    } else if now != whole && !sought.contains(&bond) {
-                        kept.iter_mut().zip(own).for_each(|(l, g)| *l += (now - whole) * g);
+                    } else if carried != whole {
+                        kept.iter_mut().zip(own).for_each(|(l, g)| *l += (carried - whole) * g);
                     }
                 }
             }
@@ -143,13 +142,13 @@ pub fn balance(
     let changes = Problem::new(&gains, links, missing).solve_to(&SOFTNESS, bounds).unwrap_or_else(|| vec![0.0; names.len()]);
     for (bond, change) in names.into_iter().zip(changes) {
         let whole = f64::from(body.multiplier[bond]);
-        let multiplier = if change.abs() < ROUND_OFF { whole } else { (whole + change).max(BOUNDS[0] * whole) } as f32;
-        if multiplier != bonds.multiplier[bond] {
-            bonds.set(body, bond as Bond, multiplier);
-            changed.push(bond as Bond);
+        if change.abs() >= ROUND_OFF {
+            new.insert(bond, (whole + change).max(BOUNDS[0] * whole) as f32);
         }
     }
-    changed.sort_unstable();
+    let differs = |&(bond, multiplier): &(usize, f32)| multiplier != now[bond];
+    let mut changed: Vec<(Bond, f32)> = new.into_iter().filter(differs).map(|(bond, m)| (bond as Bond, m)).collect();
+    changed.sort_unstable_by_key(|(bond, _)| *bond);
     changed
 }
 
