@@ -216,12 +216,34 @@ fn a_turned_lattice_gives_the_same_life() {
     for angle in [10.0, 22.5, 45.0] {
         let turned = life(specimen, &["stop.crack_length_mm=22", &format!("model.lattice_angle_deg={angle}")]);
         println!("{angle}°: {:+.2} %", 100.0 * (turned / upright - 1.0));
-        assert!((turned / upright - 1.0).abs() < 0.03, "{angle}: {turned} against {upright}");
+        // Reached: 0.36 % at 45°.
+        assert!((turned / upright - 1.0).abs() < 0.008, "{angle}: {turned} against {upright}");
     }
     let drawn =
         "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncracks = [{ from_mm = [-10, 0], to_mm = [10, 0] }]";
     let drawn = life(drawn, &["stop.crack_length_mm=44"]);
     assert!((drawn / upright - 1.0).abs() < 1e-3, "{drawn} against {upright}");
+}
+
+/// A stress along a crack has no K: that of a panel pulled along its crack as hard as across it is that of one pressed there, whatever the
+/// lattice. Flanks as the cut leaves them are too soft along the crack, and K differs by 0.9 %.
+#[test]
+fn a_stress_along_the_crack_has_no_k() {
+    let specimen = "kind = \"middle_tension\"\nwidth_mm = 200\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 20";
+    let k = |ratio: i32, set: &[&str]| {
+        let ratio = format!("loading.stress_parallel_ratio={ratio}");
+        run(&case(specimen, PULL, &[&["model.spacing_mm=1", "stop.crack_length_mm=20.01", &*ratio], set].concat())).curve[0]
+            .delta_k
+    };
+    let difference = |set: &[&str]| k(-1, set) / k(1, set) - 1.0;
+    for angle in ["0", "22.5", "45"] {
+        let difference = difference(&[&format!("model.lattice_angle_deg={angle}")]);
+        println!("{angle}°: {:+.3} %", 100.0 * difference);
+        // Reached: 0.02, 0.13, 0.27 %.
+        assert!(difference.abs() < 3e-3, "{angle}°: {difference}");
+    }
+    let uncorrected = difference(&["model.surface_correction=volume_and_surface"]);
+    assert!(uncorrected > 6e-3, "{uncorrected}");
 }
 
 /// Mirror images: both tips of a slant crack are images of each other, and a mirrored plate has the mirrored path.
