@@ -12,7 +12,7 @@
 
 use std::collections::HashMap;
 
-use super::least_squares::{Gain, Link, Problem};
+use super::least_squares::{BondGain, Gain, Link, Problem};
 use super::{BOUNDS, asked, gains, load_rows};
 use crate::body::facets::{Facet, behind};
 use crate::body::pre_crack::{places_near, tie_break};
@@ -52,95 +52,16 @@ pub fn multipliers(
     ends: &[Point],
     stretch: Stretch,
 ) -> Vec<(Bond, f32)> {
-    let (places, spacing, horizon) = (body.places(), body.lattice.spacing, body.horizon());
-    let followed = FOLLOWED_HORIZONS * horizon;
-    let nearest = |of: &[Point], at: Point| of.iter().map(|end| distance(*end, at)).fold(f64::INFINITY, f64::min);
-    let is_open = |at: Point| stretch == Stretch::All || nearest(ends, at) < followed;
-    // As the bonds see them.
-    let pieces: Vec<[Point; 2]> = lines
-        .iter()
-        .flat_map(CrackLine::pieces)
-        .filter(|[a, b]| {
-            stretch == Stretch::All || ends.iter().any(|end| distance_to_segment(*end, *a, *b) < followed + 3.0 * horizon)
-        })
-        .map(|[a, b]| {
-            let shift = tie_break(body, a, b);
-            [a, b].map(|p| [p[0] + shift[0], p[1] + shift[1]])
-        })
-        .collect();
-
-    // Points whose equations may change: those with cut bonds, the rows behind them and the other ends of their bonds.
-    let reach = horizon + 1.5 * spacing;
-    let near = pieces.iter().flat_map(|&[a, b]| places_near(body, a, b, reach));
-    let mut members: Vec<usize> = near.filter(|&place| is_open(body.lattice.position(place))).collect();
-    members.sort_unstable();
-    members.dedup();
-    let number: HashMap<usize, u32> = members.iter().enumerate().map(|(i, &place)| (place, i as u32)).collect();
-    let share: Vec<f64> = members
-        .iter()
-        .map(|&place| {
-            let t = (nearest(tips, body.lattice.position(place)) / (FADE_HORIZONS * horizon)).min(1.0);
-            t * t * (3.0 - 2.0 * t)
-        })
-        .collect();
-    let areas = areas(body, &pieces, &number);
-
-    let at = |k: usize, place: usize| {
-        [(place, k), (place.wrapping_add_signed(-body.steps[k]), k)].map(|(owner, k)| k * places + owner)
-    };
-    let is_cut = |bond: usize| body.multiplier[bond] > 0.0 && now[bond] == 0.0;
-    let misses: Vec<bool> =
-        members.iter().map(|&place| (0..body.steps.len()).any(|k| at(k, place).into_iter().any(is_cut))).collect();
-    let in_row = |place: usize| {
-        let sides = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].map(|(dx, dy)| body.lattice.step(dx, dy));
-        sides.iter().any(|&step| number.get(&place.wrapping_add_signed(step)).is_some_and(|&i| misses[i as usize]))
-    };
-    let changing: Vec<bool> = members.iter().map(|&place| in_row(place)).collect();
-    let (mut links, mut names, mut new) = (Vec::new(), Vec::new(), HashMap::new());
-    for (i, &owner) in members.iter().enumerate() {
-        for (k, &step) in body.steps.iter().enumerate() {
-            let bond = k * places + owner;
-            let Some(&other) = number.get(&owner.wrapping_add_signed(step)) else { continue };
-            let j = other as usize;
-            if now[bond] == 0.0 {
-                continue;
-            }
-            if share[i].min(share[j]) == 0.0 {
-                // Of the core of a tip, which it may not have been when the crack was shorter.
-                new.insert(bond, body.multiplier[bond]);
-            } else if changing[i] || changing[j] {
-                links.push(Link { from: i as u32, to: other, k });
-                names.push(bond);
-                // What is sought counts as a change of the body's own.
-                new.insert(bond, body.multiplier[bond]);
-            }
-        }
-    }
-
-    // What is asked, less what bonds carry that keep the multiplier they have.
+    let beside = Beside::new(body, now, lines, tips, ends, stretch);
+    // What is sought counts as a change of the body's own multiplier.
+    let (links, sought) = beside.sought(body, now);
+    let own = |bond: &usize| (*bond, body.multiplier[*bond]);
+    let mut new: HashMap<usize, f32> = sought.iter().chain(&beside.cores(body, now)).map(own).collect();
     let gains = gains(body);
-    let missing: Vec<Gain> = members
-        .iter()
-        .enumerate()
-        .map(|(i, &place)| {
-            let (mut left, mut kept): (Gain, Gain) = (asked(areas[i]), asked([0.0; 2]));
-            for (k, gain) in gains.iter().enumerate() {
-                for (bond, own) in at(k, place).into_iter().zip([gain.at_owner, gain.at_other]) {
-                    let whole = f64::from(body.multiplier[bond]);
-                    let carried = f64::from(new.get(&bond).copied().unwrap_or(now[bond]));
-                    if carried == 0.0 {
-                        left.iter_mut().zip(own).for_each(|(l, g)| *l += whole * g);
-                    } else if carried != whole {
-                        kept.iter_mut().zip(own).for_each(|(l, g)| *l += (carried - whole) * g);
-                    }
-                }
-            }
-            std::array::from_fn(|c| share[i] * left[c] - kept[c])
-        })
-        .collect();
+    let missing = beside.missing(body, &gains, |bond| new.get(&bond).copied().unwrap_or(now[bond]));
     let bounds = BOUNDS.map(|bound| bound - 1.0);
-    let changes = Problem::new(&gains, links, missing).solve_to(&SOFTNESS, bounds).unwrap_or_else(|| vec![0.0; names.len()]);
-    for (bond, change) in names.into_iter().zip(changes) {
+    let changes = Problem::new(&gains, links, missing).solve_to(&SOFTNESS, bounds).unwrap_or_else(|| vec![0.0; sought.len()]);
+    for (bond, change) in sought.into_iter().zip(changes) {
         let whole = f64::from(body.multiplier[bond]);
         if change.abs() >= ROUND_OFF {
             new.insert(bond, (whole + change).max(BOUNDS[0] * whole) as f32);
@@ -150,6 +71,115 @@ pub fn multipliers(
     let mut changed: Vec<(Bond, f32)> = new.into_iter().filter(differs).map(|(bond, m)| (bond as Bond, m)).collect();
     changed.sort_unstable_by_key(|(bond, _)| *bond);
     changed
+}
+
+/// Points beside cracks, whose equations may change.
+struct Beside {
+    /// Places, ascending: of points with cut bonds, the rows behind them and the other ends of their bonds.
+    members: Vec<usize>,
+    /// Which of the members a place is.
+    number: HashMap<usize, u32>,
+    /// Share of its equations that is asked of every member.
+    share: Vec<f64>,
+    /// Whether the bonds of a member change: it, or one next to it, misses a bond.
+    changes: Vec<bool>,
+    /// Flank that every member stands for.
+    areas: Vec<[f64; 2]>,
+}
+
+impl Beside {
+    fn new(body: &Body, now: &[f32], lines: &[CrackLine], tips: &[Point], ends: &[Point], stretch: Stretch) -> Self {
+        let (spacing, horizon) = (body.lattice.spacing, body.horizon());
+        let followed = FOLLOWED_HORIZONS * horizon;
+        let nearest = |of: &[Point], at: Point| of.iter().map(|end| distance(*end, at)).fold(f64::INFINITY, f64::min);
+        let is_open = |place: usize| stretch == Stretch::All || nearest(ends, body.lattice.position(place)) < followed;
+        let is_near = |[a, b]: &[Point; 2]| {
+            let reach = followed + 3.0 * horizon;
+            stretch == Stretch::All || ends.iter().any(|end| distance_to_segment(*end, *a, *b) < reach)
+        };
+        // As the bonds see them.
+        let shifted = |[a, b]: [Point; 2]| {
+            let shift = tie_break(body, a, b);
+            [a, b].map(|p| [p[0] + shift[0], p[1] + shift[1]])
+        };
+        let pieces: Vec<[Point; 2]> = lines.iter().flat_map(CrackLine::pieces).filter(is_near).map(shifted).collect();
+        let reach = horizon + 1.5 * spacing;
+        let near = pieces.iter().flat_map(|&[a, b]| places_near(body, a, b, reach));
+        let mut members: Vec<usize> = near.filter(|&place| is_open(place)).collect();
+        members.sort_unstable();
+        members.dedup();
+        let number: HashMap<usize, u32> = members.iter().enumerate().map(|(i, &place)| (place, i as u32)).collect();
+        let share = |&place: &usize| {
+            let t = (nearest(tips, body.lattice.position(place)) / (FADE_HORIZONS * horizon)).min(1.0);
+            t * t * (3.0 - 2.0 * t)
+        };
+        let misses = |&place: &usize| {
+            (0..body.steps.len())
+                .any(|k| bonds_at(body, k, place).into_iter().any(|bond| body.multiplier[bond] > 0.0 && now[bond] == 0.0))
+        };
+        let misses: Vec<bool> = members.iter().map(misses).collect();
+        let sides = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].map(|(dx, dy)| body.lattice.step(dx, dy));
+        let changes = |&place: &usize| {
+            sides.iter().any(|&step| number.get(&place.wrapping_add_signed(step)).is_some_and(|&i| misses[i as usize]))
+        };
+        Beside {
+            share: members.iter().map(share).collect(),
+            changes: members.iter().map(changes).collect(),
+            areas: areas(body, &pieces, &number),
+            members,
+            number,
+        }
+    }
+
+    /// Bonds that carry between two members: the numbers of these, which entry of the stencil, which bond.
+    fn bonds<'a>(&'a self, body: &'a Body, now: &'a [f32]) -> impl Iterator<Item = (Link, usize)> + 'a {
+        let of_owner = move |(i, &owner): (usize, &usize)| {
+            body.steps.iter().enumerate().filter_map(move |(k, &step)| {
+                let (other, bond) = (self.number.get(&owner.wrapping_add_signed(step))?, k * body.places() + owner);
+                (now[bond] > 0.0).then_some((Link { from: i as u32, to: *other, k }, bond))
+            })
+        };
+        self.members.iter().enumerate().flat_map(of_owner)
+    }
+
+    fn is_of_core(&self, link: &Link) -> bool {
+        [link.from, link.to].into_iter().any(|end| self.share[end as usize] == 0.0)
+    }
+
+    /// Bonds whose multipliers are sought.
+    fn sought(&self, body: &Body, now: &[f32]) -> (Vec<Link>, Vec<usize>) {
+        let changes = |link: &Link| [link.from, link.to].into_iter().any(|end| self.changes[end as usize]);
+        self.bonds(body, now).filter(|(link, _)| !self.is_of_core(link) && changes(link)).unzip()
+    }
+
+    /// Bonds at a tip, which may not have been there when the crack was shorter.
+    fn cores(&self, body: &Body, now: &[f32]) -> Vec<usize> {
+        self.bonds(body, now).filter(|(link, _)| self.is_of_core(link)).map(|(_, bond)| bond).collect()
+    }
+
+    /// What is asked of the members, less what bonds carry whose multiplier is another one than the body's.
+    fn missing(&self, body: &Body, gains: &[BondGain], multiplier: impl Fn(usize) -> f32) -> Vec<Gain> {
+        let of_member = |(i, &place): (usize, &usize)| {
+            let (mut left, mut kept): (Gain, Gain) = (asked(self.areas[i]), asked([0.0; 2]));
+            for (k, gain) in gains.iter().enumerate() {
+                for (bond, own) in bonds_at(body, k, place).into_iter().zip([gain.at_owner, gain.at_other]) {
+                    let [whole, carried] = [body.multiplier[bond], multiplier(bond)].map(f64::from);
+                    if carried == 0.0 {
+                        left.iter_mut().zip(own).for_each(|(l, g)| *l += whole * g);
+                    } else if carried != whole {
+                        kept.iter_mut().zip(own).for_each(|(l, g)| *l += (carried - whole) * g);
+                    }
+                }
+            }
+            std::array::from_fn(|c| self.share[i] * left[c] - kept[c])
+        };
+        self.members.iter().enumerate().map(of_member).collect()
+    }
+}
+
+/// The two bonds of a place along one entry of the stencil: that which it owns, that of which it is the other end.
+fn bonds_at(body: &Body, k: usize, place: usize) -> [usize; 2] {
+    [place, place.wrapping_add_signed(-body.steps[k])].map(|owner| k * body.places() + owner)
 }
 
 /// Flank that every member stands for, as [`super`] has it of the rim.
