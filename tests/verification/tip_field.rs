@@ -325,9 +325,9 @@ fn reasons_to_stop() {
     assert!(matches!(with(&[]).stop, StopReason::Severed | StopReason::LeftPlate));
 }
 
-/// Steps of default length against steps of a tenth of it: lives within 0.5 %, 0.9 % where a hole or another crack draws the tips (single
-/// readings scatter there by up to 1 % of K, and short steps take in more of them), and paths within a tenth of a spacing over 99 % of the life. In the last percent tips pass
-/// each other closer than points resolve.
+/// Steps of default length against steps of a tenth of it: lives within 0.3 to 0.7 % (0.5 % is asked for; where a hole or another crack
+/// draws the tips single readings are up to 1 % too high as a tip passes a point, and short steps take in more of them), and paths
+/// within a tenth of a spacing over 99 % of the life. In the last percent tips pass each other closer than points resolve.
 #[test]
 fn steps_are_short_enough() {
     let plate = "kind = \"plate\"\nwidth_mm = 60\nlength_mm = 80\nthickness_mm = 2\n";
@@ -362,7 +362,14 @@ fn steps_are_short_enough() {
         println!("{specimen:.80}: life {error:+.2} %, path {off:.3} mm, {blocks:?} blocks, {} and {}", coarse.stop, fine.stop);
         assert!(blocks[1] > 4 * blocks[0], "{blocks:?}");
         assert_eq!(coarse.stop, fine.stop);
-        let bound = if specimen.contains("holes") || specimen.contains("}, {") { 0.9 } else { 0.5 };
+        let draws = specimen.contains("holes") || specimen.contains("}, {");
+        let bound = if draws {
+            0.7
+        } else if specimen.contains("plate") {
+            0.5
+        } else {
+            0.3
+        };
         assert!(error.abs() < bound && off < 0.1, "{error} %, {off} mm");
     }
 }

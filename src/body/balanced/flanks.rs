@@ -2,8 +2,8 @@
 //!
 //! Points beside a crack miss the bonds that it cut, as those on a rim do, and a layer of them is too soft along the crack. Loads
 //! that a plate cannot carry otherwise go another way then: K of a central crack, whose flanks are pressed along by about the
-//! stress of the load, is read 0.3 to 1 % high where a horizon is a fifth of what is left of the plate, K_II of a slanted one 1 to
-//! 2 %. So the equations of the rim ([`super`]) are asked of these points, too: uniform strain, with the traction of the continuum on the
+//! stress of the load, is read 0.3 to 1 % high where a horizon is a fifth of what is left of the plate, K_II of a slanted one
+//! 1 %. So the equations of the rim ([`super`]) are asked of these points, too: uniform strain, with the traction of the continuum on the
 //! flanks, is in equilibrium. What a crack takes from the equations of a point is `Σ m q r n_i n_j n_k` over its cut bonds.
 //!
 //! At the tip nothing is asked: the bonds of the core are those of the cut plate. From there on the equations come in over half a
@@ -21,7 +21,7 @@ use crate::body::{Body, Bond};
 use crate::specimen::geometry::{along, direction, distance, distance_to_segment, segments_touch};
 use crate::specimen::{CrackLine, Point};
 
-/// ε of the equations of force. At 1e-4 and 1e-2 K of central cracks differs by 0.02 and 0.1 %.
+/// ε of the equations of force. At 1e-4 and 1e-2 K of central cracks differs by 0.03 and 0.1 to 0.2 %.
 const SOFTNESS: [f64; 2] = [1e-3, 1e-1];
 /// Distance from a tip, in horizons, over which the equations come in.
 const FADE_HORIZONS: f64 = 0.5;
