@@ -26,7 +26,7 @@ use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
 use crate::stress_intensity::StressIntensityMethod;
 use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
-use crate::verify::TOPICS;
+use crate::verify::all_topics;
 
 /// Every line, in the order of an input file: key, name, meaning.
 #[must_use]
@@ -91,7 +91,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.extend(of_calibration.into_iter().flatten().map(words));
     all.extend(of_sweeps.into_iter().flatten().map(words));
     all.extend(of_the_tips.into_iter().map(words));
-    all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
+    all.extend(all_topics().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
     all.extend(GROUPS.iter().map(|group| ("bench NAME".to_owned(), group.name.to_owned(), group.about.to_owned())));
     all
 }

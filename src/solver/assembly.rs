@@ -213,7 +213,7 @@ impl<const N: usize> Assembly<MIXED> for Mixed<'_, N> {
                 off[i][j] = springs.1[i][j];
             }
             // Either end's D holds k_n r n·(u' - u), n from the owner to the other end.
-            let along = sign * force[i];
+            let along = sign * multiplier * force[i];
             own[i][2] = -along;
             own[2][i] = -along;
             off[i][2] = -along;

@@ -2,16 +2,21 @@
 //!
 //! Beside its springs a state-based body stores `½ κ V (Q/Q₀) θ²` at every point. The dilatation of a point is the mean of its
 //! intact bonds, weighted by their springs (Silling, Epton, Weckner, Xu and Askari 2007, J. Elasticity 88:151, section 15, in
-//! the plane), lengths in spacings Δ:
+//! the plane), lengths in spacings Δ, m the multipliers of the springs:
 //!
 //! ```text
-//! θ = 2 D / (Q Δ),   D = Σ k_n r n·(u' - u),   Q = Σ k_n r²
+//! θ = 2 D / (Q Δ),   D = Σ m k_n r n·(u' - u),   Q = Σ m k_n r²
 //! ```
+//!
+//! With the multipliers of the balanced correction (`crate::body::balanced`), whose equations say `Σ m k_n r n = -4 S₂₂ A` of the
+//! rim A that a point stands for, a uniform dilatation is in equilibrium with its traction at every point, as the springs are.
+//! Without them layers along edges and flanks are too soft or too stiff by κ, and K of a central crack depends on it (0.2 to
+//! 0.6 % at ν = 0.3 to 0.4 in plane strain).
 //!
 //! Q₀ is Q of the uncracked plate: θ is right up to a straight edge, where half of the bonds are missing, and on the face of a
 //! crack the point keeps of this energy the share that it keeps of its bonds. For κ < 0 that also keeps the body stable:
 //! `|κ| ≤ 2 G` is then enough, whatever has broken. The energy is `½ P D` with the stress `P = c D`, `c = 4 κ V / (Δ² Q₀ Q)`, and
-//! a bond carries `k_n r (P + P')` beside its spring force.
+//! a bond carries `m k_n r (P + P')` beside its spring force.
 //!
 //! With P as an unknown of its own the stiffness couples no points farther apart than a horizon:
 //!
@@ -109,8 +114,9 @@ impl Dilatation {
         let mut family = vec![0.0; places];
         for (k, arm) in arms.iter().enumerate() {
             for place in (0..places).filter(|&place| body.multiplier[k * places + place] > 0.0) {
-                family[place] += arm.weight;
-                family[place.wrapping_add_signed(arm.place_step)] += arm.weight;
+                let weight = f64::from(body.multiplier[k * places + place]) * arm.weight;
+                family[place] += weight;
+                family[place.wrapping_add_signed(arm.place_step)] += weight;
             }
         }
         let modulus = 4.0 * body.stencil.dilatation / (spacing * spacing);
@@ -198,13 +204,13 @@ impl Dilatation {
         let stride = self.layout.stride;
         let (mut extension, mut family) = ([0.0; LANES], [0.0; LANES]);
         let (u, v) = (load(x, at), load(x, at + stride));
-        self.for_directions(multiplier, place, |arm, sign, step, intact| {
+        self.for_directions(multiplier, place, |arm, sign, step, share| {
             let other = at.wrapping_add_signed(step);
             let (u_o, v_o) = (load(x, other), load(x, other + stride));
             for lane in 0..LANES {
                 let along = sign * (arm.force[0] * (u_o[lane] - u[lane]) + arm.force[1] * (v_o[lane] - v[lane]));
-                extension[lane] += intact[lane] * along;
-                family[lane] += intact[lane] * arm.weight;
+                extension[lane] += share[lane] * along;
+                family[lane] += share[lane] * arm.weight;
             }
         });
         (extension, family)
@@ -229,26 +235,25 @@ impl Dilatation {
     fn masked_force(&self, multiplier: &[f32], stress: &[f64], place: usize) -> [Lanes; 2] {
         let mut force = [[0.0; LANES]; 2];
         let here = load(stress, place);
-        self.for_directions(multiplier, place, |arm, sign, _, intact| {
+        self.for_directions(multiplier, place, |arm, sign, _, share| {
             let step = if sign > 0.0 { arm.place_step } else { -arm.place_step };
             let other = load(stress, place.wrapping_add_signed(step));
             for (force, along) in force.iter_mut().zip(arm.force) {
                 for lane in 0..LANES {
-                    force[lane] -= sign * intact[lane] * along * (here[lane] + other[lane]);
+                    force[lane] -= sign * share[lane] * along * (here[lane] + other[lane]);
                 }
             }
         });
         force
     }
 
-    /// Calls `take(arm, sign, vector step, intact)` for both directions of every bond; intact is 1 or 0 a lane.
+    /// Calls `take(arm, sign, vector step, multiplier)` for both directions of every bond, a multiplier for every lane.
     #[inline(always)]
     fn for_directions(&self, multiplier: &[f32], place: usize, mut take: impl FnMut(&Arm, f64, isize, Lanes)) {
         let places = self.gain.len();
         for (k, arm) in self.arms.iter().enumerate() {
             for (sign, step, owner) in [(1.0, arm.step, place), (-1.0, -arm.step, place.wrapping_add_signed(-arm.place_step))] {
-                let intact = load_f32(multiplier, k * places + owner).map(|share| if share > 0.0 { 1.0 } else { 0.0 });
-                take(arm, sign, step, intact);
+                take(arm, sign, step, load_f32(multiplier, k * places + owner));
             }
         }
     }
@@ -256,11 +261,12 @@ impl Dilatation {
     /// Q of a place, N/m.
     fn family(&self, bonds: &Bonds, place: usize) -> f64 {
         let places = self.gain.len();
-        let intact = |k: usize, owner: usize| bonds.multiplier[k * places + owner] > 0.0;
-        let both = self.arms.iter().enumerate().map(|(k, arm)| {
-            let ends = [intact(k, place), intact(k, place.wrapping_add_signed(-arm.place_step))];
-            arm.weight * ends.into_iter().filter(|&intact| intact).count() as f64
-        });
+        let share = |k: usize, owner: usize| f64::from(bonds.multiplier[k * places + owner]);
+        let both = self
+            .arms
+            .iter()
+            .enumerate()
+            .map(|(k, arm)| arm.weight * (share(k, place) + share(k, place.wrapping_add_signed(-arm.place_step))));
         both.sum()
     }
 
@@ -269,8 +275,7 @@ impl Dilatation {
         self.family(bonds, place) / self.gain[place]
     }
 
-    /// c Q of a place, dimensionless: by `D² ≤ Q Σ k_n (n·η)²` its dilatation stores at most this times what its normal springs
-    /// without their multipliers do.
+    /// c Q of a place, dimensionless: by `D² ≤ Q Σ m k_n (n·η)²` its dilatation stores at most this times what its normal springs do.
     pub(super) fn gain(&self, place: usize) -> f64 {
         self.gain[place]
     }
@@ -288,17 +293,17 @@ impl Dilatation {
     /// What a broken bond of stencil entry k takes out of the matrix with P as unknown, between its owner and the other
     /// end.
     ///
-    /// The bond is `½ k e² + f (P + P') e - ½ β P² - ½ β' P'²` with its opening e, `f = k_n r`, `k = share k_n` and its share
-    /// β of 1/c: `½ k (e + f/k (P + P'))²` and a quadratic form in P and P', which is brought to its principal axes.
+    /// The bond is `½ k e² + k r (P + P') e - ½ β P² - ½ β' P'²` with its opening e, `k = share k_n` and its share β of 1/c:
+    /// `½ k (e + r (P + P'))²` and a quadratic form in P and P', which is brought to its principal axes.
     pub(super) fn terms_of(&self, k: usize, share: f64, [a, b]: [End; 2]) -> Vec<Term> {
         let Arm { k_n, normal, length, weight, .. } = self.arms[k];
-        let (root, lever) = ((share * k_n).sqrt(), length / share);
+        let (root, lever) = ((share * k_n).sqrt(), length);
         let mut vector: Vec<(usize, f64)> =
             (0..2).flat_map(|c| [a.entry(c, -root * normal[c]), b.entry(c, root * normal[c])]).collect();
         vector.extend([a.entry(2, root * lever), b.entry(2, root * lever)]);
         let mut terms = vec![Term { sign: -1.0, vector }];
-        let both = weight / share;
-        let form = Matrix2::new(both + weight / self.gain[a.place], both, both, both + weight / self.gain[b.place]);
+        let both = share * weight;
+        let form = Matrix2::new(both + both / self.gain[a.place], both, both, both + both / self.gain[b.place]);
         let axes = form.symmetric_eigen();
         for (value, axis) in axes.eigenvalues.iter().zip(axes.eigenvectors.column_iter()).filter(|(value, _)| **value != 0.0) {
             let root = value.abs().sqrt();

@@ -3,6 +3,9 @@
 use super::Point;
 use super::geometry::{direction, distance, distance_to_segment};
 
+/// Share of the last piece that is kept where an end is drawn back over it.
+const STUB: f64 = 0.1;
+
 /// A crack from one end to the other, m; either end may be a tip.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct CrackLine {
@@ -46,13 +49,39 @@ impl CrackLine {
         if at_last { direction(self.points[n - 2], self.points[n - 1]) } else { direction(self.points[1], self.points[0]) }
     }
 
-    /// Moves one of its ends along its last piece, m; back by nine tenths of it at the most.
+    /// Moves one of its ends along the line, m: ahead in the direction of its last piece, back over earlier pieces if need be, where it
+    /// keeps a stub of the last one and so its direction; at most to a tenth of the first piece.
     pub fn stretch(&mut self, at_last: bool, by: f64) {
-        let n = self.points.len();
-        let (end, before) = if at_last { (n - 1, n - 2) } else { (0, 1) };
-        let piece = distance(self.points[before], self.points[end]);
-        let (ahead, by) = (self.direction(at_last), by.max(-0.9 * piece));
-        self.points[end] = [0, 1].map(|i| self.points[end][i] + by * ahead[i]);
+        let ahead = self.direction(at_last);
+        if !at_last {
+            self.points.reverse();
+        }
+        let piece = |points: &[Point]| distance(points[points.len() - 2], points[points.len() - 1]);
+        let stub = STUB * piece(&self.points);
+        let mut back = -by;
+        if back > piece(&self.points) - stub {
+            back += stub;
+            while self.points.len() > 2 && back >= piece(&self.points) {
+                back -= piece(&self.points);
+                self.points.pop();
+            }
+            let last = piece(&self.points);
+            let way = direction(self.points[self.points.len() - 1], self.points[self.points.len() - 2]);
+            self.move_last(way, back.min((1.0 - STUB) * last));
+            self.points.push(self.end(true));
+            self.move_last(ahead, stub);
+        } else {
+            self.move_last(ahead, by);
+        }
+        if !at_last {
+            self.points.reverse();
+        }
+    }
+
+    fn move_last(&mut self, [x, y]: Point, by: f64) {
+        if let Some(end) = self.points.last_mut() {
+            *end = [end[0] + by * x, end[1] + by * y];
+        }
     }
 
     /// Adds a straight piece at one of its ends.

@@ -4,24 +4,27 @@
 //! the program, not records of what it reaches: a row that misses its bound either fails the command or carries the reason
 //! of a known miss.
 
-pub mod blocks;
+pub mod biaxial;
+mod bond_strain;
 pub mod collinear;
 pub mod disc;
 pub mod dual_horizon;
 pub mod golden;
 pub mod golden_peridynamics;
-pub mod grown;
-pub mod growth;
+pub mod lives;
 pub mod measured;
 pub mod paths;
+pub mod poissons_ratio;
+pub mod references;
 pub mod resolution;
 pub mod scene;
+pub mod standard;
 pub mod state_based;
 pub mod static_scenes;
+pub mod steps;
 pub mod stress_intensity;
 pub mod table;
 pub mod tension_plate;
-mod tip_field;
 pub mod uniform_tension;
 
 use std::num::NonZero;
@@ -42,8 +45,8 @@ pub struct Topic {
     pub fill: fn(&mut Table) -> Result<()>,
 }
 
-/// All topics, in the order in which a life is computed.
-pub const TOPICS: &[Topic] = &[
+/// Topics of the default model, in the order in which a life is computed.
+const TOPICS: &[Topic] = &[
     Topic { name: "tension_plate", about: "displacements of a plate in uniform tension", fill: tension_plate::rows },
     Topic { name: "static_scenes", about: "scenes without time against uniform tension and shear", fill: static_scenes::rows },
     Topic {
@@ -52,42 +55,28 @@ pub const TOPICS: &[Topic] = &[
         fill: stress_intensity::all,
     },
     Topic { name: "golden", about: "golden lives by hand calculation, rates of readings", fill: golden::by_hand },
-    Topic {
-        name: "golden_peridynamics",
-        about: "the golden lives by peridynamics with an A fitted to hand calculation",
-        fill: golden_peridynamics::by_bonds,
-    },
-    Topic {
-        name: "growth_law",
-        about: "da/dN of a middle-tension panel against the power law of ΔK",
-        fill: growth::middle_tension,
-    },
-    Topic { name: "one_line", about: "one A for middle tension, single edge and compact tension", fill: growth::specimens },
-    Topic { name: "spacing", about: "one A for every spacing and horizon ratio", fill: resolution::spacing },
-    Topic { name: "orientation", about: "life on turned lattices", fill: resolution::orientation },
-    Topic { name: "blocks", about: "life over the size of cycle blocks, controlled or not", fill: blocks::rows },
-    Topic { name: "clean_cracks", about: "broken bonds over those that a clean cut severs", fill: resolution::clean_cracks },
-    Topic {
-        name: "state_based",
-        about: "Poisson's ratios that springs alone cannot have: displacements, K and growth law of the state-based law",
-        fill: state_based::rows,
-    },
+    Topic { name: "life", about: "lives of standard specimens by m, bond law and kernel against quadrature", fill: lives::all },
+    Topic { name: "golden_peridynamics", about: "the golden lives by peridynamics", fill: golden_peridynamics::by_tips },
     Topic {
         name: "poissons_ratio",
-        about: "one growth rate at equal K whatever Poisson's ratio and plane state",
-        fill: growth::poissons_ratio,
+        about: "life at equal K whatever Poisson's ratio and plane state",
+        fill: poissons_ratio::rows,
     },
-    Topic {
-        name: "tip_field",
-        about: "cracks driven by the K of their tips: first kinks, lives against quadrature",
-        fill: tip_field::all,
-    },
-    Topic { name: "paths", about: "kinks, cracks that join or turn into a hole, clean curved cracks", fill: paths::all },
-    Topic { name: "biaxial", about: "stress along the crack does not count", fill: growth::biaxial },
+    Topic { name: "spacing", about: "life at every spacing and horizon ratio", fill: resolution::spacing },
+    Topic { name: "orientation", about: "lives and paths on turned lattices", fill: resolution::orientation },
+    Topic { name: "same_plate", about: "one plate drawn, mirrored and scaled", fill: resolution::same_plate },
+    Topic { name: "blocks", about: "life and path over the length of cycle blocks", fill: steps::rows },
+    Topic { name: "biaxial", about: "stress along the crack does not count", fill: biaxial::rows },
+    Topic { name: "paths", about: "first kinks, cracks that join, curved cracks beside finite elements", fill: paths::all },
     Topic {
         name: "measured",
         about: "the fit to a measured panel, and its C and m by hand calculation in other specimens",
         fill: measured::all,
+    },
+    Topic {
+        name: "state_based",
+        about: "Poisson's ratios that springs alone cannot have: displacements and K of the state-based law",
+        fill: state_based::rows,
     },
     Topic {
         name: "pbx_disc",
@@ -99,8 +88,12 @@ pub const TOPICS: &[Topic] = &[
         about: "points of several levels: momentum, ghost forces, uniform strain across a change of level, counts",
         fill: dual_horizon::rows,
     },
-    Topic { name: "life", about: "lives of whole runs against quadrature with handbook K", fill: growth::lives },
 ];
+
+/// All topics: lives and paths by K of the tips first, ageing bonds last.
+pub fn all_topics() -> impl Iterator<Item = &'static Topic> {
+    TOPICS.iter().chain(bond_strain::TOPICS)
+}
 
 /// The topics of these names, all where no name is given.
 ///
@@ -108,12 +101,11 @@ pub const TOPICS: &[Topic] = &[
 /// A name that no topic bears.
 pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
     if names.is_empty() {
-        return Ok(TOPICS.iter().collect());
+        return Ok(all_topics().collect());
     }
-    let known = || TOPICS.iter().map(|topic| topic.name).collect::<Vec<_>>().join(", ");
+    let known = || all_topics().map(|topic| topic.name).collect::<Vec<_>>().join(", ");
     let find = |name: &String| {
-        TOPICS
-            .iter()
+        all_topics()
             .find(|topic| topic.name == name)
             .ok_or_else(|| input("NAME", name, "is not a verification topic", format!("known are {}", known())))
     };

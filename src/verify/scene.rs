@@ -6,41 +6,29 @@ use crate::calibration::record::FittedRecord;
 use crate::case::Case;
 use crate::error::Result;
 use crate::input::Document;
-use crate::predict::Prediction;
+use crate::predict::{Prediction, Silent, predict};
 
-/// The panel of Virkler, Hillberry and Goel (1979): middle tension, W 152.4 mm, stress range 48.28 MPa at R = 0.2, aluminium
-/// 2024-T3 with the Paris-like exponent of its growth rates.
-pub const PANEL: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 9.0
+/// Material and law of plates whose cracks go by K.
+pub const MATERIAL_AND_LAW: &str = "
 [material]
-youngs_modulus_gpa = 73.1
-poisson_ratio = 0.33
-plane = "stress"
-[loading]
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[model]
-spacing_mm = 1.0
+youngs_modulus_gpa = 70.0
+poisson_ratio = 0.3
+plane = \"stress\"
 [fatigue]
-a = 1.6e4
-p = 2.87
-horizon_mm = 3.015
-driver = "bond_strain"
-"#;
+paris_c_mm_per_cycle = 1e-8
+paris_m = 3.0
+[stop]
+cycles_max = 1e14
+";
 
-/// Turns [`PANEL`] into one small enough for fine lattices, its crack long enough for wide horizons.
-pub const SMALL: [&str; 5] = [
-    "specimen.width_mm=110",
-    "specimen.length_mm=140",
-    "specimen.crack_length_mm=20",
-    "stop.crack_length_mm=27",
-    "stop.cycles_max=1e12",
-];
+/// Loading of all that is pulled at its ends.
+pub const PULL: &str = "[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n";
+
+/// Two millimetres thick, of these keys, pulled at its ends.
+#[must_use]
+pub fn pulled_plate(keys: &str) -> String {
+    format!("[specimen]\nkind = \"plate\"\nthickness_mm = 2\n{keys}\n{PULL}{MATERIAL_AND_LAW}")
+}
 
 /// A case from its text, with keys overridden by `section.key=value`.
 ///
@@ -64,4 +52,12 @@ pub fn case_with_law(text: &str, set: &[String], record: &FittedRecord) -> Resul
 #[must_use]
 pub fn points(run: &Prediction) -> Vec<(f64, f64)> {
     run.curve.iter().map(|point| (point.cycles, point.crack_length)).collect()
+}
+
+/// Life of a case from its text, cycles.
+///
+/// # Errors
+/// As [`case`] and [`predict`].
+pub fn life(text: &str, set: &[&str]) -> Result<f64> {
+    Ok(predict(&case(text, set)?, &Silent)?.life_cycles())
 }

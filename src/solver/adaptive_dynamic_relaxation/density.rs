@@ -34,7 +34,7 @@ fn diagonal_block<const N: usize>(body: &Body, bonds: &Bonds, product: &Product<
             let share = f64::from(bonds.multiplier[k * body.places() + owner]);
             if share > 0.0 {
                 let stiffer = gain(place) + gain(place.wrapping_add_signed(sign * step));
-                let (own, _) = product.bond_blocks(k, sign as f64, share + stiffer);
+                let (own, _) = product.bond_blocks(k, sign as f64, share * (1.0 + stiffer));
                 for (row, own) in block.iter_mut().zip(own) {
                     row.iter_mut().zip(own).for_each(|(sum, value)| *sum += value);
                 }

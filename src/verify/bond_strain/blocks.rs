@@ -3,10 +3,11 @@
 //! Bonds are linear elastic, so strains are constant from one break to the next: a block of one break (mirror twins break
 //! together) is exact in time, and the reference here.
 
-use super::scene::{PANEL, SMALL, case};
-use super::table::Table;
+use super::scene::{PANEL, SMALL};
 use crate::error::Result;
 use crate::predict::{Prediction, Silent, predict};
+use crate::verify::Table;
+use crate::verify::scene::case;
 
 /// A plate with a slanted crack, whose tips break bonds at different times.
 const SLANT: &str = r#"

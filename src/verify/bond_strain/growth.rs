@@ -3,8 +3,7 @@
 //! Steady growth gives `da/dN = C ΔK^p` (bond lives of Silling and Askari 2014 integrated along the way of a bond through the
 //! ageing zone), so the rate over `ΔK^p`, with ΔK of the handbook, must depend neither on crack length nor on the specimen.
 
-use super::scene::{PANEL, case, points};
-use super::table::Table;
+use super::scene::PANEL;
 use crate::calibration::line::line;
 use crate::calibration::model::cycles_since_first;
 use crate::case::Case;
@@ -13,6 +12,8 @@ use crate::predict::{Prediction, Silent, predict};
 use crate::quadrature::integrate;
 use crate::specimen::handbook::delta_k;
 use crate::units::MM;
+use crate::verify::Table;
+use crate::verify::scene::{case, points};
 
 /// Exponents of the study: low (2) to high (4), with those of aluminium between.
 const EXPONENTS: [f64; 5] = [2.0, 2.5, 2.87, 3.2, 4.0];

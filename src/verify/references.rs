@@ -1,0 +1,224 @@
+//! Plates whose cracks were grown by finite elements, for comparison (`tests/reference`: quadratic triangles, remeshed, interaction
+//! integral, maximum circumferential stress; lives right to 0.1 %).
+
+use std::path::Path;
+
+use super::table::Table;
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::predict::{Prediction, Silent, StopReason, predict};
+use crate::specimen::Point;
+use crate::specimen::geometry::{distance, distance_to_segment};
+use crate::units::MM;
+
+/// Shares of a tip's way at which cycles are compared: beyond half, since the first step of a reference is as long as it is coarse.
+pub const SHARES: [f64; 3] = [0.5, 0.75, 0.95];
+
+/// A plate and what finite elements say of it.
+#[derive(Debug)]
+pub struct Reference {
+    /// As its files are called.
+    pub name: &'static str,
+    /// The same in words.
+    pub about: &'static str,
+    /// The case, and cycles and places of every tip.
+    files: [&'static str; 2],
+    /// Spacing, mm, where the default does not resolve its holes.
+    spacing: Option<f64>,
+    /// Whether its cracks end in holes.
+    pub ends_in_hole: bool,
+}
+
+macro_rules! reference {
+    ($name:literal, $about:literal, $spacing:expr, $ends_in_hole:literal) => {
+        Reference {
+            name: $name,
+            about: $about,
+            files: [
+                include_str!(concat!("../../tests/reference/", $name, ".toml")),
+                include_str!(concat!("../../tests/reference/", $name, ".csv")),
+            ],
+            spacing: $spacing,
+            ends_in_hole: $ends_in_hole,
+        }
+    };
+}
+
+/// All of them.
+pub const REFERENCES: [Reference; 9] = [
+    reference!("slant_severance", "slant crack until the plate is in two", None, false),
+    reference!("hole_attracts", "edge crack into a hole", None, true),
+    reference!("hole_missed", "edge crack that passes a hole", None, false),
+    reference!("compact_one_hole_a", "compact specimen, hole entered", None, true),
+    reference!("compact_one_hole_b", "compact specimen, hole passed", None, false),
+    reference!("offset_edge_cracks", "two edge cracks that pass each other", None, false),
+    reference!("double_edge_notched", "two holes, two edge cracks, each enters a hole", None, true),
+    reference!("three_point_bending", "bent beam with three holes, one entered", Some(0.5), true),
+    reference!("three_cracks", "three collinear cracks that join twice", None, false),
+];
+
+/// Cycles and places of a tip, m.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Curve(pub Vec<(f64, Point)>);
+
+impl Curve {
+    /// That of a tip of a run.
+    #[must_use]
+    pub fn of_tip(run: &Prediction, tip: usize) -> Self {
+        Curve(run.curve.iter().map(|row| (row.cycles, row.tips[tip].position)).collect())
+    }
+
+    /// That of the tip of a run which starts nearest to a place.
+    fn from(run: &Prediction, start: Point) -> Self {
+        let gap = |tip: &usize| distance(run.curve[0].tips[*tip].position, start);
+        let tip = (0..run.curve[0].tips.len()).min_by(|a, b| gap(a).total_cmp(&gap(b)));
+        tip.map_or_else(Curve::default, |tip| Curve::of_tip(run, tip))
+    }
+
+    /// Length of the path, m.
+    #[must_use]
+    pub fn way(&self) -> f64 {
+        self.0.windows(2).map(|pair| distance(pair[0].1, pair[1].1)).sum()
+    }
+
+    /// Cycles at a length of way, linear in between.
+    #[must_use]
+    pub fn cycles_at(&self, way: f64) -> f64 {
+        let mut done = 0.0;
+        for pair in self.0.windows(2) {
+            let step = distance(pair[0].1, pair[1].1);
+            if step > 0.0 && done + step >= way {
+                return pair[0].0 + (way - done) / step * (pair[1].0 - pair[0].0);
+            }
+            done += step;
+        }
+        self.0.last().map_or(f64::NAN, |last| last.0)
+    }
+
+    /// Its part up to a length of way.
+    fn up_to(&self, way: f64) -> Self {
+        let passed = (2..=self.0.len()).take_while(|&n| Curve(self.0[..n].to_vec()).way() <= way).last().unwrap_or(1);
+        Curve(self.0[..passed.min(self.0.len())].to_vec())
+    }
+
+    /// Its part up to a number of cycles.
+    #[must_use]
+    pub fn until(&self, cycles: f64) -> Self {
+        Curve(self.0.iter().copied().filter(|(n, _)| *n <= cycles).collect())
+    }
+
+    /// Distances of its places from the path of another, m.
+    fn off(&self, other: &Curve) -> impl Iterator<Item = f64> {
+        let off = |at: Point| {
+            other.0.windows(2).map(|pair| distance_to_segment(at, pair[0].1, pair[1].1)).fold(f64::INFINITY, f64::min)
+        };
+        self.0.iter().map(move |(_, at)| off(*at))
+    }
+
+    /// The largest of these, m.
+    #[must_use]
+    pub fn largest_off(&self, other: &Curve) -> f64 {
+        self.off(other).fold(0.0, f64::max)
+    }
+
+    /// Their root mean square over the way that both have, m: what lies beyond the other's end is no distance from it.
+    #[must_use]
+    pub fn rms_off(&self, other: &Curve) -> f64 {
+        let common = self.up_to(other.way());
+        (common.off(other).map(|off| off * off).sum::<f64>() / common.0.len() as f64).sqrt()
+    }
+}
+
+/// How a tip went against a reference.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// Which of the reference's tips.
+    pub tip: usize,
+    /// Distance of the reference's places from the path, rms, m.
+    pub rms: f64,
+    /// Cycles at [`SHARES`] of the way, over those of the reference less 1, percent.
+    pub cycles: [f64; 3],
+    /// Way over that of the reference.
+    pub way: f64,
+}
+
+/// Every tip of a run against its reference, up to an x, m.
+#[must_use]
+pub fn compare(run: &Prediction, reference: Vec<Curve>, x_end: f64) -> Vec<Compared> {
+    let tip = |(tip, reference): (usize, Curve)| {
+        let path = reference.0.first().map_or_else(Curve::default, |(_, start)| Curve::from(run, *start));
+        let whole = reference.way();
+        let kept = Curve(reference.0.into_iter().filter(|(_, at)| at[0] < x_end).collect());
+        let way = kept.way().min(path.way());
+        let cycles = SHARES.map(|share| 100.0 * (path.cycles_at(share * way) / kept.cycles_at(share * way) - 1.0));
+        Compared { tip, rms: kept.rms_off(&path), cycles, way: path.way() / whole }
+    };
+    reference.into_iter().enumerate().map(tip).collect()
+}
+
+/// Curves of all tips of a table `cycles, tip, x_mm, y_mm, ...`.
+///
+/// # Errors
+/// A line that holds no such numbers.
+pub fn tips_of_table(text: &str) -> Result<Vec<Curve>> {
+    let mut tips: Vec<Curve> = Vec::new();
+    for line in text.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let number = |i: usize| {
+            let field = fields.get(i).and_then(|field| field.parse::<f64>().ok());
+            field.ok_or_else(|| Error::Mechanics(format!("no number in column {} of \"{line}\"", i + 1)))
+        };
+        let tip = number(1)? as usize;
+        tips.resize(tips.len().max(tip + 1), Curve::default());
+        tips[tip].0.push((number(0)?, [number(2)? * MM, number(3)? * MM]));
+    }
+    Ok(tips)
+}
+
+impl Reference {
+    /// Its case at the spacing that resolves it, other keys set by `section.key=value`.
+    ///
+    /// # Errors
+    /// As [`Case::from_toml`].
+    pub fn case(&self, set: &[&str]) -> Result<Case> {
+        let spacing = self.spacing.map(|mm| format!("model.spacing_mm={mm}"));
+        let set: Vec<String> = spacing.into_iter().chain(set.iter().map(|key| (*key).to_owned())).collect();
+        Case::from_toml(self.files[0], self.name, Path::new("."), &set)
+    }
+
+    /// Its run, and how the tips went.
+    ///
+    /// # Errors
+    /// As [`predict`].
+    pub fn run(&self, set: &[&str]) -> Result<(Prediction, Vec<Compared>)> {
+        let run = predict(&self.case(set)?, &Silent)?;
+        let compared = compare(&run, tips_of_table(self.files[1])?, f64::INFINITY);
+        Ok((run, compared))
+    }
+}
+
+/// Path within 0.15 mm or 0.3 spacings, life within 2 %, the same end.
+///
+/// # Errors
+/// As [`predict`].
+pub fn rows(table: &mut Table) -> Result<()> {
+    const SOURCE: &str = "finite elements (tests/reference)";
+    for reference in &REFERENCES {
+        let (run, tips) = reference.run(&[])?;
+        let bound = f64::max(0.15 * MM, 0.3 * run.figures.spacing);
+        let worst = tips.iter().map(|tip| tip.rms).fold(0.0, f64::max);
+        let about = reference.about;
+        table.error(format!("{about}: path, rms, % of {:.2} mm", bound / MM), 100.0 * worst / bound, 100.0, SOURCE);
+        let cycles = tips
+            .iter()
+            .flat_map(|tip| tip.cycles)
+            .fold(0.0, |most: f64, error| if error.abs() > most.abs() { error } else { most });
+        table.error(format!("{about}: cycles at half, three quarters and 95 % of the way, the worst"), cycles, 2.0, SOURCE);
+        // A run goes on where the reference stops short of an edge or of the other crack.
+        let ended = run.stop == StopReason::EnteredHole || !reference.ends_in_hole;
+        let way = tips.iter().map(|tip| tip.way).fold(f64::INFINITY, f64::min);
+        let short = if ended { 100.0 * (1.0 - way).max(0.0) } else { 100.0 };
+        table.error(format!("{about}: way that is missing to the same end"), short, 3.0, SOURCE);
+    }
+    Ok(())
+}
