@@ -1,4 +1,4 @@
-//! Displacement gradients on the lattice by moving least squares.
+//! Derivatives of the displacement on the lattice by moving least squares.
 //!
 //! Around a point the displacement is fitted by a quadratic over the points it is bonded to: `u(ξ) = u + H ξ + ½ ξ·Q ξ`,
 //! weights falling with the distance. Bonds that the crack cut take no part, so a gradient never looks across the crack;
@@ -25,16 +25,36 @@ pub fn displacement_at(body: &Body, layout: &Layout, displacement: &[f64], frame
     frame.vector(body.lattice.from_axes([displacement[at], displacement[at + layout.stride]]))
 }
 
-/// `∂u_i/∂x_j` at a place in a frame's axes; `None` where too few bonds are left to tell.
+/// Derivatives of the displacement around a place, in a frame's axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivatives {
+    /// `∂u_i/∂x_j` at the place.
+    pub first: [[f64; 2]; 2],
+    /// Of every `u_i` the derivatives over x₁ twice, over x₁ and x₂, over x₂ twice, 1/m.
+    second: [[f64; 3]; 2],
+}
+
+impl Derivatives {
+    /// `∂u_i/∂x_j` at a distance from the place, m.
+    #[must_use]
+    pub fn at(&self, [x, y]: Point) -> [[f64; 2]; 2] {
+        [0, 1].map(|i| {
+            let [xx, xy, yy] = self.second[i];
+            [self.first[i][0] + xx * x + xy * y, self.first[i][1] + xy * x + yy * y]
+        })
+    }
+}
+
+/// Derivatives at a place in a frame's axes; `None` where too few bonds are left to tell.
 #[must_use]
-pub fn gradient_at(
+pub fn derivatives_at(
     body: &Body,
     bonds: &Bonds,
     layout: &Layout,
     displacement: &[f64],
     frame: &TipFrame,
     place: usize,
-) -> Option<[[f64; 2]; 2]> {
+) -> Option<Derivatives> {
     let (places, spacing) = (body.places(), body.lattice.spacing);
     let here = displacement_at(body, layout, displacement, frame, place);
     let mut normal = SMatrix::<f64, TERMS, TERMS>::zeros();
@@ -57,6 +77,9 @@ pub fn gradient_at(
         }
     }
     let fit = normal.cholesky()?.solve(&right) / spacing;
-    let gradient = [[fit[(0, 0)], fit[(1, 0)]], [fit[(0, 1)], fit[(1, 1)]]];
-    gradient.iter().flatten().all(|value| value.is_finite()).then_some(gradient)
+    let of = |row: usize| [fit[(row, 0)], fit[(row, 1)]];
+    let [[ux, vx], [uy, vy], [uxx, vxx], [uxy, vxy], [uyy, vyy]] = [0, 1, 2, 3, 4].map(of);
+    let second = [[uxx, uxy, uyy], [vxx, vxy, vyy]].map(|row| row.map(|value| value / spacing));
+    let derivatives = Derivatives { first: [[ux, uy], [vx, vy]], second };
+    derivatives.first.iter().flatten().chain(second.iter().flatten()).all(|value| value.is_finite()).then_some(derivatives)
 }

@@ -24,7 +24,7 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
 use super::TipFrame;
-use super::gradient::gradient_at;
+use super::gradient::{Derivatives, derivatives_at};
 use super::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
 use crate::body::Body;
 use crate::body::boundary::{LoadPiece, load_pieces};
@@ -260,9 +260,15 @@ impl Around<'_> {
         })
     }
 
-    fn gradient(&self, place: usize) -> Option<[[f64; 2]; 2]> {
+    fn derivatives(&self, place: usize) -> Option<Derivatives> {
         let Balanced { body, bonds, displacement, .. } = self.plate;
-        gradient_at(body, bonds, &self.surroundings.layout, displacement, &self.frame, place)
+        derivatives_at(body, bonds, &self.surroundings.layout, displacement, &self.frame, place)
+    }
+
+    /// The gradient at a place of the plate, by the derivatives at one of its points.
+    fn gradient_towards(&self, at: Point, place: usize) -> Option<[[f64; 2]; 2]> {
+        let from = self.plate.body.lattice.position(place);
+        Some(self.derivatives(place)?.at(self.frame.vector([at[0] - from[0], at[1] - from[1]])))
     }
 
     /// P_j q_,j of a point times its area.
@@ -273,7 +279,7 @@ impl Around<'_> {
         if slope == 0.0 {
             return [0.0; 4];
         }
-        let Some(gradient) = self.gradient(place) else { return [0.0; 4] };
+        let Some(Derivatives { first: gradient, .. }) = self.derivatives(place) else { return [0.0; 4] };
         let q = [slope * theta.cos(), slope * theta.sin()];
         let area = lattice.spacing * lattice.spacing;
         self.auxiliary(r, theta).map(|auxiliary| area * self.interaction(&gradient, &auxiliary, q))
@@ -285,7 +291,7 @@ impl Around<'_> {
         let inside = [0, 1].map(|i| facet.at[i] - 1e-6 * lattice.spacing * facet.normal[i]);
         let (r, theta) = self.own.polar(self.frame.local(inside));
         let (q, _) = self.weight(r);
-        let Some(gradient) = self.place_behind(facet).and_then(|place| self.gradient(place)) else { return [0.0; 4] };
+        let Some(gradient) = self.place_behind(facet).and_then(|place| self.gradient_towards(facet.at, place)) else { return [0.0; 4] };
         let normal @ [m1, m2] = self.frame.vector(facet.normal);
         let elasticity = &self.surroundings.elasticity;
         let gradient = if is_free { without_traction(&gradient, normal, elasticity) } else { gradient };
