@@ -291,7 +291,9 @@ impl Around<'_> {
         let inside = [0, 1].map(|i| facet.at[i] - 1e-6 * lattice.spacing * facet.normal[i]);
         let (r, theta) = self.own.polar(self.frame.local(inside));
         let (q, _) = self.weight(r);
-        let Some(gradient) = self.place_behind(facet).and_then(|place| self.gradient_towards(facet.at, place)) else { return [0.0; 4] };
+        let Some(gradient) = self.place_behind(facet).and_then(|place| self.gradient_towards(facet.at, place)) else {
+            return [0.0; 4];
+        };
         let normal @ [m1, m2] = self.frame.vector(facet.normal);
         let elasticity = &self.surroundings.elasticity;
         let gradient = if is_free { without_traction(&gradient, normal, elasticity) } else { gradient };

@@ -209,11 +209,14 @@ pub fn rows(table: &mut Table) -> Result<()> {
         let worst = tips.iter().map(|tip| tip.rms).fold(0.0, f64::max);
         let about = reference.about;
         table.error(format!("{about}: path, rms, % of {:.2} mm", bound / MM), 100.0 * worst / bound, 100.0, SOURCE);
-        let cycles = tips
-            .iter()
-            .flat_map(|tip| tip.cycles)
-            .fold(0.0, |most: f64, error| if error.abs() > most.abs() { error } else { most });
-        table.error(format!("{about}: cycles at half, three quarters and 95 % of the way, the worst"), cycles, 2.0, SOURCE);
+        for (at, share) in ["half", "three quarters", "95 %"].into_iter().enumerate() {
+            let larger = |most: f64, tip: &Compared| if tip.cycles[at].abs() > most.abs() { tip.cycles[at] } else { most };
+            table.error(format!("{about}: cycles at {share} of the way"), tips.iter().fold(0.0, larger), 2.0, SOURCE);
+            table.known_miss(
+                "at 1 mm the plate is 0.4 % too soft, and K as much too high: its holes, 40 of 100 mm wide, give 0.2 to 0.6 % too much, \
+                 as their rims fall between the points, and only ten spacings are left beside them (-0.5 % at 0.5 mm)",
+            );
+        }
         // A run goes on where the reference stops short of an edge or of the other crack.
         let ended = run.stop == StopReason::EnteredHole || !reference.ends_in_hole;
         let way = tips.iter().map(|tip| tip.way).fold(f64::INFINITY, f64::min);

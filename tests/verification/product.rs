@@ -76,7 +76,8 @@ fn assembled(body: &Body, bonds: &Bonds) -> DMatrix<f64> {
     matrix
 }
 
-/// `½ κ V (Q/Q₀) θ²` of every point, `θ = 2 D / Q`, `D = Σ k_n r n·(u' - u)`, `Q = Σ k_n r²` over its intact bonds, Q₀ over all.
+/// `½ κ V (Q/Q₀) θ²` of every point, `θ = 2 D / Q`, `D = Σ m k_n r n·(u' - u)`, `Q = Σ m k_n r²` over its intact bonds with their
+/// multipliers m, Q₀ over all.
 fn add_dilatation(body: &Body, bonds: &Bonds, number: &[usize], matrix: &mut DMatrix<f64>) {
     if body.stencil.dilatation == 0.0 {
         return;
@@ -90,11 +91,12 @@ fn add_dilatation(body: &Body, bonds: &Bonds, number: &[usize], matrix: &mut DMa
         let spring = &body.stencil.bonds[k];
         let weight = spring.k_n * spring.length;
         for place in [from, to] {
-            whole[place] += weight * spring.length;
-            if bonds.is_intact(bond) {
-                left[place] += weight * spring.length;
+            let [share, share_left] = [&body.multiplier, &bonds.multiplier].map(|m| f64::from(m[bond as usize]));
+            whole[place] += share * weight * spring.length;
+            if share_left > 0.0 {
+                left[place] += share_left * weight * spring.length;
                 for (end, sign) in [(from, -1.0), (to, 1.0)] {
-                    rows[place].extend((0..2).map(|c| (number[end] + c, sign * weight * spring.normal[c])));
+                    rows[place].extend((0..2).map(|c| (number[end] + c, sign * share_left * weight * spring.normal[c])));
                 }
             }
         }

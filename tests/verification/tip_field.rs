@@ -13,14 +13,14 @@ use perilife::growth::plate::Plate;
 use perilife::growth::tip_field::TipField;
 use perilife::growth::tip_field::steering::{equivalent_factor, kink_angle};
 use perilife::predict::{Prediction, Silent, StopReason, predict};
+use perilife::report::verification::line;
 use perilife::solver::field::Layout;
-use perilife::specimen::geometry::distance_to_segment;
 use perilife::specimen::{CrackLine, LineEnd, Point};
 use perilife::state::Bonds;
 use perilife::stress_intensity::TipFrame;
 use perilife::stress_intensity::ring::{Balanced, Surroundings};
 use perilife::stress_intensity::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
-use perilife::units::MM;
+use perilife::verify;
 
 const REST: &str = r#"
 [material]
@@ -108,45 +108,6 @@ fn a_ring_reads_an_exact_field() {
     }
 }
 
-/// A plate with a crack of half length 36 mm through its middle at `beta` degrees to the load.
-fn slanted(beta: f64, set: &[&str]) -> Case {
-    let (sin, cos) = beta.to_radians().sin_cos();
-    let (x, y) = (36.0 * sin, 36.0 * cos);
-    let specimen = format!(
-        "kind = \"plate\"\nwidth_mm = 240\nlength_mm = 240\nthickness_mm = 2\ncracks = [{{ from_mm = [{}, {}], to_mm = [{x}, {y}] }}]",
-        -x, -y
-    );
-    case(&specimen, PULL, &[&["model.spacing_mm=2", "stop.crack_length_mm=74"], set].concat())
-}
-
-/// Turn of the first piece of crack, degrees.
-fn first_kink(case: &Case, run: &Prediction, tip: usize) -> f64 {
-    let [x, y] = case.specimen.tips[tip].direction;
-    let [from, to] = [0, 1].map(|row: usize| run.curve[row].tips[tip].position);
-    let [u, v] = [0, 1].map(|i| to[i] - from[i]);
-    (x * v - y * u).atan2(x * u + y * v).to_degrees()
-}
-
-/// First kinks of slanted cracks are those of the largest circumferential stress (Erdogan and Sih 1963) of K_I and K_II of the
-/// plate without end, on every lattice and at both tips.
-#[test]
-fn first_kinks_are_those_of_circumferential_stress() {
-    for beta in [30.0_f64, 60.0, 75.0] {
-        let (sin, cos) = beta.to_radians().sin_cos();
-        let theory = kink_angle([sin * sin, sin * cos]).to_degrees();
-        let mut kinks = Vec::new();
-        for lattice in [0.0, 22.5] {
-            let case = slanted(beta, &[&format!("model.lattice_angle_deg={lattice}")]);
-            let run = run(&case);
-            kinks.extend([0, 1].map(|tip| first_kink(&case, &run, tip)));
-        }
-        println!("{beta}°: theory {theory:.2}, {kinks:.2?}");
-        assert!(kinks.iter().all(|kink| (kink - theory).abs() < 1.0), "{beta}: {kinks:?} against {theory}");
-        let spread = kinks.iter().fold(0.0, |most: f64, kink| most.max((kink - kinks[0]).abs()));
-        assert!(spread < 0.5, "{beta}: {kinks:?}");
-    }
-}
-
 /// The criterion itself: pure modes, and the sense of the turn.
 #[test]
 fn the_criterion_of_circumferential_stress() {
@@ -166,64 +127,7 @@ fn the_criterion_of_circumferential_stress() {
     assert_eq!(equivalent_factor([-1.0, 0.0]), 0.0);
 }
 
-/// Standard specimens of E647: `[specimen]`, `[loading]`, end of the crack in mm.
-const STANDARD: [(&str, &str, f64); 4] = [
-    ("kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10", PULL, 38.0),
-    (
-        "kind = \"compact_tension\"\nwidth_mm = 50\nthickness_mm = 10\ncrack_length_mm = 15",
-        "force_max_n = 5000\nstress_ratio = 0.1",
-        35.0,
-    ),
-    (
-        "kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 50\nlength_mm = 150\nthickness_mm = 2\ncrack_length_mm = 8",
-        PULL,
-        28.0,
-    ),
-    ("kind = \"double_edge_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 12", PULL, 38.0),
-];
-
-/// Lives of all standard specimens at default resolution against quadrature with handbook K and the same C and m, nothing fitted
-/// and nothing corrected for direction, Poisson's ratio or exponent. The secant of middle tension is 0.1 to 0.25 % too high and the
-/// formula of double edge tension good to 1 %, m times that in life.
-#[test]
-fn lives_of_standard_specimens() {
-    for (specimen, loading, end) in STANDARD {
-        for (set, bound) in [
-            (["fatigue.paris_m=3", "material.poisson_ratio=0.3"], 1.5),
-            (["fatigue.paris_m=6", "material.poisson_ratio=0.3"], 4.2),
-            (["fatigue.paris_m=3", "material.poisson_ratio=0.1"], 1.5),
-        ] {
-            let end_key = format!("stop.crack_length_mm={end}");
-            let set = [&set[..], &[&end_key]].concat();
-            let by_tips = run(&case(specimen, loading, &set));
-            let by_hand = run(&case(specimen, loading, &[&set[..], &["model.method=handbook"]].concat()));
-            let error = 100.0 * (by_tips.life_cycles() / by_hand.life_cycles() - 1.0);
-            println!("{specimen:.30} {set:?}: {error:+.2} %, {} blocks", by_tips.figures.blocks);
-            assert_eq!(by_tips.stop, StopReason::CrackLengthReached);
-            assert!((by_tips.crack_length_final() / (end * MM) - 1.0).abs() < 1e-9, "{}", by_tips.crack_length_final());
-            assert!(error.abs() < bound, "{specimen} {set:?}: {error}");
-        }
-    }
-}
-
-/// The same life whatever the lattice, and for the panel drawn as a plate.
-#[test]
-fn a_turned_lattice_gives_the_same_life() {
-    let (specimen, loading, _) = STANDARD[0];
-    let life =
-        |specimen: &str, set: &[&str]| run(&case(specimen, loading, &[&["model.spacing_mm=1.5"], set].concat())).life_cycles();
-    let upright = life(specimen, &["stop.crack_length_mm=22"]);
-    for angle in [10.0, 22.5, 45.0] {
-        let turned = life(specimen, &["stop.crack_length_mm=22", &format!("model.lattice_angle_deg={angle}")]);
-        println!("{angle}°: {:+.2} %", 100.0 * (turned / upright - 1.0));
-        // Reached: 0.36 % at 45°.
-        assert!((turned / upright - 1.0).abs() < 0.008, "{angle}: {turned} against {upright}");
-    }
-    let drawn =
-        "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncracks = [{ from_mm = [-10, 0], to_mm = [10, 0] }]";
-    let drawn = life(drawn, &["stop.crack_length_mm=44"]);
-    assert!((drawn / upright - 1.0).abs() < 1e-3, "{drawn} against {upright}");
-}
+const PANEL: &str = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10";
 
 /// A stress along a crack has no K: that of a panel pulled along its crack as hard as across it is that of one pressed there, whatever the
 /// lattice. Flanks as the cut leaves them are too soft along the crack, and K differs by 0.9 %.
@@ -309,15 +213,14 @@ fn a_tip_below_the_threshold_waits() {
 /// Ends: run-out at its cycles, toughness at its K, nothing above the threshold, the edge.
 #[test]
 fn reasons_to_stop() {
-    let (specimen, loading, _) = STANDARD[0];
-    let with = |set: &[&str]| run(&case(specimen, loading, &[&["model.spacing_mm=2"], set].concat()));
+    let with = |set: &[&str]| run(&case(PANEL, PULL, &[&["model.spacing_mm=2"], set].concat()));
     let whole = with(&["stop.crack_length_mm=20"]);
     let half = 0.5 * whole.life_cycles();
     let run_out = with(&[&format!("stop.cycles_max={half}")]);
     assert_eq!((run_out.stop, run_out.life_cycles()), (StopReason::RunOut, half));
     let drawn =
         "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncracks = [{ from_mm = [-10, 0], to_mm = [10, 0] }]";
-    let tough = run(&case(drawn, loading, &["model.spacing_mm=2", "material.toughness_mpa_sqrt_m=16"]));
+    let tough = run(&case(drawn, PULL, &["model.spacing_mm=2", "material.toughness_mpa_sqrt_m=16"]));
     assert_eq!(tough.stop, StopReason::Toughness);
     assert!((tough.curve.last().unwrap().delta_k / (0.9 * 16e6) - 1.0).abs() < 1e-9);
     let still = with(&["fatigue.delta_k_threshold_mpa_sqrt_m=30"]);
@@ -325,51 +228,16 @@ fn reasons_to_stop() {
     assert!(matches!(with(&[]).stop, StopReason::Severed | StopReason::LeftPlate));
 }
 
-/// Steps of default length against steps of a tenth of it: lives within 0.3 to 0.7 % (0.5 % is asked for; where a hole or another crack
-/// draws the tips single readings are up to 1 % too high as a tip passes a point, and short steps take in more of them), and paths
-/// within a tenth of a spacing over 99 % of the life. In the last percent tips pass each other closer than points resolve.
+/// Lives and paths by K on all resolutions: the rows of `perilife verify` keep their bounds, and where there is a known miss, it is that.
 #[test]
-fn steps_are_short_enough() {
-    let plate = "kind = \"plate\"\nwidth_mm = 60\nlength_mm = 80\nthickness_mm = 2\n";
-    let specimens = [
-        "kind = \"middle_tension\"\nwidth_mm = 80\nlength_mm = 160\nthickness_mm = 2\ncrack_length_mm = 10".to_owned(),
-        format!("{plate}cracks = [{{ from_mm = [-5.2, -5.1], to_mm = [5.2, 5.1] }}]"),
-        format!("{plate}cracks = [{{ from_mm = [-21, 0.2], to_mm = [-9, 0.2] }}, {{ from_mm = [4, -3.8], to_mm = [13, -3.8] }}]"),
-        format!(
-            "{plate}holes = [{{ x_mm = 2, y_mm = 7, diameter_mm = 10 }}]\ncracks = [{{ from_mm = [-30, 0.2], to_mm = [-21, 0.2] }}]"
-        ),
-    ];
-    for specimen in specimens {
-        let grown =
-            |error: f64| run(&case(&specimen, PULL, &["model.spacing_mm=1", &format!("fatigue.block_error_percent={error}")]));
-        let (coarse, fine) = (grown(0.2), grown(0.002));
-        let error = 100.0 * (coarse.life_cycles() / fine.life_cycles() - 1.0);
-        let tips = 0..fine.curve[0].tips.len();
-        // The whole of the fine path: where a tip stands at one share of life may differ by a step along it.
-        let path = |of: &Prediction, tip: usize, share: f64| {
-            let until = of.curve.iter().filter(|row| row.cycles <= share * of.life_cycles());
-            until.map(|row| row.tips[tip].position).collect::<Vec<Point>>()
-        };
-        let off = |tip: usize| {
-            let (coarse, fine) = (path(&coarse, tip, 0.99), path(&fine, tip, 1.0));
-            let from_fine = |at: &Point| {
-                fine.windows(2).map(|piece| distance_to_segment(*at, piece[0], piece[1])).fold(f64::INFINITY, f64::min)
-            };
-            coarse.iter().map(from_fine).fold(0.0, f64::max)
-        };
-        let off = tips.map(off).fold(0.0, f64::max) / MM;
-        let blocks = [&coarse, &fine].map(|run| run.figures.blocks);
-        println!("{specimen:.80}: life {error:+.2} %, path {off:.3} mm, {blocks:?} blocks, {} and {}", coarse.stop, fine.stop);
-        assert!(blocks[1] > 4 * blocks[0], "{blocks:?}");
-        assert_eq!(coarse.stop, fine.stop);
-        let draws = specimen.contains("holes") || specimen.contains("}, {");
-        let bound = if draws {
-            0.7
-        } else if specimen.contains("plate") {
-            0.5
-        } else {
-            0.3
-        };
-        assert!(error.abs() < bound && off < 0.1, "{error} %, {off} mm");
+fn rows_of_verify_keep_their_bounds() {
+    let topics = ["life", "poissons_ratio", "same_plate", "blocks", "paths"];
+    let topics = verify::topics(&topics.map(str::to_owned)).unwrap();
+    let rows = verify::rows(&topics, &|_, rows| rows.iter().for_each(|row| println!("{}", line(row)))).unwrap();
+    assert!(rows.len() > 110, "{}", rows.len());
+    for row in rows {
+        let incompressible = ["nu 0.45", "nu 0.49"].iter().any(|nu| row.quantity.contains(&format!("plane strain, {nu}")));
+        let misses = incompressible || row.quantity.starts_with("two holes");
+        assert!(row.ok() || misses && row.known_miss.is_some(), "{row:?}");
     }
 }
