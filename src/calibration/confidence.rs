@@ -9,7 +9,8 @@
 //! ```
 //!
 //! (White 1980; W weights the lives, L sums up the increments that each of them spans) with increments `ΔN_i` of the fit that
-//! scatter independently by the same relative σ, which is the rms of the relative residual increments.
+//! scatter independently by the same relative σ: the rms of the relative residual increments, each by its share of the life. Counted
+//! alike, one odd reading in the last percent of a life would double the error of the whole fit.
 
 use crate::calibration::criterion::Criterion;
 use nalgebra::{Matrix2, Vector2};
@@ -46,8 +47,10 @@ pub fn confidence(criterion: Criterion, lives: &Lives<'_>, inverse_a: f64) -> Co
     // Readings that noise puts in the wrong order have no fitted increment to compare with.
     let usable = || increments.iter().filter(|(fitted, _)| *fitted > 0.0);
     let parameters = if model_per_p.is_some() { 2 } else { 1 };
-    let freedom = usable().count().saturating_sub(parameters).max(1) as f64;
-    let variance = usable().map(|(fitted, measured)| (measured / fitted - 1.0).powi(2)).sum::<f64>() / freedom;
+    let count = usable().count();
+    let lost = count as f64 / count.saturating_sub(parameters).max(1) as f64;
+    let all: f64 = usable().map(|(fitted, _)| fitted).sum();
+    let variance = lost * usable().map(|(fitted, measured)| fitted * (measured / fitted - 1.0).powi(2)).sum::<f64>() / all;
 
     // N = n / A: ∂N/∂ln A = -N, ∂N/∂p = (∂n/∂p) / A.
     let jacobian = |(from, to): (usize, usize)| {

@@ -8,11 +8,13 @@ use crate::calibration::misfit::rms_life_error;
 use crate::calibration::model::{ForwardModel, cycles_since_first};
 use crate::calibration::paris::{self, Paris};
 use crate::calibration::power_law::PowerLaw;
+use crate::calibration::rates::STEP_MIN;
 use crate::calibration::search::{
     Constants, Found, P_MAX, P_MIN, Runs, Target, first_exponents, search, search_a, search_each, search_each_a,
 };
 use crate::calibration::surrogate::Surrogate;
 use crate::error::{Result, input};
+use crate::units::MM;
 
 /// Below this ratio of the largest to the smallest ΔK a curve does not say what p is.
 pub const DELTA_K_RATIO_MIN: f64 = 2.0;
@@ -81,7 +83,7 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
     };
     let Found { constants, mut runs, mut warnings } = found;
     let (_, last_run) = &runs[runs.len() - 1]; // a search makes at least one run
-    let (horizon, spacing) = (last_run.horizon, last_run.spacing);
+    let (horizon, spacing, coarseness) = (last_run.horizon, last_run.spacing, last_run.coarseness);
     warnings.extend(last_run.warnings.iter().cloned());
     let model_cycles = cycles_since_first(&last_run.curve, target.lengths)?;
     let record = fitted_curve(&median, constants, &model_cycles);
@@ -95,8 +97,8 @@ pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
             None => Some(Surrogate::new(&runs, lengths)?.cycles_per_p(constants.p)),
         })
     };
-    // A model without lattice has no steps of its own.
-    let apart = readings_apart(target.lengths, if spacing.is_finite() { spacing } else { 0.0 });
+    let apart = readings_apart(target.lengths, coarseness.max(STEP_MIN));
+    warnings.extend(short_steps_warning(target.lengths));
     let pick = |values: &[f64]| apart.iter().map(|&i| values[i]).collect::<Vec<f64>>();
     let slopes_apart = slopes(target.lengths)?.map(|slopes| pick(&slopes));
     let confidence = confidence(
@@ -181,18 +183,29 @@ fn checked_p(p: f64) -> Result<f64> {
     Err(input("fit.p", p, format!("is outside {P_MIN} to {P_MAX}"), "give the exponent of the growth law, usually 2 to 4"))
 }
 
-/// Readings at least a lattice spacing apart, the first among them. Increments shorter than what a row of bonds stands for
-/// say nothing about the scatter of growth: in them the model's own steps and the reading error of the laboratory show.
-/// A model without a lattice (spacing NaN) keeps all.
-fn readings_apart(lengths: &[f64], spacing: f64) -> Vec<usize> {
-    let least = if spacing.is_nan() { 0.0 } else { spacing * (1.0 - 1e-9) };
+/// Readings at least `least` of growth apart, m, the first among them. Shorter increments say nothing about the scatter of growth: in
+/// them the steps of the model and the reading error of the laboratory show.
+fn readings_apart(lengths: &[f64], least: f64) -> Vec<usize> {
     let mut apart: Vec<usize> = Vec::new();
     for (i, &length) in lengths.iter().enumerate() {
-        if apart.last().is_none_or(|&last| length >= lengths[last] + least) {
+        if apart.last().is_none_or(|&last| length >= lengths[last] + least * (1.0 - 1e-9)) {
             apart.push(i);
         }
     }
     apart
+}
+
+/// Readings nearer together than a laboratory reads.
+fn short_steps_warning(lengths: &[f64]) -> Option<String> {
+    let short = lengths.windows(2).filter(|pair| pair[1] - pair[0] < STEP_MIN * (1.0 - 1e-9)).count();
+    (short > 0).then(|| {
+        format!(
+            "{short} of {} steps between readings are under {} mm (ASTM E647, 8.6.2): errors of the fit count such readings together \
+             with the next; read less often",
+            lengths.len() - 1,
+            STEP_MIN / MM
+        )
+    })
 }
 
 fn since_first(curve: &MeasuredCurve) -> Vec<f64> {

@@ -31,6 +31,8 @@ pub struct RecordedRun {
     pub horizon: f64,
     /// Actual lattice spacing, m.
     pub spacing: f64,
+    /// Growth below which the curve shows steps of the model, m: a spacing where bonds break one by one, none where K drives the tip.
+    pub coarseness: f64,
     /// What the user should know about the run.
     pub warnings: Vec<String>,
     replay: Box<dyn Fn(f64) -> UnitCurve + Send + Sync>,
@@ -40,7 +42,7 @@ impl RecordedRun {
     /// A run with a cheap estimate of the same run at another p, computed from its recorded events without any solve.
     #[must_use]
     pub fn new(curve: UnitCurve, horizon: f64, spacing: f64, replay: impl Fn(f64) -> UnitCurve + Send + Sync + 'static) -> Self {
-        RecordedRun { curve, horizon, spacing, warnings: Vec::new(), replay: Box::new(replay) }
+        RecordedRun { curve, horizon, spacing, coarseness: 0.0, warnings: Vec::new(), replay: Box::new(replay) }
     }
 
     /// Estimated curve for A = 1 at another exponent.

@@ -106,6 +106,7 @@ fn recorded(run: FinishedRun) -> RecordedRun {
     let FinishedRun { curve, end, horizon, spacing, warnings, recording, .. } = run;
     let replay = move |p: f64| recording.replay(p, end, spacing);
     let mut recorded = RecordedRun::new(curve, horizon, spacing, replay);
+    recorded.coarseness = spacing;
     recorded.warnings = warnings;
     recorded
 }

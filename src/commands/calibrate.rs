@@ -152,6 +152,7 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
         ),
         format!("  Paris          da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m)", report.paris_c_mm_per_cycle, report.paris_m),
         format!("  m              {:.4}{}{source}", report.paris_m, error(report.paris_m_error)),
+        "  ±              one standard error".to_owned(),
         format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", report.delta_k_min_mpa_sqrt_m, report.delta_k_max_mpa_sqrt_m),
         format!(
             "  life           measured {:.0}, fitted {:.0} cycles ({life:+.2} %), rms life error {:.2} %",

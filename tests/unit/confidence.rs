@@ -77,3 +77,32 @@ fn the_pivot_is_where_the_rate_is_known_best() {
     // Away from the pivot the same law is known less well: the error of A itself (ΔK = 1) is many times larger.
     assert!(fit.confidence.covariance[0][0].sqrt() > 5.0 * fit.paris.rate_at_pivot_error);
 }
+
+/// A reading 0.025 mm after another near the end of the life, half a step of cycles later, as a laboratory that reads too often has:
+/// counted as an increment of its own it would multiply the error of m by five.
+#[test]
+fn one_odd_reading_does_not_make_the_error() {
+    let mut curve = exact_curve("noisy", A, P);
+    let mut noise = Noise::new(3);
+    let exact = curve.cycles.clone();
+    for i in 1..exact.len() {
+        curve.cycles[i] = curve.cycles[i - 1] + (exact[i] - exact[i - 1]) * (1.0 + 0.05 * noise.normal());
+    }
+    let mut odd = curve.clone();
+    let at = exact.len() - 6;
+    odd.crack_length.insert(at + 1, curve.crack_length[at] + 0.025e-3);
+    odd.cycles.insert(at + 1, 0.5 * (curve.cycles[at] + curve.cycles[at + 1]));
+    for criterion in Criterion::ALL.iter().copied() {
+        let [plain, with_odd] =
+            [curve.clone(), odd.clone()].map(|curve| fit_by(criterion, &[curve], None, &paris_model()).unwrap());
+        let ratio = with_odd.p_error() / plain.p_error();
+        println!("{criterion}: p ± {} without, {} with it", plain.p_error(), with_odd.p_error());
+        assert!((0.7..1.4).contains(&ratio), "{criterion}: {ratio}");
+        assert!(
+            with_odd.warnings.iter().any(|text| text.starts_with("1 of ") && text.contains("0.25 mm")),
+            "{:?}",
+            with_odd.warnings
+        );
+        assert!(!plain.warnings.iter().any(|text| text.contains("0.25 mm")), "{:?}", plain.warnings);
+    }
+}
