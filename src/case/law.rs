@@ -134,7 +134,7 @@ pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<Str
     }
     if (case.loading.ratio - record.stress_ratio).abs() > 1e-9 {
         let (given, recorded, gamma) = (case.loading.ratio, record.stress_ratio, case.fatigue.walker_gamma);
-        lines.push(format!("law calibrated at stress ratio {recorded} used at {given} with walker_gamma = {gamma}: an assumption, not a measurement"));
+        lines.push(format!("law calibrated at stress ratio {recorded} used at {given} with walker_gamma = {gamma}, an assumption: calibrate at that ratio, or give the walker_gamma that tests at two ratios fit"));
     }
     if case.model.method == Method::Peridynamics {
         lines.extend(material_line(&case.material, record, bonds)?);

@@ -5,8 +5,9 @@ use crate::case::{Case, LawSource, Method};
 use crate::predict::Prediction;
 use crate::units::MPA_SQRT_M;
 
-/// Below this many times the lowest fitted ΔK a fit knows nothing of how near the threshold is.
-pub const NEAR_THRESHOLD: f64 = 1.5;
+/// Share of life outside the fitted ΔK range above which a run is warned about, and of a side of the range that is named then.
+const WARNED: f64 = 0.05;
+const NAMED: f64 = 0.01;
 
 /// Share of the life that was spent at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
 /// within each block. `None` without a fitted record, without life, or without any known ΔK.
@@ -16,25 +17,31 @@ pub fn life_share_extrapolated(case: &Case, prediction: &Prediction) -> Option<f
     life_share_outside(prediction, record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m)
 }
 
-/// Share of the life spent at a ΔK below [`NEAR_THRESHOLD`] times the lowest fitted one, where no threshold is given. `None`
-/// with a threshold, and as [`life_share_extrapolated`].
+/// What is to be said about life outside the fitted range of ΔK, the larger share first.
 #[must_use]
-pub fn life_share_near_threshold(case: &Case, prediction: &Prediction) -> Option<f64> {
-    let record = fitted(case).filter(|_| case.fatigue.threshold == 0.0)?;
-    life_share_outside(prediction, NEAR_THRESHOLD * record.delta_k_min_mpa_sqrt_m, f64::INFINITY)
-}
-
-/// Labels of a run: what of its life the fit says little about.
-#[must_use]
-pub fn labels(case: &Case, prediction: &Prediction) -> Vec<String> {
-    let Some(record) = fitted(case) else { return Vec::new() };
-    let Some(share) = life_share_near_threshold(case, prediction).filter(|share| *share > 0.0) else { return Vec::new() };
-    vec![format!(
-        "{:.1} % of the life is spent at ΔK below {:.2} MPa√m, {NEAR_THRESHOLD} times the lowest fitted value, and no \
-         fatigue.delta_k_threshold_mpa_sqrt_m is given: near a threshold cracks grow slower than computed here",
-        100.0 * share,
-        NEAR_THRESHOLD * record.delta_k_min_mpa_sqrt_m
-    )]
+pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
+    let share = life_share_extrapolated(case, prediction).filter(|share| *share > WARNED);
+    let Some(record) = fitted(case).filter(|_| share.is_some()) else { return Vec::new() };
+    let (low, high) = (record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m);
+    let threshold = if case.fatigue.threshold > 0.0 { "" } else { ", or give fatigue.delta_k_threshold_mpa_sqrt_m" };
+    let below = (
+        life_share_outside(prediction, low, f64::INFINITY),
+        format!(
+            "below {low:.2} MPa√m, the lowest fitted value: near a threshold cracks grow slower than computed; calibrate on slower \
+             growth{threshold}"
+        ),
+    );
+    let above = (
+        life_share_outside(prediction, 0.0, high),
+        format!(
+            "above {high:.2} MPa√m, the highest fitted value: near toughness cracks grow faster than computed; calibrate on longer cracks, \
+             or end the life sooner by stop.crack_length_mm"
+        ),
+    );
+    let mut sides: Vec<(f64, String)> =
+        [below, above].into_iter().filter_map(|(share, words)| Some((share.filter(|share| *share > NAMED)?, words))).collect();
+    sides.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sides.into_iter().map(|(share, words)| format!("{:.1} % of the life is spent at ΔK {words}", 100.0 * share)).collect()
 }
 
 /// The law of a record in words: rate at the pivot and m with their errors, never A alone. `None` for inline constants, whose

@@ -11,8 +11,8 @@ use crate::predict::{Prediction, StopReason};
 use crate::specimen::handbook::handbook;
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
+use super::fit_use::extrapolated;
 pub use super::fit_use::life_share_extrapolated;
-use super::fit_use::{NEAR_THRESHOLD, labels, life_share_near_threshold};
 
 /// Name of the file.
 pub const RESULT_FILE: &str = "result.json";
@@ -21,8 +21,9 @@ pub const RESULT_FILE: &str = "result.json";
 #[must_use]
 pub fn result(case: &Case, prediction: &Prediction) -> Value {
     let figures = &prediction.figures;
-    let labels = labels(case, prediction);
-    let warnings: Vec<&String> = case.warnings.iter().chain(&prediction.warnings).chain(&labels).collect();
+    let extrapolated = extrapolated(case, prediction);
+    // What the run found comes first: it counts more than what an assumption may do.
+    let warnings: Vec<&String> = prediction.warnings.iter().chain(&extrapolated).chain(&case.warnings).collect();
     json!({
         "name": case.name,
         "life_cycles": prediction.life(),
@@ -32,7 +33,6 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "crack_length_initial_mm": clean(case.specimen.crack_length / MM),
         "crack_length_final_mm": clean(prediction.crack_length_final() / MM),
         "life_share_extrapolated": life_share_extrapolated(case, prediction),
-        "life_share_near_threshold": life_share_near_threshold(case, prediction),
         "plastic_zone": plastic_zone(case, prediction),
         "k_cross_check": prediction.cross_check.map(|check| json!({
             "compared": check.compared,
@@ -203,7 +203,6 @@ fn law(case: &Case, prediction: &Prediction) -> Value {
             "rate_at_pivot_mm_per_cycle": record.rate_at_pivot_mm_per_cycle,
             "rate_at_pivot_relative_error": record.rate_at_pivot_relative_error,
             "delta_k_min_mpa_sqrt_m": record.delta_k_min_mpa_sqrt_m, "delta_k_max_mpa_sqrt_m": record.delta_k_max_mpa_sqrt_m,
-            "near_threshold_below_mpa_sqrt_m": NEAR_THRESHOLD * record.delta_k_min_mpa_sqrt_m,
         }),
         LawSource::Factor(law) => json!({ "source": "inline", "constants_si": law }),
         LawSource::Missing(path) => json!({ "source": "missing", "file": path }),

@@ -17,7 +17,6 @@ use crate::specimen::Point;
 /// Folder of the ParaView files in that of a run.
 pub const PARAVIEW: &str = "paraview";
 /// Share of life outside the fitted ΔK range above which the user is warned.
-const EXTRAPOLATION_WARNED: f64 = 0.05;
 /// Share of life outside the fitted ΔK range above which a run is refused unless the case allows it.
 const EXTRAPOLATION_REFUSED: f64 = 0.25;
 
@@ -60,17 +59,8 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
         }
         _ => {}
     }
-    warnings.extend(extrapolated(case, prediction));
-    warnings.extend(fit_use::labels(case, prediction));
+    warnings.extend(fit_use::extrapolated(case, prediction));
     Ok(warnings)
-}
-
-/// What is to be said about life outside the fitted range of ΔK.
-fn extrapolated(case: &Case, prediction: &Prediction) -> Option<String> {
-    let share = json::life_share_extrapolated(case, prediction).filter(|share| *share > EXTRAPOLATION_WARNED)?;
-    let LawSource::Fitted(record) = &case.law else { return None };
-    let (low, high) = (record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m);
-    Some(format!("{:.1} % of the life lies outside the fitted range of ΔK, {low:.2} to {high:.2} MPa√m", 100.0 * share))
 }
 
 /// Why a run does not count though it came to an end: more than a quarter of its life lies outside the fitted range of ΔK, and the
@@ -78,7 +68,12 @@ fn extrapolated(case: &Case, prediction: &Prediction) -> Option<String> {
 #[must_use]
 pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
     let share = json::life_share_extrapolated(case, prediction).unwrap_or(0.0);
-    let text = extrapolated(case, prediction).filter(|_| share > EXTRAPOLATION_REFUSED && !case.allow_extrapolation)?;
+    let LawSource::Fitted(record) = &case.law else { return None };
+    if share <= EXTRAPOLATION_REFUSED || case.allow_extrapolation {
+        return None;
+    }
+    let (low, high) = (record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m);
+    let text = format!("{:.1} % of the life lies outside the fitted range of ΔK, {low:.2} to {high:.2} MPa√m", 100.0 * share);
     let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
     Some(input("fatigue.allow_extrapolation", false, format!("{}: {text}; the results are marked as refused", case.name), remedy))
 }

@@ -7,26 +7,30 @@ use crate::hand_cases::{PANEL, hand_case, hand_run};
 use crate::{made_up_case, made_up_run};
 
 #[test]
-fn life_near_the_lowest_fitted_delta_k_is_labelled_unless_a_threshold_is_given() {
+fn life_outside_the_fitted_range_is_told_side_by_side_with_a_remedy() {
     let (mut case, mut run) = (made_up_case::case(), made_up_run::prediction(0.0));
-    assert!(fit_use::labels(&case, &run).is_empty(), "an inline law has no lowest ΔK");
-    // ΔK rises linearly from 10 to 20 MPa√m over 100 cycles; 1.5 times 8 is 12.
+    assert!(fit_use::extrapolated(&case, &run).is_empty(), "an inline law has no fitted range");
+    // ΔK rises linearly from 10 to 20 MPa√m over 100 cycles.
     run.curve.truncate(2);
     for (point, (cycles, delta_k)) in run.curve.iter_mut().zip([(0.0, 10e6), (100.0, 20e6)]) {
         (point.cycles, point.delta_k) = (cycles, delta_k);
     }
-    case.law = made_up_case::fitted(8.0, 25.0);
-    let share = fit_use::life_share_near_threshold(&case, &run).unwrap();
-    assert!((share - 0.2).abs() < 1e-5, "{share}");
-    let labels = fit_use::labels(&case, &run);
-    assert!(labels.len() == 1 && labels[0].contains("20.0 %") && labels[0].contains("12.00 MPa√m"), "{labels:?}");
-    assert!(json::result(&case, &run)["warnings"].as_array().unwrap().iter().any(|line| line == &labels[0]));
-    // Above 1.5 times the lowest value there is nothing to label.
-    case.law = made_up_case::fitted(6.0, 25.0);
-    assert!(fit_use::labels(&case, &run).is_empty());
-    case.law = made_up_case::fitted(8.0, 25.0);
+    case.law = made_up_case::fitted(12.0, 17.0);
+    let told = fit_use::extrapolated(&case, &run);
+    assert!(told.len() == 2, "{told:?}");
+    // The larger share first.
+    assert!(told[0].starts_with("30.0 % of the life is spent at ΔK above 17.00 MPa√m"), "{told:?}");
+    assert!(
+        told[1].starts_with("20.0 % of the life is spent at ΔK below 12.00 MPa√m") && told[1].contains("threshold_mpa"),
+        "{told:?}"
+    );
+    let all = &json::result(&case, &run)["warnings"];
+    assert!(told.iter().all(|line| all.as_array().unwrap().iter().any(|told| told == line)), "{all}");
     case.fatigue.threshold = 3e6;
-    assert!(fit_use::labels(&case, &run).is_empty() && fit_use::life_share_near_threshold(&case, &run).is_none());
+    assert!(!fit_use::extrapolated(&case, &run)[1].contains("threshold_mpa"));
+    // The calibrated specimen itself is not warned about.
+    case.law = made_up_case::fitted(10.0, 20.0);
+    assert!(fit_use::extrapolated(&case, &run).is_empty());
 }
 
 #[test]

@@ -97,7 +97,7 @@ fn the_result_has_every_promised_key() {
     assert_eq!(result["life_cycles"].as_f64(), Some(run.life_cycles()));
     assert_eq!(result["stop_reason"], "crack_length_reached");
     assert_eq!(result["case"], case.echo);
-    assert_eq!(result["warnings"], serde_json::json!(["spacing moved", "made up"]));
+    assert_eq!(result["warnings"], serde_json::json!(["made up", "spacing moved"]));
     assert!(result["life_share_extrapolated"].is_null(), "an inline law has no fitted range");
     let why = &result["model"]["why"];
     assert_eq!(why["bond_law"], "given in the case");
