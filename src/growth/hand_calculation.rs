@@ -89,7 +89,12 @@ impl<'a> HandCalculation<'a> {
             tips: specimen
                 .tips
                 .iter()
-                .map(|seed| TipRecord { position: ahead(seed), growth, factors: Some([delta_k / loading.range_share(), 0.0]) })
+                .map(|seed| TipRecord {
+                    position: ahead(seed),
+                    growth,
+                    factors: Some([delta_k / loading.range_share(), 0.0]),
+                    t_stress: None,
+                })
                 .collect(),
         }
     }

@@ -29,6 +29,8 @@ pub struct TipRecord {
     pub growth: f64,
     /// K_I and K_II at maximum load, Pa√m; `None` where nobody reads them.
     pub factors: Option<[f64; 2]>,
+    /// Stress along the crack T at maximum load, Pa; `None` where nobody reads it.
+    pub t_stress: Option<f64>,
 }
 
 /// One cycle block of a finished run.
@@ -60,6 +62,7 @@ impl CurvePoint {
             position: [0, 1].map(|i| mix(a.position[i], b.position[i])),
             growth: mix(a.growth, b.growth),
             factors: a.factors.zip(b.factors).map(|(a, b)| [0, 1].map(|i| mix(a[i], b[i]))),
+            t_stress: a.t_stress.zip(b.t_stress).map(|(a, b)| mix(a, b)),
         };
         CurvePoint {
             cycles: mix(before.cycles, self.cycles),

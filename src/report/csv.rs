@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::error::{Error, InputError, Result};
 use crate::predict::{CurvePoint, Prediction};
 use crate::specimen::{Crack, Point};
-use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 
 /// Name of the table of a run's a-N curve.
 pub const A_N_FILE: &str = "a_n.csv";
@@ -49,17 +49,21 @@ impl Row {
 }
 
 /// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
-/// (load squared times compliance) and, per tip, position and growth, and K_I and K_II at maximum load where they are known.
+/// (load squared times compliance) and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
 #[must_use]
 pub fn a_n(prediction: &Prediction) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
     // Bonds that age by their own strain know no K of a tip.
     let has_factors = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.factors.is_some());
+    let has_t = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.t_stress.is_some());
     for tip in 0..prediction.curve.first().map_or(0, |point| point.tips.len()) {
         let _ = write!(text, ",tip{tip}_x_mm,tip{tip}_y_mm,tip{tip}_growth_mm"); // writing to a String cannot fail
         if has_factors {
             let _ = write!(text, ",tip{tip}_k_i_mpa_sqrt_m,tip{tip}_k_ii_mpa_sqrt_m");
+        }
+        if has_t {
+            let _ = write!(text, ",tip{tip}_t_stress_mpa");
         }
     }
     text.push('\n');
@@ -71,6 +75,9 @@ pub fn a_n(prediction: &Prediction) -> String {
             }
             for factor in tip.factors.unwrap_or([f64::NAN; 2]).into_iter().filter(|_| has_factors) {
                 let _ = write!(text, ",{}", number(factor / MPA_SQRT_M));
+            }
+            if has_t {
+                let _ = write!(text, ",{}", number(tip.t_stress.unwrap_or(f64::NAN) / MPA));
             }
         }
         text.push('\n');

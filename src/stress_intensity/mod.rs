@@ -9,6 +9,7 @@
 //! crack, K_II > 0 slides the face on the side of x₂ > 0 towards x₁ > 0.
 
 mod cracked_plate;
+mod cut_cells;
 mod domain_integral;
 mod energy_release;
 mod face_loads;

@@ -17,22 +17,27 @@
 //! shifted by x is `u - x u_,1`, so with an auxiliary field `U` whose derivative `U_,1` is that of K^aux = 1 (the term r^{3/2} of
 //! Williams' series, which is orthogonal to all others of the field) the same integral gives K x.
 //!
+//! With the field of a force F along x₁ at the tip as auxiliary field, whose stress is `σ_rr = -F cos θ / (π r)` and which leaves the
+//! faces free, the integral is the stress along the crack (Kfouri 1986, Int. J. Fract. 30:301): `T = E' / F [...]`.
+//!
 //! The bonds near the tip, where the displacement of a nonlocal body is not that of a sharp crack, lie inside the ring and take
 //! no part.
 
-use std::collections::HashMap;
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};
 
 use super::TipFrame;
+use super::cut_cells::{Part, SHARE, cells_along, cells_at, parts};
 use super::gradient::{Derivatives, derivatives_at};
-use super::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use super::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
 use crate::body::Body;
 use crate::body::boundary::{LoadPiece, load_pieces};
 use crate::body::facets::{Facet, facets};
 use crate::body::pre_crack::{places_near, tie_break};
 use crate::material::Material;
 use crate::solver::field::Layout;
-use crate::specimen::geometry::distance;
+use crate::specimen::geometry::{distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen, Support};
 use crate::state::Bonds;
 
@@ -52,8 +57,8 @@ const ROOM_HORIZONS: f64 = 0.2;
 const AUXILIARY: [(i32, Symmetry); 4] =
     [(1, Symmetry::Opening), (1, Symmetry::Sliding), (3, Symmetry::Opening), (3, Symmetry::Sliding)];
 
-/// A value for each of the [`AUXILIARY`] fields.
-type PerAuxiliary = [f64; 4];
+/// A value for each of the [`AUXILIARY`] fields, and for that of a force at the tip.
+type PerAuxiliary = [f64; 5];
 
 /// What does not change around the tips of a plate.
 #[derive(Debug, Clone)]
@@ -64,7 +69,9 @@ pub struct Surroundings {
     rim: Vec<(Facet, bool)>,
     loads: Vec<LoadPiece>,
     supports: Vec<[Point; 2]>,
-    thickness: f64,
+    specimen: Specimen,
+    /// Cells that the rim cuts.
+    rim_cells: HashSet<usize>,
 }
 
 /// Plate in equilibrium around its tips.
@@ -87,6 +94,8 @@ pub struct Balanced<'a> {
 pub struct RingFactors {
     /// K_I and K_II, Pa√m.
     pub factors: [f64; 2],
+    /// Stress along the crack T, Pa.
+    pub t_stress: f64,
     /// How far ahead of the end of the line the field has its tip, m.
     pub ahead: f64,
     /// Outer radius of the ring, m.
@@ -112,14 +121,15 @@ impl Surroundings {
             let cells = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [column + i, row + j]));
             cells.filter_map(|cell| loaded.get(&cell)).flatten().all(|&at| distance(at, facet.at) > 0.25 * spacing)
         };
-        let rim = facets(specimen, spacing).into_iter().map(|facet| (facet, is_free(&facet))).collect();
+        let rim: Vec<(Facet, bool)> = facets(specimen, spacing).into_iter().map(|facet| (facet, is_free(&facet))).collect();
         Surroundings {
             layout: Layout::of(&body.lattice, body.stencil.unknowns),
             elasticity: Elasticity::of(material),
+            rim_cells: rim.iter().flat_map(|(facet, _)| cells_at(body, facet.at)).collect(),
             rim,
             loads,
             supports: held.collect(),
-            thickness: specimen.thickness,
+            specimen: specimen.clone(),
         }
     }
 
@@ -128,7 +138,7 @@ impl Surroundings {
     pub fn radius(&self, body: &Body, lines: &[CrackLine], end: LineEnd, tips: &[LineEnd], wanted: f64) -> f64 {
         let here = lines[end.line].end(end.at_last);
         let others = tips.iter().filter(|other| **other != end).map(|other| distance(here, lines[other.line].end(other.at_last)));
-        let supports = self.supports.iter().map(|[a, b]| crate::specimen::geometry::distance_to_segment(here, *a, *b));
+        let supports = self.supports.iter().map(|[a, b]| distance_to_segment(here, *a, *b));
         others.chain(supports).fold(f64::INFINITY, f64::min).min(wanted + ROOM_HORIZONS * body.horizon())
             - ROOM_HORIZONS * body.horizon()
     }
@@ -141,20 +151,31 @@ impl Surroundings {
         let frame = TipFrame { origin: line.end(end.at_last), ahead: line.direction(end.at_last), line: 0.0 };
         let own = Behind::new(body, line, end.at_last, &frame);
         let inner = (INNER_SHARE * outer).max((INNER_HORIZONS * body.horizon()).min(0.5 * outer));
-        let around = Around { surroundings: self, plate, frame, own, inner, outer };
-        let mut sums: PerAuxiliary = [0.0; 4];
+        let around = Around { surroundings: self, plate, frame, own, inner, outer, known: RefCell::default() };
+        let mut sums: PerAuxiliary = [0.0; 5];
         let mut add = |part: PerAuxiliary| sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-        for place in places_near(body, frame.origin, frame.origin, outer) {
-            add(around.area(place));
-        }
         let near = |at: Point| distance(at, frame.origin) < outer;
+        let spacing = body.lattice.spacing;
+        let is_piece_near = |[a, b]: &[Point; 2]| distance_to_segment(frame.origin, *a, *b) < outer + 2.0 * spacing;
+        let pieces = lines.iter().flat_map(CrackLine::pieces).filter(is_piece_near);
+        let cracks: Vec<[Point; 2]> = pieces.map(|piece| as_bonds_see(body, piece)).collect();
+        // The weight has a slope on the ring only.
+        let with_slope = inner - spacing..outer + spacing;
+        let is_near = |cell: &usize| with_slope.contains(&distance(body.lattice.position(*cell), frame.origin));
+        let rim_cells = self.rim_cells.iter().copied();
+        let cut: HashSet<usize> = rim_cells.chain(cells_along(body, &cracks)).filter(is_near).collect();
+        for place in places_near(body, frame.origin, frame.origin, outer).filter(|place| !cut.contains(place)) {
+            let at = body.lattice.position(place);
+            add(around.area(at, place, 1.0));
+        }
+        for Part { at, place } in parts(body, &self.specimen, &cracks, &cut) {
+            add(around.area(at, place, SHARE));
+        }
         self.rim.iter().filter(|(facet, _)| near(facet.at)).for_each(|(facet, free)| add(around.rim(facet, *free)));
         self.loads.iter().filter(|piece| near(piece.facet.at)).for_each(|piece| add(around.load(piece)));
         for (index, line) in lines.iter().enumerate() {
             // The way back from the tip in the sense of its own line.
-            for piece in
-                line.pieces().filter(|[a, b]| crate::specimen::geometry::distance_to_segment(frame.origin, *a, *b) < outer)
-            {
+            for piece in line.pieces().filter(|[a, b]| distance_to_segment(frame.origin, *a, *b) < outer) {
                 faces(body, piece).filter(|facet| near(facet.at)).for_each(|facet| {
                     if index != end.line || distance(facet.at, frame.origin) > CORE_HORIZONS * body.horizon() {
                         add(around.rim(&facet, true));
@@ -162,9 +183,9 @@ impl Surroundings {
                 });
             }
         }
-        let [k_i, k_ii, shifted_i, shifted_ii] = sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum);
+        let [k_i, k_ii, shifted_i, shifted_ii, half_t] = sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum);
         let ahead = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
-        RingFactors { factors: [k_i, k_ii], ahead, radius: outer }
+        RingFactors { factors: [k_i, k_ii], t_stress: 2.0 * half_t, ahead, radius: outer }
     }
 }
 
@@ -180,6 +201,12 @@ fn faces(body: &Body, [a, b]: [Point; 2]) -> impl Iterator<Item = Facet> {
         // Outward from the material on the left of the line is to its right, and the other way round.
         [[y, -x], [-y, x]].map(|normal| Facet { at, normal, length: length / count })
     })
+}
+
+/// A piece of crack where it cuts the bonds.
+fn as_bonds_see(body: &Body, [a, b]: [Point; 2]) -> [Point; 2] {
+    let shift = tie_break(body, a, b);
+    [a, b].map(|p| [p[0] + shift[0], p[1] + shift[1]])
 }
 
 /// The crack behind a tip in its frame.
@@ -240,6 +267,8 @@ struct Around<'a> {
     own: Behind,
     inner: f64,
     outer: f64,
+    /// Derivatives at points that were asked for: those beside a rim serve many pieces of it.
+    known: RefCell<HashMap<usize, Option<Derivatives>>>,
 }
 
 impl Around<'_> {
@@ -251,18 +280,20 @@ impl Around<'_> {
     }
 
     /// Gradients of the auxiliary displacements in the frame.
-    fn auxiliary(&self, r: f64, theta: f64) -> [[[f64; 2]; 2]; 4] {
-        let Elasticity { kappa, shear_modulus, .. } = self.surroundings.elasticity;
-        AUXILIARY.map(|(order, symmetry)| {
+    fn auxiliary(&self, r: f64, theta: f64) -> [[[f64; 2]; 2]; 5] {
+        let elasticity @ Elasticity { kappa, shear_modulus, .. } = self.surroundings.elasticity;
+        let [a, b, c, d] = AUXILIARY.map(|(order, symmetry)| {
             // The derivative over x₁ of the function of order 3 is 3/2 of that of order 1.
             let scale = coefficient_of_unit_factor(symmetry) / (2.0 * shear_modulus) / if order == 3 { 1.5 } else { 1.0 };
             Eigenfunction { order, symmetry }.gradient(kappa, r, theta).map(|row| row.map(|g| scale * g))
-        })
+        });
+        [a, b, c, d, force_gradient(elasticity, r, theta)]
     }
 
     fn derivatives(&self, place: usize) -> Option<Derivatives> {
         let Balanced { body, bonds, displacement, .. } = self.plate;
-        derivatives_at(body, bonds, &self.surroundings.layout, displacement, &self.frame, place)
+        let find = || derivatives_at(body, bonds, &self.surroundings.layout, displacement, &self.frame, place);
+        *self.known.borrow_mut().entry(place).or_insert_with(find)
     }
 
     /// The gradient at a place of the plate, by the derivatives at one of its points.
@@ -271,17 +302,17 @@ impl Around<'_> {
         Some(self.derivatives(place)?.at(self.frame.vector([at[0] - from[0], at[1] - from[1]])))
     }
 
-    /// P_j q_,j of a point times its area.
-    fn area(&self, place: usize) -> PerAuxiliary {
-        let lattice = &self.plate.body.lattice;
-        let (r, theta) = self.own.polar(self.frame.local(lattice.position(place)));
+    /// P_j q_,j of a share of a cell at a position, its field that of a point, times the area.
+    fn area(&self, at: Point, place: usize, share: f64) -> PerAuxiliary {
+        let spacing = self.plate.body.lattice.spacing;
+        let (r, theta) = self.own.polar(self.frame.local(at));
         let (_, slope) = self.weight(r);
         if slope == 0.0 {
-            return [0.0; 4];
+            return [0.0; 5];
         }
-        let Some(Derivatives { first: gradient, .. }) = self.derivatives(place) else { return [0.0; 4] };
+        let Some(gradient) = self.gradient_towards(at, place) else { return [0.0; 5] };
         let q = [slope * theta.cos(), slope * theta.sin()];
-        let area = lattice.spacing * lattice.spacing;
+        let area = share * spacing * spacing;
         self.auxiliary(r, theta).map(|auxiliary| area * self.interaction(&gradient, &auxiliary, q))
     }
 
@@ -292,7 +323,7 @@ impl Around<'_> {
         let (r, theta) = self.own.polar(self.frame.local(inside));
         let (q, _) = self.weight(r);
         let Some(gradient) = self.place_behind(facet).and_then(|place| self.gradient_towards(facet.at, place)) else {
-            return [0.0; 4];
+            return [0.0; 5];
         };
         let normal @ [m1, m2] = self.frame.vector(facet.normal);
         let elasticity = &self.surroundings.elasticity;
@@ -310,7 +341,7 @@ impl Around<'_> {
     fn load(&self, piece: &LoadPiece) -> PerAuxiliary {
         let (r, theta) = self.own.polar(self.frame.local(piece.facet.at));
         let (q, _) = self.weight(r);
-        let scale = self.plate.load / self.surroundings.thickness;
+        let scale = self.plate.load / self.surroundings.specimen.thickness;
         let [t1, t2] = self.frame.vector(piece.force).map(|force| scale * force);
         self.auxiliary(r, theta).map(|auxiliary| -(t1 * auxiliary[0][0] + t2 * auxiliary[1][0]) * q)
     }

@@ -107,3 +107,19 @@ pub fn coefficient_of_unit_factor(symmetry: Symmetry) -> f64 {
         Symmetry::Sliding => -size,
     }
 }
+
+/// `∂u_i/∂x_j` at (r, θ) of a force of 1 N/m along x₁ at the tip, whose stress is `σ_rr = -cos θ / (π r)` and nothing else.
+///
+/// In Kolosov's potentials `φ' = -1/(4π z)`, `ψ' = -φ'`: `2G (u_,1 + i v_,1) = κ φ' - conj(φ' + ψ' + conj(z) φ'')` and
+/// `2G (u_,2 + i v_,2) = i [κ φ' - conj(φ' - ψ' - conj(z) φ'')]`.
+#[must_use]
+pub fn force_gradient(elasticity: Elasticity, r: f64, theta: f64) -> [[f64; 2]; 2] {
+    let Elasticity { kappa, shear_modulus, .. } = elasticity;
+    let size = -1.0 / (8.0 * std::f64::consts::PI * shear_modulus * r);
+    // φ' = e^(-iθ), conj(conj(z) φ'') = -e^(3iθ), in this size.
+    let ([sin, cos], [sin_3, cos_3]) = ([theta.sin(), theta.cos()], [(3.0 * theta).sin(), (3.0 * theta).cos()]);
+    let along = [kappa * cos + cos_3, -kappa * sin + sin_3];
+    // The bracket of the derivative over x₂; i times it.
+    let across = [kappa * cos - 2.0 * cos - cos_3, -kappa * sin - 2.0 * sin - sin_3];
+    [[size * along[0], -size * across[1]], [size * along[1], size * across[0]]]
+}

@@ -93,7 +93,7 @@ impl Start {
             let lead = if lag > 0.0 { self.lead } else { self.lead * (tip.growth / self.horizon).min(1.0) };
             let before = if lag > 0.0 { lag - self.lead } else { 0.0 };
             let position = [0, 1].map(|i| tip.position[i] - lead * tip.direction[i]);
-            TipRecord { position, growth: tip.growth - before - lead, factors: None }
+            TipRecord { position, growth: tip.growth - before - lead, factors: None, t_stress: None }
         };
         tips.iter().zip(&self.lags).map(record).collect()
     }

@@ -30,6 +30,17 @@ const FACING: f64 = 0.94;
 /// K_I below zero, over the largest factor of all tips, that is no round-off.
 const IN_CONTACT: f64 = 0.05;
 
+/// What the ring of a tip says.
+#[derive(Debug, Clone, Copy)]
+struct Reading {
+    /// K_I and K_II, Pa√m.
+    factors: [f64; 2],
+    /// T, Pa.
+    t_stress: f64,
+    /// How far ahead of the end of its line the crack is that has them, m.
+    excess: f64,
+}
+
 impl TipField<'_> {
     /// What the user should know about the rings of the initial tips.
     pub(super) fn ring_warnings(&self) -> Vec<String> {
@@ -62,8 +73,8 @@ impl TipField<'_> {
         })
     }
 
-    /// K_I and K_II, and how far ahead of the end of its line the crack is that has them, m, of the active tips of `lines`.
-    fn read_rings(&self, lines: &[CrackLine]) -> (Vec<[f64; 2]>, Vec<f64>) {
+    /// What the rings of the active tips of `lines` say, in order.
+    fn read_rings(&self, lines: &[CrackLine]) -> Vec<Reading> {
         let body = &self.plate.body;
         let horizon = body.horizon();
         let tips = self.state.tips.iter().filter(|tip| tip.state == TipState::Active);
@@ -87,19 +98,19 @@ impl TipField<'_> {
             // Beside a rim what is read as a shift may be something else.
             let ahead = if first.ahead.abs() < AHEAD_HORIZONS * horizon { first.ahead } else { 0.0 };
             let ring = if ahead == 0.0 { first } else { ring(excess + ahead) };
-            (ring.factors, excess + ahead)
+            Reading { factors: ring.factors, t_stress: ring.t_stress, excess: excess + ahead }
         };
-        let (mut factors, excesses): (Vec<[f64; 2]>, Vec<f64>) = tips.map(read).unzip();
-        pair_twins(&mut factors);
-        (factors, excesses)
+        let mut readings: Vec<Reading> = tips.map(read).collect();
+        pair_twins(&mut readings);
+        readings
     }
 
     /// K of the initial cracks drawn back ([`TipFieldState::drawn_back`]): with that of the cracks it tells how K changes.
     pub(super) fn read_slopes(&mut self) {
         let horizon = self.plate.body.horizon();
         let lines = self.state.drawn_back(PROBE_HORIZONS * horizon);
-        let (factors, excesses) = self.read_rings(&lines);
-        for ((tip, read), excess) in self.state.tips.iter_mut().zip(factors).zip(excesses) {
+        let readings = self.read_rings(&lines);
+        for (tip, Reading { factors: read, excess, .. }) in self.state.tips.iter_mut().zip(readings) {
             let end = tip.end;
             let back = distance(self.state.lines[end.line].end(end.at_last), lines[end.line].end(end.at_last));
             tip.readings.take(equivalent_factor(read), -back, excess, None, horizon);
@@ -132,19 +143,19 @@ impl TipField<'_> {
     pub(super) fn read_factors(&mut self) {
         let horizon = self.plate.body.horizon();
         let ratio = self.case.loading.ratio;
-        let (factors, excesses) = self.read_rings(&self.state.lines);
-        let largest = factors.iter().map(|[k_i, k_ii]| k_i.hypot(*k_ii)).fold(0.0, f64::max);
-        let mut factors = factors.into_iter().zip(excesses);
+        let readings = self.read_rings(&self.state.lines);
+        let largest = readings.iter().map(|Reading { factors: [k_i, k_ii], .. }| k_i.hypot(*k_ii)).fold(0.0, f64::max);
+        let mut readings = readings.into_iter();
         let gaps: Vec<Option<f64>> = self.state.tips.iter().map(|tip| self.gap(tip)).collect();
         for (tip, gap) in self.state.tips.iter_mut().zip(gaps) {
             tip.rate = 0.0;
             if tip.state != TipState::Active {
                 continue;
             }
-            let Some((read, excess)) = factors.next() else { continue };
+            let Some(Reading { factors: read, t_stress, excess }) = readings.next() else { continue };
             let specimen = &self.case.specimen;
             let ahead = self.state.lines[tip.end.line].direction(tip.end.at_last);
-            tip.excess = excess;
+            (tip.excess, tip.t_stress) = (excess, t_stress);
             tip.in_contact |= read[0] < -IN_CONTACT * largest;
             tip.steering.read(read, tip.growth, ahead, horizon);
             tip.readings.take(equivalent_factor(read), tip.growth, excess, tip.steering.corner(), horizon);
@@ -169,13 +180,14 @@ impl TipField<'_> {
 }
 
 /// Gives tips whose factors agree but for round-off and sign the same factors: mirror twins stay twins.
-fn pair_twins(factors: &mut [[f64; 2]]) {
-    for i in 1..factors.len() {
+fn pair_twins(readings: &mut [Reading]) {
+    for i in 1..readings.len() {
         for j in 0..i {
-            let size = factors[j][0].abs().max(factors[j][1].abs());
-            let equal = |a: f64, b: f64| (a.abs() - b.abs()).abs() <= ROUND_OFF * size;
-            if equal(factors[i][0], factors[j][0]) && equal(factors[i][1], factors[j][1]) {
-                factors[i] = [0, 1].map(|mode| factors[j][mode].abs().copysign(factors[i][mode]));
+            let (here, there) = (readings[i].factors, readings[j].factors);
+            let size = there[0].abs().max(there[1].abs());
+            let equal = |mode: usize| (here[mode].abs() - there[mode].abs()).abs() <= ROUND_OFF * size;
+            if equal(0) && equal(1) {
+                readings[i].factors = [0, 1].map(|mode| there[mode].abs().copysign(here[mode]));
                 break;
             }
         }

@@ -27,7 +27,12 @@ impl TipField<'_> {
 
     /// The plate as it stands, as a row; ΔK and da/dN are those of the fastest tip.
     fn row(&self, cycles: f64, work: f64, broken_bonds: usize) -> CurvePoint {
-        let now = |tip: &Tip| TipRecord { position: self.position(tip), growth: tip.growth, factors: Some(tip.factors) };
+        let now = |tip: &Tip| TipRecord {
+            position: self.position(tip),
+            growth: tip.growth,
+            factors: Some(tip.factors),
+            t_stress: Some(tip.t_stress),
+        };
         let tips: Vec<TipRecord> = self.state.tips.iter().map(now).collect();
         let growths: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
         let lead = self.fastest().map(|tip| &self.state.tips[tip]);

@@ -24,6 +24,8 @@ pub struct Tip {
     pub growth: f64,
     /// K_I and K_II, Pa√m, at the present length.
     pub factors: [f64; 2],
+    /// Stress along the crack T at maximum load, Pa.
+    pub t_stress: f64,
     /// da/dN at the present length, m/cycle.
     pub rate: f64,
     /// That of the block before, and the growth of the fastest tip since.
@@ -51,6 +53,7 @@ impl Tip {
             state: TipState::Active,
             growth: 0.0,
             factors: [0.0; 2],
+            t_stress: 0.0,
             rate: 0.0,
             before: None,
             past: None,
