@@ -18,6 +18,9 @@ const PER_SPACING: f64 = 8.0;
 /// Distance in spacings within which a position lies on the line between two cells: more than cracks are drawn aside.
 const BESIDE: f64 = 0.01;
 
+/// Difference of distances, in spacings, that is none: points that are equally near share a part.
+const EQUAL: f64 = 1e-6;
+
 /// A part of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Part {
@@ -25,10 +28,9 @@ pub struct Part {
     pub at: Point,
     /// The point whose field it has.
     pub place: usize,
+    /// Its area over that of a cell.
+    pub share: f64,
 }
-
-/// Area of a part over that of a cell.
-pub const SHARE: f64 = 1.0 / (PARTS * PARTS) as f64;
 
 /// Cells that hold a position; both where it lies on the line between two, so that mirror images stay mirror images.
 pub fn cells_at(body: &Body, at: Point) -> impl Iterator<Item = usize> + '_ {
@@ -77,9 +79,12 @@ pub fn parts(body: &Body, specimen: &Specimen, cracks: &[[Point; 2]], cells: &Ha
                 continue;
             }
             let sees = |from: Point| !cracks.iter().any(|[a, b]| segments_touch(at, from, *a, *b));
-            let nearest =
-                near.iter().filter(|(_, from)| sees(*from)).min_by(|a, b| distance(a.1, at).total_cmp(&distance(b.1, at)));
-            parts.extend(nearest.map(|&(place, _)| Part { at, place }));
+            let seen: Vec<(usize, f64)> =
+                near.iter().filter(|(_, from)| sees(*from)).map(|&(place, from)| (place, distance(from, at))).collect();
+            let least = seen.iter().map(|(_, away)| *away).fold(f64::INFINITY, f64::min) + EQUAL * lattice.spacing;
+            let nearest: Vec<usize> = seen.into_iter().filter(|(_, away)| *away <= least).map(|(place, _)| place).collect();
+            let share = 1.0 / (PARTS * PARTS * nearest.len()) as f64;
+            parts.extend(nearest.into_iter().map(|place| Part { at, place, share }));
         }
     }
     parts

@@ -28,7 +28,7 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};
 
 use super::TipFrame;
-use super::cut_cells::{Part, SHARE, cells_along, cells_at, parts};
+use super::cut_cells::{Part, cells_along, cells_at, parts};
 use super::gradient::{Derivatives, derivatives_at};
 use super::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
 use crate::body::Body;
@@ -168,8 +168,8 @@ impl Surroundings {
             let at = body.lattice.position(place);
             add(around.area(at, place, 1.0));
         }
-        for Part { at, place } in parts(body, &self.specimen, &cracks, &cut) {
-            add(around.area(at, place, SHARE));
+        for Part { at, place, share } in parts(body, &self.specimen, &cracks, &cut) {
+            add(around.area(at, place, share));
         }
         self.rim.iter().filter(|(facet, _)| near(facet.at)).for_each(|(facet, free)| add(around.rim(facet, *free)));
         self.loads.iter().filter(|piece| near(piece.facet.at)).for_each(|piece| add(around.load(piece)));

@@ -72,9 +72,15 @@ fn a_ring_reads_an_exact_field() {
         let frame = TipFrame { origin: tip, ahead: [1.0, 0.0], line: 0.0 };
         let lines = [CrackLine::straight([-0.03, 0.001e-3], tip)];
         // Factors, and by how much of a spacing the field has its tip ahead of the line's end.
-        for (wanted, shift) in
-            [([1e6, 0.0], 0.0), ([0.0, 1e6], 0.0), ([1e6, -0.4e6], 0.0), ([1e6, 0.0], 0.2), ([1e6, -0.4e6], 0.2)]
-        {
+        // In the last there is a stress along the crack, too, whose quadrature disturbs the factors a little.
+        for (wanted, shift, t_stress) in [
+            ([1e6, 0.0], 0.0, 0.0),
+            ([0.0, 1e6], 0.0, 0.0),
+            ([1e6, -0.4e6], 0.0, 0.0),
+            ([1e6, 0.0], 0.2, 0.0),
+            ([1e6, -0.4e6], 0.2, 0.0),
+            ([1e6, 0.0], 0.0, T_STRESS),
+        ] {
             let mut displacement = layout.zeros();
             for &place in &body.points {
                 let [x, y] = frame.local(body.lattice.position(place as usize));
@@ -88,7 +94,7 @@ fn a_ring_reads_an_exact_field() {
                 }
                 // Uniform stress along the crack.
                 let across = (elasticity.kappa - 3.0) / (elasticity.kappa + 1.0);
-                u = [u[0] + T_STRESS / elasticity.plane_modulus * x, u[1] + across * T_STRESS / elasticity.plane_modulus * y];
+                u = [u[0] + t_stress / elasticity.plane_modulus * x, u[1] + across * t_stress / elasticity.plane_modulus * y];
                 let at = layout.index(place as usize);
                 let axes = body.lattice.to_axes(u);
                 (displacement[at], displacement[at + layout.stride]) = (axes[0], axes[1]);
@@ -103,13 +109,15 @@ fn a_ring_reads_an_exact_field() {
                     "lattice {angle}°, tip at {end}, ring {horizons}: {read:.4?} of {wanted:?}, ahead {ahead:+.4} off {shift}"
                 );
                 let [bound, bound_ahead] = if horizons > 2.5 { [0.003, 0.03] } else { [0.008, 0.08] };
+                let bound = if t_stress == 0.0 { bound } else { bound + 0.002 };
                 for mode in 0..2 {
                     assert!((read[mode] - wanted[mode] / 1e6).abs() < bound, "{angle} {end} {horizons} {read:?} {wanted:?}");
                 }
                 assert!(ahead.abs() < bound_ahead, "{angle} {end} {horizons} {ahead}");
-                // A tip that stands elsewhere leaves a stress that is not uniform.
-                let bound = if shift == 0.0 { 0.03 } else { 0.08 };
-                assert!((ring.t_stress / T_STRESS - 1.0).abs() < bound, "{angle} {end} {horizons} {shift} {}", ring.t_stress);
+                if shift == 0.0 && wanted[1] == 0.0 {
+                    let bound = if horizons > 2.5 { 0.03 } else { 0.1 };
+                    assert!(((ring.t_stress - t_stress) / T_STRESS).abs() < bound, "{angle} {end} {horizons} {}", ring.t_stress);
+                }
             }
         }
     }
