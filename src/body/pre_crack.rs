@@ -22,6 +22,13 @@ pub fn tie_break(body: &Body, a: Point, b: Point) -> Point {
     aside(body.lattice.spacing, a, b)
 }
 
+/// A piece of crack where it cuts the bonds: shifted aside by [`tie_break`].
+#[must_use]
+pub fn as_cut(body: &Body, [a, b]: [Point; 2]) -> [Point; 2] {
+    let shift = tie_break(body, a, b);
+    [a, b].map(|p| [p[0] + shift[0], p[1] + shift[1]])
+}
+
 fn aside(spacing: f64, a: Point, b: Point) -> Point {
     let [x, y] = direction(a, b);
     let shift = TIE_BREAK * spacing;

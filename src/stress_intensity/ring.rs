@@ -34,7 +34,7 @@ use super::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_f
 use crate::body::Body;
 use crate::body::boundary::{LoadPiece, load_pieces};
 use crate::body::facets::{Facet, facets};
-use crate::body::pre_crack::{places_near, tie_break};
+use crate::body::pre_crack::{as_cut, places_near};
 use crate::material::Material;
 use crate::solver::field::Layout;
 use crate::specimen::geometry::{distance, distance_to_segment};
@@ -158,7 +158,7 @@ impl Surroundings {
         let spacing = body.lattice.spacing;
         let is_piece_near = |[a, b]: &[Point; 2]| distance_to_segment(frame.origin, *a, *b) < outer + 2.0 * spacing;
         let pieces = lines.iter().flat_map(CrackLine::pieces).filter(is_piece_near);
-        let cracks: Vec<[Point; 2]> = pieces.map(|piece| as_bonds_see(body, piece)).collect();
+        let cracks: Vec<[Point; 2]> = pieces.map(|piece| as_cut(body, piece)).collect();
         // The weight has a slope on the ring only.
         let with_slope = inner - spacing..outer + spacing;
         let is_near = |cell: &usize| with_slope.contains(&distance(body.lattice.position(*cell), frame.origin));
@@ -190,23 +190,17 @@ impl Surroundings {
 }
 
 /// Both faces of a straight piece of crack, as the bonds see it: a trifle aside of the line that was asked for.
-fn faces(body: &Body, [a, b]: [Point; 2]) -> impl Iterator<Item = Facet> {
+fn faces(body: &Body, piece: [Point; 2]) -> impl Iterator<Item = Facet> {
+    let [a, b] = as_cut(body, piece);
     let length = distance(a, b);
     let count = (PIECES_PER_SPACING * length / body.lattice.spacing).ceil().max(1.0);
-    let shift = tie_break(body, a, b);
     let [x, y] = [0, 1].map(|i| (b[i] - a[i]) / length.max(f64::MIN_POSITIVE));
     (0..count as usize).flat_map(move |i| {
         let share = (i as f64 + 0.5) / count;
-        let at = [0, 1].map(|i| a[i] + share * (b[i] - a[i]) + shift[i]);
+        let at = [0, 1].map(|i| a[i] + share * (b[i] - a[i]));
         // Outward from the material on the left of the line is to its right, and the other way round.
         [[y, -x], [-y, x]].map(|normal| Facet { at, normal, length: length / count })
     })
-}
-
-/// A piece of crack where it cuts the bonds.
-fn as_bonds_see(body: &Body, [a, b]: [Point; 2]) -> [Point; 2] {
-    let shift = tie_break(body, a, b);
-    [a, b].map(|p| [p[0] + shift[0], p[1] + shift[1]])
 }
 
 /// The crack behind a tip in its frame.
@@ -217,9 +211,8 @@ struct Behind {
 
 impl Behind {
     fn new(body: &Body, line: &CrackLine, at_last: bool, frame: &TipFrame) -> Self {
-        let piece = |[a, b]: [Point; 2]| {
-            let shift = tie_break(body, a, b);
-            let ends = [a, b].map(|p| frame.local([p[0] + shift[0], p[1] + shift[1]]));
+        let piece = |piece: [Point; 2]| {
+            let ends = as_cut(body, piece).map(|p| frame.local(p));
             if at_last { [ends[1], ends[0]] } else { ends }
         };
         let mut pieces: Vec<[Point; 2]> = line.pieces().map(piece).collect();

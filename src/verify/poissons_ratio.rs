@@ -32,9 +32,11 @@ fn row(table: &mut Table, panel: &super::standard::Standard, plane: &str, nu: f6
     let name = law.map_or_else(String::new, |law| format!("{law}, "));
     let quantity = format!("M(T), m 3, {name}plane {plane}, nu {nu}: life over quadrature");
     table.compare(quantity, panel.over_quadrature(&set)?, 1.0, 1.0, ELEMENTS);
-    table.known_miss(
+    if plane == "strain" && nu > 0.44 {
+        table.known_miss(
         "towards nu = 0.5 in plane strain the pressure is a small volume change times a large modulus; the ring takes it from \
          displacements, and reads K 0.5 % too high at 0.45, 4 % at 0.49",
     );
+    }
     Ok(())
 }

@@ -27,10 +27,17 @@ pub struct Reference {
     spacing: Option<f64>,
     /// Whether its cracks end in holes.
     pub ends_in_hole: bool,
+    /// Why its cycles are known to miss their bound.
+    known_miss: Option<&'static str>,
 }
 
+/// Of the plate with two holes.
+const TWO_HOLES: &str = "at 1 mm the plate is 0.4 % too soft, and K 0.8 % too high: its holes, 40 of 100 mm wide, give 0.2 to 0.6 % more \
+                         compliance than they should, as their rims fall between the points, and only ten spacings are left beside \
+                         them (-0.9 % at 0.5 mm)";
+
 macro_rules! reference {
-    ($name:literal, $about:literal, $spacing:expr, $ends_in_hole:literal) => {
+    ($name:literal, $about:literal, $spacing:expr, $ends_in_hole:literal, $known_miss:expr) => {
         Reference {
             name: $name,
             about: $about,
@@ -40,21 +47,22 @@ macro_rules! reference {
             ],
             spacing: $spacing,
             ends_in_hole: $ends_in_hole,
+            known_miss: $known_miss,
         }
     };
 }
 
 /// All of them.
 pub const REFERENCES: [Reference; 9] = [
-    reference!("slant_severance", "slant crack until the plate is in two", None, false),
-    reference!("hole_attracts", "edge crack into a hole", None, true),
-    reference!("hole_missed", "edge crack that passes a hole", None, false),
-    reference!("compact_one_hole_a", "compact specimen, hole entered", None, true),
-    reference!("compact_one_hole_b", "compact specimen, hole passed", None, false),
-    reference!("offset_edge_cracks", "two edge cracks that pass each other", None, false),
-    reference!("double_edge_notched", "two holes, two edge cracks, each enters a hole", None, true),
-    reference!("three_point_bending", "bent beam with three holes, one entered", Some(0.5), true),
-    reference!("three_cracks", "three collinear cracks that join twice", None, false),
+    reference!("slant_severance", "slant crack until the plate is in two", None, false, None),
+    reference!("hole_attracts", "edge crack into a hole", None, true, None),
+    reference!("hole_missed", "edge crack that passes a hole", None, false, None),
+    reference!("compact_one_hole_a", "compact specimen, hole entered", None, true, None),
+    reference!("compact_one_hole_b", "compact specimen, hole passed", None, false, None),
+    reference!("offset_edge_cracks", "two edge cracks that pass each other", None, false, None),
+    reference!("double_edge_notched", "two holes, two edge cracks, each enters a hole", None, true, Some(TWO_HOLES)),
+    reference!("three_point_bending", "bent beam with three holes, one entered", Some(0.5), true, None),
+    reference!("three_cracks", "three collinear cracks that join twice", None, false, None),
 ];
 
 /// Cycles and places of a tip, m.
@@ -212,10 +220,9 @@ pub fn rows(table: &mut Table) -> Result<()> {
         for (at, share) in ["half", "three quarters", "95 %"].into_iter().enumerate() {
             let larger = |most: f64, tip: &Compared| if tip.cycles[at].abs() > most.abs() { tip.cycles[at] } else { most };
             table.error(format!("{about}: cycles at {share} of the way"), tips.iter().fold(0.0, larger), 2.0, SOURCE);
-            table.known_miss(
-                "at 1 mm the plate is 0.4 % too soft, and K as much too high: its holes, 40 of 100 mm wide, give 0.2 to 0.6 % too much, \
-                 as their rims fall between the points, and only ten spacings are left beside them (-0.9 % at 0.5 mm)",
-            );
+            if let Some(reason) = reference.known_miss {
+                table.known_miss(reason);
+            }
         }
         // A run goes on where the reference stops short of an edge or of the other crack.
         let ended = run.stop == StopReason::EnteredHole || !reference.ends_in_hole;

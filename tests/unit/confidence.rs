@@ -79,7 +79,7 @@ fn the_pivot_is_where_the_rate_is_known_best() {
 }
 
 /// A reading 0.025 mm after another near the end of the life, half a step of cycles later, as a laboratory that reads too often has:
-/// counted as an increment of its own it would multiply the error of m by five.
+/// counted as an increment of its own it multiplied the error of m of a measured curve by 4.6 (hand calculation).
 #[test]
 fn one_odd_reading_does_not_make_the_error() {
     let mut curve = exact_curve("noisy", A, P);

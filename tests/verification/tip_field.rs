@@ -144,6 +144,20 @@ fn the_criterion_of_circumferential_stress() {
 
 const PANEL: &str = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10";
 
+/// The same life whatever the lattice.
+#[test]
+fn a_turned_lattice_gives_the_same_life() {
+    let life = |set: &[&str]| {
+        run(&case(PANEL, PULL, &[&["model.spacing_mm=1.5", "stop.crack_length_mm=22"], set].concat())).life_cycles()
+    };
+    let upright = life(&[]);
+    for angle in [10.0, 22.5, 45.0] {
+        let turned = life(&[&format!("model.lattice_angle_deg={angle}")]);
+        println!("{angle}°: {:+.2} %", 100.0 * (turned / upright - 1.0));
+        assert!((turned / upright - 1.0).abs() < 0.008, "{angle}: {turned} against {upright}");
+    }
+}
+
 /// A stress along a crack has no K: that of a panel pulled along its crack as hard as across it is that of one pressed there, whatever the
 /// lattice. Flanks as the cut leaves them are too soft along the crack, and K differs by 0.9 %.
 #[test]
@@ -258,7 +272,15 @@ fn rows_of_verify_keep_their_bounds() {
     assert!(rows.len() > 110, "{}", rows.len());
     for row in rows {
         let incompressible = ["nu 0.45", "nu 0.49"].iter().any(|nu| row.quantity.contains(&format!("plane strain, {nu}")));
-        let misses = incompressible || row.quantity.starts_with("two holes");
-        assert!(row.ok() || misses && row.known_miss.is_some(), "{row:?}");
+        // Reached: 3.03 %.
+        let two_holes = row.quantity.starts_with("two holes") && row.quantity.contains("cycles") && row.error_percent.abs() < 3.1;
+        assert!(row.ok() || (incompressible || two_holes) && row.known_miss.is_some(), "{row:?}");
+        // Closer than the bound of the row, as reached: 0.37° and 0.07 %.
+        if row.quantity.contains("first kink, degrees") {
+            assert!((row.computed - row.reference).abs() < 1.0, "{row:?}");
+        }
+        if row.quantity.starts_with("M(T): life in") {
+            assert!(row.error_percent.abs() < 0.3, "{row:?}");
+        }
     }
 }

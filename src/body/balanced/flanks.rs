@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use super::least_squares::{BondGain, Gain, Link, Problem};
 use super::{BOUNDS, asked, gains, load_rows};
 use crate::body::facets::{Facet, behind};
-use crate::body::pre_crack::{places_near, tie_break};
+use crate::body::pre_crack::{as_cut, places_near};
 use crate::body::sharing::{WIDEN, WIDENINGS, linear_shares};
 use crate::body::{Body, Bond};
 use crate::specimen::geometry::{along, direction, distance, distance_to_segment, segments_touch};
@@ -98,11 +98,8 @@ impl Beside {
             stretch == Stretch::All || ends.iter().any(|end| distance_to_segment(*end, *a, *b) < reach)
         };
         // As the bonds see them.
-        let shifted = |[a, b]: [Point; 2]| {
-            let shift = tie_break(body, a, b);
-            [a, b].map(|p| [p[0] + shift[0], p[1] + shift[1]])
-        };
-        let pieces: Vec<[Point; 2]> = lines.iter().flat_map(CrackLine::pieces).filter(is_near).map(shifted).collect();
+        let near_pieces = lines.iter().flat_map(CrackLine::pieces).filter(is_near);
+        let pieces: Vec<[Point; 2]> = near_pieces.map(|piece| as_cut(body, piece)).collect();
         let reach = horizon + 1.5 * spacing;
         let near = pieces.iter().flat_map(|&[a, b]| places_near(body, a, b, reach));
         let mut members: Vec<usize> = near.filter(|&place| is_open(place)).collect();
