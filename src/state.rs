@@ -1,6 +1,8 @@
 //! All that changes in a run. Each part has one writer: displacement the solver, bonds and their life `fatigue`,
 //! cycles `predict`.
 
+use std::ops::Range;
+
 use crate::body::lattice::LANES;
 use crate::body::{Body, Bond};
 
@@ -12,6 +14,8 @@ pub struct Bonds {
     /// Whether all bonds of all points of a chunk of [`LANES`] places are interior and intact (row by row).
     pub regular: Vec<bool>,
     chunks: usize,
+    /// For every row the chunks that hold points: of a plate that lies turned on its lattice half of them hold none.
+    inhabited: Vec<Range<usize>>,
 }
 
 impl Bonds {
@@ -29,7 +33,13 @@ impl Bonds {
     #[must_use]
     pub fn with_multipliers(body: &Body, multiplier: Vec<f32>) -> Self {
         let chunks = body.lattice.columns.div_ceil(LANES);
-        let mut bonds = Bonds { multiplier, regular: vec![false; chunks * body.lattice.rows], chunks };
+        let regular = vec![false; chunks * body.lattice.rows];
+        let mut bonds = Bonds { multiplier, regular, chunks, inhabited: vec![0..0; body.lattice.rows] };
+        for &place in &body.points {
+            let (column, row) = body.lattice.column_row(place as usize);
+            let (chunk, range) = (column / LANES, &mut bonds.inhabited[row]);
+            *range = if range.is_empty() { chunk..chunk + 1 } else { range.start.min(chunk)..range.end.max(chunk + 1) };
+        }
         for row in 0..body.lattice.rows {
             for chunk in 0..chunks {
                 bonds.regular[row * chunks + chunk] = bonds.is_regular(body, body.lattice.place(chunk * LANES, row));
@@ -72,6 +82,12 @@ impl Bonds {
     #[must_use]
     pub fn row_is_regular(&self, row: usize) -> &[bool] {
         &self.regular[row * self.chunks..(row + 1) * self.chunks]
+    }
+
+    /// Chunks of a row from the first to the last one that holds points.
+    #[must_use]
+    pub fn inhabited(&self, row: usize) -> Range<usize> {
+        self.inhabited[row].clone()
     }
 
     /// Chunks of a row.

@@ -75,8 +75,8 @@ pub struct BondStrain<'a> {
     /// These and others whose displacement has to be right after every break.
     watched: Vec<Bond>,
     is_closed: bool,
-    /// K of the first row against that of cleanly cut cracks.
-    check: Option<CrossCheck>,
+    /// K at maximum load, Pa√m, and crack length, m, of the first row.
+    first: Option<(f64, f64)>,
     /// What the user should know that came up on the way.
     warnings: Vec<String>,
 }
@@ -126,7 +126,7 @@ impl<'a> BondStrain<'a> {
             near: Vec::new(),
             watched: Vec::new(),
             is_closed: false,
-            check: None,
+            first: None,
             warnings: Vec::new(),
             plate: Arc::new(plate),
         })
@@ -363,15 +363,14 @@ impl CrackGrowth for BondStrain<'_> {
     fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
         let (curve, zero) = self.run.track.curve(self.case, &self.plate.body, self.end);
         let range_share = self.case.loading.range_share();
-        self.check = curve.first().filter(|row| row.delta_k.is_finite()).and_then(|row| {
-            let difference = row.delta_k / (range_share * initial_factor(self.case)?) - 1.0;
-            Some(CrossCheck { compared: 1, difference, crack_length: row.crack_length })
-        });
+        self.first = curve.first().map(|row| (row.delta_k / range_share, row.crack_length));
         (curve, zero)
     }
 
     fn cross_check(&self, _cycles: f64) -> Option<CrossCheck> {
-        self.check
+        let (k_max, crack_length) = self.first.filter(|(k_max, _)| k_max.is_finite())?;
+        let difference = k_max / initial_factor(self.case)? - 1.0;
+        Some(CrossCheck { compared: 1, difference, crack_length })
     }
 
     fn effort(&self) -> Effort {

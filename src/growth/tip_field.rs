@@ -121,8 +121,15 @@ impl<'a> TipField<'a> {
     /// # Errors
     /// As [`Plate::build`]; a specimen without sharp crack, cracks that cut the plate in two.
     pub fn start(case: &'a Case, law: Box<dyn GrowthLaw>) -> Result<Self> {
-        let plate = Plate::build(&case.specimen, &case.specimen, &case.material, &case.model)?;
-        TipField::start_on(case, Arc::new(plate), law)
+        TipField::start_on(case, TipField::plate(case)?, law)
+    }
+
+    /// The discretised plate of a case.
+    ///
+    /// # Errors
+    /// As [`Plate::build`].
+    pub fn plate(case: &Case) -> Result<Arc<Plate>> {
+        Plate::build(&case.specimen, &case.specimen, &case.material, &case.model).map(Arc::new)
     }
 
     /// The same on a plate that stands.

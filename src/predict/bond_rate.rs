@@ -73,8 +73,9 @@ impl Family {
 
     fn compute(self, p: f64) -> Result<f64> {
         let case = self.reference()?;
-        let factor = self.factors(&case)?;
-        let grown = run(&case, |horizon| Ok(FatigueLaw { a: 1.0, p, horizon }), &mut Unrecorded, &Silent)?;
+        let law = |horizon| Ok(FatigueLaw { a: 1.0, p, horizon });
+        let (factor, grown) = rayon::join(|| self.factors(&case), || run(&case, law, &mut Unrecorded, &Silent));
+        let (factor, grown) = (factor?, grown?);
         if grown.stop != StopReason::CrackLengthReached {
             return Err(Error::Mechanics(format!(
                 "the crack of the reference plate for p = {p} ended as {}: give paris_c_mm_per_cycle and paris_m instead of a and p",

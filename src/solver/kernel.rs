@@ -126,10 +126,18 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
         let place = (row + padding) * stride + padding;
         let regular = bonds.row_is_regular(row);
         let shares = Shares { multiplier: &bonds.multiplier, places: bonds.multiplier.len() / self.springs.len() };
-        let mut chunk = 0;
-        while chunk < regular.len() {
+        let inhabited = bonds.inhabited(row);
+        if into == Into::Set {
+            for c in 0..N {
+                let out = &mut out[c * stride..(c + 1) * stride];
+                out[..padding + inhabited.start * LANES].fill(T::default());
+                out[(padding + inhabited.end * LANES).min(stride)..].fill(T::default());
+            }
+        }
+        let mut chunk = inhabited.start;
+        while chunk < inhabited.end {
             let (at, place, start) = (first + chunk * LANES, place + chunk * LANES, padding + chunk * LANES);
-            let block = &regular[chunk..regular.len().min(chunk + B * L / LANES)];
+            let block = &regular[chunk..inhabited.end.min(chunk + B * L / LANES)];
             let wide = block.len() * LANES == B * L && !block.contains(&false);
             if wide {
                 give::<T, N, B, L>(&self.regular(x, at), out, start, stride, into);

@@ -6,9 +6,9 @@
 //! line search makes it converge from anywhere. Without active bounds it ends after one step. The matrix couples the two ends
 //! of bonds near the rim only, so cost grows with the length of the rim.
 
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+
+use crate::block_cholesky::Structure;
 
 /// Equations of a point: four of force, two of rotation.
 pub(super) const EQUATIONS: usize = 6;
@@ -91,12 +91,11 @@ impl<'a> Problem<'a> {
         if self.links.is_empty() {
             return Some(Vec::new());
         }
-        crate::parallel::fix_parts();
-        let symbolic = SymbolicLlt::try_new(self.symbolic.as_ref(), faer::Side::Lower).ok()?;
-        softness.iter().find_map(|&softness| self.newton(&symbolic, softness, bounds))
+        let structure = Structure::of(self.symbolic.as_ref(), EQUATIONS)?;
+        softness.iter().find_map(|&softness| self.newton(&structure, softness, bounds))
     }
 
-    fn newton(&self, symbolic: &SymbolicLlt<usize>, softness: f64, [lo, hi]: [f64; 2]) -> Option<Vec<f64>> {
+    fn newton(&self, structure: &Structure, softness: f64, [lo, hi]: [f64; 2]) -> Option<Vec<f64>> {
         let n = self.missing.len() * EQUATIONS;
         let epsilon = |i: usize| if i % EQUATIONS < 4 { softness } else { SOFTNESS_TURN };
         let missing = self.missing.as_flattened();
@@ -112,9 +111,8 @@ impl<'a> Problem<'a> {
             }
             let free: Vec<bool> = y.iter().map(|&y| y > lo && y < hi).collect();
             let matrix = SparseColMat::new(self.symbolic.clone(), self.normal_matrix(&free, epsilon));
-            let factor = Llt::try_new_with_symbolic(symbolic.clone(), matrix.as_ref(), faer::Side::Lower).ok()?;
-            let step = factor.solve(faer::Mat::from_fn(n, 1, |i, _| gradient[i]));
-            let step: Vec<f64> = (0..n).map(|i| step[(i, 0)]).collect();
+            let mut step = gradient;
+            structure.solve(matrix.as_ref(), &mut step)?;
             let z = self.apply_transposed(&step);
             // Slope of the dual along the step: falls as the way grows.
             let fixed = (0..n).map(|i| step[i] * (missing[i] - epsilon(i) * lambda[i])).sum::<f64>();

@@ -16,6 +16,8 @@ pub(super) const REACH: isize = 2;
 pub const BLOCKS: usize = 25;
 /// Slot of a chunk that has the common stencil.
 const COMMON: u32 = u32::MAX;
+/// Slot of a chunk whose places have no stiffness.
+const EMPTY: u32 = u32::MAX - 1;
 
 /// Block index of a neighbour within reach.
 #[must_use]
@@ -75,6 +77,7 @@ impl<const N: usize> CoarseOperator<N> {
         let index = block_of(dx, dy);
         match (self.slots[row * self.chunks + column / LANES], &self.common) {
             (COMMON, Some(common)) => common[index],
+            (EMPTY, _) => [[0.0; N]; N],
             (slot, _) => {
                 let first = slot as usize * Self::CHUNK + index * N * N * LANES + column % LANES;
                 std::array::from_fn(|c| std::array::from_fn(|d| self.values[first + (c * N + d) * LANES]))
@@ -132,6 +135,19 @@ impl<const N: usize> CoarseOperator<N> {
                 }
             }
         });
+        let mut kept = 0;
+        for (index, &(row, first)) in own.iter().enumerate() {
+            let chunk = index * Self::CHUNK..(index + 1) * Self::CHUNK;
+            let slot = &mut slots[row * chunks + first / LANES];
+            if values[chunk.clone()].iter().all(|&v| v == 0.0) {
+                *slot = EMPTY;
+            } else {
+                *slot = kept as u32;
+                values.copy_within(chunk, kept * Self::CHUNK);
+                kept += 1;
+            }
+        }
+        values.truncate(kept * Self::CHUNK);
         let single = values.iter().map(|&v| v as f32).collect();
         let common_single = template.iter().flatten().flatten().flatten().map(|&v| v as f32).collect();
         CoarseOperator { layout, rows, chunks, slots, common: template, values, single, common_single }
@@ -154,6 +170,9 @@ impl<const N: usize> Operator for CoarseOperator<N> {
         debug_assert!(row < self.rows);
         for chunk in 0..self.chunks {
             let slot = self.slots[row * self.chunks + chunk];
+            if slot == EMPTY {
+                continue;
+            }
             let own = if slot == COMMON { None } else { self.single.chunks_exact(Self::CHUNK).nth(slot as usize) };
             let mut sums = [[0.0_f32; LANES]; N];
             for block in 0..BLOCKS {

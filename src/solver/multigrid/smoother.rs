@@ -18,6 +18,8 @@ const SAFETY: f64 = 1.08;
 const POWER_STEPS: usize = 12;
 /// Slot of a chunk that has the common block.
 const COMMON: u32 = u32::MAX;
+/// Slot of a chunk without places.
+const EMPTY: u32 = u32::MAX - 1;
 /// Most pairs of components of a symmetric block.
 const PAIRS: usize = 6;
 
@@ -40,7 +42,7 @@ pub struct Smoother<const N: usize> {
     layout: Layout,
     rows: usize,
     chunks: usize,
-    /// For every chunk of a row where its blocks stand, [`COMMON`] inside the plate.
+    /// For every chunk of a row where its blocks stand, [`COMMON`] inside the plate, [`EMPTY`] outside.
     slots: Vec<u32>,
     common: Inverses,
     own: Vec<Inverses>,
@@ -95,7 +97,7 @@ impl<const N: usize> Smoother<N> {
         for (index, slot) in slots.iter_mut().enumerate() {
             let (row, chunk) = (index / chunks, index % chunks);
             if common.is_none() || !is_common(row, chunk) {
-                *slot = places.len() as u32;
+                *slot = EMPTY;
                 places.push((row, chunk));
             }
         }
@@ -108,7 +110,15 @@ impl<const N: usize> Smoother<N> {
             }
             own
         };
-        let own = places.par_iter().map(inverses).collect();
+        let found: Vec<Inverses> = places.par_iter().map(inverses).collect();
+        let mut own = Vec::with_capacity(found.len());
+        for (&(row, chunk), inverses) in places.iter().zip(found) {
+            let is_empty = inverses.as_flattened().iter().all(|&v| v == 0.0);
+            slots[row * chunks + chunk] = if is_empty { EMPTY } else { own.len() as u32 };
+            if !is_empty {
+                own.push(inverses);
+            }
+        }
         let mut everywhere = [[0.0; LANES]; PAIRS];
         if let Some(block) = common {
             let inverse = pseudo_inverse(&block);
@@ -120,9 +130,10 @@ impl<const N: usize> Smoother<N> {
     /// Replaces the diagonal block of one place.
     pub fn set_block(&mut self, column: usize, row: usize, block: &[[f64; N]; N]) {
         let slot = &mut self.slots[row * self.chunks + column / LANES];
-        if *slot == COMMON {
+        if *slot == COMMON || *slot == EMPTY {
+            let before = if *slot == COMMON { self.common } else { [[0.0; LANES]; PAIRS] };
             *slot = self.own.len() as u32;
-            self.own.push(self.common);
+            self.own.push(before);
         }
         put(&mut self.own[*slot as usize], column % LANES, &pseudo_inverse(block));
     }
@@ -170,6 +181,12 @@ impl<const N: usize> Smoother<N> {
     fn body_mut<'a>(&self, v: &'a mut [f32]) -> &'a mut [f32] {
         let (row_len, padding) = (self.layout.row_len(), self.layout.padding);
         &mut v[padding * row_len..(padding + self.rows) * row_len]
+    }
+
+    /// Chunks of a row that have places; vectors are zero in the others and stay so.
+    #[inline(always)]
+    fn inhabited(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.chunks).filter(move |chunk| self.slots[row * self.chunks + chunk] != EMPTY)
     }
 
     /// D⁻¹ r of a chunk; `r` is a padded row.
@@ -251,7 +268,7 @@ impl<const N: usize> pulp::WithSimd for Rest<'_, N> {
         for (i, (d, x)) in self.d.chunks_exact_mut(row_len).zip(self.x.chunks_exact_mut(row_len)).enumerate() {
             let row = self.first + i;
             let r = &self.r[(row + layout.padding) * row_len..(row + layout.padding + 1) * row_len];
-            for chunk in 0..self.smoother.chunks {
+            for chunk in self.smoother.inhabited(row) {
                 let sums = self.smoother.inverse_times(row, chunk, r);
                 for (c, sum) in sums.iter().enumerate() {
                     let start = c * layout.stride + layout.padding + chunk * LANES;
@@ -291,7 +308,7 @@ impl<O: Operator, const N: usize> pulp::WithSimd for Relax<'_, O, N> {
             let row = self.first + i;
             self.operator.subtract_row(row, self.d, r);
             let d = &self.d[(row + layout.padding) * row_len..(row + layout.padding + 1) * row_len];
-            for chunk in 0..self.smoother.chunks {
+            for chunk in self.smoother.inhabited(row) {
                 let sums = self.smoother.inverse_times(row, chunk, r);
                 for (c, sum) in sums.iter().enumerate() {
                     let start = c * layout.stride + layout.padding + chunk * LANES;

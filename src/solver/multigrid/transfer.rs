@@ -13,6 +13,8 @@ use crate::body::lattice::LANES;
 
 /// Slot of a chunk of fine places with plain bilinear weights.
 const PLAIN: u32 = u32::MAX;
+/// Slot of a chunk without places in use.
+const EMPTY: u32 = u32::MAX - 1;
 
 /// How a fine place may use a coarse one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,7 +43,7 @@ pub struct Transfer<const N: usize> {
     lower: Vec<(u32, f32)>,
     /// Chunks of a fine row.
     chunks: usize,
-    /// For every chunk of a fine row where its weights stand, [`PLAIN`] if they are bilinear.
+    /// For every chunk of a fine row where its weights stand, [`PLAIN`] if they are bilinear, [`EMPTY`] if there are none.
     slots: Vec<u32>,
     own: Vec<[Weights; LANES]>,
 }
@@ -99,7 +101,10 @@ impl<const N: usize> Transfer<N> {
         let weights = |&index: &usize| transfer.weights_of_chunk(index / chunks, index % chunks, &is_point, &link);
         let found: Vec<Option<[Weights; LANES]>> = irregular.par_iter().map(weights).collect();
         for (index, weights) in irregular.into_iter().zip(found) {
-            if let Some(weights) = weights {
+            let Some(weights) = weights else { continue };
+            if weights.iter().all(|weights| weights.share == [0.0; 4]) {
+                transfer.slots[index] = EMPTY;
+            } else {
                 transfer.slots[index] = transfer.own.len() as u32;
                 transfer.own.push(weights);
             }
@@ -207,6 +212,9 @@ impl<const N: usize> Transfer<N> {
             let weights = self.bilinear([column, row]);
             return std::array::from_fn(|corner| (seat(corner), weights[corner], [0.0; 2]));
         }
+        if slot == EMPTY {
+            return std::array::from_fn(|corner| (seat(corner), 0.0, [0.0; 2]));
+        }
         let weights = &self.own[slot as usize][column % LANES];
         let arm = self.arm(weights, column, row);
         std::array::from_fn(|corner| {
@@ -229,6 +237,7 @@ impl<const N: usize> Transfer<N> {
     /// fine = P coarse.
     pub fn prolong(&self, coarse: &[f32], fine: &mut [f32]) {
         let (fine_len, padding, rows_per_task) = (self.fine.row_len(), self.fine.padding, self.fine.rows_per_task());
+        let fine_stride = self.fine.stride;
         let body = &mut fine[padding * fine_len..(padding + self.fine_rows) * fine_len];
         let arch = pulp::Arch::new();
         body.par_chunks_mut(fine_len * rows_per_task).enumerate().for_each(|(task, rows)| {
@@ -236,17 +245,23 @@ impl<const N: usize> Transfer<N> {
             for (i, out) in rows.chunks_exact_mut(fine_len).enumerate() {
                 let row = task * rows_per_task + i;
                 arch.dispatch(Prolonged { transfer: self, row, coarse, between: &mut between, out: &mut *out });
-                for chunk in (0..self.chunks).filter(|&chunk| !self.is_plain(row, chunk)) {
-                    self.prolong_chunk(row, chunk, coarse, out);
+                for chunk in 0..self.chunks {
+                    match self.slots[row * self.chunks + chunk] {
+                        PLAIN => {}
+                        EMPTY => (0..N).for_each(|c| {
+                            let start = self.fine.padding + chunk * LANES + c * fine_stride;
+                            out[start..start + LANES].fill(0.0);
+                        }),
+                        slot => self.prolong_chunk(row, chunk, &self.own[slot as usize], coarse, out),
+                    }
                 }
             }
         });
     }
 
     /// The places of a chunk with weights of their own.
-    fn prolong_chunk(&self, row: usize, chunk: usize, coarse: &[f32], out: &mut [f32]) {
+    fn prolong_chunk(&self, row: usize, chunk: usize, weights: &[Weights; LANES], coarse: &[f32], out: &mut [f32]) {
         let (fine_stride, stride) = (self.fine.stride, self.coarse.stride);
-        let weights = &self.own[self.slots[row * self.chunks + chunk] as usize];
         for (lane, weights) in weights.iter().enumerate() {
             let column = chunk * LANES + lane;
             let mut sums = [0.0; N];
@@ -303,7 +318,7 @@ impl<const N: usize> Transfer<N> {
                 let from = &fine[start..start + self.fine.row_len()];
                 let plain = &self.slots[row * self.chunks..(row + 1) * self.chunks];
                 arch.dispatch(Weighed { layout: &self.fine, plain, weight, from, sums: &mut *sums });
-                for chunk in (0..self.chunks).filter(|&chunk| plain[chunk] != PLAIN) {
+                for chunk in (0..self.chunks).filter(|&chunk| plain[chunk] != PLAIN && plain[chunk] != EMPTY) {
                     self.restrict_chunk(row, chunk, upper, from, out);
                 }
             }
