@@ -7,9 +7,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::amd;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
-};
+use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Side};
 
@@ -58,8 +56,7 @@ impl Structure {
         let mut memory = MemBuffer::try_new(factor_scratch.or(solve_scratch)).ok()?;
         let stack = MemStack::new(&mut memory);
         let (side, none) = (Side::Lower, faer::linalg::cholesky::llt::factor::LltRegularization::default());
-        let factor =
-            self.0.factorize_numeric_llt(&mut values, matrix, side, none, par, stack, faer::Spec::default()).ok()?;
+        let factor = self.0.factorize_numeric_llt(&mut values, matrix, side, none, par, stack, faer::Spec::default()).ok()?;
         let n = b.len();
         factor.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(b, n, 1), par, stack);
         Some(())

@@ -12,6 +12,9 @@ pub enum Error {
     /// No convergence, or the mechanics stopped the run before there was a result (exit code 3).
     #[error("{0}")]
     Mechanics(String),
+    /// What is left of a plate is a mechanism, or nearly one: it carries no load (exit code 3).
+    #[error("what is left of the plate cannot carry its load")]
+    GaveWay,
     /// A file could not be read or written (exit code 4).
     #[error("{}: {action}: {source}", path.display())]
     File {
@@ -34,7 +37,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Input(_) => 2,
-            Error::Mechanics(_) => 3,
+            Error::Mechanics(_) | Error::GaveWay => 3,
             Error::File { .. } => 4,
         }
     }

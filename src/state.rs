@@ -38,7 +38,7 @@ impl Bonds {
         for &place in &body.points {
             let (column, row) = body.lattice.column_row(place as usize);
             let (chunk, range) = (column / LANES, &mut bonds.inhabited[row]);
-            *range = if range.is_empty() { chunk..chunk + 1 } else { range.start.min(chunk)..range.end.max(chunk + 1) };
+            *range = if range.start == range.end { chunk..chunk + 1 } else { range.start.min(chunk)..range.end.max(chunk + 1) };
         }
         for row in 0..body.lattice.rows {
             for chunk in 0..chunks {

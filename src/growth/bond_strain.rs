@@ -181,7 +181,7 @@ impl<'a> BondStrain<'a> {
                 Ok(None) => {}
                 Ok(Some(more)) => (run.solves, run.iterations) = (run.solves + 1, run.iterations + more),
                 // What is left after bonds broke by overload cannot carry the load: the plate is as good as in two.
-                Err(_) if overloaded => return (spent, Some(StopReason::Severed)),
+                Err(error) if overloaded || matches!(error, Error::GaveWay) => return (spent, Some(StopReason::Severed)),
                 Err(_) => return (spent, Some(StopReason::NoConvergence)),
             }
             newly = overstretched(body, &run.bonds, case, &self.displacement, equilibrium);

@@ -253,7 +253,10 @@ impl<'a> TipField<'a> {
             let stretch = if has_ended { Stretch::All } else { Stretch::Tips };
             cut.extend(self.correct_flanks(&lines, stretch));
             self.state.lines = lines;
-            end = self.settle(&cut).err().map(|_| StopReason::NoConvergence);
+            end = self.settle(&cut).err().map(|error| match error {
+                Error::GaveWay => StopReason::Severed,
+                _ => StopReason::NoConvergence,
+            });
         }
         if end.is_none() {
             self.read_factors();
@@ -279,7 +282,8 @@ impl<'a> TipField<'a> {
         }
         let work = if end.is_none() { self.equilibrium.work() } else { f64::NAN };
         let left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
-        end = end.or_else(|| (!left).then(|| self.gone()));
+        // What the last tip has met is known, whatever is left of the plate.
+        end = if left { end } else { end.filter(|end| *end == StopReason::Severed && severed).or_else(|| Some(self.gone())) };
         Block { cycles, work, cut: broken, end }
     }
 
@@ -365,12 +369,19 @@ impl<'a> TipField<'a> {
         changed.into_iter().map(|(bond, _)| bond).collect()
     }
 
-    /// Equilibrium after bonds were cut or corrected.
+    /// Equilibrium after bonds were cut or corrected; the displacement stays as it was where there is none.
     fn settle(&mut self, changed: &[Bond]) -> Result<()> {
         let plate = self.plate.clone();
         let body = &plate.body;
         self.equilibrium.broke(body, &self.bonds, changed);
-        self.iterations += self.equilibrium.solve(body, &self.bonds, &mut self.displacement)?;
+        let before = self.displacement.clone();
+        match self.equilibrium.solve(body, &self.bonds, &mut self.displacement) {
+            Ok(iterations) => self.iterations += iterations,
+            Err(error) => {
+                self.displacement = before;
+                return Err(error);
+            }
+        }
         self.solves += 1;
         Ok(())
     }

@@ -16,6 +16,10 @@ use crate::state::Bonds;
 const TOLERANCE: f64 = 1e-11;
 /// Iterations after which a solve has failed.
 const ITERATIONS_MAX: usize = 400;
+/// Work of the loads over that of the displacement a solve starts from at which the plate is a mechanism, and every how many
+/// iterations that is asked.
+const GIVEN_WAY: f64 = 1e3;
+const ITERATIONS_PER_LOOK: usize = 20;
 /// Iterations above those of a fresh hierarchy at which it is rebuilt.
 const ITERATIONS_SLACK: usize = 3;
 /// The same where solves are few: to build it takes as long as a dozen iterations.
@@ -28,6 +32,8 @@ pub struct MultigridSolver<const N: usize> {
     multigrid: Multigrid<N>,
     fresh_iterations: Option<usize>,
     broken_since: usize,
+    /// Ends of bonds that broke since the last solve.
+    changed: Vec<usize>,
     stale: bool,
     /// Iterations above those of a fresh hierarchy at which it is rebuilt.
     slack: usize,
@@ -46,6 +52,7 @@ impl<const N: usize> MultigridSolver<N> {
             multigrid: Multigrid::new(body, bonds, product),
             fresh_iterations: None,
             broken_since: 0,
+            changed: Vec::new(),
             stale: false,
             slack: ITERATIONS_SLACK,
             tolerance: TOLERANCE,
@@ -63,23 +70,34 @@ impl<const N: usize> MultigridSolver<N> {
     /// Solves to a residual over load. A rough solve makes do with the hierarchy that is there.
     ///
     /// # Errors
-    /// The iteration does not converge.
+    /// [`Error::GaveWay`]; the iteration does not converge.
     pub(super) fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let System { body, bonds, product, f } = system;
         let is_rough = tolerance > self.tolerance;
         if self.stale && !is_rough {
             self.multigrid = Multigrid::new(body, bonds, product);
+            self.changed.clear();
             self.stale = false;
             self.broken_since = 0;
             self.fresh_iterations = None;
         }
-        let mut spent = self.iterate(tolerance, system, u);
+        if !self.changed.is_empty() {
+            let mut changed = std::mem::take(&mut self.changed);
+            changed.sort_unstable();
+            changed.dedup();
+            if self.slack == ITERATIONS_SLACK_FEW {
+                self.multigrid.refresh_levels(body, bonds, product, &changed);
+            } else {
+                self.multigrid.refresh_points(body, bonds, product, &changed);
+            }
+        }
+        let mut spent = self.iterate(tolerance, system, u)?;
         if spent.is_none() && self.broken_since > 0 {
             // The hierarchy belongs to an older crack: try once more with a new one, from rest.
             self.multigrid = Multigrid::new(body, bonds, product);
             self.broken_since = 0;
             u.fill(0.0);
-            spent = self.iterate(tolerance, system, u);
+            spent = self.iterate(tolerance, system, u)?;
         }
         let spent = spent.ok_or_else(|| {
             Error::Mechanics(format!(
@@ -96,16 +114,18 @@ impl<const N: usize> MultigridSolver<N> {
         Ok(Solved { iterations: spent, work: dot(product.layout(), f, u) })
     }
 
-    fn iterate(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Option<usize> {
+    /// Iterations to a residual over load; `None` where it is not reached.
+    fn iterate(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Option<usize>> {
         let System { body, bonds, product, f } = system;
         let layout = *product.layout();
         let target = tolerance * dot(&layout, f, f).sqrt();
         self.r.copy_from_slice(f);
         product.apply(bonds, u, &mut self.r, Into::Subtract);
         if dot(&layout, &self.r, &self.r).sqrt() <= target {
-            return Some(0);
+            return Ok(Some(0));
         }
         let rigid = RigidMotion::of(body, bonds, layout);
+        let work_before = dot(&layout, f, u);
         // r·z and the step of the last iteration.
         let mut last: Option<(f64, f64)> = None;
         for iteration in 1..=ITERATIONS_MAX {
@@ -122,18 +142,25 @@ impl<const N: usize> MultigridSolver<N> {
             let curvature = dot(&layout, &self.p, &self.q);
             if !(curvature > 0.0 && curvature.is_finite()) {
                 tracing::debug!(iteration, curvature, rz, "conjugate gradients broke down");
-                return None;
+                return Ok(None);
             }
             let alpha = rz / curvature;
             last = Some((rz, alpha));
             update(u, &self.p, |u, p| u + alpha * p);
             update(&mut self.r, &self.q, |r, q| r - alpha * q);
             if dot(&layout, &self.r, &self.r).sqrt() <= target {
-                return Some(iteration);
+                return Ok(Some(iteration));
+            }
+            if iteration % ITERATIONS_PER_LOOK == 0 && work_before > 0.0 {
+                let work = dot(&layout, f, u);
+                if work > GIVEN_WAY * work_before {
+                    tracing::debug!(iteration, work, work_before, "the plate gives way");
+                    return Err(Error::GaveWay);
+                }
             }
         }
         tracing::debug!(residual = dot(&layout, &self.r, &self.r).sqrt(), target, "conjugate gradients did not converge");
-        None
+        Ok(None)
     }
 }
 
@@ -154,12 +181,9 @@ impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
         self.tolerance = tolerance;
     }
 
-    fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
+    fn broke(&mut self, body: &Body, _: &Bonds, _: &Product<N>, broken: &[Bond]) {
         let ends = |bond: Bond| [body.ends(bond).1, body.ends(bond).2].map(|place| body.behind(place).0);
-        let mut places: Vec<usize> = broken.iter().flat_map(|&bond| ends(bond)).collect();
-        places.sort_unstable();
-        places.dedup();
-        self.multigrid.refresh_points(body, bonds, product, &places);
+        self.changed.extend(broken.iter().flat_map(|&bond| ends(bond)));
         self.broken_since += broken.len();
     }
 }

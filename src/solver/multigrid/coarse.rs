@@ -40,8 +40,8 @@ pub struct CoarseOperator<const N: usize> {
     common: Option<CoarseRow<N>>,
     /// For each chunk with its own stencils, block, component pair: the values along the row.
     values: Vec<f64>,
-    /// Both in single precision: what products read. They are bound by memory, and only smoothing uses them; rigid
-    /// motion, which must stay free of force, is judged from `values` alone.
+    /// Both in single precision: what products read. They are bound by memory, and only smoothing uses them; coarser operators, in
+    /// which rigid motion must stay free of force, come from `values` alone.
     single: Vec<f32>,
     common_single: Vec<f32>,
 }
@@ -153,9 +153,37 @@ impl<const N: usize> CoarseOperator<N> {
         CoarseOperator { layout, rows, chunks, slots, common: template, values, single, common_single }
     }
 
-    /// Keeps single precision only, once the next coarser operator has been built.
-    pub fn compact(&mut self) {
-        self.values = Vec::new();
+    /// Sets the rows of some places anew, with what [`CoarseOperator::galerkin`] was given.
+    pub fn refresh(
+        &mut self,
+        transfer: &Transfer<N>,
+        size: [usize; 2],
+        block_row: impl Fn(usize, usize) -> BlockRow<N> + Sync,
+        places: &[[usize; 2]],
+    ) {
+        let rows: Vec<CoarseRow<N>> = places.par_iter().map(|&place| coarse_row(transfer, size, &block_row, place)).collect();
+        for (&[column, row], blocks) in places.iter().zip(&rows) {
+            let first = self.own_slot(row, column / LANES) * Self::CHUNK + column % LANES;
+            for (entry, &value) in blocks.as_flattened().as_flattened().iter().enumerate() {
+                self.values[first + entry * LANES] = value;
+                self.single[first + entry * LANES] = value as f32;
+            }
+        }
+    }
+
+    /// Slot of a chunk that has stencils of its own, from now on at the latest.
+    fn own_slot(&mut self, row: usize, chunk: usize) -> usize {
+        let slot = &mut self.slots[row * self.chunks + chunk];
+        if *slot == COMMON || *slot == EMPTY {
+            let common = self.common.as_ref().filter(|_| *slot == COMMON);
+            *slot = (self.values.len() / Self::CHUNK) as u32;
+            let entry = |index: usize| common.map_or(0.0, |common| common.as_flattened().as_flattened()[index / LANES]);
+            let before = self.values.len();
+            self.values.extend((0..Self::CHUNK).map(entry));
+            let single: Vec<f32> = self.values[before..].iter().map(|&v| v as f32).collect();
+            self.single.extend(single);
+        }
+        *slot as usize
     }
 }
 

@@ -19,7 +19,7 @@ use super::product::Product;
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::state::Bonds;
-use coarse::CoarseOperator;
+use coarse::{BlockRow, CoarseOperator};
 use fine::Fine;
 use smoother::{Operator, Smoother, Step, Work};
 use transfer::{Link, Transfer};
@@ -103,7 +103,6 @@ impl<const N: usize> Multigrid<N> {
             levels.push(level);
         }
         let coarsest = Coarsest::new(&levels[levels.len() - 1]);
-        levels.iter_mut().for_each(|level| level.operator.compact());
         Multigrid { smoother, levels, coarsest, work }
     }
 
@@ -113,6 +112,30 @@ impl<const N: usize> Multigrid<N> {
         for &place in places {
             let (column, row) = body.lattice.column_row(place);
             self.smoother.set_block(column, row, &fine.diagonal(column, row));
+        }
+    }
+
+    /// The same, coarse levels around these points included; that without smoothing stays as it is.
+    pub fn refresh_levels(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, places: &[usize]) {
+        self.refresh_points(body, bonds, product, places);
+        let fine = Fine::new(body, bonds, product);
+        let mut changed: Vec<[usize; 2]> = places.iter().map(|&place| body.lattice.column_row(place).into()).collect();
+        let mut size = [body.lattice.columns, body.lattice.rows];
+        for index in 0..self.levels.len() {
+            let (finer, coarser) = self.levels.split_at_mut(index);
+            let level = &mut coarser[0];
+            changed = match finer.last() {
+                None => {
+                    let (is_point, link) = (|c, r| fine.is_point(c, r), |a, b| fine.link(a, b));
+                    level.refresh(&changed, size, body.stencil.reach, is_point, link, |c, r| fine.block_row(c, r))
+                }
+                Some(Level { operator, .. }) => {
+                    let is_point = |c: usize, r: usize| scale(operator, [c, r]) > 0.0;
+                    let (link, row) = (|a, b| link(operator, a, b), |c, r| operator.block_row(c, r));
+                    level.refresh(&changed, size, coarse::REACH as usize, is_point, link, row)
+                }
+            };
+            size = level.transfer.coarse_size();
         }
     }
 
@@ -201,20 +224,37 @@ impl<const N: usize> Level<N> {
         Level { transfer, operator, smoother, work }
     }
 
+    /// Takes in that the finer operator of a size, whose rows reach so many places, has changed at some of its places; the places of
+    /// this level that change with them.
+    fn refresh(
+        &mut self,
+        changed: &[[usize; 2]],
+        size: [usize; 2],
+        reach: usize,
+        is_point: impl Fn(usize, usize) -> bool + Sync,
+        link: impl Fn([usize; 2], [usize; 2]) -> Link + Sync,
+        block_row: impl Fn(usize, usize) -> BlockRow<N> + Sync,
+    ) -> Vec<[usize; 2]> {
+        let Level { transfer, operator, smoother, .. } = self;
+        let mut sources = transfer.refresh(changed, is_point, link);
+        sources.extend(changed);
+        let places = transfer.coarse_around(&sources, reach);
+        operator.refresh(transfer, size, block_row, &places);
+        for &[column, row] in &places {
+            smoother.set_block(column, row, &operator.block(column, row, 0, 0));
+        }
+        places
+    }
+
     /// The next coarser level; `None` if this one is small enough for a dense inverse. `unit` is the spacing of this one.
     fn coarsened(&self, unit: f64) -> Option<Self> {
         let (operator, size) = (&self.operator, self.transfer.coarse_size());
         if size[0] * size[1] * N <= COARSEST || size[0].min(size[1]) < 4 {
             return None;
         }
-        let scale = |at: [usize; 2]| trace(&operator.block(at[0], at[1], 0, 0));
-        let link = |a: [usize; 2], b: [usize; 2]| {
-            let [dx, dy] = [0, 1].map(|i| b[i] as isize - a[i] as isize);
-            let norm = operator.block(a[0], a[1], dx, dy).iter().flatten().map(|v| v.abs()).fold(0.0, f64::max);
-            if norm > SEVERED * scale(a) || (dx, dy) == (0, 0) { Link::Joined } else { Link::Severed }
-        };
         let common = |row: usize, chunk: usize| operator.is_common(row, chunk);
-        let is_point = |c: usize, r: usize| scale([c, r]) > 0.0;
+        let is_point = |c: usize, r: usize| scale(operator, [c, r]) > 0.0;
+        let link = |a, b| link(operator, a, b);
         let transfer = Transfer::<N>::new(*operator.layout(), size[1], COARSENING, unit, common, is_point, link);
         let odd = |row, chunk| !(common(row, chunk) && transfer.is_plain(row, chunk));
         let reach = COARSENING as isize - 1 + coarse::REACH;
@@ -223,6 +263,18 @@ impl<const N: usize> Level<N> {
         let next = CoarseOperator::galerkin(&transfer, size, |c, r| operator.block_row(c, r), regular);
         Some(Level::new(transfer, next))
     }
+}
+
+/// Stiffness of a place of a level with itself.
+fn scale<const N: usize>(operator: &CoarseOperator<N>, [column, row]: [usize; 2]) -> f64 {
+    trace(&operator.block(column, row, 0, 0))
+}
+
+/// Whether a place of a level may use a coarser one that stands at another.
+fn link<const N: usize>(operator: &CoarseOperator<N>, a: [usize; 2], b: [usize; 2]) -> Link {
+    let [dx, dy] = [0, 1].map(|i| b[i] as isize - a[i] as isize);
+    let norm = operator.block(a[0], a[1], dx, dy).iter().flatten().map(|v| v.abs()).fold(0.0, f64::max);
+    if norm > SEVERED * scale(operator, a) || (dx, dy) == (0, 0) { Link::Joined } else { Link::Severed }
 }
 
 /// For each coarse place, whether all chunks of fine places (of `columns` x `rows`) that come within `reach` of it are there,

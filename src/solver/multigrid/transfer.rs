@@ -50,7 +50,7 @@ pub struct Transfer<const N: usize> {
 
 /// Weights of the four coarse places around a fine place: in double precision, so that the coarse operator is free of force in
 /// rigid motion.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Weights {
     share: [f64; 4],
     /// Whether the fine place moves rigidly with its coarse places.
@@ -110,6 +110,76 @@ impl<const N: usize> Transfer<N> {
             }
         }
         transfer
+    }
+
+    /// Weighs the places in and around `changed` ones anew, with what [`Transfer::new`] was given; those whose weights are others now.
+    pub fn refresh(
+        &mut self,
+        changed: &[[usize; 2]],
+        is_point: impl Fn(usize, usize) -> bool + Sync,
+        link: impl Fn([usize; 2], [usize; 2]) -> Link + Sync,
+    ) -> Vec<[usize; 2]> {
+        // A place uses coarse ones that are less than the factor away.
+        let reach = self.factor - 1;
+        let mut affected = vec![false; self.slots.len()];
+        for &[column, row] in changed {
+            let chunks = column.saturating_sub(reach) / LANES..=(column + reach).min(self.fine.columns - 1) / LANES;
+            for row in row.saturating_sub(reach)..=(row + reach).min(self.fine_rows - 1) {
+                affected[row * self.chunks..][chunks.clone()].fill(true);
+            }
+        }
+        let affected: Vec<usize> = (0..affected.len()).filter(|&index| affected[index]).collect();
+        let weights = |&index: &usize| self.weights_of_chunk(index / self.chunks, index % self.chunks, &is_point, &link);
+        let found: Vec<Option<[Weights; LANES]>> = affected.par_iter().map(weights).collect();
+        let mut others = Vec::new();
+        for (index, weights) in affected.into_iter().zip(found) {
+            let (row, first) = (index / self.chunks, index % self.chunks * LANES);
+            let slot = self.slots[index];
+            if weights.is_none() && slot == PLAIN {
+                continue;
+            }
+            let plain = |lane: usize| match first + lane {
+                column if column < self.fine.columns => Weights { share: self.bilinear([column, row]), rigid: false },
+                _ => Weights::default(),
+            };
+            let new = weights.unwrap_or_else(|| std::array::from_fn(plain));
+            let old = match slot {
+                PLAIN => std::array::from_fn(plain),
+                EMPTY => [Weights::default(); LANES],
+                slot => self.own[slot as usize],
+            };
+            let differs = |lane: &usize| old[*lane] != new[*lane];
+            let before = others.len();
+            others.extend((0..LANES).filter(differs).map(|lane| [first + lane, row]));
+            if others.len() == before {
+                continue;
+            }
+            if slot == PLAIN || slot == EMPTY {
+                self.slots[index] = self.own.len() as u32;
+                self.own.push(new);
+            } else {
+                self.own[slot as usize] = new;
+            }
+        }
+        others
+    }
+
+    /// Coarse places whose rows of the coarse operator take in one of some fine places, the fine operator reaching so many places.
+    #[must_use]
+    pub fn coarse_around(&self, fine: &[[usize; 2]], reach: usize) -> Vec<[usize; 2]> {
+        let [columns, rows] = self.coarse_size();
+        let reach = self.factor - 1 + reach;
+        let mut taken = vec![false; columns * rows];
+        let range = |at: usize, axis: usize, count: usize| {
+            let at = at + self.offset[axis];
+            at.saturating_sub(reach).div_ceil(self.factor)..((at + reach) / self.factor + 1).min(count)
+        };
+        for &[column, row] in fine {
+            for row in range(row, 1, rows) {
+                taken[row * columns..][range(column, 0, columns)].fill(true);
+            }
+        }
+        (0..taken.len()).filter(|&index| taken[index]).map(|index| [index % columns, index / columns]).collect()
     }
 
     /// Weights of the places of a chunk; `None` if all are in use and plain.

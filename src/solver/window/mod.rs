@@ -17,7 +17,7 @@ use super::{Focus, LinearSolver, SOLVES_MOST, Solved, System};
 use crate::body::mirror::signs;
 use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::state::Bonds;
 use condense::{Condensed, condense};
 use update::{Term, Update};
@@ -67,11 +67,11 @@ impl<const N: usize> Whole<N> for Alone<N> {
 
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         // A part that hangs on a few bonds is nearly a mechanism, on which the iteration breaks down; a factorisation does not.
-        self.0.solve(system, u).or_else(|_| DirectSolver::default().solve(system, u))
+        self.0.solve(system, u).or_else(|error| factorised(error, system, u))
     }
 
     fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        self.0.solve_to(tolerance, system, u).or_else(|_| DirectSolver::default().solve(system, u))
+        self.0.solve_to(tolerance, system, u).or_else(|error| factorised(error, system, u))
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
@@ -312,6 +312,11 @@ impl Window {
         let third = if body.stencil.unknowns == 3 { turn } else { 1.0 };
         Some(End { place, first: width * at, signs: [x, y, third] })
     }
+}
+
+/// By factorisation what iteration did not manage for an error; a plate that gives way is beyond both.
+fn factorised<const N: usize>(error: Error, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+    if matches!(error, Error::GaveWay) { Err(error) } else { DirectSolver::default().solve(system, u) }
 }
 
 /// Whether both ends of all these bonds are among some points (ascending).
