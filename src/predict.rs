@@ -8,6 +8,7 @@
 pub mod bond_rate;
 pub mod checkpoint;
 pub mod factor_curve;
+pub mod guard;
 pub mod laws;
 pub mod memory;
 mod outcome;
@@ -31,6 +32,7 @@ use crate::growth::bond_strain::{BondStrain, Unrecorded};
 use crate::growth::hand_calculation::HandCalculation;
 use crate::growth::tip_field::TipField;
 use checkpoint::Checkpoint;
+use guard::Guard;
 use snapshot::Album;
 
 /// Predicts the a-N curve of a case.
@@ -125,6 +127,7 @@ impl<'a> Run<'a> {
             Some(checkpoint) => checkpoint.restore(growth)?,
             None => growth.open().map(|()| (Album::default(), 0.0))?,
         };
+        let mut guard = Guard::default();
         let stop = loop {
             laws::check_within(case, growth)?;
             album.follow(growth, observer)?;
@@ -136,8 +139,10 @@ impl<'a> Run<'a> {
                     break StopReason::NoConvergence;
                 }
             }
+            let before = growth.now().cycles_of_run;
             let reason = growth.advance()?;
             let now = growth.now();
+            let reason = reason.or(guard.check(before, &now)?);
             if now.is_counting {
                 observer.grown(now.tips);
             }

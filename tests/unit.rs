@@ -29,6 +29,8 @@ mod commands;
 mod confidence;
 #[path = "unit/cross_check.rs"]
 mod cross_check;
+#[path = "unit/guard.rs"]
+mod guard;
 #[path = "unit/layering.rs"]
 mod layering;
 #[path = "unit/measured.rs"]

@@ -52,10 +52,12 @@ impl<'a> PdModel<'a> {
     fn run_anew(&self, p: f64) -> Result<FinishedRun> {
         let mut recording = Recording::default();
         let done = run(&self.case, |horizon| Ok(FatigueLaw { a: 1.0, p, horizon }), &mut recording, self.observer)?;
-        if done.stop == StopReason::NoConvergence {
+        if matches!(done.stop, StopReason::NoConvergence | StopReason::NoGrowth) {
             return Err(Error::Mechanics(format!(
-                "{}: the equilibrium solver did not converge at a crack length of {:.3} mm",
+                "{}: {} ({}), at a crack length of {:.3} mm",
                 self.case.name,
+                done.stop.meaning(),
+                done.stop,
                 done.crack_length_final() / crate::units::MM
             )));
         }

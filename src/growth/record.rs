@@ -15,6 +15,7 @@ crate::kinds! {
         EnteredHole = "entered_hole": "the last crack tip ran into a hole",
         LeftRefinement = "left_refinement": "a crack tip came to the rim of the finest level of points: the refined region is too small",
         NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
+        NoGrowth = "no_growth": "bonds went on breaking, but no crack tip grew",
         RunOut = "run_out": "cycles_max was reached",
         NoConvergence = "no_convergence": "the equilibrium solver did not converge",
     }

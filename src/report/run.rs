@@ -11,6 +11,7 @@ use super::output::write_file;
 use super::{fit_use, json, vtk};
 use crate::case::{Case, LawSource};
 use crate::error::{Error, Result, input};
+use crate::predict::guard::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::{Prediction, StopReason};
 use crate::specimen::Point;
 
@@ -40,6 +41,18 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
             return no_curve(
                 "the equilibrium solver did not converge",
                 "try model.solver = \"direct\" or another model.spacing_mm",
+            );
+        }
+        StopReason::NoGrowth if grown => {
+            warnings.push(format!(
+                "no crack tip grew over the last {BLOCKS_WITHOUT_GROWTH} blocks, though bonds went on breaking: the curve ends where the \
+                 last tip stood; use fatigue.driver = \"tip_field\", or give another model.spacing_mm"
+            ));
+        }
+        StopReason::NoGrowth => {
+            return no_curve(
+                "bonds went on breaking without growth of a crack tip",
+                "use fatigue.driver = \"tip_field\", or give another model.spacing_mm",
             );
         }
         // Under the threshold nothing ages either, which is an answer.

@@ -1,5 +1,7 @@
 //! K_I and K_II of every tip off its ring, what they say of its rate, and where it aims.
 
+use rayon::prelude::*;
+
 use super::approach::GAP_HORIZONS;
 use super::steering::equivalent_factor;
 use super::step::is_near_rim;
@@ -77,20 +79,21 @@ impl TipField<'_> {
     fn read_rings(&self, lines: &[CrackLine]) -> Vec<Reading> {
         let body = &self.plate.body;
         let horizon = body.horizon();
-        let tips = self.state.tips.iter().filter(|tip| tip.state == TipState::Active);
-        let active: Vec<LineEnd> = tips.clone().map(|tip| tip.end).collect();
-        let read = |tip: &Tip| {
+        let tips: Vec<&Tip> = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).collect();
+        let active: Vec<LineEnd> = tips.iter().map(|tip| tip.end).collect();
+        let (bonds, displacement, surroundings) = (&self.bonds, &*self.displacement, &self.surroundings);
+        let load = self.case.loading.maximum;
+        let read = |tip: &&Tip| {
             let end = tip.end;
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
             let clear_of = lines[end.line].end(end.at_last);
             let ring = |excess: f64| {
                 let mut lines = lines.to_vec();
                 lines[end.line].stretch(end.at_last, excess);
-                let (bonds, displacement) = (&self.bonds, &*self.displacement);
-                let plate = Balanced { body, bonds, displacement, load: self.case.loading.maximum, lines: &lines };
-                let radius = self.surroundings.radius(body, &lines, end, &active, RING_HORIZONS * horizon);
+                let plate = Balanced { body, bonds, displacement, load, lines: &lines };
+                let radius = surroundings.radius(body, &lines, end, &active, RING_HORIZONS * horizon);
                 let clear = body.rim_distance(clear_of, radius).unwrap_or(radius);
-                self.surroundings.factors(plate, end, clear.max(RING_HORIZONS_MIN * horizon))
+                surroundings.factors(plate, end, clear.max(RING_HORIZONS_MIN * horizon))
             };
             // Around the place to which the cut bonds reach, the field shows where its tip is; around that, its factors. About another
             // place by x the term r^{3/2} of the field counts, too: K of a short central crack is read low by 3x/8a.
@@ -100,7 +103,7 @@ impl TipField<'_> {
             let ring = if ahead == 0.0 { first } else { ring(excess + ahead) };
             Reading { factors: ring.factors, t_stress: ring.t_stress, excess: excess + ahead }
         };
-        let mut readings: Vec<Reading> = tips.map(read).collect();
+        let mut readings: Vec<Reading> = tips.par_iter().map(read).collect();
         pair_twins(&mut readings);
         readings
     }

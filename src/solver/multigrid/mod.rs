@@ -27,7 +27,7 @@ use transfer::{Link, Transfer};
 /// Smoothing steps before and after each coarse correction: with two an iteration is a fifth cheaper and there are a fifth more.
 const DEGREE: usize = 3;
 /// Unknowns below which a level is solved by a dense pseudo-inverse.
-const COARSEST: usize = 160;
+const COARSEST: usize = 300;
 /// Stiffness between two coarse places below which, relative to the diagonal, they count as severed.
 const SEVERED: f64 = 1e-7;
 
