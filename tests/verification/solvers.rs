@@ -341,3 +341,31 @@ fn a_floating_plate_does_not_drift_while_it_relaxes() {
         assert!(mean.into_iter().all(|u| u.abs() < 1e-3 * size), "{law}: {mean:?}");
     }
 }
+
+/// An edge crack that leaves a hinge: what is left carries no load that does not pass through it, and no solver need find out how far
+/// it would swing.
+#[test]
+fn a_plate_that_gives_way_says_so() {
+    for rotation in Rotation::ALL {
+        let set = [&*format!("model.rotation={rotation}"), "model.solver=multigrid"];
+        let case = case(
+            "kind=\"single_edge_tension\"\nwidth_mm=40\nlength_mm=80\nthickness_mm=2\ncrack_length_mm=5\nends=\"uniform_stress\"\n",
+            &set,
+        );
+        let body = body(&case);
+        let mut bonds = Bonds::new(&body);
+        let left = body.points.iter().map(|&point| body.lattice.position(point as usize)[0]).fold(f64::INFINITY, f64::min);
+        let mut equilibrium = Equilibrium::new(SolverKind::Multigrid, Symmetry::Off, &body, &bonds, case.loading.maximum);
+        let mut displacement = Vec::new();
+        let mut cut_by = |length: f64, equilibrium: &mut Equilibrium, displacement: &mut Vec<f64>| {
+            let cut = bonds_across(&body, [left - 1e-3, 0.1e-3], [left + length, 0.1e-3]);
+            cut.iter().for_each(|&bond| bonds.cut(&body, bond));
+            equilibrium.broke(&body, &bonds, &cut);
+            equilibrium.solve(&body, &bonds, displacement)
+        };
+        assert!(cut_by(6e-3, &mut equilibrium, &mut displacement).is_ok(), "{rotation}: a short crack");
+        assert!(cut_by(30e-3, &mut equilibrium, &mut displacement).is_ok(), "{rotation}: a deep crack");
+        let hinge = cut_by(38.6e-3, &mut equilibrium, &mut displacement);
+        assert!(matches!(hinge, Err(Error::GaveWay)), "{rotation}: {hinge:?}");
+    }
+}
