@@ -283,7 +283,9 @@ impl<'a> TipField<'a> {
         let work = if end.is_none() { self.equilibrium.work() } else { f64::NAN };
         let left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
         // What the last tip has met is known, whatever is left of the plate.
-        end = if left { end } else { end.filter(|end| *end == StopReason::Severed && severed).or_else(|| Some(self.gone())) };
+        if !left && !severed {
+            end = Some(self.gone());
+        }
         Block { cycles, work, cut: broken, end }
     }
 
