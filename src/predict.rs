@@ -53,7 +53,8 @@ pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> R
     start(case, Some(checkpoint), observer)
 }
 
-/// [`predict`] by bonds that age, with any law of bonds (given the body's horizon) and a recorder; K is not checked against that of
+/// [`predict`] by bonds that age, with any law of bonds (given the body's horizon) and a recorder; what rate over K it stands for is
+/// that of steady growth ([`bond_rate`]); K is not checked against that of
 /// cleanly cut cracks, which takes an equilibrium of its own.
 ///
 /// # Errors
@@ -66,7 +67,8 @@ pub fn run(
 ) -> Result<Prediction> {
     let run = Run { is_checked: false, ..Run::of(case, None, observer) };
     let case = &fitted(case);
-    run.follow(case, &mut BondStrain::start(case, law, recorder)?)
+    let rates = |horizon| laws::rates_of_bonds(case, law(horizon)?);
+    run.follow(case, &mut BondStrain::start(case, rates, recorder)?)
 }
 
 /// [`predict`] by the K of tips, with any law over K.
@@ -91,8 +93,8 @@ fn start(case: &Case, checkpoint: Option<Checkpoint>, observer: &dyn Observer) -
             run.follow(case, &mut TipField::start_on(case, plate?, law?)?)
         }
         (Method::Peridynamics, Driver::BondStrain) => {
-            let law = |horizon| laws::bond_law(case, horizon);
-            run.follow(case, &mut BondStrain::start(case, law, &mut Unrecorded)?)
+            let rates = |horizon| laws::bond_rates(case, horizon);
+            run.follow(case, &mut BondStrain::start(case, rates, &mut Unrecorded)?)
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fatigue::BlockKind;
+use crate::fatigue::{BlockKind, GrowthRate};
 
 /// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,12 +61,9 @@ pub struct FittedRecord {
     pub ageing: String,
     /// `fatigue.zone_radius_horizons`.
     pub zone_radius_horizons: f64,
-    /// `fatigue.lattice_direction`; records from before there was one ignored it.
-    #[serde(default = "ignored")]
-    pub lattice_direction: String,
-    /// `fatigue.finite_horizon`, likewise.
-    #[serde(default = "ignored")]
-    pub finite_horizon: String,
+    /// `fatigue.growth_rate`. Records without one are of versions whose bonds aged by corrected strains: their C and m count.
+    #[serde(default = "stress_intensity")]
+    pub growth_rate: String,
     /// `fatigue.precrack`.
     pub precrack: String,
     /// `fatigue.block` of the runs of the fit; another choice here is free, since blocks are a matter of error, not of model.
@@ -91,9 +88,8 @@ pub struct FittedRecord {
     pub sources: Vec<SourceFile>,
 }
 
-/// The method of records that do not name theirs.
-fn ignored() -> String {
-    "ignored".to_owned()
+fn stress_intensity() -> String {
+    GrowthRate::StressIntensity.name().to_owned()
 }
 
 /// The blocks of records from before they were controlled.
@@ -101,6 +97,7 @@ fn until_next_break() -> String {
     BlockKind::UntilNextBreak.name().to_owned()
 }
 
+/// The method of records that do not name theirs.
 fn peridynamics() -> String {
     crate::case::Method::Peridynamics.name().to_owned()
 }

@@ -1,9 +1,7 @@
 //! Choices of a case that have one built value so far, and what a case chose by itself.
 
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use crate::fatigue::Ageing;
-use crate::fatigue::finite_horizon::FiniteHorizon;
-use crate::fatigue::lattice_direction::LatticeDirection;
+use crate::fatigue::{Ageing, GrowthRate};
 
 crate::kinds! {
     /// Numerical methods.
@@ -33,10 +31,8 @@ pub struct Choices {
     pub surface_correction: Option<SurfaceCorrection>,
     /// `model.horizon_ratio`.
     pub horizon_ratio: Option<f64>,
-    /// `fatigue.lattice_direction`.
-    pub lattice_direction: Option<LatticeDirection>,
-    /// `fatigue.finite_horizon`.
-    pub finite_horizon: Option<FiniteHorizon>,
+    /// `fatigue.growth_rate`.
+    pub growth_rate: Option<GrowthRate>,
     /// `fatigue.ageing`.
     pub ageing: Option<Ageing>,
     /// `fatigue.zone_radius_horizons`.

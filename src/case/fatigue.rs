@@ -8,10 +8,8 @@ use super::growth_law::{FactorKeys, Setting, TableEnds};
 use super::law_source::LawKeys;
 use super::{LawSource, Stop};
 use crate::error::{Result, input, input_missing};
-use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::growth_law::GrowthLawKind;
-use crate::fatigue::lattice_direction::LatticeDirection;
-use crate::fatigue::{Ageing, Block, BlockKind, Driver, FatigueSettings, OVERLOAD_STRETCH, Precrack};
+use crate::fatigue::{Ageing, Block, BlockKind, Driver, FatigueSettings, GrowthRate, OVERLOAD_STRETCH, Precrack};
 use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
 use crate::loading::Loading;
 use crate::material::Material;
@@ -57,8 +55,7 @@ struct Input {
     critical_stretch: Option<f64>,
     walker_gamma: Option<f64>,
     delta_k_threshold_mpa_sqrt_m: Option<f64>,
-    lattice_direction: Option<LatticeDirection>,
-    finite_horizon: Option<FiniteHorizon>,
+    growth_rate: Option<GrowthRate>,
     allow_extrapolation: Option<bool>,
     #[serde(rename = "failure")]
     _failure: Option<Failure>,
@@ -83,8 +80,7 @@ pub(super) fn from_value(
 ) -> Result<Fatigue> {
     let input: Input = slice(value, "fatigue")?;
     choices.ageing = input.ageing;
-    choices.lattice_direction = input.lattice_direction;
-    choices.finite_horizon = input.finite_horizon;
+    choices.growth_rate = input.growth_rate;
     choices.zone_radius_horizons =
         number("a radius in horizons", 0.05, 10.0).read_optional("fatigue.zone_radius_horizons", input.zone_radius_horizons)?;
     choices.walker_gamma = number("a Walker exponent", 0.0, 2.0).read_optional("fatigue.walker_gamma", input.walker_gamma)?;
@@ -103,8 +99,7 @@ pub(super) fn from_value(
         critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
-        lattice_direction: choices.lattice_direction.unwrap_or(LatticeDirection::Corrected),
-        finite_horizon: choices.finite_horizon.unwrap_or(FiniteHorizon::Corrected),
+        growth_rate: read_growth_rate(&input)?,
     };
     let factor = FactorKeys {
         forman_c_mm_per_cycle: input.forman_c_mm_per_cycle,
@@ -153,8 +148,7 @@ fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Dri
         ("block_cycles", input.block_cycles.is_some()),
         ("bonds_per_block", input.bonds_per_block.is_some()),
         ("critical_stretch", input.critical_stretch.is_some()),
-        ("lattice_direction", input.lattice_direction.is_some()),
-        ("finite_horizon", input.finite_horizon.is_some()),
+        ("growth_rate", input.growth_rate.is_some()),
     ];
     let of_bonds = of_bonds.iter().find(|(_, given)| *given);
     match (input.driver, of_bonds) {
@@ -165,6 +159,20 @@ fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Dri
         (Some(driver), _) => Ok(driver),
         (None, None) if specimen.has_sharp_tips() => Ok(Driver::TipField),
         (None, _) => Ok(Driver::BondStrain),
+    }
+}
+
+/// What sets the rate of bonds that age: K of their tip, unless they age where no tip is.
+fn read_growth_rate(slice: &Input) -> Result<GrowthRate> {
+    let everywhere = slice.ageing == Some(Ageing::Everywhere);
+    match slice.growth_rate {
+        Some(GrowthRate::StressIntensity) if everywhere => {
+            let problem = "is the rate of a tip, and ageing = \"everywhere\" knows none";
+            Err(input("fatigue.growth_rate", "\"stress_intensity\"", problem, "use ageing = \"crack_tip\", or leave the key out"))
+        }
+        Some(rate) => Ok(rate),
+        None if everywhere => Ok(GrowthRate::BondStrain),
+        None => Ok(GrowthRate::StressIntensity),
     }
 }
 

@@ -7,7 +7,7 @@ use super::{Case, LawSource, Method};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::paris::ParisLaw;
-use crate::fatigue::{Driver, FatigueLaw};
+use crate::fatigue::{Driver, FatigueLaw, GrowthRate};
 use crate::input::{LENGTH, MODULUS, number};
 use crate::material::{Material, Plane};
 use crate::units::{GPA, MM, MM_PER_CYCLE};
@@ -68,8 +68,8 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
 fn adopt_ageing(case: &mut Case, record: &FittedRecord) -> Result<()> {
     let choices = case.choices;
     case.fatigue.ageing = agree("fatigue.ageing", choices.ageing, &record.ageing)?;
-    case.fatigue.lattice_direction = agree("fatigue.lattice_direction", choices.lattice_direction, &record.lattice_direction)?;
-    case.fatigue.finite_horizon = agree("fatigue.finite_horizon", choices.finite_horizon, &record.finite_horizon)?;
+    // A of the one stands for that of the other.
+    case.fatigue.growth_rate = choices.growth_rate.map_or_else(|| record.growth_rate.parse(), Ok)?;
     if let Some(given) = choices.zone_radius_horizons
         && (given - record.zone_radius_horizons).abs() > 1e-9
     {
@@ -166,6 +166,12 @@ impl Case {
         self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::BondStrain
     }
 
+    /// Whether its crack grows at the rate of the K of its tips, on a plate of points.
+    #[must_use]
+    pub fn is_driven_by_factors(&self) -> bool {
+        self.is_driven_by_tips() || self.spends_bond_life() && self.fatigue.growth_rate == GrowthRate::StressIntensity
+    }
+
     /// Whether its crack grows by the K of its tips on a lattice of points.
     #[must_use]
     pub fn is_driven_by_tips(&self) -> bool {
@@ -202,7 +208,7 @@ impl Case {
             LawSource::Paris(law) => Ok(*law),
             LawSource::Fitted(record) => {
                 // K of the tip's field and K of the handbook are not quite the same: each law stays with its own.
-                let law = match record.rate_constant.filter(|_| self.is_driven_by_tips()) {
+                let law = match record.rate_constant.filter(|_| self.model.method == Method::Peridynamics) {
                     Some(beta) => ParisLaw::of_bonds(&bonds_of(record), beta, recorded_modulus(record)?),
                     None => ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m },
                 };

@@ -8,7 +8,6 @@ use super::{Case, HORIZON_RATIO, Model};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
 use crate::error::{Result, input};
 use crate::fatigue::Ageing;
-use crate::fatigue::tip_strain;
 use crate::input::{LENGTH, number, slice};
 use crate::material::Material;
 use crate::net::dual_horizon::regions::Area;
@@ -198,20 +197,6 @@ pub(super) fn check_law(case: &Case) -> Result<()> {
             return Err(input("fatigue.ageing", format!("\"{}\"", case.fatigue.ageing), problem, remedy));
         }
     }
-    if law.kind == BondLawKind::StateBased && case.spends_bond_life() {
-        check_dilatation(case)?;
-    }
     Area::all(&case.specimen, model.refinement.as_ref(), model.horizon_ratio)?;
     stencil::check(law, &case.material)
-}
-
-/// Bonds that age are brought to one growth rate by a factor measured up to κ/G = 1.1, which changes its sign at 14: between them
-/// rates were wrong by factors (2 at ν = 0.4 in plane strain, 12 at 0.45), and growth did not end at 0.47.
-fn check_dilatation(case: &Case) -> Result<()> {
-    let (nu, plane) = (case.material.poisson_ratio, case.material.plane);
-    (tip_strain::dilatation_over_shear(plane, nu) <= tip_strain::MEASURED_UP_TO).then_some(()).ok_or_else(|| {
-        let problem =
-            format!("in plane {plane} is nearly incompressible: beyond what the strain of ageing bonds was measured for");
-        input("material.poisson_ratio", nu, problem, "use fatigue.driver = \"tip_field\" (K of every tip), or a smaller ratio")
-    })
 }

@@ -8,7 +8,6 @@ use super::choices::Choices;
 use super::{Case, LAW_KEYS, LawSource, fatigue, law, model};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
-use crate::fatigue::finite_horizon::life_shortfall;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{Document, Folder, OF_SCENES, Sections, Strangers, value_at};
@@ -98,7 +97,7 @@ impl Case {
             allow_extrapolation: fatigue.allow_extrapolation,
             choices,
         };
-        if case.is_driven_by_tips() && case.choices.surface_correction.is_none() {
+        if case.is_driven_by_factors() && case.choices.surface_correction.is_none() {
             case.model.take_most_accurate_rim();
         }
         match fatigue.law {
@@ -270,10 +269,8 @@ fn horizon_line(case: &Case) -> Option<String> {
     let (horizon, flaw) = (case.model.horizon_ratio * case.model.spacing, case.specimen.smallest_flaw());
     // The default spacing, a ninth of the crack, gives 1.005 thirds: that is meant to pass.
     (horizon > 1.01 * flaw / 3.0).then(|| {
-        let shortfall = 100.0 * life_shortfall(horizon, flaw);
-        let error = if shortfall < 3.0 { "some 3 % wrong".to_owned() } else { format!("about {shortfall:.0} % too short") };
         let (horizon, flaw) = (model::round_mm(horizon), model::round_mm(flaw));
-        format!("the horizon is {horizon} mm, more than a third of the crack ({flaw} mm): the correction of early growth is rough, and the life {error} until the crack has doubled; a smaller spacing_mm helps")
+        format!("the horizon is {horizon} mm, more than a third of the crack ({flaw} mm): give a smaller spacing_mm")
     })
 }
 

@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::crack_tip::{CrackTip, ROUND_OFF};
-use super::tip_strain::dilatation_factor;
 use super::{Ageing, FatigueSettings};
 use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
@@ -11,7 +10,6 @@ use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::field::Layout;
 use crate::specimen::Point;
-use crate::specimen::geometry::distance;
 use crate::state::Bonds;
 
 /// Core bond strain over the strain measure K/(E √δ) of a crack tip: mean over bonds of a straight crack, conical kernel.
@@ -106,37 +104,13 @@ fn in_zone(body: &Body, bonds: &Bonds, tip: &CrackTip, radius: f64) -> Vec<Bond>
 
 /// Of the candidates those in tension, with their cyclic strain. Bonds in compression are not spent.
 ///
-/// The strain is `share` times the stretch, times factors for the direction in which the nearest tip grows
-/// ([`LatticeDirection`](super::lattice_direction::LatticeDirection)), for the length of its crack
-/// ([`FiniteHorizon`](super::finite_horizon::FiniteHorizon)), and for the law ([`dilatation_factor`]).
+/// The strain is `share` times the stretch.
 #[must_use]
-pub fn ageing_bonds(
-    body: &Body,
-    candidates: &[Bond],
-    displacement: &[f64],
-    tips: &[CrackTip],
-    settings: &FatigueSettings,
-    (share, threshold): (f64, f64),
-) -> Vec<AgeingBond> {
+pub fn ageing_bonds(body: &Body, candidates: &[Bond], displacement: &[f64], (share, threshold): (f64, f64)) -> Vec<AgeingBond> {
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
-    let dilatation = dilatation_factor(body);
-    let active: Vec<(&CrackTip, f64)> = tips
-        .iter()
-        .filter(|tip| tip.is_active() && settings.ageing == Ageing::CrackTip)
-        .map(|tip| {
-            let direction = settings.lattice_direction.strain_factor(body, tip.direction);
-            (tip, dilatation * direction * settings.finite_horizon.strain_factor(body.horizon(), tip.crack + tip.growth))
-        })
-        .collect();
-    let factor = |bond: Bond| {
-        let middle = body.middle(bond);
-        let far = |tip: &CrackTip| distance(tip.position, middle);
-        active.iter().min_by(|a, b| far(a.0).total_cmp(&far(b.0))).map_or(1.0, |(_, factor)| *factor)
-    };
     candidates
         .iter()
         .map(|&bond| AgeingBond { bond, strain: share * stretch(body, &layout, displacement, bond) })
         .filter(|ageing| ageing.strain > threshold.max(0.0))
-        .map(|ageing| AgeingBond { strain: ageing.strain * factor(ageing.bond), ..ageing })
         .collect()
 }

@@ -3,20 +3,15 @@
 pub mod ageing;
 pub mod block_control;
 pub mod crack_tip;
-pub mod finite_horizon;
 pub mod growth_law;
 pub mod growth_rate;
-pub mod lattice_direction;
 pub mod length_average;
 pub mod no_fail;
 pub mod paris;
 pub mod pieces;
 pub mod remaining_life;
-pub mod tip_strain;
 
 use crate::error::{Error, input};
-use finite_horizon::FiniteHorizon;
-use lattice_direction::LatticeDirection;
 
 /// Critical stretch s_t where a case gives none: 5 %, which no plate bears within linear elasticity. It lets the last
 /// ligament of a plate break by overload instead of hanging on bonds that no tip spends.
@@ -56,6 +51,14 @@ crate::kinds! {
         Grown = "grown": "the crack is cut two horizons shorter and grows freely to the given length, where N = 0",
         SteadyProfile = "steady_profile": "bonds around the tip start with the lives that steady growth along the line of the crack leaves them",
         None = "none": "every bond starts with its whole life, as at a machined notch",
+    }
+}
+
+crate::kinds! {
+    /// What sets how fast a crack grows whose bonds age.
+    pub enum GrowthRate for "fatigue.growth_rate" {
+        StressIntensity = "stress_intensity": "K of the tip, by the interaction integral: the strains around it are scaled so that its bonds break at that rate",
+        BondStrain = "bond_strain": "the strains of its bonds as computed, which depend on lattice, horizon and Poisson's ratio",
     }
 }
 
@@ -146,8 +149,6 @@ pub struct FatigueSettings {
     pub walker_gamma: f64,
     /// Threshold of ΔK, Pa√m; 0 = none.
     pub threshold: f64,
-    /// Treatment of the crack's direction against the lattice.
-    pub lattice_direction: LatticeDirection,
-    /// Treatment of cracks that are short against the horizon.
-    pub finite_horizon: FiniteHorizon,
+    /// What sets how fast a crack grows whose bonds age.
+    pub growth_rate: GrowthRate,
 }

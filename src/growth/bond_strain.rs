@@ -5,6 +5,7 @@
 
 mod course;
 mod overload;
+mod pace;
 mod start;
 mod stop;
 mod tip_end;
@@ -32,6 +33,7 @@ use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
 use crate::solver::{Equilibrium, Focus};
 use crate::state::Bonds;
 use course::Course;
+use pace::{Pace, TipPace};
 use overload::{are_within, overstretched, stretched};
 use start::Start;
 use tip_end::{break_through, retire_tips};
@@ -57,11 +59,20 @@ impl Recorder for Unrecorded {
     fn block(&mut self, _: &[AgeingBond], _: &[Bond], _: f64) {}
 }
 
+/// What bonds are spent by.
+pub struct BondRates {
+    /// Their law.
+    pub bonds: FatigueLaw,
+    /// The rate of their tip over its K, where that sets how fast they are spent.
+    pub over_k: Option<Box<dyn GrowthLaw>>,
+}
+
 /// [`CrackGrowth`] by bonds that age.
 pub struct BondStrain<'a> {
     case: &'a Case,
     plate: Arc<Plate>,
     law: FatigueLaw,
+    pace: Option<Pace>,
     start: Start,
     end: Option<End>,
     /// Strain of a cycle over that at maximum load, and the range of strain below which nothing ages.
@@ -92,6 +103,7 @@ pub struct BondStrainState {
     tips: Vec<CrackTip>,
     near_limit: Vec<Bond>,
     control: BlockControl,
+    pace: Option<Vec<TipPace>>,
     past: Past,
     broken_bonds: usize,
     effort: Effort,
@@ -102,13 +114,18 @@ impl<'a> BondStrain<'a> {
     ///
     /// # Errors
     /// As [`Plate::build`]; a crack too short to be grown, cracks that cut the plate in two, no fatigue law.
-    pub fn start(case: &'a Case, law: impl FnOnce(f64) -> Result<FatigueLaw>, recorder: &'a mut dyn Recorder) -> Result<Self> {
+    pub fn start(case: &'a Case, rates: impl FnOnce(f64) -> Result<BondRates>, recorder: &'a mut dyn Recorder) -> Result<Self> {
         let start = Start::of(case)?;
         let plate = Plate::build(&start.specimen, &case.specimen, &case.material, &case.model)?;
         let body = &plate.body;
-        let law = law(body.horizon())?;
+        let BondRates { bonds: law, over_k } = rates(body.horizon())?;
         let share = strain_share(&case.loading, &case.fatigue);
-        let threshold = share * threshold_strain(&case.fatigue, &case.material, body.horizon()) / case.loading.range_share();
+        // A rate over K has its threshold in K.
+        let threshold = match over_k {
+            Some(_) => 0.0,
+            None => share * threshold_strain(&case.fatigue, &case.material, body.horizon()) / case.loading.range_share(),
+        };
+        let pace = over_k.map(|over_k| Pace::new(case, &start, body, over_k));
         let mut run = Course::start(case, body, start.tips(body), law.p);
         if start::cuts_in_two(body, &run.bonds, case) || set_aside(body, &mut run.bonds, &body.pre_cut) == Cut::Severed {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
@@ -116,6 +133,7 @@ impl<'a> BondStrain<'a> {
         Ok(BondStrain {
             case,
             law,
+            pace,
             start,
             end: first_end(case),
             range: (share, threshold),
@@ -148,6 +166,7 @@ impl<'a> BondStrain<'a> {
         let counting = self.start.is_over(&run.tips);
         if counting && run.track.begin() {
             run.tips.iter_mut().for_each(CrackTip::leave_rails);
+            self.pace.iter_mut().for_each(Pace::begin);
         }
         self.near = if counting {
             candidates(body, &run.bonds, &run.tips, &case.fatigue)
@@ -220,8 +239,16 @@ impl CrackGrowth for BondStrain<'_> {
         }
         let focus = focus(&run.tips, body, settings);
         run.iterations += self.equilibrium.reach(body, &run.bonds, &self.watched, &focus, &mut self.displacement)?;
-        let mut ageing = ageing_bonds(body, &self.near, &self.displacement, &run.tips, settings, self.range);
+        let records = self.start.records(&run.tips);
+        if let Some(pace) = self.pace.as_mut().filter(|pace| !self.equilibrium.is_foreseen() && pace.is_due(body, &run.tips)) {
+            run.iterations += self.equilibrium.complete(body, &run.bonds, &mut self.displacement)?;
+            pace.read(body, &run.bonds, &self.displacement, &run.tips, &records);
+        }
+        let mut ageing = ageing_bonds(body, &self.near, &self.displacement, self.range);
         run.control.correct(&self.equilibrium, body, &run.tips, &mut ageing);
+        if let Some(pace) = &mut self.pace {
+            pace.set(body, &run.tips, &self.law, &mut ageing);
+        }
         if let Some(reason) = stop::before_block(case, self.end, &run.track, &run.tips, &ageing) {
             return Ok(Some(reason));
         }
@@ -241,6 +268,9 @@ impl CrackGrowth for BondStrain<'_> {
         }
         run.life.spend(&self.law, cycles, &ageing);
         run.track.spend(cycles);
+        if let Some(pace) = &mut self.pace {
+            pace.spend(body, &run.tips, &self.law, cycles, &ageing);
+        }
         let (spent, reason) = self.break_bonds(first, counting);
 
         // Follow the tips and record.
@@ -251,7 +281,11 @@ impl CrackGrowth for BondStrain<'_> {
         tips.for_each(|(tip, broken)| tip.advance(body, &run.bonds, &case.specimen, broken));
         let work = if reason.is_none() { self.equilibrium.work() } else { f64::NAN };
         let is_open = self.equilibrium.is_foreseen() && reason.is_none();
-        run.track.record(self.start.records(&run.tips), run.broken_bonds, work, is_open);
+        let records = self.start.records(&run.tips);
+        if let Some(pace) = &mut self.pace {
+            pace.follow(body, &run.tips, &records);
+        }
+        run.track.record(records, run.broken_bonds, work, is_open);
         self.recorder.block(&ageing, &spent, run.track.last().crack_length);
         let reason = reason.or_else(|| stop::after_block(case, self.end, &run.track));
         if reason.is_none() {
@@ -321,6 +355,7 @@ impl CrackGrowth for BondStrain<'_> {
             tips: run.tips.clone(),
             near_limit: run.near_limit.clone(),
             control: run.control.clone(),
+            pace: self.pace.as_ref().map(Pace::state),
             past: run.track.past().clone(),
             broken_bonds: run.broken_bonds,
             effort: self.effort(),
@@ -336,6 +371,15 @@ impl CrackGrowth for BondStrain<'_> {
         let tips = run.tips.len();
         if !(known && state.law == constants(&self.law) && state.tips.len() == tips && state.past.fits(tips)) {
             return Ok(false);
+        }
+        match (&mut self.pace, state.pace) {
+            (None, None) => {}
+            (Some(pace), Some(before)) => {
+                if !pace.restore(before) {
+                    return Ok(false);
+                }
+            }
+            _ => return Ok(false),
         }
         state.broken.iter().for_each(|&bond| run.bonds.cut(&plate.body, bond));
         state.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));

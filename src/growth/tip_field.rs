@@ -11,11 +11,11 @@
 mod ahead;
 mod approach;
 mod factors;
-mod readings;
+pub(super) mod readings;
 mod run;
 mod state;
 pub mod steering;
-mod step;
+pub(super) mod step;
 
 pub use state::{Tip, TipFieldState, TipsState};
 

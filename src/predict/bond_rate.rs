@@ -109,7 +109,7 @@ impl Family {
              crack_length_mm = {from}\n[material]\nyoungs_modulus_gpa = 100\npoisson_ratio = 0.3\nplane = \"stress\"\n\
              [loading]\nkind = \"constant_amplitude\"\nstress_max_mpa = 100\nstress_ratio = 0\n\
              [model]\nspacing_mm = 1\nhorizon_ratio = {horizon}\nkernel = \"{}\"\n\
-             [fatigue]\ndriver = \"bond_strain\"\na = 1\np = 3\nhorizon_mm = {horizon}\n[stop]\ncrack_length_mm = {to}\n",
+             [fatigue]\ndriver = \"bond_strain\"\ngrowth_rate = \"bond_strain\"\na = 1\np = 3\nhorizon_mm = {horizon}\n[stop]\ncrack_length_mm = {to}\n",
             self.kernel
         );
         let mut case = Case::from_toml(&text, "reference plate", Path::new(""), &[])?;

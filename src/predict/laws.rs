@@ -4,10 +4,11 @@ use super::CurvePoint;
 use super::bond_rate::Family;
 use crate::case::{Case, LawSource};
 use crate::error::{Result, input_missing};
-use crate::fatigue::FatigueLaw;
+use crate::fatigue::{FatigueLaw, GrowthRate};
 use crate::fatigue::growth_law::{Bounded, GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::growth::CrackGrowth;
+use crate::growth::bond_strain::BondRates;
 use crate::units::MM;
 
 /// The law over K of a case, for driver `tip_field` and method `handbook`.
@@ -20,6 +21,29 @@ pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
         LawSource::Factor(law) => Box::new(Bounded { law: law.clone(), threshold }),
         _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold }),
     })
+}
+
+/// What the bonds of a case are spent by, at the body's actual horizon, m.
+///
+/// # Errors
+/// As [`bond_law`] and [`growth_law`].
+pub fn bond_rates(case: &Case, horizon: f64) -> Result<BondRates> {
+    let over_k = (case.fatigue.growth_rate == GrowthRate::StressIntensity).then(|| growth_law(case)).transpose()?;
+    Ok(BondRates { bonds: bond_law(case, horizon)?, over_k })
+}
+
+/// The same with a law of bonds in place of that of the case.
+///
+/// # Errors
+/// As [`Family::rate_constant`].
+pub fn rates_of_bonds(case: &Case, bonds: FatigueLaw) -> Result<BondRates> {
+    let over_k = || -> Result<Box<dyn GrowthLaw>> {
+        let beta = Family::of(&case.model).rate_constant(bonds.p)?;
+        let paris = ParisLaw::of_bonds(&bonds, beta, case.material.plane_modulus());
+        Ok(Box::new(Walker { paris, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold }))
+    };
+    let over_k = (case.fatigue.growth_rate == GrowthRate::StressIntensity).then(over_k).transpose()?;
+    Ok(BondRates { bonds, over_k })
 }
 
 /// Refuses growth from a K that lies beyond what the law says, where the law wants that.

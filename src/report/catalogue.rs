@@ -10,10 +10,8 @@ use crate::calibration::criterion::Criterion;
 use crate::calibration::rates::RateMethod;
 use crate::case::growth_law::TableEnds;
 use crate::case::{Failure, Method};
-use crate::fatigue::finite_horizon::FiniteHorizon;
 use crate::fatigue::growth_law::GrowthLawKind;
-use crate::fatigue::lattice_direction::LatticeDirection;
-use crate::fatigue::{Ageing, BlockKind, Driver, Precrack};
+use crate::fatigue::{Ageing, BlockKind, Driver, GrowthRate, Precrack};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind, Transverse};
 use crate::fracture::scene::{Arrangement, DamageEntry, DamageLaw, PointLaw, SceneSolver, ZeroEnergyControl};
@@ -61,8 +59,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         GrowthLawKind::lines(),
         TableEnds::lines(),
         Ageing::lines(),
-        LatticeDirection::lines(),
-        FiniteHorizon::lines(),
+        GrowthRate::lines(),
         Precrack::lines(),
         BlockKind::lines(),
         Failure::lines(),

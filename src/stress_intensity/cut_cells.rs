@@ -52,9 +52,15 @@ pub fn cells_along<'a>(body: &'a Body, pieces: &'a [[Point; 2]]) -> impl Iterato
     })
 }
 
-/// Parts of these cells that are material, each with its point.
+/// Parts of these cells that are material, each with the nearest point that sees it, of those that are `known`.
 #[must_use]
-pub fn parts(body: &Body, specimen: &Specimen, cracks: &[[Point; 2]], cells: &HashSet<usize>) -> Vec<Part> {
+pub fn parts(
+    body: &Body,
+    specimen: &Specimen,
+    cracks: &[[Point; 2]],
+    cells: &HashSet<usize>,
+    known: impl Fn(usize) -> bool,
+) -> Vec<Part> {
     let lattice = &body.lattice;
     let neighbours: Vec<isize> = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| lattice.step(dx, dy))).collect();
     let mut cells: Vec<usize> = cells.iter().copied().collect();
@@ -66,7 +72,7 @@ pub fn parts(body: &Body, specimen: &Specimen, cracks: &[[Point; 2]], cells: &Ha
         let near: Vec<(usize, Point)> = neighbours
             .iter()
             .filter_map(|&step| cell.checked_add_signed(step))
-            .filter(|&place| body.is_point.get(place).is_some_and(|&is_point| is_point))
+            .filter(|&place| body.is_point.get(place).is_some_and(|&is_point| is_point) && known(place))
             .map(|place| (place, lattice.position(place)))
             .collect();
         let centre = lattice.position(cell);

@@ -48,6 +48,8 @@ const INNER_SHARE: f64 = 0.3;
 const INNER_HORIZONS: f64 = 0.75;
 /// Distance from a tip, in horizons, within which faces are not read: the core is not that of a sharp crack.
 const CORE_HORIZONS: f64 = 0.75;
+/// Intact bonds of a point from which the derivatives of its displacement are known.
+const NEIGHBOURS_LEAST: usize = 6;
 /// Pieces of a crack face per spacing.
 const PIECES_PER_SPACING: f64 = 2.0;
 /// Room left, in horizons, between a ring and what it cannot take in: another tip, a support.
@@ -163,12 +165,15 @@ impl Surroundings {
         let with_slope = inner - spacing..outer + spacing;
         let is_near = |cell: &usize| with_slope.contains(&distance(body.lattice.position(*cell), frame.origin));
         let rim_cells = self.rim_cells.iter().copied();
-        let cut: HashSet<usize> = rim_cells.chain(cells_along(body, &cracks)).filter(is_near).collect();
+        // A point that hangs on a few bonds says nothing: its cell is that of its neighbours.
+        let is_known = |place: usize| plate.bonds.intact_at(body, place) >= NEIGHBOURS_LEAST;
+        let loose = places_near(body, frame.origin, frame.origin, outer + spacing).filter(|place| !is_known(*place));
+        let cut: HashSet<usize> = rim_cells.chain(cells_along(body, &cracks)).chain(loose).filter(is_near).collect();
         for place in places_near(body, frame.origin, frame.origin, outer).filter(|place| !cut.contains(place)) {
             let at = body.lattice.position(place);
             add(around.area(at, place, 1.0));
         }
-        for Part { at, place, share } in parts(body, &self.specimen, &cracks, &cut) {
+        for Part { at, place, share } in parts(body, &self.specimen, &cracks, &cut, is_known) {
             add(around.area(at, place, share));
         }
         self.rim.iter().filter(|(facet, _)| near(facet.at)).for_each(|(facet, free)| add(around.rim(facet, *free)));

@@ -103,6 +103,11 @@ impl Start {
         tips.iter().zip(&self.lags).all(|(tip, &lag)| tip.growth >= lag || !tip.is_active())
     }
 
+    /// Growth of every tip at which it has its initial length, m.
+    pub(super) fn lags(&self) -> &[f64] {
+        &self.lags
+    }
+
     /// Tips that are not there yet.
     pub(super) fn on_the_way(&self, tips: &[CrackTip]) -> Vec<CrackTip> {
         tips.iter().zip(&self.lags).filter(|(tip, lag)| tip.growth < **lag).map(|(tip, _)| tip.clone()).collect()

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::Body;
 use crate::case::Case;
-use crate::fatigue::finite_horizon::FiniteHorizon;
+use crate::fatigue::GrowthRate;
 use crate::fatigue::growth_rate::{Rate, Sample, rates, release_rate_at_end};
 use crate::fatigue::length_average::LengthAverage;
 use crate::growth::end_of_life::End;
@@ -186,16 +186,11 @@ impl Track {
     pub(super) fn warnings(&self, case: &Case, body: &Body) -> Vec<String> {
         let mut warnings = Vec::new();
         let flaw = case.specimen.smallest_flaw();
-        if flaw < SHORT_CRACK_HORIZONS * body.horizon() {
-            let rate = FiniteHorizon::Corrected.strain_factor(body.horizon(), flaw).powi(-3) - 1.0;
-            let treatment = match case.fatigue.finite_horizon {
-                FiniteHorizon::Corrected => "grow too fast at first, which is corrected",
-                FiniteHorizon::Ignored => "grow too fast at first, which is not corrected",
-            };
+        if case.fatigue.growth_rate == GrowthRate::BondStrain && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
             warnings.push(format!(
-                "the initial crack is only {:.1} horizons long: the finite horizon makes it {treatment}: {:.0} % in rate (fatigue.finite_horizon; not a short-crack effect)",
-                flaw / body.horizon(),
-                100.0 * rate
+                "the initial crack is only {:.1} horizons long: its bonds are strained more than those of a long crack at equal K, and it \
+                 grows too fast at first (not a short-crack effect; fatigue.growth_rate = \"stress_intensity\" is free of it)",
+                flaw / body.horizon()
             ));
         }
         if self.past.longest > self.limit + body.horizon() {

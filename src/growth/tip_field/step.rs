@@ -135,7 +135,7 @@ pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f
 }
 
 /// Whether a rim or another crack lies within `reach` straight ahead of a tip or 45° to either side.
-pub(super) fn is_near_rim(specimen: &Specimen, lines: &[CrackLine], end: LineEnd, reach: f64) -> bool {
+pub(in crate::growth) fn is_near_rim(specimen: &Specimen, lines: &[CrackLine], end: LineEnd, reach: f64) -> bool {
     let (from, [x, y]) = (lines[end.line].end(end.at_last), lines[end.line].direction(end.at_last));
     let half = std::f64::consts::FRAC_1_SQRT_2;
     [[x, y], [half * (x - y), half * (x + y)], [half * (x + y), half * (y - x)]]

@@ -1,0 +1,389 @@
+//! How fast a tip grows whose bonds age: by its K.
+//!
+//! A tip that grows by da severs bonds of weight ρ(n) da ([`crate::body::severed`]), so bonds that spend `Σ g_k A ε_k^p` of their
+//! lives a cycle make it grow by `η Σ g_k A ε_k^p / ρ(n)`, η being the share of the life spent around a tip that severs bonds of the
+//! crack. What ε is at equal K depends on the direction of the crack against the lattice, on the horizon over the spacing and over
+//! the length of the crack, on Poisson's ratio, on the stress along the crack and on the bond law. So the strains around a tip are
+//! taken for what they say of each other, and are multiplied by one f for all,
+//!
+//! `f^p η Σ_k g_k A ε_k^p = ρ(n) da/dN(K_eq)`,
+//!
+//! which leaves dλ/dN = -A (f ε)^p a law of bonds, whose crack goes where bonds break, and lets all that cancel. K_eq is read off a
+//! ring around the tip ([`crate::stress_intensity::ring`]) every half horizon of growth and continued along its slope; η is the
+//! growth over the life spent in the last 1.5 horizons, so that what a tip really does closes the loop.
+//!
+//! Before a tip has a past that shows η, as at a machined notch, and where nothing can be read around it, f is what it was: at first 1.
+
+use std::collections::VecDeque;
+
+use serde::{Deserialize, Serialize};
+
+use super::start::Start;
+use crate::body::pre_crack::{bonds_across, places_near};
+use crate::body::severed::{severed_per_length, severed_weight};
+use crate::body::{Body, Bond};
+use crate::case::Case;
+use crate::fatigue::FatigueLaw;
+use crate::fatigue::ageing::AgeingBond;
+use crate::fatigue::crack_tip::CrackTip;
+use crate::fatigue::growth_law::GrowthLaw;
+use crate::growth::record::TipRecord;
+use crate::growth::tip_field::readings::Readings;
+use crate::growth::tip_field::steering::equivalent_factor;
+use crate::growth::tip_field::step::is_near_rim;
+use crate::specimen::geometry::{distance, distance_to_segment};
+use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
+use crate::state::Bonds;
+use crate::stress_intensity::ring::{Balanced, Surroundings};
+
+/// Exponent by which strains share out the life spent around a tip. Where the rate is that of K it sets the order of breaks alone: high
+/// ones lock a crack to rows of points (lives on turned lattices were wrong by up to 40 % at p = 6 and ordered by it), 2 spends life
+/// as strain energy is stored.
+const ORDER: f64 = 2.0;
+/// Growth, in horizons, after which K is read again.
+const READ_HORIZONS: f64 = 0.5;
+/// Growth, in horizons, that shows η.
+const PAST_HORIZONS: f64 = 1.5;
+/// η of tips before N = 0 that have no past yet.
+const USUAL_EFFICIENCY: f64 = 0.75;
+/// Growth since the cut, in horizons, that does not: bonds ahead of a cut have whole lives.
+const FRESH_HORIZONS: f64 = 0.5;
+/// Growth, in horizons, over which a tip makes up for what it is behind, and bounds of its rate over that of its K meanwhile.
+const CATCH_UP_HORIZONS: f64 = 1.0;
+const CATCH_UP: (f64, f64) = (0.5, 2.0);
+/// Least growth after that which shows it.
+const PAST_LEAST_HORIZONS: f64 = 0.25;
+/// Outer radius of the ring, in horizons, where there is room, and below which it says nothing.
+const RING_HORIZONS: [f64; 2] = [1.2, 4.0];
+/// Length of the pieces, in horizons, in which the way of a tip is taken down.
+const PIECE_HORIZONS: f64 = 0.5;
+/// Distance of a tip from its cut, in horizons, below which it has no direction of its own.
+const SHORT_HORIZONS: f64 = 0.25;
+/// How far from the place of a tip its field may stand, in horizons: farther off it is that of something else.
+const AHEAD_HORIZONS: f64 = 0.5;
+/// Distance of a rim ahead, in horizons, within which K is not read.
+const RIM_HORIZONS: f64 = 0.6;
+/// Relative difference of K below which tips are mirror twins.
+const TWINS: f64 = 1e-4;
+
+/// Rates of the tips of a run.
+pub(super) struct Pace {
+    law: Box<dyn GrowthLaw>,
+    surroundings: Surroundings,
+    specimen: Specimen,
+    /// Cracks as they are cut.
+    lines: Vec<CrackLine>,
+    /// Which end of them every tip is; none where it starts in a slot.
+    ends: Vec<Option<LineEnd>>,
+    /// Maximum load, Pa or N, and stress ratio.
+    load: f64,
+    ratio: f64,
+    tips: Vec<TipPace>,
+}
+
+/// What a tip's pace depends on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct TipPace {
+    /// Where the tip has been, in pieces.
+    way: Vec<Point>,
+    /// Growth at the last piece.
+    taken_at: f64,
+    readings: Readings,
+    /// Growth at which a reading was last tried.
+    tried_at: Option<f64>,
+    /// The last reading, if it said anything.
+    reading: Option<Reading>,
+    /// Length of crack, m, that the life spent since the cut would have made at η = 1.
+    spent: f64,
+    /// Growth and that length over the last [`PAST_HORIZONS`].
+    past: VecDeque<[f64; 2]>,
+    /// da/dN of its K, m/cycle, where it is known.
+    rate: Option<f64>,
+    /// Growth by that rate since it was known, less that of the tip, m.
+    behind: f64,
+    /// F, 1/cycle; none before it was known.
+    scale: Option<f64>,
+    /// Whether the cycles of its first growth do not count.
+    is_grown_before: bool,
+}
+
+/// K_I and K_II of a tip and where they belong.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Reading {
+    factors: [f64; 2],
+    growth: f64,
+    /// How far ahead of that the field stands, m.
+    ahead: f64,
+}
+
+impl TipPace {
+    /// A tip at its cut, grown before N = 0 or not.
+    fn of(is_grown_before: bool) -> Self {
+        TipPace {
+            way: Vec::new(),
+            taken_at: 0.0,
+            readings: Readings::default(),
+            tried_at: None,
+            reading: None,
+            spent: 0.0,
+            past: VecDeque::from([[0.0; 2]]),
+            rate: None,
+            behind: 0.0,
+            scale: None,
+            is_grown_before,
+        }
+    }
+
+    /// Share of the spent life that is growth; `None` before a tip has a past.
+    fn efficiency(&self, horizon: f64) -> Option<f64> {
+        let (first, last) = (self.past.front()?, self.past.back()?);
+        let (grown, spent) = (last[0] - first[0], last[1] - first[1]);
+        let is_known = first[0] >= FRESH_HORIZONS * horizon && grown >= PAST_LEAST_HORIZONS * horizon && spent > 0.0;
+        if is_known { Some(grown / spent) } else { self.is_grown_before.then_some(USUAL_EFFICIENCY) }
+    }
+
+    /// K_I and K_II at a growth, from the last reading and the slope of those before.
+    fn factors(&self, growth: f64, length: f64, horizon: f64) -> Option<[f64; 2]> {
+        let Reading { factors, growth: then, ahead } = self.reading?;
+        let share = self.readings.share(ahead + then - growth, length, horizon);
+        Some(factors.map(|factor| share * factor))
+    }
+}
+
+impl Pace {
+    pub(super) fn new(case: &Case, start: &Start, body: &Body, law: Box<dyn GrowthLaw>) -> Self {
+        let (specimen, lags) = (&start.specimen, start.lags());
+        let count = specimen.tips.len();
+        let tip = |tip: usize| {
+            let start_of_way = specimen.line_end(tip).is_none().then_some(specimen.tips[tip].position);
+            TipPace { way: start_of_way.into_iter().collect(), ..TipPace::of(lags[tip] > 0.0) }
+        };
+        Pace {
+            law,
+            surroundings: Surroundings::new(body, specimen, &case.material),
+            specimen: specimen.clone(),
+            lines: specimen.crack_lines(),
+            ends: (0..count).map(|tip| specimen.line_end(tip)).collect(),
+            load: case.loading.maximum,
+            ratio: case.loading.ratio,
+            tips: (0..count).map(tip).collect(),
+        }
+    }
+
+    /// Whether a tip has grown so far that its K is to be read.
+    pub(super) fn is_due(&self, body: &Body, tips: &[CrackTip]) -> bool {
+        let step = READ_HORIZONS * body.horizon();
+        let is_due = |(tip, pace): (&CrackTip, &TipPace)| pace.tried_at.is_none_or(|then| tip.growth >= then + step);
+        tips.iter().zip(&self.tips).filter(|(tip, _)| tip.is_active()).any(is_due)
+    }
+
+    /// Reads K of all active tips off a displacement that is right everywhere.
+    pub(super) fn read(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], tips: &[CrackTip], records: &[TipRecord]) {
+        let horizon = body.horizon();
+        let (lines, ends) = self.cracks(body, records);
+        let bonds = &sound_bonds(body, bonds, &lines, records, RING_HORIZONS[1] * horizon);
+        let active: Vec<LineEnd> = ends.iter().zip(tips).filter(|(_, tip)| tip.is_active()).filter_map(|(end, _)| *end).collect();
+        let ring = |end: LineEnd, by: f64| {
+            let mut lines = lines.clone();
+            lines[end.line].stretch(end.at_last, by);
+            let radius = self.surroundings.radius(body, &lines, end, &active, RING_HORIZONS[1] * horizon);
+            let radius = body.rim_distance(lines[end.line].end(end.at_last), radius).unwrap_or(radius);
+            let plate = Balanced { body, bonds, displacement, load: self.load, lines: &lines };
+            (radius >= RING_HORIZONS[0] * horizon).then(|| self.surroundings.factors(plate, end, radius))
+        };
+        let read = |end: LineEnd| {
+            if is_near_rim(&self.specimen, &lines, end, RIM_HORIZONS * horizon) {
+                return None;
+            }
+            let first = ring(end, 0.0)?;
+            if first.ahead.is_nan() || first.ahead.abs() > AHEAD_HORIZONS * horizon {
+                return None;
+            }
+            let second = ring(end, first.ahead)?;
+            let factors = second.factors;
+            equivalent_factor(factors).is_finite().then_some((factors, first.ahead + second.ahead))
+        };
+        let mut found: Vec<Option<([f64; 2], f64)>> = ends
+            .iter()
+            .zip(tips)
+            .map(|(end, tip)| end.filter(|_| tip.is_active()).and_then(read))
+            .collect();
+        pair_twins(&mut found);
+        for ((pace, tip), found) in self.tips.iter_mut().zip(tips).zip(found) {
+            if !tip.is_active() {
+                continue;
+            }
+            pace.tried_at = Some(tip.growth);
+            if std::env::var("DBG").is_ok() { eprintln!("READ g {:.3} K {:?} eff {:?} scale {:?} pos {:?} dir {:?}", tip.growth*1e3, found.map(|(f,a)| (f[0]/1e6,f[1]/1e6,a*1e3)), pace.efficiency(horizon), pace.scale, tip.position, tip.direction); }
+            pace.reading = found.map(|(factors, ahead)| Reading { factors, growth: tip.growth, ahead });
+            if let Some(Reading { factors, ahead, .. }) = pace.reading {
+                pace.readings.take(equivalent_factor(factors), tip.growth, ahead, None, horizon);
+            }
+        }
+    }
+
+    /// The cracks as the tips have left them, and which end of them every tip is.
+    fn cracks(&self, body: &Body, records: &[TipRecord]) -> (Vec<CrackLine>, Vec<Option<LineEnd>>) {
+        let mut lines = self.lines.clone();
+        let least = 1.0 * body.horizon();
+        let mut end_of = |((pace, record), end): ((&TipPace, &TipRecord), &Option<LineEnd>)| {
+            let here = record.position;
+            let way = pace.way.iter().filter(|at| distance(**at, here) > least).copied();
+            let Some(end) = *end else {
+                // From a slot.
+                let points: Vec<Point> = way.chain([here]).collect();
+                return (points.len() > 1).then(|| {
+                    lines.push(CrackLine { points });
+                    LineEnd { line: lines.len() - 1, at_last: true }
+                });
+            };
+            let line = &mut lines[end.line];
+            way.for_each(|at| line.grow(end.at_last, at));
+            let (last, [x, y]) = (line.end(end.at_last), line.direction(end.at_last));
+            if distance(last, here) > SHORT_HORIZONS * body.horizon() {
+                line.grow(end.at_last, here);
+            } else {
+                // So near the cut no direction of its own shows; the sharp crack may even end short of it.
+                line.stretch(end.at_last, x * (here[0] - last[0]) + y * (here[1] - last[1]));
+            }
+            Some(end)
+        };
+        let ends = self.tips.iter().zip(records).zip(&self.ends).map(&mut end_of).collect();
+        (lines, ends)
+    }
+
+    /// Multiplies the strains of ageing bonds so that every tip grows at the rate of its K. Bonds of a tip that does not grow are left
+    /// out.
+    pub(super) fn set(&mut self, body: &Body, tips: &[CrackTip], law: &FatigueLaw, ageing: &mut Vec<AgeingBond>) {
+        let horizon = body.horizon();
+        let lengths = lengths(body, tips, ageing, |strain| strain.powf(ORDER));
+        for ((pace, tip), per_scale) in self.tips.iter_mut().zip(tips).zip(lengths) {
+            let known = pace.factors(tip.growth, tip.crack + tip.growth, horizon).zip(pace.efficiency(horizon));
+            pace.rate = known.map(|(factors, _)| self.law.rate(equivalent_factor(factors), self.ratio));
+            if let Some(((_, efficiency), rate)) = known.zip(pace.rate).filter(|_| per_scale > 0.0) {
+                let catch_up = (1.0 + pace.behind / (CATCH_UP_HORIZONS * horizon)).clamp(CATCH_UP.0, CATCH_UP.1);
+                pace.scale = Some(catch_up * rate / (efficiency * per_scale));
+            }
+        }
+        for bond in ageing.iter_mut() {
+            if let Some(scale) = owner(body, tips, bond.bond).and_then(|tip| self.tips[tip].scale) {
+                bond.strain = (scale / law.a * bond.strain.powf(ORDER)).powf(1.0 / law.p);
+            }
+        }
+        ageing.retain(|bond| bond.strain > 0.0);
+    }
+
+    /// Takes in the life that bonds spent.
+    pub(super) fn spend(&mut self, body: &Body, tips: &[CrackTip], law: &FatigueLaw, cycles: f64, ageing: &[AgeingBond]) {
+        let lengths = lengths(body, tips, ageing, |strain| law.a * strain.powf(law.p));
+        for (pace, per_cycle) in self.tips.iter_mut().zip(lengths) {
+            pace.spent += cycles * per_cycle;
+            // Others wait for those that are not at their initial lengths yet.
+            pace.behind += pace.rate.filter(|_| per_cycle > 0.0).map_or(0.0, |rate| cycles * rate);
+        }
+    }
+
+    /// Lets the growth of tips count from here on: what they were behind before is no matter.
+    pub(super) fn begin(&mut self) {
+        self.tips.iter_mut().for_each(|tip| tip.behind = 0.0);
+    }
+
+    /// Takes in where the tips are.
+    pub(super) fn follow(&mut self, body: &Body, tips: &[CrackTip], records: &[TipRecord]) {
+        let horizon = body.horizon();
+        for ((pace, tip), record) in self.tips.iter_mut().zip(tips).zip(records) {
+            if pace.past.back().is_some_and(|last| tip.growth > last[0]) {
+                if pace.rate.is_some() {
+                    pace.behind -= tip.growth - pace.past.back().map_or(0.0, |last| last[0]);
+                }
+                pace.past.push_back([tip.growth, pace.spent]);
+                let oldest = (tip.growth - PAST_HORIZONS * horizon).max(FRESH_HORIZONS * horizon);
+                while pace.past.len() > 1 && pace.past[0][0] < oldest {
+                    pace.past.pop_front();
+                }
+            }
+            if tip.growth >= pace.taken_at + PIECE_HORIZONS * horizon {
+                pace.taken_at = tip.growth;
+                pace.way.push(record.position);
+            }
+        }
+    }
+
+    /// K_I and K_II of every tip at its present length, where they are known.
+    pub(super) fn factors(&self, body: &Body, tips: &[CrackTip]) -> Vec<Option<[f64; 2]>> {
+        let of_tip = |(pace, tip): (&TipPace, &CrackTip)| pace.factors(tip.growth, tip.crack + tip.growth, body.horizon());
+        self.tips.iter().zip(tips).map(of_tip).collect()
+    }
+
+    pub(super) fn state(&self) -> Vec<TipPace> {
+        self.tips.clone()
+    }
+
+    /// Goes on from a state of an earlier run; whether it is one of so many tips.
+    pub(super) fn restore(&mut self, state: Vec<TipPace>) -> bool {
+        let fits = state.len() == self.tips.len() && state.iter().all(|tip| !tip.past.is_empty());
+        if fits {
+            self.tips = state;
+        }
+        fits
+    }
+}
+
+/// Length of crack, m, that the bonds of every tip would sever if each counted by the life it spends: `Σ g_k s(ε_k) / ρ(n)`.
+fn lengths(body: &Body, tips: &[CrackTip], ageing: &[AgeingBond], spending: impl Fn(f64) -> f64) -> Vec<f64> {
+    let mut weights = vec![0.0; tips.len()];
+    for bond in ageing {
+        if let Some(tip) = owner(body, tips, bond.bond) {
+            weights[tip] += severed_weight(body, body.ends(bond.bond).0) * spending(bond.strain);
+        }
+    }
+    let per_length = |tip: &CrackTip| {
+        let along = body.lattice.to_axes(tip.direction);
+        severed_per_length(body, [-along[1], along[0]])
+    };
+    weights.iter().zip(tips).map(|(weight, tip)| weight / per_length(tip)).collect()
+}
+
+/// The active tip that a bond belongs to, the nearest.
+fn owner(body: &Body, tips: &[CrackTip], bond: Bond) -> Option<usize> {
+    let middle = body.middle(bond);
+    let far = |tip: usize| distance(tips[tip].position, middle);
+    (0..tips.len()).filter(|&tip| tips[tip].is_active()).min_by(|&a, &b| far(a).total_cmp(&far(b)))
+}
+
+/// The bonds without those that still bridge cracks, and without the points in them that have lost half of theirs: the displacement
+/// of these is not that of a face.
+fn sound_bonds(body: &Body, bonds: &Bonds, lines: &[CrackLine], records: &[TipRecord], reach: f64) -> Bonds {
+    let mut sound = bonds.clone();
+    let is_near = |[a, b]: &[Point; 2]| records.iter().any(|tip| distance_to_segment(tip.position, *a, *b) < reach);
+    let mut near: Vec<usize> = Vec::new();
+    for [a, b] in lines.iter().flat_map(CrackLine::pieces).filter(is_near) {
+        bonds_across(body, a, b).into_iter().for_each(|bond| sound.cut(body, bond));
+        near.extend(places_near(body, a, b, body.horizon()));
+    }
+    near.sort_unstable();
+    near.dedup();
+    let places = body.places();
+    let all_at = |place: usize| {
+        let owners = body.steps.iter().enumerate().flat_map(|(k, &step)| [(k, place), (k, place.wrapping_add_signed(-step))]);
+        owners.map(|(k, owner)| k * places + owner).filter(|&bond| body.multiplier[bond] > 0.0).map(|bond| bond as Bond).collect::<Vec<_>>()
+    };
+    let loose: Vec<Vec<Bond>> = near.into_iter().map(all_at).filter(|all| 2 * all.iter().filter(|&&bond| sound.is_intact(bond)).count() < all.len()).collect();
+    loose.into_iter().flatten().for_each(|bond| sound.cut(body, bond));
+    sound
+}
+
+/// Gives tips whose K agree but for round-off and sign the same K and the same lead: mirror twins stay twins.
+fn pair_twins(found: &mut [Option<([f64; 2], f64)>]) {
+    for i in 1..found.len() {
+        for j in 0..i {
+            let (Some((here, _)), Some((there, ahead))) = (found[i], found[j]) else { continue };
+            let size = there[0].abs().max(there[1].abs());
+            let equal = |mode: usize| (here[mode].abs() - there[mode].abs()).abs() <= TWINS * size;
+            if equal(0) && equal(1) {
+                found[i] = Some(([0, 1].map(|mode| there[mode].abs().copysign(here[mode])), ahead));
+                break;
+            }
+        }
+    }
+}
