@@ -11,6 +11,7 @@ pub mod tables;
 pub mod units;
 pub mod parallel;
 pub mod quadrature;
+pub mod line;
 pub mod block_cholesky;
 pub mod sealed;
 pub mod input;

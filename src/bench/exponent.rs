@@ -1,6 +1,6 @@
 //! How time grows with size.
 
-use crate::calibration::line::line;
+use crate::line::line;
 
 /// Exponent k of `time ~ size^k`: slope of the least squares line through the logarithms; NaN for fewer than two sizes or
 /// values that are not positive.

@@ -9,7 +9,9 @@ use crate::calibration::pd_model::{KeepRuns, PdModel};
 use crate::calibration::power_law::PowerLaw;
 use crate::case::Method;
 use crate::error::Result;
+use crate::fatigue::GrowthRate;
 use crate::predict::Observer;
+use crate::predict::bond_rate::Family;
 
 /// Fits the constants of a calibration: A and p of bonds, or (method `handbook`) C and m of hand calculation.
 ///
@@ -46,7 +48,13 @@ pub fn calibrate_from(
             in_terms_of_bonds(&mut fit, case)?;
             Ok(fit)
         }
-        Method::Peridynamics => fit_with(&PdModel::with_finished(case, finished, keep, observer)?),
+        Method::Peridynamics => {
+            let mut fit = fit_with(&PdModel::with_finished(case, finished, keep, observer)?)?;
+            if case.fatigue.growth_rate == GrowthRate::StressIntensity {
+                fit.rate_constant = Some(Family::of(&case.model).rate_constant(fit.record.constants.p)?);
+            }
+            Ok(fit)
+        }
         Method::Handbook => {
             let mut fit = fit_with(&PowerLaw::new(case.specimen.crack_length, case.stop.crack_length, &delta_k)?)?;
             // The fitted constants are C and m themselves; no line has to be drawn through rates.

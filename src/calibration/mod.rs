@@ -16,7 +16,6 @@ pub mod finished;
 pub mod fit;
 #[cfg(feature = "tables")]
 pub mod frames;
-pub mod line;
 pub mod measured;
 pub mod median;
 pub mod misfit;

@@ -4,9 +4,9 @@
 //! errors are almost perfectly correlated (−0.99), so neither means much alone. At the pivot ΔK the rate does not depend on
 //! which of the many nearly equal pairs is taken: rate there and slope are uncorrelated.
 
-use crate::calibration::line::line;
 use crate::calibration::search::Constants;
 use crate::error::{Error, Result};
+use crate::line::line;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Intervals of crack length for the straight line: on the Virkler window 1 mm, as long as a lattice spacing.

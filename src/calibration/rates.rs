@@ -7,9 +7,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::calibration::line::{Line, line};
 use crate::calibration::measured::MeasuredCurve;
 use crate::case::Case;
+use crate::line::{Line, line};
 use crate::specimen::{LoadMeasure, SpecimenKind, net_section};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 

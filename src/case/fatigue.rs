@@ -133,7 +133,7 @@ pub(super) fn from_value(
         paris_m: input.paris_m,
     };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
-    let law = law.read(input.growth_law, (method, settings.driver), (&factor, &setting))?;
+    let law = law.read(input.growth_law, (method, settings), (&factor, &setting))?;
     Ok(Fatigue { settings, law, allow_extrapolation })
 }
 

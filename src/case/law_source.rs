@@ -12,7 +12,7 @@ use crate::calibration::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
-use crate::fatigue::{Driver, FatigueLaw, STEADY_EXPONENTS, unsteady};
+use crate::fatigue::{Driver, FatigueLaw, FatigueSettings, GrowthRate, STEADY_EXPONENTS, unsteady};
 use crate::input::{Folder, LENGTH, number, slice};
 use crate::units::MM_PER_CYCLE;
 
@@ -58,11 +58,12 @@ impl LawKeys {
     pub(super) fn read(
         &self,
         kind: Option<GrowthLawKind>,
-        (method, driver): (Method, Driver),
+        (method, settings): (Method, FatigueSettings),
         (factor, setting): (&FactorKeys, &Setting<'_>),
     ) -> Result<Option<LawSource>> {
         const KEY: &str = "fatigue.growth_law";
-        let by_bonds = method == Method::Peridynamics && driver == Driver::BondStrain;
+        let by_bonds = method == Method::Peridynamics && settings.driver == Driver::BondStrain;
+        let by_strain = by_bonds && settings.growth_rate == GrowthRate::BondStrain;
         let powers = self.bond().into_iter().chain(self.paris());
         let of_power = powers.filter_map(|(key, value)| Some((key, value?))).next();
         let given = factor.given()?;
@@ -115,7 +116,7 @@ impl LawKeys {
         let law = if wants_bonds { bond.or(paris) } else { paris.or(bond) };
         // What a driver cannot use as it is has to be translated.
         match &law {
-            Some(LawSource::Inline(law)) if !by_bonds && !STEADY_EXPONENTS.contains(&law.p) => Err(unsteady("fatigue.p", law.p)),
+            Some(LawSource::Inline(law)) if !by_strain && !STEADY_EXPONENTS.contains(&law.p) => Err(unsteady("fatigue.p", law.p)),
             Some(LawSource::Paris(law)) if by_bonds && !STEADY_EXPONENTS.contains(&law.m) => {
                 Err(unsteady("fatigue.paris_m", law.m))
             }

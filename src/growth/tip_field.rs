@@ -11,7 +11,7 @@
 mod ahead;
 mod approach;
 mod factors;
-pub(super) mod readings;
+mod readings;
 mod run;
 mod state;
 pub mod steering;

@@ -5,11 +5,12 @@
 //!
 //! `da/dN = β A δ^(1-p/2) (K_eq/E')^p`
 //!
-//! with a number β that depends on p, on the kernel and on the horizon over the spacing alone: neither on the plate, its size and
-//! its load nor on E'. β is not typed in but computed when it is needed: a long straight crack between the rows of a plate grows
-//! by two horizons, once as its bonds are spent by their own strains (driver `bond_strain` with its default corrections, A = 1)
-//! and once by the K of its tips, and β is the ratio of the cycles. So both drivers give one life, and A and p follow from C and m
-//! and the other way round.
+//! with a number β that depends on p and on the kernel alone: neither on the plate, its size and its load nor on E'. β is not typed
+//! in but computed when it is needed: a long straight crack between the rows of a plate grows by two horizons, once as its bonds are
+//! spent by their own strains (`growth_rate = "bond_strain"`, A = 1) and once by the K of its tips, and β is the ratio of the cycles.
+//! So both drivers give one life, and A and p follow from C and m and the other way round. A belongs to lattices of three spacings a
+//! horizon (`model.horizon_ratio` 3.015), and stands for the same rate on all others, on which bonds left to themselves would make
+//! another one of it.
 //!
 //! At p = 2, 3, 4.5, 6 and three spacings a horizon β = 0.239, 0.185, 0.139, 0.114. Up to p = 3 it is the same within 1 % for 10 to 26
 //! horizons of crack in plates of 40 to 100 horizons (at p = 6 within 5 %), and for Poisson's ratios of 0.2 and 0.33 within 4 % of that
@@ -22,7 +23,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::factor_curve::FactorCurve;
 use super::{Silent, StopReason, run};
 use crate::bond_law::Kernel;
-use crate::case::{Case, Model};
+use crate::case::{Case, HORIZON_RATIO, Model};
 use crate::error::{Error, Result};
 use crate::fatigue::{FatigueLaw, STEADY_EXPONENTS, unsteady};
 use crate::growth::bond_strain::Unrecorded;
@@ -38,25 +39,19 @@ const TOLERANCE: f64 = 1e-6;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Family {
     kernel: Kernel,
-    /// Bits of horizon over spacing.
-    ratio: u64,
 }
 
 impl Family {
     /// That of a model.
     #[must_use]
     pub fn of(model: &Model) -> Self {
-        Family { kernel: model.bond_law.kernel, ratio: model.horizon_ratio.to_bits() }
-    }
-
-    fn ratio(self) -> f64 {
-        f64::from_bits(self.ratio)
+        Family { kernel: model.bond_law.kernel }
     }
 
     /// β at an exponent, computed once in the life of the program.
     ///
     /// # Errors
-    /// p outside [`STEADY_EXPONENTS`], a ratio for which the reference plate does not grow.
+    /// p outside [`STEADY_EXPONENTS`].
     pub fn rate_constant(self, p: f64) -> Result<f64> {
         if !STEADY_EXPONENTS.contains(&p) {
             return Err(unsteady("fatigue.p", p));
@@ -100,9 +95,9 @@ impl Family {
         Ok(curve)
     }
 
-    /// A middle-tension plate of spacing 1 mm in plane stress, ν = 0.3, at which all corrections of bonds' strains are 1.
+    /// A middle-tension plate of spacing 1 mm in plane stress, ν = 0.3.
     fn reference(self) -> Result<Case> {
-        let horizon = self.ratio();
+        let horizon = HORIZON_RATIO;
         let [width, from, to] = [WIDTH, CRACK[0], CRACK[1]].map(|horizons| horizons * horizon);
         let text = format!(
             "[specimen]\nkind = \"middle_tension\"\nwidth_mm = {width}\nlength_mm = {width}\nthickness_mm = 1\n\

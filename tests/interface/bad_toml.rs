@@ -188,11 +188,6 @@ const BAD: &[Bad] = &[
         "poisson_ratio = 0.3\nplane = \"strain\"\n[model]\nbond_law = \"two_parameter\"",
         &["material.poisson_ratio", "1/4 in plane strain"],
     ),
-    plate(
-        "poisson_ratio = 0.3",
-        "poisson_ratio = 0.47\nplane = \"strain\"\n[model]\nbond_law = \"state_based\"",
-        &["material.poisson_ratio", "0.47", "nearly incompressible", "tip_field"],
-    ),
     panel(
         "name = \"al2024-t3\"",
         "name = \"al2024-t3\"\nplane = \"membrane\"",

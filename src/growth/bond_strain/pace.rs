@@ -28,9 +28,9 @@ use crate::fatigue::ageing::AgeingBond;
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::growth::record::TipRecord;
-use crate::growth::tip_field::readings::Readings;
 use crate::growth::tip_field::steering::equivalent_factor;
 use crate::growth::tip_field::step::is_near_rim;
+use crate::line::line;
 use crate::specimen::geometry::{distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
 use crate::state::Bonds;
@@ -42,6 +42,9 @@ use crate::stress_intensity::ring::{Balanced, Surroundings};
 const ORDER: f64 = 2.0;
 /// Growth, in horizons, after which K is read again.
 const READ_HORIZONS: f64 = 0.5;
+/// Readings whose slope of ln K over ln a carries K on, and its bounds: a crack far from everything has 1/2.
+const READINGS: usize = 3;
+const SLOPE: (f64, f64) = (-12.0, 12.0);
 /// Growth, in horizons, that shows η.
 const PAST_HORIZONS: f64 = 1.5;
 /// η of tips before N = 0 that have no past yet.
@@ -88,11 +91,10 @@ pub(super) struct TipPace {
     way: Vec<Point>,
     /// Growth at the last piece.
     taken_at: f64,
-    readings: Readings,
+    /// The last readings, the newest at the end; empty where that said nothing.
+    readings: VecDeque<Reading>,
     /// Growth at which a reading was last tried.
     tried_at: Option<f64>,
-    /// The last reading, if it said anything.
-    reading: Option<Reading>,
     /// Length of crack, m, that the life spent since the cut would have made at η = 1.
     spent: f64,
     /// Growth and that length over the last [`PAST_HORIZONS`].
@@ -107,13 +109,11 @@ pub(super) struct TipPace {
     is_grown_before: bool,
 }
 
-/// K_I and K_II of a tip and where they belong.
+/// K_eq of a tip, Pa√m, and the length of crack that it belongs to, m: that at which the field stands, a little ahead of the tip.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Reading {
-    factors: [f64; 2],
-    growth: f64,
-    /// How far ahead of that the field stands, m.
-    ahead: f64,
+    factor: f64,
+    length: f64,
 }
 
 impl TipPace {
@@ -122,9 +122,8 @@ impl TipPace {
         TipPace {
             way: Vec::new(),
             taken_at: 0.0,
-            readings: Readings::default(),
+            readings: VecDeque::new(),
             tried_at: None,
-            reading: None,
             spent: 0.0,
             past: VecDeque::from([[0.0; 2]]),
             rate: None,
@@ -142,11 +141,13 @@ impl TipPace {
         if is_known { Some(grown / spent) } else { self.is_grown_before.then_some(USUAL_EFFICIENCY) }
     }
 
-    /// K_I and K_II at a growth, from the last reading and the slope of those before.
-    fn factors(&self, growth: f64, length: f64, horizon: f64) -> Option<[f64; 2]> {
-        let Reading { factors, growth: then, ahead } = self.reading?;
-        let share = self.readings.share(ahead + then - growth, length, horizon);
-        Some(factors.map(|factor| share * factor))
+    /// K_eq of a crack of some length, m, by the power of it that the last readings show.
+    fn factor(&self, length: f64) -> Option<f64> {
+        let last = self.readings.back()?;
+        let points = || self.readings.iter().filter(|reading| reading.factor > 0.0).map(|r| (r.length.ln(), r.factor.ln()));
+        let (x, y): (Vec<f64>, Vec<f64>) = points().unzip();
+        let slope = line(&x, &y).map_or(0.5, |line| line.slope.clamp(SLOPE.0, SLOPE.1));
+        Some(last.factor * (length / last.length).powf(slope))
     }
 }
 
@@ -203,21 +204,23 @@ impl Pace {
             let factors = second.factors;
             equivalent_factor(factors).is_finite().then_some((factors, first.ahead + second.ahead))
         };
-        let mut found: Vec<Option<([f64; 2], f64)>> = ends
-            .iter()
-            .zip(tips)
-            .map(|(end, tip)| end.filter(|_| tip.is_active()).and_then(read))
-            .collect();
+        let mut found: Vec<Option<([f64; 2], f64)>> =
+            ends.iter().zip(tips).map(|(end, tip)| end.filter(|_| tip.is_active()).and_then(read)).collect();
         pair_twins(&mut found);
         for ((pace, tip), found) in self.tips.iter_mut().zip(tips).zip(found) {
             if !tip.is_active() {
                 continue;
             }
             pace.tried_at = Some(tip.growth);
-            if std::env::var("DBG").is_ok() { eprintln!("READ g {:.3} K {:?} eff {:?} scale {:?} pos {:?} dir {:?}", tip.growth*1e3, found.map(|(f,a)| (f[0]/1e6,f[1]/1e6,a*1e3)), pace.efficiency(horizon), pace.scale, tip.position, tip.direction); }
-            pace.reading = found.map(|(factors, ahead)| Reading { factors, growth: tip.growth, ahead });
-            if let Some(Reading { factors, ahead, .. }) = pace.reading {
-                pace.readings.take(equivalent_factor(factors), tip.growth, ahead, None, horizon);
+            match found {
+                Some((factors, ahead)) => {
+                    let length = tip.crack + tip.growth + ahead;
+                    pace.readings.push_back(Reading { factor: equivalent_factor(factors), length });
+                    if pace.readings.len() > READINGS {
+                        pace.readings.pop_front();
+                    }
+                }
+                None => pace.readings.clear(),
             }
         }
     }
@@ -258,8 +261,8 @@ impl Pace {
         let horizon = body.horizon();
         let lengths = lengths(body, tips, ageing, |strain| strain.powf(ORDER));
         for ((pace, tip), per_scale) in self.tips.iter_mut().zip(tips).zip(lengths) {
-            let known = pace.factors(tip.growth, tip.crack + tip.growth, horizon).zip(pace.efficiency(horizon));
-            pace.rate = known.map(|(factors, _)| self.law.rate(equivalent_factor(factors), self.ratio));
+            let known = pace.factor(tip.crack + tip.growth).zip(pace.efficiency(horizon));
+            pace.rate = known.map(|(factor, _)| self.law.rate(factor, self.ratio));
             if let Some(((_, efficiency), rate)) = known.zip(pace.rate).filter(|_| per_scale > 0.0) {
                 let catch_up = (1.0 + pace.behind / (CATCH_UP_HORIZONS * horizon)).clamp(CATCH_UP.0, CATCH_UP.1);
                 pace.scale = Some(catch_up * rate / (efficiency * per_scale));
@@ -307,12 +310,6 @@ impl Pace {
                 pace.way.push(record.position);
             }
         }
-    }
-
-    /// K_I and K_II of every tip at its present length, where they are known.
-    pub(super) fn factors(&self, body: &Body, tips: &[CrackTip]) -> Vec<Option<[f64; 2]>> {
-        let of_tip = |(pace, tip): (&TipPace, &CrackTip)| pace.factors(tip.growth, tip.crack + tip.growth, body.horizon());
-        self.tips.iter().zip(tips).map(of_tip).collect()
     }
 
     pub(super) fn state(&self) -> Vec<TipPace> {
@@ -366,9 +363,17 @@ fn sound_bonds(body: &Body, bonds: &Bonds, lines: &[CrackLine], records: &[TipRe
     let places = body.places();
     let all_at = |place: usize| {
         let owners = body.steps.iter().enumerate().flat_map(|(k, &step)| [(k, place), (k, place.wrapping_add_signed(-step))]);
-        owners.map(|(k, owner)| k * places + owner).filter(|&bond| body.multiplier[bond] > 0.0).map(|bond| bond as Bond).collect::<Vec<_>>()
+        owners
+            .map(|(k, owner)| k * places + owner)
+            .filter(|&bond| body.multiplier[bond] > 0.0)
+            .map(|bond| bond as Bond)
+            .collect::<Vec<_>>()
     };
-    let loose: Vec<Vec<Bond>> = near.into_iter().map(all_at).filter(|all| 2 * all.iter().filter(|&&bond| sound.is_intact(bond)).count() < all.len()).collect();
+    let loose: Vec<Vec<Bond>> = near
+        .into_iter()
+        .map(all_at)
+        .filter(|all| 2 * all.iter().filter(|&&bond| sound.is_intact(bond)).count() < all.len())
+        .collect();
     loose.into_iter().flatten().for_each(|bond| sound.cut(body, bond));
     sound
 }

@@ -4,10 +4,10 @@
 //! ageing zone), so the rate over `ΔK^p`, with ΔK of the handbook, must depend neither on crack length nor on the specimen.
 
 use super::scene::PANEL;
-use crate::calibration::line::line;
 use crate::calibration::model::cycles_since_first;
 use crate::case::Case;
 use crate::error::Result;
+use crate::line::line;
 use crate::predict::{Prediction, Silent, predict};
 use crate::quadrature::integrate;
 use crate::specimen::handbook::delta_k;
@@ -162,6 +162,7 @@ pub fn poissons_ratio(table: &mut Table) -> Result<()> {
         ("state_based", "stress", 0.2),
         ("state_based", "stress", 0.4),
         ("state_based", "strain", 0.3),
+        ("state_based", "strain", 0.4),
     ] {
         let quantity = format!("M(T) a 20-30 mm: life of {law} in plane {plane} at nu {nu} over two_parameter at 0.33");
         table.compare(quantity, life(law, plane, nu)? / aluminium, 1.0, 4.0, "equal K, equal C and m");

@@ -10,6 +10,7 @@ mod growth;
 mod paths;
 mod resolution;
 mod scene;
+mod standard;
 mod state_based;
 
 use super::Topic;
@@ -43,6 +44,11 @@ pub(super) const TOPICS: &[Topic] = &[
         fill: resolution::spacing,
     },
     Topic { name: "bond_strain_orientation", about: "ageing bonds: life on turned lattices", fill: resolution::orientation },
+    Topic {
+        name: "bond_strain_standard",
+        about: "ageing bonds: lives of standard specimens whatever p, Poisson's ratio, lattice and horizon ratio",
+        fill: standard::rows,
+    },
     Topic {
         name: "bond_strain_clean_cracks",
         about: "ageing bonds: broken bonds over those that a clean cut severs",

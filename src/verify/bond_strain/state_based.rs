@@ -19,6 +19,7 @@ const TITANIUM: [&str; 2] = [STATE_BASED, "material.poisson_ratio=0.34"];
 pub fn rows(table: &mut Table) -> Result<()> {
     // Without dilatation it is the two-parameter law without tangential springs.
     let limit = [
+        "model.surface_correction=volume_and_surface",
         "material.poisson_ratio=0.3333333333333333",
         "specimen.width_mm=80",
         "specimen.length_mm=120",
