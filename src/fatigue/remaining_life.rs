@@ -53,6 +53,15 @@ impl BondLife {
         (cycles, spent.collect())
     }
 
+    /// Largest share of a whole life that a bond spends until the next break; none where nothing ages.
+    #[must_use]
+    pub fn share_to_next_break(&self, law: &FatigueLaw, ageing: &[AgeingBond]) -> f64 {
+        let rates = || ageing.iter().map(|b| law.a * b.strain.powf(law.p));
+        let cycles = ageing.iter().zip(rates()).map(|(b, rate)| self.of(b.bond).max(0.0) / rate).fold(f64::INFINITY, f64::min);
+        // Before a first reading of K nothing may age yet.
+        if ageing.is_empty() { f64::INFINITY } else { cycles * rates().fold(0.0, f64::max) }
+    }
+
     /// Cycles until the n-th of the distinct next breaks; bonds that break together count as one.
     fn nth_break(&self, ageing: &[AgeingBond], rates: &[f64], n: usize) -> f64 {
         let mut next: Vec<(f64, f64)> =

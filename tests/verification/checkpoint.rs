@@ -104,7 +104,7 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
         ("window, slant", SLANT, vec![FINE]),
         ("window, state-based", SLANT, vec![FINE, "model.bond_law=state_based"]),
         ("window, two cracks, fixed blocks", TWO, vec![FINE, FIXED, "fatigue.block_cycles=5"]),
-        ("window, hole, no precrack", HOLE, vec![FINE, FIXED, "fatigue.block_cycles=7", "fatigue.precrack=none"]),
+        ("window, hole, no precrack", HOLE, vec![FINE, FIXED, "fatigue.block_cycles=4", "fatigue.precrack=none"]),
         ("window, levels", BROAD, vec![LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=30"]),
         (
             "direct, levels",

@@ -111,7 +111,8 @@ fn every_scene_ends_with_a_named_stop_and_an_orderly_curve() {
         }
         // Pictures count cycles as the curve does.
         let (shown, last) = (run.snapshots.last().unwrap(), run.curve.last().unwrap());
-        assert!(run.snapshots[0].cycles <= 0.1 * last.cycles, "{name}: {} of {}", run.snapshots[0].cycles, last.cycles);
+        let early = run.curve.iter().find(|row| row.cycles >= run.snapshots[0].cycles * (1.0 - 1e-12)).unwrap();
+        assert!(early.crack_length - first.crack_length <= run.figures.spacing, "{name}: {} mm", early.crack_length / MM);
         assert!(shown.cycles <= last.cycles && shown.cycles >= 0.99 * last.cycles || run.stop == StopReason::RunOut, "{name}");
         if run.stop == StopReason::CrackLengthReached {
             assert!((run.crack_length_final() - 16.4 * MM).abs() < 1e-15);
@@ -219,14 +220,15 @@ fn every_solver_grows_the_same_crack_by_every_law() {
 #[test]
 fn growth_hardly_depends_on_the_block() {
     let stop = "stop.crack_length_mm=24.5";
-    let reference = grow(PANEL, &[stop]);
+    // At 2 mm the last horizon of the way is all that is left of the plate.
+    let fine = "model.spacing_mm=1";
+    let reference = grow(PANEL, &[stop, fine]);
     for (name, set, bound) in [
         ("no pre-crack", vec!["fatigue.precrack=none"], 0.02),
-        // Reached: 10 % at this spacing; theory.md gives up to 16 % for larger blocks. Not the default for that reason.
-        ("two groups a block", vec!["fatigue.block=until_next_break", "fatigue.bonds_per_block=2"], 0.12),
+        ("two groups a block", vec!["fatigue.block=until_next_break", "fatigue.bonds_per_block=2"], 0.03),
         ("fixed blocks", vec!["fatigue.block=fixed", "fatigue.block_cycles=20"], 0.02),
     ] {
-        let mut all = vec![stop];
+        let mut all = vec![stop, fine];
         all.extend(set);
         let ratio = cycles_later(&grow(PANEL, &all)) / cycles_later(&reference);
         println!("{name}: cycles over reference {ratio:.4}");
@@ -245,7 +247,8 @@ fn the_start_decides_only_the_first_cycles() {
     let (profile, grown, none) = (life("steady_profile"), life("grown"), life("none"));
     println!("life from a0 over that with the steady profile: grown {:.4}, none {:.4}", grown / profile, none / profile);
     assert!((grown / profile - 1.0).abs() < 0.01, "{}", grown / profile);
-    assert!(none > 1.02 * profile, "{}", none / profile);
+    // From a clean cut K sets the rate as soon as a tip has grown by three quarters of a horizon.
+    assert!(none > 1.002 * profile && none < 1.05 * profile, "{}", none / profile);
 }
 
 /// However the lattice lies, a crack across the load runs straight, growth is the way of its tip, and life is the same.

@@ -11,11 +11,21 @@ use perilife::specimen::geometry::{distance, distance_to_segment};
 use perilife::state::Bonds;
 use perilife::stress_intensity::CrackedPlate;
 
-use crate::plates::{case, try_case};
+use crate::plates::try_case;
 
 const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=96\nlength_mm=160\nthickness_mm=2\ncrack_length_mm=12\n";
 const SLANT: &str = "kind=\"plate\"\nwidth_mm=64\nlength_mm=128\nthickness_mm=2\ncracks=[{from_mm=[-7,-5],to_mm=[7,5]}]\n";
 const DUAL: &str = "model.discretisation=dual_horizon";
+
+/// The surface correction that both kinds of plates know.
+const CORRECTION: &str = "model.surface_correction=volume_and_surface";
+
+/// A case with that correction, unless it has another.
+fn case(specimen: &str, set: &[&str]) -> Case {
+    let is_given = set.iter().any(|key| key.starts_with("model.surface_correction"));
+    let more = [CORRECTION];
+    crate::plates::case(specimen, &[set, if is_given { &[] } else { &more[..] }].concat())
+}
 
 /// Keys of a coarsest spacing, a region with levels, and more.
 fn levels<'a>(spacing: &'a str, region: &'a str, more: &[&'a str]) -> Vec<&'a str> {

@@ -211,11 +211,14 @@ fn compression_does_not_count() {
 
 #[test]
 fn low_and_high_exponents_follow_the_load() {
+    /// Beyond p = 8 it is not known what rate over K bonds stand for.
+    const BY_STRAIN: &str = "fatigue.growth_rate=bond_strain";
     for p in [1.0, 12.0] {
         let life = |stress: f64| {
             let load = format!("loading.stress_max_mpa={stress}");
             let a = format!("fatigue.a={:e}", 200.0_f64.powf(p));
-            let run = grow(PANEL, &["model.spacing_mm=2", &load, &format!("fatigue.p={p}"), &a, "stop.cycles_max=1e15"]);
+            let run =
+                grow(PANEL, &["model.spacing_mm=2", &load, &format!("fatigue.p={p}"), &a, "stop.cycles_max=1e15", BY_STRAIN]);
             sound(&format!("p = {p}, {stress} MPa"), &run);
             assert!(is_through(&run), "p = {p}: {}", run.stop);
             for point in &run.curve {
@@ -230,13 +233,14 @@ fn low_and_high_exponents_follow_the_load() {
     }
 }
 
-/// One Paris constant, A rescaled: lives at horizons of three spacings and more lie together, below that a warning says how far
-/// off they may be.
+/// One A: lives at all horizons lie together where K sets the rate; by the strain of bonds they do not below three spacings, and a
+/// warning says how far off they may be.
 #[test]
 fn horizon_ratios_agree_or_say_how_wrong_they_are() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=56\nlength_mm=56\nthickness_mm=2\ncrack_length_mm=14\n";
-    let run = |ratio: f64| {
-        let set = ["model.spacing_mm=1", &format!("model.horizon_ratio={ratio}"), "stop.crack_length_mm=16"];
+    let run = |ratio: f64, rate: &str| {
+        let rate = format!("fatigue.growth_rate={rate}");
+        let set = ["model.spacing_mm=1", &format!("model.horizon_ratio={ratio}"), "stop.crack_length_mm=20", &rate];
         let told = case(panel, &set).warnings.iter().any(|line| line.contains("few neighbours"));
         let run = grow(panel, &set);
         sound(&format!("ratio {ratio}"), &run);
@@ -247,41 +251,47 @@ fn horizon_ratios_agree_or_say_how_wrong_they_are() {
         }
         (run.life_cycles(), told)
     };
-    let (reference, _) = run(3.015);
-    // The crack is 3.5, 2.8, 2.3 horizons long at 4, 5, 6, where the correction of short cracks is rough.
+    let (by_strain, by_factor) = ("bond_strain", "stress_intensity");
+    let references = [run(3.015, by_strain).0, run(3.015, by_factor).0];
+    // The crack is 3.5, 2.8, 2.3 horizons long at 4, 5, 6, and its bonds are strained more than those of a long one.
     // What is to be expected, and how far off it may be; the warning says 40 % at 1.5 and up to 15 % at 2.
-    for (ratio, expected, bound, warned) in
-        [(1.5, 0.6, 0.1, true), (2.0, 1.0, 0.15, true), (4.0, 1.0, 0.05, false), (5.0, 1.0, 0.05, false), (6.0, 1.0, 0.05, false)]
-    {
-        let (life, told) = run(ratio);
-        println!("ratio {ratio}: life over that at 3.015 {:.4}", life / reference);
-        assert!((life / reference - expected).abs() < bound, "{ratio}: {}", life / reference);
-        assert_eq!(told, warned, "{ratio}");
+    for (ratio, rate, expected, bound, warned) in [
+        (1.5, by_strain, 0.6, 0.1, true),
+        (2.0, by_strain, 1.0, 0.15, true),
+        (1.5, by_factor, 1.0, 0.05, false),
+        (2.0, by_factor, 1.0, 0.15, false),
+        (4.0, by_factor, 1.0, 0.05, false),
+        (5.0, by_factor, 1.0, 0.05, false),
+        (6.0, by_factor, 1.0, 0.05, false),
+    ] {
+        let (life, told) = run(ratio, rate);
+        let reference = references[usize::from(rate == by_factor)];
+        println!("ratio {ratio}, {rate}: life over that at 3.015 {:.4}", life / reference);
+        assert!((life / reference - expected).abs() < bound, "{ratio}, {rate}: {}", life / reference);
+        assert_eq!(told, warned, "{ratio}, {rate}");
     }
 }
 
-/// The life of a crack of less than a horizon comes out too short, and the warning says by how much.
+/// The life of a crack of less than three horizons is wrong by some percent, as the warning says.
 #[test]
 fn a_crack_shorter_than_the_horizon_is_told_its_error() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=48\nlength_mm=60\nthickness_mm=2\ncrack_length_mm=4\n";
     let life = |spacing: f64| {
         let set = [format!("model.spacing_mm={spacing}")];
         let set = [set[0].as_str(), "stop.crack_length_mm=8"];
-        let told: Option<f64> = case(panel, &set).warnings.iter().find_map(|line| {
-            let (_, rest) = line.split_once("the life about ")?;
-            rest.split_once(" %")?.0.parse().ok()
-        });
+        let told = case(panel, &set).warnings.iter().any(|line| line.contains("some 7 % wrong, 20 %"));
         let run = grow(panel, &set);
         sound(&format!("spacing {spacing} mm"), &run);
         (run.life_cycles(), told)
     };
     let (fine, told) = life(0.4);
-    assert_eq!(told, None);
-    for spacing in [1.5, 2.0, 3.0] {
+    assert!(!told);
+    for (spacing, bound) in [(0.8, 0.08), (1.2, 0.08), (1.5, 0.2), (2.0, 0.2)] {
         let (coarse, told) = life(spacing);
-        let (short, told) = (100.0 * (1.0 - coarse / fine), told.unwrap());
-        println!("crack of {:.2} horizons: life {short:.0} % short, told {told:.0} %", 4.0 / 3.015 / spacing);
-        assert!((short - told).abs() < 10.0, "{spacing}: {short} against {told}");
+        let horizons = 4.0 / 3.015 / spacing;
+        println!("crack of {horizons:.2} horizons: life {:.1} % off", 100.0 * (coarse / fine - 1.0));
+        assert!((coarse / fine - 1.0).abs() < bound, "{spacing}: {coarse} against {fine}");
+        assert_eq!(told, horizons < 3.0 / 1.01, "{spacing}");
     }
 }
 

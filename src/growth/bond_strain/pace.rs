@@ -66,8 +66,10 @@ const SHORT_HORIZONS: f64 = 0.25;
 const AHEAD_HORIZONS: f64 = 0.5;
 /// Distance of a rim ahead, in horizons, within which K is not read.
 const RIM_HORIZONS: f64 = 0.6;
+/// Growth, in horizons, that is none: round-off must not tell mirror twins apart.
+const STILL_HORIZONS: f64 = 1e-6;
 /// Relative difference of K below which tips are mirror twins.
-const TWINS: f64 = 1e-4;
+const TWINS: f64 = 1e-6;
 
 /// Rates of the tips of a run.
 pub(super) struct Pace {
@@ -137,8 +139,17 @@ impl TipPace {
     fn efficiency(&self, horizon: f64) -> Option<f64> {
         let (first, last) = (self.past.front()?, self.past.back()?);
         let (grown, spent) = (last[0] - first[0], last[1] - first[1]);
-        let is_known = first[0] >= FRESH_HORIZONS * horizon && grown >= PAST_LEAST_HORIZONS * horizon && spent > 0.0;
+        let is_known = first[0] >= (FRESH_HORIZONS - STILL_HORIZONS) * horizon
+            && grown >= (PAST_LEAST_HORIZONS - STILL_HORIZONS) * horizon
+            && spent > 0.0;
         if is_known { Some(grown / spent) } else { self.is_grown_before.then_some(USUAL_EFFICIENCY) }
+    }
+
+    /// Half of the usual growth by a break, m: until the next one the crack is that much longer in the mean than after the last.
+    fn half_step(&self) -> f64 {
+        let steps = || self.past.iter().zip(self.past.iter().skip(1)).map(|(before, after)| after[0] - before[0]);
+        let grown: f64 = steps().sum();
+        if grown > 0.0 { 0.5 * steps().map(|step| step * step).sum::<f64>() / grown } else { 0.0 }
     }
 
     /// K_eq of a crack of some length, m, by the power of it that the last readings show.
@@ -173,7 +184,7 @@ impl Pace {
 
     /// Whether a tip has grown so far that its K is to be read.
     pub(super) fn is_due(&self, body: &Body, tips: &[CrackTip]) -> bool {
-        let step = READ_HORIZONS * body.horizon();
+        let step = (READ_HORIZONS - STILL_HORIZONS) * body.horizon();
         let is_due = |(tip, pace): (&CrackTip, &TipPace)| pace.tried_at.is_none_or(|then| tip.growth >= then + step);
         tips.iter().zip(&self.tips).filter(|(tip, _)| tip.is_active()).any(is_due)
     }
@@ -261,7 +272,7 @@ impl Pace {
         let horizon = body.horizon();
         let lengths = lengths(body, tips, ageing, |strain| strain.powf(ORDER));
         for ((pace, tip), per_scale) in self.tips.iter_mut().zip(tips).zip(lengths) {
-            let known = pace.factor(tip.crack + tip.growth).zip(pace.efficiency(horizon));
+            let known = pace.factor(tip.crack + tip.growth + pace.half_step()).zip(pace.efficiency(horizon));
             pace.rate = known.map(|(factor, _)| self.law.rate(factor, self.ratio));
             if let Some(((_, efficiency), rate)) = known.zip(pace.rate).filter(|_| per_scale > 0.0) {
                 let catch_up = (1.0 + pace.behind / (CATCH_UP_HORIZONS * horizon)).clamp(CATCH_UP.0, CATCH_UP.1);
@@ -295,17 +306,17 @@ impl Pace {
     pub(super) fn follow(&mut self, body: &Body, tips: &[CrackTip], records: &[TipRecord]) {
         let horizon = body.horizon();
         for ((pace, tip), record) in self.tips.iter_mut().zip(tips).zip(records) {
-            if pace.past.back().is_some_and(|last| tip.growth > last[0]) {
+            if pace.past.back().is_some_and(|last| tip.growth > last[0] + STILL_HORIZONS * horizon) {
                 if pace.rate.is_some() {
                     pace.behind -= tip.growth - pace.past.back().map_or(0.0, |last| last[0]);
                 }
                 pace.past.push_back([tip.growth, pace.spent]);
-                let oldest = (tip.growth - PAST_HORIZONS * horizon).max(FRESH_HORIZONS * horizon);
+                let oldest = (tip.growth - PAST_HORIZONS * horizon).max(FRESH_HORIZONS * horizon) - STILL_HORIZONS * horizon;
                 while pace.past.len() > 1 && pace.past[0][0] < oldest {
                     pace.past.pop_front();
                 }
             }
-            if tip.growth >= pace.taken_at + PIECE_HORIZONS * horizon {
+            if tip.growth >= pace.taken_at + (PIECE_HORIZONS - STILL_HORIZONS) * horizon {
                 pace.taken_at = tip.growth;
                 pace.way.push(record.position);
             }
