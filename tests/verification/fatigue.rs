@@ -151,7 +151,9 @@ fn cycles_later(run: &Prediction) -> f64 {
 fn assert_same_growth(name: &str, specimen: &str, set: &[&str], relaxed: Option<f64>) {
     let grown_by = |solver: &SolverKind| {
         let chosen = format!("model.solver={solver}");
-        let run = grow(specimen, &[set, &[&*chosen, "fatigue.block=until_next_break"]].concat());
+        // Where K sets the rate, two breaks that change places by round-off change the length at which it is read.
+        let set = [set, &[&*chosen, "fatigue.block=until_next_break", "fatigue.growth_rate=bond_strain"]].concat();
+        let run = grow(specimen, &set);
         let last = run.curve.last().unwrap();
         (*solver, run.life_cycles(), last.broken_bonds, last.crack_length, run.stop)
     };
@@ -247,8 +249,9 @@ fn the_start_decides_only_the_first_cycles() {
     let (profile, grown, none) = (life("steady_profile"), life("grown"), life("none"));
     println!("life from a0 over that with the steady profile: grown {:.4}, none {:.4}", grown / profile, none / profile);
     assert!((grown / profile - 1.0).abs() < 0.01, "{}", grown / profile);
-    // From a clean cut K sets the rate as soon as a tip has grown by three quarters of a horizon.
-    assert!(none > 1.002 * profile && none < 1.05 * profile, "{}", none / profile);
+    // From a clean cut the strains of bonds set the rate until a tip has grown by three quarters of a horizon, and K from there on.
+    let off = (none / profile - 1.0).abs();
+    assert!(off > 0.01 && off < 0.1, "{}", none / profile);
 }
 
 /// However the lattice lies, a crack across the load runs straight, growth is the way of its tip, and life is the same.

@@ -17,14 +17,13 @@ const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=96\nlength_mm=160\nthickn
 const SLANT: &str = "kind=\"plate\"\nwidth_mm=64\nlength_mm=128\nthickness_mm=2\ncracks=[{from_mm=[-7,-5],to_mm=[7,5]}]\n";
 const DUAL: &str = "model.discretisation=dual_horizon";
 
-/// The surface correction that both kinds of plates know.
-const CORRECTION: &str = "model.surface_correction=volume_and_surface";
-
-/// A case with that correction, unless it has another.
+/// A case whose bonds age by their strain as computed, so that it shows what levels do to that; with the surface correction that both
+/// kinds of plates know, unless it has another.
 fn case(specimen: &str, set: &[&str]) -> Case {
-    let is_given = set.iter().any(|key| key.starts_with("model.surface_correction"));
-    let more = [CORRECTION];
-    crate::plates::case(specimen, &[set, if is_given { &[] } else { &more[..] }].concat())
+    let given = |key: &&&str| set.iter().any(|other| other.split('=').next() == key.split('=').next());
+    let usual = ["model.surface_correction=volume_and_surface", "fatigue.growth_rate=bond_strain"];
+    let more: Vec<&str> = usual.iter().filter(|key| !given(key)).copied().collect();
+    crate::plates::case(specimen, &[set, &more].concat())
 }
 
 /// Keys of a coarsest spacing, a region with levels, and more.
@@ -60,6 +59,18 @@ fn refined_panels_live_as_long_as_the_fine_one() {
             assert_eq!((refined.stop, refined.figures.spacing), (StopReason::CrackLengthReached, fine.figures.spacing));
         }
     }
+}
+
+/// The same at the rate of K, where the fine points leave room for the ring on which it is read.
+#[test]
+fn refined_panels_live_as_long_by_their_factors() {
+    let set = ["stop.crack_length_mm=28", "fatigue.growth_rate=stress_intensity"];
+    let fine = run(&case(PANEL, &[&["model.spacing_mm=1"], &set[..]].concat()));
+    let wide = "refinement.regions=[{band_mm=[[-44,0],[44,0]],width_mm=36,levels=1}]";
+    let refined = run(&case(PANEL, &levels("model.spacing_mm=2", wide, &set)));
+    let ratio = refined.life_cycles() / fine.life_cycles();
+    println!("life {ratio:.5}, {} and {} points", refined.figures.points, fine.figures.points);
+    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
 }
 
 /// Stretches of the bonds around the right tip of [`PANEL`] by the places of their ends.

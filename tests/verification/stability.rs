@@ -113,10 +113,10 @@ fn collinear_cracks_join_as_mirror_twins() {
     sound("two cracks", &run);
     assert!(is_through(&run), "{}", run.stop);
     for point in &run.curve {
+        // A bond as near to one inner tip as to the other is one's or the other's, and what K of the outer ones is read by is that crack.
+        let meeting = (point.tips[1].position[0] - point.tips[2].position[0]).abs() < 3.0 * run.figures.horizon;
         for (a, b) in [(0, 3), (1, 2)] {
             let (a, b) = (point.tips[a], point.tips[b]);
-            // A bond as near to one inner tip as to the other is one's or the other's.
-            let meeting = (a.position[0] - b.position[0]).abs() < 3.0 * run.figures.horizon;
             let slack = if meeting { run.figures.spacing } else { 1e-9 };
             assert!((a.position[0] + b.position[0]).abs() < slack && (a.growth - b.growth).abs() < slack);
             assert!(a.position[1].abs() < 1e-9);
