@@ -26,7 +26,11 @@ const ASKED_MS: f64 = 3.0;
 const ASKED_S: [f64; 2] = [10.0, 8.0];
 
 fn read(text: &str, name: &str, set: &[&str]) -> Result<Case> {
-    let set: Vec<String> = ["fatigue.driver=bond_strain"].iter().chain(set).map(|key| (*key).to_owned()).collect();
+    let set: Vec<String> = ["fatigue.driver=bond_strain", "fatigue.growth_rate=bond_strain"]
+        .iter()
+        .chain(set)
+        .map(|key| (*key).to_owned())
+        .collect();
     Case::from_toml(text, name, Path::new("."), &set)
 }
 

@@ -61,8 +61,10 @@ impl Scene {
     /// As [`Case::from_toml`].
     pub fn case(&self, set: &[String]) -> Result<Case> {
         let record = record()?;
-        let law =
-            format!("driver = \"bond_strain\"\na = {:?}\np = {:?}\nhorizon_mm = {:?}", record.a, record.p, record.horizon_mm);
+        let law = format!(
+            "driver = \"bond_strain\"\ngrowth_rate = \"bond_strain\"\na = {:?}\np = {:?}\nhorizon_mm = {:?}",
+            record.a, record.p, record.horizon_mm
+        );
         self.read(&format!("[model]\nspacing_mm = {:?}\n[fatigue]\n{law}\n", self.spacing_mm), set)
     }
 

@@ -1,18 +1,20 @@
 //! How fast a tip grows whose bonds age: by its K.
 //!
-//! A tip that grows by da severs bonds of weight ρ(n) da ([`crate::body::severed`]), so bonds that spend `Σ g_k A ε_k^p` of their
-//! lives a cycle make it grow by `η Σ g_k A ε_k^p / ρ(n)`, η being the share of the life spent around a tip that severs bonds of the
-//! crack. What ε is at equal K depends on the direction of the crack against the lattice, on the horizon over the spacing and over
-//! the length of the crack, on Poisson's ratio, on the stress along the crack and on the bond law. So the strains around a tip are
-//! taken for what they say of each other, and are multiplied by one f for all,
+//! A tip that grows by da severs bonds of weight ρ(n) da ([`crate::body::severed`]), so bonds of weight g_k that spend dλ_k/dN of their
+//! lives make it grow by `η Σ g_k |dλ_k/dN| / ρ(n)` a cycle, η being the share of the life spent around a tip that severs bonds of the
+//! crack. What strains are at equal K depends on the direction of the crack against the lattice, on the horizon over the spacing and
+//! over the length of the crack, on Poisson's ratio, on the stress along the crack and on the bond law. So the strains around a tip
+//! are taken for what they say of each other, and bonds age by `dλ/dN = -F ε^q`, q = 2, with one F for all of a tip,
 //!
-//! `f^p η Σ_k g_k A ε_k^p = ρ(n) da/dN(K_eq)`,
+//! `F η Σ_k g_k ε_k^q = ρ(n) da/dN(K_eq)`,
 //!
-//! which leaves dλ/dN = -A (f ε)^p a law of bonds, whose crack goes where bonds break, and lets all that cancel. K_eq is read off a
-//! ring around the tip ([`crate::stress_intensity::ring`]) every half horizon of growth and continued along its slope; η is the
-//! growth over the life spent in the last 1.5 horizons, so that what a tip really does closes the loop.
+//! so that the crack goes where bonds break, and all that cancels. K_eq is read off a ring around the tip
+//! ([`crate::stress_intensity::ring`]) every half horizon of growth and continued as a power of the length; η is the growth over the
+//! life spent in the last 1.5 horizons, so that what a tip really does closes the loop, and what it is behind the growth by its K is
+//! made up for within a horizon.
 //!
-//! Before a tip has a past that shows η, as at a machined notch, and where nothing can be read around it, f is what it was: at first 1.
+//! Before a tip from a notch has a past that shows η, its bonds age by their law, dλ/dN = -A ε^p; where nothing can be read around
+//! a tip, F is what it was.
 
 use std::collections::VecDeque;
 
@@ -105,7 +107,7 @@ pub(super) struct TipPace {
     rate: Option<f64>,
     /// Growth by that rate since it was known, less that of the tip, m.
     behind: f64,
-    /// F, 1/cycle; none before it was known.
+    /// F, 1/cycle; none while bonds age by their law.
     scale: Option<f64>,
     /// Whether the cycles of its first growth do not count.
     is_grown_before: bool,
