@@ -62,6 +62,8 @@ const PAST_LEAST_HORIZONS: f64 = 0.25;
 const RING_HORIZONS: [f64; 2] = [1.2, 4.0];
 /// Length of the pieces, in horizons, in which the way of a tip is taken down.
 const PIECE_HORIZONS: f64 = 0.5;
+/// Least length of the last of them, which shows where the tip heads: on shorter ones the bonds that broke last turn it by degrees.
+const LAST_PIECE_HORIZONS: f64 = 1.0;
 /// Distance of a tip from its cut, in horizons, below which it has no direction of its own.
 const SHORT_HORIZONS: f64 = 0.25;
 /// How far from the place of a tip its field may stand, in horizons: farther off it is that of something else.
@@ -241,7 +243,7 @@ impl Pace {
     /// The cracks as the tips have left them, and which end of them every tip is.
     fn cracks(&self, body: &Body, records: &[TipRecord]) -> (Vec<CrackLine>, Vec<Option<LineEnd>>) {
         let mut lines = self.lines.clone();
-        let least = 1.0 * body.horizon();
+        let least = LAST_PIECE_HORIZONS * body.horizon();
         let mut end_of = |((pace, record), end): ((&TipPace, &TipRecord), &Option<LineEnd>)| {
             let here = record.position;
             let way = pace.way.iter().filter(|at| distance(**at, here) > least).copied();
