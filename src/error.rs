@@ -14,7 +14,7 @@ pub enum Error {
     Mechanics(String),
     /// What is left of a plate is a mechanism, or nearly one: it carries no load (exit code 3).
     #[error("what is left of the plate cannot carry its load")]
-    GaveWay,
+    LossOfStiffness,
     /// A file could not be read or written (exit code 4).
     #[error("{}: {action}: {source}", path.display())]
     File {
@@ -37,7 +37,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Input(_) => 2,
-            Error::Mechanics(_) | Error::GaveWay => 3,
+            Error::Mechanics(_) | Error::LossOfStiffness => 3,
             Error::File { .. } => 4,
         }
     }

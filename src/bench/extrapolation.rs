@@ -9,11 +9,12 @@ use std::time::Instant;
 
 use crate::body::{Body, Bond};
 use crate::case::Case;
-use crate::error::{Error, Result};
-use crate::fatigue::ageing::AgeingBond;
-use crate::fatigue::pieces::{Cut, set_aside};
-use crate::predict::laws::bond_law;
-use crate::predict::{Prediction, Recorder, Silent, run};
+use crate::error::Result;
+use crate::fatigue::pieces::{Connectivity, remove_fragments};
+use crate::growth::bond_strain::BondStrain;
+use crate::predict::laws::bond_rates;
+use crate::predict::record::Record;
+use crate::predict::{Prediction, Silent};
 use crate::solver::{Equilibrium, SolverKind, Symmetry};
 use crate::state::Bonds;
 
@@ -23,23 +24,11 @@ pub const BLOCKS: usize = 20;
 const BLOCKS_LEAST: usize = 5;
 
 /// The breaks of a run, block by block.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct History {
-    plate: Option<(Body, Bonds)>,
+    plate: (Body, Bonds),
     /// Blocks in which something broke.
     blocks: Vec<Vec<Bond>>,
-}
-
-impl Recorder for History {
-    fn start(&mut self, body: &Body, bonds: &Bonds) {
-        self.plate = Some((body.clone(), bonds.clone()));
-    }
-
-    fn block(&mut self, _: &[AgeingBond], spent: &[Bond], _: f64) {
-        if !spent.is_empty() {
-            self.blocks.push(spent.to_vec());
-        }
-    }
 }
 
 /// Measured blocks of a slow solver.
@@ -61,8 +50,15 @@ impl History {
     /// # Errors
     /// As [`crate::predict::predict`].
     pub fn of(case: &Case) -> Result<(Self, Prediction)> {
-        let mut history = History::default();
-        let prediction = run(case, |horizon| bond_law(case, horizon), &mut history, &Silent)?;
+        let record = Record::new(case, &Silent).unchecked();
+        let case = &record.case().clone();
+        let mut growth = BondStrain::start(case, |horizon| bond_rates(case, horizon))?;
+        let mut history = History { plate: growth.plate_and_bonds(), blocks: Vec::new() };
+        let prediction = record.follow(&mut growth, |growth| {
+            let reason = growth.next_break();
+            history.blocks.extend(Some(growth.last_broken().to_vec()).filter(|broken| !broken.is_empty()));
+            reason
+        })?;
         Ok((history, prediction))
     }
 
@@ -78,8 +74,7 @@ impl History {
     /// # Errors
     /// A run that broke nothing; a solver that does not converge.
     pub fn sample(&self, kind: SolverKind, load: f64, seconds: f64) -> Result<Sampled> {
-        let (body, start) =
-            self.plate.as_ref().ok_or_else(|| Error::Mechanics("the run to be replayed has no plate".to_owned()))?;
+        let (body, start) = &self.plate;
         let mut bonds = start.clone();
         let mut displacement = Vec::new();
         let started = Instant::now();
@@ -93,12 +88,12 @@ impl History {
             // Up to the block at one go, not measured.
             if done < block {
                 let Some(broken) = cut(body, &mut bonds, &self.blocks[done..block].concat()) else { break };
-                equilibrium.broke(body, &bonds, &broken);
+                equilibrium.bonds_changed(body, &bonds, &broken);
                 equilibrium.solve(body, &bonds, &mut displacement)?;
             }
             let Some(broken) = cut(body, &mut bonds, &self.blocks[block]) else { break };
             let started = Instant::now();
-            equilibrium.broke(body, &bonds, &broken);
+            equilibrium.bonds_changed(body, &bonds, &broken);
             equilibrium.solve(body, &bonds, &mut displacement)?;
             blocks.push((block, started.elapsed().as_secs_f64()));
             done = block + 1;
@@ -118,9 +113,9 @@ pub fn places(blocks: usize, affordable: usize) -> Vec<usize> {
 /// Breaks bonds and sets free pieces aside; all of them, or `None` where the plate is in two.
 fn cut(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Option<Vec<Bond>> {
     broken.iter().for_each(|&bond| bonds.cut(body, bond));
-    match set_aside(body, bonds, broken) {
-        Cut::Severed => None,
-        Cut::Whole(aside) => Some(broken.iter().copied().chain(aside).collect()),
+    match remove_fragments(body, bonds, broken) {
+        Connectivity::Severed => None,
+        Connectivity::Connected(aside) => Some(broken.iter().copied().chain(aside).collect()),
     }
 }
 

@@ -52,13 +52,13 @@ pub fn virkler_panel(bench: &mut Bench<'_>) -> Result<()> {
 
     let off = panel(&[WHOLE_PLATE])?;
     let (_, unmirrored) = bench.time(|| whole(&off))?;
-    bench.push(with(Row::new(GROUP, about, VARIED[6], "symmetry off", unmirrored), &found));
+    bench.push(with(Row::new(GROUP, about, VARIED[5], "symmetry off", unmirrored), &found));
     let (history, run) = History::of(&panel(&[WHOLE_PLATE])?)?;
     let known = Found { points: run.figures.points, ..found.clone() };
     let budget = Budget { blocks_s: 15.0 * bench.effort.seconds_of_blocks, whole_s: 4.0 * bench.effort.seconds_whole };
     for kind in SolverKind::ALL.iter().filter(|kind| **kind != default.model.solver) {
         let solver = format!("model.solver={kind}");
-        let case = panel(&[&solver, WHOLE_PLATE, "fatigue.block=until_next_break"])?;
+        let case = panel(&[&solver, WHOLE_PLATE])?;
         let (other, timing) = whole_or_extrapolated(bench, &case, (&history, &known), budget, whole)?;
         bench.push(with(Row::new(GROUP, about, "solver", &format!("{kind}, every block"), timing), &other));
         let asked = ASKED.iter().find(|(name, _)| *name == kind.name()).map(|(_, least)| Asked::AtLeast(*least));
@@ -68,9 +68,6 @@ pub fn virkler_panel(bench: &mut Bench<'_>) -> Result<()> {
             bench.figure(Figure { group: GROUP, quantity, value: timing.ratio / by.ratio, unit: "", asked });
         }
     }
-    let controlled = panel(&["model.solver=multigrid"])?;
-    let (other, timing) = bench.time(|| whole(&controlled))?;
-    bench.push(with(Row::new(GROUP, about, "block size", "multigrid, controlled blocks", timing), &other));
     let bonds = found.broken_bonds.unwrap_or(0) as f64;
     let figure = |quantity: &str, value, unit, most| Figure {
         group: GROUP,

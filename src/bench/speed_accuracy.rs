@@ -90,7 +90,7 @@ fn push(bench: &mut Bench<'_>, scene: &Scene, variant: &Variant, measured: Resul
     let row = |timing| Row::new(scene.name, &*scene.about, variant.varied, &variant.choice, timing);
     let row = match measured {
         Ok((found, timing)) => with(row(timing), &found),
-        Err(error @ (Error::Mechanics(_) | Error::GaveWay)) => Row { note: error.to_string(), ..row(Timing::NONE) },
+        Err(error @ (Error::Mechanics(_) | Error::LossOfStiffness)) => Row { note: error.to_string(), ..row(Timing::NONE) },
         Err(other) => return Err(other),
     };
     bench.push(row);

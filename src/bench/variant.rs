@@ -7,8 +7,7 @@ use crate::case::Case;
 use crate::solver::{SolverKind, Symmetry};
 
 /// What is varied, in the order of the legend.
-pub const VARIED: [&str; 7] =
-    [DEFAULT, "bond law", "solver", "spacing", "horizon ratio", "block size", "surface correction or symmetry"];
+pub const VARIED: [&str; 6] = [DEFAULT, "bond law", "solver", "spacing", "horizon ratio", "surface correction or symmetry"];
 /// The name of what is not varied.
 pub const DEFAULT: &str = "default";
 
@@ -18,12 +17,6 @@ const SPACINGS_QUICK: [f64; 2] = [1.25, 0.75];
 /// Horizon ratios beside the default one.
 const HORIZON_RATIOS: [f64; 4] = [2.015, 2.515, 4.015, 5.015];
 const HORIZON_RATIOS_QUICK: [f64; 1] = [2.515];
-/// Bounds of controlled blocks, percent of life.
-const BOUNDS: [f64; 4] = [0.5, 1.0, 2.0, 5.0];
-const BOUNDS_QUICK: [f64; 1] = [2.0];
-/// Breaks of blocks with frozen strains.
-const BREAKS: [usize; 3] = [2, 6, 24];
-const BREAKS_QUICK: [usize; 1] = [6];
 
 /// One choice other than the default.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +41,7 @@ impl Variant {
 #[must_use]
 pub fn variants(scene: &Scene, case: &Case, quick: bool) -> Vec<Variant> {
     let mut all = bond_laws(case);
-    all.extend(solvers(scene, case));
+    all.extend(solvers(case));
     all.extend(pick(quick, &SPACINGS, &SPACINGS_QUICK).iter().map(|share| {
         let spacing = share * scene.spacing_mm;
         Variant::new(3, format!("{spacing} mm"), &[format!("model.spacing_mm={spacing}")])
@@ -58,9 +51,6 @@ pub fn variants(scene: &Scene, case: &Case, quick: bool) -> Vec<Variant> {
             .iter()
             .map(|ratio| Variant::new(4, format!("horizon {ratio}"), &[format!("model.horizon_ratio={ratio}")])),
     );
-    if scene.grows {
-        all.extend(blocks(quick));
-    }
     all.extend(others(case));
     all
 }
@@ -89,39 +79,20 @@ fn bond_laws(case: &Case) -> Vec<Variant> {
 }
 
 /// Every solver but the default; where a crack grows, each solves after every break.
-fn solvers(scene: &Scene, case: &Case) -> Vec<Variant> {
+fn solvers(case: &Case) -> Vec<Variant> {
     let variant = |kind: &SolverKind| {
-        let mut set = vec![format!("model.solver={kind}"), WHOLE_PLATE.to_owned()];
-        if scene.grows {
-            set.push("fatigue.block=until_next_break".to_owned());
-        }
+        let set = [format!("model.solver={kind}"), WHOLE_PLATE.to_owned()];
         Variant { solver: Some(*kind), ..Variant::new(2, kind.name(), &set) }
     };
     SolverKind::ALL.iter().filter(|kind| **kind != case.model.solver).map(variant).collect()
 }
 
-/// Sizes of blocks matter to solvers that do not solve after every break: multigrid stands for them.
-fn blocks(quick: bool) -> Vec<Variant> {
-    let multigrid = format!("model.solver={}", SolverKind::Multigrid);
-    let bound = |bound: &f64| {
-        let set = [multigrid.clone(), "fatigue.block=controlled".to_owned(), format!("fatigue.block_error_percent={bound}")];
-        Variant::new(5, format!("controlled {bound} %"), &set)
-    };
-    let breaks = |breaks: &usize| {
-        let set = [multigrid.clone(), "fatigue.block=until_next_break".to_owned(), format!("fatigue.bonds_per_block={breaks}")];
-        Variant::new(5, format!("{breaks} breaks"), &set)
-    };
-    let mut all: Vec<Variant> = pick(quick, &BOUNDS, &BOUNDS_QUICK).iter().map(bound).collect();
-    all.extend(pick(quick, &BREAKS, &BREAKS_QUICK).iter().map(breaks));
-    all
-}
-
 fn others(case: &Case) -> Vec<Variant> {
     let corrections = SurfaceCorrection::ALL.iter().filter(|kind| **kind != case.model.bond_law.surface_correction);
     let mut all: Vec<Variant> = corrections
-        .map(|kind| Variant::new(6, format!("correction {kind}"), &[format!("model.surface_correction={kind}")]))
+        .map(|kind| Variant::new(5, format!("correction {kind}"), &[format!("model.surface_correction={kind}")]))
         .collect();
     let symmetries = Symmetry::ALL.iter().filter(|kind| **kind != case.model.symmetry);
-    all.extend(symmetries.map(|kind| Variant::new(6, format!("symmetry {kind}"), &[format!("model.symmetry={kind}")])));
+    all.extend(symmetries.map(|kind| Variant::new(5, format!("symmetry {kind}"), &[format!("model.symmetry={kind}")])));
     all
 }

@@ -11,7 +11,7 @@ use crate::case::Method;
 use crate::error::Result;
 use crate::fatigue::GrowthRate;
 use crate::predict::Observer;
-use crate::predict::bond_rate::Family;
+use crate::predict::bond_rate::ReferenceModel;
 
 /// Fits the constants of a calibration: A and p of bonds, or (method `handbook`) C and m of hand calculation.
 ///
@@ -51,7 +51,7 @@ pub fn calibrate_from(
         Method::Peridynamics => {
             let mut fit = fit_with(&PdModel::with_finished(case, finished, keep, observer)?)?;
             if case.fatigue.growth_rate == GrowthRate::StressIntensity {
-                fit.rate_constant = Some(Family::of(&case.model).rate_constant(fit.record.constants.p)?);
+                fit.rate_constant = Some(ReferenceModel::of(&case.model).rate_constant(fit.record.constants.p)?);
             }
             Ok(fit)
         }

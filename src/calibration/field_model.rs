@@ -13,7 +13,7 @@ use crate::case::Case;
 use crate::error::Result;
 use crate::fatigue::paris::ParisLaw;
 use crate::predict::Observer;
-use crate::predict::bond_rate::Family;
+use crate::predict::bond_rate::ReferenceModel;
 use crate::predict::factor_curve::FactorCurve;
 
 /// Distance of the exponents between which the rate constant is taken for others, in p.
@@ -52,11 +52,11 @@ impl ForwardModel for FieldModel {
 /// A fit of C and m as one of A and p, with the rate constant that ties them.
 ///
 /// # Errors
-/// As [`Family::rate_constant`].
+/// As [`ReferenceModel::rate_constant`].
 pub fn in_terms_of_bonds(fit: &mut Fit, case: &Case) -> Result<()> {
     let modulus = case.material.plane_modulus();
     let p = fit.record.constants.p;
-    let constant = RateConstant::around(Family::of(&case.model), p)?;
+    let constant = RateConstant::around(ReferenceModel::of(&case.model), p)?;
     let horizon = fit.horizon;
     let bonds = |Constants { a, p }: Constants| {
         let law = ParisLaw { c: a, m: p }.to_bonds(constant.at(p).exp(), modulus, horizon);
@@ -84,7 +84,7 @@ struct RateConstant {
 }
 
 impl RateConstant {
-    fn around(family: Family, p: f64) -> Result<Self> {
+    fn around(family: ReferenceModel, p: f64) -> Result<Self> {
         let middle = p.clamp(P_MIN + P_STEP, P_MAX - P_STEP);
         let p = [middle - P_STEP, middle, middle + P_STEP];
         // The first computes what the others share.

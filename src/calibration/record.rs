@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fatigue::{BlockKind, GrowthRate};
+use crate::fatigue::GrowthRate;
 
 /// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -66,12 +66,6 @@ pub struct FittedRecord {
     pub growth_rate: String,
     /// `fatigue.precrack`.
     pub precrack: String,
-    /// `fatigue.block` of the runs of the fit; another choice here is free, since blocks are a matter of error, not of model.
-    #[serde(default = "until_next_break")]
-    pub block: String,
-    /// `fatigue.block_error_percent` of controlled blocks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub block_error_percent: Option<f64>,
     /// Young's modulus of the calibration.
     pub youngs_modulus_gpa: f64,
     /// Poisson's ratio of the calibration.
@@ -90,11 +84,6 @@ pub struct FittedRecord {
 
 fn stress_intensity() -> String {
     GrowthRate::StressIntensity.name().to_owned()
-}
-
-/// The blocks of records from before they were controlled.
-fn until_next_break() -> String {
-    BlockKind::UntilNextBreak.name().to_owned()
 }
 
 /// The method of records that do not name theirs.

@@ -8,7 +8,6 @@ use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::{Fit, FittedCurve};
 use crate::calibration::record::{FittedRecord, SourceFile};
 use crate::case::Method;
-use crate::fatigue::BlockKind;
 use crate::units::{GPA, MM};
 
 /// Content of `fit.json`; units as in the names, cycles else.
@@ -187,8 +186,6 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         growth_rate: case.fatigue.growth_rate.name().to_owned(),
         zone_radius_horizons: case.fatigue.zone_radius_horizons,
         precrack: case.fatigue.precrack.name().to_owned(),
-        block: case.fatigue.block.kind.name().to_owned(),
-        block_error_percent: (case.fatigue.block.kind == BlockKind::Controlled).then_some(case.fatigue.block.error_percent),
         youngs_modulus_gpa: tidy(case.material.youngs_modulus / GPA),
         poisson_ratio: case.material.poisson_ratio,
         plane: case.material.plane.name().to_owned(),

@@ -9,14 +9,14 @@ use super::law_source::LawKeys;
 use super::{LawSource, Stop};
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
-use crate::fatigue::{Ageing, Block, BlockKind, Driver, FatigueSettings, GrowthRate, OVERLOAD_STRETCH, Precrack};
+use crate::fatigue::{Ageing, Driver, FatigueSettings, GrowthRate, OVERLOAD_STRETCH, Precrack, STEP_ERROR_PERCENT,
+    ZONE_RADIUS_HORIZONS,
+};
 use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::specimen::{LengthConvention, Specimen};
 
-/// Radius of the ageing zone: a narrower zone breaks bonds beside the crack path less often, see the growth law.
-const ZONE_RADIUS: f64 = 0.5;
 const CYCLES_MAX: f64 = 1e9;
 
 /// Keys of `[fatigue]`.
@@ -48,10 +48,7 @@ struct Input {
     ageing: Option<Ageing>,
     zone_radius_horizons: Option<f64>,
     precrack: Option<Precrack>,
-    block: Option<BlockKind>,
-    block_cycles: Option<f64>,
-    bonds_per_block: Option<u32>,
-    block_error_percent: Option<f64>,
+    step_error_percent: Option<f64>,
     critical_stretch: Option<f64>,
     walker_gamma: Option<f64>,
     delta_k_threshold_mpa_sqrt_m: Option<f64>,
@@ -93,9 +90,9 @@ pub(super) fn from_value(
     let settings = FatigueSettings {
         driver,
         ageing: choices.ageing.unwrap_or(Ageing::CrackTip),
-        zone_radius_horizons: choices.zone_radius_horizons.unwrap_or(ZONE_RADIUS),
+        zone_radius_horizons: choices.zone_radius_horizons.unwrap_or(ZONE_RADIUS_HORIZONS),
         precrack: input.precrack.unwrap_or(Precrack::SteadyProfile),
-        block: read_block(&input, driver)?,
+        step_error_percent: read_step_error(&input, driver)?,
         critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
@@ -144,9 +141,6 @@ fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Dri
         ("ageing", input.ageing.is_some()),
         ("zone_radius_horizons", input.zone_radius_horizons.is_some()),
         ("precrack", input.precrack.is_some()),
-        ("block", input.block.is_some_and(|block| block != BlockKind::Controlled)),
-        ("block_cycles", input.block_cycles.is_some()),
-        ("bonds_per_block", input.bonds_per_block.is_some()),
         ("critical_stretch", input.critical_stretch.is_some()),
         ("growth_rate", input.growth_rate.is_some()),
     ];
@@ -176,35 +170,15 @@ fn read_growth_rate(slice: &Input) -> Result<GrowthRate> {
     }
 }
 
-/// Reads the cycle block: every kind has one key of its own, and no other takes it.
-fn read_block(slice: &Input, driver: Driver) -> Result<Block> {
-    use BlockKind::{Controlled, Fixed, UntilNextBreak};
-    let kind = slice.block.unwrap_or(Controlled);
-    let cycles = number("a number of cycles", 1e-3, 1e12).read_optional("fatigue.block_cycles", slice.block_cycles)?;
-    let bonds = slice.bonds_per_block.map(f64::from);
-    let bonds = number("a number of bonds", 1.0, 1e6).read_optional("fatigue.bonds_per_block", bonds)?;
-    let error = slice.block_error_percent;
-    let error = number("an error in percent", 0.001, 10.0).read_optional("fatigue.block_error_percent", error)?;
-    for (key, value, of) in
-        [("block_cycles", cycles, Fixed), ("bonds_per_block", bonds, UntilNextBreak), ("block_error_percent", error, Controlled)]
-    {
-        if let Some(value) = value.filter(|_| kind != of) {
-            let chosen = if slice.block.is_some() { "" } else { ", the default" };
-            let problem = format!("does not go with block = \"{kind}\"{chosen}");
-            let remedy = format!("leave it out, or use block = \"{of}\"");
-            return Err(input(&format!("fatigue.{key}"), value, problem, remedy));
-        }
+/// Reads the error of a block of growth by K; bonds that break one by one are solved for after every break, without such an error.
+fn read_step_error(slice: &Input, driver: Driver) -> Result<f64> {
+    const KEY: &str = "fatigue.step_error_percent";
+    let error = number("an error in percent", 0.001, 10.0).read_optional(KEY, slice.step_error_percent)?;
+    if let (Some(error), Driver::BondStrain) = (error, driver) {
+        let problem = "belongs to growth by K of the tips, and the driver is \"bond_strain\", which solves after every break";
+        return Err(input(KEY, error, problem, "leave it out, or use driver = \"tip_field\""));
     }
-    if kind == Fixed && cycles.is_none() {
-        let remedy = "give the cycles of a block";
-        return Err(input_missing("fatigue.block_cycles", "is missing, and block is \"fixed\"", remedy));
-    }
-    Ok(Block {
-        kind,
-        cycles: cycles.unwrap_or(f64::INFINITY),
-        bonds: bonds.unwrap_or(1.0) as usize,
-        error_percent: error.unwrap_or(driver.block_error_percent()),
-    })
+    Ok(error.unwrap_or(STEP_ERROR_PERCENT))
 }
 
 /// Keys of `[stop]`.

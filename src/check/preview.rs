@@ -6,7 +6,7 @@ use crate::case::{Case, Method};
 use crate::error::{Error, InputError, Result};
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::no_fail::stuck;
-use crate::fatigue::pieces::{Cut, set_aside};
+use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::growth::plate::Plate;
 use crate::state::Bonds;
 use crate::units::MM;
@@ -40,7 +40,7 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
     let plate = Plate::build(specimen, specimen, &case.material, model).map_err(as_input)?;
     let body = &plate.body;
     let mut bonds = Bonds::new(body);
-    if set_aside(body, &mut bonds, &body.pre_cut) == Cut::Severed {
+    if remove_fragments(body, &mut bonds, &body.pre_cut) == Connectivity::Severed {
         return Err(as_input(Error::Mechanics("the initial cracks cut the plate in two".to_owned())));
     }
     let count = format!("{} and {} bonds, {} of them cut by the initial cracks", plate.points(), plate.bonds(), plate.cut());

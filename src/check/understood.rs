@@ -156,8 +156,8 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         (
             "ageing",
             format!(
-                "{}, zone radius {} horizons, precrack {}, block {}",
-                fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack, fatigue.block
+                "{}, zone radius {} horizons, precrack {}, a solve after every break",
+                fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack
             ),
         ),
         ("handbook K", formula),

@@ -1,7 +1,6 @@
 //! Life of a bond under cycles: dλ/dN = -A ε^p (Silling and Askari 2014, SAND2014-18590).
 
 pub mod ageing;
-pub mod block_control;
 pub mod crack_tip;
 pub mod growth_law;
 pub mod growth_rate;
@@ -17,23 +16,18 @@ use crate::error::{Error, input};
 /// ligament of a plate break by overload instead of hanging on bonds that no tip spends.
 pub const OVERLOAD_STRETCH: f64 = 0.05;
 
+/// Radius of the zone around a tip in which bonds lose remaining life, in horizons, where a case gives none: in a narrower zone fewer
+/// bonds break beside the crack, see the growth law.
+pub const ZONE_RADIUS_HORIZONS: f64 = 0.5;
+
+/// `fatigue.step_error_percent` where a case gives none.
+pub const STEP_ERROR_PERCENT: f64 = 0.2;
+
 crate::kinds! {
     /// What drives a crack of method `peridynamics`.
     pub enum Driver for "fatigue.driver" {
         TipField = "tip_field": "K_I and K_II of every tip, from the field around it, steer and pace it; bonds that its line crosses are cut",
         BondStrain = "bond_strain": "every bond spends its life by its own strain, and the crack goes where bonds break",
-    }
-}
-
-impl Driver {
-    /// `fatigue.block_error_percent` where a file gives none: error of a block's cycles that growth by K keeps to, or that
-    /// strains not solved for may make in a life of bonds.
-    #[must_use]
-    pub fn block_error_percent(self) -> f64 {
-        match self {
-            Driver::TipField => 0.2,
-            Driver::BondStrain => 1.0,
-        }
     }
 }
 
@@ -59,15 +53,6 @@ crate::kinds! {
     pub enum GrowthRate for "fatigue.growth_rate" {
         StressIntensity = "stress_intensity": "K of the tip, by the interaction integral: the strains around it are scaled so that its bonds break at that rate",
         BondStrain = "bond_strain": "the strains of its bonds as computed, which depend on lattice, horizon and Poisson's ratio",
-    }
-}
-
-crate::kinds! {
-    /// How long a cycle block is.
-    pub enum BlockKind for "fatigue.block" {
-        Controlled = "controlled": "as many breaks as the estimated error of strains not solved for, block_error_percent of life, allows",
-        UntilNextBreak = "until_next_break": "cycles until the next bond, or the next bonds_per_block bonds, are spent",
-        Fixed = "fixed": "block_cycles cycles",
     }
 }
 
@@ -107,34 +92,6 @@ impl FatigueLaw {
     }
 }
 
-/// Cycle block: one quasi-static solve each.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Block {
-    /// How its length is chosen.
-    pub kind: BlockKind,
-    /// Cycles of a `fixed` block.
-    pub cycles: f64,
-    /// Bonds (or groups that break together) after which an `until_next_break` block ends.
-    pub bonds: usize,
-    /// Bound on the error of a `controlled` run, percent of its life.
-    pub error_percent: f64,
-}
-
-impl std::fmt::Display for Block {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.kind {
-            BlockKind::Controlled => write!(f, "{} to {} % of life", self.kind, self.error_percent),
-            BlockKind::UntilNextBreak => write!(f, "{}, {} a block", self.kind, self.bonds),
-            BlockKind::Fixed => write!(f, "{}, {} cycles", self.kind, self.cycles),
-        }
-    }
-}
-
-impl Block {
-    /// Until the next bond breaks.
-    pub const NEXT_BREAK: Block = Block { kind: BlockKind::UntilNextBreak, cycles: f64::INFINITY, bonds: 1, error_percent: 0.0 };
-}
-
 /// What a case says about fatigue, except the constants of the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FatigueSettings {
@@ -146,8 +103,8 @@ pub struct FatigueSettings {
     pub zone_radius_horizons: f64,
     /// What happened before N = 0.
     pub precrack: Precrack,
-    /// Cycle block.
-    pub block: Block,
+    /// Error of the cycles of a block that growth by K of the tips keeps to, percent.
+    pub step_error_percent: f64,
     /// Bond stretch s_t above which a bond breaks at once.
     pub critical_stretch: f64,
     /// Walker exponent γ: ε = s_max (1-R)^γ; 1 = no mean-stress effect.

@@ -7,9 +7,9 @@ use crate::state::Bonds;
 
 /// What breaking some bonds did to the plate.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Cut {
+pub enum Connectivity {
     /// Still one loaded piece; these further bonds were set aside with pieces or points that carry nothing.
-    Whole(Vec<Bond>),
+    Connected(Vec<Bond>),
     /// Two loaded pieces.
     Severed,
 }
@@ -18,7 +18,7 @@ pub enum Cut {
 ///
 /// Whether the two ends of a broken bond are still connected is answered by growing a front from each end in turn: around a
 /// crack tip they meet after a few steps, and only a piece that is really cut off is ever walked whole.
-pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
+pub fn remove_fragments(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Connectivity {
     let mut aside = Vec::new();
     // A point on a single bond swings freely about it: it carries nothing and leaves the stiffness singular.
     let least = if body.stencil.unknowns == 3 { 2 } else { 3 };
@@ -38,7 +38,7 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
         bonds.intact_at(body, a) == 0 || bonds.intact_at(body, b) == 0
     });
     if loose && !loads_are_connected(body, bonds) {
-        return Cut::Severed;
+        return Connectivity::Severed;
     }
     // Points that are known to hang together.
     let mut together = HashSet::new();
@@ -48,7 +48,7 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
         let inside = piece.iter().any(|&node| is_loaded(body, node));
         let outside = loaded_nodes(body, bonds).any(|node| !piece.contains(&node));
         if inside && outside {
-            return Cut::Severed;
+            return Connectivity::Severed;
         }
         if !inside {
             together.clear();
@@ -62,7 +62,7 @@ pub fn set_aside(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Cut {
             }
         }
     }
-    Cut::Whole(aside)
+    Connectivity::Connected(aside)
 }
 
 /// Whether all loaded points that still have bonds hang together.

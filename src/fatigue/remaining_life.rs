@@ -2,7 +2,7 @@
 //! (Silling and Askari 2014, SAND2014-18590; block until the next break after Zhang et al. 2016, Eng. Fract. Mech. 162:76).
 
 use super::ageing::AgeingBond;
-use super::{Block, BlockKind, FatigueLaw};
+use super::FatigueLaw;
 use crate::body::Bond;
 
 /// Share of a bond's whole life within which bonds break together: mirror twins differ by round-off only.
@@ -38,16 +38,13 @@ impl BondLife {
         self.life.iter().enumerate().filter(|(_, life)| **life != 1.0).map(|(bond, life)| (bond as Bond, *life)).collect()
     }
 
-    /// Chooses the next cycle block, or its part up to the next break: its cycles and the bonds it spends.
+    /// The block until the next break: its cycles, and the bonds that break together at its end. Strains are constant until then, so
+    /// the block is exact.
     #[must_use]
-    pub fn next_block(&self, law: &FatigueLaw, block: &Block, ageing: &[AgeingBond]) -> (f64, Vec<Bond>) {
+    pub fn until_next_break(&self, law: &FatigueLaw, ageing: &[AgeingBond]) -> (f64, Vec<Bond>) {
         let rates: Vec<f64> = ageing.iter().map(|b| law.a * b.strain.powf(law.p)).collect();
-        let cycles = match block.kind {
-            BlockKind::Fixed => block.cycles,
-            BlockKind::UntilNextBreak => self.nth_break(ageing, &rates, block.bonds),
-            // A controlled block goes from break to break with strains foreseen in between.
-            BlockKind::Controlled => self.nth_break(ageing, &rates, 1),
-        };
+        let left = ageing.iter().zip(&rates).map(|(b, &rate)| self.of(b.bond).max(0.0) / rate);
+        let cycles = left.fold(f64::INFINITY, f64::min);
         let spent =
             ageing.iter().zip(&rates).filter(|(b, rate)| self.of(b.bond) - cycles * *rate <= TOGETHER).map(|(b, _)| b.bond);
         (cycles, spent.collect())
@@ -60,25 +57,6 @@ impl BondLife {
         let cycles = ageing.iter().zip(rates()).map(|(b, rate)| self.of(b.bond).max(0.0) / rate).fold(f64::INFINITY, f64::min);
         // Before a first reading of K nothing may age yet.
         if ageing.is_empty() { f64::INFINITY } else { cycles * rates().fold(0.0, f64::max) }
-    }
-
-    /// Cycles until the n-th of the distinct next breaks; bonds that break together count as one.
-    fn nth_break(&self, ageing: &[AgeingBond], rates: &[f64], n: usize) -> f64 {
-        let mut next: Vec<(f64, f64)> =
-            ageing.iter().zip(rates).map(|(b, &rate)| (self.of(b.bond).max(0.0) / rate, rate)).collect();
-        next.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let mut groups = 0;
-        let mut last = f64::NEG_INFINITY;
-        for (cycles, rate) in next {
-            if (cycles - last) * rate > TOGETHER {
-                groups += 1;
-                last = cycles;
-                if groups == n.max(1) {
-                    break;
-                }
-            }
-        }
-        last.max(0.0)
     }
 
     /// Takes the block's spending off every ageing bond.

@@ -1,6 +1,6 @@
 //! Cracks that go where bonds break, each bond spending its life by its own strain.
 //!
-//! Per cycle block: take the cyclic strain of the bonds that age, choose the block, spend life, break spent bonds, find the new
+//! Per cycle block: take the cyclic strain of the bonds that age, spend their lives until the next one breaks, break it, find the new
 //! equilibrium, follow the tips. Cracks are first grown to their initial lengths (`start.rs`); N = 0 is there.
 
 mod course;
@@ -20,20 +20,19 @@ use super::end_of_life::{End, first_end};
 use super::plate::Plate;
 use super::record::{CurvePoint, StopReason};
 use super::tip_field::initial_factor;
-use super::{CrackGrowth, Effort, Fields, Now, State};
+use super::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, threshold_strain};
-use crate::fatigue::block_control::{Around, BlockControl};
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::growth_law::GrowthLaw;
-use crate::fatigue::pieces::{Cut, set_aside};
-use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
+use crate::fatigue::pieces::{Connectivity, remove_fragments};
+use crate::fatigue::{FatigueLaw, FatigueSettings};
 use crate::solver::{Equilibrium, Focus};
 use crate::state::Bonds;
 use course::Course;
-use overload::{are_within, overstretched, stretched};
+use overload::{overstretched, stretched};
 use pace::{Pace, TipPace};
 use start::Start;
 use tip_end::{break_through, retire_tips};
@@ -44,22 +43,6 @@ use track::Past;
 const GIVEN_WAY: f64 = 2.0;
 /// Share of a bond's whole life within which the next break is one of those before it.
 const AT_ONCE: f64 = 1e-6;
-
-/// Takes down what a run does, block by block, so that it can be replayed.
-pub trait Recorder {
-    /// The plate with its initial cracks, before its first equilibrium.
-    fn start(&mut self, _body: &Body, _bonds: &Bonds) {}
-    /// One block: the strains its bonds aged by, the bonds it spent, and the crack length after it, m. Blocks before N = 0,
-    /// in which the crack grows to its initial length, come first.
-    fn block(&mut self, ageing: &[AgeingBond], spent: &[Bond], crack_length: f64);
-}
-
-/// Takes down nothing.
-pub struct Unrecorded;
-
-impl Recorder for Unrecorded {
-    fn block(&mut self, _: &[AgeingBond], _: &[Bond], _: f64) {}
-}
 
 /// What bonds are spent by.
 pub struct BondRates {
@@ -79,12 +62,13 @@ pub struct BondStrain<'a> {
     end: Option<End>,
     /// Strain of a cycle over that at maximum load, and the range of strain below which nothing ages.
     range: (f64, f64),
-    recorder: &'a mut dyn Recorder,
     run: Course,
     equilibrium: Equilibrium,
     displacement: Vec<f64>,
     /// Bonds that may age in the next block.
     near: Vec<Bond>,
+    /// What broke in the last block.
+    last_broken: Vec<Bond>,
     /// These and others whose displacement has to be right after every break.
     watched: Vec<Bond>,
     is_closed: bool,
@@ -104,11 +88,10 @@ pub struct BondStrainState {
     life: Vec<(Bond, f64)>,
     tips: Vec<CrackTip>,
     near_limit: Vec<Bond>,
-    control: BlockControl,
     pace: Option<Vec<TipPace>>,
     past: Past,
     broken_bonds: usize,
-    effort: Effort,
+    statistics: SolverStatistics,
 }
 
 impl<'a> BondStrain<'a> {
@@ -116,7 +99,7 @@ impl<'a> BondStrain<'a> {
     ///
     /// # Errors
     /// As [`Plate::build`]; a crack too short to be grown, cracks that cut the plate in two, no fatigue law.
-    pub fn start(case: &'a Case, rates: impl FnOnce(f64) -> Result<BondRates>, recorder: &'a mut dyn Recorder) -> Result<Self> {
+    pub fn start(case: &'a Case, rates: impl FnOnce(f64) -> Result<BondRates>) -> Result<Self> {
         let start = Start::of(case)?;
         let plate = Plate::build(&start.specimen, &case.specimen, &case.material, &case.model)?;
         let body = &plate.body;
@@ -128,8 +111,8 @@ impl<'a> BondStrain<'a> {
             None => share * threshold_strain(&case.fatigue, &case.material, body.horizon()) / case.loading.range_share(),
         };
         let pace = over_k.map(|over_k| Pace::new(case, &start, body, over_k));
-        let mut run = Course::start(case, body, start.tips(body), law.p);
-        if start::cuts_in_two(body, &run.bonds, case) || set_aside(body, &mut run.bonds, &body.pre_cut) == Cut::Severed {
+        let mut run = Course::start(case, body, start.tips(body));
+        if start::cuts_in_two(body, &run.bonds, case) || remove_fragments(body, &mut run.bonds, &body.pre_cut) == Connectivity::Severed {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
         Ok(BondStrain {
@@ -139,12 +122,12 @@ impl<'a> BondStrain<'a> {
             start,
             end: first_end(case),
             range: (share, threshold),
-            recorder,
             equilibrium: solver(case, &plate, &run),
             run,
             displacement: Vec::new(),
             near: Vec::new(),
             watched: Vec::new(),
+            last_broken: Vec::new(),
             is_closed: false,
             first: None,
             warnings: Vec::new(),
@@ -152,11 +135,21 @@ impl<'a> BondStrain<'a> {
         })
     }
 
+    /// The plate, and its bonds as they stand.
+    #[must_use]
+    pub fn plate_and_bonds(&self) -> (Body, Bonds) {
+        (self.plate.body.clone(), self.run.bonds.clone())
+    }
+
+    /// Bonds that broke in the last block.
+    #[must_use]
+    pub fn last_broken(&self) -> &[Bond] {
+        &self.last_broken
+    }
+
     /// The first equilibrium of the bonds as they stand.
     fn settle_first(&mut self) -> Result<()> {
-        let plate = self.plate.clone();
-        self.recorder.start(&plate.body, &self.run.bonds);
-        self.run.iterations += self.equilibrium.solve(&plate.body, &self.run.bonds, &mut self.displacement)?;
+        self.run.iterations += self.equilibrium.solve(&self.plate.body, &self.run.bonds, &mut self.displacement)?;
         self.run.solves += 1;
         Ok(())
     }
@@ -183,7 +176,6 @@ impl<'a> BondStrain<'a> {
     fn ageing(&mut self) -> Vec<AgeingBond> {
         let (body, run) = (&self.plate.body, &self.run);
         let mut ageing = ageing_bonds(body, &self.near, &self.displacement, self.range);
-        run.control.correct(&self.equilibrium, body, &run.tips, &mut ageing);
         if let Some(pace) = &mut self.pace {
             pace.set(body, &run.tips, &self.law, &mut ageing);
         }
@@ -192,7 +184,7 @@ impl<'a> BondStrain<'a> {
 
     /// Breaks bonds, and finds the new equilibrium, until no bond is stretched beyond the critical stretch; all that broke, and
     /// why there is no equilibrium any more.
-    fn break_bonds(&mut self, first: Vec<Bond>, counting: bool) -> (Vec<Bond>, Option<StopReason>) {
+    fn break_bonds(&mut self, first: Vec<Bond>) -> (Vec<Bond>, Option<StopReason>) {
         let plate = self.plate.clone();
         let (body, case, run, equilibrium) = (&plate.body, self.case, &mut self.run, &mut self.equilibrium);
         let work_before = equilibrium.work();
@@ -201,19 +193,16 @@ impl<'a> BondStrain<'a> {
         let mut overloaded = false;
         loop {
             newly.iter().for_each(|&bond| run.bonds.cut(body, bond));
-            let aside = match set_aside(body, &mut run.bonds, &newly) {
-                Cut::Severed => return (spent, Some(StopReason::Severed)),
-                Cut::Whole(aside) => aside,
+            let aside = match remove_fragments(body, &mut run.bonds, &newly) {
+                Connectivity::Severed => return (spent, Some(StopReason::Severed)),
+                Connectivity::Connected(aside) => aside,
             };
             newly.extend(aside);
-            equilibrium.broke(body, &run.bonds, &newly);
-            let may_foresee = counting && !overloaded && are_within(equilibrium.window(), body, &run.near_limit);
-            let around = Around { body, bonds: &run.bonds, tips: &run.tips, watched: &self.near };
-            match run.control.settle(equilibrium, around, &newly, may_foresee, &mut self.displacement) {
-                Ok(None) => {}
-                Ok(Some(more)) => (run.solves, run.iterations) = (run.solves + 1, run.iterations + more),
+            equilibrium.bonds_changed(body, &run.bonds, &newly);
+            match equilibrium.solve(body, &run.bonds, &mut self.displacement) {
+                Ok(more) => (run.solves, run.iterations) = (run.solves + 1, run.iterations + more),
                 // What is left after bonds broke by overload cannot carry the load: the plate is as good as in two.
-                Err(error) if overloaded || matches!(error, Error::GaveWay) => return (spent, Some(StopReason::Severed)),
+                Err(error) if overloaded || matches!(error, Error::LossOfStiffness) => return (spent, Some(StopReason::Severed)),
                 Err(_) => return (spent, Some(StopReason::NoConvergence)),
             }
             newly = overstretched(body, &run.bonds, case, &self.displacement, equilibrium);
@@ -230,17 +219,13 @@ impl<'a> BondStrain<'a> {
             }
         }
     }
-}
 
-impl CrackGrowth for BondStrain<'_> {
-    fn open(&mut self) -> Result<()> {
-        self.settle_first()?;
-        self.run.track.open(self.start.records(&self.run.tips), self.equilibrium.work());
-        self.look_around();
-        Ok(())
-    }
-
-    fn advance(&mut self) -> Result<Option<StopReason>> {
+    /// One cycle block, until the next break, which makes one row; the reason why there is no next one. A block that finds that reason
+    /// before anything happens makes no row.
+    ///
+    /// # Errors
+    /// No equilibrium before the block.
+    pub fn next_break(&mut self) -> Result<Option<StopReason>> {
         let plate = self.plate.clone();
         let (case, body, settings) = (self.case, &plate.body, &self.case.fatigue);
         let counting = self.start.is_over(&self.run.tips);
@@ -254,7 +239,7 @@ impl CrackGrowth for BondStrain<'_> {
         run.iterations += self.equilibrium.reach(body, &run.bonds, &self.watched, &focus, &mut self.displacement)?;
         let mut ageing = self.ageing();
         // Not while bonds break that would break together but for round-off: mirror twins would be seen at unequal lengths.
-        let is_due = self.pace.as_ref().is_some_and(|pace| pace.is_due(body, &self.run.tips)) && !self.equilibrium.is_foreseen();
+        let is_due = self.pace.as_ref().is_some_and(|pace| pace.is_due(body, &self.run.tips));
         if is_due && self.run.life.share_to_next_break(&self.law, &ageing) > AT_ONCE {
             let run = &mut self.run;
             run.iterations += self.equilibrium.complete(body, &run.bonds, &mut self.displacement)?;
@@ -264,6 +249,7 @@ impl CrackGrowth for BondStrain<'_> {
             }
             ageing = self.ageing();
         }
+        self.last_broken.clear();
         let run = &mut self.run;
         if let Some(reason) = stop::before_block(case, self.end, &run.track, &run.tips, &ageing) {
             return Ok(Some(reason));
@@ -276,8 +262,7 @@ impl CrackGrowth for BondStrain<'_> {
         // Spend life over the block; bonds at the end of theirs break.
         // A tip within a spacing of an edge or hole breaks through at once: the lattice cannot resolve what is left.
         let through = break_through(&mut run.tips, body, &run.bonds, &case.specimen);
-        let block = if counting { &settings.block } else { &Block::NEXT_BREAK };
-        let (cycles, first) = if through.is_empty() { run.life.next_block(&self.law, block, &ageing) } else { (0.0, through) };
+        let (cycles, first) = if through.is_empty() { run.life.until_next_break(&self.law, &ageing) } else { (0.0, through) };
         if run.track.cycles_since_start() + cycles > case.stop.cycles_max {
             run.track.run_out(case.stop.cycles_max);
             return Ok(Some(StopReason::RunOut));
@@ -287,7 +272,7 @@ impl CrackGrowth for BondStrain<'_> {
         if let Some(pace) = &mut self.pace {
             pace.spend(body, &run.tips, &self.law, cycles, &ageing);
         }
-        let (spent, reason) = self.break_bonds(first, counting);
+        let (spent, reason) = self.break_bonds(first);
 
         // Follow the tips and record.
         let run = &mut self.run;
@@ -296,31 +281,38 @@ impl CrackGrowth for BondStrain<'_> {
         let tips = run.tips.iter_mut().zip(&shares);
         tips.for_each(|(tip, broken)| tip.advance(body, &run.bonds, &case.specimen, broken));
         let work = if reason.is_none() { self.equilibrium.work() } else { f64::NAN };
-        let is_open = self.equilibrium.is_foreseen() && reason.is_none();
         let records = self.start.records(&run.tips);
         if let Some(pace) = &mut self.pace {
             pace.follow(body, &run.tips, &records);
         }
-        run.track.record(records, run.broken_bonds, work, is_open);
-        self.recorder.block(&ageing, &spent, run.track.last().crack_length);
+        run.track.record(records, run.broken_bonds, work);
+        self.last_broken = spent;
         let reason = reason.or_else(|| stop::after_block(case, self.end, &run.track));
         if reason.is_none() {
             self.look_around();
         }
         Ok(reason)
     }
+}
 
-    fn now(&self) -> Now<'_> {
+impl CrackGrowth for BondStrain<'_> {
+    fn open(&mut self) -> Result<()> {
+        self.settle_first()?;
+        self.run.track.open(self.start.records(&self.run.tips), self.equilibrium.work());
+        self.look_around();
+        Ok(())
+    }
+
+    fn now(&self) -> GrowthStatus<'_> {
         let track = &self.run.track;
         let row = track.last();
-        Now {
+        GrowthStatus {
             cycles: track.cycles_since_start(),
             cycles_of_run: row.cycles,
             crack_length: row.crack_length,
             delta_k: f64::NAN,
             tips: row.tips(),
             is_counting: track.is_counting(),
-            is_settled: !row.is_open(),
         }
     }
 
@@ -331,23 +323,19 @@ impl CrackGrowth for BondStrain<'_> {
     fn fields(&mut self) -> Result<Option<Fields>> {
         let (plate, bonds) = (&self.plate, &self.run.bonds);
         if self.is_closed {
-            return Ok(Some(plate.fields(bonds, &self.displacement)));
+            return Ok(Some(plate.fields(bonds, &self.displacement, &self.run.life.begun())));
         }
         let (picture, more) = self.equilibrium.picture(&plate.body, bonds)?;
         self.run.iterations += more;
-        Ok(Some(plate.fields(bonds, &picture)))
-    }
-
-    fn law(&self) -> Option<&dyn GrowthLaw> {
-        None
+        Ok(Some(self.plate.fields(&self.run.bonds, &picture, &self.run.life.begun())))
     }
 
     /// Where the solver has to work on the whole plate anyway.
-    fn is_due(&self) -> bool {
-        self.equilibrium.is_due(&self.plate.body, &self.watched)
+    fn should_rebuild_solver(&self) -> bool {
+        self.equilibrium.should_rebuild(&self.plate.body, &self.watched)
     }
 
-    fn begin_anew(&mut self) -> Result<()> {
+    fn rebuild_solver(&mut self) -> Result<()> {
         tracing::debug!(solves = self.run.solves, "the solver begins anew from the bonds");
         let (plate, run) = (&self.plate, &mut self.run);
         self.equilibrium = solver(self.case, plate, run);
@@ -370,11 +358,10 @@ impl CrackGrowth for BondStrain<'_> {
             life: run.life.begun(),
             tips: run.tips.clone(),
             near_limit: run.near_limit.clone(),
-            control: run.control.clone(),
             pace: self.pace.as_ref().map(Pace::state),
             past: run.track.past().clone(),
             broken_bonds: run.broken_bonds,
-            effort: self.effort(),
+            statistics: self.statistics(),
         })
     }
 
@@ -399,9 +386,9 @@ impl CrackGrowth for BondStrain<'_> {
         }
         state.broken.iter().for_each(|&bond| run.bonds.cut(&plate.body, bond));
         state.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));
-        (run.tips, run.near_limit, run.control) = (state.tips, state.near_limit, state.control);
+        (run.tips, run.near_limit) = (state.tips, state.near_limit);
         run.track.go_on_from(state.past);
-        (run.broken_bonds, run.solves, run.iterations) = (state.broken_bonds, state.effort.solves, state.effort.iterations);
+        (run.broken_bonds, run.solves, run.iterations) = (state.broken_bonds, state.statistics.solves, state.statistics.iterations);
         self.equilibrium = solver(self.case, &plate, run);
         self.settle_first()?;
         self.look_around();
@@ -413,7 +400,6 @@ impl CrackGrowth for BondStrain<'_> {
         let stop = stop::settled(self.end, &run.track, stop);
         if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
             run.iterations += self.equilibrium.complete(body, &run.bonds, &mut self.displacement)?;
-            run.track.close(self.equilibrium.work());
         }
         self.warnings.extend(run.track.warnings(self.case, body));
         self.is_closed = true;
@@ -433,9 +419,9 @@ impl CrackGrowth for BondStrain<'_> {
         Some(CrossCheck { compared: 1, difference, crack_length })
     }
 
-    fn effort(&self) -> Effort {
+    fn statistics(&self) -> SolverStatistics {
         let Course { solves, iterations, .. } = self.run;
-        Effort { points_solved: self.equilibrium.points(&self.plate.body), solves, iterations }
+        SolverStatistics { points_solved: self.equilibrium.points(&self.plate.body), solves, iterations }
     }
 
     fn warnings(&self) -> Vec<String> {
@@ -445,8 +431,7 @@ impl CrackGrowth for BondStrain<'_> {
 
 /// Solver of the bonds as they stand, which knows nothing of what went before.
 fn solver(case: &Case, plate: &Plate, run: &Course) -> Equilibrium {
-    let equilibrium = plate.equilibrium(&case.model, &run.bonds, case.loading.maximum);
-    if run.control.foresees() { equilibrium.foreseeing() } else { equilibrium }
+    plate.equilibrium(&case.model, &run.bonds, case.loading.maximum)
 }
 
 /// Where the solver has to expect the next breaks.

@@ -53,7 +53,7 @@ struct Interval {
 
 /// Growth of all tips in a block and what it gave off.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct GivenOff {
+pub struct ReleasedEnergy {
     /// `B Σ ∫ K_eq²/E' da`, J.
     pub of_tips: f64,
     /// ½ ΔW, J.
@@ -69,13 +69,13 @@ pub struct GivenOff {
 /// Energies of the growth since the last comparison, and the comparisons so far.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyBalance {
-    open: GivenOff,
+    open: ReleasedEnergy,
     intervals: Vec<Interval>,
 }
 
 impl EnergyBalance {
     /// Takes in a block at whose end the crack has the length `crack_length`, m.
-    pub fn take(&mut self, block: GivenOff, crack_length: f64, horizon: f64) {
+    pub fn take(&mut self, block: ReleasedEnergy, crack_length: f64, horizon: f64) {
         let open = &mut self.open;
         open.of_tips += block.of_tips;
         open.of_plate += block.of_plate;
@@ -83,7 +83,7 @@ impl EnergyBalance {
         open.lengthening += block.lengthening;
         open.cycles += block.cycles;
         if open.growth >= INTERVAL_HORIZONS * horizon {
-            let GivenOff { of_tips, of_plate, lengthening, cycles, .. } = std::mem::take(open);
+            let ReleasedEnergy { of_tips, of_plate, lengthening, cycles, .. } = std::mem::take(open);
             let difference = (of_tips / of_plate).sqrt() - 1.0;
             // NaN where the energy falls: no K belongs to that.
             let difference = if difference.is_finite() { difference } else { 1.0 };
@@ -93,7 +93,7 @@ impl EnergyBalance {
 
     /// Begins a new interval.
     pub fn forget(&mut self) {
-        self.open = GivenOff::default();
+        self.open = ReleasedEnergy::default();
     }
 
     /// The comparisons that matter in a life of so many `cycles`.

@@ -2,13 +2,9 @@
 //!
 //! `N(a) = ∫ da / (da/dN)` from the initial crack length, by the law over K of the case; no growth at or below the threshold. Costs less than a millisecond.
 
-use std::sync::Arc;
-
-use super::cross_check::CrossCheck;
 use super::end_of_life::{End, first_end};
-use super::plate::Plate;
 use super::record::{CurvePoint, StopReason, TipRecord};
-use super::{CrackGrowth, Effort, Fields, Now, State};
+use super::{CrackGrowth, GrowthStatus, State};
 use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::growth_law::GrowthLaw;
@@ -98,15 +94,12 @@ impl<'a> HandCalculation<'a> {
                 .collect(),
         }
     }
-}
 
-impl CrackGrowth for HandCalculation<'_> {
-    fn open(&mut self) -> Result<()> {
-        self.curve = vec![self.point(0.0, self.case.specimen.crack_length)];
-        Ok(())
-    }
-
-    fn advance(&mut self) -> Result<Option<StopReason>> {
+    /// The next interval of the curve; the reason why there is none after it.
+    ///
+    /// # Errors
+    /// A growth rate that is no number.
+    pub fn next_interval(&mut self) -> Result<Option<StopReason>> {
         let (start, End { crack_length: end, reason }) = (self.case.specimen.crack_length, self.end);
         let (done, last) = (self.curve.len(), self.last());
         if done > INTERVALS || end <= start {
@@ -135,30 +128,21 @@ impl CrackGrowth for HandCalculation<'_> {
         self.curve.push(self.point(before + more, to));
         Ok((done == INTERVALS).then_some(reason))
     }
+}
 
-    fn now(&self) -> Now<'_> {
+impl CrackGrowth for HandCalculation<'_> {
+    fn open(&mut self) -> Result<()> {
+        self.curve = vec![self.point(0.0, self.case.specimen.crack_length)];
+        Ok(())
+    }
+
+    fn now(&self) -> GrowthStatus<'_> {
         let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = *self.last();
-        Now { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true, is_settled: true }
-    }
-
-    fn plate(&self) -> Option<Arc<Plate>> {
-        None
-    }
-
-    fn fields(&mut self) -> Result<Option<Fields>> {
-        Ok(None)
+        GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true }
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {
         Some(&*self.law)
-    }
-
-    fn is_due(&self) -> bool {
-        false
-    }
-
-    fn begin_anew(&mut self) -> Result<()> {
-        Ok(())
     }
 
     fn state(&self) -> State {
@@ -172,23 +156,11 @@ impl CrackGrowth for HandCalculation<'_> {
         Ok(fits)
     }
 
-    fn close(&mut self, stop: StopReason) -> Result<StopReason> {
-        Ok(stop)
-    }
-
     fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
         (std::mem::take(&mut self.curve), 0.0)
     }
 
-    fn effort(&self) -> Effort {
-        Effort::default()
-    }
-
-    /// What speaks against the formula.
-    fn cross_check(&self, _cycles: f64) -> Option<CrossCheck> {
-        None
-    }
-
+    /// How much of the life the formula is not made for.
     fn warnings(&self) -> Vec<String> {
         let life = self.curve.last().map_or(0.0, |point| point.cycles);
         let outside: f64 = self

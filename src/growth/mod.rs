@@ -1,8 +1,7 @@
-//! What drives a crack: from the plate as it stands to the plate a cycle block later.
+//! What drives a crack: from the plate as it stands to the plate an increment later.
 //!
-//! [`crate::predict::predict`] asks one [`CrackGrowth`] for block after block until it has a reason to stop: K of every tip
-//! ([`tip_field`]), bonds that age by their own strain ([`bond_strain`]), or K of a handbook without any plate
-//! ([`hand_calculation`]).
+//! [`crate::predict::predict`] advances one [`CrackGrowth`] until there is a reason to stop: K of every tip ([`tip_field`]), fatigue
+//! bonds that fail by their own strain ([`bond_strain`]), or K of a handbook without any plate ([`hand_calculation`]).
 
 pub mod bond_strain;
 pub mod cross_check;
@@ -22,7 +21,8 @@ use cross_check::CrossCheck;
 use plate::Plate;
 use record::{CurvePoint, StopReason, TipRecord};
 
-/// Drives the cracks of one plate, block by block.
+/// What drives the cracks of one plate. An implementor supplies the first row, where the run stands, its curve, and a state from which
+/// it can be resumed; each has an increment of its own, which [`crate::predict::predict`] calls until there is a reason to stop.
 pub trait CrackGrowth {
     /// Makes the first row: the plate with its initial cracks, in equilibrium.
     ///
@@ -30,39 +30,13 @@ pub trait CrackGrowth {
     /// No equilibrium, or nothing can be read at a tip.
     fn open(&mut self) -> Result<()>;
 
-    /// One cycle block, which makes one row; the reason why there is no next one. A block that finds that reason before anything
-    /// happens makes no row.
-    ///
-    /// # Errors
-    /// Mechanics that fail where nothing of the run can be kept.
-    fn advance(&mut self) -> Result<Option<StopReason>>;
-
     /// The last row.
-    fn now(&self) -> Now<'_>;
+    fn now(&self) -> GrowthStatus<'_>;
 
-    /// The discretised plate, where there is one.
-    fn plate(&self) -> Option<Arc<Plate>>;
+    /// The rows from N = 0 on, and the cycles of the run at which that was.
+    fn curve(&mut self) -> (Vec<CurvePoint>, f64);
 
-    /// Displacement and damage of its points as they stand.
-    ///
-    /// # Errors
-    /// No equilibrium.
-    fn fields(&mut self) -> Result<Option<Fields>>;
-
-    /// The law over K that rates come from, where there is one.
-    fn law(&self) -> Option<&dyn GrowthLaw>;
-
-    /// Whether the solver is best built anew before the next block, so that what follows depends on [`CrackGrowth::state`] alone. It
-    /// depends on the case and its blocks, never on time.
-    fn is_due(&self) -> bool;
-
-    /// Builds the solver anew from the bonds.
-    ///
-    /// # Errors
-    /// No equilibrium.
-    fn begin_anew(&mut self) -> Result<()>;
-
-    /// All that the next blocks depend on where the solver is built anew.
+    /// All that the next increments depend on where the solver is built anew.
     fn state(&self) -> State;
 
     /// Goes on from a state of an earlier run, in place of [`CrackGrowth::open`]; whether it is one of this plate and law.
@@ -71,28 +45,65 @@ pub trait CrackGrowth {
     /// No equilibrium.
     fn restore(&mut self, state: State) -> Result<bool>;
 
+    /// The discretised plate, where there is one.
+    fn plate(&self) -> Option<Arc<Plate>> {
+        None
+    }
+
+    /// Displacement and damage of its points as they stand.
+    ///
+    /// # Errors
+    /// No equilibrium.
+    fn fields(&mut self) -> Result<Option<Fields>> {
+        Ok(None)
+    }
+
+    /// The law over K that rates come from, where there is one.
+    fn law(&self) -> Option<&dyn GrowthLaw> {
+        None
+    }
+
+    /// Whether the solver is best built anew before the next increment, so that what follows depends on [`CrackGrowth::state`] alone.
+    /// It depends on the case and its increments, never on time.
+    fn should_rebuild_solver(&self) -> bool {
+        false
+    }
+
+    /// Builds the solver anew from the bonds.
+    ///
+    /// # Errors
+    /// No equilibrium.
+    fn rebuild_solver(&mut self) -> Result<()> {
+        Ok(())
+    }
+
     /// Ends the run for a reason, or for one that had come before it.
     ///
     /// # Errors
     /// No equilibrium of the whole plate.
-    fn close(&mut self, stop: StopReason) -> Result<StopReason>;
-
-    /// The rows from N = 0 on, and the cycles of the run at which that was.
-    fn curve(&mut self) -> (Vec<CurvePoint>, f64);
+    fn close(&mut self, stop: StopReason) -> Result<StopReason> {
+        Ok(stop)
+    }
 
     /// What the run took.
-    fn effort(&self) -> Effort;
+    fn statistics(&self) -> SolverStatistics {
+        SolverStatistics::default()
+    }
 
     /// K of a run of so many `cycles` against an independent one, where it grew far enough for that.
-    fn cross_check(&self, cycles: f64) -> Option<CrossCheck>;
+    fn cross_check(&self, _cycles: f64) -> Option<CrossCheck> {
+        None
+    }
 
     /// What the user should know of the driver's own.
-    fn warnings(&self) -> Vec<String>;
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// Where a run stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Now<'a> {
+pub struct GrowthStatus<'a> {
     /// Cycles since N = 0; none before.
     pub cycles: f64,
     /// The same since the start of the run, which is before N = 0 where cracks are first grown to their initial lengths.
@@ -105,11 +116,9 @@ pub struct Now<'a> {
     pub tips: &'a [TipRecord],
     /// Whether cycles count: all cracks have their initial lengths.
     pub is_counting: bool,
-    /// Whether the plate is in equilibrium, not within a block that is still open.
-    pub is_settled: bool,
 }
 
-impl Now<'_> {
+impl GrowthStatus<'_> {
     /// Growth of all tips together, m.
     #[must_use]
     pub fn growth(&self) -> f64 {
@@ -122,13 +131,15 @@ impl Now<'_> {
 pub struct Fields {
     /// Displacement at maximum load, m.
     pub displacement: Vec<[f64; 2]>,
-    /// Share of a point's bonds that are broken.
+    /// Fraction of a point's bonds that are broken.
     pub damage: Vec<f64>,
+    /// Least remaining life λ of a point's intact bonds, 0 to 1.
+    pub remaining_life: Vec<f64>,
 }
 
 /// What a run took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Effort {
+pub struct SolverStatistics {
     /// Points that were solved for.
     pub points_solved: usize,
     /// Equilibrium solves.
@@ -140,7 +151,7 @@ pub struct Effort {
 /// State of a run at a place where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum State {
-    /// Of bonds that age.
+    /// Of fatigue bonds.
     Bonds(bond_strain::BondStrainState),
     /// Of tips driven by their K.
     Tips(tip_field::TipsState),

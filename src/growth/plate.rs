@@ -1,6 +1,7 @@
 //! The discretised plate of a run: a body on a lattice, or the finest points of a plate of several levels with all that is beside
 //! them.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::Fields;
@@ -113,16 +114,16 @@ impl Plate {
 
     /// Displacement (x, y) in plate axes, m, and damage of every point, from a displacement in the layout of its [`Equilibrium`].
     #[must_use]
-    pub fn fields(&self, bonds: &Bonds, displacement: &[f64]) -> Fields {
+    pub fn fields(&self, bonds: &Bonds, displacement: &[f64], lives: &[(Bond, f64)]) -> Fields {
         match &self.levels {
-            None => of_body(&self.body, bonds, displacement),
-            Some(levels) => of_levels(levels, &self.body, bonds, displacement),
+            None => of_body(&self.body, bonds, displacement, lives),
+            Some(levels) => of_levels(levels, &self.body, bonds, displacement, lives),
         }
     }
 }
 
-/// Displacement in plate axes and damage of the points of a body: share of their bonds that are broken.
-fn of_body(body: &Body, bonds: &Bonds, displacement: &[f64]) -> Fields {
+/// Displacement in plate axes, damage and remaining life of the points of a body.
+fn of_body(body: &Body, bonds: &Bonds, displacement: &[f64], lives: &[(Bond, f64)]) -> Fields {
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let places = body.places();
     let damage = |place: usize| {
@@ -145,11 +146,17 @@ fn of_body(body: &Body, bonds: &Bonds, displacement: &[f64]) -> Fields {
         body.lattice.from_axes([displacement[at], displacement[at + layout.stride]])
     };
     let points = || body.points.iter().map(|&place| place as usize);
-    Fields { displacement: points().map(motion).collect(), damage: points().map(damage).collect() }
+    let least = least_lives(body, bonds, lives);
+    let life = |place: usize| least.get(&place).copied().unwrap_or(1.0);
+    Fields {
+        displacement: points().map(motion).collect(),
+        damage: points().map(damage).collect(),
+        remaining_life: points().map(life).collect(),
+    }
 }
 
 /// The same for all points of a net.
-fn of_levels(levels: &Levelled, body: &Body, bonds: &Bonds, displacement: &[f64]) -> Fields {
+fn of_levels(levels: &Levelled, body: &Body, bonds: &Bonds, displacement: &[f64], lives: &[(Bond, f64)]) -> Fields {
     let net = &levels.net;
     let layout = Layout::of(&body.lattice, net.unknowns);
     let mut share = vec![1.0; net.bonds.len()];
@@ -164,5 +171,25 @@ fn of_levels(levels: &Levelled, body: &Body, bonds: &Bonds, displacement: &[f64]
         };
         body.lattice.from_axes([displacement[first], displacement[first + stride]])
     };
-    Fields { displacement: levels.ids.iter().map(motion).collect(), damage: net.damage(&share) }
+    // Fatigue bonds are those of the finest points, whose numbers are the places of the body.
+    let least = least_lives(body, bonds, lives);
+    let life = |id: &u32| least.get(&(*id as usize)).copied().unwrap_or(1.0);
+    Fields {
+        displacement: levels.ids.iter().map(motion).collect(),
+        damage: net.damage(&share),
+        remaining_life: levels.ids.iter().map(life).collect(),
+    }
+}
+
+/// Least remaining life of the intact bonds of every place that has one below 1.
+fn least_lives(body: &Body, bonds: &Bonds, lives: &[(Bond, f64)]) -> HashMap<usize, f64> {
+    let mut least: HashMap<usize, f64> = HashMap::new();
+    for &(bond, life) in lives.iter().filter(|(bond, _)| bonds.is_intact(*bond)) {
+        let (_, a, b) = body.ends(bond);
+        for place in [a, b] {
+            let of_place = least.entry(place).or_insert(1.0);
+            *of_place = of_place.min(life.clamp(0.0, 1.0));
+        }
+    }
+    least
 }

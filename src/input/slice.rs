@@ -19,6 +19,15 @@ pub const OF_SCENES: &[(&str, &[&str])] = &[
     ("loading.kind", &["traction", "displacement", "velocity", "platens"]),
 ];
 
+/// Keys that earlier versions knew, and what to do in their place.
+const REMOVED: &[(&str, &str)] = &[
+    ("fatigue.block", ONE_BREAK),
+    ("fatigue.block_cycles", ONE_BREAK),
+    ("fatigue.bonds_per_block", ONE_BREAK),
+    ("fatigue.block_error_percent", "leave it out; for growth by K of the tips fatigue.step_error_percent says the same"),
+];
+const ONE_BREAK: &str = "leave it out: driver \"bond_strain\" solves after every break";
+
 /// Reads `value`, found at `path` of the file, as a `T` that denies unknown fields.
 ///
 /// ```
@@ -76,6 +85,9 @@ fn explain(error: &toml::de::Error, value: &Value, path: &str) -> Error {
         let known = message
             .split_once("expected ")
             .map_or_else(String::new, |(_, list)| list.trim_start_matches("one of ").replace('`', ""));
+        if let Some((_, remedy)) = REMOVED.iter().find(|(removed, _)| *removed == key) {
+            return input(&key, given(&key).unwrap_or_default(), "is no key any more", *remedy);
+        }
         let (value, known) = (given(&key).unwrap_or_default(), if known.is_empty() { "none".to_owned() } else { known });
         return input(&key, value, "is not a known key", format!("known here: {known}"));
     }

@@ -19,12 +19,13 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::factor_curve::FactorCurve;
-use super::{Silent, StopReason, run};
+use super::record::Record;
+use super::{Prediction, Silent, StopReason};
 use crate::bond_law::Kernel;
 use crate::case::{Case, HORIZON_RATIO, Model};
 use crate::error::{Error, Result};
 use crate::fatigue::{FatigueLaw, STEADY_EXPONENTS, unsteady};
-use crate::growth::bond_strain::Unrecorded;
+use crate::growth::bond_strain::{BondRates, BondStrain};
 use crate::quadrature::integrate;
 
 /// Size of the reference plate, crack length (half) before and after, in horizons.
@@ -40,15 +41,15 @@ const OFF_THE_ROWS: f64 = 0.9343;
 
 /// What β depends on beside p.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Family {
+pub struct ReferenceModel {
     kernel: Kernel,
 }
 
-impl Family {
+impl ReferenceModel {
     /// That of a model.
     #[must_use]
     pub fn of(model: &Model) -> Self {
-        Family { kernel: model.bond_law.kernel }
+        ReferenceModel { kernel: model.bond_law.kernel }
     }
 
     /// β at an exponent, computed once in the life of the program.
@@ -71,8 +72,7 @@ impl Family {
 
     fn compute(self, p: f64) -> Result<f64> {
         let case = self.reference()?;
-        let law = |horizon| Ok(FatigueLaw { a: 1.0, p, horizon });
-        let (factor, grown) = rayon::join(|| self.factors(&case), || run(&case, law, &mut Unrecorded, &Silent));
+        let (factor, grown) = rayon::join(|| self.factors(&case), || grow(&case, p));
         let (factor, grown) = (factor?, grown?);
         if grown.stop != StopReason::CrackLengthReached {
             return Err(Error::Mechanics(format!(
@@ -88,7 +88,7 @@ impl Family {
 
     /// K(a) of the reference plate, the same for every p.
     fn factors(self, case: &Case) -> Result<Arc<FactorCurve>> {
-        static KNOWN: Mutex<Option<HashMap<Family, Arc<FactorCurve>>>> = Mutex::new(None);
+        static KNOWN: Mutex<Option<HashMap<ReferenceModel, Arc<FactorCurve>>>> = Mutex::new(None);
         let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(curve) = known().get_or_insert_default().get(&self) {
             return Ok(curve.clone());
@@ -116,8 +116,16 @@ impl Family {
     }
 }
 
+/// Grows the crack of the reference plate by its bonds, A = 1 at the horizon that the plate has.
+fn grow(case: &Case, p: f64) -> Result<Prediction> {
+    let record = Record::new(case, &Silent).unchecked();
+    let case = &record.case().clone();
+    let law = |horizon| Ok(BondRates { bonds: FatigueLaw { a: 1.0, p, horizon }, over_k: None });
+    record.follow(&mut BondStrain::start(case, law)?, |bonds| bonds.next_break())
+}
+
 /// What was computed so far. Values are put in whole.
-fn known() -> std::sync::MutexGuard<'static, HashMap<(Family, u64), f64>> {
-    static KNOWN: std::sync::LazyLock<Mutex<HashMap<(Family, u64), f64>>> = std::sync::LazyLock::new(Mutex::default);
+fn known() -> std::sync::MutexGuard<'static, HashMap<(ReferenceModel, u64), f64>> {
+    static KNOWN: std::sync::LazyLock<Mutex<HashMap<(ReferenceModel, u64), f64>>> = std::sync::LazyLock::new(Mutex::default);
     KNOWN.lock().unwrap_or_else(PoisonError::into_inner)
 }

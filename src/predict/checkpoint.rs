@@ -1,21 +1,21 @@
 //! What it takes to go on with a run that was broken off.
 //!
 //! Now and then a run builds its solver anew from the bonds, at the same places however it is interrupted: where it has to work on
-//! the whole plate anyway ([`crate::solver::Equilibrium::is_due`]), or every so many blocks. There everything numeric that follows
+//! the whole plate anyway ([`crate::solver::Equilibrium::should_rebuild`]), or every so many blocks. There everything numeric that follows
 //! depends only on what stands here, so that a run taken up there gives the same curve as one that nobody interrupted, bit for bit,
 //! on the same kind of processor.
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::snapshot::Album;
+use super::snapshot::Snapshots;
 use super::{Progress, Snapshot};
 use crate::case::Case;
 use crate::error::Result;
 use crate::growth::{CrackGrowth, State};
 use crate::sealed::{Seal, refused};
 
-const SEAL: Seal = Seal { magic: b"perilife checkpoint\n", form: 3 };
+const SEAL: Seal = Seal { magic: b"perilife checkpoint\n", form: 4 };
 
 /// State of a run at one of the places where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,7 +25,7 @@ pub struct Checkpoint {
     cycles: f64,
     crack_length: f64,
     share: f64,
-    album: Pictures,
+    snapshots: Pictures,
     /// Time spent on the run so far, s.
     wall_s: f64,
     growth: State,
@@ -39,31 +39,35 @@ struct Pictures {
     all: Vec<Picture>,
 }
 
-/// A snapshot with the damage of the few points that have any.
+/// A snapshot with the damage and the remaining life of the few points that have lost some.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Picture {
     cycles: f64,
     crack_length: f64,
     displacement: Vec<[f64; 2]>,
     damage: Vec<(u32, f64)>,
+    remaining_life: Vec<(u32, f64)>,
 }
 
 impl Checkpoint {
     /// Where a run of a case with this [`hash`] stands.
-    pub(super) fn new(case: [u8; 32], growth: State, album: &Album, progress: &Progress, wall_s: f64) -> Self {
+    pub(super) fn new(case: [u8; 32], growth: State, snapshots: &Snapshots, progress: &Progress, wall_s: f64) -> Self {
         let Progress { cycles, crack_length, share } = *progress;
-        Checkpoint { case, cycles, crack_length, share, album: Pictures::of(album), wall_s, growth }
+        Checkpoint { case, cycles, crack_length, share, snapshots: Pictures::of(snapshots), wall_s, growth }
     }
 
     /// Puts a run at its start where this one stood; returns its pictures, and the time spent on it so far, s.
     ///
     /// # Errors
     /// It is that of another law or plate.
-    pub(super) fn restore(self, growth: &mut dyn CrackGrowth) -> Result<(Album, f64)> {
+    pub(super) fn restore(self, growth: &mut dyn CrackGrowth) -> Result<(Snapshots, f64)> {
         let picture_fits =
-            |picture: &Picture| picture.damage.iter().all(|(point, _)| (*point as usize) < picture.displacement.len());
-        if self.album.all.iter().all(picture_fits) && growth.restore(self.growth)? {
-            return Ok((self.album.into_album(), self.wall_s));
+            |picture: &Picture| {
+            let mut points = picture.damage.iter().chain(&picture.remaining_life);
+            points.all(|(point, _)| (*point as usize) < picture.displacement.len())
+        };
+        if self.snapshots.all.iter().all(picture_fits) && growth.restore(self.growth)? {
+            return Ok((self.snapshots.into_snapshots(), self.wall_s));
         }
         Err(refused("is that of another plate or law"))
     }
@@ -80,12 +84,12 @@ impl Checkpoint {
         self.case == hash(case)
     }
 
-    /// Refuses the checkpoint of another case.
+    /// Refuses the checkpoint of another case than that of this [`hash`].
     ///
     /// # Errors
     /// [`crate::Error::Input`].
-    pub fn check(&self, case: &Case) -> Result<()> {
-        if self.belongs_to(case) { Ok(()) } else { Err(refused("belongs to another case, or to this one before it was changed")) }
+    pub(super) fn check(&self, case: [u8; 32]) -> Result<()> {
+        if self.case == case { Ok(()) } else { Err(refused("belongs to another case, or to this one before it was changed")) }
     }
 
     /// As bytes, with a checksum.
@@ -104,26 +108,41 @@ impl Checkpoint {
 }
 
 impl Pictures {
-    fn of(album: &Album) -> Self {
-        let damaged = |(point, &damage): (usize, &f64)| (damage != 0.0).then_some((point as u32, damage));
+    fn of(snapshots: &Snapshots) -> Self {
         let picture = |snapshot: &Snapshot| Picture {
             cycles: snapshot.cycles,
             crack_length: snapshot.crack_length,
             displacement: snapshot.displacement.clone(),
-            damage: snapshot.damage.iter().enumerate().filter_map(damaged).collect(),
+            damage: sparse(&snapshot.damage, 0.0),
+            remaining_life: sparse(&snapshot.remaining_life, 1.0),
         };
-        Pictures { step: album.step, next: album.next, all: album.snapshots.iter().map(picture).collect() }
+        Pictures { step: snapshots.step, next: snapshots.next, all: snapshots.taken.iter().map(picture).collect() }
     }
 
-    fn into_album(self) -> Album {
+    fn into_snapshots(self) -> Snapshots {
         let snapshot = |picture: Picture| {
-            let mut damage = vec![0.0; picture.displacement.len()];
-            picture.damage.iter().for_each(|&(point, share)| damage[point as usize] = share);
-            let Picture { cycles, crack_length, displacement, .. } = picture;
-            Snapshot { cycles, crack_length, displacement, damage }
+            let points = picture.displacement.len();
+            Snapshot {
+                cycles: picture.cycles,
+                crack_length: picture.crack_length,
+                damage: dense(&picture.damage, 0.0, points),
+                remaining_life: dense(&picture.remaining_life, 1.0, points),
+                displacement: picture.displacement,
+            }
         };
-        Album { snapshots: self.all.into_iter().map(snapshot).collect(), step: self.step, next: self.next }
+        Snapshots { taken: self.all.into_iter().map(snapshot).collect(), step: self.step, next: self.next }
     }
+}
+
+/// The points whose value is not the usual one.
+fn sparse(values: &[f64], usual: f64) -> Vec<(u32, f64)> {
+    values.iter().enumerate().filter(|(_, value)| **value != usual).map(|(point, value)| (point as u32, *value)).collect()
+}
+
+fn dense(sparse: &[(u32, f64)], usual: f64, points: usize) -> Vec<f64> {
+    let mut values = vec![usual; points];
+    sparse.iter().for_each(|&(point, value)| values[point as usize] = value);
+    values
 }
 
 /// Hash of all that decides how the run of a case goes.

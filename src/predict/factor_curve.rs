@@ -4,11 +4,10 @@
 //! A crack that no law can turn aside, as that of a standard specimen, has one K(a) whatever its growth law, so one run serves
 //! every pair of C and m.
 
-use super::{Observer, RunFigures, StopReason, run_by_tips};
+use super::{Observer, RunFigures, StopReason, predict};
 use crate::case::{Case, LawSource};
 use crate::error::{Error, Result};
 use crate::fatigue::Driver;
-use crate::fatigue::growth_law::Walker;
 use crate::fatigue::paris::ParisLaw;
 use crate::units::MM;
 
@@ -32,12 +31,11 @@ impl FactorCurve {
     pub fn of(case: &Case, observer: &dyn Observer) -> Result<Self> {
         let mut case = case.clone();
         // Any law will do: a crack that goes straight takes the same steps with all of them.
-        let paris = ParisLaw { c: 1.0, m: 1.0 };
-        case.law = LawSource::Paris(paris);
+        case.law = LawSource::Paris(ParisLaw { c: 1.0, m: 1.0 });
         case.fatigue.driver = Driver::TipField;
         (case.fatigue.threshold, case.fatigue.walker_gamma) = (0.0, 1.0);
         case.stop.cycles_max = f64::INFINITY;
-        let done = run_by_tips(&case, Box::new(Walker { paris, gamma: 1.0, threshold: 0.0 }), observer)?;
+        let done = predict(&case, observer)?;
         if done.stop != StopReason::CrackLengthReached {
             return Err(Error::Mechanics(format!(
                 "{}: the crack ended as {} at a length of {:.3} mm, before {:.3} mm, to which its K is needed",

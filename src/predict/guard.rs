@@ -1,7 +1,7 @@
 //! What no run may do: count cycles that are no number, or go on for ever without growth.
 
 use crate::error::{Error, Result};
-use crate::growth::Now;
+use crate::growth::GrowthStatus;
 use crate::growth::record::StopReason;
 
 /// Blocks in a row without growth of any tip at which a run ends. A block breaks at least one bond; a tip grows by a spacing with some
@@ -21,7 +21,7 @@ impl Guard {
     ///
     /// # Errors
     /// [`Error::Mechanics`]: cycles or crack length that are no finite number, or cycles that fall.
-    pub fn check(&mut self, before: f64, now: &Now<'_>) -> Result<Option<StopReason>> {
+    pub fn check(&mut self, before: f64, now: &GrowthStatus<'_>) -> Result<Option<StopReason>> {
         for (what, value) in [("cycles", now.cycles), ("crack length", now.crack_length)] {
             if !value.is_finite() {
                 let problem = format!("the {what} after a block came out as {value} (crack length {:.6e} m)", now.crack_length);

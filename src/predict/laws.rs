@@ -1,7 +1,7 @@
 //! The law of a case in the form that its driver needs: of bonds, or over K.
 
 use super::CurvePoint;
-use super::bond_rate::Family;
+use super::bond_rate::ReferenceModel;
 use crate::case::{Case, LawSource};
 use crate::error::{Result, input_missing};
 use crate::fatigue::growth_law::{Bounded, GrowthLaw, Walker};
@@ -14,7 +14,7 @@ use crate::units::MM;
 /// The law over K of a case, for driver `tip_field` and method `handbook`.
 ///
 /// # Errors
-/// A case without law; as [`Family::rate_constant`] where it is one of bonds.
+/// A case without law; as [`ReferenceModel::rate_constant`] where it is one of bonds.
 pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
     let threshold = case.fatigue.threshold;
     Ok(match &case.law {
@@ -30,20 +30,6 @@ pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
 pub fn bond_rates(case: &Case, horizon: f64) -> Result<BondRates> {
     let over_k = (case.fatigue.growth_rate == GrowthRate::StressIntensity).then(|| growth_law(case)).transpose()?;
     Ok(BondRates { bonds: bond_law(case, horizon)?, over_k })
-}
-
-/// The same with a law of bonds in place of that of the case.
-///
-/// # Errors
-/// As [`Family::rate_constant`].
-pub fn rates_of_bonds(case: &Case, bonds: FatigueLaw) -> Result<BondRates> {
-    let over_k = || -> Result<Box<dyn GrowthLaw>> {
-        let beta = Family::of(&case.model).rate_constant(bonds.p)?;
-        let paris = ParisLaw::of_bonds(&bonds, beta, case.material.plane_modulus());
-        Ok(Box::new(Walker { paris, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold }))
-    };
-    let over_k = (case.fatigue.growth_rate == GrowthRate::StressIntensity).then(over_k).transpose()?;
-    Ok(BondRates { bonds, over_k })
 }
 
 /// Refuses growth from a K that lies beyond what the law says, where the law wants that.
@@ -85,7 +71,7 @@ pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) ->
 pub fn paris_law(case: &Case) -> Result<ParisLaw> {
     match &case.law {
         LawSource::Inline(law) => {
-            let beta = Family::of(&case.model).rate_constant(law.p)?;
+            let beta = ReferenceModel::of(&case.model).rate_constant(law.p)?;
             Ok(ParisLaw::of_bonds(law, beta, case.material.plane_modulus()))
         }
         _ => case.paris_law(),
@@ -96,11 +82,11 @@ pub fn paris_law(case: &Case) -> Result<ParisLaw> {
 /// gives.
 ///
 /// # Errors
-/// A case without law; as [`Family::rate_constant`] where it is one over K.
+/// A case without law; as [`ReferenceModel::rate_constant`] where it is one over K.
 pub fn bond_law(case: &Case, horizon: f64) -> Result<FatigueLaw> {
     match &case.law {
         LawSource::Paris(law) => {
-            let beta = Family::of(&case.model).rate_constant(law.m)?;
+            let beta = ReferenceModel::of(&case.model).rate_constant(law.m)?;
             Ok(law.to_bonds(beta, case.material.plane_modulus(), horizon))
         }
         _ => case.fatigue_law(horizon),

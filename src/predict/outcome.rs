@@ -6,7 +6,7 @@ use crate::case::Case;
 pub use crate::growth::cross_check::CrossCheck;
 use crate::growth::plate::Plate;
 pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
-use crate::growth::{CrackGrowth, Now};
+use crate::growth::{CrackGrowth, GrowthStatus};
 use crate::net::PointGrid;
 
 /// Picture of the damaged plate at one moment.
@@ -18,8 +18,10 @@ pub struct Snapshot {
     pub crack_length: f64,
     /// Displacement (x, y) of every point at maximum load, m.
     pub displacement: Vec<[f64; 2]>,
-    /// Damage φ of every point: share of its bonds that are broken, 0 to 1.
+    /// Damage φ of every point: fraction of its bonds that are broken, 0 to 1.
     pub damage: Vec<f64>,
+    /// Least remaining life λ of the intact bonds of every point, 0 to 1; empty where no bonds have one.
+    pub remaining_life: Vec<f64>,
 }
 
 /// Figures of a run that users ask for.
@@ -50,15 +52,15 @@ pub struct RunFigures {
 impl RunFigures {
     /// Of a run that is over, after so many blocks and seconds.
     pub(super) fn of(growth: &dyn CrackGrowth, blocks: usize, wall_s: f64) -> Self {
-        let (plate, effort) = (growth.plate(), growth.effort());
+        let (plate, statistics) = (growth.plate(), growth.statistics());
         let plate = plate.as_deref();
         RunFigures {
             points: plate.map_or(0, Plate::points),
-            points_solved: effort.points_solved,
+            points_solved: statistics.points_solved,
             bonds: plate.map_or(0, Plate::bonds),
             blocks,
-            solves: effort.solves,
-            iterations: effort.iterations,
+            solves: statistics.solves,
+            iterations: statistics.iterations,
             spacing: plate.map_or(f64::NAN, |plate| plate.body.lattice.spacing),
             horizon: plate.map_or(f64::NAN, |plate| plate.body.horizon()),
             wall_s,
@@ -119,7 +121,7 @@ pub struct Progress {
 
 impl Progress {
     /// That of a run of a case which has come so far.
-    pub(super) fn of(case: &Case, now: &Now<'_>) -> Self {
+    pub(super) fn of(case: &Case, now: &GrowthStatus<'_>) -> Self {
         let start = case.specimen.crack_length;
         // Without a length to stop at, growth across the plate is the way.
         let end = if case.stop.crack_length.is_finite() { case.stop.crack_length } else { start + case.specimen.gross_width };

@@ -1,71 +1,65 @@
 //! Pictures of the damaged plate along a run.
 
 use super::{CurvePoint, Observer, Snapshot};
-use crate::error::Result;
-use crate::growth::{CrackGrowth, Now};
+use crate::growth::{CrackGrowth, Fields, GrowthStatus};
 
 /// Snapshots between the first and the last.
 const BETWEEN: f64 = 20.0;
 
 /// Collects snapshots at even steps of growth.
 #[derive(Debug, Default)]
-pub struct Album {
+pub struct Snapshots {
     /// What was taken so far.
-    pub snapshots: Vec<Snapshot>,
+    pub taken: Vec<Snapshot>,
     /// Growth between two, m.
     pub(super) step: f64,
     /// Growth at which the next is due, m.
     pub(super) next: f64,
 }
 
-impl Album {
+impl Snapshots {
     /// Takes the plate at N = 0, and then whenever the cracks have grown enough; shows it to who watches the run.
-    ///
-    /// # Errors
-    /// As [`CrackGrowth::fields`].
-    pub fn follow(&mut self, growth: &mut dyn CrackGrowth, observer: &dyn Observer) -> Result<()> {
-        let Some(plate) = growth.plate() else { return Ok(()) };
+    pub fn follow(&mut self, growth: &mut dyn CrackGrowth, observer: &dyn Observer) {
+        let Some(plate) = growth.plate() else { return };
         let now = growth.now();
-        let is_first = self.snapshots.is_empty();
-        if !now.is_counting || !is_first && (now.growth() < self.next || !now.is_settled) {
-            return Ok(());
+        let is_first = self.taken.is_empty();
+        if !now.is_counting || !is_first && now.growth() < self.next {
+            return;
         }
         if is_first {
             let lattice = &plate.body.lattice;
             self.step = lattice.columns.min(lattice.rows) as f64 * lattice.spacing / BETWEEN;
         }
         self.next = now.growth() + self.step;
-        self.take(growth)?;
-        if let Some(snapshot) = self.snapshots.last() {
+        if let Some(snapshot) = self.take(growth) {
             observer.looked(snapshot, &plate.grid());
         }
-        Ok(())
     }
 
     /// Takes the last snapshot, where something has changed since the one before.
-    ///
-    /// # Errors
-    /// As [`CrackGrowth::fields`].
-    pub fn finish(&mut self, growth: &mut dyn CrackGrowth) -> Result<()> {
-        let Now { cycles_of_run, crack_length, .. } = growth.now();
-        if self.snapshots.last().is_none_or(|last| last.crack_length < crack_length || last.cycles < cycles_of_run) {
-            self.take(growth)?;
+    pub fn finish(&mut self, growth: &mut dyn CrackGrowth) {
+        let GrowthStatus { cycles_of_run, crack_length, .. } = growth.now();
+        if self.taken.last().is_none_or(|last| last.crack_length < crack_length || last.cycles < cycles_of_run) {
+            self.take(growth);
         }
-        Ok(())
     }
 
-    fn take(&mut self, growth: &mut dyn CrackGrowth) -> Result<()> {
-        if let Some(fields) = growth.fields()? {
-            let Now { cycles_of_run: cycles, crack_length, .. } = growth.now();
-            self.snapshots.push(Snapshot { cycles, crack_length, displacement: fields.displacement, damage: fields.damage });
-        }
-        Ok(())
+    /// Takes the plate as it stands. A picture that takes an equilibrium which is not found is left out: the curve counts more.
+    fn take(&mut self, growth: &mut dyn CrackGrowth) -> Option<&Snapshot> {
+        let fields = growth.fields().unwrap_or_else(|error| {
+            tracing::warn!("a snapshot is left out: {error}");
+            None
+        });
+        let Fields { displacement, damage, remaining_life } = fields?;
+        let GrowthStatus { cycles_of_run: cycles, crack_length, .. } = growth.now();
+        self.taken.push(Snapshot { cycles, crack_length, displacement, damage, remaining_life });
+        self.taken.last()
     }
 
     /// Counts cycles from N = 0, `zero` cycles after the start of the run, and keeps to the ends of the curve.
     pub fn count_from(&mut self, zero: f64, curve: &[CurvePoint]) {
         let (Some(first), Some(last)) = (curve.first(), curve.last()) else { return };
-        for snapshot in &mut self.snapshots {
+        for snapshot in &mut self.taken {
             snapshot.cycles = (snapshot.cycles - zero).clamp(first.cycles, last.cycles);
             snapshot.crack_length = snapshot.crack_length.clamp(first.crack_length, last.crack_length);
         }

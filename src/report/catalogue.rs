@@ -11,7 +11,7 @@ use crate::calibration::rates::RateMethod;
 use crate::case::growth_law::TableEnds;
 use crate::case::{Failure, Method};
 use crate::fatigue::growth_law::GrowthLawKind;
-use crate::fatigue::{Ageing, BlockKind, Driver, GrowthRate, Precrack};
+use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind, Transverse};
 use crate::fracture::scene::{Arrangement, DamageEntry, DamageLaw, PointLaw, SceneSolver, ZeroEnergyControl};
@@ -61,7 +61,6 @@ pub fn lines() -> Vec<(String, String, String)> {
         Ageing::lines(),
         GrowthRate::lines(),
         Precrack::lines(),
-        BlockKind::lines(),
         Failure::lines(),
     ];
     let of_calibration = [

@@ -122,7 +122,7 @@ impl From<Error> for Problem {
                 input: Some(Box::new((*input).into())),
                 ..Problem::new(StatusCode::UNPROCESSABLE_ENTITY, "Wrong input", detail)
             },
-            Error::Mechanics(_) | Error::GaveWay => Problem::new(StatusCode::UNPROCESSABLE_ENTITY, "No result", detail),
+            Error::Mechanics(_) | Error::LossOfStiffness => Problem::new(StatusCode::UNPROCESSABLE_ENTITY, "No result", detail),
             Error::File { .. } => {
                 // Input from outside names no files: this is the disk of the server.
                 tracing::error!("{detail}");

@@ -154,36 +154,6 @@ impl<const N: usize> Assembly<N> for Springs<'_, N> {
     }
 }
 
-/// A part of a plate, with all that lies beyond it held.
-pub struct Within<A> {
-    /// The plate.
-    pub plate: A,
-    /// Whether a place lies beyond the part.
-    pub beyond: Vec<bool>,
-}
-
-impl<const M: usize, A: Assembly<M>> Assembly<M> for Within<A> {
-    fn bond(&self, k: usize, sign: f64, multiplier: f64) -> Blocks<M> {
-        self.plate.bond(k, sign, multiplier)
-    }
-
-    fn point(&self, place: usize) -> f64 {
-        self.plate.point(place)
-    }
-
-    fn is_held(&self, place: usize, component: usize) -> bool {
-        self.beyond[place] || self.plate.is_held(place, component)
-    }
-
-    fn pivot_sign(&self, component: usize) -> f64 {
-        self.plate.pivot_sign(component)
-    }
-
-    fn signs(&self, flips: Flips) -> [f64; M] {
-        self.plate.signs(flips)
-    }
-}
-
 /// Springs and dilatation, the stress P of a point being its third unknown ([`super::dilatation`]).
 pub struct Mixed<'a, const N: usize> {
     springs: Springs<'a, N>,

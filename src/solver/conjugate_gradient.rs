@@ -70,7 +70,7 @@ impl<const N: usize> MultigridSolver<N> {
     /// Solves to a residual over load. A rough solve makes do with the hierarchy that is there.
     ///
     /// # Errors
-    /// [`Error::GaveWay`]; the iteration does not converge.
+    /// [`Error::LossOfStiffness`]; the iteration does not converge.
     pub(super) fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let System { body, bonds, product, f } = system;
         let is_rough = tolerance > self.tolerance;
@@ -155,7 +155,7 @@ impl<const N: usize> MultigridSolver<N> {
                 let work = dot(&layout, f, u);
                 if work > GIVEN_WAY * work_before {
                     tracing::debug!(iteration, work, work_before, "the plate gives way");
-                    return Err(Error::GaveWay);
+                    return Err(Error::LossOfStiffness);
                 }
             }
         }

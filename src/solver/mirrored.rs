@@ -33,7 +33,6 @@ pub(super) struct Mirrored {
     is_lost: bool,
     kind: SolverKind,
     load: f64,
-    foresees: bool,
     tolerance: Option<f64>,
 }
 
@@ -68,7 +67,6 @@ impl Mirrored {
             is_lost: false,
             kind,
             load,
-            foresees: false,
             tolerance: None,
         })
     }
@@ -141,9 +139,6 @@ impl Balance for Mirrored {
             if let Some(tolerance) = self.tolerance {
                 self.inner.set_tolerance(tolerance);
             }
-            if self.foresees {
-                self.inner.get_ready_to_foresee();
-            }
             return;
         }
         if self.is_lost {
@@ -171,9 +166,9 @@ impl Balance for Mirrored {
             return self.inner.reach(body, bonds, watched, tips, displacement);
         }
         let watched = self.part.bonds(body, watched);
-        let before = (self.inner.is_whole(), self.inner.is_foreseen());
+        let was_whole = self.inner.is_whole();
         let iterations = self.inner.reach(&self.part.body, &self.bonds, &watched, tips, &mut self.displacement)?;
-        let is_solved = iterations > 0 || before != (self.inner.is_whole(), self.inner.is_foreseen());
+        let is_solved = iterations > 0 || was_whole != self.inner.is_whole();
         let has_moved = self.inner.window().unwrap_or_default() != self.window_of_part;
         if is_solved || has_moved || displacement.is_empty() {
             self.unfold(body, displacement);
@@ -209,26 +204,6 @@ impl Balance for Mirrored {
         let copy = |Copied { from, to, sign }: Copied| picture[to as usize] = sign * source[from as usize];
         for_copies(&self.part, body, &self.part.body.points, copy);
         Ok((picture, iterations))
-    }
-
-    fn get_ready_to_foresee(&mut self) {
-        self.foresees = true;
-        self.inner.get_ready_to_foresee();
-    }
-
-    fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool {
-        if self.is_lost {
-            return self.inner.foresee(body, bonds, displacement);
-        }
-        let foreseen = self.inner.foresee(&self.part.body, &self.bonds, &mut self.displacement);
-        if foreseen {
-            self.unfold(body, displacement);
-        }
-        foreseen
-    }
-
-    fn is_foreseen(&self) -> bool {
-        self.inner.is_foreseen()
     }
 
     fn is_whole(&self) -> bool {

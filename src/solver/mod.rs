@@ -145,9 +145,6 @@ trait Balance: Send {
     fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool;
     fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
     fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)>;
-    fn get_ready_to_foresee(&mut self);
-    fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool;
-    fn is_foreseen(&self) -> bool;
     fn is_whole(&self) -> bool;
     fn window(&self) -> Option<&[u32]>;
     fn points(&self, body: &Body) -> usize;
@@ -205,8 +202,8 @@ impl Equilibrium {
     }
 
     /// Tells the solver which bonds were cut, or got another multiplier, since the last solve.
-    pub fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
-        self.inner.broke(body, bonds, broken);
+    pub fn bonds_changed(&mut self, body: &Body, bonds: &Bonds, changed: &[Bond]) {
+        self.inner.broke(body, bonds, changed);
     }
 
     /// Makes the displacement right at the ends of `watched` bonds, and gets ready for breaks around the tips; returns the
@@ -229,8 +226,8 @@ impl Equilibrium {
     /// moved for the `watched` bonds anyway, or that many solves have passed that a new beginning hardly counts. It depends on what
     /// was solved since it was built, never on time.
     #[must_use]
-    pub fn is_due(&self, body: &Body, watched: &[Bond]) -> bool {
-        !self.is_foreseen() && self.inner.is_due(body, watched, self.solves)
+    pub fn should_rebuild(&self, body: &Body, watched: &[Bond]) -> bool {
+        self.inner.is_due(body, watched, self.solves)
     }
 
     /// Makes the displacement right everywhere; returns the iterations.
@@ -248,27 +245,6 @@ impl Equilibrium {
     /// As [`Equilibrium::solve`].
     pub fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)> {
         in_pool(|| self.inner.picture(body, bonds))
-    }
-
-    /// Lets [`Equilibrium::foresee`] stand in for solves from now on, where a solve takes long: the window's solver needs no
-    /// such help, its solves are as fast and exact.
-    #[must_use]
-    pub fn foreseeing(mut self) -> Self {
-        self.inner.get_ready_to_foresee();
-        self
-    }
-
-    /// Estimates the displacement around the tips after the breaks told since the last solve, on the points that
-    /// [`Equilibrium::window`] then gives, with the plate farther away kept still; `false`, and nothing changed, where only a
-    /// solve can tell.
-    pub fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool {
-        self.inner.foresee(body, bonds, displacement)
-    }
-
-    /// Whether the displacement is such an estimate, not yet solved for.
-    #[must_use]
-    pub fn is_foreseen(&self) -> bool {
-        self.inner.is_foreseen()
     }
 
     /// Whether the displacement is right everywhere.

@@ -9,7 +9,6 @@ use super::field::{self, Layout};
 use super::levels::Levels;
 use super::product::{Into, Product};
 use super::window::WindowSolver;
-use super::window::held_rim::HeldRim;
 use super::{Balance, Focus, LinearSolver, SolverKind, System};
 use crate::body::{Body, Bond};
 use crate::error::Result;
@@ -25,11 +24,6 @@ struct Sides<const N: usize> {
     grips: Option<Grips>,
     u: Vec<f64>,
     work: f64,
-    /// Stands in for solves that take long.
-    rim: Option<HeldRim>,
-    /// Whether u is what it foresees.
-    is_foreseen: bool,
-    has_fast_solves: bool,
     /// Points that are solved for.
     points: usize,
 }
@@ -110,9 +104,8 @@ impl<const N: usize> Sides<N> {
             SolverKind::Direct => Box::new(DirectSolver::default()),
             SolverKind::AdaptiveDynamicRelaxation => Box::new(DynamicRelaxation::new(body, bonds, &product)),
         };
-        let has_fast_solves = kind == SolverKind::Window;
         let (u, points) = (layout.zeros(), body.points.len());
-        Sides { product, solver, f, grips, u, work: 0.0, rim: None, is_foreseen: false, has_fast_solves, points }
+        Sides { product, solver, f, grips, u, work: 0.0, points }
     }
 
     /// A plate of several levels: its loads and supports are not those of the body, which is a part of it.
@@ -131,30 +124,19 @@ impl<const N: usize> Sides<N> {
         let levels = Levels::new(plate, body, bonds, load);
         let solver: Box<dyn LinearSolver<N>> = Box::new(WindowSolver::of_whole(levels, kind == SolverKind::Direct));
         let f = layout.zeros();
-        Sides {
-            product,
-            solver,
-            f,
-            grips,
-            u: vec![0.0; size],
-            work: 0.0,
-            rim: None,
-            is_foreseen: false,
-            has_fast_solves: true,
-            points,
-        }
+        Sides { product, solver, f, grips, u: vec![0.0; size], work: 0.0, points }
     }
 }
 
 impl<const N: usize> Sides<N> {
-    /// The solver and the system it works on, with its unknown, and what stands in for it.
+    /// The solver and the system it works on, with its unknown.
     fn parts<'a>(
         &'a mut self,
         body: &'a Body,
         bonds: &'a Bonds,
-    ) -> (&'a mut Box<dyn LinearSolver<N>>, System<'a, N>, &'a mut [f64], Option<&'a mut HeldRim>) {
+    ) -> (&'a mut Box<dyn LinearSolver<N>>, System<'a, N>, &'a mut [f64]) {
         let f = self.grips.as_ref().map_or(&self.f, |grips| &grips.drag);
-        (&mut self.solver, System { body, bonds, product: &self.product, f }, &mut self.u, self.rim.as_mut())
+        (&mut self.solver, System { body, bonds, product: &self.product, f }, &mut self.u)
     }
 
     /// Free components follow the grips: K u = -K g. The stiffness at the grips never changes, so -K g does not either.
@@ -207,37 +189,14 @@ impl<const N: usize> Balance for Sides<N> {
 
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
         self.drag_grips(bonds);
-        let (solver, system, u, rim) = self.parts(body, bonds);
+        let (solver, system, u) = self.parts(body, bonds);
         let solved = solver.solve(system, u)?;
-        if let Some(rim) = rim {
-            rim.renew(system, u, solved.work);
-        }
-        self.is_foreseen = false;
         self.give(body, bonds, solved.work, displacement);
         Ok(solved.iterations)
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
         self.solver.broke(body, bonds, &self.product, broken);
-        if let Some(rim) = &mut self.rim {
-            rim.broke(broken);
-        }
-    }
-
-    fn get_ready_to_foresee(&mut self) {
-        self.rim = (!self.has_fast_solves).then(HeldRim::default);
-    }
-
-    fn foresee(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> bool {
-        let (_, system, u, rim) = self.parts(body, bonds);
-        let Some(work) = rim.and_then(|rim| rim.foresee(system, u)) else { return false };
-        self.is_foreseen = true;
-        self.give(body, bonds, work, displacement);
-        true
-    }
-
-    fn is_foreseen(&self) -> bool {
-        self.is_foreseen
     }
 
     fn work(&self) -> f64 {
@@ -252,20 +211,10 @@ impl<const N: usize> Balance for Sides<N> {
         tips: &[Focus],
         displacement: &mut Vec<f64>,
     ) -> Result<usize> {
-        let mut iterations = 0;
-        if self.is_foreseen && !self.rim.as_ref().is_some_and(|rim| rim.holds(body, watched, tips)) {
-            iterations += self.solve(body, bonds, displacement)?;
-        }
-        let is_foreseen = self.is_foreseen;
-        let (solver, system, u, rim) = self.parts(body, bonds);
-        if let Some(rim) = rim.filter(|_| !is_foreseen) {
-            rim.follow(system, u, watched, tips);
-        }
-        if let Some(solved) = solver.reach(system, u, watched, tips)? {
-            iterations += solved.iterations;
-            self.give(body, bonds, solved.work, displacement);
-        }
-        Ok(iterations)
+        let (solver, system, u) = self.parts(body, bonds);
+        let Some(solved) = solver.reach(system, u, watched, tips)? else { return Ok(0) };
+        self.give(body, bonds, solved.work, displacement);
+        Ok(solved.iterations)
     }
 
     fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool {
@@ -273,17 +222,14 @@ impl<const N: usize> Balance for Sides<N> {
     }
 
     fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
-        if self.is_foreseen {
-            return self.solve(body, bonds, displacement);
-        }
-        let (solver, system, u, _) = self.parts(body, bonds);
+        let (solver, system, u) = self.parts(body, bonds);
         let Some(solved) = solver.complete(system, u)? else { return Ok(0) };
         self.give(body, bonds, solved.work, displacement);
         Ok(solved.iterations)
     }
 
     fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)> {
-        let (solver, system, u, _) = self.parts(body, bonds);
+        let (solver, system, u) = self.parts(body, bonds);
         let (mut picture, iterations) = solver.picture(system, u)?.unwrap_or_else(|| (u.to_vec(), 0));
         if let Some(Grips { field, scale, .. }) = &self.grips {
             picture.iter_mut().zip(field).for_each(|(u, g)| *u = scale * (g + *u));
@@ -296,10 +242,10 @@ impl<const N: usize> Balance for Sides<N> {
     }
 
     fn is_whole(&self) -> bool {
-        !self.is_foreseen && self.solver.is_whole()
+        self.solver.is_whole()
     }
 
     fn window(&self) -> Option<&[u32]> {
-        self.rim.as_ref().and_then(HeldRim::places).or_else(|| self.solver.window())
+        self.solver.window()
     }
 }

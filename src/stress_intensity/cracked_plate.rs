@@ -2,13 +2,13 @@
 
 use super::TipFrame;
 use crate::body::Body;
-use crate::body::balanced::flanks::{self, Stretch};
+use crate::body::balanced::flanks::{self, FlankRange};
 use crate::body::pre_crack::{bonds_cut_by, places_near, tie_break};
 use crate::body::severed::{RepresentedEnd, represented_end};
 use crate::bond_law::SurfaceCorrection;
 use crate::case::Case;
 use crate::error::{Error, Result, input};
-use crate::fatigue::pieces::{Cut, set_aside};
+use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::net::Arrangement;
 use crate::solver::field::Layout;
 use crate::solver::{Equilibrium, SolverKind};
@@ -76,7 +76,7 @@ impl<'a> CrackedPlate<'a> {
         }
         self.body.pre_cut = bonds_cut_by(&self.body, &specimen.cracks);
         let mut bonds = Bonds::new(&self.body);
-        if set_aside(&self.body, &mut bonds, &self.body.pre_cut) == Cut::Severed {
+        if remove_fragments(&self.body, &mut bonds, &self.body.pre_cut) == Connectivity::Severed {
             return Err(Error::Mechanics(format!("{}: the cracks cut the plate in two", self.case.name)));
         }
         if self.case.model.bond_law.surface_correction == SurfaceCorrection::Balanced {
@@ -85,7 +85,7 @@ impl<'a> CrackedPlate<'a> {
                 .filter_map(|tip| specimen.line_end(tip))
                 .map(|end| lines[end.line].end(end.at_last))
                 .collect();
-            let beside = flanks::multipliers(&self.body, &bonds.multiplier, &lines, &tips, &tips, Stretch::All);
+            let beside = flanks::multipliers(&self.body, &bonds.multiplier, &lines, &tips, &tips, FlankRange::All);
             beside.into_iter().for_each(|(bond, multiplier)| bonds.set(&self.body, bond, multiplier));
         }
         Ok((specimen, bonds))

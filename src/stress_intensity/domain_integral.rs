@@ -1,6 +1,6 @@
 //! Interaction integral over a ring around the tip, on the plate of [`super::stress_intensity`].
 
-use super::ring::{Balanced, Surroundings};
+use super::ring::{Balanced, RingGeometry};
 use super::{CrackedPlate, Field, too_close};
 use crate::error::Result;
 
@@ -21,7 +21,7 @@ pub fn factors(plate: &CrackedPlate, field: &Field, tip: usize) -> Result<[f64; 
     let Some(end) = specimen.line_end(tip) else { return Err(too_close("no crack ends", position)) };
     // The ring stands around the place to which the cut bonds reach.
     lines[end.line].stretch(end.at_last, plate.represented(specimen, tip).excess);
-    let surroundings = Surroundings::new(body, specimen, &plate.case.material);
+    let surroundings = RingGeometry::new(body, specimen, &plate.case.material);
     let clear = plate.clear_radius(specimen, tip).min(OUTER_HORIZONS * horizon);
     let outer = surroundings.radius(body, &lines, end, &ends, clear);
     if outer < OUTER_HORIZONS_MIN * horizon {

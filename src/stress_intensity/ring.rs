@@ -64,7 +64,7 @@ type PerAuxiliary = [f64; 5];
 
 /// What does not change around the tips of a plate.
 #[derive(Debug, Clone)]
-pub struct Surroundings {
+pub struct RingGeometry {
     layout: Layout,
     elasticity: Elasticity,
     /// Pieces of the rim, and whether nothing presses on them.
@@ -104,7 +104,7 @@ pub struct RingFactors {
     pub radius: f64,
 }
 
-impl Surroundings {
+impl RingGeometry {
     /// Rim, loads and supports of a specimen.
     #[must_use]
     pub fn new(body: &Body, specimen: &Specimen, material: &Material) -> Self {
@@ -124,7 +124,7 @@ impl Surroundings {
             cells.filter_map(|cell| loaded.get(&cell)).flatten().all(|&at| distance(at, facet.at) > 0.25 * spacing)
         };
         let rim: Vec<(Facet, bool)> = facets(specimen, spacing).into_iter().map(|facet| (facet, is_free(&facet))).collect();
-        Surroundings {
+        RingGeometry {
             layout: Layout::of(&body.lattice, body.stencil.unknowns),
             elasticity: Elasticity::of(material),
             rim_cells: rim.iter().flat_map(|(facet, _)| cells_at(body, facet.at)).collect(),
@@ -259,7 +259,7 @@ impl Behind {
 
 /// A ring around a tip.
 struct Around<'a> {
-    surroundings: &'a Surroundings,
+    surroundings: &'a RingGeometry,
     plate: Balanced<'a>,
     frame: TipFrame,
     own: Behind,

@@ -33,7 +33,7 @@ pub fn rows(table: &mut Table) -> Result<()> {
     ];
     for (name, text) in scenes {
         let run = |error: f64| -> Result<Prediction> {
-            predict(&case(&text, &["model.spacing_mm=1", &format!("fatigue.block_error_percent={error}")])?, &Silent)
+            predict(&case(&text, &["model.spacing_mm=1", &format!("fatigue.step_error_percent={error}")])?, &Silent)
         };
         let (coarse, fine) = (run(0.2)?, run(0.002)?);
         let [of_coarse, of_fine] = [&coarse, &fine].map(|run| run.figures.blocks);

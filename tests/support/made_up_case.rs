@@ -70,8 +70,6 @@ pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
         zone_radius_horizons: 0.5,
         growth_rate: "stress_intensity".to_owned(),
         precrack: "steady_profile".to_owned(),
-        block: "controlled".to_owned(),
-        block_error_percent: Some(1.0),
         youngs_modulus_gpa: 72.0,
         poisson_ratio: 0.3,
         plane: "stress".to_owned(),

@@ -46,8 +46,6 @@ fn record() -> FittedRecord {
         zone_radius_horizons: 0.6,
         growth_rate: "stress_intensity".into(),
         precrack: "steady_profile".into(),
-        block: "controlled".into(),
-        block_error_percent: Some(1.0),
         youngs_modulus_gpa: 73.1,
         poisson_ratio: 0.33,
         plane: "stress".into(),

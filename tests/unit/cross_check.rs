@@ -1,6 +1,6 @@
 //! K of a run against an independent one.
 
-use perilife::growth::cross_check::{EnergyBalance, GivenOff};
+use perilife::growth::cross_check::{EnergyBalance, ReleasedEnergy};
 
 const HORIZON: f64 = 3e-3;
 
@@ -8,7 +8,7 @@ const HORIZON: f64 = 3e-3;
 fn balance(blocks: &[[f64; 3]]) -> EnergyBalance {
     let mut balance = EnergyBalance::default();
     for (i, &[of_tips, of_plate, cycles]) in blocks.iter().enumerate() {
-        let block = GivenOff { of_tips, of_plate, growth: HORIZON, lengthening: HORIZON, cycles };
+        let block = ReleasedEnergy { of_tips, of_plate, growth: HORIZON, lengthening: HORIZON, cycles };
         balance.take(block, (i + 1) as f64 * HORIZON, HORIZON);
     }
     balance

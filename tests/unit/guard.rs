@@ -6,7 +6,7 @@ use perilife::growth::record::{StopReason, TipRecord};
 use perilife::predict::guard::{BLOCKS_WITHOUT_GROWTH, Guard};
 
 fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> Now<'_> {
-    Now { cycles, cycles_of_run: cycles, crack_length, delta_k: 1.0, tips, is_counting: true, is_settled: true }
+    Now { cycles, cycles_of_run: cycles, crack_length, delta_k: 1.0, tips, is_counting: true }
 }
 
 fn tip(growth: f64) -> TipRecord {

@@ -211,7 +211,7 @@ fn threads_do_not_change_a_digit() {
                 equilibrium.solve(&body, &bonds, &mut displacement).unwrap();
                 let ahead = perilife::body::pre_crack::bonds_across(&body, [0.02, 0.0], [0.023, 0.0]);
                 ahead.iter().for_each(|&bond| bonds.cut(&body, bond));
-                equilibrium.broke(&body, &bonds, &ahead);
+                equilibrium.bonds_changed(&body, &bonds, &ahead);
                 let more = equilibrium.solve(&body, &bonds, &mut displacement).unwrap();
                 (displacement, iterations, more, equilibrium.work())
             })

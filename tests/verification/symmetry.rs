@@ -149,7 +149,7 @@ fn a_break_on_one_side_ends_the_symmetry() {
             let broken: Vec<_> = broken.into_iter().filter(|&bond| bonds.is_intact(bond)).collect();
             assert!(!broken.is_empty());
             broken.iter().for_each(|&bond| bonds.cut(&body, bond));
-            equilibrium.broke(&body, &bonds, &broken);
+            equilibrium.bonds_changed(&body, &bonds, &broken);
             equilibrium.solve(&body, &bonds, &mut displacement).unwrap();
             let whole = loaded_with(body.clone(), bonds.clone(), case.loading.maximum, SolverKind::Direct).unwrap();
             println!("{solver}: symmetric {is_symmetric}, work {:.12e} and {:.12e}", equilibrium.work(), whole.work);

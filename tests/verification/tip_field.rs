@@ -18,7 +18,7 @@ use perilife::solver::field::Layout;
 use perilife::specimen::{CrackLine, LineEnd, Point};
 use perilife::state::Bonds;
 use perilife::stress_intensity::TipFrame;
-use perilife::stress_intensity::ring::{Balanced, Surroundings};
+use perilife::stress_intensity::ring::{Balanced, RingGeometry};
 use perilife::stress_intensity::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
 use perilife::verify;
 
@@ -100,7 +100,7 @@ fn a_ring_reads_an_exact_field() {
                 (displacement[at], displacement[at + layout.stride]) = (axes[0], axes[1]);
             }
             let plate = Balanced { body: &body, bonds: &bonds, displacement: &displacement, load: 0.0, lines: &lines };
-            let surroundings = Surroundings::new(&body, &case.specimen, &case.material);
+            let surroundings = RingGeometry::new(&body, &case.specimen, &case.material);
             for horizons in [2.0, 3.0, 4.0] {
                 let ring = surroundings.factors(plate, LineEnd { line: 0, at_last: true }, horizons * body.horizon());
                 let read = ring.factors.map(|factor| factor / 1e6);

@@ -34,7 +34,7 @@ const ROUND_OFF: f64 = 1e-6;
 
 /// Where multipliers are to be found anew.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stretch {
+pub enum FlankRange {
     /// Along all cracks.
     All,
     /// Around their tips, after they have grown by less than a horizon.
@@ -50,9 +50,9 @@ pub fn multipliers(
     lines: &[CrackLine],
     tips: &[Point],
     ends: &[Point],
-    stretch: Stretch,
+    range: FlankRange,
 ) -> Vec<(Bond, f32)> {
-    let beside = Beside::new(body, now, lines, tips, ends, stretch);
+    let beside = Beside::new(body, now, lines, tips, ends, range);
     // What is sought counts as a change of the body's own multiplier.
     let (links, sought) = beside.sought(body, now);
     let own = |bond: &usize| (*bond, body.multiplier[*bond]);
@@ -88,14 +88,14 @@ struct Beside {
 }
 
 impl Beside {
-    fn new(body: &Body, now: &[f32], lines: &[CrackLine], tips: &[Point], ends: &[Point], stretch: Stretch) -> Self {
+    fn new(body: &Body, now: &[f32], lines: &[CrackLine], tips: &[Point], ends: &[Point], range: FlankRange) -> Self {
         let (spacing, horizon) = (body.lattice.spacing, body.horizon());
         let followed = FOLLOWED_HORIZONS * horizon;
         let nearest = |of: &[Point], at: Point| of.iter().map(|end| distance(*end, at)).fold(f64::INFINITY, f64::min);
-        let is_open = |place: usize| stretch == Stretch::All || nearest(ends, body.lattice.position(place)) < followed;
+        let is_open = |place: usize| range == FlankRange::All || nearest(ends, body.lattice.position(place)) < followed;
         let is_near = |[a, b]: &[Point; 2]| {
             let reach = followed + 3.0 * horizon;
-            stretch == Stretch::All || ends.iter().any(|end| distance_to_segment(*end, *a, *b) < reach)
+            range == FlankRange::All || ends.iter().any(|end| distance_to_segment(*end, *a, *b) < reach)
         };
         // As the bonds see them.
         let near_pieces = lines.iter().flat_map(CrackLine::pieces).filter(is_near);

@@ -3,7 +3,6 @@
 use super::track::Track;
 use crate::body::{Body, Bond};
 use crate::case::Case;
-use crate::fatigue::block_control::BlockControl;
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::remaining_life::BondLife;
 use crate::state::Bonds;
@@ -18,8 +17,6 @@ pub(super) struct Course {
     pub tips: Vec<CrackTip>,
     /// Bonds that come near the critical stretch, also away from the tips.
     pub near_limit: Vec<Bond>,
-    /// What past blocks taught about strains foreseen.
-    pub control: BlockControl,
     /// The curve so far.
     pub track: Track,
     /// Bonds broken since the start, those set aside not counted.
@@ -31,12 +28,11 @@ pub(super) struct Course {
 }
 
 impl Course {
-    /// The start of a run with these tips, all bonds but those of the initial cracks whole; p is the exponent of its fatigue law.
-    pub(super) fn start(case: &Case, body: &Body, tips: Vec<CrackTip>, p: f64) -> Self {
+    /// The start of a run with these tips, all bonds but those of the initial cracks whole.
+    pub(super) fn start(case: &Case, body: &Body, tips: Vec<CrackTip>) -> Self {
         let bonds = Bonds::new(body);
         Course {
             life: BondLife::whole(bonds.multiplier.len()),
-            control: BlockControl::new(&case.fatigue.block, p, tips.len()),
             track: Track::new(case),
             near_limit: Vec::new(),
             broken_bonds: 0,

@@ -46,13 +46,6 @@ pub(super) fn stretched(body: &Body, bonds: &Bonds, case: &Case, displacement: &
     beyond.into_iter().map(|(bond, _)| bond).collect()
 }
 
-/// Whether both ends of all these bonds are in a window; without one, everything is.
-pub(super) fn are_within(window: Option<&[u32]>, body: &Body, bonds: &[Bond]) -> bool {
-    let Some(window) = window else { return true };
-    let inside = |place: usize| window.binary_search(&(place as u32)).is_ok();
-    bonds.iter().all(|&bond| inside(body.ends(bond).1) && inside(body.ends(bond).2))
-}
-
 /// Bonds that can fail, from one of `owners` to a place that `counts`, stretched beyond a limit.
 fn stretched_beyond(
     limit: f64,

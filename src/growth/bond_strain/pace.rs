@@ -36,7 +36,7 @@ use crate::line::line;
 use crate::specimen::geometry::{distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
 use crate::state::Bonds;
-use crate::stress_intensity::ring::{Balanced, Surroundings};
+use crate::stress_intensity::ring::{Balanced, RingGeometry};
 
 /// Exponent by which strains share out the life spent around a tip. Where the rate is that of K it sets the order of breaks alone: high
 /// ones lock a crack to rows of points (lives on turned lattices were wrong by up to 40 % at p = 6 and ordered by it), 2 spends life
@@ -78,7 +78,7 @@ const TWINS: f64 = 1e-6;
 /// Rates of the tips of a run.
 pub(super) struct Pace {
     law: Box<dyn GrowthLaw>,
-    surroundings: Surroundings,
+    surroundings: RingGeometry,
     specimen: Specimen,
     /// Cracks as they are cut.
     lines: Vec<CrackLine>,
@@ -176,7 +176,7 @@ impl Pace {
         };
         Pace {
             law,
-            surroundings: Surroundings::new(body, specimen, &case.material),
+            surroundings: RingGeometry::new(body, specimen, &case.material),
             specimen: specimen.clone(),
             lines: specimen.crack_lines(),
             ends: (0..count).map(|tip| specimen.line_end(tip)).collect(),

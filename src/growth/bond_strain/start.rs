@@ -12,7 +12,7 @@ use crate::case::Case;
 use crate::error::{Result, input};
 use crate::fatigue::Precrack;
 use crate::fatigue::crack_tip::CrackTip;
-use crate::fatigue::pieces::{Cut, set_aside};
+use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::growth::record::TipRecord;
 use crate::specimen::geometry::distance;
 use crate::specimen::{Specimen, TipSeed};
@@ -119,7 +119,7 @@ pub(super) fn cuts_in_two(body: &Body, bonds: &Bonds, case: &Case) -> bool {
     let mut bonds = bonds.clone();
     let cut = bonds_cut_by(body, &case.specimen.cracks);
     cut.iter().for_each(|&bond| bonds.cut(body, bond));
-    set_aside(body, &mut bonds, &cut) == Cut::Severed
+    remove_fragments(body, &mut bonds, &cut) == Connectivity::Severed
 }
 
 fn check_grown(specimen: &Specimen, back: f64) -> Result<()> {

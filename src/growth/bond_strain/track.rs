@@ -32,19 +32,12 @@ pub struct Row {
     work: f64,
     broken_bonds: usize,
     tips: Vec<TipRecord>,
-    /// Whether its block goes on: the crack is read off its row, but the curve has one row a block.
-    is_open: bool,
 }
 
 impl Row {
     /// Where the tips are.
     pub fn tips(&self) -> &[TipRecord] {
         &self.tips
-    }
-
-    /// Whether its block goes on.
-    pub fn is_open(&self) -> bool {
-        self.is_open
     }
 
     /// Growth of all tips together, m.
@@ -115,7 +108,7 @@ impl Track {
     /// Takes down the plate as it was cut, if nothing is yet.
     pub(super) fn open(&mut self, tips: Vec<TipRecord>, work: f64) {
         if self.past.rows.is_empty() {
-            self.record(tips, 0, work, false);
+            self.record(tips, 0, work);
         }
     }
 
@@ -146,23 +139,15 @@ impl Track {
         self.past.zero.map_or(0.0, |zero| self.past.cycles - self.past.rows[zero].cycles)
     }
 
-    /// Records the plate after a block, or after a break within one that is still open. Growth of the tips counts from their
-    /// initial lengths.
+    /// Records the plate after a block. Growth of the tips counts from their initial lengths.
     ///
     /// Where bonds break all around, the way of a tip goes to and fro: a crack is never recorded longer than its plate.
-    pub(super) fn record(&mut self, tips: Vec<TipRecord>, broken_bonds: usize, work: f64, is_open: bool) {
+    pub(super) fn record(&mut self, tips: Vec<TipRecord>, broken_bonds: usize, work: f64) {
         let growth: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
         let crack_length = self.specimen.crack_length_after(&growth);
         self.past.longest = self.past.longest.max(crack_length);
         let crack_length = crack_length.min(self.limit);
-        self.past.rows.push(Row { cycles: self.past.cycles, crack_length, work, broken_bonds, tips, is_open });
-    }
-
-    /// Ends the block at hand with the work of a plate in equilibrium.
-    pub(super) fn close(&mut self, work: f64) {
-        if let Some(row) = self.past.rows.last_mut().filter(|row| row.is_open) {
-            (row.work, row.is_open) = (work, false);
-        }
+        self.past.rows.push(Row { cycles: self.past.cycles, crack_length, work, broken_bonds, tips });
     }
 
     /// Ends the curve at a run-out: the crack stands where it is.
@@ -289,10 +274,9 @@ impl Track {
         };
         let mut first = point(start, 0.0, self.origin);
         first.tips.iter_mut().for_each(|tip| tip.growth = 0.0);
-        let (mut curve, last) = (vec![first], rows.len() - 1);
+        let mut curve = vec![first];
         for (i, row) in rows.iter().enumerate().skip(start) {
-            let ends = !row.is_open || i == last;
-            if ends && (row.cycles > zero || row.crack_length > self.origin * (1.0 + 1e-12)) {
+            if row.cycles > zero || row.crack_length > self.origin * (1.0 + 1e-12) {
                 let mut next = point(i, (row.cycles - zero).max(0.0), row.crack_length.max(self.origin));
                 next.tips.iter_mut().for_each(|tip| tip.growth = tip.growth.max(0.0));
                 curve.push(next);

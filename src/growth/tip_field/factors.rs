@@ -1,8 +1,9 @@
 //! K_I and K_II of every tip off its ring, what they say of its rate, and where it aims.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use super::approach::GAP_HORIZONS;
+use super::coalescence::GAP_HORIZONS;
 use super::steering::equivalent_factor;
 use super::step::is_near_rim;
 use super::{PROBE_HORIZONS, RING_HORIZONS, Tip, TipField};
@@ -33,14 +34,14 @@ const FACING: f64 = 0.94;
 const IN_CONTACT: f64 = 0.05;
 
 /// What the ring of a tip says.
-#[derive(Debug, Clone, Copy)]
-struct Reading {
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Reading {
     /// K_I and K_II, Pa√m.
     factors: [f64; 2],
     /// T, Pa.
     t_stress: f64,
     /// How far ahead of the end of its line the crack is that has them, m.
-    excess: f64,
+    length_offset: f64,
 }
 
 impl TipField<'_> {
@@ -101,7 +102,7 @@ impl TipField<'_> {
             // Beside a rim what is read as a shift may be something else.
             let ahead = if first.ahead.abs() < AHEAD_HORIZONS * horizon { first.ahead } else { 0.0 };
             let ring = if ahead == 0.0 { first } else { ring(excess + ahead) };
-            Reading { factors: ring.factors, t_stress: ring.t_stress, excess: excess + ahead }
+            Reading { factors: ring.factors, t_stress: ring.t_stress, length_offset: excess + ahead }
         };
         let mut readings: Vec<Reading> = tips.par_iter().map(read).collect();
         pair_twins(&mut readings);
@@ -113,10 +114,10 @@ impl TipField<'_> {
         let horizon = self.plate.body.horizon();
         let lines = self.state.drawn_back(PROBE_HORIZONS * horizon);
         let readings = self.read_rings(&lines);
-        for (tip, Reading { factors: read, excess, .. }) in self.state.tips.iter_mut().zip(readings) {
+        for (tip, Reading { factors: read, length_offset, .. }) in self.state.tips.iter_mut().zip(readings) {
             let end = tip.end;
             let back = distance(self.state.lines[end.line].end(end.at_last), lines[end.line].end(end.at_last));
-            tip.readings.take(equivalent_factor(read), -back, excess, None, horizon);
+            tip.readings.take(equivalent_factor(read), -back, length_offset, None, horizon);
         }
     }
 
@@ -142,42 +143,53 @@ impl TipField<'_> {
         self.gap(tip).is_some_and(|gap| gap < GAP_HORIZONS * self.plate.body.horizon())
     }
 
-    /// Factors, rates and aims of all tips that are left.
-    pub(super) fn read_factors(&mut self) {
+    /// What the rings of all active tips say of the displacement at hand.
+    pub(super) fn read_fields(&mut self) {
+        let mut readings = self.read_rings(&self.state.lines).into_iter();
+        for tip in &mut self.state.tips {
+            tip.reading = if tip.state == TipState::Active { readings.next() } else { None };
+        }
+    }
+
+    /// Lets every active tip choose its direction.
+    pub(super) fn choose_directions(&mut self) {
         let horizon = self.plate.body.horizon();
-        let ratio = self.case.loading.ratio;
-        let readings = self.read_rings(&self.state.lines);
-        let largest = readings.iter().map(|Reading { factors: [k_i, k_ii], .. }| k_i.hypot(*k_ii)).fold(0.0, f64::max);
-        let mut readings = readings.into_iter();
+        for tip in &mut self.state.tips {
+            let Some(Reading { factors, .. }) = tip.reading else { continue };
+            let ahead = self.state.lines[tip.end.line].direction(tip.end.at_last);
+            tip.steering.read(factors, tip.growth, ahead, horizon);
+        }
+    }
+
+    /// K at the length of every line, and da/dN of it.
+    pub(super) fn choose_rates(&mut self) {
+        let horizon = self.plate.body.horizon();
+        let sizes = self.state.tips.iter().filter_map(|tip| tip.reading).map(|reading| reading.factors[0].hypot(reading.factors[1]));
+        let largest = sizes.fold(0.0, f64::max);
         let gaps: Vec<Option<f64>> = self.state.tips.iter().map(|tip| self.gap(tip)).collect();
         for (tip, gap) in self.state.tips.iter_mut().zip(gaps) {
             tip.rate = 0.0;
-            if tip.state != TipState::Active {
-                continue;
-            }
-            let Some(Reading { factors: read, t_stress, excess }) = readings.next() else { continue };
-            let specimen = &self.case.specimen;
-            let ahead = self.state.lines[tip.end.line].direction(tip.end.at_last);
-            (tip.excess, tip.t_stress) = (excess, t_stress);
+            let Some(Reading { factors: read, t_stress, length_offset }) = tip.reading else { continue };
+            (tip.length_offset, tip.t_stress) = (length_offset, t_stress);
             tip.in_contact |= read[0] < -IN_CONTACT * largest;
-            tip.steering.read(read, tip.growth, ahead, horizon);
-            tip.readings.take(equivalent_factor(read), tip.growth, excess, tip.steering.corner(), horizon);
+            tip.readings.take(equivalent_factor(read), tip.growth, length_offset, tip.steering.corner(), horizon);
             // Both modes alike: what the tip's field lacks or has too much is length.
-            let mut share = tip.readings.share(excess, tip.length + tip.growth, horizon);
+            let mut ratio = tip.readings.ratio(length_offset, tip.length + tip.growth, horizon);
             // K that opens a kink starts at that of its direction; until the bonds show the kink, less is read.
             if tip.steering.corner().is_some_and(|corner| tip.growth < corner + KINK_HORIZONS * horizon && tip.growth > corner) {
-                share = share.max(tip.equivalent() / equivalent_factor(read));
+                ratio = ratio.max(tip.equivalent() / equivalent_factor(read));
             }
-            let mut factors = read.map(|factor| share * factor);
+            let mut factors = read.map(|factor| ratio * factor);
             if let Some(gap) = gap {
-                factors = tip.approach.factors(factors, gap, horizon);
+                factors = tip.coalescence.factors(factors, gap, horizon);
             }
-            let near = tip.growth > 0.0 && is_near_rim(specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
+            let is_near =
+                tip.growth > 0.0 && is_near_rim(&self.case.specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
             let has_risen = equivalent_factor(factors) >= tip.equivalent();
-            if has_risen || !near {
+            if has_risen || !is_near {
                 tip.factors = factors;
             }
-            tip.rate = self.law.rate(tip.equivalent(), ratio);
+            tip.rate = self.law.rate(tip.equivalent(), self.case.loading.ratio);
         }
     }
 }

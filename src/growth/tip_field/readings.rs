@@ -23,18 +23,18 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Takes in K of a tip that has grown by `growth` and whose field stands `excess` ahead; what was read before a corner tells
+    /// Takes in K of a tip that has grown by `growth` and whose field stands `length_offset` ahead; what was read before a corner tells
     /// nothing about the crack after it.
-    pub fn take(&mut self, k: f64, growth: f64, excess: f64, corner: Option<f64>, horizon: f64) {
+    pub fn take(&mut self, k: f64, growth: f64, length_offset: f64, corner: Option<f64>, horizon: f64) {
         if k > 0.0 {
-            self.taken.push([growth + excess, k.ln()]);
+            self.taken.push([growth + length_offset, k.ln()]);
         }
         let oldest = corner.map_or(f64::NEG_INFINITY, |corner| corner + 0.1 * horizon).max(growth - MEMORY_HORIZONS * horizon);
         self.taken.retain(|reading| reading[0] > oldest);
     }
 
-    /// Factor that brings K to `excess` less length of a crack that is `length` long, m.
-    pub fn share(&self, excess: f64, length: f64, horizon: f64) -> f64 {
+    /// K at `length_offset` less length over that of a crack that is `length` long, m.
+    pub fn ratio(&self, length_offset: f64, length: f64, horizon: f64) -> f64 {
         let usual = 0.5 / length;
         let count = self.taken.len() as f64;
         let [x, y] = [0, 1].map(|i| self.taken.iter().map(|reading| reading[i]).sum::<f64>() / count.max(1.0));
@@ -42,6 +42,6 @@ impl Readings {
         // As if the slope of a crack far from everything had been read too: the scatter of a few readings close together is none.
         let prior = (PRIOR_HORIZONS * horizon).powi(2);
         let slope = (product(1) + prior * usual) / (product(0) + prior);
-        (-slope.clamp(-SLOPE_MOST * usual, SLOPE_MOST * usual) * excess).exp()
+        (-slope.clamp(-SLOPE_MOST * usual, SLOPE_MOST * usual) * length_offset).exp()
     }
 }

@@ -2,26 +2,27 @@
 
 use std::sync::Arc;
 
-use super::{Block, PROBE_HORIZONS, Tip, TipField, TipsState, balance};
-use crate::body::balanced::flanks::Stretch;
+use super::{PROBE_HORIZONS, RING_HORIZONS_IN_LEVELS, Tip, TipField, TipsState, solver};
+use crate::fatigue::crack_tip::TipState;
+use crate::body::balanced::flanks::FlankRange;
 use crate::error::{Error, Result};
 use crate::fatigue::growth_law::GrowthLaw;
-use crate::fatigue::pieces::set_aside;
+use crate::fatigue::pieces::remove_fragments;
 use crate::growth::cross_check::CrossCheck;
 use crate::growth::plate::Plate;
 use crate::growth::record::{CurvePoint, StopReason, TipRecord};
-use crate::growth::{CrackGrowth, Effort, Fields, Now, State};
+use crate::growth::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
 use crate::units::MM;
 
-/// Blocks after which a run begins anew from its bonds, so that it can be taken up there. To begin anew takes as long as three to four
-/// blocks.
-const BLOCKS_ANEW: usize = 32;
+/// Increments after which the solver is built anew from the bonds, so that a run can be resumed there. That takes as long as three to
+/// four increments.
+const INCREMENTS_PER_SOLVER: usize = 32;
 /// Relative difference between lengths that are equal but for round-off.
 const ROUND_OFF: f64 = 1e-12;
 
 impl TipField<'_> {
-    fn last(&self) -> &CurvePoint {
-        // `open` or `restore` makes the first row, before the first block.
+    pub(super) fn last(&self) -> &CurvePoint {
+        // `open` or `restore` makes the first row, before the first increment.
         &self.curve[self.curve.len() - 1]
     }
 
@@ -53,29 +54,50 @@ impl TipField<'_> {
         self.case.material.toughness.map(|toughness| self.case.loading.range_share() * toughness)
     }
 
-    /// Reasons that show on the last row: a known end is reached, or K_max of a tip is the toughness.
-    fn reason_to_stop(&self) -> Option<StopReason> {
+    /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or grows, or
+    /// one has come to the rim of the finest points.
+    #[must_use]
+    pub fn reason_to_stop(&self) -> Option<StopReason> {
         let last = self.last();
         if let Some(end) = self.end.filter(|end| last.crack_length >= end.crack_length * (1.0 - ROUND_OFF)) {
             return Some(end.reason);
         }
-        self.delta_k_most().filter(|most| last.delta_k >= *most).map(|_| StopReason::Toughness)
+        if self.delta_k_most().is_some_and(|most| last.delta_k >= most) {
+            return Some(StopReason::Toughness);
+        }
+        let active = || self.state.tips.iter().filter(|tip| tip.state == TipState::Active);
+        if active().next().is_none() {
+            return Some(self.gone());
+        }
+        if self.fastest().is_none() {
+            return Some(StopReason::NothingAges);
+        }
+        let body = &self.plate.body;
+        let reach = RING_HORIZONS_IN_LEVELS * body.horizon();
+        active().any(|tip| body.is_near_rim(self.position(tip), reach)).then_some(StopReason::LeftRefinement)
     }
 
-    /// The row after a block, and the reason to stop that the block brought: run-out and toughness end it between two rows.
-    fn after(&self, block: &Block) -> (CurvePoint, Option<StopReason>) {
+    /// The row after an increment of so many cycles, and the reason to stop: run-out and toughness end the run between two rows, `end`
+    /// after this one.
+    pub(super) fn row_after(
+        &self,
+        cycles: f64,
+        work: f64,
+        broken_bonds: usize,
+        end: Option<StopReason>,
+    ) -> (CurvePoint, Option<StopReason>) {
         let last = self.last();
-        let cycles = last.cycles + block.cycles;
-        let next = self.row(cycles, block.work, last.broken_bonds + block.cut);
+        let cycles_then = last.cycles + cycles;
+        let next = self.row(cycles_then, work, last.broken_bonds + broken_bonds);
         let cycles_max = self.case.stop.cycles_max;
-        if cycles > cycles_max {
-            return (next.between(last, (cycles_max - last.cycles) / block.cycles), Some(StopReason::RunOut));
+        if cycles_then > cycles_max {
+            return (next.between(last, (cycles_max - last.cycles) / cycles), Some(StopReason::RunOut));
         }
         if let Some(most) = self.delta_k_most().filter(|most| next.delta_k > *most && last.delta_k < *most) {
-            let share = (most - last.delta_k) / (next.delta_k - last.delta_k);
-            return (next.between(last, share), Some(StopReason::Toughness));
+            let fraction = (most - last.delta_k) / (next.delta_k - last.delta_k);
+            return (next.between(last, fraction), Some(StopReason::Toughness));
         }
-        (next, block.end)
+        (next, end)
     }
 }
 
@@ -83,43 +105,33 @@ impl CrackGrowth for TipField<'_> {
     fn open(&mut self) -> Result<()> {
         // What is read belongs to a length that differs from the one asked for by part of a spacing: that takes the slope of K.
         let drawn_back = self.state.drawn_back(PROBE_HORIZONS * self.plate.body.horizon());
-        let changed = self.correct_flanks(&drawn_back, Stretch::All);
+        let changed = self.correct_flanks(&drawn_back, FlankRange::All);
         self.settle(&changed)?;
         self.read_slopes();
         let mut cut = std::mem::take(&mut self.at_tips);
         let plate = self.plate.clone();
         cut.iter().for_each(|&bond| self.bonds.cut(&plate.body, bond));
-        set_aside(&plate.body, &mut self.bonds, &cut);
+        remove_fragments(&plate.body, &mut self.bonds, &cut);
         let lines = self.state.lines.clone();
-        cut.extend(self.correct_flanks(&lines, Stretch::All));
+        cut.extend(self.correct_flanks(&lines, FlankRange::All));
         self.settle(&cut)?;
-        self.read_factors();
+        self.read_fields();
+        self.choose_directions();
+        self.choose_rates();
+        self.update_remaining_life();
         if let Some(tip) = self.state.tips.iter().find(|tip| !tip.equivalent().is_finite()) {
             let [x, y] = self.position(tip).map(|metres| metres / MM);
             let problem = format!("{}: no stress intensity can be read at the crack tip at ({x:.4}, {y:.4}) mm", self.case.name);
             return Err(Error::Mechanics(format!("{problem}; give a smaller model.spacing_mm")));
         }
         self.curve = vec![self.row(0.0, self.equilibrium.work(), 0)];
-        self.anew = 1;
+        self.rows_at_rebuild = 1;
         Ok(())
     }
 
-    fn advance(&mut self) -> Result<Option<StopReason>> {
-        if let Some(reason) = self.reason_to_stop() {
-            return Ok(Some(reason));
-        }
-        let until = self.end.map_or(f64::INFINITY, |end| end.crack_length);
-        let block = self.block(self.last().cycles, until);
-        let (next, reason) = self.after(&block);
-        if block.cut > 0 || block.cycles > 0.0 {
-            self.curve.push(next);
-        }
-        Ok(reason)
-    }
-
-    fn now(&self) -> Now<'_> {
+    fn now(&self) -> GrowthStatus<'_> {
         let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = *self.last();
-        Now { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true, is_settled: true }
+        GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true }
     }
 
     fn plate(&self) -> Option<Arc<Plate>> {
@@ -127,20 +139,20 @@ impl CrackGrowth for TipField<'_> {
     }
 
     fn fields(&mut self) -> Result<Option<Fields>> {
-        Ok(Some(self.plate.fields(&self.bonds, &self.displacement)))
+        Ok(Some(self.plate.fields(&self.bonds, &self.displacement, &self.state.remaining_life)))
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {
         Some(&*self.law)
     }
 
-    fn is_due(&self) -> bool {
-        self.curve.len() >= self.anew + BLOCKS_ANEW
+    fn should_rebuild_solver(&self) -> bool {
+        self.curve.len() >= self.rows_at_rebuild + INCREMENTS_PER_SOLVER
     }
 
-    fn begin_anew(&mut self) -> Result<()> {
-        self.anew = self.curve.len();
-        self.equilibrium = balance(self.case, &self.plate, &self.bonds);
+    fn rebuild_solver(&mut self) -> Result<()> {
+        self.rows_at_rebuild = self.curve.len();
+        self.equilibrium = solver(self.case, &self.plate, &self.bonds);
         self.settle(&[])
     }
 
@@ -151,12 +163,12 @@ impl CrackGrowth for TipField<'_> {
             scaled: self.bonds.scaled(&self.plate.body),
             displacement: self.displacement.clone(),
             curve: self.curve.clone(),
-            effort: self.effort(),
+            statistics: self.statistics(),
         })
     }
 
     fn restore(&mut self, state: State) -> Result<bool> {
-        let State::Tips(TipsState { growth, broken, scaled, displacement, curve, effort }) = state else { return Ok(false) };
+        let State::Tips(TipsState { growth, broken, scaled, displacement, curve, statistics }) = state else { return Ok(false) };
         let plate = self.plate.clone();
         let places = plate.body.multiplier.len();
         let fits = growth.fits(&self.state)
@@ -168,21 +180,17 @@ impl CrackGrowth for TipField<'_> {
         broken.iter().chain(&self.at_tips).for_each(|&bond| self.bonds.cut(&plate.body, bond));
         scaled.iter().for_each(|&(bond, multiplier)| self.bonds.set(&plate.body, bond, multiplier));
         (self.state, self.displacement, self.curve) = (growth, displacement, curve);
-        (self.solves, self.iterations) = (effort.solves, effort.iterations);
-        Ok(self.begin_anew().is_ok())
-    }
-
-    fn close(&mut self, stop: StopReason) -> Result<StopReason> {
-        Ok(stop)
+        (self.solves, self.iterations) = (statistics.solves, statistics.iterations);
+        Ok(self.rebuild_solver().is_ok())
     }
 
     fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
         (std::mem::take(&mut self.curve), 0.0)
     }
 
-    fn effort(&self) -> Effort {
+    fn statistics(&self) -> SolverStatistics {
         let points_solved = self.equilibrium.points(&self.plate.body);
-        Effort { points_solved, solves: self.solves, iterations: self.iterations }
+        SolverStatistics { points_solved, solves: self.solves, iterations: self.iterations }
     }
 
     fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {

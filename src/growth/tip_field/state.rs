@@ -1,13 +1,14 @@
-//! What a run by K of the tips carries from block to block.
+//! What a run by K of the tips carries from increment to increment.
 
 use serde::{Deserialize, Serialize};
 
-use super::approach::Approach;
+use super::coalescence::Coalescence;
+use super::factors::Reading;
 use super::readings::Readings;
 use super::steering::{Steering, equivalent_factor};
 use crate::body::Bond;
 use crate::fatigue::crack_tip::TipState;
-use crate::growth::Effort;
+use crate::growth::SolverStatistics;
 use crate::growth::cross_check::EnergyBalance;
 use crate::growth::record::CurvePoint;
 use crate::specimen::geometry::distance;
@@ -28,16 +29,18 @@ pub struct Tip {
     pub t_stress: f64,
     /// da/dN at the present length, m/cycle.
     pub rate: f64,
-    /// That of the block before, and the growth of the fastest tip since.
+    /// That of the increment before, and the growth of the fastest tip since.
     pub(super) before: Option<[f64; 2]>,
-    /// Its rate at the start of the last block and its own growth in it, where no corner lies between.
+    /// Its rate at the start of the last increment and its own growth in it, where no corner lies between.
     pub(super) past: Option<[f64; 2]>,
     /// Length of crack that belonged to it at the start, m.
     pub(super) length: f64,
     /// Length that its cut bonds stand for beyond that of its line, m.
-    pub(super) excess: f64,
+    pub(super) length_offset: f64,
+    /// What its ring said last; none before, and where it has ended.
+    pub(super) reading: Option<Reading>,
     pub(super) readings: Readings,
-    pub(super) approach: Approach,
+    pub(super) coalescence: Coalescence,
     pub(super) steering: Steering,
     /// Whether the load has pressed its flanks together.
     pub(super) in_contact: bool,
@@ -58,9 +61,10 @@ impl Tip {
             before: None,
             past: None,
             length: distance(crack.from, crack.to) / tips.max(1) as f64,
-            excess: 0.0,
+            length_offset: 0.0,
+            reading: None,
             readings: Readings::default(),
-            approach: Approach::default(),
+            coalescence: Coalescence::default(),
             steering: Steering::default(),
             in_contact: false,
         }
@@ -71,24 +75,24 @@ impl Tip {
         self.state == TipState::Active && self.rate > 0.0
     }
 
-    /// Takes in a piece of crack of the length `way` in a block in which the fastest tip went `fastest`, m, and what has become of it.
-    pub(super) fn has_grown(&mut self, way: f64, fastest: f64, state: TipState) {
+    /// Takes in a segment of the length `growth` in an increment in which the fastest tip grew by `fastest`, m, and what has become of it.
+    pub(super) fn has_grown(&mut self, growth: f64, fastest: f64, state: TipState) {
         self.before = Some([self.rate, fastest]);
-        self.past = (way > 0.0 && self.steering.corner().is_none()).then_some([self.rate, way]);
-        self.growth += way;
+        self.past = (growth > 0.0 && self.steering.corner().is_none()).then_some([self.rate, growth]);
+        self.growth += growth;
         self.state = state;
     }
 
-    /// Takes in a block without growth in which the fastest tip went `fastest`, m.
+    /// Takes in an increment without growth in which the fastest tip grew by `fastest`, m.
     pub(super) fn stood_still(&mut self, fastest: f64) {
         (self.before, self.past) = (Some([self.rate, fastest]), None);
     }
 
     /// Forgets how K has changed and where it aimed.
-    pub(super) fn begin_anew(&mut self) {
+    pub(super) fn forget_history(&mut self) {
         (self.before, self.past) = (None, None);
         (self.readings, self.steering) = (Readings::default(), Steering::default());
-        self.approach = Approach::default();
+        self.coalescence = Coalescence::default();
     }
 
     /// K_eq at maximum load of the requested length, Pa√m.
@@ -97,17 +101,19 @@ impl Tip {
     }
 }
 
-/// All that a run carries from block to block but the displacement, which the solver makes of the bonds.
+/// All that a run carries from increment to increment but the displacement, which the solver makes of the bonds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TipFieldState {
     /// Cracks.
     pub lines: Vec<CrackLine>,
     /// Their tips.
     pub tips: Vec<Tip>,
-    /// Growth of a tip in the next block at the most, m.
+    /// Growth of a tip in the next increment at the most, m.
     pub(super) step: f64,
-    /// K against the energy that the plate gives off.
+    /// K against the energy that the plate releases.
     pub(super) balance: EnergyBalance,
+    /// Remaining life λ of bonds that have spent some of it, ascending.
+    pub(super) remaining_life: Vec<(Bond, f64)>,
 }
 
 impl TipFieldState {
@@ -129,7 +135,7 @@ impl TipFieldState {
     }
 }
 
-/// All that the next blocks depend on.
+/// All that the next increments depend on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TipsState {
     pub(super) growth: TipFieldState,
@@ -138,5 +144,5 @@ pub struct TipsState {
     pub(super) scaled: Vec<(Bond, f32)>,
     pub(super) displacement: Vec<f64>,
     pub(super) curve: Vec<CurvePoint>,
-    pub(super) effort: Effort,
+    pub(super) statistics: SolverStatistics,
 }

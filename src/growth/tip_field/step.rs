@@ -7,7 +7,7 @@
 
 use super::{Tip, TipField, TipFieldState, ahead};
 use crate::case::Case;
-use crate::fatigue::Driver;
+use crate::fatigue::STEP_ERROR_PERCENT;
 use crate::specimen::{CrackLine, LineEnd, Specimen};
 
 /// Growth of a tip in the first block, in horizons: nothing is known yet of how its rate changes.
@@ -46,8 +46,8 @@ pub(super) struct StepControl {
 
 impl StepControl {
     pub(super) fn new(case: &Case, horizon: f64) -> Self {
-        let percent = case.fatigue.block.error_percent;
-        let finer = (percent / Driver::TipField.block_error_percent()).sqrt().min(1.0);
+        let percent = case.fatigue.step_error_percent;
+        let finer = (percent / STEP_ERROR_PERCENT).sqrt().min(1.0);
         StepControl { horizon, measure: finer * horizon, error: 0.01 * percent }
     }
 
@@ -79,14 +79,14 @@ impl StepControl {
 
 impl TipField<'_> {
     /// How far every tip goes in the next block, m, after so many `cycles`, and until the crack has the length `until` at the latest.
-    pub(super) fn next_ways(&self, fastest: usize, cycles: f64, until: f64) -> Vec<f64> {
+    pub(super) fn next_lengths(&self, fastest: usize, cycles: f64, until: f64) -> Vec<f64> {
         let rate = self.state.tips[fastest].rate;
         let step = self.last_way(fastest).filter(|way| *way / rate < SHARE_LEFT * cycles).unwrap_or_else(|| self.step(rate));
-        self.ways(fastest, step, until)
+        self.lengths(fastest, step, until)
     }
 
     /// How far every tip goes while the fastest goes a step, m, all less where the crack would become longer than `until`.
-    fn ways(&self, fastest: usize, step: f64, until: f64) -> Vec<f64> {
+    fn lengths(&self, fastest: usize, step: f64, until: f64) -> Vec<f64> {
         let lead = &self.state.tips[fastest];
         let share = |tip: &Tip| {
             let now = tip.rate / lead.rate;

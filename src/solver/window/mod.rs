@@ -6,7 +6,6 @@
 //! displacement outside the window and keeps round-off from adding up. The window moves when a tip nears its end.
 
 pub mod condense;
-pub(in crate::solver) mod held_rim;
 pub mod update;
 
 use super::assembly::{MIXED, Mixed, Springs};
@@ -316,7 +315,7 @@ impl Window {
 
 /// By factorisation what iteration did not manage for an error; a plate that gives way is beyond both.
 fn factorised<const N: usize>(error: Error, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-    if matches!(error, Error::GaveWay) { Err(error) } else { DirectSolver::default().solve(system, u) }
+    if matches!(error, Error::LossOfStiffness) { Err(error) } else { DirectSolver::default().solve(system, u) }
 }
 
 /// Whether both ends of all these bonds are among some points (ascending).

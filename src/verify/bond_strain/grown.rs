@@ -7,9 +7,10 @@ use crate::body::severed::severed_weight;
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::Result;
-use crate::fatigue::ageing::AgeingBond;
-use crate::predict::laws::bond_law;
-use crate::predict::{Prediction, Recorder, Silent, run};
+use crate::growth::bond_strain::BondStrain;
+use crate::predict::laws::bond_rates;
+use crate::predict::record::Record;
+use crate::predict::{Prediction, Silent};
 use crate::specimen::Point;
 use crate::specimen::geometry::distance;
 
@@ -23,27 +24,23 @@ pub struct Grown {
     pub broken: Vec<Bond>,
 }
 
-/// Takes down which bonds break.
-#[derive(Default)]
-struct Broken(HashSet<Bond>);
-
-impl Recorder for Broken {
-    fn block(&mut self, _: &[AgeingBond], spent: &[Bond], _: f64) {
-        self.0.extend(spent);
-    }
-}
-
 /// Grows the cracks of a case.
 ///
 /// # Errors
-/// As [`run`].
+/// As [`crate::predict::predict`].
 pub fn grow(case: &Case) -> Result<Grown> {
-    let mut broken = Broken::default();
-    let run = run(case, |horizon| bond_law(case, horizon), &mut broken, &Silent)?;
+    let record = Record::new(case, &Silent).unchecked();
+    let case = &record.case().clone();
+    let mut broken: HashSet<Bond> = HashSet::new();
+    let run = record.follow(&mut BondStrain::start(case, |horizon| bond_rates(case, horizon))?, |growth| {
+        let reason = growth.next_break();
+        broken.extend(growth.last_broken());
+        reason
+    })?;
     let (specimen, model) = (&case.specimen, &case.model);
     let body = Body::build(specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
     // A run starts with shorter cracks and grows them to their length: that is no growth.
-    let mut broken: Vec<Bond> = broken.0.into_iter().filter(|bond| body.pre_cut.binary_search(bond).is_err()).collect();
+    let mut broken: Vec<Bond> = broken.into_iter().filter(|bond| body.pre_cut.binary_search(bond).is_err()).collect();
     broken.sort_unstable();
     Ok(Grown { run, body, broken })
 }

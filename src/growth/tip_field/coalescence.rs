@@ -17,14 +17,14 @@ const POWER_USUAL: f64 = 0.3;
 /// Spread of ln g below which readings tell no power.
 const SPREAD_LEAST: f64 = 0.1;
 
-/// Readings on the way.
+/// Readings of a tip that comes towards another.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Approach {
+pub struct Coalescence {
     /// ln g, K_I and K_II.
     seen: Vec<[f64; 3]>,
 }
 
-impl Approach {
+impl Coalescence {
     /// Takes in the factors read at a gap to the tip ahead, m; gives those that the tip has.
     pub fn factors(&mut self, read: [f64; 2], gap: f64, horizon: f64) -> [f64; 2] {
         if gap > GAP_HORIZONS * horizon {

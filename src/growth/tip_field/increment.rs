@@ -1,0 +1,327 @@
+//! One increment of all cracks, call by call ([`crate::predict::increment`]).
+
+use super::step;
+use super::{Tip, TipField, ahead};
+use crate::body::balanced::flanks::{self, FlankRange};
+use crate::body::pre_crack::bonds_across;
+use crate::body::{Body, Bond};
+use crate::bond_law::SurfaceCorrection;
+use crate::error::{Error, Result};
+use crate::fatigue::crack_tip::TipState;
+use crate::fatigue::pieces::{Connectivity, remove_fragments};
+use crate::growth::cross_check::ReleasedEnergy;
+use crate::growth::record::StopReason;
+use crate::specimen::geometry::{along, distance};
+use crate::specimen::{CrackLine, Point};
+
+/// Distance from an edge, in spacings, from which points cannot resolve what is left.
+const THROUGH_SPACINGS: f64 = 0.75;
+/// Distance of a rim beside a tip, in spacings, from which nothing is left between them that carries.
+const BESIDE_SPACINGS: f64 = 0.5;
+/// Distance between a tip and the place where another meets its crack, in horizons, within which both are joined if they face each
+/// other.
+const JOINED_HORIZONS: f64 = 1.0;
+
+/// A new straight segment of crack, and what becomes of the tip at its end.
+struct Segment {
+    from: Point,
+    to: Point,
+    state: TipState,
+    /// The crack that it meets.
+    meets: Option<usize>,
+}
+
+impl Segment {
+    fn length(&self) -> f64 {
+        distance(self.from, self.to)
+    }
+}
+
+/// An increment in the making.
+pub struct Increment {
+    /// The tip whose cycles count: the fastest.
+    lead: usize,
+    /// Growth that every tip is to make, m.
+    lengths: Vec<f64>,
+    segments: Vec<Option<Segment>>,
+    /// Rate of the lead at the start, m/cycle; that at the start of the increment before, and its length, m.
+    rate: f64,
+    past: Option<[f64; 2]>,
+    /// Of every tip `K_eq²/E'`, J/m², and the length that its cut bonds stand for beyond that of its line, m; work of the loads, J.
+    before: (Vec<[f64; 2]>, f64),
+    /// Bonds that were cut or got another multiplier, those cut first.
+    changed: Vec<Bond>,
+    /// How many of them were cut.
+    cut: usize,
+    /// Whether the displacement is that of the new cracks.
+    is_settled: bool,
+    /// Why there is no next increment.
+    end: Option<StopReason>,
+}
+
+impl Increment {
+    /// Whether a tip has met a rim or another crack.
+    fn has_ended_tips(&self) -> bool {
+        self.segments.iter().flatten().any(|segment| segment.state != TipState::Active)
+    }
+
+    /// Growth of the lead, m.
+    fn growth(&self) -> f64 {
+        self.segments[self.lead].as_ref().map_or(0.0, Segment::length)
+    }
+
+    /// Growth of every tip, m.
+    fn growths(&self) -> Vec<f64> {
+        self.segments.iter().map(|segment| segment.as_ref().map_or(0.0, Segment::length)).collect()
+    }
+}
+
+impl TipField<'_> {
+    /// Growth of every tip over the same cycles, the fastest by one step ([`step`]). To be asked while a tip grows
+    /// ([`TipField::reason_to_stop`]).
+    #[must_use]
+    pub fn increments(&self) -> Increment {
+        let lead = self.fastest().unwrap_or(0);
+        let until = self.end.map_or(f64::INFINITY, |end| end.crack_length);
+        let Tip { rate, past, .. } = self.state.tips[lead];
+        Increment {
+            lead,
+            lengths: self.next_lengths(lead, self.last().cycles, until),
+            segments: Vec::new(),
+            rate,
+            past,
+            before: self.energies(),
+            changed: Vec::new(),
+            cut: 0,
+            is_settled: false,
+            end: None,
+        }
+    }
+
+    /// Extends the lines of the cracks by a straight segment each, up to a rim or another crack; cracks that meet are joined.
+    pub fn extend_lines(&mut self, step: &mut Increment) {
+        let segment = |(tip, length): (&Tip, &f64)| (*length > 0.0).then(|| self.segment(tip, *length));
+        step.segments = self.state.tips.iter().zip(&step.lengths).map(segment).collect();
+        let growth = step.growth();
+        for (tip, segment) in self.state.tips.iter_mut().zip(&step.segments) {
+            let Some(Segment { from, to, state, .. }) = segment else {
+                tip.stood_still(growth);
+                continue;
+            };
+            self.state.lines[tip.end.line].grow(tip.end.at_last, *to);
+            tip.has_grown(distance(*from, *to), growth, *state);
+        }
+        if step.has_ended_tips() {
+            self.join(&step.segments);
+        }
+    }
+
+    /// Cuts the bonds that the new segments cross and removes fragments that carry no load; bonds beside the flanks get the correction
+    /// of those at an edge.
+    pub fn cut_bonds(&mut self, step: &mut Increment) {
+        let plate = self.plate.clone();
+        let body = &plate.body;
+        let tips = self.state.tips.iter().zip(&step.segments);
+        let across = |(tip, segment): (&Tip, &Option<Segment>)| segment.as_ref().map(|segment| across(body, segment, tip.end.at_last));
+        let mut cut: Vec<Bond> = tips.filter_map(across).flatten().filter(|&bond| self.bonds.is_intact(bond)).collect();
+        cut.sort_unstable();
+        cut.dedup();
+        cut.iter().for_each(|&bond| self.bonds.cut(body, bond));
+        match remove_fragments(body, &mut self.bonds, &cut) {
+            Connectivity::Severed => step.end = Some(StopReason::Severed),
+            Connectivity::Connected(fragments) => cut.extend(fragments),
+        }
+        step.cut = cut.len();
+        step.changed = cut;
+        if step.end.is_none() {
+            let range = if step.has_ended_tips() { FlankRange::All } else { FlankRange::Tips };
+            let lines = self.state.lines.clone();
+            step.changed.extend(self.correct_flanks(&lines, range));
+        }
+    }
+
+    /// Finds the displacement in equilibrium with the maximum load.
+    pub fn solve_equilibrium(&mut self, step: &mut Increment) {
+        if step.end.is_some() {
+            return;
+        }
+        match self.settle(&step.changed) {
+            Ok(()) => step.is_settled = true,
+            Err(Error::LossOfStiffness) => step.end = Some(StopReason::Severed),
+            Err(_) => step.end = Some(StopReason::NoConvergence),
+        }
+    }
+
+    /// Reads K_I, K_II and T of every active tip at the place where its field stands.
+    pub fn read_factors(&mut self, step: &Increment) {
+        if step.is_settled {
+            self.read_fields();
+        }
+    }
+
+    /// Turns every active tip by what was read.
+    pub fn turn(&mut self, step: &Increment) {
+        if step.is_settled {
+            self.choose_directions();
+        }
+    }
+
+    /// Brings K to the length of every line and takes da/dN of it.
+    pub fn set_rates(&mut self, step: &Increment) {
+        if step.is_settled {
+            self.choose_rates();
+        }
+    }
+
+    /// Adds the row after an increment, and says why there is no next one. The length of the next increment follows from how straight
+    /// ln r was over this one.
+    pub fn add_row(&mut self, mut step: Increment) -> Option<StopReason> {
+        if step.is_settled && self.state.tips.iter().any(|tip| !tip.equivalent().is_finite()) {
+            return Some(StopReason::NoConvergence);
+        }
+        let (growth, has_ended) = (step.growth(), step.has_ended_tips());
+        let is_over = step.end.is_some();
+        // Where a tip is gone, K of the others is that of another crack at the end of the step, not of this one grown longer.
+        let lead = &self.state.tips[step.lead];
+        let rate_then = if lead.is_growing() && !is_over && !has_ended { lead.rate } else { step.rate };
+        let (cycles, curvature_fraction) = step::cycles(step.past, step.rate, rate_then, growth);
+        if has_ended {
+            self.state.step = self.steps.first();
+        } else if growth > 0.0 && !is_over {
+            self.state.step = self.steps.next(growth, curvature_fraction);
+        }
+        let closing = self.state.tips.iter().any(|tip| tip.state == TipState::Active && self.is_closing(tip));
+        if has_ended || closing || is_over {
+            self.state.balance.forget();
+        } else {
+            self.compare_energies(&step, cycles);
+        }
+        self.update_remaining_life();
+        let work = if is_over { f64::NAN } else { self.equilibrium.work() };
+        let is_left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
+        // What the last tip has met is known, whatever is left of the plate.
+        if !is_left && step.end != Some(StopReason::Severed) {
+            step.end = Some(self.gone());
+        }
+        let (row, reason) = self.row_after(cycles, work, step.cut, step.end);
+        if step.cut > 0 || cycles > 0.0 {
+            self.curve.push(row);
+        }
+        reason
+    }
+
+    /// Why growth ends where no tip is left.
+    pub(super) fn gone(&self) -> StopReason {
+        let entered = self.state.tips.iter().any(|tip| matches!(tip.state, TipState::EnteredHole | TipState::LinkedUp));
+        if entered { StopReason::EnteredHole } else { StopReason::LeftPlate }
+    }
+
+    /// Of every tip `K_eq²/E'`, J/m², and the length that its cut bonds stand for beyond that of its line, m; work of the loads, J.
+    fn energies(&self) -> (Vec<[f64; 2]>, f64) {
+        let modulus = self.case.material.plane_modulus();
+        let of_tip = |tip: &Tip| [tip.equivalent().powi(2) / modulus, tip.length_offset];
+        (self.state.tips.iter().map(of_tip).collect(), self.equilibrium.work())
+    }
+
+    /// Compares the energy that the new segments released by their K with what the plate did.
+    fn compare_energies(&mut self, step: &Increment, cycles: f64) {
+        let ((now, work_now), (before, work), growths) = (self.energies(), &step.before, step.growths());
+        let of_tip = |((growth, [then, offset_then]), [now, offset]): ((&f64, &[f64; 2]), [f64; 2])| {
+            0.5 * (then + now) * (growth + offset - offset_then)
+        };
+        let released: f64 = growths.iter().zip(before).zip(now).map(of_tip).sum();
+        let length_less = |growths: &[f64]| {
+            let growths: Vec<f64> = self.state.tips.iter().zip(growths).map(|(tip, growth)| tip.growth - growth).collect();
+            self.case.specimen.crack_length_after(&growths)
+        };
+        let length = length_less(&vec![0.0; growths.len()]);
+        let block = ReleasedEnergy {
+            of_tips: self.case.specimen.thickness * released,
+            of_plate: 0.5 * (work_now - work),
+            growth: growths.iter().sum(),
+            lengthening: length - length_less(&growths),
+            cycles,
+        };
+        self.state.balance.take(block, length, self.plate.body.horizon());
+    }
+
+    /// Joins cracks that have met, and lets the tips that are left forget what they were: the crack that they end is another one.
+    fn join(&mut self, segments: &[Option<Segment>]) {
+        let reach = JOINED_HORIZONS * self.plate.body.horizon();
+        for (tip, segment) in segments.iter().enumerate() {
+            let Some(Segment { from, to, meets: Some(met), .. }) = segment else { continue };
+            let heading = [to[0] - from[0], to[1] - from[1]];
+            let (own, lines) = (self.state.tips[tip].end.line, &self.state.lines);
+            for other in self.state.tips.iter_mut().filter(|other| other.end.line == *met && other.end.line != own) {
+                let line = &lines[other.end.line];
+                let [x, y] = line.direction(other.end.at_last);
+                let faces = heading[0] * x + heading[1] * y < 0.0;
+                if other.state == TipState::Active && faces && distance(line.end(other.end.at_last), *to) < reach {
+                    other.state = TipState::LinkedUp;
+                }
+            }
+        }
+        self.state.tips.iter_mut().for_each(Tip::forget_history);
+    }
+
+    /// The next segment of crack at a tip: straight on, up to a rim or another crack if one lies on the way or right beside its end.
+    fn segment(&self, tip: &Tip, length: f64) -> Segment {
+        let (specimen, lines, body) = (&self.case.specimen, &self.state.lines, &self.plate.body);
+        let spacing = body.lattice.spacing;
+        let (from, ahead) = (self.position(tip), lines[tip.end.line].direction(tip.end.at_last));
+        let direction = tip.steering.direction(tip.growth, length, ahead, body.horizon());
+        let at = |length: f64| [0, 1].map(|i| from[i] + length * direction[i]);
+        let (reach, next) = (at(length + THROUGH_SPACINGS * spacing), at(length));
+        let near = ahead::first_rim(specimen, lines, tip.end.line, from, reach)
+            .map(|(share, what)| (along(from, reach, share), what))
+            .or_else(|| ahead::beside(specimen, lines, tip.end.line, next, BESIDE_SPACINGS * spacing));
+        near.map_or(Segment { from, to: next, state: TipState::Active, meets: None }, |(to, what)| Segment {
+            from,
+            to,
+            state: what.state,
+            meets: what.crack,
+        })
+    }
+
+    /// Bonds beside the flanks of the cracks that are cut; gives those that changed.
+    pub(super) fn correct_flanks(&mut self, lines: &[CrackLine], range: FlankRange) -> Vec<Bond> {
+        let is_balanced = self.case.model.bond_law.surface_correction == SurfaceCorrection::Balanced;
+        if !is_balanced || self.plate.is_of_levels() {
+            return Vec::new();
+        }
+        let end = |tip: &Tip| lines[tip.end.line].end(tip.end.at_last);
+        let ends: Vec<Point> = self.state.tips.iter().map(end).collect();
+        let tips: Vec<Point> = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).map(end).collect();
+        let body = &self.plate.body;
+        let changed = flanks::multipliers(body, &self.bonds.multiplier, lines, &tips, &ends, range);
+        changed.iter().for_each(|&(bond, multiplier)| self.bonds.set(body, bond, multiplier));
+        changed.into_iter().map(|(bond, _)| bond).collect()
+    }
+
+    /// Equilibrium after bonds were cut or corrected; the displacement stays as it was where there is none.
+    pub(super) fn settle(&mut self, changed: &[Bond]) -> Result<()> {
+        let plate = self.plate.clone();
+        let body = &plate.body;
+        self.equilibrium.bonds_changed(body, &self.bonds, changed);
+        let before = self.displacement.clone();
+        match self.equilibrium.solve(body, &self.bonds, &mut self.displacement) {
+            Ok(iterations) => self.iterations += iterations,
+            Err(error) => {
+                self.displacement = before;
+                return Err(error);
+            }
+        }
+        self.solves += 1;
+        Ok(())
+    }
+}
+
+/// Bonds that a new segment crosses, in the sense of its line, so that points on it stay on one side; beyond a rim, all
+/// that is left of it.
+fn across(body: &Body, segment: &Segment, at_last: bool) -> Vec<Bond> {
+    let Segment { from, to, state, .. } = *segment;
+    let beyond = if state == TipState::Active { 0.0 } else { body.lattice.spacing };
+    let length = distance(from, to).max(f64::MIN_POSITIVE);
+    let end = along(from, to, 1.0 + beyond / length);
+    if at_last { bonds_across(body, from, end) } else { bonds_across(body, end, from) }
+}
