@@ -62,7 +62,7 @@ pub struct FitReport {
     pub delta_k_max_mpa_sqrt_m: f64,
     /// Each specimen with its own fit.
     pub specimens: Vec<SpecimenReport>,
-    /// True runs of the model.
+    /// How often K(a) was computed: once, whatever is fitted to it.
     pub evaluations: usize,
     /// Wall time.
     pub wall_s: f64,
@@ -121,7 +121,7 @@ impl FitReport {
             delta_k_min_mpa_sqrt_m: fit.paris.delta_k_min,
             delta_k_max_mpa_sqrt_m: fit.paris.delta_k_max,
             specimens: fit.specimens.iter().map(SpecimenReport::new).collect(),
-            evaluations: fit.evaluations,
+            evaluations: 1,
             wall_s,
             warnings: calibration.warnings.iter().chain(&fit.warnings).cloned().collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
