@@ -1,62 +1,43 @@
-//! A calibration from its file to the fit, by the model that `model.method` names.
+//! A calibration from its file to the fit: K(a) of one peridynamic run or of the handbook, and the law fitted to it.
 
+use crate::calibration::bond_constants::in_terms_of_bonds;
 use crate::calibration::case::CalibrationCase;
-use crate::calibration::field_model::{FieldModel, in_terms_of_bonds};
-use crate::calibration::finished::FinishedRuns;
 use crate::calibration::fit::{Fit, FitTask, fit};
-use crate::calibration::model::ForwardModel;
-use crate::calibration::pd_model::{KeepRuns, PdModel};
 use crate::calibration::power_law::PowerLaw;
 use crate::case::Method;
 use crate::error::Result;
-use crate::fatigue::GrowthRate;
 use crate::predict::Observer;
-use crate::predict::bond_rate::ReferenceModel;
+use crate::predict::factor_curve::FactorCurve;
 
 /// Fits the constants of a calibration: A and p of bonds, or (method `handbook`) C and m of hand calculation.
+///
+/// A standard specimen has one K(a) whatever its growth law, so one run whose crack is driven by its tip serves every C and m; A and p
+/// stand for them.
 ///
 /// # Errors
 /// Mechanics without a result, or a window in which the handbook has no K.
 pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Result<Fit> {
-    calibrate_from(calibration, FinishedRuns::default(), &|_| {}, observer)
-}
-
-/// [`calibrate`] with runs that an earlier one finished before it was broken off; `keep` is told of them and of every new one.
-/// The fit is the same.
-///
-/// # Errors
-/// As [`calibrate`]; runs of another calibration.
-pub fn calibrate_from(
-    calibration: &CalibrationCase,
-    finished: FinishedRuns,
-    keep: KeepRuns<'_>,
-    observer: &dyn Observer,
-) -> Result<Fit> {
     let delta_k = |length: f64| calibration.delta_k(length);
-    let finished = finished.checked(calibration)?;
     let task = FitTask {
         curves: &calibration.curves,
         fixed_p: calibration.exponent.fixed,
         criterion: calibration.criterion,
         delta_k: &delta_k,
     };
-    let fit_with = |model: &dyn ForwardModel| fit(&task, model);
     let case = &calibration.case;
+    let (from, to) = (case.specimen.crack_length, case.stop.crack_length);
     match case.model.method {
-        Method::Peridynamics if case.is_driven_by_tips() => {
-            let mut fit = fit_with(&FieldModel::new(case, observer)?)?;
-            in_terms_of_bonds(&mut fit, case)?;
-            Ok(fit)
-        }
         Method::Peridynamics => {
-            let mut fit = fit_with(&PdModel::with_finished(case, finished, keep, observer)?)?;
-            if case.fatigue.growth_rate == GrowthRate::StressIntensity {
-                fit.rate_constant = Some(ReferenceModel::of(&case.model).rate_constant(fit.record.constants.p)?);
-            }
+            let factors = FactorCurve::of(case, observer)?;
+            let of_field = |length: f64| case.loading.range_share() * factors.at(length);
+            let mut fit = fit(&task, &PowerLaw::new(from, to, &of_field)?)?;
+            in_terms_of_bonds(&mut fit, case, factors.figures.horizon)?;
+            fit.spacing = factors.figures.spacing;
+            fit.warnings.extend(factors.warnings);
             Ok(fit)
         }
         Method::Handbook => {
-            let mut fit = fit_with(&PowerLaw::new(case.specimen.crack_length, case.stop.crack_length, &delta_k)?)?;
+            let mut fit = fit(&task, &PowerLaw::new(from, to, &delta_k)?)?;
             // The fitted constants are C and m themselves; no line has to be drawn through rates.
             fit.paris = fit.paris.of_power_law(fit.record.constants, fit.p_error());
             Ok(fit)

@@ -12,6 +12,7 @@ use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurv
 use crate::calibration::record::SourceFile;
 use crate::case::{Case, LAW_KEYS, LawSource, Method};
 use crate::error::{input, input_missing};
+use crate::fatigue::{Ageing, GrowthRate};
 use crate::input::{Document, Folder, LENGTH, slice};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
@@ -106,6 +107,7 @@ impl CalibrationCase {
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
         }
         check_walker(&case)?;
+        check_growth_rate(&case)?;
         let formula = handbook(&case.specimen).ok_or_else(|| {
             input(
                 "specimen.kind",
@@ -129,8 +131,6 @@ impl CalibrationCase {
         warnings.extend(exponent.warning.clone());
         let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
         case.stop.crack_length = longest;
-        // A run for A = 1 counts A x cycles, which no limit in cycles is meant for.
-        case.stop.cycles_max = f64::INFINITY;
         case.material.toughness = None;
         case.material.yield_strength = None;
         warnings.extend(unrecorded(&case));
@@ -170,9 +170,23 @@ fn check_walker(case: &Case) -> crate::Result<()> {
     ))
 }
 
-/// What shapes the fit and stands in no record, so that cases have to repeat it.
+/// A and p stand for C and m of the rate over K; bonds left to their own strains grow a crack at another one, which depends on lattice
+/// and horizon.
+fn check_growth_rate(case: &Case) -> crate::Result<()> {
+    if !case.spends_bond_life() || case.fatigue.growth_rate == GrowthRate::StressIntensity {
+        return Ok(());
+    }
+    let problem = "cannot be given to a calibration: A and p are constants of the growth rate over K";
+    Err(match case.fatigue.ageing {
+        Ageing::Everywhere => input("fatigue.ageing", "\"everywhere\"", problem, "use ageing = \"crack_tip\""),
+        Ageing::CrackTip => input("fatigue.growth_rate", "\"bond_strain\"", problem, "use growth_rate = \"stress_intensity\""),
+    })
+}
+
+/// A threshold shapes no fit, since cracks grew in all of it, and stands in no record.
 fn unrecorded(case: &Case) -> Option<String> {
-    let line = "fatigue.delta_k_threshold_mpa_sqrt_m shapes the fit but stands in no record: give the same in cases that use it";
+    let line =
+        "fatigue.delta_k_threshold_mpa_sqrt_m does not shape the fit and stands in no record: give it in cases that use the fit";
     (case.fatigue.threshold > 0.0).then(|| line.to_owned())
 }
 

@@ -1,26 +1,20 @@
-//! The calibration on one page: from measured curves and a forward model to A, p and how sure they are.
+//! The calibration on one page: from measured curves and K of a growing crack to A, p and how sure they are.
 
 use crate::calibration::confidence::{Confidence, Lives, confidence};
 use crate::calibration::criterion::Criterion;
 use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::pointwise_median;
 use crate::calibration::misfit::rms_life_error;
-use crate::calibration::model::{ForwardModel, cycles_since_first};
 use crate::calibration::paris::{self, Paris};
 use crate::calibration::power_law::PowerLaw;
 use crate::calibration::rates::STEP_MIN;
-use crate::calibration::search::{
-    Constants, Found, P_MAX, P_MIN, Runs, Target, first_exponents, search, search_a, search_each, search_each_a,
-};
-use crate::calibration::surrogate::Surrogate;
-use crate::error::{Result, input};
+use crate::calibration::search::{Constants, Target, is_at_end, search, search_a};
+use crate::error::{Error, Result, input};
+use crate::fatigue::STEADY_EXPONENTS;
 use crate::units::MM;
 
 /// Below this ratio of the largest to the smallest ΔK a curve does not say what p is.
 pub const DELTA_K_RATIO_MIN: f64 = 2.0;
-
-/// First guess of p where hand calculation gives none: the Paris exponent of most metals.
-const P_START: f64 = 3.0;
 
 /// What is fitted to what.
 pub struct FitTask<'a> {
@@ -60,135 +54,103 @@ pub struct Fit {
     pub confidence: Confidence,
     /// Paris equivalents of the record.
     pub paris: Paris,
-    /// β of the record's exponent, where cracks grew by K ([`crate::predict::bond_rate`]).
+    /// β of the record's exponent ([`crate::predict::bond_rate`]), where A is that of bonds.
     pub rate_constant: Option<f64>,
-    /// Horizon that A belongs to, m.
+    /// Horizon that A belongs to, m; NaN where K is that of a handbook.
     pub horizon: f64,
-    /// Actual lattice spacing, m.
+    /// Actual lattice spacing, m; NaN where K is that of a handbook.
     pub spacing: f64,
-    /// True runs of the model.
-    pub evaluations: usize,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
 
 /// Fits A and p to the pointwise median, and again to each specimen.
-pub fn fit(task: &FitTask<'_>, model: &dyn ForwardModel) -> Result<Fit> {
+///
+/// # Errors
+/// Curves without common lengths; readings outside the table of ΔK; [`Error::Mechanics`] where the smallest misfit of the median
+/// lies at an end of the exponents searched.
+pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
+    let fixed_p = task.fixed_p.map(checked_p).transpose()?;
     let mut median = pointwise_median(task.curves)?;
     median.cycles = since_first(&median);
-    let target = target_of(&median, task.criterion);
-    let found = match task.fixed_p {
-        Some(p) => search_a(model, target, checked_p(p)?)?,
-        None => search(model, target, first_exponents_of(task, target))?,
+    let record = fit_one(&median, task.criterion, fixed_p, law)?;
+    let Constants { a, p } = record.constants;
+    let is_fitted = fixed_p.is_none();
+    if is_fitted && is_at_end(p) {
+        return Err(Error::Mechanics(format!(
+            "{}: {}; check the units of the readings and the load, narrow the window (measured.from_crack_length_mm and \
+             to_crack_length_mm), or fix p by [fit] parameters = [\"a\"] and p = ...",
+            record.name,
+            at_end(p)
+        )));
+    }
+    let mut warnings = Vec::new();
+    let specimens: Vec<FittedCurve> = match task.curves.len() {
+        1 => vec![record.clone()],
+        _ => task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?,
     };
-    let Found { constants, mut runs, mut warnings } = found;
-    let (_, last_run) = &runs[runs.len() - 1]; // a search makes at least one run
-    let (horizon, spacing, coarseness) = (last_run.horizon, last_run.spacing, last_run.coarseness);
-    warnings.extend(last_run.warnings.iter().cloned());
-    let model_cycles = cycles_since_first(&last_run.curve, target.lengths)?;
-    let record = fitted_curve(&median, constants, &model_cycles);
-    let rate_lengths = paris::lengths(median.crack_length[0], longest(&median));
-    let rate_cycles = cycles_since_first(&last_run.curve, &rate_lengths)?;
+    let at_ends = specimens.iter().filter(|curve| is_fitted && is_at_end(curve.constants.p));
+    warnings.extend(at_ends.map(|curve| format!("specimen {}: {}", curve.name, at_end(curve.constants.p))));
+    warnings.extend(short_steps_warning(&median.crack_length));
 
-    let each = fit_each(task, model, constants, &mut runs)?;
-    let slopes = |lengths: &[f64]| -> Result<Option<Vec<f64>>> {
-        Ok(match task.fixed_p {
-            Some(_) => None,
-            None => Some(Surrogate::new(&runs, lengths)?.cycles_per_p(constants.p)),
-        })
-    };
-    let apart = readings_apart(target.lengths, coarseness.max(STEP_MIN));
-    warnings.extend(short_steps_warning(target.lengths));
-    let pick = |values: &[f64]| apart.iter().map(|&i| values[i]).collect::<Vec<f64>>();
-    let slopes_apart = slopes(target.lengths)?.map(|slopes| pick(&slopes));
-    let confidence = confidence(
-        task.criterion,
-        &Lives { model: &pick(&model_cycles), model_per_p: slopes_apart.as_deref(), measured: &pick(target.cycles) },
-        1.0 / constants.a,
-    );
-    let paris = paris::equivalents(
-        &rate_lengths,
-        &rate_cycles,
-        slopes(&rate_lengths)?.as_deref(),
-        constants.a,
-        confidence.covariance,
-        task.delta_k,
-    )?;
+    let per_p = |lengths: &[f64]| is_fitted.then(|| law.cycles_per_p(p, lengths)).transpose();
+    let apart = readings_apart(&median.crack_length);
+    let lengths: Vec<f64> = apart.iter().map(|&i| median.crack_length[i]).collect();
+    let measured: Vec<f64> = apart.iter().map(|&i| median.cycles[i]).collect();
+    let (model, model_per_p) = (law.cycles(p, &lengths)?, per_p(&lengths)?);
+    let lives = Lives { model: &model, model_per_p: model_per_p.as_deref(), measured: &measured };
+    let confidence = confidence(task.criterion, &lives, 1.0 / a);
+    let lengths = paris::lengths(median.crack_length[0], longest(&median));
+    let (model, model_per_p) = (law.cycles(p, &lengths)?, per_p(&lengths)?);
+    let paris = paris::equivalents(&lengths, &model, model_per_p.as_deref(), a, confidence.covariance, task.delta_k)?;
     let ratio = paris.delta_k_max / paris.delta_k_min;
-    if task.fixed_p.is_none() && ratio < DELTA_K_RATIO_MIN {
+    if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
             "p is not identified: the fit window spans only a factor {ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} is needed); \
              widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
-    Ok(Fit {
-        record,
-        specimens: each,
-        confidence,
-        paris,
-        rate_constant: None,
-        horizon,
-        spacing,
-        evaluations: runs.len(),
-        warnings,
+    let (rate_constant, horizon, spacing) = (None, f64::NAN, f64::NAN);
+    Ok(Fit { record, specimens, confidence, paris, rate_constant, horizon, spacing, warnings })
+}
+
+/// Fits one curve: A and p, or A at a fixed p.
+fn fit_one(curve: &MeasuredCurve, criterion: Criterion, fixed_p: Option<f64>, law: &PowerLaw) -> Result<FittedCurve> {
+    let cycles_measured = since_first(curve);
+    let target = Target { cycles: &cycles_measured, lengths: &curve.crack_length, criterion };
+    let constants = fixed_p.map_or_else(|| search(law, target), |p| search_a(law, target, p))?;
+    let model = law.cycles(constants.p, target.lengths)?;
+    Ok(FittedCurve {
+        name: curve.specimen.clone(),
+        constants,
+        crack_length: curve.crack_length.clone(),
+        cycles_fitted: model.iter().map(|n| n / constants.a).collect(),
+        cycles_measured,
     })
 }
 
-/// Each specimen's own fit, reusing (and where needed adding to) the true runs; of a single specimen the record's.
-fn fit_each(task: &FitTask<'_>, model: &dyn ForwardModel, record: Constants, runs: &mut Runs) -> Result<Vec<FittedCurve>> {
-    let targets: Vec<(Vec<f64>, &MeasuredCurve)> = task.curves.iter().map(|curve| (since_first(curve), curve)).collect();
-    let targets: Vec<Target<'_>> = targets
-        .iter()
-        .map(|(cycles, curve)| Target { cycles, lengths: &curve.crack_length, criterion: task.criterion })
-        .collect();
-    let constants = match (task.fixed_p, task.curves.len()) {
-        (_, 1) => vec![record],
-        (Some(_), _) => search_each_a(&targets, runs)?,
-        (None, _) => search_each(model, &targets, runs)?,
-    };
-    let mut fits = Vec::with_capacity(constants.len());
-    for (curve, constants) in task.curves.iter().zip(constants) {
-        // The true run where this p has one, else what the true runs interpolate.
-        let model_cycles = match runs.iter().find(|(p, _)| *p == constants.p) {
-            Some((_, run)) => cycles_since_first(&run.curve, &curve.crack_length)?,
-            None => Surrogate::new(runs, &curve.crack_length)?.cycles(constants.p),
-        };
-        fits.push(fitted_curve(curve, constants, &model_cycles));
-    }
-    Ok(fits)
-}
-
-/// Exponents of the first runs, for the median and the specimens behind it.
-fn first_exponents_of(task: &FitTask<'_>, median: Target<'_>) -> Vec<f64> {
-    let of_specimen = |curve: &MeasuredCurve| {
-        let cycles = since_first(curve);
-        start_of(Target { cycles: &cycles, lengths: &curve.crack_length, criterion: task.criterion }, task.delta_k)
-    };
-    let specimens: &[MeasuredCurve] = if task.curves.len() > 1 { task.curves } else { &[] };
-    first_exponents(start_of(median, task.delta_k), specimens.iter().map(of_specimen))
-}
-
-/// First guess of p: the Paris exponent that hand calculation with the handbook's ΔK fits to the same curve.
-fn start_of(target: Target<'_>, delta_k: &dyn Fn(f64) -> f64) -> f64 {
-    let to = target.lengths.iter().copied().fold(0.0, f64::max);
-    let by_hand = PowerLaw::new(target.lengths[0], to, delta_k).and_then(|law| search(&law, target, vec![P_START]));
-    // A guess may fail: the search then starts from the usual exponent.
-    by_hand.map_or(P_START, |found| found.constants.p)
+/// What it means that a searched p is an end of its range.
+fn at_end(p: f64) -> String {
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    format!(
+        "the misfit is smallest at p = {p:.3}, an end of the range searched, {low} to {high}: the curve does not follow the law"
+    )
 }
 
 fn checked_p(p: f64) -> Result<f64> {
-    if (P_MIN..=P_MAX).contains(&p) {
+    if STEADY_EXPONENTS.contains(&p) {
         return Ok(p);
     }
-    Err(input("fit.p", p, format!("is outside {P_MIN} to {P_MAX}"), "give the exponent of the growth law, usually 2 to 4"))
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    Err(input("fit.p", p, format!("is outside {low} to {high}"), "give the exponent of the growth law, usually 2 to 4"))
 }
 
-/// Readings at least `least` of growth apart, m, the first among them. Shorter increments say nothing about the scatter of growth: in
-/// them the steps of the model and the reading error of the laboratory show.
-fn readings_apart(lengths: &[f64], least: f64) -> Vec<usize> {
+/// Readings at least [`STEP_MIN`] of growth apart, the first among them. Shorter increments say nothing about the scatter of growth: in
+/// them the reading error of the laboratory shows.
+fn readings_apart(lengths: &[f64]) -> Vec<usize> {
     let mut apart: Vec<usize> = Vec::new();
     for (i, &length) in lengths.iter().enumerate() {
-        if apart.last().is_none_or(|&last| length >= lengths[last] + least * (1.0 - 1e-9)) {
+        if apart.last().is_none_or(|&last| length >= lengths[last] + STEP_MIN * (1.0 - 1e-9)) {
             apart.push(i);
         }
     }
@@ -212,22 +174,8 @@ fn since_first(curve: &MeasuredCurve) -> Vec<f64> {
     curve.cycles.iter().map(|n| n - curve.cycles[0]).collect()
 }
 
-fn target_of(curve: &MeasuredCurve, criterion: Criterion) -> Target<'_> {
-    Target { cycles: &curve.cycles, lengths: &curve.crack_length, criterion }
-}
-
 fn longest(curve: &MeasuredCurve) -> f64 {
     curve.crack_length.iter().copied().fold(0.0, f64::max)
-}
-
-fn fitted_curve(curve: &MeasuredCurve, constants: Constants, model_cycles: &[f64]) -> FittedCurve {
-    FittedCurve {
-        name: curve.specimen.clone(),
-        constants,
-        crack_length: curve.crack_length.clone(),
-        cycles_measured: since_first(curve),
-        cycles_fitted: model_cycles.iter().map(|n| n / constants.a).collect(),
-    }
 }
 
 impl Fit {

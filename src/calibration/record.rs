@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fatigue::GrowthRate;
+use crate::fatigue::BlockKind;
 
 /// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,17 +21,16 @@ pub struct FittedRecord {
     pub horizon_ratio: f64,
     /// How A moves to another horizon, in words.
     pub scaling: String,
-    /// β of da/dN = β A δ^(1-p/2) (ΔK/E')^p, K by the field of the tip: what the crack that was fitted to grew by. Absent where it
-    /// grew as bonds were spent, and in records of older versions: C and m then stand for its rate.
+    /// β of da/dN = β A δ^(1-p/2) (ΔK/E')^p, K by the field of the tip: what the crack that was fitted to grew by. Absent in a record of
+    /// `handbook`, which has no A.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_constant: Option<f64>,
     /// Paris constant of the same material: da/dN = C ΔK^m in mm/cycle and MPa√m.
     pub paris_c_mm_per_cycle: f64,
     /// Paris exponent m (not the same as p).
     pub paris_m: f64,
-    /// Standard error of m; absent in records of older versions.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub paris_m_error: Option<f64>,
+    /// Standard error of m.
+    pub paris_m_error: f64,
     /// ΔK at which the fit is best determined.
     pub pivot_delta_k_mpa_sqrt_m: f64,
     /// da/dN there.
@@ -47,7 +46,6 @@ pub struct FittedRecord {
     /// Stress ratio of the tests.
     pub stress_ratio: f64,
     /// `model.method` of the fit. A record of `handbook` holds C and m; its a, horizon_mm and spacing_mm are nan.
-    #[serde(default = "peridynamics")]
     pub method: String,
     /// `model.bond_law`.
     pub bond_law: String,
@@ -61,11 +59,11 @@ pub struct FittedRecord {
     pub ageing: String,
     /// `fatigue.zone_radius_horizons`.
     pub zone_radius_horizons: f64,
-    /// `fatigue.growth_rate`. Records without one are of versions whose bonds aged by corrected strains: their C and m count.
-    #[serde(default = "stress_intensity")]
-    pub growth_rate: String,
     /// `fatigue.precrack`.
     pub precrack: String,
+    /// `fatigue.block` of the runs of the fit; another choice here is free, since blocks are a matter of error, not of model.
+    #[serde(default = "until_next_break")]
+    pub block: String,
     /// Young's modulus of the calibration.
     pub youngs_modulus_gpa: f64,
     /// Poisson's ratio of the calibration.
@@ -82,13 +80,9 @@ pub struct FittedRecord {
     pub sources: Vec<SourceFile>,
 }
 
-fn stress_intensity() -> String {
-    GrowthRate::StressIntensity.name().to_owned()
-}
-
-/// The method of records that do not name theirs.
-fn peridynamics() -> String {
-    crate::case::Method::Peridynamics.name().to_owned()
+/// The blocks of records from before they were controlled.
+fn until_next_break() -> String {
+    BlockKind::UntilNextBreak.name().to_owned()
 }
 
 /// A measured file a record was fitted to.

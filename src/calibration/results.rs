@@ -61,7 +61,7 @@ pub struct FitReport {
     pub delta_k_max_mpa_sqrt_m: f64,
     /// Each specimen with its own fit.
     pub specimens: Vec<SpecimenReport>,
-    /// True runs of the model.
+    /// How often K(a) was computed: once, whatever is fitted to it.
     pub evaluations: usize,
     /// Wall time.
     pub wall_s: f64,
@@ -120,7 +120,7 @@ impl FitReport {
             delta_k_min_mpa_sqrt_m: fit.paris.delta_k_min,
             delta_k_max_mpa_sqrt_m: fit.paris.delta_k_max,
             specimens: fit.specimens.iter().map(SpecimenReport::new).collect(),
-            evaluations: fit.evaluations,
+            evaluations: 1,
             wall_s,
             warnings: calibration.warnings.iter().chain(&fit.warnings).cloned().collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -170,7 +170,7 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         rate_constant: fit.rate_constant,
         paris_c_mm_per_cycle: fit.paris.c,
         paris_m: fit.paris.m,
-        paris_m_error: Some(fit.paris.m_error.max(calibration.exponent.error)),
+        paris_m_error: fit.paris.m_error.max(calibration.exponent.error),
         pivot_delta_k_mpa_sqrt_m: fit.paris.pivot,
         rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
         rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
@@ -183,7 +183,6 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         rotation: case.model.bond_law.rotation.name().to_owned(),
         surface_correction: case.model.bond_law.surface_correction.name().to_owned(),
         ageing: case.fatigue.ageing.name().to_owned(),
-        growth_rate: case.fatigue.growth_rate.name().to_owned(),
         zone_radius_horizons: case.fatigue.zone_radius_horizons,
         precrack: case.fatigue.precrack.name().to_owned(),
         youngs_modulus_gpa: tidy(case.material.youngs_modulus / GPA),

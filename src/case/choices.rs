@@ -1,7 +1,7 @@
 //! Choices of a case that have one built value so far, and what a case chose by itself.
 
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use crate::fatigue::{Ageing, GrowthRate};
+use crate::fatigue::Ageing;
 
 crate::kinds! {
     /// Numerical methods.
@@ -31,8 +31,6 @@ pub struct Choices {
     pub surface_correction: Option<SurfaceCorrection>,
     /// `model.horizon_ratio`.
     pub horizon_ratio: Option<f64>,
-    /// `fatigue.growth_rate`.
-    pub growth_rate: Option<GrowthRate>,
     /// `fatigue.ageing`.
     pub ageing: Option<Ageing>,
     /// `fatigue.zone_radius_horizons`.

@@ -77,7 +77,6 @@ pub(super) fn from_value(
 ) -> Result<Fatigue> {
     let input: Input = slice(value, "fatigue")?;
     choices.ageing = input.ageing;
-    choices.growth_rate = input.growth_rate;
     choices.zone_radius_horizons =
         number("a radius in horizons", 0.05, 10.0).read_optional("fatigue.zone_radius_horizons", input.zone_radius_horizons)?;
     choices.walker_gamma = number("a Walker exponent", 0.0, 2.0).read_optional("fatigue.walker_gamma", input.walker_gamma)?;

@@ -20,6 +20,8 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
     if Method::from_str(&record.method)? == Method::Peridynamics {
         number("a constant in 1/cycle", 1e-60, 1e100).read("a", record.a)?;
         LENGTH.read("horizon_mm", record.horizon_mm)?;
+        let beta = record.rate_constant.ok_or_else(|| input_missing("rate_constant", "is missing", "calibrate again"))?;
+        number("a rate constant", 1e-60, 1e100).read("rate_constant", beta)?;
     }
     MODULUS.read("youngs_modulus_gpa", record.youngs_modulus_gpa)?;
     number("a Poisson's ratio", 0.0, 0.499).read("poisson_ratio", record.poisson_ratio)?;
@@ -50,11 +52,7 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
     law.kind = agree("model.bond_law", choices.bond_law, &record.bond_law)?;
     law.kernel = agree("model.kernel", choices.kernel, &record.kernel)?;
     law.rotation = agree("model.rotation", choices.rotation, &record.rotation)?;
-    let correction = agree("model.surface_correction", choices.surface_correction, &record.surface_correction)?;
-    // A record of bonds that aged tells C and m, and K of a tip is read best with the default of its driver.
-    if case.fatigue.driver == Driver::BondStrain || record.rate_constant.is_some() || choices.surface_correction.is_some() {
-        law.surface_correction = correction;
-    }
+    law.surface_correction = agree("model.surface_correction", choices.surface_correction, &record.surface_correction)?;
     case.model.horizon_ratio = choices.horizon_ratio.unwrap_or(record.horizon_ratio);
     if case.spends_bond_life() {
         adopt_ageing(case, &record)?;
@@ -68,8 +66,6 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
 fn adopt_ageing(case: &mut Case, record: &FittedRecord) -> Result<()> {
     let choices = case.choices;
     case.fatigue.ageing = agree("fatigue.ageing", choices.ageing, &record.ageing)?;
-    // A of the one stands for that of the other.
-    case.fatigue.growth_rate = choices.growth_rate.map_or_else(|| record.growth_rate.parse(), Ok)?;
     if let Some(given) = choices.zone_radius_horizons
         && (given - record.zone_radius_horizons).abs() > 1e-9
     {

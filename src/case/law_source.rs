@@ -176,18 +176,13 @@ fn read_record(name: &str, folder: &Folder) -> Result<LawSource> {
     }
 }
 
-/// Keys of records whose bonds aged by corrected strains: what counts of these is C and m.
-const KEYS_OF_OLDER_VERSIONS: [&str; 2] = ["lattice_direction", "finite_horizon"];
-
 /// Reads and checks a `fitted.toml`.
 ///
 /// # Errors
 /// A file that cannot be read, or is no such record.
 pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
     let document = folder.document(name)?;
-    let mut table = document.table.clone();
-    KEYS_OF_OLDER_VERSIONS.iter().for_each(|key| drop(table.remove(*key)));
-    let record = slice::<FittedRecord>(&Value::Table(table), "record").and_then(|record| {
+    let record = slice::<FittedRecord>(&Value::Table(document.table.clone()), "record").and_then(|record| {
         law::check_record(&record)?;
         Ok(record)
     });

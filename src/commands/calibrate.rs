@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::console::Console;
-use super::{checkpoint, predict};
+use super::predict;
+use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::{CalibrationCase, remove_law};
 use crate::calibration::record::FittedRecord;
 use crate::calibration::results::{FitReport, record};
@@ -33,9 +34,6 @@ pub struct Args {
     /// Override a key of the calibration file (repeatable), e.g. --set model.spacing_mm=2
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
-    /// Keeping the fit for later.
-    #[command(flatten)]
-    pub keeping: checkpoint::FitArgs,
     /// What is printed.
     #[command(flatten)]
     pub console: Console,
@@ -55,7 +53,7 @@ pub fn run(args: &Args) -> Result<()> {
         console.warn(warning);
     }
     let started = Instant::now();
-    let fitted = args.keeping.run(&calibration, console)?;
+    let fitted = calibrate(&calibration, &console.progress(&calibration.case.name))?;
     let report = FitReport::new(&calibration, &fitted, started.elapsed().as_secs_f64());
     for warning in &fitted.warnings {
         console.warn(warning);
@@ -63,7 +61,6 @@ pub fn run(args: &Args) -> Result<()> {
     let law = record(&calibration, &fitted);
     fit::write(folder.path(), &calibration, &fitted, &report, &law)?;
     folder.finish()?;
-    checkpoint::remove(args.keeping.checkpoint.as_deref())?;
     for line in summary(&report, &args.out) {
         console.say(&line);
     }
@@ -160,13 +157,7 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
             report.life_fitted,
             100.0 * report.rms_life_error
         ),
-        format!(
-            "  specimens      {}, with {} run{} of the model in {:.1} s",
-            report.specimens.len(),
-            report.evaluations,
-            if report.evaluations == 1 { "" } else { "s" },
-            report.wall_s
-        ),
+        format!("  specimens      {}, in {:.1} s", report.specimens.len(), report.wall_s),
         format!("  results        {}", out.display()),
     ]);
     lines

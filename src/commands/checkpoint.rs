@@ -1,4 +1,4 @@
-//! The checkpoint of a run or fit on disk: read when it begins, written now and then while it goes on, removed when it is done.
+//! The checkpoint of a run on disk: read when it begins, written now and then while it goes on, removed when it is done.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,10 +6,6 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::console::{Console, RunProgress};
-use crate::calibration::calibrate::{calibrate, calibrate_from};
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::finished::FinishedRuns;
-use crate::calibration::fit::Fit;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::checkpoint::Checkpoint;
@@ -67,58 +63,19 @@ impl Args {
     }
 }
 
-/// Options of a calibration.
-#[derive(Debug, Clone, Default, clap::Args)]
-#[command(next_help_heading = "Going on after an interruption")]
-pub struct FitArgs {
-    /// Keep the finished runs of the fit in this file, and go on from them if it is there; removed when the fit is done
-    #[arg(long, value_name = "FILE")]
-    pub checkpoint: Option<PathBuf>,
-}
-
-impl FitArgs {
-    /// Fits a calibration, from its finished runs if there are any.
-    ///
-    /// # Errors
-    /// As [`calibrate_from`]; a file that cannot be read, or holds no runs of this calibration.
-    pub fn run(&self, calibration: &CalibrationCase, console: &Console) -> Result<Fit> {
-        let progress = console.progress(&calibration.case.name);
-        let Some(path) = &self.checkpoint else { return calibrate(calibration, &progress) };
-        let known = |bytes: Vec<u8>| FinishedRuns::from_bytes(&bytes)?.checked(calibration);
-        let finished = contents(path)?.map(known).transpose().map_err(|error| error.in_file(path))?;
-        let file = Replaced::claim(path)?;
-        if let Some(finished) = &finished {
-            let runs =
-                if finished.len() == 1 { "1 finished run".to_owned() } else { format!("{} finished runs", finished.len()) };
-            console.note(&format!("{}: goes on from {}: {runs}", calibration.case.name, path.display()));
-        }
-        let keep = |runs: &FinishedRuns| {
-            if let Err(error) = file.write(&runs.to_bytes()) {
-                console.warn(&format!("{error}: the fit goes on, but what it has done cannot be kept"));
-            }
-        };
-        calibrate_from(calibration, finished.unwrap_or_default(), &keep, &progress)
-    }
-}
-
 /// The checkpoint of a case, if there is one.
 fn read(path: &Path, case: &Case) -> Result<Option<Checkpoint>> {
-    let Some(bytes) = contents(path)? else { return Ok(None) };
+    let bytes = match fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(Error::file(path, "cannot read", error)),
+    };
     let checkpoint = Checkpoint::from_bytes(&bytes)?;
     checkpoint.check(case)?;
     Ok(Some(checkpoint))
 }
 
-/// What a file holds, if it is there.
-fn contents(path: &Path) -> Result<Option<Vec<u8>>> {
-    match fs::read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(Error::file(path, "cannot read", error)),
-    }
-}
-
-/// Removes the file, if one was given, of a run or fit that is done.
+/// Removes the file, if one was given, of a run that is done.
 ///
 /// # Errors
 /// [`Error::File`] if it is there and cannot be removed.

@@ -146,7 +146,7 @@ fn dense(sparse: &[(u32, f64)], usual: f64, points: usize) -> Vec<f64> {
 }
 
 /// Hash of all that decides how the run of a case goes.
-pub(crate) fn hash(case: &Case) -> [u8; 32] {
+pub(super) fn hash(case: &Case) -> [u8; 32] {
     let Case { specimen, material, loading, model, fatigue, law, stop, .. } = case;
     // Debug output of floats says them to the last bit.
     let all = format!("{:?}", (specimen, material, loading, model, fatigue, law, stop));

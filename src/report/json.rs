@@ -141,10 +141,8 @@ const BEYOND_SPRINGS: &str = "chosen: springs alone cannot have this Poisson's r
 fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> String {
     let given = case.echo.get("model").and_then(|model| model.get(key)).is_some();
     let recorded = match &case.law {
-        LawSource::Fitted(record) => {
-            FIXED_BY_RECORD.contains(&key)
-                && (key != "surface_correction" || case.spends_bond_life() || record.rate_constant.is_some())
-        }
+        // A record of hand calculation fixes nothing.
+        LawSource::Fitted(record) => record.rate_constant.is_some() && FIXED_BY_RECORD.contains(&key),
         _ => false,
     };
     let source = match (given, recorded) {

@@ -124,11 +124,9 @@ impl LawScatter {
         let record = &self.record;
         let by_hand = Method::from_str(&record.method)? == Method::Handbook;
         let (change, more) = (ln_rate - record.rate_at_pivot_mm_per_cycle.ln(), p - record.p);
-        // m follows p as its error follows that of p; where those are not known, as theory says: one to one.
-        let m_per_p = match record.paris_m_error {
-            Some(m_error) if !by_hand && m_error > 0.0 && record.p_error > 0.0 => m_error / record.p_error,
-            _ => 1.0,
-        };
+        // m follows p as its error follows that of p; where there are none, as theory says: one to one.
+        let has_errors = !by_hand && record.paris_m_error > 0.0 && record.p_error > 0.0;
+        let m_per_p = if has_errors { record.paris_m_error / record.p_error } else { 1.0 };
         let m = record.paris_m + m_per_p * more;
         Ok(FittedRecord {
             a: record.a * (change - slope(record)? * more).exp(),
@@ -136,7 +134,7 @@ impl LawScatter {
             p,
             paris_c_mm_per_cycle: (ln_rate - m * record.pivot_delta_k_mpa_sqrt_m.ln()).exp(),
             paris_m: m,
-            paris_m_error: Some(0.0),
+            paris_m_error: 0.0,
             rate_at_pivot_mm_per_cycle: ln_rate.exp(),
             rate_at_pivot_relative_error: 0.0,
             p_error: 0.0,

@@ -118,36 +118,3 @@ fn places_and_times_for_a_checkpoint_are_checked_first() {
     assert_eq!(call(&["--checkpoint-every", "1"]).status.code(), Some(2));
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2, "nothing new stands there");
 }
-
-pub const CALIBRATION: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\n\
-    thickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.1\n\
-    [model]\nspacing_mm = 0.75\nsymmetry = \"off\"\n[fatigue]\ndriver = \"bond_strain\"\n";
-pub const READINGS: &str =
-    "cycles,crack_length_mm\n0,9\n20000,10\n37000,11\n51000,12\n63000,13\n73000,14\n82000,15.2\n89000,16.4\n95000,18\n";
-
-#[test]
-fn a_killed_calibration_goes_on_to_the_same_fit() {
-    let dir = tempdir().unwrap();
-    let folder = dir.path();
-    fs::write(folder.join("fit.toml"), CALIBRATION).unwrap();
-    fs::write(folder.join("curve.csv"), READINGS).unwrap();
-    let whole = perilife(folder, &["calibrate", "fit.toml", "--out", "whole"]);
-    assert!(whole.status.success(), "{}", texts(&whole).1);
-    let call = ["calibrate", "fit.toml", "--out", "fit", "--checkpoint", "run.ckpt"];
-    kill_midway(folder, &call);
-    assert!(!folder.join("fit").exists(), "no results of a fit that was killed");
-    let kept = fs::read(folder.join("run.ckpt")).unwrap();
-    // Of another curve, or of a prediction: refused, and left as it is.
-    fs::write(folder.join("curve.csv"), READINGS.replace("37000", "37001")).unwrap();
-    assert_refused(&perilife(folder, &call), 2, &["run.ckpt: belongs to another calibration", "remove it"]);
-    fs::write(folder.join("curve.csv"), READINGS).unwrap();
-    assert_eq!(fs::read(folder.join("run.ckpt")).unwrap(), kept);
-    let rest = perilife(folder, &call);
-    let (_, stderr) = texts(&rest);
-    assert!(rest.status.success() && stderr.contains("fit: goes on from run.ckpt: 1 finished run"), "{stderr}");
-    for file in ["fitted.toml", "fit_curves.csv", "fit_band.csv"] {
-        let [fit, whole] = ["fit", "whole"].map(|out| fs::read(folder.join(out).join(file)).unwrap());
-        assert!(fit == whole, "{file} differs");
-    }
-    assert!(!folder.join("run.ckpt").exists(), "it goes when the fit is done");
-}

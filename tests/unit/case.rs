@@ -27,10 +27,10 @@ fn record() -> FittedRecord {
         spacing_mm: 1.0,
         horizon_ratio: 3.015,
         scaling: "horizon".into(),
-        rate_constant: None,
+        rate_constant: Some(0.19),
         paris_c_mm_per_cycle: 1e-7,
         paris_m: 2.9,
-        paris_m_error: None,
+        paris_m_error: 0.03,
         pivot_delta_k_mpa_sqrt_m: 11.4,
         rate_at_pivot_mm_per_cycle: 1e-4,
         rate_at_pivot_relative_error: 0.01,
@@ -44,7 +44,6 @@ fn record() -> FittedRecord {
         surface_correction: "none".into(),
         ageing: "crack_tip".into(),
         zone_radius_horizons: 0.6,
-        growth_rate: "stress_intensity".into(),
         precrack: "steady_profile".into(),
         youngs_modulus_gpa: 73.1,
         poisson_ratio: 0.33,
@@ -109,11 +108,7 @@ fn a_silent_case_takes_the_models_of_the_record() {
     assert!((law.a / 5000.0 - 1.0).abs() < 1e-12 && law.p == 3.0);
     let tips = read(INLINE, &["fatigue.driver=tip_field"]).unwrap().with_law(record()).unwrap();
     assert_eq!(tips.model.bond_law.kernel, Kernel::Constant);
-    assert_eq!(
-        tips.model.bond_law.surface_correction,
-        SurfaceCorrection::Balanced,
-        "the record aged bonds: K has its own default"
-    );
+    assert_eq!(tips.model.bond_law.surface_correction, SurfaceCorrection::None);
 }
 
 #[test]

@@ -64,7 +64,7 @@ fn hand_calculation_finds_its_own_constants_and_predicts_with_them() {
 fn a_narrow_window_takes_p_from_a_record_or_says_that_it_is_not_identified() {
     let folder = tempdir().unwrap();
     let wide = calibration(&folder, WIDE, "").unwrap();
-    let law = FittedRecord { paris_m_error: Some(0.04), ..record(&wide, &calibrate(&wide, &Silent).unwrap()) };
+    let law = FittedRecord { paris_m_error: 0.04, ..record(&wide, &calibrate(&wide, &Silent).unwrap()) };
     fs::write(folder.path().join("fitted.toml"), toml::to_string(&law).unwrap()).unwrap();
     let report = |window, keys: &str| {
         let calibration = calibration(&folder, window, keys).unwrap();

@@ -1,14 +1,9 @@
 //! A run taken up from any of its checkpoints gives what the undisturbed run gives, bit for bit.
 
-use std::fmt::Write as _;
 use std::sync::Mutex;
 
 use perilife::Result;
-use perilife::calibration::calibrate::{calibrate, calibrate_from};
-use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::finished::FinishedRuns;
 use perilife::case::Case;
-use perilife::input::Folder;
 use perilife::predict::checkpoint::Checkpoint;
 use perilife::predict::{Observer, Prediction, Progress, Silent, predict, resume};
 
@@ -246,61 +241,4 @@ fn damaged_and_foreign_checkpoints_are_refused() {
     let mut renamed = own.clone();
     renamed.name = "renamed".to_owned();
     assert!(read(&bytes).belongs_to(&renamed));
-}
-
-/// Readings of a panel that the engine computed with p = 2.86, those of further specimens with other exponents.
-fn measured(exponents: &[f64]) -> CalibrationCase {
-    let mut table = "specimen,crack_length_mm,cycles\n".to_owned();
-    for p in exponents {
-        // The same rate at one strain for all.
-        let a = 6450.0 * 0.0035_f64.powf(2.86 - p);
-        let run =
-            predict(&case(PANEL, &["stop.crack_length_mm=26", &format!("fatigue.a={a}"), &format!("fatigue.p={p}")]), &Silent);
-        for row in run.unwrap().curve.iter().step_by(5) {
-            writeln!(table, "p{p},{},{}", row.crack_length * 1e3, row.cycles).unwrap();
-        }
-    }
-    let text = format!(
-        "[measured]\nfiles=[\"curves.csv\"]\nfrom_crack_length_mm=11\nto_crack_length_mm=24\n[specimen]\n{PANEL}\n\
-         [material]\nyoungs_modulus_gpa=72\npoisson_ratio=0.3\n[loading]\nstress_max_mpa=70\nstress_ratio=0.1\n\
-         [model]\nspacing_mm=1.5\n[fatigue]\ndriver=\"bond_strain\"\n"
-    );
-    CalibrationCase::from_text(&text, "panel", Folder::at_hand([("curves.csv".to_owned(), table.into_bytes())])).unwrap()
-}
-
-const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=90\nlength_mm=180\nthickness_mm=2\ncrack_length_mm=10\n";
-
-/// A calibration that was broken off after any of its runs makes only those that are left, and fits the same to the last bit.
-#[test]
-fn a_calibration_goes_on_to_the_same_fit() {
-    for exponents in [&[2.86][..], &[2.4, 2.86, 3.4]] {
-        let calibration = measured(exponents);
-        let kept: Mutex<Vec<Vec<u8>>> = Mutex::default();
-        let keep = |runs: &FinishedRuns| kept.lock().unwrap().push(runs.to_bytes());
-        let whole = calibrate_from(&calibration, FinishedRuns::default(), &keep, &Silent).unwrap();
-        let kept = kept.into_inner().unwrap();
-        let sizes: Vec<usize> = kept.iter().map(|bytes| bytes.len() / 1000).collect();
-        println!("{} specimens: {} runs, kept in {sizes:?} kB", exponents.len(), whole.evaluations);
-        assert!(whole.evaluations > 1 && kept.len() == whole.evaluations);
-        assert_eq!(calibrate(&calibration, &Silent).unwrap(), whole);
-        for bytes in &kept {
-            let finished = FinishedRuns::from_bytes(bytes).unwrap();
-            let before = finished.len();
-            let made = Mutex::new(0);
-            let keep = |_: &FinishedRuns| *made.lock().unwrap() += 1;
-            let fit = calibrate_from(&calibration, finished, &keep, &Silent).unwrap();
-            assert_eq!(fit, whole, "from {before} finished runs");
-            assert_eq!(made.into_inner().unwrap(), whole.evaluations - before, "runs made again");
-        }
-
-        let mut other = measured(&[2.86]);
-        other.case.loading.maximum *= 1.01;
-        let foreign = calibrate_from(&other, FinishedRuns::from_bytes(&kept[0]).unwrap(), &|_| {}, &Silent);
-        assert!(foreign.unwrap_err().to_string().contains("belongs to another calibration"));
-        let mut damaged = kept[0].clone();
-        *damaged.last_mut().unwrap() ^= 1;
-        assert!(FinishedRuns::from_bytes(&damaged).unwrap_err().to_string().contains("is damaged"));
-        // One kind of checkpoint is not taken for the other.
-        refused(Checkpoint::from_bytes(&kept[0]), "is no checkpoint");
-    }
 }

@@ -92,10 +92,10 @@ pub fn url_of_file(path: &Path) -> String {
 }
 
 impl Store {
-    /// Connects to `sqlite://FILE` or `postgres://...` and brings the tables up to date.
+    /// Connects to `sqlite://FILE` or `postgres://...` and lays the tables in a new database.
     ///
     /// # Errors
-    /// Another kind of URL; a database that cannot be reached or was made by a later version of this program.
+    /// Another kind of URL; a database that cannot be reached or was made by another version of this program.
     pub async fn open(url: &str, connections: u32) -> Result<Store> {
         sqlx::any::install_default_drivers();
         let dialect = match url.split(':').next() {
@@ -130,7 +130,7 @@ impl Store {
             .connect(url)
             .await?;
         let store = Store { pool, dialect };
-        store.migrate().await?;
+        store.lay_tables().await?;
         Ok(store)
     }
 

@@ -7,10 +7,9 @@ use std::time::Duration;
 use axum::http::StatusCode;
 
 use super::results::{Results, of_fit, of_run};
-use super::watch::{Stop, Watch};
+use super::watch::{Keep, Stop, Watch};
 use super::{Shared, TRY_EVERY, milliseconds};
 use crate::calibration::case::CalibrationCase;
-use crate::calibration::finished::FinishedRuns;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::checkpoint::Checkpoint;
@@ -27,7 +26,7 @@ const LAST_TRIES: u32 = 3;
 /// What is to be run.
 enum Task {
     Prediction(Box<Case>, Option<Box<Checkpoint>>),
-    Calibration(Box<CalibrationCase>, FinishedRuns),
+    Calibration(Box<CalibrationCase>),
 }
 
 /// Works on a claimed job until it has ended, or is not this worker's any more.
@@ -64,16 +63,11 @@ pub fn work(shared: &Shared, pool: &rayon::ThreadPool, claim: &Claim) {
             false
         }
     };
-    let cracks = match &task {
-        Task::Prediction(case, _) => &case.specimen.cracks[..],
-        Task::Calibration(calibration, _) => &calibration.case.specimen.cracks,
-    }
-    .to_vec();
-    let finished = match &task {
-        Task::Prediction(..) => None,
-        Task::Calibration(_, finished) => Some(finished.len() as u32),
+    let (cracks, keep): (_, Option<Keep<'_>>) = match &task {
+        Task::Prediction(case, _) => (case.specimen.cracks.clone(), Some(&keep)),
+        Task::Calibration(calibration) => (calibration.case.specimen.cracks.clone(), None),
     };
-    let watch = Watch::new(&cracks, &growth, finished, &keep, shared.settings.checkpoint_every);
+    let watch = Watch::new(&cracks, &growth, keep, shared.settings.checkpoint_every);
     let outcome = run_watched(shared, pool, claim, task, &watch);
     conclude(shared, claim, outcome, watch.stopped());
 }
@@ -82,24 +76,17 @@ pub fn work(shared: &Shared, pool: &rayon::ThreadPool, claim: &Claim) {
 fn task(kind: JobKind, submission: &Submission, checkpoint: Option<Vec<u8>>) -> Result<Task> {
     let document = submission.document()?;
     if kind == JobKind::Calibration {
-        let calibration = CalibrationCase::from_document(document)?;
-        let finished = taken_up(checkpoint, FinishedRuns::from_bytes, |runs| runs.belong_to(&calibration));
-        return Ok(Task::Calibration(Box::new(calibration), finished.unwrap_or_default()));
+        return Ok(Task::Calibration(Box::new(CalibrationCase::from_document(document)?)));
     }
     let case = Case::from_document(&document)?;
-    let taken = taken_up(checkpoint, Checkpoint::from_bytes, |checkpoint| checkpoint.belongs_to(&case));
-    Ok(Task::Prediction(Box::new(case), taken.map(Box::new)))
-}
-
-/// A kept checkpoint, if it can be read and is one of this input.
-fn taken_up<T>(bytes: Option<Vec<u8>>, read: fn(&[u8]) -> Result<T>, belongs: impl Fn(&T) -> bool) -> Option<T> {
-    match read(&bytes?) {
-        Ok(checkpoint) => belongs(&checkpoint).then_some(checkpoint),
+    let taken = checkpoint.and_then(|bytes| match Checkpoint::from_bytes(&bytes) {
+        Ok(checkpoint) => checkpoint.belongs_to(&case).then(|| Box::new(checkpoint)),
         Err(error) => {
             tracing::warn!("the run begins anew: {error}");
             None
         }
-    }
+    });
+    Ok(Task::Prediction(Box::new(case), taken))
 }
 
 /// The curve that earlier workers have shown, as far as the checkpoint confirms it.
@@ -155,7 +142,7 @@ fn run(task: Task, watch: &Watch<'_>) -> Result<Results> {
     match task {
         Task::Prediction(case, None) => of(&case, predict(&case, watch)),
         Task::Prediction(case, Some(checkpoint)) => of(&case, resume(&case, *checkpoint, watch)),
-        Task::Calibration(calibration, finished) => of_fit(&calibration, finished, watch),
+        Task::Calibration(calibration) => of_fit(&calibration, watch),
     }
 }
 

@@ -8,9 +8,8 @@ use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
 
 use super::watch::Watch;
-use crate::calibration::calibrate::calibrate_from;
+use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::CalibrationCase;
-use crate::calibration::finished::FinishedRuns;
 use crate::calibration::results::{FitReport, record};
 use crate::case::Case;
 use crate::error::{Error, Result};
@@ -60,15 +59,14 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Result<Results> {
     Ok((Value::Object(summary), collected(folder.path())?))
 }
 
-/// Fits a calibration, from the runs that an earlier worker finished, and writes its files.
+/// Fits a calibration and writes its files.
 ///
 /// # Errors
-/// As [`calibrate_from`] and [`fit::write`].
-pub fn of_fit(calibration: &CalibrationCase, finished: FinishedRuns, watch: &Watch<'_>) -> Result<Results> {
+/// As [`calibrate`] and [`fit::write`].
+pub fn of_fit(calibration: &CalibrationCase, watch: &Watch<'_>) -> Result<Results> {
     let folder = temporary()?;
     let started = Instant::now();
-    let keep = |runs: &FinishedRuns| watch.run_finished(runs);
-    let fitted = calibrate_from(calibration, finished, &keep, watch)?;
+    let fitted = calibrate(calibration, watch)?;
     let report = FitReport::new(calibration, &fitted, started.elapsed().as_secs_f64());
     fit::write(folder.path(), calibration, &fitted, &report, &record(calibration, &fitted))?;
     let mut summary = json!(report);

@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::calibration::finished::FinishedRuns;
 use crate::predict::checkpoint::Checkpoint;
 use crate::predict::{Observer, PointGrid, Progress, Snapshot, TipRecord};
 use crate::report::damage::{DamagePicture, cycles_and_length};
@@ -67,9 +66,8 @@ pub type Keep<'a> = &'a (dyn Fn(Vec<u8>) -> bool + Sync);
 /// Watches one run.
 pub struct Watch<'a> {
     cracks: &'a [Crack],
-    /// Runs of a fit that were finished before; `None` for a prediction.
-    finished: Option<u32>,
-    keep: Keep<'a>,
+    /// `None` for a calibration, which begins anew wherever it was broken off: it takes seconds.
+    keep: Option<Keep<'a>>,
     keep_every: Duration,
     started: Instant,
     /// 0 or a [`Stop`].
@@ -82,8 +80,6 @@ struct Told {
     progress: Option<Progress>,
     /// Share at which this worker took it up.
     first_share: f64,
-    /// Runs that ended, of a job that makes several.
-    runs: u32,
     tips: Vec<Point>,
     /// Ways of the tips as far as entries show them.
     paths: Vec<Vec<Point>>,
@@ -98,16 +94,14 @@ struct Told {
 const OVER_COST: u32 = 20;
 
 impl<'a> Watch<'a> {
-    /// Watches a run of a plate with these cracks, whose curve so far is `growth`, or the runs of a fit, of which so many are
-    /// finished.
+    /// Watches a run of a plate with these cracks, whose curve so far is `growth`.
     #[must_use]
-    pub fn new(cracks: &'a [Crack], growth: &Growth, finished: Option<u32>, keep: Keep<'a>, keep_every: Duration) -> Self {
+    pub fn new(cracks: &'a [Crack], growth: &Growth, keep: Option<Keep<'a>>, keep_every: Duration) -> Self {
         let tips = growth.tips.first().map_or(0, Vec::len);
         let path = |tip: usize| growth.tips.iter().filter_map(|entry| Some(entry.get(tip)?.map(|mm| mm * MM))).collect();
         let told = Told {
             progress: None,
             first_share: f64::NAN,
-            runs: finished.unwrap_or(0),
             tips: Vec::new(),
             paths: (0..tips).map(path).collect(),
             entries: Growth { from: growth.cycles.len(), ..Growth::default() },
@@ -116,12 +110,7 @@ impl<'a> Watch<'a> {
             kept: Instant::now(),
             keep_cost: Duration::ZERO,
         };
-        Watch { cracks, finished, keep, keep_every, started: Instant::now(), stop: AtomicU8::new(0), told: Mutex::new(told) }
-    }
-
-    /// Takes note of the runs of a fit that have ended, so that they need not be made again.
-    pub fn run_finished(&self, finished: &FinishedRuns) {
-        (self.keep)(finished.to_bytes());
+        Watch { cracks, keep, keep_every, started: Instant::now(), stop: AtomicU8::new(0), told: Mutex::new(told) }
     }
 
     /// Asks the run to end; the first reason counts.
@@ -141,16 +130,9 @@ impl<'a> Watch<'a> {
     pub fn news(&self) -> News {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         let elapsed_s = self.started.elapsed().as_secs_f64();
-        let (first_share, runs) = (told.first_share, told.runs);
+        let first_share = told.first_share;
         let progress = told.progress.map(|Progress { cycles, crack_length, share }| {
             let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
-            // A fit takes some three runs, and ends when it is done.
-            let of_fit =
-                |runs: u32, share: f64| ((f64::from(runs) + share) / (f64::from(runs) + 1.0).max(RUNS_OF_A_FIT)).min(0.99);
-            let (share, first_share) = match self.finished {
-                Some(finished) => (of_fit(runs, share), of_fit(finished, 0.0)),
-                None => (share, first_share),
-            };
             let done = share - first_share;
             let seconds_left = (done > 0.0).then(|| elapsed_s * (1.0 - share) / done);
             JobProgress { cycles, crack_length_mm: crack_length / MM, share, elapsed_s, seconds_left }
@@ -173,15 +155,9 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Runs that a fit takes, usually.
-const RUNS_OF_A_FIT: f64 = 3.5;
-
 impl Observer for Watch<'_> {
     fn block_done(&self, progress: &Progress) -> bool {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        if told.progress.is_some_and(|before| progress.share < 0.5 * before.share) {
-            told.runs += 1;
-        }
         if told.first_share.is_nan() {
             told.first_share = progress.share;
         }
@@ -214,10 +190,7 @@ impl Observer for Watch<'_> {
     }
 
     fn may_keep(&self, checkpoint: &dyn Fn() -> Checkpoint) {
-        // Of a fit only whole runs are kept.
-        if self.finished.is_some() {
-            return;
-        }
+        let Some(keep) = self.keep else { return };
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         if told.kept.elapsed() < self.keep_every.max(OVER_COST * told.keep_cost) {
             return;
@@ -225,7 +198,7 @@ impl Observer for Watch<'_> {
         let begun = Instant::now();
         // Others may ask how far the run is meanwhile.
         drop(told);
-        (self.keep)(checkpoint().to_bytes());
+        keep(checkpoint().to_bytes());
         told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         (told.kept, told.keep_cost) = (Instant::now(), begun.elapsed());
     }

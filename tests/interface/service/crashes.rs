@@ -8,7 +8,6 @@ use tempfile::tempdir;
 
 use super::jobs::with_each_store;
 use super::{QUICK, SLOW, of};
-use crate::checkpoint::{CALIBRATION, READINGS};
 use crate::cli::perilife;
 use crate::noise::Noise;
 use crate::postgres::Postgres;
@@ -175,9 +174,15 @@ fn another_worker_takes_over() {
     assert!(!taken_up.is_empty() && taken_up.iter().all(|share| *share > 0.05), "{taken_up:?}");
 }
 
-/// A server is killed within a calibration: the next one goes on with the runs that are left, to the same fit.
+const CALIBRATION: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\n\
+    thickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.1\n\
+    [model]\nspacing_mm = 0.25\nsymmetry = \"off\"\n";
+const READINGS: &str =
+    "cycles,crack_length_mm\n0,9\n20000,10\n37000,11\n51000,12\n63000,13\n73000,14\n82000,15.2\n89000,16.4\n95000,18\n";
+
+/// A server is killed within a calibration: the next one begins it anew, to the same fit.
 #[test]
-fn a_killed_calibration_goes_on() {
+fn a_killed_calibration_is_made_again() {
     with_each_store("fit_killed", |place| {
         let dir = tempdir().unwrap();
         let folder = dir.path();
@@ -187,17 +192,12 @@ fn a_killed_calibration_goes_on() {
         let mut service = Server::start(place, &EAGER);
         let body = serde_json::json!({ "name": "fit", "input": CALIBRATION, "files": { "curve.csv": READINGS } });
         let job = service.submit("calibrations", &body);
-        // A run of three and a half is 0.29 of the way.
-        wait("one run done", || service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) > 0.3);
+        wait("on its way", || service.get(&job).json()["progress"]["share"].as_f64().unwrap_or(0.0) > 0.02);
         service.kill();
         service = Server::start(place, &EAGER);
-        let events = service.events(&job, &[]);
         let done = service.succeeded(&job);
         assert_eq!(done["attempts"], 2, "{done:#}");
         assert!(service.file(&job, "fitted.toml") == fs::read(folder.join("fit/fitted.toml")).unwrap(), "another fit");
-        let shares = events.iter().filter(|(name, _)| name == "job").filter_map(|(_, job)| job["progress"]["share"].as_f64());
-        let taken_up: Vec<f64> = shares.skip(1).collect();
-        assert!(taken_up.iter().all(|share| *share > 0.28), "begun anew: {taken_up:?}");
     });
 }
 

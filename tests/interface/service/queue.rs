@@ -144,100 +144,31 @@ fn large_files_go_in_parts() {
     });
 }
 
-/// A store that an earlier version of the program laid is brought up to date, and what stands in it goes on to be there.
+/// Tables of another version are not touched, and who comes upon them is told what to do.
 #[test]
-fn a_store_of_an_earlier_version_is_taken_on() {
-    with_each_store("earlier", |place| {
+fn a_store_of_another_version_is_refused() {
+    with_each_store("other", |place| {
         let dir = tempdir().unwrap();
-        // Laid by this program, then taken back to what the first version knew.
-        let mut service = Server::start(place, &["--jobs", "1"]);
-        let done = service.submit("predictions", &json!({ "input": QUICK, "files": { "notes.csv": "1,2\n" } }));
-        let life = service.succeeded(&done)["summary"]["life_cycles"].clone();
-        let curve = service.file(&done, "a_n.csv");
-        service.stop();
-        let mut service = Server::start(place, &["--jobs", "0"]);
-        let waiting = service.submit("predictions", &json!({ "input": QUICK, "files": { "notes.csv": "3,4\n" } }));
-        service.stop();
-        drop(service);
-        set_back(place, &[(&done, "1,2\n"), (&waiting, "3,4\n")]);
-
-        // Not while a worker of that version is at it.
-        let held = "UPDATE jobs SET state = 'running', lease_until_ms = 9999999999999 WHERE state = 'queued'";
-        on_store(place, async |connection| run_all(connection, &[held.to_owned()]).await);
-        let refused = perilife(dir.path(), &[&["token"], place, &["list"]].concat());
-        assert_refused(&refused, 4, &["jobs are being run by an earlier version", "stop all of its processes"]);
-        let released = "UPDATE jobs SET state = 'queued', lease_until_ms = NULL WHERE state = 'running'";
-        on_store(place, async |connection| run_all(connection, &[released.to_owned()]).await);
-
-        let service = Server::start(place, &["--jobs", "1"]);
-        assert_eq!(service.get(&done).json()["summary"]["life_cycles"], life);
-        assert!(service.file(&done, "a_n.csv") == curve, "another curve");
-        for (job, notes) in [(&done, "1,2\n"), (&waiting, "3,4\n")] {
-            assert_eq!(service.file_of(&format!("{job}/inputs/notes.csv")), notes.as_bytes());
+        Server::start(place, &["--jobs", "0"]).stop();
+        for version in [1, 3] {
+            on_store(place, &format!("UPDATE perilife_schema SET version = {version}"));
+            let refused = perilife(dir.path(), &[&["token"], place, &["list"]].concat());
+            assert_refused(&refused, 4, &[&format!("are of version {version}"), "use a new database"]);
         }
-        service.succeeded(&waiting);
-        assert!(service.file(&waiting, "a_n.csv") == curve, "another curve");
-        drop(dir);
+        on_store(place, "UPDATE perilife_schema SET version = 2");
+        assert!(perilife(dir.path(), &[&["token"], place, &["list"]].concat()).status.success());
     });
 }
 
-/// Takes a store back to its first version, in which a submission ended with its files and a result's files were whole.
-fn set_back(place: &[&str], inputs: &[(&str, &str)]) {
-    let (key, bytes) = if place[0] == "--database" { ("TEXT COLLATE \"C\"", "BYTEA") } else { ("TEXT", "BLOB") };
-    let back = [
-        format!(
-            "CREATE TABLE files (job {key} NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, name TEXT NOT NULL, \
-             media_type TEXT NOT NULL, size BIGINT NOT NULL, content {bytes} NOT NULL, PRIMARY KEY (job, name))"
-        ),
-        // The results of this test are of one part each but the archive, which is left out.
-        "INSERT INTO files SELECT f.job, f.name, f.media_type, f.size, p.content FROM job_files f JOIN file_parts p \
-         ON p.job = f.job AND p.origin = f.origin AND p.name = f.name WHERE f.origin = 'result' AND f.name NOT LIKE '%.zip'"
-            .to_owned(),
-        "DROP TABLE file_parts".to_owned(),
-        "DROP TABLE job_files".to_owned(),
-        "DROP TABLE turns".to_owned(),
-        "DROP INDEX jobs_by_turn".to_owned(),
-        "DROP INDEX jobs_by_owner".to_owned(),
-        "CREATE INDEX jobs_by_state ON jobs (state, id)".to_owned(),
-        "ALTER TABLE jobs DROP COLUMN turn".to_owned(),
-        "DELETE FROM perilife_schema WHERE version > 1".to_owned(),
-    ];
-    on_store(place, async |connection| {
-        run_all(connection, &back).await;
-        for (job, content) in inputs {
-            let id = job.rsplit('/').next().unwrap();
-            let submission: Vec<u8> = sqlx::query_scalar("SELECT content FROM submissions WHERE job = $1")
-                .bind(id)
-                .fetch_one(&mut *connection)
-                .await
-                .unwrap();
-            // A list of one pair: its length, and two texts with theirs.
-            let files = postcard::to_stdvec(&vec![("notes.csv", content.as_bytes())]).unwrap();
-            sqlx::query("UPDATE submissions SET content = $2 WHERE job = $1")
-                .bind(id)
-                .bind([submission, files].concat())
-                .execute(&mut *connection)
-                .await
-                .unwrap();
-        }
-    });
-}
-
-async fn run_all(connection: &mut sqlx::AnyConnection, statements: &[String]) {
-    for statement in statements {
-        sqlx::query(sqlx::AssertSqlSafe(statement.clone())).execute(&mut *connection).await.unwrap();
-    }
-}
-
-/// Does something with the database of a store.
-fn on_store(place: &[&str], task: impl AsyncFnOnce(&mut sqlx::AnyConnection)) {
+/// Runs a statement on the database of a store.
+fn on_store(place: &[&str], statement: &str) {
     use sqlx::Connection;
     let url = if place[0] == "--database" { place[1].to_owned() } else { format!("sqlite://{}/perilife.sqlite", place[1]) };
     sqlx::any::install_default_drivers();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async {
         let mut connection = sqlx::AnyConnection::connect(&url).await.unwrap();
-        task(&mut connection).await;
+        sqlx::query(sqlx::AssertSqlSafe(statement.to_owned())).execute(&mut connection).await.unwrap();
         connection.close().await.unwrap();
     });
 }

@@ -1,63 +1,26 @@
-//! The model that a calibration fits where cracks grow by the K of their tips: Paris growth on the K(a) of one peridynamic run.
-//!
-//! C and m are fitted as by hand calculation, but to the K of the tip's own field, so that a case with the fitted law repeats the
-//! measured life. A and p of bonds are what C and m stand for ([`ParisLaw::to_bonds`]).
+//! C and m of a fit to K of the tip's own field as A and p of bonds, which are what they stand for ([`ParisLaw::to_bonds`]).
 
 use rayon::prelude::*;
 
 use super::fit::Fit;
-use super::model::{ForwardModel, RecordedRun};
-use super::power_law::PowerLaw;
-use super::search::{Constants, P_MAX, P_MIN};
+use super::search::Constants;
 use crate::case::Case;
 use crate::error::Result;
+use crate::fatigue::STEADY_EXPONENTS;
 use crate::fatigue::paris::ParisLaw;
-use crate::predict::Observer;
 use crate::predict::bond_rate::ReferenceModel;
-use crate::predict::factor_curve::FactorCurve;
 
 /// Distance of the exponents between which the rate constant is taken for others, in p.
 const P_STEP: f64 = 0.5;
 
-/// Paris growth with the K(a) of a peridynamic run. Its constants are C, m/cycle at ΔK = 1 MPa√m, and m.
-#[derive(Debug)]
-pub struct FieldModel {
-    law: PowerLaw,
-    factors: FactorCurve,
-}
-
-impl FieldModel {
-    /// Makes the run of a calibration case.
-    ///
-    /// # Errors
-    /// As [`FactorCurve::of`].
-    pub fn new(case: &Case, observer: &dyn Observer) -> Result<Self> {
-        let factors = FactorCurve::of(case, observer)?;
-        let delta_k = |length: f64| case.loading.range_share() * factors.at(length);
-        let law = PowerLaw::new(case.specimen.crack_length, case.stop.crack_length, &delta_k)?;
-        Ok(FieldModel { law, factors })
-    }
-}
-
-impl ForwardModel for FieldModel {
-    fn run(&self, p: f64) -> Result<RecordedRun> {
-        let law = self.law.clone();
-        let (horizon, spacing) = (self.factors.figures.horizon, self.factors.figures.spacing);
-        let mut run = RecordedRun::new(self.law.curve(p), horizon, spacing, move |p| law.curve(p));
-        run.warnings.clone_from(&self.factors.warnings);
-        Ok(run)
-    }
-}
-
-/// A fit of C and m as one of A and p, with the rate constant that ties them.
+/// A fit of C and m on a plate of this horizon, m, as one of A and p, with the rate constant that ties them.
 ///
 /// # Errors
 /// As [`ReferenceModel::rate_constant`].
-pub fn in_terms_of_bonds(fit: &mut Fit, case: &Case) -> Result<()> {
+pub fn in_terms_of_bonds(fit: &mut Fit, case: &Case, horizon: f64) -> Result<()> {
     let modulus = case.material.plane_modulus();
     let p = fit.record.constants.p;
     let constant = RateConstant::around(ReferenceModel::of(&case.model), p)?;
-    let horizon = fit.horizon;
     let bonds = |Constants { a, p }: Constants| {
         let law = ParisLaw { c: a, m: p }.to_bonds(constant.at(p).exp(), modulus, horizon);
         Constants { a: law.a, p: law.p }
@@ -71,9 +34,7 @@ pub fn in_terms_of_bonds(fit: &mut Fit, case: &Case) -> Result<()> {
     fit.confidence.covariance = [[c_c + 2.0 * slope * c_m + slope * slope * m_m, a_p], [a_p, m_m]];
     let curves = fit.specimens.iter_mut().chain([&mut fit.record]);
     curves.for_each(|curve| curve.constants = bonds(curve.constants));
-    fit.rate_constant = Some(constant.at(p).exp());
-    // However often C and m were tried, one run gave K.
-    fit.evaluations = 1;
+    (fit.rate_constant, fit.horizon) = (Some(constant.at(p).exp()), horizon);
     Ok(())
 }
 
@@ -85,7 +46,7 @@ struct RateConstant {
 
 impl RateConstant {
     fn around(family: ReferenceModel, p: f64) -> Result<Self> {
-        let middle = p.clamp(P_MIN + P_STEP, P_MAX - P_STEP);
+        let middle = p.clamp(STEADY_EXPONENTS.start() + P_STEP, STEADY_EXPONENTS.end() - P_STEP);
         let p = [middle - P_STEP, middle, middle + P_STEP];
         // The first computes what the others share.
         let first = family.rate_constant(p[1])?.ln();
