@@ -30,7 +30,7 @@ use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::{Cut, set_aside};
 use crate::fatigue::{Block, FatigueLaw, FatigueSettings};
-use crate::solver::{Equilibrium, Focus};
+use crate::solver::{Equilibrium, Focus, SolverUsed};
 use crate::state::Bonds;
 use course::Course;
 use overload::{are_within, overstretched, stretched};
@@ -252,6 +252,7 @@ impl CrackGrowth for BondStrain<'_> {
         }
         let focus = focus(&run.tips, body, settings);
         run.iterations += self.equilibrium.reach(body, &run.bonds, &self.watched, &focus, &mut self.displacement)?;
+        run.had_window |= self.equilibrium.used() == SolverUsed::Window;
         let mut ageing = self.ageing();
         // Not while bonds break that would break together but for round-off: mirror twins would be seen at unequal lengths.
         let is_due = self.pace.as_ref().is_some_and(|pace| pace.is_due(body, &self.run.tips)) && !self.equilibrium.is_foreseen();
@@ -402,6 +403,7 @@ impl CrackGrowth for BondStrain<'_> {
         (run.tips, run.near_limit, run.control) = (state.tips, state.near_limit, state.control);
         run.track.go_on_from(state.past);
         (run.broken_bonds, run.solves, run.iterations) = (state.broken_bonds, state.effort.solves, state.effort.iterations);
+        run.had_window = state.effort.solver == Some(SolverUsed::Window);
         self.equilibrium = solver(self.case, &plate, run);
         self.settle_first()?;
         self.look_around();
@@ -434,8 +436,9 @@ impl CrackGrowth for BondStrain<'_> {
     }
 
     fn effort(&self) -> Effort {
-        let Course { solves, iterations, .. } = self.run;
-        Effort { points_solved: self.equilibrium.points(&self.plate.body), solves, iterations }
+        let Course { solves, iterations, had_window, .. } = self.run;
+        let solver = if had_window { SolverUsed::Window } else { self.equilibrium.used() };
+        Effort { points_solved: self.equilibrium.points(&self.plate.body), solves, iterations, solver: Some(solver) }
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -8,6 +8,7 @@ use crate::case::{Case, LawSource, Method};
 use crate::fracture::scene::{Scene, SceneLaw};
 use crate::net::Refinement;
 use crate::predict::RunFigures;
+use crate::solver::SolverUsed;
 use crate::specimen::handbook::handbook;
 use crate::units::MM;
 
@@ -57,6 +58,7 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
     }
     let (spacing, horizon) =
         figures.map_or((model.spacing, model.spacing * model.horizon_ratio), |figures| (figures.spacing, figures.horizon));
+    let used = figures.and_then(|figures| figures.solver);
     let mut values: Vec<(&'static str, Value)> =
         vec![("method", model.method.name().into()), ("driver", case.fatigue.driver.name().into())];
     values.extend(bonds(model.bond_law));
@@ -68,7 +70,7 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
         ("horizon_ratio", model.horizon_ratio.into()),
         ("horizon_mm", clean(horizon / MM).into()),
         ("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into()),
-        ("solver", model.solver.name().into()),
+        ("solver", used.map_or(model.solver.name(), SolverUsed::name).into()),
         ("symmetry", model.symmetry.name().into()),
     ]);
     let choice = |(key, value)| Choice { key, value, why: why(case, figures, key) };
@@ -186,6 +188,9 @@ fn why(case: &Case, figures: Option<&RunFigures>, key: &str) -> Option<String> {
             let moved = is_moved.then(|| format!("; moved from {asked:.6} to {actual:.6} so that it divides the width"));
             format!("{finest}{}", moved.unwrap_or_default())
         }
+        "solver" => figures
+            .and_then(|figures| figures.solver)
+            .map_or_else(String::new, |used| format!("; asked for was \"{}\", used were {}", case.model.solver, used.meaning())),
         "symmetry" => figures.map_or_else(String::new, |figures| format!("; {}", solved_part(figures))),
         _ => String::new(),
     };

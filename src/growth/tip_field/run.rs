@@ -182,7 +182,7 @@ impl CrackGrowth for TipField<'_> {
 
     fn effort(&self) -> Effort {
         let points_solved = self.equilibrium.points(&self.plate.body);
-        Effort { points_solved, solves: self.solves, iterations: self.iterations }
+        Effort { points_solved, solves: self.solves, iterations: self.iterations, solver: Some(self.equilibrium.used()) }
     }
 
     fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {
