@@ -3,7 +3,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fatigue::BlockKind;
 
 /// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,9 +60,6 @@ pub struct FittedRecord {
     pub zone_radius_horizons: f64,
     /// `fatigue.precrack`.
     pub precrack: String,
-    /// `fatigue.block` of the runs of the fit; another choice here is free, since blocks are a matter of error, not of model.
-    #[serde(default = "until_next_break")]
-    pub block: String,
     /// Young's modulus of the calibration.
     pub youngs_modulus_gpa: f64,
     /// Poisson's ratio of the calibration.
@@ -78,11 +74,6 @@ pub struct FittedRecord {
     pub version: String,
     /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
-}
-
-/// The blocks of records from before they were controlled.
-fn until_next_break() -> String {
-    BlockKind::UntilNextBreak.name().to_owned()
 }
 
 /// A measured file a record was fitted to.

@@ -1,6 +1,7 @@
 //! Laws over K that are no power of it, from `[fatigue]`.
 
 use super::LawSource;
+use super::law_source::{GivenLaw, shown};
 use crate::error::{Error, InputError, Result, input, input_missing};
 use crate::fatigue::growth_law::forman::Forman;
 use crate::fatigue::growth_law::nasgro::{Nasgro, RATIO_MIN};
@@ -49,30 +50,27 @@ pub(super) struct Setting<'a> {
 const RATE: &str = "a rate in mm/cycle";
 
 impl FactorKeys {
-    /// The kind whose keys are given, with the first of them.
-    pub fn given(&self) -> Result<Option<(GrowthLawKind, &'static str)>> {
-        let forman = [("forman_c_mm_per_cycle", self.forman_c_mm_per_cycle.is_some()), ("forman_m", self.forman_m.is_some())];
+    /// The laws whose keys are given.
+    pub fn given(&self) -> impl Iterator<Item = GivenLaw> {
+        let forman = [("forman_c_mm_per_cycle", shown(&self.forman_c_mm_per_cycle)), ("forman_m", shown(&self.forman_m))];
         let nasgro = [
-            ("nasgro_c_mm_per_cycle", self.nasgro_c_mm_per_cycle.is_some()),
-            ("nasgro_n", self.nasgro_n.is_some()),
-            ("nasgro_p", self.nasgro_p.is_some()),
-            ("nasgro_q", self.nasgro_q.is_some()),
-            ("nasgro_alpha", self.nasgro_alpha.is_some()),
-            ("nasgro_smax_over_flow", self.nasgro_smax_over_flow.is_some()),
-            ("nasgro_delta_k_0_mpa_sqrt_m", self.nasgro_delta_k_0_mpa_sqrt_m.is_some()),
-            ("nasgro_c_th", self.nasgro_c_th.is_some()),
-            ("nasgro_c_th_negative", self.nasgro_c_th_negative.is_some()),
+            ("nasgro_c_mm_per_cycle", shown(&self.nasgro_c_mm_per_cycle)),
+            ("nasgro_n", shown(&self.nasgro_n)),
+            ("nasgro_p", shown(&self.nasgro_p)),
+            ("nasgro_q", shown(&self.nasgro_q)),
+            ("nasgro_alpha", shown(&self.nasgro_alpha)),
+            ("nasgro_smax_over_flow", shown(&self.nasgro_smax_over_flow)),
+            ("nasgro_delta_k_0_mpa_sqrt_m", shown(&self.nasgro_delta_k_0_mpa_sqrt_m)),
+            ("nasgro_c_th", shown(&self.nasgro_c_th)),
+            ("nasgro_c_th_negative", shown(&self.nasgro_c_th_negative)),
         ];
-        let table = [("growth_table", self.growth_table.is_some()), ("growth_table_ends", self.growth_table_ends.is_some())];
-        let kinds: [(GrowthLawKind, &[(&'static str, bool)]); 3] =
-            [(GrowthLawKind::Forman, &forman), (GrowthLawKind::Nasgro, &nasgro), (GrowthLawKind::Table, &table)];
-        let first = |(kind, keys): (GrowthLawKind, &[(&'static str, bool)])| Some((kind, keys.iter().find(|key| key.1)?.0));
-        let found: Vec<_> = kinds.into_iter().filter_map(first).collect();
-        if let [(kind, _), (_, key), ..] = found[..] {
-            let problem = format!("stands beside constants of growth_law \"{kind}\": the law is given twice");
-            return Err(input_missing(&format!("fatigue.{key}"), problem, "give the constants of one law"));
-        }
-        Ok(found.first().copied())
+        let table = [("growth_table", shown(&self.growth_table)), ("growth_table_ends", shown(&self.growth_table_ends))];
+        let laws = [
+            GivenLaw::of(&[GrowthLawKind::Forman], &forman),
+            GivenLaw::of(&[GrowthLawKind::Nasgro], &nasgro),
+            GivenLaw::of(&[GrowthLawKind::Table], &table),
+        ];
+        laws.into_iter().flatten()
     }
 
     /// The law of this kind.

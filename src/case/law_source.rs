@@ -1,7 +1,7 @@
 //! The law of `[fatigue]`: inline constants, or a record that `perilife calibrate` wrote.
 //!
-//! A law of bonds (A, p) and one over K (C, m) may stand side by side: a driver takes its own kind, and where only the other is
-//! given, what that stands for.
+//! A case has one law: a second one, however it is given, is refused. A driver that needs a law of the other kind, of bonds (A, p) or over
+//! K (C, m), takes what the given one stands for.
 
 use toml::Value;
 
@@ -52,9 +52,37 @@ pub const LAW_KEYS: [&str; 21] = [
     "growth_table_ends",
 ];
 
+/// A law that the file gives.
+pub(super) struct GivenLaw {
+    /// Kinds of `fatigue.growth_law` that it can be.
+    kinds: &'static [GrowthLawKind],
+    /// The first of its keys that is given, with its value.
+    key: &'static str,
+    value: String,
+}
+
+impl GivenLaw {
+    /// `None` where none of its keys has a value.
+    pub fn of(kinds: &'static [GrowthLawKind], keys: &[(&'static str, Option<String>)]) -> Option<Self> {
+        keys.iter().find_map(|(key, value)| Some(GivenLaw { kinds, key, value: value.clone()? }))
+    }
+
+    fn refused(&self, problem: String, remedy: &str) -> Error {
+        input(&format!("fatigue.{}", self.key), &self.value, problem, remedy)
+    }
+}
+
+/// A value as the messages show it.
+pub(super) fn shown<T: ToString>(value: &Option<T>) -> Option<String> {
+    value.as_ref().map(T::to_string)
+}
+
 impl LawKeys {
-    /// The law that the method and driver need, of the kind that is asked for or else whose constants are given; `None` where the
-    /// file gives none at all, as in a calibration.
+    /// The law of the case, of the kind that is asked for or else whose constants are given; `None` where the file gives none at all,
+    /// as in a calibration.
+    ///
+    /// # Errors
+    /// Two laws, constants of another kind than `growth_law` or than the driver can have.
     pub(super) fn read(
         &self,
         kind: Option<GrowthLawKind>,
@@ -64,17 +92,9 @@ impl LawKeys {
         const KEY: &str = "fatigue.growth_law";
         let by_bonds = method == Method::Peridynamics && settings.driver == Driver::BondStrain;
         let by_strain = by_bonds && settings.growth_rate == GrowthRate::BondStrain;
-        let powers = self.bond().into_iter().chain(self.paris());
-        let of_power = powers.filter_map(|(key, value)| Some((key, value?))).next();
-        let given = factor.given()?;
-        let kind = kind.or(given.map(|(kind, _)| kind));
+        let given = self.only_law(kind, factor)?;
+        let kind = kind.or(given.as_ref().and_then(|law| if let [only] = law.kinds { Some(*only) } else { None }));
         if let Some(kind @ (GrowthLawKind::Forman | GrowthLawKind::Nasgro | GrowthLawKind::Table)) = kind {
-            let twice = of_power.map(|(key, _)| key).or(self.fitted.as_ref().map(|_| "fitted"));
-            let other = given.filter(|(other, _)| *other != kind).map(|(_, key)| key);
-            if let Some(key) = twice.or(other) {
-                let problem = format!("is no constant of growth_law \"{kind}\": the law is given twice");
-                return Err(input_missing(&format!("fatigue.{key}"), problem, "give the constants of one law"));
-            }
             if by_bonds {
                 let problem = "is no law of bonds, whose rate is a power of their strain";
                 let remedy = "use fatigue.driver = \"tip_field\", or model.method = \"handbook\"";
@@ -82,38 +102,24 @@ impl LawKeys {
             }
             return factor.read(kind, setting).map(Some);
         }
-        if let Some(key) = given.map(|(_, key)| key).or(factor.k_c_mpa_sqrt_m.map(|_| "k_c_mpa_sqrt_m")) {
-            let problem = "is no constant of this growth law";
-            return Err(input_missing(
-                &format!("fatigue.{key}"),
-                problem,
-                "leave it out, or choose its law by fatigue.growth_law",
-            ));
+        if factor.k_c_mpa_sqrt_m.is_some() {
+            let remedy = "leave it out, or choose its law by fatigue.growth_law";
+            return Err(input_missing("fatigue.k_c_mpa_sqrt_m", "is no constant of this growth law", remedy));
         }
         let lacks = match kind {
-            Some(GrowthLawKind::Paris | GrowthLawKind::Walker) if self.fitted.is_none() && self.paris_m.is_none() => {
-                Some("paris_c_mm_per_cycle")
-            }
+            Some(GrowthLawKind::Paris | GrowthLawKind::Walker) if given.is_none() => Some("paris_c_mm_per_cycle"),
             Some(GrowthLawKind::Walker) if !setting.has_walker => Some("walker_gamma"),
-            Some(GrowthLawKind::BondLaw) if self.fitted.is_none() && self.a.is_none() => Some("a"),
+            Some(GrowthLawKind::BondLaw) if given.is_none() => Some("a"),
             _ => None,
         };
         if let (Some(key), Some(kind)) = (lacks, kind) {
             let problem = format!("is missing, and growth_law is \"{kind}\"");
             return Err(input_missing(&format!("fatigue.{key}"), problem, "give all constants of the law"));
         }
-        let folder = setting.folder;
         if let Some(fitted) = &self.fitted {
-            if let Some((key, value)) = of_power {
-                let remedy = "give fitted, or constants, not both";
-                return Err(input(&format!("fatigue.{key}"), value, "stands beside fitted: the law is given twice", remedy));
-            }
-            return read_record(fitted, folder).map(Some);
+            return read_record(fitted, setting.folder).map(Some);
         }
-        let bond = self.bond_law()?.map(LawSource::Inline);
-        let paris = self.paris_law()?.map(LawSource::Paris);
-        let wants_bonds = kind.map_or(by_bonds, |kind| kind == GrowthLawKind::BondLaw);
-        let law = if wants_bonds { bond.or(paris) } else { paris.or(bond) };
+        let law = self.bond_law()?.map(LawSource::Inline).or(self.paris_law()?.map(LawSource::Paris));
         // What a driver cannot use as it is has to be translated.
         match &law {
             Some(LawSource::Inline(law)) if !by_strain && !STEADY_EXPONENTS.contains(&law.p) => Err(unsteady("fatigue.p", law.p)),
@@ -122,6 +128,30 @@ impl LawKeys {
             }
             _ => Ok(law),
         }
+    }
+
+    /// The law that is given, if any: one, and of the kind asked for.
+    fn only_law(&self, kind: Option<GrowthLawKind>, factor: &FactorKeys) -> Result<Option<GivenLaw>> {
+        use GrowthLawKind::{BondLaw, Paris, Walker};
+        let values = |keys: Vec<(&'static str, Option<f64>)>| {
+            keys.into_iter().map(|(key, value)| (key, shown(&value))).collect::<Vec<_>>()
+        };
+        let laws = [
+            GivenLaw::of(&[BondLaw, Paris, Walker], &[("fitted", self.fitted.clone())]),
+            GivenLaw::of(&[BondLaw], &values(self.bond())),
+            GivenLaw::of(&[Paris, Walker], &values(self.paris())),
+        ];
+        let mut laws = laws.into_iter().flatten().chain(factor.given());
+        let Some(law) = laws.next() else { return Ok(None) };
+        if let Some(second) = laws.next() {
+            let problem = format!("stands beside fatigue.{}: the law is given twice", law.key);
+            return Err(second.refused(problem, "give one law: fitted, or the constants of one kind"));
+        }
+        if let Some(kind) = kind.filter(|kind| !law.kinds.contains(kind)) {
+            let problem = format!("is no constant of fatigue.growth_law = \"{kind}\"");
+            return Err(law.refused(problem, "give the constants of that law, or leave growth_law out"));
+        }
+        Ok(Some(law))
     }
 
     fn bond(&self) -> Vec<(&'static str, Option<f64>)> {

@@ -1,6 +1,6 @@
 //! The body that a run would compute, looked at before anything is solved.
 
-use super::understood::short;
+use super::understood::{Points, mm};
 use crate::body::lattice::Lattice;
 use crate::case::{Case, Method};
 use crate::error::{Error, InputError, Result};
@@ -8,8 +8,8 @@ use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::no_fail::stuck;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::growth::plate::Plate;
+use crate::report::model_words;
 use crate::state::Bonds;
-use crate::units::MM;
 
 /// Points up to which the body is built; well below a second.
 const POINTS_BUILT: f64 = 4e5;
@@ -35,7 +35,7 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
         let spacing = model.fitting_spacing(specimen);
         let most = if model.refinement.is_some() { "at most" } else { "about" };
         let count = format!("{most} {:.0}", specimen.area() / spacing.powi(2));
-        return Ok(Preview { points: points_line(case, &count, [spacing, lattice.spacing]), warnings: Vec::new() });
+        return Ok(Preview { points: points_line(case, count, [spacing, lattice.spacing]), warnings: Vec::new() });
     }
     let plate = Plate::build(specimen, specimen, &case.material, model).map_err(as_input)?;
     let body = &plate.body;
@@ -43,39 +43,25 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
     if remove_fragments(body, &mut bonds, &body.pre_cut) == Connectivity::Severed {
         return Err(as_input(Error::Mechanics("the initial cracks cut the plate in two".to_owned())));
     }
-    let count = format!("{} and {} bonds, {} of them cut by the initial cracks", plate.points(), plate.bonds(), plate.cut());
+    let count = Points::built([plate.points(), plate.bonds(), plate.cut()]);
     let tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, body)).collect();
     let held = stuck(body, &bonds, &tips, &case.fatigue).into_iter().map(|tip| {
-        let [x, y] = tips[tip].position.map(|metres| short(metres / MM));
+        let [x, y] = tips[tip].position.map(mm);
         format!(
             "the crack tip at ({x}, {y}) mm stands in the zone around a load or support, where bonds do not fail: it will not \
              grow; move it one horizon away ({} mm), or load the plate elsewhere",
-            short(body.horizon() / MM)
+            mm(body.horizon())
         )
     });
     let warnings = plate.warnings().into_iter().chain(held).collect();
     let fine = body.lattice.spacing;
-    Ok(Preview { points: points_line(case, &count, [fine, fine * model.coarsest_spacing() / model.spacing]), warnings })
+    Ok(Preview { points: points_line(case, count, [fine, fine * model.coarsest_spacing() / model.spacing]), warnings })
 }
 
 /// `spacings` of the finest and the coarsest level, m.
-fn points_line(case: &Case, count: &str, spacings: [f64; 2]) -> String {
-    let model = &case.model;
-    let [spacing, coarsest] = spacings;
-    let asked = short(model.spacing / MM);
-    let mut spacing_words = match short(spacing / MM) {
-        actual if actual == asked => format!("spacing {actual} mm"),
-        actual => format!("spacing {actual} mm ({asked} asked for)"),
-    };
-    if let Some(refinement) = &model.refinement {
-        spacing_words = format!("{spacing_words} to {} mm, {} ({})", short(coarsest / MM), model.arrangement, refinement.words());
-    }
-    format!(
-        "{count} at {spacing_words}, horizon {} mm (ratio {}), solver {}",
-        short(spacing * model.horizon_ratio / MM),
-        model.horizon_ratio,
-        model.solver
-    )
+fn points_line(case: &Case, count: String, spacings: [f64; 2]) -> String {
+    let points = Points { count, spacings, horizon: spacings[0] * case.model.horizon_ratio };
+    points.words(case.model.spacing, &model_words::of_case(case, None))
 }
 
 /// What a run would end with as mechanics is, seen before any run, input that has to change.

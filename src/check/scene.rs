@@ -1,13 +1,14 @@
 //! What `perilife check` has understood of a fracture scene, in words.
 
 use super::preview::as_input;
-use super::understood::{Line, count, short};
+use super::understood::{Line, Points, line, mm, plate_lines, short};
 use crate::error::Result;
 use crate::fracture::Scene;
 use crate::fracture::preview::{Preview, preview};
-use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure, SceneLaw};
+use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure};
+use crate::report::model_words::{self, Choice};
 use crate::report::specimen_picture::scene_svg;
-use crate::units::{GPA, MM, MPA};
+use crate::units::{MM, MPA};
 
 /// Lines about loads and supports that fit below the drawing.
 const LINES_MAX: usize = 8;
@@ -19,44 +20,16 @@ pub(super) fn scene_lines(scene: &Scene) -> Result<Vec<Line>> {
     let about = scene.specimen.area() / scene.model.spacing.powi(2);
     let built = (about <= POINTS_BUILT).then(|| preview(scene).map_err(as_input)).transpose()?;
     let specimen = &scene.specimen;
+    let chosen = model_words::of_scene(scene, None);
     let micro = scene.echo.get("micro_cracks").and_then(|section| section.get("count")).and_then(serde_json::Value::as_u64);
     let cracks = specimen.cracks.len() - micro.unwrap_or(0) as usize;
     let micro_words = micro.map_or_else(String::new, |count| format!(", {count} micro cracks"));
-    let mut lines = vec![
-        line(
-            "specimen",
-            format!(
-                "{} {} mm wide, {} mm long, {} mm thick",
-                specimen.kind,
-                mm(specimen.width),
-                mm(specimen.length()),
-                mm(specimen.thickness)
-            ),
-        ),
-        line(
-            "flaws",
-            format!(
-                "{}, {}, {}, {}{micro_words}",
-                count(cracks, "crack"),
-                count(specimen.slots.len(), "slot"),
-                count(specimen.holes.len(), "hole"),
-                count(specimen.tips.len(), "tip")
-            ),
-        ),
-        line(
-            "material",
-            format!(
-                "{}: E {} GPa, nu {}, plane {}",
-                scene.material.name,
-                short(scene.material.youngs_modulus / GPA),
-                scene.material.poisson_ratio,
-                scene.material.plane
-            ),
-        ),
-        line("law", law_words(scene)),
-        line("points", points_words(scene, about, built.as_ref())),
+    let mut lines = plate_lines(specimen, &scene.material, ("flaws", cracks, micro_words));
+    lines.extend([
+        line("law", model_words::words(&chosen, &model_words::OF_BONDS)),
+        line("points", points_words(scene, about, built.as_ref(), &chosen)),
         line("procedure", procedure_words(scene)),
-    ];
+    ]);
     lines.extend(scene.drives.iter().map(|drive| line("load", drive_words(drive))));
     lines.extend(scene.holds.iter().map(|hold| line("support", hold_words(hold))));
     lines.extend(scene.refinement.as_ref().map(|refinement| line("refinement", refinement.words())));
@@ -64,36 +37,18 @@ pub(super) fn scene_lines(scene: &Scene) -> Result<Vec<Line>> {
     Ok(lines)
 }
 
-fn line(what: &'static str, value: String) -> Line {
-    Line { what, value }
-}
-
-fn mm(metres: f64) -> String {
-    short(metres / MM)
-}
-
-fn law_words(scene: &Scene) -> String {
-    let kinematics = if scene.model.finite { ", true stretch" } else { "" };
-    match scene.model.law {
-        SceneLaw::Bonds(law) => {
-            // One normal spring sees no rotation.
-            let rotation = if law.kind.is_two_parameter() { format!(", rotation {}", law.rotation) } else { String::new() };
-            format!("{}, kernel {}{rotation}, surface correction {}{kinematics}", law.kind, law.kernel, law.surface_correction)
-        }
-        SceneLaw::Correspondence { control, factor } => format!("correspondence, zero-energy control {control}, factor {factor}"),
-    }
-}
-
-fn points_words(scene: &Scene, about: f64, built: Option<&Preview>) -> String {
-    let model = &scene.model;
-    let asked = format!("horizon ratio {}, {}", model.horizon_ratio, model.arrangement);
-    let Some(built) = built else { return format!("about {about:.0} at spacing {} mm, {asked}", mm(model.spacing)) };
-    let [fine, coarse] = built.spacings.map(mm);
-    let spacing = if fine == coarse { fine } else { format!("{fine} to {coarse}") };
-    format!(
-        "{} and {} bonds, {} of them cut by the initial cracks, at spacing {spacing} mm, {asked}",
-        built.points, built.bonds, built.cut
-    )
+fn points_words(scene: &Scene, about: f64, built: Option<&Preview>, chosen: &[Choice]) -> String {
+    let asked = scene.model.spacing;
+    let points = match built {
+        Some(built) => Points {
+            count: Points::built([built.points, built.bonds, built.cut]),
+            spacings: built.spacings,
+            horizon: built.horizons[1],
+        },
+        None => Points { count: format!("about {about:.0}"), spacings: [asked; 2], horizon: asked * scene.model.horizon_ratio },
+    };
+    // Scenes ask for the spacing of the coarsest level.
+    points.words(points.spacings[0] * asked / points.spacings[1], chosen)
 }
 
 fn procedure_words(scene: &Scene) -> String {

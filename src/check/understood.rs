@@ -4,9 +4,11 @@ use toml::Value;
 
 use crate::calibration::measured::MeasuredCurve;
 use crate::case::{Case, LawSource, Method};
+use crate::material::Material;
 use crate::report::fit_use;
+use crate::report::model_words::{self, Choice};
 use crate::specimen::handbook::handbook;
-use crate::specimen::{LoadMeasure, Support};
+use crate::specimen::{LoadMeasure, Specimen, Support};
 use crate::sweep::{DesignKind, DrawnCase, Sweep};
 use crate::units::{GPA, KN, MM, MM_PER_CYCLE, MPA};
 
@@ -30,7 +32,7 @@ pub(super) fn curves_line(curves: &[MeasuredCurve]) -> Line {
     let specimens =
         if curves.len() == 1 { format!("specimen {}", curves[0].specimen) } else { format!("{} specimens", curves.len()) };
     let value = format!("{specimens}: {readings} readings from {} to {} mm in {lives} cycles", short(shortest), short(longest));
-    Line { what: "measured", value }
+    line("measured", value)
 }
 
 /// The design of a sweep, and what its cases have for each key that varies; that of the first case follows.
@@ -38,7 +40,7 @@ pub(super) fn sweep_lines(sweep: &Sweep, cases: &[DrawnCase]) -> Vec<Line> {
     let design = &sweep.design;
     let seed = if design.kind == DesignKind::Grid { String::new() } else { format!(", seed {}", design.seed) };
     let number = count(cases.len(), "case");
-    let mut lines = vec![Line { what: "sweep", value: format!("{number} of {}, {}{seed}", sweep.base.name, design.kind) }];
+    let mut lines = vec![line("sweep", format!("{number} of {}, {}{seed}", sweep.base.name, design.kind))];
     for (column, key) in sweep.columns().iter().enumerate() {
         let numbers: Option<Vec<f64>> = cases
             .iter()
@@ -60,26 +62,63 @@ pub(super) fn sweep_lines(sweep: &Sweep, cases: &[DrawnCase]) -> Vec<Line> {
                 words.join(", ")
             }
         };
-        lines.push(Line { what: "varies", value: format!("{key}: {values}") });
+        lines.push(line("varies", format!("{key}: {values}")));
     }
-    lines.push(Line { what: "first case", value: cases[0].name.clone() });
+    lines.push(line("first case", cases[0].name.clone()));
     lines
+}
+
+/// Specimen, flaws and material of a case or a scene; `flaws` is the name of their line, `of_them` more words about them.
+pub(super) fn plate_lines(
+    specimen: &Specimen,
+    material: &Material,
+    (flaws, cracks, of_them): (&'static str, usize, String),
+) -> Vec<Line> {
+    let [width, length, thickness] = [specimen.gross_width, specimen.length(), specimen.thickness].map(mm);
+    let counts =
+        [(cracks, "crack"), (specimen.slots.len(), "slot"), (specimen.holes.len(), "hole"), (specimen.tips.len(), "tip")];
+    let counts = counts.map(|(number, name)| count(number, name)).join(", ");
+    let (modulus, nu, plane) = (short(material.youngs_modulus / GPA), material.poisson_ratio, material.plane);
+    vec![
+        line("specimen", format!("{}, {width} x {length} x {thickness} mm (width, length, thickness)", specimen.kind)),
+        line(flaws, format!("{counts}{of_them}")),
+        line("material", format!("{}: E {modulus} GPa, nu {nu}, plane {plane}", material.name)),
+    ]
+}
+
+/// What lies at the points: how many there are, spacing of the finest and the coarsest level and largest horizon, m.
+pub(super) struct Points {
+    /// Points and bonds and bonds cut, or about how many points.
+    pub count: String,
+    pub spacings: [f64; 2],
+    pub horizon: f64,
+}
+
+impl Points {
+    /// Points and bonds that were built, in words.
+    pub fn built([points, bonds, cut]: [usize; 3]) -> String {
+        format!("{points} and {bonds} bonds, {cut} of them cut by the initial cracks,")
+    }
+
+    /// One line; `asked` is the finest spacing asked for, m.
+    pub fn words(&self, asked: f64, chosen: &[Choice]) -> String {
+        let ([fine, coarse], asked) = (self.spacings.map(mm), mm(asked));
+        let to = if fine == coarse { String::new() } else { format!(" to {coarse}") };
+        let moved = if fine == asked { String::new() } else { format!(" ({asked} asked for)") };
+        let choices = model_words::words(chosen, &["discretisation", "horizon_ratio", "solver"]);
+        format!("{} at spacing {fine}{to} mm{moved}, horizon {} mm, {choices}", self.count, mm(self.horizon))
+    }
 }
 
 /// What the program understood of a case, one line each; `points` says how it is divided.
 pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
-    let (specimen, material, loading, model, fatigue) =
-        (&case.specimen, &case.material, &case.loading, &case.model, &case.fatigue);
-    let mm = |metres: f64| short(metres / MM);
-    let bond = model.bond_law;
-    let load = match specimen.load_measure {
-        LoadMeasure::Stress => {
-            format!("stress {} to {} MPa", short(loading.maximum * loading.ratio / MPA), short(loading.maximum / MPA))
-        }
-        LoadMeasure::Force => {
-            format!("force {} to {} kN", short(loading.maximum * loading.ratio / KN), short(loading.maximum / KN))
-        }
+    let (specimen, loading, fatigue) = (&case.specimen, &case.loading, &case.fatigue);
+    let chosen = model_words::of_case(case, None);
+    let (load, unit, symbol) = match specimen.load_measure {
+        LoadMeasure::Stress => ("stress", MPA, "MPa"),
+        LoadMeasure::Force => ("force", KN, "kN"),
     };
+    let [least, most] = [loading.maximum * loading.ratio, loading.maximum].map(|load| short(load / unit));
     let held = match specimen.supports.first() {
         None => "nothing held, loads in equilibrium",
         Some(Support::Fixed { .. }) => "held as [supports] says",
@@ -87,93 +126,64 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         Some(Support::ClampedEnds) => "rigid ends that cannot rotate",
         Some(Support::RigidEnds) => "rigid ends that rotate about pins",
     };
-    let law = match &case.law {
-        LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
-        LawSource::Paris(law) => format!("da/dN = {:e} ΔK^{} (mm/cycle, MPa√m)", law.c / MM_PER_CYCLE, law.m),
-        LawSource::Factor(law) => format!("{}: {}", law.kind(), law.in_words()),
-        LawSource::Fitted(_) if model.method == Method::Handbook => fit_use::law_line(case).unwrap_or_default(),
-        LawSource::Fitted(record) => format!(
-            "{}; a = {:e} per cycle at horizon {} mm",
-            fit_use::law_line(case).unwrap_or_default(),
-            record.a,
-            record.horizon_mm
-        ),
-        LawSource::Missing(path) if path.as_os_str().is_empty() => "to be fitted".to_owned(),
-        LawSource::Missing(path) => format!("{} does not exist yet", path.display()),
-    };
     let formula = handbook(specimen).map_or_else(
         || "none for this specimen".to_owned(),
         |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range),
     );
-    let stop = if case.stop.crack_length.is_finite() {
-        format!("crack length {} mm, or ", mm(case.stop.crack_length))
-    } else {
-        String::new()
-    };
-    let lines = [
-        (
-            "specimen",
-            format!(
-                "{}, {} x {} x {} mm (width, length, thickness)",
-                specimen.kind,
-                mm(specimen.gross_width),
-                mm(specimen.length()),
-                mm(specimen.thickness)
-            ),
-        ),
-        (
-            "crack",
-            format!(
-                "length {} mm; {}, {}, {}, {}",
-                mm(specimen.crack_length),
-                count(specimen.cracks.len(), "crack"),
-                count(specimen.slots.len(), "slot"),
-                count(specimen.holes.len(), "hole"),
-                count(specimen.tips.len(), "tip")
-            ),
-        ),
-        (
-            "material",
-            format!(
-                "{}: E {} GPa, nu {}, plane {}",
-                material.name,
-                short(material.youngs_modulus / GPA),
-                material.poisson_ratio,
-                material.plane
-            ),
-        ),
-        ("loading", format!("{load}, R = {}; {held}", loading.ratio)),
-        (
-            "bonds",
-            format!(
-                "{}, kernel {}, rotation {}, surface correction {}",
-                bond.kind, bond.kernel, bond.rotation, bond.surface_correction
-            ),
-        ),
-        ("points", points),
-        ("fatigue", law),
-        ("driver", fatigue.driver.to_string()),
-        (
-            "ageing",
-            format!(
-                "{}, zone radius {} horizons, precrack {}, a solve after every break",
-                fatigue.ageing, fatigue.zone_radius_horizons, fatigue.precrack
-            ),
-        ),
-        ("handbook K", formula),
-        ("stop", format!("{stop}{} cycles", case.stop.cycles_max)),
-    ];
-    // Hand calculation has no bonds, and tips driven by their K have none that age.
-    let told = |what: &str| match what {
-        "bonds" | "driver" => model.method == Method::Peridynamics,
-        "ageing" => case.spends_bond_life(),
-        _ => true,
-    };
-    lines.into_iter().filter(|(what, _)| told(what)).map(|(what, value)| Line { what, value }).collect()
+    let end = Some(case.stop.crack_length).filter(|length| length.is_finite());
+    let end = end.map_or_else(String::new, |length| format!("crack length {} mm, or ", mm(length)));
+    let mut lines = plate_lines(
+        specimen,
+        &case.material,
+        ("crack", specimen.cracks.len(), format!("; length {} mm", mm(specimen.crack_length))),
+    );
+    lines.push(line("loading", format!("{load} {least} to {most} {symbol}, R = {}; {held}", loading.ratio)));
+    let by_points = case.model.method == Method::Peridynamics;
+    lines.extend(by_points.then(|| line("bonds", model_words::words(&chosen, &model_words::OF_BONDS))));
+    lines.push(line("points", points));
+    lines.extend(case.model.refinement.as_ref().map(|refinement| line("refinement", refinement.words())));
+    lines.push(line("fatigue", law_words(case)));
+    lines.extend(by_points.then(|| line("driver", model_words::words(&chosen, &["driver"]))));
+    if case.spends_bond_life() {
+        let radius = fatigue.zone_radius_horizons;
+        let words =
+            format!("{}, zone radius {radius} horizons, precrack {}, a solve after every break", fatigue.ageing, fatigue.precrack);
+        lines.push(line("ageing", words));
+    }
+    lines.push(line("handbook K", formula));
+    lines.push(line("stop", format!("{end}{} cycles", case.stop.cycles_max)));
+    lines
+}
+
+fn law_words(case: &Case) -> String {
+    match &case.law {
+        LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
+        LawSource::Paris(law) => format!("da/dN = {:e} ΔK^{} (mm/cycle, MPa√m)", law.c / MM_PER_CYCLE, law.m),
+        LawSource::Factor(law) => format!("{}: {}", law.kind(), law.in_words()),
+        LawSource::Fitted(record) => {
+            let law = fit_use::law_line(case).unwrap_or_default();
+            let of_bonds = match case.model.method {
+                Method::Peridynamics => format!("; a = {:e} per cycle at horizon {} mm", record.a, record.horizon_mm),
+                Method::Handbook => String::new(),
+            };
+            format!("{law}{of_bonds}")
+        }
+        LawSource::Missing(path) if path.as_os_str().is_empty() => "to be fitted".to_owned(),
+        LawSource::Missing(path) => format!("{} does not exist yet", path.display()),
+    }
+}
+
+pub(super) fn line(what: &'static str, value: String) -> Line {
+    Line { what, value }
+}
+
+/// A length in millimetres.
+pub(super) fn mm(metres: f64) -> String {
+    short(metres / MM)
 }
 
 /// So many of something.
-pub(super) fn count(number: usize, name: &str) -> String {
+fn count(number: usize, name: &str) -> String {
     format!("{number} {name}{}", if number == 1 { "" } else { "s" })
 }
 

@@ -17,7 +17,7 @@ pub struct Args {
     /// Case file (a calibration file does as well); its fatigue law is not needed
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Methods: energy_release, domain_integral, near_tip_displacement; all where none is given
+    /// Methods: energy_release, domain_integral; all where none is given
     #[arg(long, value_name = "METHOD", num_args = 1.., help_heading = "Method")]
     pub method: Vec<String>,
     /// Override a key of the case (repeatable), e.g. --set specimen.crack_length_mm=20

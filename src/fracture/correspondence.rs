@@ -1,5 +1,5 @@
 //! Non-ordinary state-based (correspondence) peridynamics: a point's stress from the deformation of its whole neighbourhood
-//! (Silling, Epton, Weckner, Xu and Askari 2007, J. Elasticity 88:151, section 18; source 001).
+//! (Silling, Epton, Weckner, Xu and Askari 2007, J. Elasticity 88:151, section 18).
 //!
 //! With bonds ξ = x' - x, relative displacements η = u' - u, influence w = 1 and sums over the intact bonds of a point:
 //!

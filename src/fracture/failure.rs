@@ -28,7 +28,8 @@ pub enum Failure {
     /// Broken at the critical stretch s_c of the owner, true length.
     Stretch(Vec<f64>),
     /// Broken at `s² + (k_t/k_n) γ² ≥ s_c²`, longer than at rest, with the critical stretch of the owner: on the stretch form with a constant
-    /// kernel this is `(c_n s² + c_t γ²)/2 ≥ w_c0` (source 002, equation 24), in tension only; also where the true length is beyond s_c.
+    /// kernel this is `(c_n s² + c_t γ²)/2 ≥ w_c0` (Huang, Li, Jin, He and Wang, equation 24, after Zhu and Ni 2017), in tension only;
+    /// also where the true length is beyond s_c.
     Energy(Vec<f64>),
     /// Exponential softening.
     Softening(Softening),
@@ -161,7 +162,7 @@ impl Failure {
 
 impl Softening {
     /// Share of the stiffness 1 - D at a stretch never reached before: `D = 0` up to s_et, `1 - exp(-(s - s_et)/s_nt)` up to s_t,
-    /// 1 beyond (source 000, equation 19). With the continuous form the force is largest at s_nt. As printed, equations (20)
+    /// 1 beyond (Li, Lü, Huang and Yang 2024, equation 19). With the continuous form the force is largest at s_nt. As printed, equations (20)
     /// and (21) multiply by D itself between s_et and s_nt, so that the force drops to zero just above s_et.
     #[must_use]
     pub fn share(&self, stretch: f64) -> f64 {

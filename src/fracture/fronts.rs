@@ -12,8 +12,8 @@ use crate::specimen::{Point, Specimen};
 
 /// Damage from which a point is cracked.
 pub const CRACKED: f64 = 0.35;
-/// Damage at which sources log place, time and speed of cracking (source 004). A straight crack along the rows never gets there;
-/// one that turns or kinks does.
+/// Damage at which the literature of dual-horizon plates (Ren, Zhuang, Cai and Rabczuk 2016) logs place, time and speed of cracking. A
+/// straight crack along the rows never gets there; one that turns or kinks does.
 pub const LOGGED: f64 = 0.5;
 /// Distance in horizons within which a cracked point belongs to a front or to its way.
 const REACH: f64 = 2.0;

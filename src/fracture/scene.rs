@@ -35,7 +35,7 @@ crate::kinds! {
     /// Laws of damage and failure of a bond.
     pub enum DamageLaw for "damage.law" {
         None = "none": "bonds stay whole",
-        NonlinearTwoParameter = "nonlinear_two_parameter": "exponential softening from the elastic limit on, broken at the final stretch (source 000, equation 19)",
+        NonlinearTwoParameter = "nonlinear_two_parameter": "exponential softening from the elastic limit on, broken at the final stretch (Li, Lü, Huang and Yang 2024, equation 19)",
         CriticalStretch = "critical_stretch": "broken at the critical stretch of the fracture energy",
         CriticalEnergy = "critical_energy": "broken at the critical energy of the fracture energy, normal and tangential together, in tension only",
         PrincipalStress = "principal_stress": "broken where the mean first principal stress of both ends reaches the tensile strength (correspondence)",

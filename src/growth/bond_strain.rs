@@ -29,7 +29,7 @@ use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::fatigue::{FatigueLaw, FatigueSettings};
-use crate::solver::{Equilibrium, Focus};
+use crate::solver::{Equilibrium, Focus, SolverUsed};
 use crate::state::Bonds;
 use course::Course;
 use overload::{overstretched, stretched};
@@ -237,6 +237,7 @@ impl<'a> BondStrain<'a> {
         }
         let focus = focus(&run.tips, body, settings);
         run.iterations += self.equilibrium.reach(body, &run.bonds, &self.watched, &focus, &mut self.displacement)?;
+        run.had_window |= self.equilibrium.used() == SolverUsed::Window;
         let mut ageing = self.ageing();
         // Not while bonds break that would break together but for round-off: mirror twins would be seen at unequal lengths.
         let is_due = self.pace.as_ref().is_some_and(|pace| pace.is_due(body, &self.run.tips));
@@ -389,6 +390,7 @@ impl CrackGrowth for BondStrain<'_> {
         (run.tips, run.near_limit) = (state.tips, state.near_limit);
         run.track.go_on_from(state.past);
         (run.broken_bonds, run.solves, run.iterations) = (state.broken_bonds, state.statistics.solves, state.statistics.iterations);
+        run.had_window = state.statistics.solver == Some(SolverUsed::Window);
         self.equilibrium = solver(self.case, &plate, run);
         self.settle_first()?;
         self.look_around();
@@ -420,8 +422,9 @@ impl CrackGrowth for BondStrain<'_> {
     }
 
     fn statistics(&self) -> SolverStatistics {
-        let Course { solves, iterations, .. } = self.run;
-        SolverStatistics { points_solved: self.equilibrium.points(&self.plate.body), solves, iterations }
+        let Course { solves, iterations, had_window, .. } = self.run;
+        let solver = if had_window { SolverUsed::Window } else { self.equilibrium.used() };
+        SolverStatistics { points_solved: self.equilibrium.points(&self.plate.body), solves, iterations, solver: Some(solver) }
     }
 
     fn warnings(&self) -> Vec<String> {

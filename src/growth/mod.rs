@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::fatigue::growth_law::GrowthLaw;
+use crate::solver::SolverUsed;
 use cross_check::CrossCheck;
 use plate::Plate;
 use record::{CurvePoint, StopReason, TipRecord};
@@ -146,6 +147,8 @@ pub struct SolverStatistics {
     pub solves: usize,
     /// Solver iterations.
     pub iterations: usize,
+    /// What solved; `None` of a hand calculation.
+    pub solver: Option<SolverUsed>,
 }
 
 /// State of a run at a place where its solver is built anew.

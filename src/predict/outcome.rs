@@ -8,6 +8,7 @@ use crate::growth::plate::Plate;
 pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
 use crate::growth::{CrackGrowth, GrowthStatus};
 use crate::net::PointGrid;
+use crate::solver::SolverUsed;
 
 /// Picture of the damaged plate at one moment.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +40,8 @@ pub struct RunFigures {
     pub solves: usize,
     /// Solver iterations in all (0 for a direct solver).
     pub iterations: usize,
+    /// What solved; `None` of a hand calculation.
+    pub solver: Option<SolverUsed>,
     /// Actual lattice spacing, m.
     pub spacing: f64,
     /// Horizon, m.
@@ -61,6 +64,7 @@ impl RunFigures {
             blocks,
             solves: statistics.solves,
             iterations: statistics.iterations,
+            solver: statistics.solver,
             spacing: plate.map_or(f64::NAN, |plate| plate.body.lattice.spacing),
             horizon: plate.map_or(f64::NAN, |plate| plate.body.horizon()),
             wall_s,

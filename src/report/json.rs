@@ -1,18 +1,16 @@
-//! `result.json`: the figures of a run, what model computed it and why, and the case as it was given.
+//! `result.json`: the figures of a run, the law it used, and the case as it was given.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use crate::bond_law::BondLawKind;
-use crate::case::{Case, LawSource, Method};
-use crate::net::Refinement;
+use crate::case::{Case, LawSource};
 use crate::predict::laws::paris_law;
 use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
-use crate::specimen::handbook::handbook;
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 use super::fit_use::extrapolated;
 pub use super::fit_use::life_share_extrapolated;
+use super::model_words;
 
 /// Name of the file.
 pub const RESULT_FILE: &str = "result.json";
@@ -47,53 +45,11 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "solver_iterations": figures.iterations,
         "wall_s": figures.wall_s,
         "memory_mb": figures.memory_mb,
-        "model": model(case, prediction),
+        "model": model_words::object(&model_words::of_case(case, Some(figures))),
         "law": law(case, prediction),
         "warnings": warnings,
         "version": env!("CARGO_PKG_VERSION"),
         "case": case.echo,
-    })
-}
-
-/// The model that ran: every choice with its value, and under `why` whether the case asked for it or the program chose it.
-fn model(case: &Case, prediction: &Prediction) -> Value {
-    if case.model.method == Method::Handbook {
-        return hand_calculation(case);
-    }
-    let (model, figures) = (&case.model, &prediction.figures);
-    let values = json!({
-        "method": model.method.name(),
-        "driver": case.fatigue.driver.name(),
-        "bond_law": model.bond_law.kind.name(),
-        "kernel": model.bond_law.kernel.name(),
-        "rotation": model.bond_law.rotation.name(),
-        "surface_correction": model.bond_law.surface_correction.name(),
-        "discretisation": model.arrangement.name(),
-        "levels": 1 + model.refinement.as_ref().map_or(0, Refinement::deepest),
-        "spacing_mm": clean(figures.spacing / MM),
-        "spacing_coarsest_mm": clean(figures.spacing * model.coarsest_spacing() / model.spacing / MM),
-        "horizon_ratio": model.horizon_ratio,
-        "horizon_mm": clean(figures.horizon / MM),
-        "lattice_angle_deg": clean(model.lattice_angle.to_degrees()),
-        "solver": model.solver.name(),
-        "symmetry": model.symmetry.name(),
-    });
-    let why: Map<String, Value> =
-        WHY_CHOSEN.iter().map(|(key, reason)| ((*key).to_owned(), why_text(case, prediction, key, reason).into())).collect();
-    let mut object = values.as_object().cloned().unwrap_or_default();
-    object.insert("why".to_owned(), Value::Object(why));
-    Value::Object(object)
-}
-
-/// The formula of a run of method `handbook`. Other keys of `[model]` say nothing there.
-fn hand_calculation(case: &Case) -> Value {
-    let formula = handbook(&case.specimen);
-    json!({
-        "method": case.model.method.name(),
-        "formula": formula.map(|formula| formula.name),
-        "source": formula.map(|formula| formula.source),
-        "range": formula.map(|formula| formula.range),
-        "why": { "method": "given in the case", "formula": "that of the kind of specimen" },
     })
 }
 
@@ -119,65 +75,6 @@ fn plastic_zone(case: &Case, prediction: &Prediction) -> Value {
         "life_share_too_large": clean(found.life_share_too_large),
     })
 }
-
-/// Why the program takes what it takes where the case leaves a choice open.
-const WHY_CHOSEN: [(&str, &str); 11] = [
-    ("method", "default: computes any plate and the path of its cracks"),
-    ("bond_law", "default: takes Poisson's ratio from the material instead of fixing it"),
-    ("kernel", "default: of the kernels tried, its crack growth depends least on the lattice"),
-    ("rotation", "default: rigid rotation of crack flanks must cost no energy"),
-    ("surface_correction", "default: the most accurate one built"),
-    ("discretisation", "default: one spacing everywhere"),
-    ("spacing_mm", "default: the smaller of crack length / 9 and width / 100"),
-    ("horizon_ratio", "default: 3.015, three neighbours in every lattice direction"),
-    ("lattice_angle_deg", "default: lattice rows along x"),
-    ("solver", "default: the fastest exact one built"),
-    ("symmetry", "default: exact"),
-];
-
-/// Why the default bond law is not taken.
-const BEYOND_SPRINGS: &str = "chosen: springs alone cannot have this Poisson's ratio";
-
-fn why_text(case: &Case, prediction: &Prediction, key: &str, reason: &str) -> String {
-    let given = case.echo.get("model").and_then(|model| model.get(key)).is_some();
-    let recorded = match &case.law {
-        // A record of hand calculation fixes nothing.
-        LawSource::Fitted(record) => record.rate_constant.is_some() && FIXED_BY_RECORD.contains(&key),
-        _ => false,
-    };
-    let source = match (given, recorded) {
-        (true, _) => "given in the case",
-        (false, true) => "as in the fitted record: the law holds for this choice only",
-        (false, false) if key == "bond_law" && case.model.bond_law.kind == BondLawKind::StateBased => BEYOND_SPRINGS,
-        (false, false) => reason,
-    };
-    let (asked, actual) = (case.model.spacing / MM, prediction.figures.spacing / MM);
-    if key == "spacing_mm" {
-        let finest = if case.model.refinement.is_some() { "; that of the finest level, on which cracks grow" } else { "" };
-        let is_moved = ((asked - actual) / actual).abs() > 1e-9;
-        let moved =
-            if is_moved { format!("; moved from {asked:.6} to {actual:.6} so that it divides the width") } else { String::new() };
-        return format!("{source}{finest}{moved}");
-    }
-    if key == "symmetry" {
-        return format!("{source}; {}", solved_part(prediction));
-    }
-    source.to_owned()
-}
-
-/// How much of the plate was solved for.
-fn solved_part(prediction: &Prediction) -> &'static str {
-    let (all, solved) = (prediction.figures.points, prediction.figures.points_solved);
-    // A line of symmetry through a row of points leaves half a row more.
-    match (solved == all, 3 * solved > all) {
-        (true, _) => "the whole plate was solved",
-        (false, true) => "one half was solved, the other is its mirror image",
-        (false, false) => "a quarter was solved, the others are its mirror images",
-    }
-}
-
-/// Choices that a fitted law is meaningless without.
-const FIXED_BY_RECORD: [&str; 5] = ["bond_law", "kernel", "rotation", "surface_correction", "horizon_ratio"];
 
 /// The constants as given, and A as it was used: at this run's horizon, modulus and stress ratio.
 fn law(case: &Case, prediction: &Prediction) -> Value {

@@ -12,6 +12,7 @@ pub mod fit;
 pub mod fit_use;
 pub mod fracture;
 pub mod json;
+pub mod model_words;
 pub mod output;
 pub mod resample;
 pub mod residual_strength;

@@ -37,7 +37,7 @@ mod step;
 
 use super::field::dot;
 use super::product::{Product, ROWS_PER_TASK};
-use super::{LinearSolver, Solved, System};
+use super::{LinearSolver, Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
@@ -124,6 +124,10 @@ fn damping(Sums { stiffness, mass, .. }: Sums) -> f64 {
 }
 
 impl<const N: usize> LinearSolver<N> for DynamicRelaxation<N> {
+    fn used(&self) -> SolverUsed {
+        SolverUsed::AdaptiveDynamicRelaxation
+    }
+
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let System { product, f, .. } = system;
         let iterations = self.relax(system, u).ok_or_else(|| {

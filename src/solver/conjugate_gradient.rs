@@ -6,7 +6,7 @@ use super::field::dot;
 use super::multigrid::Multigrid;
 use super::product::{Into, Product};
 use super::rigid_motion::RigidMotion;
-use super::{LinearSolver, Solved, System};
+use super::{LinearSolver, Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
@@ -173,6 +173,10 @@ fn update<T: Copy + Sync + std::convert::Into<f64>>(v: &mut [f64], w: &[T], new:
 }
 
 impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {
+    fn used(&self) -> SolverUsed {
+        SolverUsed::Multigrid
+    }
+
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         self.solve_to(self.tolerance, system, u)
     }

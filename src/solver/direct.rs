@@ -9,7 +9,7 @@ use faer::sparse::{SparseColMat, Triplet};
 use super::assembly::{Assembly, MIXED, Mixed, Springs, for_joints};
 use super::field::dot;
 use super::product::Product;
-use super::{LinearSolver, Solved, System};
+use super::{LinearSolver, Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
@@ -22,6 +22,10 @@ const SOLVES_MOST: usize = 32;
 pub struct DirectSolver {}
 
 impl<const N: usize> LinearSolver<N> for DirectSolver {
+    fn used(&self) -> SolverUsed {
+        SolverUsed::Direct
+    }
+
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let System { bonds, product, f, .. } = system;
         match product.dilatation() {

@@ -11,7 +11,7 @@ use super::field::Layout;
 use super::product::Product;
 use super::window::Whole;
 use super::window::condense::{Condensed, FORK, LEAF, Plate, condense_plate};
-use super::{Solved, System};
+use super::{Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::Result;
 use crate::net::Net;
@@ -109,6 +109,8 @@ impl<const N: usize> Levels<N> {
 }
 
 impl<const N: usize> Whole<N> for Levels<N> {
+    const USED: SolverUsed = SolverUsed::ConjugateGradients;
+
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         self.solve_to(TOLERANCE, system, u)
     }

@@ -2,7 +2,7 @@
 //!
 //! Bonds break in mirror images of each other as long as the plate is symmetric. When they do not, the whole plate takes over.
 
-use super::{Balance, Focus, SolverKind, sides};
+use super::{Balance, Focus, SolverKind, SolverUsed, sides};
 use crate::body::mirror::{Mirror, Part, signs};
 use crate::body::{Body, Bond};
 use crate::error::Result;
@@ -216,5 +216,9 @@ impl Balance for Mirrored {
 
     fn points(&self, body: &Body) -> usize {
         if self.is_lost { body.points.len() } else { self.part.body.points.len() }
+    }
+
+    fn used(&self) -> SolverUsed {
+        self.inner.used()
     }
 }

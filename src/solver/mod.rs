@@ -37,6 +37,17 @@ crate::kinds! {
     }
 }
 
+crate::kinds! {
+    /// What solved a run, whatever `model.solver` asked for.
+    pub enum SolverUsed for "solver" {
+        Window = "window": "updates of the plate condensed onto the points around the crack tips, multigrid for whole solves",
+        Multigrid = "multigrid": "multigrid solves of the whole plate: no window was condensed",
+        ConjugateGradients = "conjugate_gradients": "conjugate gradients with a sparse factor on the whole plate of several levels: no window was condensed",
+        Direct = "direct": "sparse Cholesky factorisations of the whole plate",
+        AdaptiveDynamicRelaxation = "adaptive_dynamic_relaxation": "damped motion of the whole plate to rest",
+    }
+}
+
 /// A crack tip around which bonds may break next.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Focus {
@@ -83,6 +94,8 @@ trait LinearSolver<const N: usize>: Send {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
     /// Told which bonds broke since the last solve.
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
+    /// What has solved since it was built.
+    fn used(&self) -> SolverUsed;
     /// Told to what residual over load to solve; direct and explicit solvers have one of their own.
     fn set_tolerance(&mut self, _: f64) {}
     /// Makes `u` right at the ends of `watched` bonds, and gets ready for breaks around the tips; what a solve of the whole plate
@@ -148,6 +161,7 @@ trait Balance: Send {
     fn is_whole(&self) -> bool;
     fn window(&self) -> Option<&[u32]>;
     fn points(&self, body: &Body) -> usize;
+    fn used(&self) -> SolverUsed;
 }
 
 impl Equilibrium {
@@ -189,6 +203,12 @@ impl Equilibrium {
     #[must_use]
     pub fn points(&self, body: &Body) -> usize {
         self.inner.points(body)
+    }
+
+    /// What has solved since it was built: the window only if one was condensed.
+    #[must_use]
+    pub fn used(&self) -> SolverUsed {
+        self.inner.used()
     }
 
     /// Solves for the present bonds, starting from the last solution; returns the iterations.

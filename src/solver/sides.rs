@@ -9,7 +9,7 @@ use super::field::{self, Layout};
 use super::levels::Levels;
 use super::product::{Into, Product};
 use super::window::WindowSolver;
-use super::{Balance, Focus, LinearSolver, SolverKind, System};
+use super::{Balance, Focus, LinearSolver, SolverKind, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::Result;
 use crate::net::levelled::Levelled;
@@ -239,6 +239,10 @@ impl<const N: usize> Balance for Sides<N> {
 
     fn points(&self, _: &Body) -> usize {
         self.points
+    }
+
+    fn used(&self) -> SolverUsed {
+        self.solver.used()
     }
 
     fn is_whole(&self) -> bool {

@@ -3,14 +3,13 @@
 use super::TipFrame;
 use crate::body::Body;
 use crate::body::balanced::flanks::{self, FlankRange};
-use crate::body::pre_crack::{bonds_cut_by, places_near, tie_break};
+use crate::body::pre_crack::{bonds_cut_by, tie_break};
 use crate::body::severed::{RepresentedEnd, represented_end};
 use crate::bond_law::SurfaceCorrection;
 use crate::case::Case;
 use crate::error::{Error, Result, input};
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::net::Arrangement;
-use crate::solver::field::Layout;
 use crate::solver::{Equilibrium, SolverKind};
 use crate::specimen::geometry::{distance, distance_to_polygon, distance_to_segment};
 use crate::specimen::{Crack, Point, Specimen};
@@ -31,7 +30,7 @@ pub struct Field {
     pub specimen: Specimen,
     /// Bonds, cracks cut.
     pub bonds: Bonds,
-    /// Displacement in the layout of [`Layout::of`], m.
+    /// Displacement in the layout of [`crate::solver::field::Layout::of`], m.
     pub displacement: Vec<f64>,
     /// Work of the loads, f·u, J.
     pub work: f64,
@@ -60,10 +59,7 @@ impl<'a> CrackedPlate<'a> {
     }
 
     /// Cuts the cracks with every tip moved by its growth, m; nothing is solved.
-    ///
-    /// # Errors
-    /// A tip that leaves the material, cracks that cut the plate in two.
-    pub fn cut(&mut self, growth_of_tips: &[f64]) -> Result<(Specimen, Bonds)> {
+    fn cut(&mut self, growth_of_tips: &[f64]) -> Result<(Specimen, Bonds)> {
         let mut specimen = self.case.specimen.clone();
         specimen.move_tips(growth_of_tips);
         if let Some(tip) = specimen.tips.iter().find(|tip| !tip.from_slot && !specimen.contains(tip.position)) {
@@ -94,40 +90,20 @@ impl<'a> CrackedPlate<'a> {
     /// Equilibrium at maximum load with every tip moved by its growth, m.
     ///
     /// # Errors
-    /// As [`CrackedPlate::cut`], and a solver that does not converge.
+    /// A tip that leaves the material, cracks that cut the plate in two, a solver that does not converge.
     pub fn solve(&mut self, growth_of_tips: &[f64]) -> Result<Field> {
         let (specimen, bonds) = self.cut(growth_of_tips)?;
-        let (displacement, work) = self.balance(&bonds, self.case.loading.maximum)?;
-        Ok(Field { specimen, bonds, displacement, work })
-    }
-
-    /// Displacement and work of the loads f·u under other forces on points (lattice axes, N) than the case's own.
-    ///
-    /// # Errors
-    /// A solver that does not converge.
-    pub fn solve_forces(&mut self, bonds: &Bonds, forces: &[(u32, Point)]) -> Result<(Vec<f64>, f64)> {
-        let own = std::mem::replace(&mut self.body.boundary.forces, forces.to_vec());
-        let solved = self.balance(bonds, 1.0);
-        self.body.boundary.forces = own;
-        solved
-    }
-
-    fn balance(&self, bonds: &Bonds, load: f64) -> Result<(Vec<f64>, f64)> {
         let mut displacement = Vec::new();
         // A window pays only where bonds break one after the other.
         let solver = match self.case.model.solver {
             SolverKind::Window => SolverKind::Multigrid,
             whole => whole,
         };
-        let mut equilibrium = Equilibrium::new(solver, self.case.model.symmetry, &self.body, bonds, load);
-        equilibrium.solve(&self.body, bonds, &mut displacement)?;
-        Ok((displacement, equilibrium.work()))
-    }
-
-    /// Layout of displacements.
-    #[must_use]
-    pub fn layout(&self) -> Layout {
-        Layout::of(&self.body.lattice, self.body.stencil.unknowns)
+        let (symmetry, load) = (self.case.model.symmetry, self.case.loading.maximum);
+        let mut equilibrium = Equilibrium::new(solver, symmetry, &self.body, &bonds, load);
+        equilibrium.solve(&self.body, &bonds, &mut displacement)?;
+        let work = equilibrium.work();
+        Ok(Field { specimen, bonds, displacement, work })
     }
 
     /// Where the crack of `specimen` that a tip ends reaches once cut into bonds.
@@ -170,11 +146,6 @@ impl<'a> CrackedPlate<'a> {
         let cracks = cracks.map(|crack| distance_to_segment(here, crack.from, crack.to));
         let edge = distance_to_polygon(here, &specimen.outline).min(distance(here, other_end));
         holes.chain(slots).chain(cracks).fold(edge, f64::min) - self.body.horizon()
-    }
-
-    /// Points within `radius` of the origin of a frame.
-    pub fn points_around(&self, frame: &TipFrame, radius: f64) -> impl Iterator<Item = usize> + '_ {
-        places_near(&self.body, frame.origin, frame.origin, radius)
     }
 }
 

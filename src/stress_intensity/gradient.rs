@@ -19,8 +19,7 @@ const REACH_SPACINGS: f64 = 0.9;
 const TERMS: usize = 5;
 
 /// Displacement of a place in a frame's axes, m.
-#[must_use]
-pub fn displacement_at(body: &Body, layout: &Layout, displacement: &[f64], frame: &TipFrame, place: usize) -> Point {
+fn displacement_at(body: &Body, layout: &Layout, displacement: &[f64], frame: &TipFrame, place: usize) -> Point {
     let at = layout.index(place);
     frame.vector(body.lattice.from_axes([displacement[at], displacement[at + layout.stride]]))
 }

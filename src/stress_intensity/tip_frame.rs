@@ -52,10 +52,4 @@ impl TipFrame {
         };
         (x.hypot(y), theta + turn)
     }
-
-    /// +1 for a point on the side of x₂ > 0 of the line that cut the bonds, -1 on the other.
-    #[must_use]
-    pub fn side(&self, point: Point) -> f64 {
-        if self.local(point)[1] > self.line { 1.0 } else { -1.0 }
-    }
 }

@@ -38,6 +38,7 @@ fn constants_of_k_choose_the_driver_of_tips() {
     let result: Value = serde_json::from_str(&stdout).unwrap();
     assert_eq!(result["model"]["driver"], "tip_field");
     assert_eq!(result["model"]["surface_correction"], "balanced");
+    assert_eq!(result["model"]["solver"], "multigrid", "bonds do not break one by one: no window is condensed");
     assert!(result["life_cycles"].as_f64().unwrap() > 1e3, "{stdout}");
     let table = fs::read_to_string(dir.path().join("run/a_n.csv")).unwrap();
     let mut lines = table.lines();

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 
 use perilife::predict::{CurvePoint, PointGrid, Prediction, RunFigures, Snapshot, StopReason, TipRecord};
+use perilife::solver::SolverUsed;
 use perilife::specimen::{Crack, Point};
 
 const SPACING: f64 = 1e-3;
@@ -27,6 +28,7 @@ pub fn prediction(angle: f64) -> Prediction {
         blocks: curve.len() - 1,
         solves: curve.len(),
         iterations: 9 * curve.len(),
+        solver: Some(SolverUsed::Multigrid),
         spacing: SPACING,
         horizon: 3.015 * SPACING,
         wall_s: 12.5,

@@ -24,7 +24,7 @@ fn specimen_of(keys: &str) -> Specimen {
     specimen::from_value(&toml::Value::Table(keys.parse().unwrap())).unwrap()
 }
 
-/// A square of 50 mm with a central crack of 10 mm, of the steel of source 002, example 3, its ends driven apart with a velocity, m/s,
+/// A square of 50 mm with a central crack of 10 mm, of the steel of Huang, Li, Jin, He and Wang, example 3, its ends driven apart with a velocity, m/s,
 /// for a time, s.
 pub fn torn(law: BondLaw, damage: DamageLaw, spacing: f64, velocity: f64, duration: f64) -> Scene {
     let mut square =

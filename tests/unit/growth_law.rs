@@ -138,6 +138,36 @@ fn k_c_is_where_the_plate_breaks() {
     assert_eq!(tough.material.toughness, Some(30.0 * MPA_SQRT_M), "the lower of both");
 }
 
+/// Two laws, whichever they are, and a law beside the kind of another.
+#[test]
+fn a_second_law_is_refused() {
+    const LAWS: [(&str, &str, &[&str]); 6] = [
+        ("fitted", "fitted = \"fitted.toml\"\n", &["bond_law", "paris", "walker"]),
+        ("a", "a = 6450\np = 2.86\nhorizon_mm = 3\n", &["bond_law"]),
+        ("paris_c_mm_per_cycle", "paris_c_mm_per_cycle = 1e-7\nparis_m = 3\n", &["paris", "walker"]),
+        ("forman_c_mm_per_cycle", "forman_c_mm_per_cycle = 3e-5\nforman_m = 2.5\n", &["forman"]),
+        ("nasgro_c_mm_per_cycle", NASGRO, &["nasgro"]),
+        ("growth_table", TABLE, &["table"]),
+    ];
+    let refused = |text: &str, words: [&str; 3]| {
+        for method in ["handbook", "peridynamics"] {
+            let error = read(text, &[&format!("model.method={method}")]).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{text}: {error}");
+            words.iter().for_each(|words| assert!(error.to_string().contains(words), "{words} in {error} of\n{text}"));
+        }
+    };
+    for (i, (key, text, kinds)) in LAWS.into_iter().enumerate() {
+        for (second, other, _) in &LAWS[i + 1..] {
+            let both = format!("fatigue.{key}: the law is given twice");
+            refused(&format!("{text}{other}"), [&format!("fatigue.{second} = "), &both, "give one law"]);
+        }
+        for kind in GrowthLawKind::ALL.iter().filter(|kind| !kinds.contains(&kind.name())) {
+            let named = format!("growth_law = \"{kind}\"");
+            refused(&format!("{named}\n{text}"), [&format!("fatigue.{key} = "), &named, "leave growth_law out"]);
+        }
+    }
+}
+
 /// The ends of a table: an error that names the length, or the rate of the end, and how often.
 #[test]
 fn beyond_a_table() {
@@ -173,7 +203,7 @@ fn wrong_laws_are_refused() {
         (RATES, NASGRO, &["fatigue.delta_k_threshold_mpa_sqrt_m=2"], &["fatigue.delta_k_threshold_mpa_sqrt_m", "own threshold"]),
         (RATES, "growth_law = \"table\"\n", &[], &["fatigue.growth_table", "missing", "delta_k_mpa_sqrt_m"]),
         (RATES, "growth_law = \"walker\"\nparis_c_mm_per_cycle = 1e-7\nparis_m = 3\n", &[], &["fatigue.walker_gamma", "missing"]),
-        (RATES, "growth_law = \"paris\"\na = 1\np = 3\nhorizon_mm = 1\n", &[], &["fatigue.paris_c_mm_per_cycle", "missing"]),
+        (RATES, "growth_law = \"paris\"\na = 1\np = 3\nhorizon_mm = 1\n", &[], &["fatigue.a = 1", "growth_law = \"paris\""]),
         (
             RATES,
             "paris_c_mm_per_cycle = 1e-7\nparis_m = 3\nk_c_mpa_sqrt_m = 3\n",

@@ -103,6 +103,9 @@ fn the_result_has_every_promised_key() {
     assert_eq!(why["bond_law"], "given in the case");
     assert_eq!(result["law"]["a_used"], 1e5, "the same horizon, so the same A");
     assert!(why["kernel"].as_str().unwrap().starts_with("default"));
+    // The run says what solved it, the reason what was asked for.
+    assert_eq!(result["model"]["solver"], "multigrid");
+    assert!(why["solver"].as_str().unwrap().contains("asked for was \"window\""), "{}", why["solver"]);
     assert!(why["spacing_mm"].as_str().unwrap().contains("moved from 1.010000 to 1.000000"));
 }
 

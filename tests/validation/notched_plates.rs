@@ -1,4 +1,4 @@
-//! Double-notch plates of Q345 steel at 0.5 mm (source 000: Li, Lü, Huang and Yang 2024, J. Ship Mech. 28:103, section 4).
+//! Double-notch plates of Q345 steel at 0.5 mm (Li, Lü, Huang and Yang 2024, J. Ship Mech. 28:103, section 4).
 //!
 //! The source prints the load step of the first broken bond. Its increment, 1.5e-7 mm, breaks nothing within its steps; read as
 //! 1.5e-5 mm an end the steps agree, read as 1.5e-4 mm the plates break at the grips after 300. What does not come out: with notches

@@ -1,7 +1,7 @@
 //! Control of zero-energy modes. F is blind to displacements that alternate from point to point, so that they cost nothing
 //! unless something is added to the force state.
 //!
-//! * `spring` (equations 9 and 10 of source 001; Breitenfeld, Geubelle, Weckner and Silling 2014, CMAME 272:233):
+//! * `spring` (Breitenfeld, Geubelle, Weckner and Silling 2014, CMAME 272:233):
 //!   `T += c_I η/2`. The springs see uniform strain too and raise the modulus by `π c_I h δ⁴/8`, and they resist rotation.
 //! * `silling` (after Silling 2017, CMAME 322:42): `T += c_z z/2` with the part of the relative displacement that F does not
 //!   explain, `z = η - H ξ`. As `Σ w z ⊗ ξ V' = 0` by the choice of H, the force is the exact gradient of `Σ Σ c_z z² V V'/4`,

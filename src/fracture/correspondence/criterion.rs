@@ -19,10 +19,10 @@ const TOGETHER: f64 = 0.9995;
 #[derive(Debug, Clone, PartialEq)]
 enum Limit {
     Never,
-    /// Mean first principal stress of both ends, Pa (equations 13 and 15 of source 001; Zhou, Wang and Qian 2016, Eur. J. Mech.
+    /// Mean first principal stress of both ends, Pa (Zhou, Wang and Qian 2016, Eur. J. Mech.
     /// A/Solids 60:277).
     Stress(f64),
-    /// Stretch `(|ξ + η| - |ξ|)/|ξ|` (equation 11).
+    /// Stretch `(|ξ + η| - |ξ|)/|ξ|` (Silling and Askari 2005).
     Stretch(f64),
 }
 
@@ -101,7 +101,7 @@ impl Criterion {
 }
 
 /// Critical stretch of a fracture energy in the plane, `s_c = √(G_c / ([6 G/π + 16 (K - 2G)/(9 π²)] δ))` with the bulk modulus
-/// of the plane state, `E/(2 (1-ν))` in plane stress and `E/(2 (1+ν)(1-2ν))` in plane strain (equation 12 of source 001; Madenci
+/// of the plane state, `E/(2 (1-ν))` in plane stress and `E/(2 (1+ν)(1-2ν))` in plane strain (Madenci
 /// and Oterkus 2014).
 #[must_use]
 pub fn critical_stretch(material: &Material, fracture_energy: f64, horizon: f64) -> f64 {

@@ -17,7 +17,7 @@ use crate::units::MM;
 const COUNT_MAX: u64 = 20_000;
 /// Draws for one crack before the region counts as full.
 const DRAWS: usize = 10_000;
-/// Length of the longest where a scene says nothing, mm (source 002).
+/// Length of the longest where a scene says nothing, mm (Huang, Li, Jin, He and Wang, after Zhu and Ni 2017).
 const LENGTH_MAX_MM: f64 = 2.0;
 
 /// Keys of `[micro_cracks]`.

@@ -25,6 +25,8 @@ pub(super) struct Course {
     pub solves: usize,
     /// Solver iterations.
     pub iterations: usize,
+    /// Whether a window was condensed; a solver that is built anew has none at first.
+    pub had_window: bool,
 }
 
 impl Course {
@@ -38,6 +40,7 @@ impl Course {
             broken_bonds: 0,
             solves: 0,
             iterations: 0,
+            had_window: false,
             bonds,
             tips,
         }

@@ -190,7 +190,7 @@ impl CrackGrowth for TipField<'_> {
 
     fn statistics(&self) -> SolverStatistics {
         let points_solved = self.equilibrium.points(&self.plate.body);
-        SolverStatistics { points_solved, solves: self.solves, iterations: self.iterations }
+        SolverStatistics { points_solved, solves: self.solves, iterations: self.iterations, solver: Some(self.equilibrium.used()) }
     }
 
     fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {

@@ -1,12 +1,13 @@
 //! `result.json` of a fracture scene.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::rows;
 use crate::fracture::outcome::PathPoint;
 use crate::fracture::scene::{Action, Procedure, Scene, SceneLaw};
 use crate::fracture::{Fracture, SceneEnd};
 use crate::report::json::clean;
+use crate::report::model_words;
 use crate::units::MM;
 
 /// The whole object. A figure that does not exist is `null`.
@@ -39,7 +40,7 @@ pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
         "wall_s": figures.wall_s,
         "memory_mb": figures.memory_mb,
         "loading": loading(scene),
-        "model": model(scene, fracture),
+        "model": model_words::object(&model_words::of_scene(scene, Some(fracture.grid.spacing))),
         "damage": damage(scene),
         "warnings": warnings,
         "version": env!("CARGO_PKG_VERSION"),
@@ -89,59 +90,6 @@ fn loading(scene: &Scene) -> Value {
             json!({ "procedure": "quasi_static", "steps": steps, "iterations_per_step": iterations, "kinds": kinds })
         }
         Procedure::Dynamic { duration, .. } => json!({ "procedure": "dynamic", "duration_s": duration, "kinds": kinds }),
-    }
-}
-
-/// The model that ran: every choice with its value, and under `why` whether the file asked for it or the program chose it.
-fn model(scene: &Scene, fracture: &Fracture) -> Value {
-    let model = &scene.model;
-    let mut object = Map::new();
-    let mut put = |key: &str, value: Value| object.insert(key.to_owned(), value);
-    match model.law {
-        SceneLaw::Bonds(law) => {
-            put("bond_law", law.kind.name().into());
-            put("kernel", law.kernel.name().into());
-            put("rotation", law.rotation.name().into());
-            put("surface_correction", law.surface_correction.name().into());
-            put("kinematics", if model.finite { "finite" } else { "small" }.into());
-        }
-        SceneLaw::Correspondence { control, factor } => {
-            put("bond_law", "correspondence".into());
-            put("zero_energy_control", control.name().into());
-            put("zero_energy_factor", factor.into());
-        }
-    }
-    put("discretisation", model.arrangement.name().into());
-    put("spacing_mm", clean(model.spacing / MM).into());
-    put("finest_spacing_mm", clean(fracture.grid.spacing / MM).into());
-    put("horizon_ratio", model.horizon_ratio.into());
-    put("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into());
-    put("solver", model.solver.name().into());
-    let given = scene.echo.get("model");
-    let why = |(key, _): (&String, &Value)| {
-        let chosen = given.is_some_and(|model| model.get(key).is_some());
-        (key.clone(), Value::from(if chosen { "given in the file" } else { reason(key) }))
-    };
-    let why: Map<String, Value> = object.iter().filter(|(key, _)| *key != "finest_spacing_mm").map(why).collect();
-    object.insert("why".to_owned(), why.into());
-    object.into()
-}
-
-/// Why the program takes what it takes where the file leaves a choice open.
-fn reason(key: &str) -> &'static str {
-    match key {
-        "bond_law" => "default: takes Poisson's ratio from the material instead of fixing it",
-        "kernel" => "default: that of the law's literature",
-        "rotation" => "default: as the law is printed",
-        "surface_correction" => "default: that of the literature",
-        "kinematics" => "default: strains are small",
-        "zero_energy_control" => "default: leaves uniform strain alone",
-        "zero_energy_factor" => "default: 1",
-        "spacing_mm" => "default: the smaller of crack length / 9 and width / 100",
-        "horizon_ratio" => "default: 3.015, three neighbours in every lattice direction",
-        "lattice_angle_deg" => "default: lattice rows along x",
-        "discretisation" => "default: one spacing",
-        _ => "default: that of the procedure",
     }
 }
 

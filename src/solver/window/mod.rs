@@ -12,7 +12,7 @@ use super::assembly::{MIXED, Mixed, Springs};
 use super::conjugate_gradient::MultigridSolver;
 use super::direct::{DirectSolver, pinned_components};
 use super::product::{End, Product};
-use super::{Focus, LinearSolver, SOLVES_MOST, Solved, System};
+use super::{Focus, LinearSolver, SOLVES_MOST, Solved, SolverUsed, System};
 use crate::body::mirror::signs;
 use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
@@ -52,6 +52,8 @@ pub(in crate::solver) trait Whole<const N: usize>: Send {
     fn set_tolerance(&mut self, _: f64) {}
     /// Told which bonds broke.
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
+    /// What it solves by.
+    const USED: SolverUsed;
     /// Condenses the plate with its present bonds onto some places; `None` where that cannot be done in these digits.
     fn condense(&self, system: System<'_, N>, places: &[u32]) -> Option<Condensed>;
 }
@@ -60,6 +62,8 @@ pub(in crate::solver) trait Whole<const N: usize>: Send {
 pub(in crate::solver) struct Alone<const N: usize>(MultigridSolver<N>);
 
 impl<const N: usize> Whole<N> for Alone<N> {
+    const USED: SolverUsed = SolverUsed::Multigrid;
+
     fn set_tolerance(&mut self, tolerance: f64) {
         self.0.set_tolerance(tolerance);
     }
@@ -91,6 +95,8 @@ impl<const N: usize> Whole<N> for Alone<N> {
 pub(in crate::solver) struct WindowSolver<const N: usize, W> {
     whole: W,
     window: Option<Window>,
+    /// Whether there was one at any time.
+    had_window: bool,
     broken: Vec<Bond>,
     /// Whether the displacement is right everywhere, not in the window only.
     is_whole: bool,
@@ -124,7 +130,16 @@ impl<const N: usize> WindowSolver<N, Alone<N>> {
 impl<const N: usize, W: Whole<N>> WindowSolver<N, W> {
     /// Starts without a window; never has one if it `is_off`.
     pub(in crate::solver) fn of_whole(whole: W, is_off: bool) -> Self {
-        WindowSolver { whole, window: None, broken: Vec::new(), is_whole: false, is_off, work: 0.0, picture: None }
+        WindowSolver {
+            whole,
+            window: None,
+            had_window: false,
+            broken: Vec::new(),
+            is_whole: false,
+            is_off,
+            work: 0.0,
+            picture: None,
+        }
     }
 
     /// Solves the whole plate; a window that is up to date takes its new base from it.
@@ -202,6 +217,10 @@ impl<const N: usize, W: Whole<N>> LinearSolver<N> for WindowSolver<N, W> {
         self.broken.extend(broken);
     }
 
+    fn used(&self) -> SolverUsed {
+        if self.had_window { SolverUsed::Window } else { W::USED }
+    }
+
     fn set_tolerance(&mut self, tolerance: f64) {
         self.whole.set_tolerance(tolerance);
     }
@@ -212,6 +231,7 @@ impl<const N: usize, W: Whole<N>> LinearSolver<N> for WindowSolver<N, W> {
         }
         let solved = self.complete(system, u)?;
         self.window = self.condense(system, u, watched, tips);
+        self.had_window |= self.window.is_some();
         Ok(solved)
     }
 
