@@ -44,7 +44,8 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 /// # Errors
 /// As [`predict`]; [`crate::Error::Input`] if the checkpoint is not one of this case.
 pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
-    follow(Record::new(case, observer).from_checkpoint(checkpoint)?)
+    checkpoint.check(case)?;
+    follow(Record::new(case, observer).from_checkpoint(checkpoint))
 }
 
 /// A run by what its case asks to be driven by.

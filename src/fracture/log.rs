@@ -102,6 +102,7 @@ impl<'a> Log<'a> {
             crack_length: 0.0,
             displacement: u.chunks_exact(unknowns).map(|u| [u[0], u[1]]).collect(),
             damage,
+            remaining_life: Vec::new(),
         });
     }
 

@@ -84,12 +84,12 @@ impl Checkpoint {
         self.case == hash(case)
     }
 
-    /// Refuses the checkpoint of another case than that of this [`hash`].
+    /// Refuses the checkpoint of another case.
     ///
     /// # Errors
     /// [`crate::Error::Input`].
-    pub(super) fn check(&self, case: [u8; 32]) -> Result<()> {
-        if self.case == case { Ok(()) } else { Err(refused("belongs to another case, or to this one before it was changed")) }
+    pub fn check(&self, case: &Case) -> Result<()> {
+        if self.belongs_to(case) { Ok(()) } else { Err(refused("belongs to another case, or to this one before it was changed")) }
     }
 
     /// As bytes, with a checksum.

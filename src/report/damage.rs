@@ -1,4 +1,5 @@
-//! Picture of the damaged plate: one square a point, coloured by its share of broken bonds; crack path, colour bar, scale.
+//! Picture of the damaged plate: one square a point, coloured by its fraction of broken bonds, or by the fraction of life that its
+//! bonds have spent; crack path, colour bar, scale.
 
 use std::path::Path;
 
@@ -22,6 +23,62 @@ const INK: Rgb = [40, 40, 40];
 const INITIAL_CRACK: Rgb = [0, 0, 0];
 const PATH: Rgb = [0, 150, 255];
 
+/// What points are coloured by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PointField {
+    /// Fraction of a point's bonds that are broken.
+    Damage,
+    /// 1 - λ of the bond of a point that has the least remaining life.
+    LifeSpent,
+}
+
+impl PointField {
+    fn value(self, snapshot: &Snapshot, point: usize) -> f64 {
+        match self {
+            PointField::Damage => snapshot.damage.get(point).copied().unwrap_or(0.0),
+            PointField::LifeSpent => 1.0 - snapshot.remaining_life.get(point).copied().unwrap_or(1.0),
+        }
+    }
+
+    fn words(self) -> [&'static str; 2] {
+        match self {
+            PointField::Damage => ["damage", "share of broken bonds"],
+            PointField::LifeSpent => ["1 - remaining life", "of the most used bond"],
+        }
+    }
+
+    /// Upper end of the colour bar.
+    fn full_scale(self, snapshot: &Snapshot) -> f64 {
+        match self {
+            PointField::Damage => full_scale(&snapshot.damage),
+            PointField::LifeSpent => 1.0,
+        }
+    }
+}
+
+/// The points within `reach`, m, of a place, in a grid of their own.
+#[must_use]
+pub fn around(grid: &PointGrid, place: Point, reach: f64) -> PointGrid {
+    let mut part = grid.clone();
+    for (index, point) in part.point_at.iter_mut().enumerate() {
+        let [x, y] = position_of(grid, index);
+        if (x - place[0]).abs() > reach || (y - place[1]).abs() > reach {
+            *point = None;
+        }
+    }
+    part
+}
+
+/// Place of the point whose bonds have the least remaining life, m; `None` where all are whole.
+#[must_use]
+pub fn most_used(grid: &PointGrid, snapshot: &Snapshot) -> Option<Point> {
+    let lives = grid.point_at.iter().enumerate().filter_map(|(place, point)| {
+        let life = *snapshot.remaining_life.get((*point)? as usize)?;
+        (life < 1.0).then_some((place, life))
+    });
+    lives.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| position_of(grid, place))
+}
+
 /// What the picture shows.
 #[derive(Debug, Clone, Copy)]
 pub struct DamagePicture<'a> {
@@ -29,6 +86,8 @@ pub struct DamagePicture<'a> {
     pub grid: &'a PointGrid,
     /// State of the plate.
     pub snapshot: &'a Snapshot,
+    /// What points are coloured by.
+    pub field: PointField,
     /// Cracks of the start.
     pub cracks: &'a [Crack],
     /// Path of every tip, m.
@@ -66,7 +125,7 @@ impl DamagePicture<'_> {
         let view = View::of(self.grid);
         let height = view.height.max(COLUMN_HEIGHT) + 2 * MARGIN;
         let mut canvas = Canvas::new((view.width + COLUMN + 3 * MARGIN) as usize, height as usize);
-        let full_scale = full_scale(&self.snapshot.damage);
+        let full_scale = self.field.full_scale(self.snapshot);
         self.draw_points(&mut canvas, &view, full_scale);
         for path in self.paths {
             let line: Vec<[f64; 2]> = path.iter().map(|point| view.pixel(*point)).collect();
@@ -86,8 +145,8 @@ impl DamagePicture<'_> {
             for column in 0..view.width {
                 let (x, y) = (MARGIN + column, MARGIN + row);
                 let Some(point) = place_at(self.grid, view.point([x as f64 + 0.5, y as f64 + 0.5])) else { continue };
-                let damage = self.snapshot.damage.get(point).copied().unwrap_or(0.0);
-                canvas.set(x, y, if damage == 0.0 { whole } else { of_share(damage / full_scale) });
+                let value = self.field.value(self.snapshot, point);
+                canvas.set(x, y, if value == 0.0 { whole } else { of_share(value / full_scale) });
             }
         }
     }
@@ -96,8 +155,9 @@ impl DamagePicture<'_> {
         let left = 2 * MARGIN + view.width;
         let mut y = MARGIN;
         let say = |canvas: &mut Canvas, text: &str, dx: i64, y: i64| canvas.text(text, [left + dx, y], LETTER, INK);
-        say(canvas, "damage", 0, y);
-        say(canvas, "share of broken bonds", 0, y + 24);
+        let [name, meaning] = self.field.words();
+        say(canvas, name, 0, y);
+        say(canvas, meaning, 0, y + 24);
         y += 60;
         let (bar, thick) = (200, 28);
         canvas.fill([left - 1, y - 1], [thick + 2, bar + 2], INK);

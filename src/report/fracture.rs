@@ -9,7 +9,7 @@ pub use json::result;
 
 use super::chart::{self, Mark, Series};
 use super::csv::{exact, number};
-use super::damage::DamagePicture;
+use super::damage::{DamagePicture, PointField};
 use super::output::write_file;
 use super::vtk;
 use crate::error::{Error, Result};
@@ -121,7 +121,7 @@ fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture, snapshots: &[Sn
     let last = snapshots.last().map(|snapshot| ("damage.png", snapshot, &paths));
     for (file, snapshot, paths) in first.into_iter().chain(last) {
         let caption = caption(scene, snapshot);
-        let picture = DamagePicture { grid: &fracture.grid, snapshot, cracks: &scene.specimen.cracks, paths, caption: &caption };
+        let picture = DamagePicture { grid: &fracture.grid, field: PointField::Damage, snapshot, cracks: &scene.specimen.cracks, paths, caption: &caption };
         picture.write(&folder.join(file))?;
     }
     Ok(())

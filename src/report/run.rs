@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::chart::{self, Mark, Series};
 use super::csv::{self, Row};
-use super::damage::{DamagePicture, cycles_and_length};
+use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
 use super::output::write_file;
 use super::{fit_use, json, vtk};
 use crate::case::{Case, LawSource};
@@ -14,7 +14,11 @@ use crate::error::{Error, Result, input};
 use crate::predict::guard::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::{Prediction, StopReason};
 use crate::specimen::Point;
+use crate::specimen::geometry::distance;
+use crate::units::MM;
 
+/// Half the width of the picture of the fatigue zone, in horizons.
+const ZONE_HORIZONS: f64 = 4.0;
 /// Folder of the ParaView files in that of a run.
 pub const PARAVIEW: &str = "paraview";
 /// Share of life outside the fitted ΔK range above which the user is warned.
@@ -110,15 +114,38 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
         .collect();
     if let Some(snapshot) = prediction.snapshots.last() {
         let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
-        DamagePicture { grid: &prediction.grid, snapshot, cracks, paths: &paths, caption: &caption }
+        DamagePicture { grid: &prediction.grid, snapshot, field: PointField::Damage, cracks, paths: &paths, caption: &caption }
             .write(&folder.join("damage.png"))?;
     }
+    draw_remaining_life(&folder.join("remaining_life.png"), case, prediction, &paths)?;
     if !prediction.snapshots.is_empty() {
         let paraview = folder.join(PARAVIEW);
         std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
         vtk::write_series(&paraview, &prediction.grid, &prediction.snapshots)?;
     }
     Ok(result)
+}
+
+/// The fatigue zone ahead of a tip, at the last snapshot that has one.
+fn draw_remaining_life(path: &Path, case: &Case, prediction: &Prediction, paths: &[Vec<Point>]) -> Result<()> {
+    let grid = &prediction.grid;
+    let last = prediction.snapshots.iter().rev().find_map(|snapshot| Some((snapshot, most_used(grid, snapshot)?)));
+    let Some((snapshot, tip)) = last else { return Ok(()) };
+    let grid = &around(grid, tip, ZONE_HORIZONS * prediction.figures.horizon);
+    let [cycles, length] = cycles_and_length(snapshot);
+    let place = format!("around ({:.2}, {:.2}) mm", tip[0] / MM, tip[1] / MM);
+    // The path beyond the zone, and after this moment, is left out with the points.
+    let is_near = |at: &Point| grid.point_at.len() > 1 && distance(*at, tip) < ZONE_HORIZONS * prediction.figures.horizon;
+    let near: Vec<Vec<Point>> = paths.iter().map(|path| path.iter().copied().filter(is_near).collect()).collect();
+    let picture = DamagePicture {
+        grid,
+        snapshot,
+        field: PointField::LifeSpent,
+        cracks: &[],
+        paths: &near,
+        caption: &[cycles, length, place, case.name.clone()],
+    };
+    picture.write(path)
 }
 
 /// `a_n.svg`, and `da_dn.svg` where ΔK and da/dN are known.

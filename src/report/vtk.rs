@@ -45,6 +45,10 @@ pub fn image(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
     );
     let places = &grid.point_at;
     data.reals(&mut body, "damage", 1, places.iter().map(|point| [point.map_or(0.0, |p| of(&snapshot.damage, p))]));
+    if !snapshot.remaining_life.is_empty() {
+        let lives = places.iter().map(|point| [point.map_or(1.0, |p| of(&snapshot.remaining_life, p))]);
+        data.reals(&mut body, "remaining_life", 1, lives);
+    }
     data.reals(&mut body, "displacement_mm", 3, places.iter().map(|point| point.map_or([0.0; 3], |p| displacement(snapshot, p))));
     // 2 = hidden point: ParaView draws nothing there and filters leave it out.
     data.bytes(&mut body, "vtkGhostType", places.iter().map(|point| if point.is_some() { 0 } else { 2 }));
@@ -80,6 +84,9 @@ pub fn mesh(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
     data.bytes(&mut body, "types", squares.iter().map(|_| 9)); // 9 = quadrilateral
     body.push_str("</Cells>\n<PointData Scalars=\"damage\" Vectors=\"displacement_mm\">\n");
     data.reals(&mut body, "damage", 1, place_of.iter().map(|(p, _)| [of(&snapshot.damage, *p)]));
+    if !snapshot.remaining_life.is_empty() {
+        data.reals(&mut body, "remaining_life", 1, place_of.iter().map(|(p, _)| [of(&snapshot.remaining_life, *p)]));
+    }
     data.reals(&mut body, "displacement_mm", 3, place_of.iter().map(|(p, _)| displacement(snapshot, *p)));
     body.push_str("</PointData>\n</Piece>\n</UnstructuredGrid>\n");
     data.file("UnstructuredGrid", &body)

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::predict::checkpoint::Checkpoint;
 use crate::predict::{Observer, PointGrid, Progress, Snapshot, TipRecord};
-use crate::report::damage::{DamagePicture, cycles_and_length};
+use crate::report::damage::{DamagePicture, PointField, cycles_and_length};
 use crate::service::job::JobProgress;
 use crate::service::store::Growth;
 use crate::specimen::{Crack, Point};
@@ -43,7 +43,7 @@ impl Look {
     pub fn draw(&self) -> Option<(String, Vec<u8>)> {
         let Look { snapshot, grid, cracks, paths } = self;
         let caption = cycles_and_length(snapshot);
-        let picture = DamagePicture { grid, snapshot, cracks, paths, caption: &caption };
+        let picture = DamagePicture { grid, field: PointField::Damage, snapshot, cracks, paths, caption: &caption };
         let about = serde_json::json!({ "cycles": snapshot.cycles, "crack_length_mm": snapshot.crack_length / MM });
         Some((about.to_string(), picture.png().ok()?))
     }
