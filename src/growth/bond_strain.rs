@@ -175,7 +175,10 @@ impl<'a> BondStrain<'a> {
     /// The bonds that age, by the strains of the displacement at hand.
     fn ageing(&mut self) -> Vec<AgeingBond> {
         let (body, run) = (&self.plate.body, &self.run);
-        let mut ageing = ageing_bonds(body, &self.near, &self.displacement, self.range);
+        // Growth to the initial lengths is none of the load's: no threshold holds it up.
+        let (share, threshold) = self.range;
+        let threshold = if run.track.is_counting() { threshold } else { 0.0 };
+        let mut ageing = ageing_bonds(body, &self.near, &self.displacement, (share, threshold));
         if let Some(pace) = &mut self.pace {
             pace.set(body, &run.tips, &self.law, &mut ageing);
         }
@@ -379,7 +382,7 @@ impl CrackGrowth for BondStrain<'_> {
         match (&mut self.pace, state.pace) {
             (None, None) => {}
             (Some(pace), Some(before)) => {
-                if !pace.restore(before) {
+                if !pace.restore(before, state.past.is_counting()) {
                     return Ok(false);
                 }
             }

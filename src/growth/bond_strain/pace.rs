@@ -88,6 +88,8 @@ pub(super) struct Pace {
     load: f64,
     ratio: f64,
     tips: Vec<TipPace>,
+    /// Whether cycles count.
+    is_counting: bool,
 }
 
 /// What a tip's pace depends on.
@@ -183,6 +185,7 @@ impl Pace {
             load: case.loading.maximum,
             ratio: case.loading.ratio,
             tips: (0..count).map(tip).collect(),
+            is_counting: false,
         }
     }
 
@@ -278,6 +281,11 @@ impl Pace {
         for ((pace, tip), per_scale) in self.tips.iter_mut().zip(tips).zip(lengths) {
             let known = pace.factor(tip.crack + tip.growth + pace.half_step()).zip(pace.efficiency(horizon));
             pace.rate = known.map(|(factor, _)| self.law.rate(factor, self.ratio));
+            // A crack below its threshold still gets to its initial length: by the strains of its bonds, in cycles that do not count.
+            if !self.is_counting && pace.rate == Some(0.0) {
+                (pace.rate, pace.scale) = (None, None);
+                continue;
+            }
             if let Some(((_, efficiency), rate)) = known.zip(pace.rate).filter(|_| per_scale > 0.0) {
                 let catch_up = (1.0 + pace.behind / (CATCH_UP_HORIZONS * horizon)).clamp(CATCH_UP.0, CATCH_UP.1);
                 pace.scale = Some(catch_up * rate / (efficiency * per_scale));
@@ -303,6 +311,7 @@ impl Pace {
 
     /// Lets the growth of tips count from here on: what they were behind before is no matter.
     pub(super) fn begin(&mut self) {
+        self.is_counting = true;
         self.tips.iter_mut().for_each(|tip| tip.behind = 0.0);
     }
 
@@ -332,10 +341,10 @@ impl Pace {
     }
 
     /// Goes on from a state of an earlier run; whether it is one of so many tips.
-    pub(super) fn restore(&mut self, state: Vec<TipPace>) -> bool {
+    pub(super) fn restore(&mut self, state: Vec<TipPace>, is_counting: bool) -> bool {
         let fits = state.len() == self.tips.len() && state.iter().all(|tip| !tip.past.is_empty());
         if fits {
-            self.tips = state;
+            (self.tips, self.is_counting) = (state, is_counting);
         }
         fits
     }

@@ -71,6 +71,11 @@ pub(super) struct Past {
 }
 
 impl Past {
+    /// Whether cycles count.
+    pub(super) fn is_counting(&self) -> bool {
+        self.zero.is_some()
+    }
+
     /// Whether it can be that of a run with `tips` tips.
     pub(super) fn fits(&self, tips: usize) -> bool {
         !self.rows.is_empty()
@@ -126,7 +131,7 @@ impl Track {
 
     /// Whether cycles count.
     pub(super) fn is_counting(&self) -> bool {
-        self.past.zero.is_some()
+        self.past.is_counting()
     }
 
     /// Lets cycles pass.
