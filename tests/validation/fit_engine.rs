@@ -20,7 +20,6 @@ pub fn fit_to(calibration: &CalibrationCase, curves: &[MeasuredCurve]) -> Fit {
 }
 
 #[test]
-#[ignore = "long: two runs of 45 600 points"]
 fn the_median_panel_is_fitted_within_two_percent_of_life() {
     let calibration = calibration(&[]);
     let found = fit_to(&calibration, &calibration.curves);

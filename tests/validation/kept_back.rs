@@ -109,7 +109,6 @@ fn hand_calculation_gives_the_mean_of_panels_kept_back() {
 /// for its distance from the half it saw, to which the kept-back half adds the difference of the halves. (The other half
 /// starts as no power law does: its own fit, by hand calculation alike, is 5 % off at 15 mm and 1.8 % from 20 mm on.)
 #[test]
-#[ignore = "long: some runs of 45 600 points"]
 fn panels_kept_back_live_as_the_others_say() {
     let Some(file) = shared("virkler/virkler.csv") else { return };
     let file = file.canonicalize().unwrap();
