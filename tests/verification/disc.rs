@@ -1,4 +1,4 @@
-//! The Brazilian disc of PBX 9501 between rigid platens (source 001), by correspondence.
+//! The Brazilian disc of PBX 9501 between rigid platens (Li, Hao, Liu and Zhen), by correspondence.
 
 use std::f64::consts::PI;
 use std::path::Path;
