@@ -45,3 +45,5 @@ mod service;
 mod sif;
 #[path = "interface/sweep.rs"]
 mod sweep;
+#[path = "interface/verify.rs"]
+mod verify;

@@ -37,6 +37,8 @@ mod near_tip_fields;
 mod stress_intensity;
 #[path = "verification/readme_accuracy.rs"]
 mod readme_accuracy;
+#[path = "verification/topics.rs"]
+mod topics;
 #[path = "verification/stability.rs"]
 mod stability;
 #[path = "verification/fatigue.rs"]

@@ -94,6 +94,14 @@ pub struct BondStrainState {
     statistics: SolverStatistics,
 }
 
+impl BondStrainState {
+    /// All bonds that are broken, those of the initial cracks among them, ascending.
+    #[must_use]
+    pub fn broken(&self) -> &[Bond] {
+        &self.broken
+    }
+}
+
 impl<'a> BondStrain<'a> {
     /// The plate with its cracks as they are cut, before its first equilibrium; the fatigue law is given the body's horizon, m.
     ///

@@ -4,14 +4,15 @@ use std::cmp::Ordering;
 
 use serde_json::{Value, json};
 
-use crate::verify::Row;
+use crate::verify::{Row, Topic};
 
 /// One row as a line on the console.
 #[must_use]
 pub fn line(row: &Row) -> String {
     let mark = verdict(row);
     let figures = format!("{:>12} against {:>12}", number(row.computed), number(row.reference));
-    let error = format!("{:+.3} % (bound {:.3} %)", row.error_percent, row.bound_percent);
+    let known = row.known_miss.as_ref().map_or_else(String::new, |miss| format!(", known miss {:.3} %", miss.bound_percent));
+    let error = format!("{:+.3} % (bound {:.3} %{known})", row.error_percent, row.bound_percent);
     format!("  {mark:<5} {:<62} {figures}  {error}, {:.1} s", row.quantity, row.wall_s)
 }
 
@@ -22,7 +23,9 @@ pub fn object(rows: &[Row]) -> Value {
         json!({
             "name": row.name, "quantity": row.quantity, "computed": row.computed, "reference": row.reference,
             "error_percent": row.error_percent, "bound_percent": row.bound_percent, "ok": row.ok(),
-            "known_miss": row.known_miss, "source": row.source, "wall_s": row.wall_s,
+            "known_miss": row.known_miss.as_ref().map(|miss| &miss.reason),
+            "miss_bound_percent": row.known_miss.as_ref().map(|miss| miss.bound_percent),
+            "source": row.source, "wall_s": row.wall_s,
         })
     };
     json!({ "rows": rows.iter().map(row).collect::<Vec<_>>() })
@@ -31,11 +34,13 @@ pub fn object(rows: &[Row]) -> Value {
 /// All rows as CSV, one header line.
 #[must_use]
 pub fn csv(rows: &[Row]) -> String {
-    let mut text = "name,quantity,computed,reference,error_percent,bound_percent,ok,known_miss,source,wall_s\n".to_owned();
+    let mut text =
+        "name,quantity,computed,reference,error_percent,bound_percent,ok,known_miss,source,wall_s,miss_bound_percent\n"
+            .to_owned();
     for row in rows {
         let quoted = |field: &str| format!("\"{}\"", field.replace('"', "\"\""));
         text += &format!(
-            "{},{},{:.12e},{:.12e},{:.6},{},{},{},{},{:.3}\n",
+            "{},{},{:.12e},{:.12e},{:.6},{},{},{},{},{:.3},{}\n",
             row.name,
             quoted(&row.quantity),
             row.computed,
@@ -43,9 +48,10 @@ pub fn csv(rows: &[Row]) -> String {
             row.error_percent,
             row.bound_percent,
             row.ok(),
-            quoted(row.known_miss.as_deref().unwrap_or("")),
+            quoted(row.known_miss.as_ref().map_or("", |miss| &miss.reason)),
             quoted(&row.source),
-            row.wall_s
+            row.wall_s,
+            row.known_miss.as_ref().map_or_else(String::new, |miss| format!("{:.6}", miss.bound_percent)),
         );
     }
     text
@@ -64,7 +70,7 @@ pub fn summary(rows: &[Row]) -> String {
             let misses = of_topic().filter(|row| !row.ok()).count();
             let worst =
                 of_topic().max_by(|a, b| (a.ok(), share(a)).partial_cmp(&(b.ok(), share(b))).unwrap_or(Ordering::Less))?;
-            let figures = format!("{:+.1} % | {:.2} %", worst.error_percent, worst.bound_percent);
+            let figures = format!("{} % | {} %", signed(worst.error_percent, 1), bound(worst.bound_percent));
             let line = format!("| `{name}` | {} | {misses} | {} | {figures} |\n", of_topic().count(), cell(&worst.quantity));
             Some((share(worst), line))
         })
@@ -85,25 +91,60 @@ fn share(row: &Row) -> f64 {
     (row.error_percent / row.bound_percent).abs()
 }
 
-/// A table for a document: the row with the largest share of its bound first.
+/// The verification as a document: [`summary`], then all rows of every topic. It holds no wall times, and figures of few digits,
+/// so that whoever computes it again gets the same text.
 #[must_use]
-pub fn markdown(rows: &[Row]) -> String {
-    let mut sorted: Vec<&Row> = rows.iter().collect();
-    // An error that is not a number counts as the worst.
-    sorted.sort_by(|a, b| share(b).total_cmp(&share(a)));
-    let mut text = "| what | computed | reference | error % | bound % | source |\n|---|---|---|---|---|---|\n".to_owned();
-    for row in sorted {
-        let miss = row.known_miss.as_ref().map_or_else(String::new, |reason| format!(" (known miss: {reason})"));
-        let figures = format!(
-            "{} | {} | {:+.2} | {:.2}",
-            number(row.computed),
-            number(row.reference),
-            row.error_percent,
-            row.bound_percent
-        );
-        text += &format!("| {}: {}{miss} | {figures} | {} |\n", row.name, cell(&row.quantity), cell(&row.source));
+pub fn markdown(topics: &[&Topic], rows: &[Row]) -> String {
+    let mut text = format!(
+        "# Accuracy\n\nWritten by `perilife verify --markdown`: figures of the program beside their references. Errors are in percent \
+         of the reference;\nwhere that is 0, the figure is an error itself. A known miss has a second bound, which it may not \
+         pass.\n\n{}",
+        summary(rows)
+    );
+    for topic in topics {
+        text += &format!("\n## {}\n\n{}.\n\n", topic.name, topic.about);
+        text += "| quantity | computed | reference | error, % | bound, % | source |\n|---|---|---|---|---|---|\n";
+        rows.iter().filter(|row| row.name == topic.name).for_each(|row| text += &markdown_row(row));
     }
     text
+}
+
+fn markdown_row(row: &Row) -> String {
+    let (reason, second) = row.known_miss.as_ref().map_or_else(Default::default, |miss| {
+        (format!(" (known miss: {})", cell(&miss.reason)), format!("; known miss {}", bound(miss.bound_percent)))
+    });
+    let [computed, reference] = [row.computed, row.reference].map(four_digits);
+    let (error, bound) = (signed(row.error_percent, 2), bound(row.bound_percent));
+    format!(
+        "| {}{reason} | {computed} | {reference} | {error} | {bound}{second} | {} |\n",
+        cell(&row.quantity),
+        cell(&row.source)
+    )
+}
+
+/// With its sign, which zero has none of.
+fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:+.decimals$}");
+    if text.contains(|digit| ('1'..='9').contains(&digit)) || !value.is_finite() { text } else { text[1..].to_owned() }
+}
+
+/// Two decimals; all digits where that would be none.
+fn bound(percent: f64) -> String {
+    if percent < 0.01 { format!("{percent:e}") } else { format!("{percent:.2}") }
+}
+
+/// Four significant digits; what round-off leaves is zero.
+fn four_digits(value: f64) -> String {
+    let size = value.abs();
+    if size < 1e-9 {
+        return "0".to_owned();
+    }
+    if size < 1e-3 {
+        return format!("{value:.3e}");
+    }
+    let decimals = 3 - size.log10().floor() as i32;
+    let unit = 10_f64.powi(-decimals);
+    format!("{:.*}", decimals.max(0) as usize, (value / unit).round() * unit)
 }
 
 fn verdict(row: &Row) -> &'static str {

@@ -1,5 +1,7 @@
-//! The Brazilian disc of PBX 9501 between rigid platens (source 001): stress at its centre, and what the springs against
-//! zero-energy modes do to the displacement along its horizontal diameter.
+//! The Brazilian disc of PBX 9501 between rigid platens, by correspondence: stress at its centre, and what the springs against
+//! zero-energy modes do to the displacement along its horizontal diameter. Disc and springs are those of Li, Hao, Liu and Zhen
+//! (China Academy of Engineering Physics); the form of the springs is that of Breitenfeld, Geubelle, Weckner and Silling 2014,
+//! CMAME 272:233.
 
 mod sweep;
 

@@ -15,7 +15,7 @@ use crate::fracture::scene::{Arrangement, RefinedRegion, Refinement, Scene, Scen
 use crate::fracture::springs::Springs;
 use crate::material::{Material, Plane};
 use crate::net::{Net, NetBond};
-use crate::specimen::{Point, Specimen};
+use crate::specimen::{Crack, Hole, Point, Slot, Specimen};
 use crate::units::MM;
 
 /// The published law: bond-based, constant kernel on the stretch, partial volumes, no surface correction.
@@ -65,6 +65,18 @@ fn plain() -> Specimen {
     Specimen { loads: Vec::new(), thickness: 2.0 * MM, ..strip(100.0 * MM, 60.0 * MM) }
 }
 
+/// [`plain`] with all that a bond can meet: hole, slot and slant crack; its points are split in four twice around them, and once along
+/// a side.
+fn flawed(law: BondLaw) -> Scene {
+    let mut specimen = plain();
+    let mm = |point: Point| point.map(|x| x * MM);
+    specimen.holes.push(Hole { centre: mm([22.0, 12.0]), radius: 6.0 * MM });
+    specimen.slots.push(Slot { from: mm([-50.0, -5.0]), to: mm([-30.0, -5.0]), width: 2.0 * MM });
+    specimen.cracks.push(Crack { from: mm([0.0, -14.0]), to: mm([9.0, -10.0]) });
+    let side = RefinedRegion::Box { low: mm([-50.0, -30.0]), high: mm([50.0, -24.0]) };
+    scene(specimen, law, SPACING, &[(RefinedRegion::AroundFlaws { distance: 3.0 * MM }, 2), (side, 1)])
+}
+
 /// [`plain`] with points split in four, so many times, in an upright box.
 fn boxed(law: BondLaw, [low, high]: [Point; 2], levels: usize) -> Scene {
     scene(plain(), law, SPACING, &[(RefinedRegion::Box { low, high }, levels)])
@@ -81,16 +93,15 @@ pub fn forces(net: &Net, u: &[f64]) -> Vec<f64> {
 
 /// What forces that are to cancel leave.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Left {
+struct Left {
     /// Resultant over the sum of the sizes of all forces.
-    pub force: f64,
+    force: f64,
     /// Moment, couples among it, over the sum of force times distance from the middle.
-    pub moment: f64,
+    moment: f64,
 }
 
 /// What the forces of a net leave at a displacement.
-#[must_use]
-pub fn left(net: &Net, u: &[f64]) -> Left {
+fn left(net: &Net, u: &[f64]) -> Left {
     let n = net.unknowns;
     let (mut sum, mut moment, mut size, mut lever) = ([0.0; 2], 0.0, 0.0, 0.0);
     for (f, x) in forces(net, u).chunks_exact(n).zip(&net.positions) {
@@ -107,7 +118,7 @@ pub fn left(net: &Net, u: &[f64]) -> Left {
 ///
 /// # Errors
 /// As [`fracture::build`].
-pub fn ghost(law: BondLaw, arrangement: Arrangement) -> Result<f64> {
+fn ghost(law: BondLaw, arrangement: Arrangement) -> Result<f64> {
     let mut scene = boxed(law, [[10.0 * MM, -30.0 * MM], [50.0 * MM, 30.0 * MM]], 1);
     scene.model.arrangement = arrangement;
     let net = fracture::build(&scene)?.0;
@@ -159,31 +170,31 @@ pub fn patch(law: BondLaw) -> Result<Patch> {
     Ok(Patch { strains, off: off / (STRAIN * 100.0 * MM) })
 }
 
-/// The plate of source 004 with its refined ligament, as shipped.
+/// The mixed-mode plate of Nooru-Mohamed with its refined ligament, as shipped.
 const TWO_LEVELS: &str = include_str!("../../data/cases/fracture/mixed_mode_two_levels.toml");
 /// The same with fine points everywhere.
 const UNIFORM: &str = include_str!("../../data/cases/fracture/mixed_mode_uniform.toml");
 
-/// Points of the plate of source 004.
+/// Points of the mixed-mode plate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Counts {
+struct Counts {
     /// With points of 2.5 mm alone.
-    pub coarse: usize,
+    coarse: usize,
     /// Points of 2.5 mm that the ligament is made of.
-    pub split: usize,
+    split: usize,
     /// Points of 1.25 mm into which they are split.
-    pub fine: usize,
+    fine: usize,
     /// All points with the refined ligament.
-    pub refined: usize,
+    refined: usize,
     /// With points of 1.25 mm everywhere.
-    pub uniform: usize,
+    uniform: usize,
 }
 
-/// Counts of the plate of source 004.
+/// Counts of the mixed-mode plate.
 ///
 /// # Errors
 /// As [`fracture::build`].
-pub fn counts() -> Result<Counts> {
+fn counts() -> Result<Counts> {
     let read = |text: &str| Scene::from_toml(text, "mixed_mode", std::path::Path::new("."), &[]);
     let points = |scene: &Scene| Ok::<_, crate::Error>(fracture::build(scene)?.0);
     let two_levels = read(TWO_LEVELS)?;
@@ -205,7 +216,7 @@ pub fn rows(table: &mut Table) -> Result<()> {
         let Patch { strains: [low, high], off } = patch(law)?;
         let balanced = law.surface_correction == SurfaceCorrection::Balanced;
         let [least, largest] = if balanced { [1.0, 1.0] } else { [0.76, 1.41] };
-        let source = if balanced { "uniform strain" } else { "theory.md, section 5: an independent program" };
+        let source = if balanced { "uniform strain" } else { "independent program, law of Ren, Zhuang, Cai and Rabczuk 2016" };
         // That program had another plate: two digits of its extremes count, give or take two.
         let bound = |reference: f64| if balanced { 0.01 } else { 100.0 * 0.02 / reference };
         table.compare(
@@ -220,7 +231,7 @@ pub fn rows(table: &mut Table) -> Result<()> {
             format!("{name}: displacement of a patch of two levels, over strain times length"),
             100.0 * off,
             if balanced { 0.01 } else { 0.8 },
-            if balanced { "uniform strain" } else { "theory.md, section 5: 0.8 %" },
+            if balanced { "uniform strain" } else { "independent program, law of Ren, Zhuang, Cai and Rabczuk 2016: 0.8 %" },
         );
     }
     let counts = counts()?;
@@ -231,7 +242,8 @@ pub fn rows(table: &mut Table) -> Result<()> {
         ("points of both levels", counts.refined, 10320),
         ("points of 1.25 mm everywhere", counts.uniform, 25440),
     ] {
-        let source = "source 004; theory.md, section 5";
+        let source =
+            "Chinese patent application of 2022 on brittle cracks by dual horizons (after Ren, Zhuang, Cai and Rabczuk 2016)";
         // One point of the most is 0.004 %.
         table.compare(format!("mixed-mode plate: {what}"), count as f64, f64::from(printed), 1e-3, source);
     }
@@ -246,11 +258,11 @@ const BALANCED: BondLaw = BondLaw {
     surface_correction: SurfaceCorrection::Balanced,
 };
 
-/// Resultant and moment of a disorderly displacement on three levels.
+/// Resultant and moment of a disorderly displacement on three levels around flaws.
 fn momentum(table: &mut Table) -> Result<()> {
     let (mut force, mut moment, mut couple, mut count) = (0.0_f64, 0.0_f64, f64::INFINITY, 0);
     for law in laws().filter(|law| law.surface_correction != SurfaceCorrection::Balanced).chain([BALANCED]) {
-        let net = fracture::build(&boxed(law, [[-12.0 * MM, -8.0 * MM], [16.0 * MM, 8.0 * MM]], 2))?.0;
+        let net = fracture::build(&flawed(law))?.0;
         // Sines of large arguments: neighbours have nothing in common.
         let u: Vec<f64> = (0..net.len() * net.unknowns).map(|i| 1e-6 * (1e3 * i as f64).sin()).collect();
         let left = left(&net, &u);
@@ -275,6 +287,7 @@ fn momentum(table: &mut Table) -> Result<()> {
     table.error(name, 100.0 * couple, ROUND_OFF, "as published");
     table.known_miss(
         "a tangential spring between points that cannot turn leaves a couple, on a lattice as well: use rotation = \"free\"",
+        3e-4,
     );
     Ok(())
 }
@@ -287,11 +300,13 @@ fn ghosts(table: &mut Table) -> Result<()> {
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     let source = "Ren, Zhuang, Cai and Rabczuk 2016";
     table.error("dual_horizon, worst law: resultant of a uniform strain, percent", 100.0 * largest(&dual), ROUND_OFF, source);
-    for (which, value) in [("least", without.iter().copied().fold(f64::INFINITY, f64::min)), ("largest", largest(&without))] {
+    let least = without.iter().copied().fold(f64::INFINITY, f64::min);
+    for (which, value, known) in [("least", least, 1.382), ("largest", largest(&without), 4.318)] {
         let name = format!("variable_horizon, {which} of {} laws: resultant of a uniform strain, percent", without.len());
         table.error(name, 100.0 * value, ROUND_OFF, source);
         table.known_miss(
             "ghost forces: without the dual nothing takes up the pull of a bond in one horizon only; use \"dual_horizon\"",
+            known,
         );
     }
     Ok(())

@@ -22,7 +22,7 @@ pub fn all(table: &mut Table) -> Result<()> {
 
 /// First kinks of a crack of half length 36 mm, six horizons, at β to the load in a plate 240 mm wide, whatever the lattice.
 fn kinks(table: &mut Table) -> Result<()> {
-    const BOUND_DEGREES: f64 = 1.5;
+    const BOUND_DEGREES: f64 = 1.0;
     const SPREAD_DEGREES: f64 = 0.5;
     for beta in [15.0_f64, 30.0, 45.0, 60.0, 75.0] {
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);

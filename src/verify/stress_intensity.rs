@@ -51,6 +51,7 @@ pub(super) fn scene(specimen: &str, set: &[&str]) -> Result<Case> {
 /// As [`stress_intensity`].
 pub fn all(table: &mut Table) -> Result<()> {
     standard_specimens(table)?;
+    models(table)?;
     slanted_cracks(table)?;
     two_cracks(table)
 }
@@ -80,12 +81,33 @@ pub fn standard_specimens(table: &mut Table) -> Result<()> {
     }
     for (name, specimen, source) in [
         ("SE(T) a/W 0.25", SINGLE, "Tada, Paris and Irwin 2000 (0.5 %)"),
+        ("SE(T) a/W 0.25, pinned", &SINGLE.replace("uniform_stress", "pinned"), "Tada, Paris and Irwin 2000 (0.5 %)"),
         ("DE(T) 2a/W 0.4", DOUBLE, "Tada, Paris and Irwin 2000 (1 %)"),
         ("C(T) a/W 0.25", COMPACT_SHORT, "ASTM E647 (0.5 %)"),
         ("C(T) a/W 0.4", COMPACT, "ASTM E647 (0.5 %)"),
     ] {
         for (method, ratio) in over_handbook(&scene(specimen, &[])?)? {
             table.compare(format!("{name}: K_I by {method} over handbook"), ratio, 1.0, 1.5, source);
+        }
+    }
+    Ok(())
+}
+
+/// K_I by the energy released with other spacings and surface corrections than the default.
+fn models(table: &mut Table) -> Result<()> {
+    let mut row = |what: String, set: &[&str], bound: f64| -> Result<()> {
+        let tips = stress_intensity(&scene(MIDDLE, set)?, &[StressIntensityMethod::EnergyRelease])?;
+        let ratio = tips[0].methods[0].intensity.k_i.zip(tips[0].handbook_k_i).map_or(f64::NAN, |(k, handbook)| k / handbook);
+        table.compare(format!("{what}: K_I by energy_release over handbook"), ratio, 1.0, bound, "Feddersen 1966 (0.3 %)");
+        Ok(())
+    };
+    for spacing in [3.0, 0.75] {
+        row(format!("M(T) a/W 0.19, spacing {spacing} mm"), &[&format!("model.spacing_mm={spacing}")], 0.3)?;
+    }
+    for (correction, bound) in [("volume_and_surface", 1.2), ("none", 2.5)] {
+        for nu in [0.1, 0.3] {
+            let set = [format!("model.surface_correction={correction}"), format!("material.poisson_ratio={nu}")];
+            row(format!("M(T) a/W 0.19, surface correction {correction}, nu {nu}"), &[&set[0], &set[1]], bound)?;
         }
     }
     Ok(())

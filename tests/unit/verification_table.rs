@@ -1,21 +1,27 @@
-//! Verification rows as tables.
+//! Verification rows as tables, and what is wrong with them.
 
-use perilife::report::verification::{markdown, summary};
-use perilife::verify::{Row, Table};
+use perilife::report::verification::{csv, line, markdown, object, summary};
+use perilife::verify::{Row, Table, Topic, faults};
 
 /// Three topics: one with a miss beside a good row, one close to its bound, one whose only row misses.
+const TOPICS: [Topic; 3] = [
+    Topic { name: "far", about: "lives", misses: 1, fill: |_| Ok(()) },
+    Topic { name: "near", about: "errors", misses: 0, fill: |_| Ok(()) },
+    Topic { name: "missed", about: "angles", misses: 1, fill: |_| Ok(()) },
+];
+
 fn rows() -> Vec<Row> {
     let mut far = Table::new("far");
     far.compare("a life", 1.01, 1.0, 5.0, "by hand");
     far.compare("another life", 1.2, 1.0, 5.0, "by hand");
-    far.known_miss("too coarse");
+    far.known_miss("too coarse", 20.0);
     let mut near = Table::new("near");
     near.error("max |e|", -0.9, 1.0, "theory");
-    near.error("mean |e|", 0.1, 1.0, "theory");
-    near.known_miss("a row within its bound misses nothing");
+    near.error("mean |e|", 1e-14, 1e-10, "theory");
+    near.known_miss("a row within its bound misses nothing", 2.0);
     let mut missed = Table::new("missed");
     missed.error("angle", 12.0, 4.0, "theory");
-    missed.known_miss("a wide zone");
+    missed.known_miss("a wide zone", -11.0);
     [far, near, missed].into_iter().flat_map(Table::into_rows).collect()
 }
 
@@ -32,17 +38,77 @@ fn the_summary_has_the_worst_row_of_every_topic_and_counts_misses() {
     );
 }
 
+/// Summary first, then every topic with all its rows, each with its bounds, the reason of a miss and no digits of round-off.
 #[test]
-fn the_table_of_all_rows_has_the_worst_first_with_the_reason_of_a_miss() {
-    let text = markdown(&rows());
-    let lines: Vec<&str> = text.lines().skip(2).collect();
-    assert_eq!(lines.len(), 5);
-    // 20 of 5 percent, 12 of 4, 0.9 of 1, 1 of 5, 0.1 of 1.
-    for (line, words) in
-        lines.iter().zip(["another life (known miss: too coarse)", "a wide zone", r"max \|e\|", "a life", r"mean \|e\|"])
-    {
-        assert!(line.contains(words), "{line}");
-        // Six cells, no bar in them.
-        assert_eq!(line.replace(r"\|", "").matches('|').count(), 7, "{line}");
+fn the_document_has_all_rows_of_every_topic() {
+    let text = markdown(&TOPICS.iter().collect::<Vec<_>>(), &rows());
+    let [summary_at, far, near, missed] =
+        ["| `far` |", "\n## far\n", "\n## near\n", "\n## missed\n"].map(|words| text.find(words));
+    assert!(summary_at.is_some() && summary_at < far && far < near && near < missed, "{text}");
+    for line in [
+        "| a life | 1.010 | 1.000 | +1.00 | 5.00 | by hand |",
+        "| another life (known miss: too coarse) | 1.200 | 1.000 | +20.00 | 5.00; known miss 22.00 | by hand |",
+        r"| max \|e\| | -0.9000 | 0 | -0.90 | 1.00 | theory |",
+        r"| mean \|e\| | 0 | 0 | 0.00 | 1e-10 | theory |",
+        "| angle (known miss: a wide zone) | 12.00 | 0 | +12.00 | 4.00; known miss 12.10 | theory |",
+    ] {
+        assert!(text.lines().any(|found| found == line), "{line} in {text}");
     }
+}
+
+#[test]
+fn both_bounds_of_a_known_miss_are_told() {
+    let rows = rows();
+    let told = &object(&rows)["rows"];
+    assert_eq!((&told[1]["known_miss"], &told[1]["miss_bound_percent"]), (&"too coarse".into(), &(1.1 * 20.0).into()));
+    assert!(told[0]["known_miss"].is_null() && told[0]["miss_bound_percent"].is_null());
+    let table = csv(&rows);
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(lines[0].ends_with(",wall_s,miss_bound_percent"), "{}", lines[0]);
+    assert!(lines[1].ends_with(',') && lines[2].ends_with(",22.000000"), "{table}");
+    assert!(
+        line(&rows[1]).contains("miss") && line(&rows[1]).contains("(bound 5.000 %, known miss 22.000 %)"),
+        "{}",
+        line(&rows[1])
+    );
+}
+
+/// A row fails beyond its bound without a reason, and beyond what is known and a tenth of it; an error that is no number fails.
+#[test]
+fn a_known_miss_must_not_grow() {
+    let of = |error: f64, known: Option<f64>| {
+        let mut table = Table::new("far");
+        table.error("a life", error, 5.0, "by hand");
+        if let Some(known) = known {
+            table.known_miss("too coarse", known);
+        }
+        table.into_rows().remove(0)
+    };
+    for (error, known, ok, fails) in [
+        (4.9, None, true, false),
+        (-5.1, None, false, true),
+        (-5.1, Some(5.0), false, false),
+        (21.9, Some(-20.0), false, false),
+        (-22.1, Some(-20.0), false, true),
+        (f64::NAN, Some(20.0), false, true),
+    ] {
+        let row = of(error, known);
+        assert_eq!((row.ok(), row.fails()), (ok, fails), "{row:?}");
+    }
+    let [far, ..] = &TOPICS;
+    let words = faults(&[far], &[of(-22.1, Some(-20.0))]);
+    assert_eq!(words, ["far: a life: error -22.100 % beyond its bound of 22.000 %"]);
+}
+
+/// Of every topic as many rows miss as are pinned, no more and no fewer.
+#[test]
+fn misses_are_counted() {
+    let (topics, mut rows) = (TOPICS.iter().collect::<Vec<_>>(), rows());
+    assert_eq!(faults(&topics, &rows), Vec::<String>::new());
+    let miss = rows.remove(1);
+    let words = faults(&topics, &rows);
+    assert!(words.len() == 1 && words[0].contains("far: 0 rows miss their bounds, 1 are pinned"), "{words:?}");
+    rows.extend([miss.clone(), miss]);
+    let words = faults(&topics, &rows);
+    assert!(words.len() == 1 && words[0].contains("far: 2 rows miss their bounds, 1 are pinned"), "{words:?}");
 }

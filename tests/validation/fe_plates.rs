@@ -1,6 +1,7 @@
 //! Cracks driven by the K of their tips against remeshing finite elements of the same plates (quadratic triangles, interaction
 //! integral, maximum circumferential stress): those of `tests/reference`, right to 0.1 % in life, and those of the shared data,
-//! `fe_plates`. The former at default resolution are rows of `perilife verify paths`, and tested with these.
+//! `fe_plates`. The former at default resolution are rows of `perilife verify paths`, and tested with
+//! these (`verification::topics`, long).
 //!
 //! The latter step straight ahead by 0.4 to 1 mm in the direction of the last K, so that a path that curves trails behind
 //! by half a step times the turn, and lives are about 1 % long, more where K changes fast. The three compact plates are compared up to where that grows beyond

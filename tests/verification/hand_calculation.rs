@@ -1,4 +1,4 @@
-//! Life by hand calculation: golden figures, closed forms, ends, and agreement with the engine where both know the answer.
+//! Life by hand calculation: closed forms, ends, and agreement with the engine where both know the answer.
 
 use std::f64::consts::PI;
 
@@ -6,22 +6,9 @@ use perilife::predict::residual_strength::residual_strength;
 use perilife::predict::{Silent, StopReason, predict};
 use perilife::specimen::handbook::handbook;
 use perilife::units::MM;
-use perilife::verify::{Table, golden};
 
 use crate::hand_cases::{ALL, PANEL, hand_case, hand_run};
 use crate::plates::case;
-
-#[test]
-fn golden_lives_to_a_tenth_of_a_percent() {
-    let mut table = Table::new("golden");
-    golden::by_hand(&mut table).unwrap();
-    let rows = table.into_rows();
-    assert!(rows.len() >= 12, "{}", rows.len());
-    for row in &rows {
-        println!("{}: {} against {}", row.quantity, row.computed, row.reference);
-        assert!(row.ok() && row.bound_percent <= 0.1, "{row:?}");
-    }
-}
 
 /// Paris growth of a crack in a plate without end, `N = (a_1^(1-m/2) - a_0^(1-m/2)) / (C (Δσ √π)^m (1 - m/2))`.
 #[test]

@@ -11,7 +11,7 @@ fn q345(ratio: f64) -> Softening {
     Softening { elastic: 345e6 / 203e9, peak: 572e6 / 203e9, last: ratio * 572e6 / 203e9, printed: false }
 }
 
-/// Of equation 19 of Li, Lü, Huang and Yang 2024: D(s_nt) = 0.328, largest (1-D) s = 1.895e-3 at s_nt exactly, share left at s_t.
+/// Law of Li, Lü, Huang and Yang 2024, J. Ship Mech. 28:103, equation 19: D(s_nt) = 0.328, largest (1-D) s = 1.895e-3 at s_nt exactly, share left at s_t.
 #[test]
 fn nonlinear_law_has_the_curve_of_the_theory() {
     let law = q345(3.0);

@@ -1,4 +1,4 @@
-//! K_I and K_II of every method against handbook formulas and closed forms.
+//! K_I and K_II where `perilife verify stress_intensity` has no row: pins, clamped ends, places between columns, signs.
 
 use perilife::stress_intensity::{StressIntensityMethod, TipResult, stress_intensity};
 
@@ -22,87 +22,17 @@ pub fn k_over_handbook(specimen: &str, set: &[String], crack_length_mm: f64, spa
     ratio(StressIntensityMethod::EnergyRelease, specimen, set, crack_length_mm, spacing_mm)
 }
 
-const SPACING_MM: f64 = 1.5;
-/// Half crack lengths of the panel from 4 horizons to 0.6 of the half width, mm.
-const LENGTHS_MM: [f64; 3] = [18.2, 30.0, 45.0];
-
-fn panel(rotation: &str, correction: &str, nu: f64) -> [f64; 3] {
-    let set = [
-        format!("model.rotation={rotation}"),
-        format!("model.surface_correction={correction}"),
-        format!("material.poisson_ratio={nu}"),
-    ];
-    LENGTHS_MM.map(|a| k_over_handbook(PANEL, &set, a, SPACING_MM))
-}
-
-#[test]
-fn a_centre_crack_has_the_handbook_k_whatever_poissons_ratio() {
-    for correction in ["balanced", "volume_and_surface", "none"] {
-        let [a, b, c] = [0.1, 0.2, 0.3].map(|nu| {
-            let ratios = panel("free", correction, nu);
-            println!("{correction}, nu {nu}: K over handbook at {LENGTHS_MM:?} mm: {ratios:.4?}");
-            ratios
-        });
-        for i in 0..LENGTHS_MM.len() {
-            let at_length = [a[i], b[i], c[i]];
-            for ratio in at_length {
-                // Reached: 1.2 % balanced, 0.7 % with the classical correction, 2.2 % without; 4 % is what was asked for. What is
-                // left falls with the spacing, see below.
-                let bound = match correction {
-                    "none" => 0.025,
-                    "balanced" => 0.0125,
-                    _ => 0.012,
-                };
-                assert!((ratio - 1.0).abs() < bound, "{correction}: {ratio} at {} mm", LENGTHS_MM[i]);
-            }
-            let (low, high) = at_length.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &r| (l.min(r), h.max(r)));
-            // Reached: 0.24 % balanced, 0.1 % with the classical correction.
-            let spread = if correction == "balanced" { 0.003 } else { 0.002 };
-            assert!(high - low < spread, "{correction}: {low} to {high} over nu at {} mm", LENGTHS_MM[i]);
-        }
-    }
-}
-
-/// K with the balanced correction at 3, 1.5 and 0.75 mm (a = 18.2 mm, two to eight horizons): within the 0.3 % of the handbook.
-#[test]
-fn k_does_not_depend_on_the_spacing() {
-    let set = ["model.surface_correction=balanced".to_owned()];
-    let errors = [3.0, 1.5, 0.75].map(|spacing| k_over_handbook(PANEL, &set, LENGTHS_MM[0], spacing) - 1.0);
-    println!("balanced, K over handbook less 1 at 3, 1.5, 0.75 mm: {errors:.4?}");
-    assert!(errors.iter().all(|error| error.abs() < 0.003), "{errors:?}");
-}
-
-/// A spring that resists the rotation of crack flanks carries part of the load past the tip: the test above can fail.
+/// A spring that resists the rotation of crack flanks carries part of the load past the tip.
 #[test]
 fn the_resisted_law_loses_k_at_low_poissons_ratio() {
-    let ratios = panel("resisted", "volume_and_surface", 0.1);
+    let set = ["model.rotation=resisted", "model.surface_correction=volume_and_surface", "material.poisson_ratio=0.1"];
+    let ratios = [18.2, 30.0, 45.0].map(|a| k_over_handbook(PANEL, &set.map(str::to_owned), a, 1.5));
     println!("resisted, nu 0.1: K over handbook {ratios:.4?}");
     // Reached: 24 to 29 % low.
     assert!(ratios.iter().all(|&ratio| ratio < 0.95));
 }
 
 pub const SINGLE: &str = "kind=\"single_edge_tension\"\nwidth_mm=100\nlength_mm=300\nthickness_mm=2\ncrack_length_mm=30\n";
-
-#[test]
-fn the_other_specimens_have_the_handbook_k() {
-    let [uniform, pinned] = ["uniform_stress", "pinned"].map(|ends| format!("{SINGLE}ends=\"{ends}\"\n"));
-    let double = "kind=\"double_edge_tension\"\nwidth_mm=150\nlength_mm=300\nthickness_mm=2\ncrack_length_mm=30\n";
-    let compact = "kind=\"compact_tension\"\nwidth_mm=100\nthickness_mm=5\ncrack_length_mm=40\n";
-    // Bounds: what is reached, rounded up; the formulas themselves are good to 0.5 % (single edge, compact) and 1 %.
-    for (name, specimen, spacing, lengths, bound) in [
-        ("single edge", uniform.as_str(), 1.25, [23.0, 40.0, 58.0], 0.02),
-        ("single edge, pinned", &pinned, 1.25, [23.0, 40.0, 58.0], 0.02),
-        ("double edge", double, 1.5, [28.0, 40.0, 50.0], 0.02),
-        ("compact", compact, 1.25, [25.0, 40.0, 60.0], 0.015),
-    ] {
-        for correction in ["balanced", "volume_and_surface"] {
-            let set = [format!("model.surface_correction={correction}")];
-            let ratios = lengths.map(|a| k_over_handbook(specimen, &set, a, spacing));
-            println!("{correction}, {name}: K over handbook at {lengths:?} mm: {ratios:.4?}");
-            assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < bound), "{correction}, {name}: {ratios:?}");
-        }
-    }
-}
 
 /// A compact specimen written as a plate, its pins touching over an arc: K of a short crack depends on how far the pressure
 /// reaches round the hole. Over the formula of E647 at a/W = 0.25 finite elements give 0.9996, 1.0048 and 1.0239 for
@@ -152,21 +82,16 @@ fn clamped_ends_take_the_bending_off() {
     }
 }
 
-/// Cracks of six horizons: what is asked for is 1.5 %, at every Poisson's ratio and at every place between two columns.
+/// Cracks of six horizons: what is asked for is 1.5 %, at every place between two columns.
 #[test]
-fn every_method_agrees_with_the_handbook_between_columns_and_over_poissons_ratio() {
+fn every_method_agrees_with_the_handbook_between_columns() {
     for &method in StressIntensityMethod::ALL {
-        let at = |a: f64, nu: f64| ratio(method, PANEL, &[format!("material.poisson_ratio={nu}")], a, 1.5);
-        let lengths = [27.0, 27.4, 27.8, 28.2].map(|a| at(a, 0.3));
-        let nus = [0.0, 0.15, 0.3333].map(|nu| at(27.0, nu));
-        println!("{method}: over length {lengths:.4?}, over nu {nus:.4?}");
-        for ratio in lengths.into_iter().chain(nus) {
-            assert!((ratio - 1.0).abs() < 0.015, "{method}: {ratio}");
-        }
-        let spread =
-            |values: &[f64]| values.iter().fold(f64::MIN, |m, &v| m.max(v)) - values.iter().fold(f64::MAX, |m, &v| m.min(v));
-        // Reached: 0.2 % and 0.3 %. Without the correction to the length asked for, the first is 1.4 %.
-        assert!(spread(&lengths) < 0.004 && spread(&nus) < 0.005, "{method}: {lengths:?} {nus:?}");
+        let lengths = [27.0, 27.4, 27.8, 28.2].map(|a| ratio(method, PANEL, &[], a, 1.5));
+        println!("{method}: over length {lengths:.4?}");
+        assert!(lengths.iter().all(|ratio| (ratio - 1.0).abs() < 0.015), "{method}: {lengths:?}");
+        let (low, high) = lengths.iter().fold((f64::MAX, f64::MIN), |(low, high), &v| (low.min(v), high.max(v)));
+        // Reached: 0.2 %. Without the correction to the length asked for it is 1.4 %.
+        assert!(high - low < 0.004, "{method}: {lengths:?}");
     }
 }
 
@@ -175,7 +100,7 @@ fn every_method_agrees_with_the_handbook_between_columns_and_over_poissons_ratio
 #[test]
 fn a_slant_crack_has_both_modes_with_their_signs() {
     let a = 18.0;
-    for phi in [30.0_f64, -30.0, 45.0] {
+    for phi in [30.0_f64, -30.0] {
         let (sin, cos) = phi.to_radians().sin_cos();
         let (x, y) = (a * cos, a * sin);
         let specimen = format!(

@@ -6,43 +6,46 @@ use crate::body::pre_crack::bonds_across;
 use crate::body::severed::severed_weight;
 use crate::body::{Body, Bond};
 use crate::case::Case;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::growth::bond_strain::BondStrain;
+use crate::growth::{CrackGrowth, State};
 use crate::predict::laws::bond_rates;
-use crate::predict::record::Record;
-use crate::predict::{Prediction, Silent};
+use crate::predict::{CurvePoint, StopReason};
 use crate::specimen::Point;
 use crate::specimen::geometry::distance;
 
 /// A finished run with the bonds that broke in it.
 pub struct Grown {
-    /// The run.
-    pub run: Prediction,
+    /// Why it ended.
+    pub stop: StopReason,
+    /// Its curve.
+    pub curve: Vec<CurvePoint>,
     /// The plate with its initial cracks cut.
     pub body: Body,
     /// Bonds that broke beyond the initial cracks, ascending.
     pub broken: Vec<Bond>,
 }
 
-/// Grows the cracks of a case.
+/// Grows the cracks of a case by bonds that age.
 ///
 /// # Errors
 /// As [`crate::predict::predict`].
 pub fn grow(case: &Case) -> Result<Grown> {
-    let record = Record::new(case, &Silent).unchecked();
-    let case = &record.case().clone();
-    let mut broken: HashSet<Bond> = HashSet::new();
-    let run = record.follow(&mut BondStrain::start(case, |horizon| bond_rates(case, horizon))?, |growth| {
-        let reason = growth.next_break();
-        broken.extend(growth.last_broken());
-        reason
-    })?;
+    let mut growth = BondStrain::start(case, |horizon| bond_rates(case, horizon))?;
+    growth.open()?;
+    let stop = loop {
+        if let Some(stop) = growth.next_break()? {
+            break growth.close(stop)?;
+        }
+    };
+    let State::Bonds(state) = growth.state() else {
+        return Err(Error::Mechanics(format!("{}: no bonds that age", case.name)));
+    };
     let (specimen, model) = (&case.specimen, &case.model);
     let body = Body::build(specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
-    // A run starts with shorter cracks and grows them to their length: that is no growth.
-    let mut broken: Vec<Bond> = broken.into_iter().filter(|bond| body.pre_cut.binary_search(bond).is_err()).collect();
-    broken.sort_unstable();
-    Ok(Grown { run, body, broken })
+    // A run starts with shorter cracks and grows them to their length: that is no growth. Ascending, as the state has them.
+    let broken = state.broken().iter().copied().filter(|bond| body.pre_cut.binary_search(bond).is_err()).collect();
+    Ok(Grown { stop, curve: growth.curve().0, body, broken })
 }
 
 impl Grown {
@@ -65,7 +68,7 @@ impl Grown {
     /// Places of a tip, from its initial one on.
     #[must_use]
     pub fn path(&self, tip: usize) -> Vec<Point> {
-        self.run.curve.iter().map(|point| point.tips[tip].position).collect()
+        self.curve.iter().map(|point| point.tips[tip].position).collect()
     }
 
     /// Share of the bonds across the line between two points that still hold; 0 where there are none.
@@ -79,7 +82,7 @@ impl Grown {
     /// Broken bonds over those that clean cuts along the paths of all tips sever.
     #[must_use]
     pub fn broken_over_cut(&self) -> f64 {
-        let tips = self.run.curve.first().map_or(0, |point| point.tips.len());
+        let tips = self.curve.first().map_or(0, |point| point.tips.len());
         let severed: HashSet<Bond> = (0..tips)
             .flat_map(|tip| {
                 let path = self.path(tip);

@@ -1,18 +1,20 @@
 //! Where cracks go: kinks of slanted cracks, cracks that join, cracks that turn into a hole, and how clean they are.
 
 use super::grown::{Grown, grow};
-use super::growth;
 use super::scene::PANEL;
+use crate::calibration::model::cycles_since_first;
 use crate::case::Case;
 use crate::error::Result;
 use crate::predict::{Silent, predict};
+use crate::quadrature::integrate;
 use crate::specimen::Point;
 use crate::specimen::geometry::{along, distance};
+use crate::specimen::handbook::delta_k;
 use crate::stress_intensity::{StressIntensityMethod, stress_intensity};
 use crate::units::MM;
 use crate::verify::Table;
 use crate::verify::collinear::{Collinear, growth_integral};
-use crate::verify::scene::case;
+use crate::verify::scene::{case, points};
 
 /// Exponent of all scenes but those that vary it.
 const EXPONENT: f64 = 2.87;
@@ -34,6 +36,9 @@ fn plate(specimen: &str, set: &[&str]) -> Result<Case> {
     let text = format!("[specimen]\nkind = \"plate\"\nthickness_mm = 2.54\n{specimen}\n{rest}");
     case(&text, &[&["stop.cycles_max=1e12"], set].concat())
 }
+
+/// Angle of the lattice and of the crack to the load at which the kink misses its bound, degrees, and the error known, percent.
+const KNOWN_KINKS: [(i32, f64, f64); 3] = [(0, 60.0, -27.0), (20, 45.0, -10.6), (20, 60.0, -29.7)];
 
 /// First kink of slanted centre cracks against maximum circumferential stress (Erdogan and Sih 1963):
 /// `K_I sin θ + K_II (3 cos θ - 1) = 0`, with `K_I = σ √(π a) sin²β`, `K_II = σ √(π a) sin β cos β` of a crack at β to the load.
@@ -63,11 +68,15 @@ pub fn kinks(table: &mut Table) -> Result<()> {
             let bound = 100.0 * BOUND_DEGREES / reference.abs();
             let quantity = format!("crack at {beta}° to the load, lattice turned by {lattice}°: kink, degrees");
             table.compare(quantity, measured, reference, bound, "maximum circumferential stress (Erdogan and Sih 1963)");
-            table.known_miss(
-                "likely, not shown by a run: bonds see the stress along the crack T = σ cos 2β half a horizon from the tip, which a \
-                 criterion of K alone does not: with T at that distance (Smith, Ayatollahi and Pavier 2001) the kinks are -66, -53, -35°, and it falls with \
-                 the root of horizon over crack only; bonds age by stretch, whose largest is 2 to 5° flatter at ν = 0.33",
-            );
+            if let Some((.., known)) = KNOWN_KINKS.iter().find(|(at, of, _)| *at == lattice && *of == beta) {
+                table.known_miss(
+                    "likely, not shown by a run: bonds see the stress along the crack T = σ cos 2β half a horizon from the tip, \
+                     which a criterion of K alone does not: with T at that distance (Smith, Ayatollahi and Pavier 2001) the \
+                     kinks are -66, -53, -35°, and it falls with the root of horizon over crack only; bonds age by stretch, \
+                     whose largest is 2 to 5° flatter at ν = 0.33",
+                    *known,
+                );
+            }
         }
     }
     Ok(())
@@ -97,7 +106,9 @@ pub fn collinear_cracks(table: &mut Table) -> Result<()> {
     let panel = case(PANEL, &["specimen.crack_length_mm=20", "stop.crack_length_mm=27"])?;
     let run = predict(&panel, &Silent)?;
     let (from, to) = (20.0 * MM, 27.0 * MM);
-    let constant = growth::growth_integral(&panel, from, to, EXPONENT) / growth::cycles_between(&run, from, to)?;
+    let range = |length: f64| delta_k(&panel.specimen, length, panel.loading.maximum, panel.loading.range_share());
+    let integral = integrate(|length| range(length).map_or(f64::NAN, |k| k.powf(-EXPONENT)), from, to, 1e-9).value;
+    let constant = integral / cycles_since_first(&points(&run), &[from, to])?[1];
 
     const WIDTH_MM: f64 = 180.0;
     let (inner, outer) = (12.0, 36.0);
@@ -114,7 +125,7 @@ pub fn collinear_cracks(table: &mut Table) -> Result<()> {
         let by_hand = growth_integral(start, left, WIDTH_MM * MM, stress, EXPONENT) / constant;
         let growth: Vec<(f64, f64)> =
             run.curve.iter().map(|point| (point.cycles, 0.5 * (point.tips[1].growth + point.tips[2].growth))).collect();
-        let cycles = crate::calibration::model::cycles_since_first(&growth, &[0.0, start.inner - left])?[1];
+        let cycles = cycles_since_first(&growth, &[0.0, start.inner - left])?[1];
         let quantity = format!("two collinear cracks 24 mm apart: life to a ligament of {ligament} mm over quadrature");
         let source = "closed form with elliptic integrals (Tada, Paris and Irwin 2000), C of a middle-tension panel";
         table.compare(quantity, cycles / by_hand, 1.0, 5.0, source);
@@ -143,6 +154,7 @@ pub fn offset_cracks(table: &mut Table) -> Result<()> {
     table.known_miss(
         "the run ends as severed, by overload of what is left of the plate, while the inner tips have run past each other and a \
          horizon between the two paths still holds: at this load the last ligament is not spent by fatigue",
+        78.0,
     );
     clean(table, "two offset cracks until severed", EXPONENT, &grown);
     Ok(())
@@ -183,7 +195,7 @@ pub fn hole(table: &mut Table) -> Result<()> {
             table.error(quantity, 100.0 * (there - reference) / horizon, 100.0, source);
             let end = path.last().copied().unwrap_or([f64::NAN; 2]);
             let left = distance(end, CENTRE) - RADIUS;
-            let quantity = format!("crack beside a hole ({}): way left to its rim, % of the horizon", grown.run.stop);
+            let quantity = format!("crack beside a hole ({}): way left to its rim, % of the horizon", grown.stop);
             table.error(quantity, 100.0 * left / horizon, 100.0, "the hole draws the crack in");
         }
         clean(table, "crack into a hole", p, &grown);
