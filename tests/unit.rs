@@ -15,8 +15,6 @@ mod shared;
 mod bench;
 #[path = "unit/bench_parts.rs"]
 mod bench_parts;
-#[path = "unit/block.rs"]
-mod block;
 #[path = "unit/collinear.rs"]
 mod collinear;
 #[path = "unit/boundary.rs"]

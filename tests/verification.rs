@@ -43,8 +43,6 @@ mod topics;
 mod stability;
 #[path = "verification/fatigue.rs"]
 mod fatigue;
-#[path = "verification/blocks.rs"]
-mod blocks;
 #[path = "verification/checkpoint.rs"]
 mod checkpoint;
 #[path = "verification/round_trip.rs"]

@@ -3,7 +3,6 @@
 
 use serde::{Deserialize, Serialize};
 
-
 /// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

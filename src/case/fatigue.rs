@@ -9,8 +9,8 @@ use super::law_source::LawKeys;
 use super::{LawSource, Stop};
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
-use crate::fatigue::{Ageing, Driver, FatigueSettings, GrowthRate, OVERLOAD_STRETCH, Precrack, STEP_ERROR_PERCENT,
-    ZONE_RADIUS_HORIZONS,
+use crate::fatigue::{
+    Ageing, Driver, FatigueSettings, GrowthRate, OVERLOAD_STRETCH, Precrack, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS,
 };
 use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
 use crate::loading::Loading;

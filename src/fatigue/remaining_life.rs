@@ -1,8 +1,8 @@
 //! Spending bond life over a cycle block: `λ ← λ - ΔN A ε^p`; a bond with λ ≤ 0 breaks
 //! (Silling and Askari 2014, SAND2014-18590; block until the next break after Zhang et al. 2016, Eng. Fract. Mech. 162:76).
 
-use super::ageing::AgeingBond;
 use super::FatigueLaw;
+use super::ageing::AgeingBond;
 use crate::body::Bond;
 
 /// Share of a bond's whole life within which bonds break together: mirror twins differ by round-off only.

@@ -120,7 +120,9 @@ impl<'a> BondStrain<'a> {
         };
         let pace = over_k.map(|over_k| Pace::new(case, &start, body, over_k));
         let mut run = Course::start(case, body, start.tips(body));
-        if start::cuts_in_two(body, &run.bonds, case) || remove_fragments(body, &mut run.bonds, &body.pre_cut) == Connectivity::Severed {
+        if start::cuts_in_two(body, &run.bonds, case)
+            || remove_fragments(body, &mut run.bonds, &body.pre_cut) == Connectivity::Severed
+        {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
         Ok(BondStrain {
@@ -400,7 +402,8 @@ impl CrackGrowth for BondStrain<'_> {
         state.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));
         (run.tips, run.near_limit) = (state.tips, state.near_limit);
         run.track.go_on_from(state.past);
-        (run.broken_bonds, run.solves, run.iterations) = (state.broken_bonds, state.statistics.solves, state.statistics.iterations);
+        (run.broken_bonds, run.solves, run.iterations) =
+            (state.broken_bonds, state.statistics.solves, state.statistics.iterations);
         run.had_window = state.statistics.solver == Some(SolverUsed::Window);
         self.equilibrium = solver(self.case, &plate, run);
         self.settle_first()?;

@@ -112,7 +112,13 @@ impl<'a> TipField<'a> {
         let tips = (0..specimen.tips.len()).map(tip).collect::<Result<Vec<_>>>()?;
         let body = &plate.body;
         let steps = StepControl::new(case, body.horizon());
-        let state = TipFieldState { lines: specimen.crack_lines(), tips, step: steps.first(), balance: EnergyBalance::default(), remaining_life: Vec::new() };
+        let state = TipFieldState {
+            lines: specimen.crack_lines(),
+            tips,
+            step: steps.first(),
+            balance: EnergyBalance::default(),
+            remaining_life: Vec::new(),
+        };
         if remove_fragments(body, &mut Bonds::new(body), &body.pre_cut) == Connectivity::Severed {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }

@@ -61,8 +61,7 @@ impl Checkpoint {
     /// # Errors
     /// It is that of another law or plate.
     pub(super) fn restore(self, growth: &mut dyn CrackGrowth) -> Result<(Snapshots, f64)> {
-        let picture_fits =
-            |picture: &Picture| {
+        let picture_fits = |picture: &Picture| {
             let mut points = picture.damage.iter().chain(&picture.remaining_life);
             points.all(|(point, _)| (*point as usize) < picture.displacement.len())
         };

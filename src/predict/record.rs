@@ -124,7 +124,8 @@ fn end_of_mechanics(error: Error, failure: &mut Option<String>) -> Result<Option
     match error {
         Error::LossOfStiffness => Ok(Some(StopReason::Severed)),
         Error::Mechanics(problem) => {
-            *failure = Some(format!("the run ends here, since {problem}; give a smaller model.spacing_mm, or another model.solver"));
+            *failure =
+                Some(format!("the run ends here, since {problem}; give a smaller model.spacing_mm, or another model.solver"));
             Ok(Some(StopReason::NoConvergence))
         }
         other => Err(other),

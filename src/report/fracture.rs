@@ -121,7 +121,14 @@ fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture, snapshots: &[Sn
     let last = snapshots.last().map(|snapshot| ("damage.png", snapshot, &paths));
     for (file, snapshot, paths) in first.into_iter().chain(last) {
         let caption = caption(scene, snapshot);
-        let picture = DamagePicture { grid: &fracture.grid, field: PointField::Damage, snapshot, cracks: &scene.specimen.cracks, paths, caption: &caption };
+        let picture = DamagePicture {
+            grid: &fracture.grid,
+            field: PointField::Damage,
+            snapshot,
+            cracks: &scene.specimen.cracks,
+            paths,
+            caption: &caption,
+        };
         picture.write(&folder.join(file))?;
     }
     Ok(())

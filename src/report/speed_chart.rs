@@ -200,8 +200,7 @@ fn names(
 }
 
 /// Colours of what is varied: black for the default.
-const COLOURS_OF: [RGBColor; VARIED.len()] =
-    [INK, COLOURS[0], COLOURS[1], COLOURS[2], COLOURS[3], RGBColor(60, 140, 200)];
+const COLOURS_OF: [RGBColor; VARIED.len()] = [INK, COLOURS[0], COLOURS[1], COLOURS[2], COLOURS[3], RGBColor(60, 140, 200)];
 
 fn series_of(row: &Row) -> usize {
     VARIED.iter().position(|varied| *varied == row.varied).unwrap_or(0)

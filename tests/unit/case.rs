@@ -67,7 +67,7 @@ fn defaults_are_those_of_the_contract() {
     assert_eq!((law.kind, law.kernel, law.rotation), (BondLawKind::TwoParameter, Kernel::Conical, Rotation::Free));
     assert_eq!((case.model.horizon_ratio, case.fatigue.zone_radius_horizons, case.stop.cycles_max), (3.015, 0.5, 1e9));
     assert_eq!((case.fatigue.precrack.name(), case.fatigue.ageing.name()), ("steady_profile", "crack_tip"));
-    assert_eq!((case.fatigue.block.kind.name(), case.fatigue.block.error_percent), ("controlled", 1.0));
+    assert_eq!(case.fatigue.step_error_percent, 0.2);
     assert!(
         case.stop.crack_length.is_infinite()
             && case.fatigue.critical_stretch == perilife::fatigue::OVERLOAD_STRETCH

@@ -1,12 +1,12 @@
 //! Runs that would count nonsense, or never end.
 
 use perilife::error::Error;
-use perilife::growth::Now;
+use perilife::growth::GrowthStatus;
 use perilife::growth::record::{StopReason, TipRecord};
 use perilife::predict::guard::{BLOCKS_WITHOUT_GROWTH, Guard};
 
-fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> Now<'_> {
-    Now { cycles, cycles_of_run: cycles, crack_length, delta_k: 1.0, tips, is_counting: true }
+fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
+    GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k: 1.0, tips, is_counting: true }
 }
 
 fn tip(growth: f64) -> TipRecord {

@@ -4,7 +4,7 @@ use std::fs;
 
 use perilife::case::Case;
 use perilife::report::chart::{self, Mark, Series};
-use perilife::report::damage::{DamagePicture, cycles_and_length};
+use perilife::report::damage::{DamagePicture, PointField, cycles_and_length};
 use perilife::report::labels::{Box2, along, place_labels};
 use perilife::report::specimen_picture::sketch::{CRACK, Sketch};
 use perilife::report::specimen_picture::specimen_svg;
@@ -69,9 +69,16 @@ fn the_damage_picture_shows_plate_crack_and_scale() {
             csv::paths(&run, &cracks).into_iter().map(|path| path.into_iter().map(|(_, p)| p).collect()).collect();
         let file = dir.path().join("damage.png");
         let caption = cycles_and_length(&run.snapshots[2]);
-        DamagePicture { grid: &run.grid, snapshot: &run.snapshots[2], cracks: &cracks, paths: &paths, caption: &caption }
-            .write(&file)
-            .unwrap();
+        DamagePicture {
+            grid: &run.grid,
+            field: PointField::Damage,
+            snapshot: &run.snapshots[2],
+            cracks: &cracks,
+            paths: &paths,
+            caption: &caption,
+        }
+        .write(&file)
+        .unwrap();
         let mut reader = png::Decoder::new(std::io::BufReader::new(fs::File::open(&file).unwrap())).read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut pixels).unwrap();

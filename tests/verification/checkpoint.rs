@@ -86,9 +86,7 @@ const HOLE: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n
 const FINE: &str = "model.spacing_mm=1";
 const TIPS: &str = "fatigue.driver=tip_field";
 /// Short steps, so that a crack across a small plate takes some hundred blocks.
-const SHORT: &str = "fatigue.block_error_percent=0.02";
-const SINGLE: &str = "fatigue.block=until_next_break";
-const FIXED: &str = "fatigue.block=fixed";
+const SHORT: &str = "fatigue.step_error_percent=0.02";
 const LEVELS: [&str; 2] = ["model.discretisation=dual_horizon", "refinement.regions=[{box_mm=[[-45,-24],[45,24]],levels=1}]"];
 
 /// Name, `[specimen]`, settings; every one has a checkpoint at least.
@@ -98,31 +96,26 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
         ("window, clamped, grown", CLAMPED, vec![FINE, "fatigue.precrack=grown", "model.symmetry=off"]),
         ("window, slant", SLANT, vec![FINE]),
         ("window, state-based", SLANT, vec![FINE, "model.bond_law=state_based"]),
-        ("window, two cracks, fixed blocks", TWO, vec![FINE, FIXED, "fatigue.block_cycles=5"]),
-        ("window, hole, no precrack", HOLE, vec![FINE, FIXED, "fatigue.block_cycles=4", "fatigue.precrack=none"]),
+        ("window, two cracks", TWO, vec![FINE]),
+        ("window, hole, no precrack", HOLE, vec![FINE, "fatigue.precrack=none"]),
         ("window, levels", BROAD, vec![LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=30"]),
         (
             "direct, levels",
             BROAD,
             vec![LEVELS[0], LEVELS[1], "model.spacing_mm=3", "model.solver=direct", "stop.crack_length_mm=19.5"],
         ),
-        ("multigrid, clamped, grown", CLAMPED, vec![FINE, "model.solver=multigrid", SINGLE, "fatigue.precrack=grown"]),
-        (
-            "multigrid, controlled",
-            SLANT,
-            vec!["model.spacing_mm=1.2", "model.solver=multigrid", "fatigue.block=controlled", "fatigue.block_error_percent=0.5"],
-        ),
+        ("multigrid, clamped, grown", CLAMPED, vec![FINE, "model.solver=multigrid", "fatigue.precrack=grown"]),
         (
             "multigrid, ageing everywhere",
             SLANT,
-            vec!["model.solver=multigrid", "fatigue.ageing=everywhere", SINGLE, "stop.crack_length_mm=28"],
+            vec!["model.solver=multigrid", "fatigue.ageing=everywhere", "stop.crack_length_mm=28"],
         ),
         ("direct, two cracks", TWO, vec!["model.spacing_mm=2.5", "model.solver=direct", "stop.crack_length_mm=22"]),
         ("tips, slant", SLANT, vec![TIPS, SHORT, FINE]),
         ("tips, two cracks, state-based", TWO, vec![TIPS, SHORT, FINE, "model.bond_law=state_based"]),
         ("tips, hole, window", HOLE, vec![TIPS, SHORT, "model.spacing_mm=0.8", "model.solver=window"]),
         ("tips, levels", BROAD, vec![TIPS, SHORT, LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=45"]),
-        ("relaxation, hole", HOLE, vec!["model.spacing_mm=2", "model.solver=adaptive_dynamic_relaxation", SINGLE]),
+        ("relaxation, hole", HOLE, vec!["model.spacing_mm=2", "model.solver=adaptive_dynamic_relaxation"]),
     ]
 }
 
@@ -165,7 +158,7 @@ fn first(case: &Case) -> (Vec<u8>, Prediction) {
 /// A service cancels a run and goes on later; what is kept can be older than where it was cancelled.
 #[test]
 fn a_cancelled_run_goes_on() {
-    let case = case(CLAMPED, &[FINE, "model.solver=multigrid", SINGLE]);
+    let case = case(CLAMPED, &[FINE, "model.solver=multigrid"]);
     let whole = predict(&case, &Silent).unwrap();
     let mut checkpoint: Option<Vec<u8>> = None;
     let mut parts = 0;

@@ -181,15 +181,6 @@ fn any_size_of_a_ends_well() {
         assert_eq!((run.stop, run.life_cycles(), run.figures.blocks), (StopReason::RunOut, 1e9, 1), "{small}");
         assert_eq!(run.crack_length_final(), run.curve[0].crack_length, "{small}");
     }
-    // Every block spends whatever ages: at the tips a zone a block, everywhere the whole plate in the first one after N = 0.
-    let fixed = ["model.spacing_mm=2", "fatigue.a=1e30", "fatigue.block=fixed", "fatigue.block_cycles=100"];
-    for (ageing, blocks) in [("fatigue.ageing=crack_tip", 60), ("fatigue.ageing=everywhere", 2)] {
-        let run = grow(PANEL, &[&fixed[..], &[ageing]].concat());
-        sound(ageing, &run);
-        assert!(is_through(&run), "{ageing}: {}", run.stop);
-        assert!(run.figures.blocks <= blocks, "{ageing}: {} blocks", run.figures.blocks);
-        assert!(run.life_cycles() <= 100.0 * blocks as f64, "{ageing}: {}", run.life_cycles());
-    }
 }
 
 /// s_min = max(s_min, 0): a closed crack takes no part of the compression.

@@ -108,7 +108,7 @@ fn a_part_grows_the_crack_of_the_whole() {
             for solver in [SolverKind::Window, SolverKind::Multigrid] {
                 let chosen = format!("model.solver={solver}");
                 let grown = |symmetry: &str| {
-                    let fixed = [symmetry, &*chosen, "stop.cycles_max=1e6", "fatigue.block=until_next_break"];
+                    let fixed = [symmetry, &*chosen, "stop.cycles_max=1e6"];
                     let all: Vec<&str> =
                         fixed.into_iter().chain(choices.iter().copied()).chain(scene.set.iter().copied()).collect();
                     let mut case = case(&scene.specimen, &all);

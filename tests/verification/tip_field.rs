@@ -13,7 +13,7 @@ use perilife::growth::CrackGrowth;
 use perilife::growth::plate::Plate;
 use perilife::growth::tip_field::TipField;
 use perilife::growth::tip_field::steering::{equivalent_factor, kink_angle};
-use perilife::predict::{Prediction, Silent, StopReason, predict};
+use perilife::predict::{Prediction, Silent, StopReason, increment, predict};
 use perilife::solver::field::Layout;
 use perilife::specimen::{CrackLine, LineEnd, Point};
 use perilife::state::Bonds;
@@ -182,7 +182,7 @@ fn no_bond_is_left_across_the_crack() {
         let mut turned = 0.0_f64;
         let mut goes_on = true;
         while goes_on {
-            goes_on = growth.advance().unwrap().is_none();
+            goes_on = increment(&mut growth).unwrap().is_none();
             let line = &growth.state.lines[0];
             let across: Vec<Bond> = line.pieces().flat_map(|[a, b]| bonds_across(&plate.body, a, b)).collect();
             assert!(!across.is_empty() && across.iter().all(|&bond| !growth.bonds.is_intact(bond)), "{line:?}");

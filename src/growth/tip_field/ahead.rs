@@ -22,7 +22,13 @@ impl Encounter {
 }
 
 /// Way from `from` straight to `to` up to the first rim or crack, as share of it, and what the tip becomes there.
-pub(super) fn first_rim(specimen: &Specimen, lines: &[CrackLine], own: usize, from: Point, to: Point) -> Option<(f64, Encounter)> {
+pub(super) fn first_rim(
+    specimen: &Specimen,
+    lines: &[CrackLine],
+    own: usize,
+    from: Point,
+    to: Point,
+) -> Option<(f64, Encounter)> {
     let walls = |polygon: &[Point], encounter: Encounter| {
         let meets = edges(polygon).filter(|(a, b)| segments_touch(from, to, *a, *b));
         meets.filter_map(|(a, b)| meeting_share(from, to, a, b)).map(|share| (share, encounter)).collect::<Vec<_>>()

@@ -164,7 +164,8 @@ impl TipField<'_> {
     /// K at the length of every line, and da/dN of it.
     pub(super) fn choose_rates(&mut self) {
         let horizon = self.plate.body.horizon();
-        let sizes = self.state.tips.iter().filter_map(|tip| tip.reading).map(|reading| reading.factors[0].hypot(reading.factors[1]));
+        let sizes =
+            self.state.tips.iter().filter_map(|tip| tip.reading).map(|reading| reading.factors[0].hypot(reading.factors[1]));
         let largest = sizes.fold(0.0, f64::max);
         let gaps: Vec<Option<f64>> = self.state.tips.iter().map(|tip| self.gap(tip)).collect();
         for (tip, gap) in self.state.tips.iter_mut().zip(gaps) {

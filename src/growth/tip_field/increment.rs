@@ -122,7 +122,8 @@ impl TipField<'_> {
         let plate = self.plate.clone();
         let body = &plate.body;
         let tips = self.state.tips.iter().zip(&step.segments);
-        let across = |(tip, segment): (&Tip, &Option<Segment>)| segment.as_ref().map(|segment| across(body, segment, tip.end.at_last));
+        let across =
+            |(tip, segment): (&Tip, &Option<Segment>)| segment.as_ref().map(|segment| across(body, segment, tip.end.at_last));
         let mut cut: Vec<Bond> = tips.filter_map(across).flatten().filter(|&bond| self.bonds.is_intact(bond)).collect();
         cut.sort_unstable();
         cut.dedup();

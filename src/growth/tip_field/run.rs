@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::{PROBE_HORIZONS, RING_HORIZONS_IN_LEVELS, Tip, TipField, TipsState, solver};
-use crate::fatigue::crack_tip::TipState;
 use crate::body::balanced::flanks::FlankRange;
 use crate::error::{Error, Result};
+use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::remove_fragments;
 use crate::growth::cross_check::CrossCheck;
@@ -190,7 +190,12 @@ impl CrackGrowth for TipField<'_> {
 
     fn statistics(&self) -> SolverStatistics {
         let points_solved = self.equilibrium.points(&self.plate.body);
-        SolverStatistics { points_solved, solves: self.solves, iterations: self.iterations, solver: Some(self.equilibrium.used()) }
+        SolverStatistics {
+            points_solved,
+            solves: self.solves,
+            iterations: self.iterations,
+            solver: Some(self.equilibrium.used()),
+        }
     }
 
     fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {
