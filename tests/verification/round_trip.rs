@@ -5,7 +5,6 @@ use perilife::calibration::confidence::distance_squared;
 use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, fit};
 use perilife::calibration::measured::{MeasuredCurve, Source};
-use perilife::calibration::median::cycles_at;
 use perilife::calibration::power_law::PowerLaw;
 use perilife::predict::factor_curve::FactorCurve;
 use perilife::predict::{Silent, predict};
@@ -22,23 +21,19 @@ const P: f64 = 2.87;
 /// 95 % quantile of χ² with two degrees of freedom.
 const ELLIPSE_95: f64 = 5.991;
 
-/// A curve of the engine with known constants, read every 2 mm from 12 to 44 mm, with relative noise on the cycles between
+/// A curve of the engine with known constants, read at its rows at least 2 mm apart, with relative noise on the cycles between
 /// readings.
 fn curve(spacing: f64, exact: &[(f64, f64)], scatter: f64, seed: u64) -> MeasuredCurve {
-    let run = MeasuredCurve {
-        specimen: format!("seed {seed} at {spacing} mm"),
-        cycles: exact.iter().map(|(n, _)| *n).collect(),
-        crack_length: exact.iter().map(|(_, a)| *a).collect(),
-        source: Source::default(),
-    };
     let mut noise = Noise::new(seed);
-    let crack_length: Vec<f64> = (0..=16).map(|i| (12.0 + 2.0 * f64::from(i)) * MM).collect();
-    let at: Vec<f64> = crack_length.iter().map(|&a| cycles_at(&run, a).unwrap()).collect();
-    let mut cycles = vec![0.0];
-    for pair in at.windows(2) {
-        cycles.push(cycles[cycles.len() - 1] + (pair[1] - pair[0]) * (1.0 + scatter * noise.normal()));
+    let (mut crack_length, mut cycles, mut before) = (vec![exact[0].1], vec![0.0], exact[0]);
+    for &row in exact {
+        if row.1 >= before.1 + 2.0 * MM {
+            cycles.push(cycles[cycles.len() - 1] + (row.0 - before.0) * (1.0 + scatter * noise.normal()));
+            crack_length.push(row.1);
+            before = row;
+        }
     }
-    MeasuredCurve { crack_length, cycles, ..run }
+    MeasuredCurve { specimen: format!("seed {seed} at {spacing} mm"), crack_length, cycles, source: Source::default() }
 }
 
 /// Fits to curves of several seeds, all from one run with the known constants.
