@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use super::console::Console;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, input};
 use crate::report::disc::springs_chart;
 use crate::report::output::{OutputFolder, write_file};
 use crate::report::verification;
@@ -35,6 +35,10 @@ pub struct Args {
 /// of misses than is pinned; files that cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let topics = topics(&args.names)?;
+    if let Some(path) = args.markdown.as_deref().filter(|path| path.is_dir()) {
+        // Before minutes are spent on what cannot be written.
+        return Err(input("--markdown", path.display(), "is a folder", "give the name of a file"));
+    }
     let folder = args.out.as_deref().map(OutputFolder::create).transpose()?;
     let rows = verify::rows(&topics, &|topic, rows| {
         let lines: Vec<String> = rows.iter().map(verification::line).collect();

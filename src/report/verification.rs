@@ -11,8 +11,8 @@ use crate::verify::{Row, Topic};
 pub fn line(row: &Row) -> String {
     let mark = verdict(row);
     let figures = format!("{:>12} against {:>12}", number(row.computed), number(row.reference));
-    let known = row.known_miss.as_ref().map_or_else(String::new, |miss| format!(", known miss {:.3} %", miss.bound_percent));
-    let error = format!("{:+.3} % (bound {:.3} %{known})", row.error_percent, row.bound_percent);
+    let known = row.known_miss.as_ref().map_or_else(String::new, |miss| format!(", known miss {} %", bound(miss.bound_percent)));
+    let error = format!("{:+.3} % (bound {} %{known})", row.error_percent, bound(row.bound_percent));
     format!("  {mark:<5} {:<62} {figures}  {error}, {:.1} s", row.quantity, row.wall_s)
 }
 
@@ -128,9 +128,9 @@ fn signed(value: f64, decimals: usize) -> String {
     if text.contains(|digit| ('1'..='9').contains(&digit)) || !value.is_finite() { text } else { text[1..].to_owned() }
 }
 
-/// Two decimals; all digits where that would be none.
+/// Two decimals; a power of ten where that would be none.
 fn bound(percent: f64) -> String {
-    if percent < 0.01 { format!("{percent:e}") } else { format!("{percent:.2}") }
+    if percent < 0.01 { format!("{percent:.1e}") } else { format!("{percent:.2}") }
 }
 
 /// Four significant digits; what round-off leaves is zero.

@@ -26,5 +26,5 @@ fn rows_are_written_as_markdown_and_as_json() {
     assert!(tables[0].contains("\n## golden\n") && tables[0].contains("247200"), "{}", tables[0]);
     assert_eq!(tables[0], tables[1]);
     assert_refused(&perilife(dir.path(), &["verify", "gold"]), 2, &["NAME", "gold", "golden_peridynamics"]);
-    assert_refused(&perilife(dir.path(), &["verify", "golden", "--json", "--markdown", "."]), 2, &["folder"]);
+    assert_refused(&perilife(dir.path(), &["verify", "golden", "--json", "--markdown", "."]), 2, &["--markdown", "folder"]);
 }

@@ -49,7 +49,7 @@ fn the_document_has_all_rows_of_every_topic() {
         "| a life | 1.010 | 1.000 | +1.00 | 5.00 | by hand |",
         "| another life (known miss: too coarse) | 1.200 | 1.000 | +20.00 | 5.00; known miss 22.00 | by hand |",
         r"| max \|e\| | -0.9000 | 0 | -0.90 | 1.00 | theory |",
-        r"| mean \|e\| | 0 | 0 | 0.00 | 1e-10 | theory |",
+        r"| mean \|e\| | 0 | 0 | 0.00 | 1.0e-10 | theory |",
         "| angle (known miss: a wide zone) | 12.00 | 0 | +12.00 | 4.00; known miss 12.10 | theory |",
     ] {
         assert!(text.lines().any(|found| found == line), "{line} in {text}");
@@ -67,7 +67,7 @@ fn both_bounds_of_a_known_miss_are_told() {
     assert!(lines[0].ends_with(",wall_s,miss_bound_percent"), "{}", lines[0]);
     assert!(lines[1].ends_with(',') && lines[2].ends_with(",22.000000"), "{table}");
     assert!(
-        line(&rows[1]).contains("miss") && line(&rows[1]).contains("(bound 5.000 %, known miss 22.000 %)"),
+        line(&rows[1]).contains("miss") && line(&rows[1]).contains("(bound 5.00 %, known miss 22.00 %)"),
         "{}",
         line(&rows[1])
     );
