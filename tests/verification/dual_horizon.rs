@@ -208,8 +208,8 @@ fn mixed_mode(name: &str, set: &[&str]) -> Scene {
     Scene::from_file(&file, &set.iter().map(|key| (*key).to_owned()).collect::<Vec<_>>()).unwrap()
 }
 
-/// Source 004: 6360 points, of which the 1320 of the ligament between the notches (150 mm x 55 mm) are split into 5280: 10320
-/// instead of the 25440 of the finer spacing everywhere.
+/// The plate of Nooru-Mohamed on points of two levels: 6360 points, of which the 1320 of the ligament between the notches (150 mm x
+/// 55 mm) are split into 5280: 10320 instead of the 25440 of the finer spacing everywhere.
 #[test]
 fn point_counts_of_the_mixed_mode_plate() {
     let published = Counts { coarse: 6360, split: 1320, fine: 5280, refined: 10320, uniform: 25440 };
