@@ -1,6 +1,6 @@
 //! The body that a run would compute, looked at before anything is solved.
 
-use super::understood::{Points, mm};
+use super::understood::{built, mm, points_words};
 use crate::body::lattice::Lattice;
 use crate::case::{Case, Method};
 use crate::error::{Error, InputError, Result};
@@ -35,7 +35,7 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
         let spacing = model.fitting_spacing(specimen);
         let most = if model.refinement.is_some() { "at most" } else { "about" };
         let count = format!("{most} {:.0}", specimen.area() / spacing.powi(2));
-        return Ok(Preview { points: points_line(case, count, [spacing, lattice.spacing]), warnings: Vec::new() });
+        return Ok(Preview { points: points_line(case, &count, [spacing, lattice.spacing]), warnings: Vec::new() });
     }
     let plate = Plate::build(specimen, specimen, &case.material, model).map_err(as_input)?;
     let body = &plate.body;
@@ -43,7 +43,7 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
     if remove_fragments(body, &mut bonds, &body.pre_cut) == Connectivity::Severed {
         return Err(as_input(Error::Mechanics("the initial cracks cut the plate in two".to_owned())));
     }
-    let count = Points::built([plate.points(), plate.bonds(), plate.cut()]);
+    let count = built([plate.points(), plate.bonds(), plate.cut()]);
     let tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, body)).collect();
     let held = stuck(body, &bonds, &tips, &case.fatigue).into_iter().map(|tip| {
         let [x, y] = tips[tip].position.map(mm);
@@ -55,13 +55,13 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
     });
     let warnings = plate.warnings().into_iter().chain(held).collect();
     let fine = body.lattice.spacing;
-    Ok(Preview { points: points_line(case, count, [fine, fine * model.coarsest_spacing() / model.spacing]), warnings })
+    Ok(Preview { points: points_line(case, &count, [fine, fine * model.coarsest_spacing() / model.spacing]), warnings })
 }
 
 /// `spacings` of the finest and the coarsest level, m.
-fn points_line(case: &Case, count: String, spacings: [f64; 2]) -> String {
-    let points = Points { count, spacings, horizon: spacings[0] * case.model.horizon_ratio };
-    points.words(case.model.spacing, &model_words::of_case(case, None))
+fn points_line(case: &Case, count: &str, spacings: [f64; 2]) -> String {
+    let sizes = [case.model.spacing, spacings[0] * case.model.horizon_ratio];
+    points_words(count, spacings, sizes, &model_words::of_case(case, None))
 }
 
 /// What a run would end with as mechanics is, seen before any run, input that has to change.

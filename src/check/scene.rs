@@ -1,12 +1,12 @@
 //! What `perilife check` has understood of a fracture scene, in words.
 
 use super::preview::as_input;
-use super::understood::{Line, Points, line, mm, plate_lines, short};
+use super::understood::{self, Line, line, mm, plate_lines, points_words, short};
 use crate::error::Result;
 use crate::fracture::Scene;
-use crate::fracture::preview::{Preview, preview};
+use crate::fracture::preview::preview;
 use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure};
-use crate::report::model_words::{self, Choice};
+use crate::report::model_words;
 use crate::report::specimen_picture::scene_svg;
 use crate::units::{MM, MPA};
 
@@ -24,10 +24,17 @@ pub(super) fn scene_lines(scene: &Scene) -> Result<Vec<Line>> {
     let micro = scene.echo.get("micro_cracks").and_then(|section| section.get("count")).and_then(serde_json::Value::as_u64);
     let cracks = specimen.cracks.len() - micro.unwrap_or(0) as usize;
     let micro_words = micro.map_or_else(String::new, |count| format!(", {count} micro cracks"));
+    let asked = scene.model.spacing;
+    let (counts, [fine, coarse], horizon) = match &built {
+        Some(laid) => (understood::built([laid.points, laid.bonds, laid.cut]), laid.spacings, laid.horizons[0]),
+        None => (format!("about {about:.0}"), [asked; 2], asked * scene.model.horizon_ratio),
+    };
+    // Scenes ask for the spacing of the coarsest level.
+    let points = points_words(&counts, [fine, coarse], [asked * fine / coarse, horizon], &chosen);
     let mut lines = plate_lines(specimen, &scene.material, ("flaws", cracks, micro_words));
     lines.extend([
         line("law", model_words::words(&chosen, &model_words::OF_BONDS)),
-        line("points", points_words(scene, about, built.as_ref(), &chosen)),
+        line("points", points),
         line("procedure", procedure_words(scene)),
     ]);
     lines.extend(scene.drives.iter().map(|drive| line("load", drive_words(drive))));
@@ -35,20 +42,6 @@ pub(super) fn scene_lines(scene: &Scene) -> Result<Vec<Line>> {
     lines.extend(scene.refinement.as_ref().map(|refinement| line("refinement", refinement.words())));
     lines.push(line("damage", damage_words(scene)));
     Ok(lines)
-}
-
-fn points_words(scene: &Scene, about: f64, built: Option<&Preview>, chosen: &[Choice]) -> String {
-    let asked = scene.model.spacing;
-    let points = match built {
-        Some(built) => Points {
-            count: Points::built([built.points, built.bonds, built.cut]),
-            spacings: built.spacings,
-            horizon: built.horizons[1],
-        },
-        None => Points { count: format!("about {about:.0}"), spacings: [asked; 2], horizon: asked * scene.model.horizon_ratio },
-    };
-    // Scenes ask for the spacing of the coarsest level.
-    points.words(points.spacings[0] * asked / points.spacings[1], chosen)
 }
 
 fn procedure_words(scene: &Scene) -> String {

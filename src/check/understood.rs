@@ -86,28 +86,18 @@ pub(super) fn plate_lines(
     ]
 }
 
-/// What lies at the points: how many there are, spacing of the finest and the coarsest level and largest horizon, m.
-pub(super) struct Points {
-    /// Points and bonds and bonds cut, or about how many points.
-    pub count: String,
-    pub spacings: [f64; 2],
-    pub horizon: f64,
+/// Points and bonds that were built, in words.
+pub(super) fn built([points, bonds, cut]: [usize; 3]) -> String {
+    format!("{points} and {bonds} bonds, {cut} of them cut by the initial cracks,")
 }
 
-impl Points {
-    /// Points and bonds that were built, in words.
-    pub fn built([points, bonds, cut]: [usize; 3]) -> String {
-        format!("{points} and {bonds} bonds, {cut} of them cut by the initial cracks,")
-    }
-
-    /// One line; `asked` is the finest spacing asked for, m.
-    pub fn words(&self, asked: f64, chosen: &[Choice]) -> String {
-        let ([fine, coarse], asked) = (self.spacings.map(mm), mm(asked));
-        let to = if fine == coarse { String::new() } else { format!(" to {coarse}") };
-        let moved = if fine == asked { String::new() } else { format!(" ({asked} asked for)") };
-        let choices = model_words::words(chosen, &["discretisation", "horizon_ratio", "solver"]);
-        format!("{} at spacing {fine}{to} mm{moved}, horizon {} mm, {choices}", self.count, mm(self.horizon))
-    }
+/// How a plate is divided: spacing of the finest and the coarsest level, the finest asked for, and the horizon there, m.
+pub(super) fn points_words(count: &str, spacings: [f64; 2], [asked, horizon]: [f64; 2], chosen: &[Choice]) -> String {
+    let ([fine, coarse], [asked, horizon]) = (spacings.map(mm), [asked, horizon].map(mm));
+    let to = if fine == coarse { String::new() } else { format!(" to {coarse}") };
+    let moved = if fine == asked { String::new() } else { format!(" ({asked} asked for)") };
+    let choices = model_words::words(chosen, &["discretisation", "horizon_ratio", "solver"]);
+    format!("{count} at spacing {fine}{to} mm{moved}, horizon {horizon} mm, {choices}")
 }
 
 /// What the program understood of a case, one line each; `points` says how it is divided.

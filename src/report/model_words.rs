@@ -3,7 +3,7 @@
 use serde_json::{Map, Value};
 
 use super::json::clean;
-use crate::bond_law::{BondLaw, BondLawKind};
+use crate::bond_law::BondLawKind;
 use crate::case::{Case, LawSource, Method};
 use crate::fracture::scene::{Scene, SceneLaw};
 use crate::net::Refinement;
@@ -49,71 +49,88 @@ pub fn words(choices: &[Choice], keys: &[&str]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-/// The model of a case; sizes and solved part are those of its run where there was one.
+/// The model of a case; sizes, solver and solved part are those of its run where there was one.
 #[must_use]
 pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
-    let model = &case.model;
+    let (model, law) = (&case.model, case.model.bond_law);
     if model.method == Method::Handbook {
         return hand_calculation(case);
     }
     let (spacing, horizon) =
-        figures.map_or((model.spacing, model.spacing * model.horizon_ratio), |figures| (figures.spacing, figures.horizon));
-    let used = figures.and_then(|figures| figures.solver);
-    let mut values: Vec<(&'static str, Value)> =
-        vec![("method", model.method.name().into()), ("driver", case.fatigue.driver.name().into())];
-    values.extend(bonds(model.bond_law));
-    values.extend([
-        ("discretisation", model.arrangement.name().into()),
-        ("levels", (1 + model.refinement.as_ref().map_or(0, Refinement::deepest)).into()),
-        ("spacing_mm", clean(spacing / MM).into()),
-        ("spacing_coarsest_mm", clean(spacing * model.coarsest_spacing() / model.spacing / MM).into()),
-        ("horizon_ratio", model.horizon_ratio.into()),
-        ("horizon_mm", clean(horizon / MM).into()),
-        ("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into()),
-        ("solver", used.map_or(model.solver.name(), SolverUsed::name).into()),
-        ("symmetry", model.symmetry.name().into()),
-    ]);
-    let choice = |(key, value)| Choice { key, value, why: why(case, figures, key) };
-    values.into_iter().map(choice).collect()
+        figures.map_or((model.spacing, model.spacing * model.horizon_ratio), |run| (run.spacing, run.horizon));
+    let used = figures.and_then(|run| run.solver);
+    let finest = if model.refinement.is_some() { "; that of the finest level, on which cracks grow" } else { "" };
+    let moved = if ((model.spacing - spacing) / spacing).abs() > 1e-9 {
+        format!("; moved from {:.6} to {:.6} so that it divides the width", model.spacing / MM, spacing / MM)
+    } else {
+        String::new()
+    };
+    let by_solver = used.map(|used| format!("; asked for was \"{}\", used were {}", model.solver, used.meaning()));
+    let springs_do = law.kind != BondLawKind::StateBased;
+    let chosen = |key, value: Value, default: &str, more: &str| {
+        let why = if given(&case.echo, key) {
+            "given in the case"
+        } else if is_fixed_by_record(case, key) {
+            "as in the fitted record: the law holds for this choice only"
+        } else {
+            default
+        };
+        Choice { key, value, why: Some(format!("{why}{more}")) }
+    };
+    let follows = |key, value: Value| Choice { key, value, why: None };
+    vec![
+        chosen("method", model.method.name().into(), "default: computes any plate and the path of its cracks", ""),
+        follows("driver", case.fatigue.driver.name().into()),
+        chosen("bond_law", law.kind.name().into(), if springs_do { TWO_SPRINGS } else { BEYOND_SPRINGS }, ""),
+        chosen("kernel", law.kernel.name().into(), "default: of those tried, its crack growth depends least on the lattice", ""),
+        chosen("rotation", law.rotation.name().into(), "default: rigid rotation of crack flanks must cost no energy", ""),
+        chosen("surface_correction", law.surface_correction.name().into(), "default: the most accurate one built", ""),
+        chosen("discretisation", model.arrangement.name().into(), "default: one spacing everywhere", ""),
+        follows("levels", (1 + model.refinement.as_ref().map_or(0, Refinement::deepest)).into()),
+        chosen("spacing_mm", clean(spacing / MM).into(), SPACING, &format!("{finest}{moved}")),
+        follows("spacing_coarsest_mm", clean(spacing * model.coarsest_spacing() / model.spacing / MM).into()),
+        chosen("horizon_ratio", model.horizon_ratio.into(), RATIO, ""),
+        follows("horizon_mm", clean(horizon / MM).into()),
+        chosen("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into(), ANGLE, ""),
+        chosen(
+            "solver",
+            used.map_or(model.solver.name(), SolverUsed::name).into(),
+            "default: the fastest exact one built",
+            by_solver.as_deref().unwrap_or(""),
+        ),
+        chosen("symmetry", model.symmetry.name().into(), "default: exact", figures.map_or("", solved_part)),
+    ]
 }
 
 /// The model of a scene; `finest` is the least spacing of its points, m, once they are laid.
 #[must_use]
 pub fn of_scene(scene: &Scene, finest: Option<f64>) -> Vec<Choice> {
     let model = &scene.model;
-    let mut values: Vec<(&'static str, Value)> = match model.law {
-        SceneLaw::Bonds(law) => {
-            let kinematics = ("kinematics", if model.finite { "finite" } else { "small" }.into());
-            bonds(law).into_iter().chain([kinematics]).collect()
-        }
+    let chosen = |key, value: Value, default: &str| {
+        let why = if given(&scene.echo, key) { "given in the file" } else { default };
+        Choice { key, value, why: Some(why.to_owned()) }
+    };
+    let mut choices = match model.law {
+        SceneLaw::Bonds(law) => vec![
+            chosen("bond_law", law.kind.name().into(), TWO_SPRINGS),
+            chosen("kernel", law.kernel.name().into(), "default: that of the law's literature"),
+            chosen("rotation", law.rotation.name().into(), "default: as the law is printed"),
+            chosen("surface_correction", law.surface_correction.name().into(), "default: that of the literature"),
+            chosen("kinematics", if model.finite { "finite" } else { "small" }.into(), "default: strains are small"),
+        ],
         SceneLaw::Correspondence { control, factor } => vec![
-            ("bond_law", "correspondence".into()),
-            ("zero_energy_control", control.name().into()),
-            ("zero_energy_factor", factor.into()),
+            chosen("bond_law", "correspondence".into(), TWO_SPRINGS),
+            chosen("zero_energy_control", control.name().into(), "default: leaves uniform strain alone"),
+            chosen("zero_energy_factor", factor.into(), "default: 1"),
         ],
     };
-    values.extend([("discretisation", model.arrangement.name().into()), ("spacing_mm", clean(model.spacing / MM).into())]);
-    values.extend(finest.map(|finest| ("finest_spacing_mm", clean(finest / MM).into())));
-    values.extend([
-        ("horizon_ratio", model.horizon_ratio.into()),
-        ("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into()),
-        ("solver", model.solver.name().into()),
-    ]);
-    let given = |key: &str| scene.echo.get("model").is_some_and(|model| model.get(key).is_some());
-    let why = |key: &str| {
-        let reason = reason(&WHY_IN_SCENES, key).or_else(|| reason(&WHY, key))?;
-        Some(if given(key) { "given in the file" } else { reason }.to_owned())
-    };
-    values.into_iter().map(|(key, value)| Choice { key, value, why: why(key) }).collect()
-}
-
-fn bonds(law: BondLaw) -> [(&'static str, Value); 4] {
-    [
-        ("bond_law", law.kind.name().into()),
-        ("kernel", law.kernel.name().into()),
-        ("rotation", law.rotation.name().into()),
-        ("surface_correction", law.surface_correction.name().into()),
-    ]
+    choices.push(chosen("discretisation", model.arrangement.name().into(), "default: one spacing"));
+    choices.push(chosen("spacing_mm", clean(model.spacing / MM).into(), SPACING));
+    choices.extend(finest.map(|finest| Choice { key: "finest_spacing_mm", value: clean(finest / MM).into(), why: None }));
+    choices.push(chosen("horizon_ratio", model.horizon_ratio.into(), RATIO));
+    choices.push(chosen("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into(), ANGLE));
+    choices.push(chosen("solver", model.solver.name().into(), "default: that of the procedure"));
+    choices
 }
 
 /// The formula of method `handbook`. Other keys of `[model]` say nothing there.
@@ -128,71 +145,21 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
     ]
 }
 
-/// Why the program takes what it takes where the file leaves a choice open.
-const WHY: [(&str, &str); 11] = [
-    ("method", "default: computes any plate and the path of its cracks"),
-    ("bond_law", "default: takes Poisson's ratio from the material instead of fixing it"),
-    ("kernel", "default: of the kernels tried, its crack growth depends least on the lattice"),
-    ("rotation", "default: rigid rotation of crack flanks must cost no energy"),
-    ("surface_correction", "default: the most accurate one built"),
-    ("discretisation", "default: one spacing everywhere"),
-    ("spacing_mm", "default: the smaller of crack length / 9 and width / 100"),
-    ("horizon_ratio", "default: 3.015, three neighbours in every lattice direction"),
-    ("lattice_angle_deg", "default: lattice rows along x"),
-    ("solver", "default: the fastest exact one built"),
-    ("symmetry", "default: exact"),
-];
+const TWO_SPRINGS: &str = "default: takes Poisson's ratio from the material instead of fixing it";
+const BEYOND_SPRINGS: &str = "chosen: springs alone cannot have this Poisson's ratio";
+const SPACING: &str = "default: the smaller of crack length / 9 and width / 100";
+const RATIO: &str = "default: 3.015, three neighbours in every lattice direction";
+const ANGLE: &str = "default: lattice rows along x";
 
-/// The same where a fracture scene differs.
-const WHY_IN_SCENES: [(&str, &str); 7] = [
-    ("kernel", "default: that of the law's literature"),
-    ("rotation", "default: as the law is printed"),
-    ("surface_correction", "default: that of the literature"),
-    ("kinematics", "default: strains are small"),
-    ("zero_energy_control", "default: leaves uniform strain alone"),
-    ("zero_energy_factor", "default: 1"),
-    ("solver", "default: that of the procedure"),
-];
-
-fn reason(reasons: &[(&str, &'static str)], key: &str) -> Option<&'static str> {
-    reasons.iter().find(|(known, _)| *known == key).map(|(_, reason)| *reason)
+fn given(echo: &Value, key: &str) -> bool {
+    echo.get("model").is_some_and(|model| model.get(key).is_some())
 }
 
-/// Why the default bond law is not taken.
-const BEYOND_SPRINGS: &str = "chosen: springs alone cannot have this Poisson's ratio";
-
-/// Choices that a fitted law is meaningless without.
-const FIXED_BY_RECORD: [&str; 5] = ["bond_law", "kernel", "rotation", "surface_correction", "horizon_ratio"];
-
-fn why(case: &Case, figures: Option<&RunFigures>, key: &str) -> Option<String> {
-    let reason = reason(&WHY, key)?;
-    let given = case.echo.get("model").is_some_and(|model| model.get(key).is_some());
-    let recorded = match &case.law {
-        // A record of hand calculation fixes nothing.
-        LawSource::Fitted(record) => record.rate_constant.is_some() && FIXED_BY_RECORD.contains(&key),
-        _ => false,
-    };
-    let source = match (given, recorded) {
-        (true, _) => "given in the case",
-        (false, true) => "as in the fitted record: the law holds for this choice only",
-        (false, false) if key == "bond_law" && case.model.bond_law.kind == BondLawKind::StateBased => BEYOND_SPRINGS,
-        (false, false) => reason,
-    };
-    let of_the_run = match key {
-        "spacing_mm" => {
-            let finest = if case.model.refinement.is_some() { "; that of the finest level, on which cracks grow" } else { "" };
-            let (asked, actual) = (case.model.spacing / MM, figures.map_or(case.model.spacing, |figures| figures.spacing) / MM);
-            let is_moved = ((asked - actual) / actual).abs() > 1e-9;
-            let moved = is_moved.then(|| format!("; moved from {asked:.6} to {actual:.6} so that it divides the width"));
-            format!("{finest}{}", moved.unwrap_or_default())
-        }
-        "solver" => figures
-            .and_then(|figures| figures.solver)
-            .map_or_else(String::new, |used| format!("; asked for was \"{}\", used were {}", case.model.solver, used.meaning())),
-        "symmetry" => figures.map_or_else(String::new, |figures| format!("; {}", solved_part(figures))),
-        _ => String::new(),
-    };
-    Some(format!("{source}{of_the_run}"))
+/// Whether the fitted law of a case is meaningless without its choice of this key.
+fn is_fixed_by_record(case: &Case, key: &str) -> bool {
+    let LawSource::Fitted(record) = &case.law else { return false };
+    // A record of hand calculation fixes nothing.
+    record.rate_constant.is_some() && matches!(key, "bond_law" | "kernel" | "rotation" | "horizon_ratio" | "surface_correction")
 }
 
 /// How much of the plate was solved for.
@@ -200,8 +167,8 @@ fn solved_part(figures: &RunFigures) -> &'static str {
     let (all, solved) = (figures.points, figures.points_solved);
     // A line of symmetry through a row of points leaves half a row more.
     match (solved == all, 3 * solved > all) {
-        (true, _) => "the whole plate was solved",
-        (false, true) => "one half was solved, the other is its mirror image",
-        (false, false) => "a quarter was solved, the others are its mirror images",
+        (true, _) => "; the whole plate was solved",
+        (false, true) => "; one half was solved, the other is its mirror image",
+        (false, false) => "; a quarter was solved, the others are its mirror images",
     }
 }

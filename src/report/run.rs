@@ -117,7 +117,7 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
         DamagePicture { grid: &prediction.grid, snapshot, field: PointField::Damage, cracks, paths: &paths, caption: &caption }
             .write(&folder.join("damage.png"))?;
     }
-    draw_remaining_life(&folder.join("remaining_life.png"), case, prediction, &paths)?;
+    draw_remaining_life(&folder.join("remaining_life.png"), prediction, &paths)?;
     if !prediction.snapshots.is_empty() {
         let paraview = folder.join(PARAVIEW);
         std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
@@ -126,14 +126,15 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
     Ok(result)
 }
 
-/// The fatigue zone ahead of a tip, at the last snapshot that has one.
-fn draw_remaining_life(path: &Path, case: &Case, prediction: &Prediction, paths: &[Vec<Point>]) -> Result<()> {
+/// The fatigue zone ahead of a tip, in the middle of the snapshots that have one.
+fn draw_remaining_life(path: &Path, prediction: &Prediction, paths: &[Vec<Point>]) -> Result<()> {
     let grid = &prediction.grid;
-    let last = prediction.snapshots.iter().rev().find_map(|snapshot| Some((snapshot, most_used(grid, snapshot)?)));
-    let Some((snapshot, tip)) = last else { return Ok(()) };
+    let with_zone: Vec<_> =
+        prediction.snapshots.iter().filter_map(|snapshot| Some((snapshot, most_used(grid, snapshot)?))).collect();
+    let Some(&(snapshot, tip)) = with_zone.get(with_zone.len() / 2) else { return Ok(()) };
     let grid = &around(grid, tip, ZONE_HORIZONS * prediction.figures.horizon);
     let [cycles, length] = cycles_and_length(snapshot);
-    let place = format!("around ({:.2}, {:.2}) mm", tip[0] / MM, tip[1] / MM);
+    let place = format!("at x {:.2}, y {:.2} mm", tip[0] / MM, tip[1] / MM);
     // The path beyond the zone, and after this moment, is left out with the points.
     let is_near = |at: &Point| grid.point_at.len() > 1 && distance(*at, tip) < ZONE_HORIZONS * prediction.figures.horizon;
     let near: Vec<Vec<Point>> = paths.iter().map(|path| path.iter().copied().filter(is_near).collect()).collect();
@@ -143,7 +144,7 @@ fn draw_remaining_life(path: &Path, case: &Case, prediction: &Prediction, paths:
         field: PointField::LifeSpent,
         cracks: &[],
         paths: &near,
-        caption: &[cycles, length, place, case.name.clone()],
+        caption: &[cycles, length, place],
     };
     picture.write(path)
 }

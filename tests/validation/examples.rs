@@ -86,7 +86,7 @@ fn the_other_examples_keep_their_lives() {
     }
 }
 
-/// Source 000 §4.4: the crack turns across the load at once. Its extent is 46 mm after 70 000 to 85 000 cycles in trials with
+/// Li, Lü, Huang and Yang 2024, section 4.4: the crack turns across the load at once. Its extent is 46 mm after 70 000 to 85 000 cycles in trials with
 /// several kernels, all from a clean cut and with strains as computed.
 #[test]
 fn the_slant_crack_turns_across_the_load() {
