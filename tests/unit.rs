@@ -82,3 +82,5 @@ mod sweep;
 mod verification_table;
 #[path = "unit/length_average.rs"]
 mod length_average;
+#[path = "unit/record.rs"]
+mod record;

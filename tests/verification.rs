@@ -23,6 +23,8 @@ mod disc;
 mod elasticity;
 #[path = "verification/tip_field.rs"]
 mod tip_field;
+#[path = "verification/tip_field_solvers.rs"]
+mod tip_field_solvers;
 #[path = "verification/tension_plate.rs"]
 mod tension_plate;
 #[path = "verification/product.rs"]

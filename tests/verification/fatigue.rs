@@ -167,22 +167,18 @@ fn every_solver_grows_the_same_crack() {
     for (name, specimen, set) in [
         ("panel", PANEL, vec!["stop.crack_length_mm=20"]),
         ("slant", SLANT, vec!["stop.crack_length_mm=22"]),
-        ("slant, held", SLANT, vec!["stop.crack_length_mm=22", "supports.bottom={rows_mm=4,fix=[\"x\",\"y\"]}"]),
         ("clamped", &clamped, vec!["stop.crack_length_mm=18"]),
-        ("compact", COMPACT, vec!["stop.crack_length_mm=25"]),
         ("slot", SLOT, vec!["stop.crack_length_mm=24"]),
-        ("two cracks", TWO, vec!["stop.crack_length_mm=44"]),
         ("resisted", SLANT, vec!["model.rotation=resisted", "stop.crack_length_mm=22"]),
         ("turned", PANEL, vec!["model.lattice_angle_deg=30", "stop.crack_length_mm=15"]),
         ("state-based", SLANT, vec!["model.bond_law=state_based", "material.poisson_ratio=0.4", "stop.crack_length_mm=22"]),
-        ("state-based, low ν", PANEL, vec!["model.bond_law=state_based", "material.poisson_ratio=0", "stop.crack_length_mm=18"]),
     ] {
         // Relaxation takes the most time by far, and goes through the coarse plates below by every law.
         assert_same_growth(name, specimen, &set, (name == "slant").then_some(1e-4));
     }
 }
 
-/// Every solver with every bond law on every small case: life equal to 1e-6, with dynamic relaxation to its tolerance.
+/// Every solver with every bond law on small cases: life equal to 1e-6, with dynamic relaxation to its tolerance.
 #[test]
 fn every_solver_grows_the_same_crack_by_every_law() {
     for kind in BondLawKind::ALL {
@@ -195,10 +191,7 @@ fn every_solver_grows_the_same_crack_by_every_law() {
         for (name, specimen, stop) in [
             ("middle tension", PANEL, "stop.crack_length_mm=16"),
             ("compact", COMPACT, "stop.crack_length_mm=24"),
-            ("single edge", EDGE, "stop.crack_length_mm=16"),
-            ("double edge", DOUBLE, "stop.crack_length_mm=16"),
             ("hole", HOLE, "stop.crack_length_mm=18"),
-            ("slant", SLANT, "stop.crack_length_mm=26"),
             ("two cracks", TWO, "stop.crack_length_mm=36"),
         ] {
             // Coarse, so that the direct solver takes milliseconds; no growth before N = 0, so that all of it counts. Strains of
@@ -282,5 +275,21 @@ fn a_centre_crack_grows_by_the_power_law() {
         println!("p {p}: rate over the power law {relative:.3?}");
         // Reached: 2.1 % at p = 4, from three horizons on.
         assert!(relative.iter().all(|r| (r - 1.0).abs() < 0.03), "p {p}: {relative:?}");
+    }
+}
+
+/// A crack below the threshold beside one that grows gets to its initial length all the same and stands there, while the other goes on;
+/// it kept the run from N = 0 before, and the life came out unlimited.
+#[test]
+fn a_crack_below_the_threshold_waits() {
+    let specimen = "kind=\"plate\"\nwidth_mm=80\nlength_mm=160\nthickness_mm=2\n\
+                    cracks=[{from_mm=[-40,40],to_mm=[-26,40]},{from_mm=[-40,-40],to_mm=[-36,-40]}]\n";
+    for rate in ["stress_intensity", "bond_strain"] {
+        let rate = format!("fatigue.growth_rate={rate}");
+        let set = ["model.spacing_mm=1", "fatigue.delta_k_threshold_mpa_sqrt_m=11", "stop.crack_length_mm=26", &*rate];
+        let run = grow(specimen, &set);
+        assert_eq!(run.stop, StopReason::CrackLengthReached, "{rate}");
+        let [long, short] = [0, 1].map(|tip: usize| run.curve.last().unwrap().tips[tip].growth);
+        assert!(short == 0.0 && long > 7e-3 && run.life_cycles() > 0.0, "{rate}: {long} {short}");
     }
 }

@@ -1,0 +1,78 @@
+//! Mechanics that fail in mid-run keep the curve so far.
+
+use perilife::error::{Error, Result};
+use perilife::growth::record::{CurvePoint, StopReason, TipRecord};
+use perilife::growth::{CrackGrowth, GrowthStatus, State};
+use perilife::predict::record::Record;
+use perilife::predict::{Prediction, Silent};
+
+use crate::hand_cases::{PANEL, hand_case};
+
+/// A crack that grows by a millimetre in thousand cycles.
+struct Steady(Vec<CurvePoint>);
+
+impl Steady {
+    fn grow(&mut self) {
+        let growth = 1e-3 * self.0.len() as f64;
+        self.0.push(CurvePoint {
+            cycles: 1e6 * growth,
+            crack_length: 0.01 + growth,
+            delta_k: 1e7,
+            growth_rate: 1e-6,
+            work: f64::NAN,
+            broken_bonds: 0,
+            tips: vec![TipRecord { position: [growth, 0.0], growth, factors: None, t_stress: None }],
+        });
+    }
+}
+
+impl CrackGrowth for Steady {
+    fn open(&mut self) -> Result<()> {
+        self.grow();
+        Ok(())
+    }
+
+    fn now(&self) -> GrowthStatus<'_> {
+        let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = *self.0.last().unwrap();
+        GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true }
+    }
+
+    fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
+        (std::mem::take(&mut self.0), 0.0)
+    }
+
+    fn state(&self) -> State {
+        State::Rows(self.0.clone())
+    }
+
+    fn restore(&mut self, _: State) -> Result<bool> {
+        Ok(false)
+    }
+}
+
+/// A run whose third increment fails.
+fn failing(error: fn() -> Error) -> Result<Prediction> {
+    let case = hand_case(PANEL, &[]);
+    Record::new(&case, &Silent).follow(&mut Steady(Vec::new()), |growth| {
+        if growth.0.len() == 3 {
+            return Err(error());
+        }
+        growth.grow();
+        Ok(None)
+    })
+}
+
+#[test]
+fn an_error_of_mechanics_ends_the_run_with_the_rows_that_stand() {
+    let run = failing(|| Error::Mechanics("the solver met its limit".to_owned())).unwrap();
+    assert_eq!((run.stop, run.curve.len(), run.life_cycles()), (StopReason::NoConvergence, 3, 2000.0));
+    assert!(run.warnings.iter().any(|warning| warning.contains("the solver met its limit")), "{:?}", run.warnings);
+    let severed = failing(|| Error::LossOfStiffness).unwrap();
+    assert_eq!((severed.stop, severed.curve.len()), (StopReason::Severed, 3));
+}
+
+#[test]
+fn other_errors_are_the_callers() {
+    let wrong = failing(|| perilife::error::input("fatigue.growth_table", 1.0, "ends too early", "give a longer one"));
+    assert!(matches!(wrong, Err(Error::Input(_))));
+}

@@ -1,0 +1,156 @@
+//! Growth by K of the tips is one growth, whatever solves the equilibrium: every solver by every bond law, on a part of the plate or on
+//! the whole, on points of one or two levels. (That a run goes on from a checkpoint bit for bit: `checkpoint.rs`.)
+
+use std::path::Path;
+
+use perilife::bond_law::BondLawKind;
+use perilife::case::Case;
+use perilife::predict::{Prediction, Silent, predict};
+use perilife::solver::SolverKind;
+
+const REST: &str = "
+[material]
+youngs_modulus_gpa = 70.0
+poisson_ratio = 0.3
+plane = \"stress\"
+[loading]
+stress_max_mpa = 60
+stress_ratio = 0.1
+[model]
+spacing_mm = 2
+[fatigue]
+paris_c_mm_per_cycle = 1e-8
+paris_m = 3.0
+";
+
+/// Name, `[specimen]`, crack length at which the run ends, mm, and whether the plate has a mirror image.
+const PLATES: [(&str, &str, &str, bool); 3] = [
+    (
+        "slant crack",
+        "kind = \"plate\"\nwidth_mm = 60\nlength_mm = 80\nthickness_mm = 2\ncracks = [{ from_mm = [-7.2, -5.1], to_mm = [7.2, 5.1] }]",
+        "stop.crack_length_mm=28",
+        false,
+    ),
+    (
+        "edge crack beside a hole",
+        "kind = \"plate\"\nwidth_mm = 60\nlength_mm = 80\nthickness_mm = 2\nholes = [{ x_mm = 8, y_mm = 9, diameter_mm = 10 }]\n\
+         cracks = [{ from_mm = [-30, 0.4], to_mm = [-15, 0.4] }]",
+        "stop.crack_length_mm=25",
+        false,
+    ),
+    (
+        "middle tension",
+        "kind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 80\nthickness_mm = 2\ncrack_length_mm = 8",
+        "stop.crack_length_mm=16",
+        true,
+    ),
+];
+/// Points of one level, and of two.
+const LATTICES: [(&str, &[&str]); 2] = [
+    ("lattice", &[]),
+    (
+        "levels",
+        &[
+            "model.discretisation=dual_horizon",
+            "model.spacing_mm=4",
+            "refinement.regions=[{box_mm=[[-30,-20],[30,24]],levels=1}]",
+        ],
+    ),
+];
+/// Relative difference of lives, and of paths over a spacing.
+const EQUAL: f64 = 1e-6;
+/// The same where dynamic relaxation solves, whose residual of 1e-6 of the load leaves K right to some 1e-6.
+const EQUAL_RELAXED: f64 = 1e-4;
+
+fn grow(specimen: &str, set: &[&str]) -> Prediction {
+    let set: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
+    let case = Case::from_toml(&format!("[specimen]\n{specimen}\n{REST}"), "plate", Path::new("."), &set).unwrap();
+    predict(&case, &Silent).unwrap()
+}
+
+/// Largest difference of lives, relative, and of the places of tips at equal rows, over a spacing.
+fn differences(a: &Prediction, b: &Prediction) -> (f64, f64) {
+    let mut path = 0.0_f64;
+    for (a, b) in a.curve.iter().zip(&b.curve) {
+        for (a, b) in a.tips.iter().zip(&b.tips) {
+            path = path.max((a.position[0] - b.position[0]).hypot(a.position[1] - b.position[1]));
+        }
+    }
+    ((a.life_cycles() / b.life_cycles() - 1.0).abs(), path / a.figures.spacing)
+}
+
+/// The settings of a law; bond-based springs have one Poisson's ratio only.
+fn of_law(law: BondLawKind) -> [String; 2] {
+    let ratio = if law == BondLawKind::BondBased { "0.333333333333333333" } else { "0.3" };
+    [format!("model.bond_law={law}"), format!("material.poisson_ratio={ratio}")]
+}
+
+#[test]
+fn every_solver_by_every_law_gives_one_life_and_one_path() {
+    let mut runs = 0;
+    for (plate, specimen, stop, is_symmetric) in PLATES {
+        for (lattice, of_lattice) in LATTICES {
+            for &law in BondLawKind::ALL {
+                let law_keys = of_law(law);
+                let common: Vec<&str> =
+                    [stop].into_iter().chain(of_lattice.iter().copied()).chain(law_keys.iter().map(|key| &**key)).collect();
+                let reference = grow(specimen, &common);
+                assert!(reference.curve.len() > 8 && reference.life_cycles() > 0.0, "{plate}, {lattice}, {law}: a run");
+                let symmetries: &[&str] = if is_symmetric { &["auto", "off"] } else { &["auto"] };
+                for &solver in SolverKind::ALL {
+                    for symmetry in symmetries {
+                        let keys = [format!("model.solver={solver}"), format!("model.symmetry={symmetry}")];
+                        let set: Vec<&str> = common.iter().copied().chain(keys.iter().map(|key| &**key)).collect();
+                        let run = grow(specimen, &set);
+                        runs += 1;
+                        let (life, path) = differences(&run, &reference);
+                        let what =
+                            format!("{plate}, {lattice}, {law}, {solver}, symmetry {symmetry}: life {life:.1e}, path {path:.1e}");
+                        println!("{what}");
+                        let bound = if solver == SolverKind::AdaptiveDynamicRelaxation { EQUAL_RELAXED } else { EQUAL };
+                        assert!(life < bound && path < bound, "{what}");
+                        assert_eq!((run.stop, run.curve.len()), (reference.stop, reference.curve.len()), "{what}");
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(runs, 2 * BondLawKind::ALL.len() * SolverKind::ALL.len() * (PLATES.len() + 1));
+}
+
+#[test]
+fn one_thread_and_two_give_the_same_bits() {
+    for (plate, specimen, stop, _) in PLATES {
+        for (lattice, of_lattice) in LATTICES {
+            let set: Vec<&str> = [stop].into_iter().chain(of_lattice.iter().copied()).collect();
+            let by = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| grow(specimen, &set).curve)
+            };
+            assert_eq!(by(1), by(2), "{plate}, {lattice}");
+        }
+    }
+}
+
+/// The law of a bond is kept as a field: λ of the bonds ahead of a tip lies between 0 and 1, is spent near the tip alone, and never rises.
+#[test]
+fn bonds_ahead_of_a_tip_lose_remaining_life() {
+    let (_, specimen, stop, _) = PLATES[1];
+    let run = grow(specimen, &[stop, "model.spacing_mm=1"]);
+    assert!(run.snapshots.len() > 2);
+    let mut before: Option<&[f64]> = None;
+    for snapshot in &run.snapshots {
+        let lives = &snapshot.remaining_life;
+        assert_eq!(lives.len(), run.figures.points);
+        let spent = lives.iter().filter(|life| **life < 1.0).count();
+        assert!(spent > 3 && spent < run.figures.points / 20, "{spent} points with bonds ahead of the tip");
+        assert!(lives.iter().all(|life| (0.0..=1.0).contains(life)) && lives.iter().any(|life| *life < 0.5));
+        if let Some(before) = before {
+            // A point may come to more life only by losing the bond that had the least.
+            let risen =
+                lives.iter().zip(before).zip(&snapshot.damage).filter(|((now, then), damage)| now > then && **damage == 0.0);
+            assert_eq!(risen.count(), 0);
+        }
+        before = Some(lives);
+    }
+}
