@@ -20,7 +20,7 @@ use crate::kinds::KindLine;
 use crate::loading::LoadingKind;
 use crate::material::{Plane, library};
 use crate::predict::StopReason;
-use crate::solver::{SolverKind, Symmetry};
+use crate::solver::{SolverKind, SolverUsed, Symmetry};
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
 use crate::stress_intensity::StressIntensityMethod;
 use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
@@ -69,6 +69,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         LengthUnit::lines(),
         CycleUnit::lines(),
         RateMethod::lines(),
+        SolverUsed::lines(),
         StopReason::lines(),
         beside(&StopReason::lines(), SceneEnd::lines()),
     ];

@@ -39,7 +39,7 @@ crate::kinds! {
 
 crate::kinds! {
     /// What solved a run, whatever `model.solver` asked for.
-    pub enum SolverUsed for "solver" {
+    pub enum SolverUsed for "solver of a run" {
         Window = "window": "updates of the plate condensed onto the points around the crack tips, multigrid for whole solves",
         Multigrid = "multigrid": "multigrid solves of the whole plate: no window was condensed",
         ConjugateGradients = "conjugate_gradients": "conjugate gradients with a sparse factor on the whole plate of several levels: no window was condensed",
