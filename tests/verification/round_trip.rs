@@ -37,14 +37,9 @@ fn curve(spacing: f64, exact: &[(f64, f64)], scatter: f64, seed: u64) -> Measure
 }
 
 /// Fits to curves of several seeds, all from one run with the known constants.
-fn fits(spacing: f64, driver: &str, scatter: f64, seeds: u64) -> Vec<Fit> {
-    let set = [
-        format!("model.spacing_mm={spacing}"),
-        format!("fatigue.a={A}"),
-        format!("fatigue.p={P}"),
-        format!("fatigue.driver={driver}"),
-    ];
-    let set: Vec<&str> = set.iter().map(String::as_str).chain(["stop.crack_length_mm=44"]).collect();
+fn fits(spacing: f64, scatter: f64, seeds: u64) -> Vec<Fit> {
+    let set = [format!("model.spacing_mm={spacing}"), format!("fatigue.a={A}"), format!("fatigue.p={P}")];
+    let set: Vec<&str> = set.iter().map(String::as_str).chain(["fatigue.driver=tip_field", "stop.crack_length_mm=44"]).collect();
     let panel = case(PANEL, &set);
     let exact: Vec<(f64, f64)> = predict(&panel, &Silent).unwrap().curve.iter().map(|p| (p.cycles, p.crack_length)).collect();
     let formula = handbook(&panel.specimen).unwrap();
@@ -70,21 +65,20 @@ fn known(horizon: f64) -> (f64, f64) {
 
 #[test]
 fn the_engine_recovers_its_own_constants() {
-    for (driver, of_p, of_life) in [("tip_field", 1e-3, 1e-3), ("bond_strain", 0.02, 5e-3)] {
-        let found = fits(4.0, driver, 0.0, 1).remove(0);
-        let (a, p) = known(found.horizon);
-        let constants = found.record.constants;
-        let (rms, life) = (found.record.rms_life_error(), found.record.life_fitted() / found.record.life_measured());
-        println!("{driver}: A {} against {a}, p {} against {p}, rms {rms}, life {life}", constants.a, constants.p);
-        assert!((constants.p - p).abs() < of_p, "{driver}: p = {}", constants.p);
-        assert!(rms < 3e-3, "{driver}: {rms}");
-        assert!((life - 1.0).abs() < of_life, "{driver}: {life}");
-    }
+    let found = fits(4.0, 0.0, 1).remove(0);
+    let (a, p) = known(found.horizon);
+    let constants = found.record.constants;
+    let (rms, life) = (found.record.rms_life_error(), found.record.life_fitted() / found.record.life_measured());
+    println!("A {} against {a}, p {} against {p}, rms {rms}, life {life}", constants.a, constants.p);
+    // Blocks of a run are good to 0.2 % in cycles.
+    assert!((constants.p - p).abs() < 0.02, "p = {}", constants.p);
+    assert!(rms < 1e-3, "{rms}");
+    assert!((life - 1.0).abs() < 1e-3, "{life}");
 }
 
 #[test]
 fn truth_lies_inside_the_95_percent_ellipse_of_engine_fits() {
-    let found = fits(3.0, "tip_field", 0.05, 20);
+    let found = fits(3.0, 0.05, 20);
     let inside = found
         .iter()
         .filter(|fit| {
