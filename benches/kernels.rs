@@ -14,7 +14,7 @@ use perilife::fracture::failure::Failure;
 use perilife::fracture::interaction::{Damaging, Interaction};
 use perilife::fracture::lattice_springs::LatticeSprings;
 use perilife::fracture::springs::Springs;
-use perilife::net::Net;
+use perilife::levels::Net;
 use perilife::solver::field::{Layout, dot};
 use perilife::solver::multigrid::Multigrid;
 use perilife::solver::product::{Into, Product};

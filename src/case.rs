@@ -18,9 +18,9 @@ use crate::calibration::record::FittedRecord;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
+use crate::levels::{Discretisation, Refinement};
 use crate::loading::Loading;
 use crate::material::Material;
-use crate::net::{Arrangement, Refinement};
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
 
@@ -43,7 +43,7 @@ pub struct Model {
     /// Angle of the lattice rows against x, radians.
     pub lattice_angle: f64,
     /// How points lie.
-    pub arrangement: Arrangement,
+    pub arrangement: Discretisation,
     /// Where finer points lie, in an arrangement of several levels.
     pub refinement: Option<Refinement>,
     /// Equilibrium solver.
@@ -56,7 +56,7 @@ impl Model {
     /// The surface correction that gives K of a tip best where the case leaves it open: what a rim at an angle to the rows does to
     /// the plate is 1 % of K with `volume_and_surface` and 0.3 % with `balanced`, which knows springs on one lattice.
     fn take_most_accurate_rim(&mut self) {
-        if self.bond_law.kind != BondLawKind::StateBased && self.arrangement == Arrangement::Lattice {
+        if self.bond_law.kind != BondLawKind::StateBased && self.arrangement == Discretisation::Lattice {
             self.bond_law.surface_correction = SurfaceCorrection::Balanced;
         }
     }

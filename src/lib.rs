@@ -22,7 +22,7 @@ pub mod material;
 pub mod bond_law;
 pub mod body;
 pub mod state;
-pub mod net;
+pub mod levels;
 pub mod solver;
 pub mod fatigue;
 pub mod case;

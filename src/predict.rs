@@ -19,7 +19,7 @@ mod snapshot;
 
 pub use outcome::{CrossCheck, CurvePoint, Observer, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 
-pub use crate::net::PointGrid;
+pub use crate::levels::PointGrid;
 
 use crate::case::{Case, Method};
 use crate::error::Result;

@@ -10,7 +10,7 @@ use crate::specimen::geometry::distance;
 
 /// Pieces of coarser points around a body.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Beyond {
+pub struct CoarseNeighbours {
     /// Places tied to a piece, ascending, and which.
     ties: Vec<(u32, u32)>,
     /// Places tied to every piece.
@@ -19,7 +19,7 @@ pub struct Beyond {
     loaded: Vec<bool>,
 }
 
-impl Beyond {
+impl CoarseNeighbours {
     /// Pieces, loaded or not, and the places tied to them.
     #[must_use]
     pub fn new(mut ties: Vec<(u32, u32)>, loaded: Vec<bool>) -> Self {
@@ -27,7 +27,7 @@ impl Beyond {
         ties.dedup();
         let mut rims = vec![Vec::new(); loaded.len()];
         ties.iter().for_each(|&(place, piece)| rims[piece as usize].push(place));
-        Beyond { ties, rims, loaded }
+        CoarseNeighbours { ties, rims, loaded }
     }
 
     /// Number of pieces.

@@ -11,7 +11,7 @@
 
 use rayon::prelude::*;
 
-use super::beyond::Beyond;
+use super::beyond::CoarseNeighbours;
 use super::boundary::Boundary;
 use super::lattice::{LANES, Lattice};
 use super::{Body, Bond};
@@ -255,7 +255,7 @@ impl Part {
             bond_count: 0,
             thickness: whole.thickness,
             mirror,
-            beyond: Beyond::default(),
+            beyond: CoarseNeighbours::default(),
             lattice,
         };
         for row in 0..rows {

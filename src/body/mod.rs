@@ -22,7 +22,7 @@ use crate::bond_law::{BondLaw, SurfaceCorrection};
 use crate::error::{Error, Result};
 use crate::material::Material;
 use crate::specimen::{Point, Specimen};
-use beyond::Beyond;
+use beyond::CoarseNeighbours;
 use boundary::Boundary;
 use lattice::Lattice;
 use mirror::{Flips, Mirror};
@@ -60,7 +60,7 @@ pub struct Body {
     /// Lines of symmetry at which it ends, if it is part of a plate.
     pub mirror: Mirror,
     /// What it is tied to if it is the finest part of a plate of several levels.
-    pub beyond: Beyond,
+    pub beyond: CoarseNeighbours,
 }
 
 impl Body {
@@ -124,7 +124,7 @@ impl Body {
             bond_count,
             thickness: specimen.thickness,
             mirror: Mirror::default(),
-            beyond: Beyond::default(),
+            beyond: CoarseNeighbours::default(),
         };
         match law.surface_correction {
             SurfaceCorrection::None => {}

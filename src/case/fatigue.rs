@@ -134,7 +134,7 @@ pub(super) fn from_value(
 }
 
 /// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of
-/// bonds that age do not go with tips that are driven by their K.
+/// fatigue bonds do not go with tips that are driven by their K.
 fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Driver> {
     let of_bonds = [
         ("ageing", input.ageing.is_some()),
@@ -146,7 +146,7 @@ fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Dri
     let of_bonds = of_bonds.iter().find(|(_, given)| *given);
     match (input.driver, of_bonds) {
         (Some(Driver::TipField), Some((key, _))) if method == Method::Peridynamics => {
-            let problem = "belongs to bonds that age, and fatigue.driver is \"tip_field\"";
+            let problem = "belongs to fatigue bonds, and fatigue.driver is \"tip_field\"";
             Err(input_missing(&format!("fatigue.{key}"), problem, "leave it out, or use driver = \"bond_strain\""))
         }
         (Some(driver), _) => Ok(driver),
@@ -155,7 +155,7 @@ fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Dri
     }
 }
 
-/// What sets the rate of bonds that age: K of their tip, unless they age where no tip is.
+/// What sets the rate of fatigue bonds: K of their tip, unless they age where no tip is.
 fn read_growth_rate(slice: &Input) -> Result<GrowthRate> {
     let everywhere = slice.ageing == Some(Ageing::Everywhere);
     match slice.growth_rate {

@@ -156,7 +156,7 @@ fn material_line(material: &Material, record: &FittedRecord, bonds: bool) -> Res
 }
 
 impl Case {
-    /// Whether its crack grows as bonds spend their life, not by the K of its tips.
+    /// Whether its crack grows as bonds lose remaining life, not by the K of its tips.
     #[must_use]
     pub fn spends_bond_life(&self) -> bool {
         self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::BondStrain

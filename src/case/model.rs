@@ -9,9 +9,9 @@ use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection,
 use crate::error::{Result, input};
 use crate::fatigue::Ageing;
 use crate::input::{LENGTH, number, slice};
+use crate::levels::dual_horizon::regions::Area;
+use crate::levels::{Discretisation, Refinement, read};
 use crate::material::Material;
-use crate::net::dual_horizon::regions::Area;
-use crate::net::{Arrangement, Refinement, read};
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::handbook;
@@ -27,7 +27,7 @@ const COLUMNS_MIN: f64 = 8.0;
 #[serde(deny_unknown_fields)]
 struct Input {
     method: Option<Method>,
-    discretisation: Option<Arrangement>,
+    discretisation: Option<Discretisation>,
     symmetry: Option<Symmetry>,
     bond_law: Option<BondLawKind>,
     kernel: Option<Kernel>,
@@ -49,7 +49,7 @@ pub(super) fn from_values(
     choices: &mut Choices,
 ) -> Result<Model> {
     let input: Input = slice(value, "model")?;
-    let arrangement = input.discretisation.unwrap_or(Arrangement::Lattice);
+    let arrangement = input.discretisation.unwrap_or(Discretisation::Lattice);
     let refinement = refinement.map(|value| read::from_value(value, specimen)).transpose()?;
     check_arrangement(arrangement, refinement.is_some(), input.solver)?;
     let method = input.method.unwrap_or(Method::Peridynamics);
@@ -92,23 +92,23 @@ pub(super) fn from_values(
 }
 
 /// Several levels need regions, regions need several levels, and both a solver that knows them.
-fn check_arrangement(arrangement: Arrangement, refined: bool, solver: Option<SolverKind>) -> Result<()> {
+fn check_arrangement(arrangement: Discretisation, refined: bool, solver: Option<SolverKind>) -> Result<()> {
     const KEY: &str = "model.discretisation";
     let quoted = format!("\"{arrangement}\"");
     match arrangement {
-        Arrangement::Lattice if refined => {
+        Discretisation::Lattice if refined => {
             let problem = "has one spacing everywhere, and there is a section [refinement]";
             return Err(input(KEY, quoted, problem, "use \"dual_horizon\", or remove the section"));
         }
-        Arrangement::DualHorizon if !refined => {
+        Discretisation::DualHorizon if !refined => {
             let problem = "is points of several levels, and no section [refinement] says where they are fine";
             return Err(input(KEY, quoted, problem, "give [refinement] with regions, or use \"lattice\""));
         }
-        Arrangement::VariableHorizon => {
+        Discretisation::VariableHorizon => {
             let problem = "belongs to fracture scenes, not to a fatigue case: without the dual horizon forces do not balance";
             return Err(input(KEY, quoted, problem, "use \"dual_horizon\", or run `perilife fracture` on a scene"));
         }
-        Arrangement::Lattice | Arrangement::DualHorizon => {}
+        Discretisation::Lattice | Discretisation::DualHorizon => {}
     }
     match solver {
         Some(solver @ (SolverKind::Multigrid | SolverKind::AdaptiveDynamicRelaxation)) if refined => {
@@ -185,7 +185,7 @@ pub(super) fn check_law(case: &Case) -> Result<()> {
     if model.method == Method::Handbook {
         return Ok(());
     }
-    if model.arrangement != Arrangement::Lattice {
+    if model.arrangement != Discretisation::Lattice {
         if law.kind == BondLawKind::StateBased {
             let problem = format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
             let remedy = "use bond_based or two_parameter, or discretisation = \"lattice\"";

@@ -11,7 +11,7 @@ use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
-use crate::input::{Document, Folder, OF_SCENES, Sections, Strangers, value_at};
+use crate::input::{Document, Folder, ForeignSections, OF_SCENES, Sections, value_at};
 use crate::loading::LoadingKind;
 use crate::material::Plane;
 use crate::specimen::Crack;
@@ -23,7 +23,7 @@ use crate::{loading, material, specimen};
 pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "refinement", "fatigue", "stop"];
 
 /// Sections of other files.
-const STRANGERS: &[Strangers] = &[
+const STRANGERS: &[ForeignSections] = &[
     (
         &["measured", "fit"],
         "belongs to a calibration file, not to a case",

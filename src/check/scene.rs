@@ -5,7 +5,7 @@ use super::understood::{self, Line, line, mm, plate_lines, points_words, short};
 use crate::error::Result;
 use crate::fracture::Scene;
 use crate::fracture::preview::preview;
-use crate::fracture::scene::{Action, DamageLaw, Drive, Hold, Procedure};
+use crate::fracture::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSupport};
 use crate::report::model_words;
 use crate::report::specimen_picture::scene_svg;
 use crate::units::{MM, MPA};
@@ -70,7 +70,7 @@ pub(super) fn scene_drawing(scene: &Scene) -> String {
     scene_svg(scene, &procedure_words(scene), &lines)
 }
 
-fn drive_words(drive: &Drive) -> String {
+fn drive_words(drive: &SceneLoad) -> String {
     let pair = |[x, y]: [f64; 2], unit: f64| format!("({}, {})", short(x / unit), short(y / unit));
     let components = |components: [Option<f64>; 2]| {
         let one = |value: Option<f64>| value.map_or_else(|| "free".to_owned(), mm);
@@ -87,7 +87,7 @@ fn drive_words(drive: &Drive) -> String {
     format!("{what} on {}{ramp}{from}", drive.region)
 }
 
-fn hold_words(hold: &Hold) -> String {
+fn hold_words(hold: &SceneSupport) -> String {
     let held = match hold.components {
         [true, true] => "x and y",
         [true, false] => "x",

@@ -15,9 +15,9 @@ use crate::state::Bonds;
 /// Core bond strain over the strain measure K/(E √δ) of a crack tip: mean over bonds of a straight crack, conical kernel.
 const CORE_STRAIN: f64 = 0.93;
 
-/// A bond that ages and its cyclic strain ε.
+/// A fatigue bond and its cyclic strain ε.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct AgeingBond {
+pub struct FatigueBond {
     /// Which bond.
     pub bond: Bond,
     /// Cyclic strain ε = s_max (1-R)^γ, above zero.
@@ -106,11 +106,11 @@ fn in_zone(body: &Body, bonds: &Bonds, tip: &CrackTip, radius: f64) -> Vec<Bond>
 ///
 /// The strain is `share` times the stretch.
 #[must_use]
-pub fn ageing_bonds(body: &Body, candidates: &[Bond], displacement: &[f64], (share, threshold): (f64, f64)) -> Vec<AgeingBond> {
+pub fn fatigue_bonds(body: &Body, candidates: &[Bond], displacement: &[f64], (share, threshold): (f64, f64)) -> Vec<FatigueBond> {
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     candidates
         .iter()
-        .map(|&bond| AgeingBond { bond, strain: share * stretch(body, &layout, displacement, bond) })
+        .map(|&bond| FatigueBond { bond, strain: share * stretch(body, &layout, displacement, bond) })
         .filter(|ageing| ageing.strain > threshold.max(0.0))
         .collect()
 }

@@ -81,7 +81,7 @@ pub struct CrackTip {
     way: f64,
     centre: Point,
     /// Where a tip that keeps to the line of its crack started.
-    rails: Option<Point>,
+    fixed_line: Option<Point>,
 }
 
 impl CrackTip {
@@ -106,7 +106,7 @@ impl CrackTip {
             marks: (0..SEED_MARKS).map(mark).collect(),
             way: 0.0,
             centre: behind(0.5 * front(body)),
-            rails: None,
+            fixed_line: None,
         }
     }
 
@@ -118,13 +118,13 @@ impl CrackTip {
 
     /// Lets the tip move along its direction, whatever breaks.
     #[must_use]
-    pub fn on_rails(self) -> Self {
-        CrackTip { rails: Some(self.position), ..self }
+    pub fn on_fixed_line(self) -> Self {
+        CrackTip { fixed_line: Some(self.position), ..self }
     }
 
     /// Lets the tip go where its bonds break.
-    pub fn leave_rails(&mut self) {
-        self.rails = None;
+    pub fn leave_fixed_line(&mut self) {
+        self.fixed_line = None;
     }
 
     /// Whether bonds around it can age.
@@ -156,14 +156,14 @@ impl CrackTip {
         let length_of_front = front(body);
         self.forget(length_of_front + TRAIL_HORIZONS * horizon);
         let (trail, front) = self.centres(length_of_front);
-        if self.rails.is_none() && distance(trail, front) > 0.05 * horizon {
+        if self.fixed_line.is_none() && distance(trail, front) > 0.05 * horizon {
             self.direction = direction(trail, front);
         }
         self.way += self.direction[0] * (front[0] - self.centre[0]) + self.direction[1] * (front[1] - self.centre[1]);
         self.growth = self.growth.max(self.way);
         self.centre = front;
         let ahead = 0.5 * length_of_front;
-        let position = match self.rails {
+        let position = match self.fixed_line {
             Some(start) => [0, 1].map(|i| start[i] + self.growth * self.direction[i]),
             None => [0, 1].map(|i| front[i] + ahead * self.direction[i]),
         };

@@ -27,7 +27,7 @@ crate::kinds! {
     /// What drives a crack of method `peridynamics`.
     pub enum Driver for "fatigue.driver" {
         TipField = "tip_field": "K_I and K_II of every tip, from the field around it, steer and pace it; bonds that its line crosses are cut",
-        BondStrain = "bond_strain": "every bond spends its life by its own strain, and the crack goes where bonds break",
+        BondStrain = "bond_strain": "every bond loses remaining life by its own strain, and the crack goes where bonds break",
     }
 }
 

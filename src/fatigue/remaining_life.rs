@@ -2,7 +2,7 @@
 //! (Silling and Askari 2014, SAND2014-18590; block until the next break after Zhang et al. 2016, Eng. Fract. Mech. 162:76).
 
 use super::FatigueLaw;
-use super::ageing::AgeingBond;
+use super::ageing::FatigueBond;
 use crate::body::Bond;
 
 /// Share of a bond's whole life within which bonds break together: mirror twins differ by round-off only.
@@ -41,7 +41,7 @@ impl BondLife {
     /// The block until the next break: its cycles, and the bonds that break together at its end. Strains are constant until then, so
     /// the block is exact.
     #[must_use]
-    pub fn until_next_break(&self, law: &FatigueLaw, ageing: &[AgeingBond]) -> (f64, Vec<Bond>) {
+    pub fn until_next_break(&self, law: &FatigueLaw, ageing: &[FatigueBond]) -> (f64, Vec<Bond>) {
         let rates: Vec<f64> = ageing.iter().map(|b| law.a * b.strain.powf(law.p)).collect();
         let left = ageing.iter().zip(&rates).map(|(b, &rate)| self.of(b.bond).max(0.0) / rate);
         let cycles = left.fold(f64::INFINITY, f64::min);
@@ -52,15 +52,15 @@ impl BondLife {
 
     /// Largest share of a whole life that a bond spends until the next break; none where nothing ages.
     #[must_use]
-    pub fn share_to_next_break(&self, law: &FatigueLaw, ageing: &[AgeingBond]) -> f64 {
+    pub fn share_to_next_break(&self, law: &FatigueLaw, ageing: &[FatigueBond]) -> f64 {
         let rates = || ageing.iter().map(|b| law.a * b.strain.powf(law.p));
         let cycles = ageing.iter().zip(rates()).map(|(b, rate)| self.of(b.bond).max(0.0) / rate).fold(f64::INFINITY, f64::min);
         // Before a first reading of K nothing may age yet.
         if ageing.is_empty() { f64::INFINITY } else { cycles * rates().fold(0.0, f64::max) }
     }
 
-    /// Takes the block's spending off every ageing bond.
-    pub fn spend(&mut self, law: &FatigueLaw, cycles: f64, ageing: &[AgeingBond]) {
+    /// Takes the block's spending off every fatigue bond.
+    pub fn spend(&mut self, law: &FatigueLaw, cycles: f64, ageing: &[FatigueBond]) {
         for bond in ageing {
             self.life[bond.bond as usize] -= cycles * law.a * bond.strain.powf(law.p);
         }

@@ -1,6 +1,6 @@
 //! What changes in the bonds of a scene: damage and the history it depends on. Written by the interaction alone.
 
-use crate::net::Net;
+use crate::levels::Net;
 
 /// State of every bond of a net.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,8 @@
 //! Loads and supports of a scene on the points of its net.
 
-use super::scene::{Action, Region, Rise, Scene};
+use super::scene::{Action, LoadRamp, Region, Scene};
 use crate::error::{Result, input};
-use crate::net::Net;
+use crate::levels::Net;
 use crate::specimen::{Point, Support};
 use crate::units::MM;
 
@@ -16,7 +16,7 @@ pub struct Held {
     /// What it does.
     pub motion: Motion,
     /// How that rises in time.
-    pub rise: Rise,
+    pub rise: LoadRamp,
 }
 
 impl Held {
@@ -49,14 +49,14 @@ pub struct Group {
     /// Force of a traction at full load along the direction, N; `None` where the motion is prescribed.
     pub force: Option<f64>,
     /// How the load rises in time.
-    pub rise: Rise,
+    pub rise: LoadRamp,
 }
 
 /// Forces that rise together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Push {
     /// How they rise in time.
-    pub rise: Rise,
+    pub rise: LoadRamp,
     /// Forces at full load, N.
     pub forces: Vec<(u32, Point)>,
 }
@@ -113,7 +113,7 @@ impl Boundary {
         for hold in &scene.holds {
             let points = points_of(&hold.region, &hold.key, scene, net)?;
             let components = hold.components.map(|held| held.then_some(0.0));
-            boundary.hold(&points, components, Motion::Displacement, Rise::AT_ONCE);
+            boundary.hold(&points, components, Motion::Displacement, LoadRamp::AT_ONCE);
         }
         let seats = boundary.held.iter().map(|held| held.point).chain(boundary.forces.iter().map(|force| force.0));
         for point in seats.collect::<Vec<_>>() {
@@ -126,7 +126,7 @@ impl Boundary {
     }
 
     /// Holds points in motion; returns the direction of it.
-    fn hold(&mut self, points: &[u32], components: [Option<f64>; 2], motion: impl Fn(f64) -> Motion, rise: Rise) -> Point {
+    fn hold(&mut self, points: &[u32], components: [Option<f64>; 2], motion: impl Fn(f64) -> Motion, rise: LoadRamp) -> Point {
         for (component, value) in components.iter().enumerate() {
             let Some(value) = value else { continue };
             // Overlapping loads may tell a point the same motion; its work counts once.
@@ -175,16 +175,16 @@ impl Boundary {
 /// loads of each on the plate alone.
 fn pushes(scene: &Scene, net: &Net) -> Result<Vec<Push>> {
     let tractions = || scene.drives.iter().filter(|drive| matches!(drive.action, Action::Traction(_)));
-    let mut rises: Vec<Rise> = Vec::new();
+    let mut rises: Vec<LoadRamp> = Vec::new();
     for drive in tractions() {
         if !rises.contains(&drive.rise) {
             rises.push(drive.rise);
         }
     }
     if let [] | [_] = rises[..] {
-        return Ok(vec![Push { rise: rises.first().copied().unwrap_or(Rise::AT_ONCE), forces: net.forces.clone() }]);
+        return Ok(vec![Push { rise: rises.first().copied().unwrap_or(LoadRamp::AT_ONCE), forces: net.forces.clone() }]);
     }
-    let of_rise = |rise: Rise| {
+    let of_rise = |rise: LoadRamp| {
         let mut alone = scene.clone();
         alone.specimen.loads =
             tractions().filter(|drive| drive.rise == rise).flat_map(|drive| drive.loads(&scene.specimen)).collect();

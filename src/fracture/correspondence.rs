@@ -39,7 +39,7 @@ use super::interaction::{Damaging, Interaction, Reaction};
 use super::scene::{DamageEntry, Procedure, Scene, ZeroEnergyControl};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::Result;
-use crate::net::Net;
+use crate::levels::Net;
 use control::Control;
 use criterion::Criterion;
 use elasticity::Elasticity;

@@ -16,10 +16,10 @@ use super::boundary::{Boundary, Held};
 use super::interaction::{Damaging, Driven, Interaction, Reaction};
 use super::log::Log;
 use super::outcome::{HistoryRow, SceneEnd};
-use super::scene::Rise;
+use super::scene::LoadRamp;
 use super::{SceneObserver, SceneProgress};
 use crate::error::{Error, Result, input};
-use crate::net::Net;
+use crate::levels::Net;
 use crate::specimen::Point;
 
 /// Share of the stability bound that the program's own step takes. The energy of velocity Verlet wavers with the square of the
@@ -178,7 +178,7 @@ impl Run<'_> {
     }
 
     /// Forces of the loads at full size by unknowns, N, with how they rise.
-    fn pushes(&self, unknowns: usize) -> Vec<(Rise, Vec<(usize, f64)>)> {
+    fn pushes(&self, unknowns: usize) -> Vec<(LoadRamp, Vec<(usize, f64)>)> {
         let by_unknown = |&(point, force): &(u32, Point)| {
             let at = point as usize * unknowns;
             [(at, force[0]), (at + 1, force[1])]
@@ -206,8 +206,8 @@ impl Run<'_> {
     }
 
     /// Work of the given forces over a step with these half-step velocities, J.
-    fn pushed(&self, pushes: &[(Rise, Vec<(usize, f64)>)], v: &[f64], [before, time]: [f64; 2]) -> f64 {
-        let power = |(rise, forces): &(Rise, Vec<(usize, f64)>)| {
+    fn pushed(&self, pushes: &[(LoadRamp, Vec<(usize, f64)>)], v: &[f64], [before, time]: [f64; 2]) -> f64 {
+        let power = |(rise, forces): &(LoadRamp, Vec<(usize, f64)>)| {
             let whole: f64 = forces.iter().map(|&(i, force)| force * v[i]).sum();
             0.5 * (rise.share(before) + rise.share(time)) * whole
         };
@@ -216,8 +216,8 @@ impl Run<'_> {
 
     /// Kinetic energy before its work, J: forces that come in from one step to the next have moved the points half a step ahead of
     /// what they have worked, `Δt²/8 Σ f²/m`. All there is in the first step of a load that rises from nothing.
-    fn lag(&self, pushes: &[(Rise, Vec<(usize, f64)>)], time: f64) -> f64 {
-        let of_push = |(rise, forces): &(Rise, Vec<(usize, f64)>)| {
+    fn lag(&self, pushes: &[(LoadRamp, Vec<(usize, f64)>)], time: f64) -> f64 {
+        let of_push = |(rise, forces): &(LoadRamp, Vec<(usize, f64)>)| {
             let squares: f64 = forces.iter().map(|&(i, force)| force * force / self.masses[i]).sum();
             rise.share(time).powi(2) * squares
         };
@@ -261,7 +261,7 @@ impl Run<'_> {
 }
 
 /// Writes the forces of the loads at a time, s, into those on all unknowns, N.
-fn push_at(pushes: &[(Rise, Vec<(usize, f64)>)], time: f64, external: &mut [f64]) {
+fn push_at(pushes: &[(LoadRamp, Vec<(usize, f64)>)], time: f64, external: &mut [f64]) {
     for (_, forces) in pushes {
         forces.iter().for_each(|&(i, _)| external[i] = 0.0);
     }

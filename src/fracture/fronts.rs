@@ -6,7 +6,7 @@
 //! from a place where there was none.
 
 use super::outcome::PathPoint;
-use crate::net::Net;
+use crate::levels::Net;
 use crate::specimen::geometry::{direction, distance};
 use crate::specimen::{Point, Specimen};
 

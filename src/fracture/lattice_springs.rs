@@ -13,7 +13,7 @@ use super::interaction::{Damaging, Interaction, Reaction};
 use super::springs::stiffness_bound;
 use crate::body::Body;
 use crate::body::lattice::{LANES, Lattice};
-use crate::net::Net;
+use crate::levels::Net;
 
 /// Rows of a band.
 const BAND: usize = 16;

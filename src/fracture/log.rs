@@ -6,7 +6,7 @@ use super::fronts::{CRACKED, Fronts, LOGGED};
 use super::outcome::{Fracture, HistoryRow, SceneEnd, SceneFigures};
 use super::pieces::is_separated;
 use super::scene::Scene;
-use crate::net::Net;
+use crate::levels::Net;
 use crate::predict::Snapshot;
 
 /// Snapshots of a run beside the first.

@@ -1,6 +1,6 @@
 //! Fracture scenes: static, quasi-static and dynamic loading of cracked plates, without cycles.
 //!
-//! A scene is points and bonds ([`crate::net`]), forces between them with damage ([`interaction`]), loads ([`boundary`]) and a
+//! A scene is points and bonds ([`crate::levels`]), forces between them with damage ([`interaction`]), loads ([`boundary`]) and a
 //! procedure. What changes is the state of the bonds ([`bonds`], written by the interaction) and the motion (written by the
 //! procedure).
 
@@ -31,7 +31,7 @@ pub use scene::Scene;
 use crate::body::Body;
 use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::error::{Result, input};
-use crate::net::{Ask, Net, dual_horizon};
+use crate::levels::{MultiLevelSpec, Net, dual_horizon};
 use crate::predict::memory;
 use bonds::BondState;
 use boundary::Boundary;
@@ -42,7 +42,7 @@ use lattice_springs::LatticeSprings;
 use log::Log;
 use outcome::SceneFigures;
 use platens::{Platen, Pressed};
-use scene::{Action, Arrangement, Procedure, SceneLaw};
+use scene::{Action, Discretisation, Procedure, SceneLaw};
 use springs::Springs;
 
 /// What a scene reports while it goes on.
@@ -111,7 +111,7 @@ pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
 pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
     let model = &scene.model;
     match (model.law, model.arrangement) {
-        (law, Arrangement::Lattice) => {
+        (law, Discretisation::Lattice) => {
             let law = match law {
                 SceneLaw::Bonds(law) => law,
                 SceneLaw::Correspondence { .. } => correspondence::NET_LAW,
@@ -120,8 +120,8 @@ pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
                 Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
             Ok((Net::of_body(&body), Some(body)))
         }
-        (SceneLaw::Bonds(law), Arrangement::DualHorizon | Arrangement::VariableHorizon) => {
-            let ask = Ask {
+        (SceneLaw::Bonds(law), Discretisation::DualHorizon | Discretisation::VariableHorizon) => {
+            let ask = MultiLevelSpec {
                 specimen: &scene.specimen,
                 flaws: &scene.specimen,
                 material: &scene.material,

@@ -2,7 +2,7 @@
 
 use super::bonds::BondState;
 use super::boundary::Boundary;
-use crate::net::Net;
+use crate::levels::Net;
 
 /// Whether no way of intact bonds leads from the first load to some other load or support.
 #[must_use]

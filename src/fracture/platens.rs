@@ -7,8 +7,8 @@
 
 use super::bonds::BondState;
 use super::interaction::{Damaging, Driven, Interaction, Reaction};
-use super::scene::{Action, Drive, Region, Rise, Scene};
-use crate::net::Net;
+use super::scene::{Action, LoadRamp, Region, Scene, SceneLoad};
+use crate::levels::Net;
 use crate::specimen::geometry::edges;
 use crate::specimen::{Edge, Point};
 
@@ -34,7 +34,7 @@ pub struct Platen {
     /// Way at full load, m.
     pub travel: f64,
     /// How it moves in time.
-    pub rise: Rise,
+    pub rise: LoadRamp,
     /// Points it can meet, in their order.
     pub contacts: Vec<Contact>,
 }
@@ -46,7 +46,7 @@ impl Platen {
         scene.drives.iter().filter_map(|drive| Platen::of(drive, scene, net)).collect()
     }
 
-    fn of(drive: &Drive, scene: &Scene, net: &Net) -> Option<Platen> {
+    fn of(drive: &SceneLoad, scene: &Scene, net: &Net) -> Option<Platen> {
         let Action::Platen(motion) = drive.action else { return None };
         let travel = motion[0].hypot(motion[1]);
         let direction = motion.map(|m| m / travel);

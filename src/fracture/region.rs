@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use super::scene::{Action, Drive, Region, Rise};
-use crate::net::Net;
+use super::scene::{Action, LoadRamp, Region, SceneLoad};
+use crate::levels::Net;
 use crate::specimen::geometry::{along, bounding_box};
 use crate::specimen::{Edge, Load, Point, Specimen};
 use crate::units::MM;
@@ -39,11 +39,11 @@ impl Region {
     }
 }
 
-impl Drive {
+impl SceneLoad {
     /// A load on the outermost row of a whole side, at once.
     #[must_use]
-    pub fn on_side(edge: Edge, action: Action) -> Drive {
-        Drive { region: Region::side(edge), action, rise: Rise::AT_ONCE, key: "loading.edges".to_owned() }
+    pub fn on_side(edge: Edge, action: Action) -> SceneLoad {
+        SceneLoad { region: Region::side(edge), action, rise: LoadRamp::AT_ONCE, key: "loading.edges".to_owned() }
     }
 
     /// A traction as loads of the plate; none where the load is something else, or the outline does not reach its part of the

@@ -2,8 +2,8 @@
 
 use crate::bond_law::BondLaw;
 use crate::case::HORIZON_RATIO;
+pub use crate::levels::{Discretisation, RefinedRegion, Refinement};
 use crate::material::Material;
-pub use crate::net::{Arrangement, RefinedRegion, Refinement};
 use crate::specimen::{Edge, Point, Specimen};
 
 crate::kinds! {
@@ -77,8 +77,8 @@ pub struct SceneModel {
     pub horizon_ratio: f64,
     /// Angle of the lattice rows against x, rad.
     pub lattice_angle: f64,
-    /// Arrangement of the points.
-    pub arrangement: Arrangement,
+    /// Discretisation of the points.
+    pub arrangement: Discretisation,
     /// Solver.
     pub solver: SceneSolver,
 }
@@ -120,16 +120,16 @@ pub enum Action {
 /// How a load rises in a dynamic scene: nothing before `from`, linear over `ramp`, whole from then on. Points that it drives stand
 /// still before `from`. Without time all loads grow in proportion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rise {
+pub struct LoadRamp {
     /// Time at which it begins, s.
     pub from: f64,
     /// Time that it takes, s; 0 = at once.
     pub ramp: f64,
 }
 
-impl Rise {
+impl LoadRamp {
     /// Whole from the start.
-    pub const AT_ONCE: Rise = Rise { from: 0.0, ramp: 0.0 };
+    pub const AT_ONCE: LoadRamp = LoadRamp { from: 0.0, ramp: 0.0 };
 
     /// Share r of the whole load at a time, s.
     #[must_use]
@@ -164,20 +164,20 @@ impl Rise {
 
 /// A load of a scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drive {
+pub struct SceneLoad {
     /// Where.
     pub region: Region,
     /// What.
     pub action: Action,
     /// How it rises in time.
-    pub rise: Rise,
+    pub rise: LoadRamp,
     /// Key of the region in the input file, for messages.
     pub key: String,
 }
 
 /// A support of a scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Hold {
+pub struct SceneSupport {
     /// Where.
     pub region: Region,
     /// Components held at zero.
@@ -253,9 +253,9 @@ pub struct Scene {
     /// Points and law.
     pub model: SceneModel,
     /// Loads.
-    pub drives: Vec<Drive>,
+    pub drives: Vec<SceneLoad>,
     /// Supports.
-    pub holds: Vec<Hold>,
+    pub holds: Vec<SceneSupport>,
     /// Damage.
     pub damage: Damage,
     /// Procedure.
@@ -287,7 +287,7 @@ impl Scene {
                 spacing,
                 horizon_ratio: HORIZON_RATIO,
                 lattice_angle: 0.0,
-                arrangement: Arrangement::Lattice,
+                arrangement: Discretisation::Lattice,
                 solver,
             },
             drives: Vec::new(),

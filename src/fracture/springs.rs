@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::bonds::BondState;
 use super::failure::{Failure, Measures};
 use super::interaction::{Damaging, Interaction, Reaction};
-use crate::net::{Net, NetBond};
+use crate::levels::{Net, NetBond};
 
 /// Bonds or points that one task works through.
 const TASK: usize = 4096;

@@ -1,15 +1,15 @@
 //! Cracks that go where bonds break, each bond spending its life by its own strain.
 //!
-//! Per cycle block: take the cyclic strain of the bonds that age, spend their lives until the next one breaks, break it, find the new
+//! Per cycle block: take the cyclic strain of the fatigue bonds, spend their lives until the next one breaks, break it, find the new
 //! equilibrium, follow the tips. Cracks are first grown to their initial lengths (`start.rs`); N = 0 is there.
 
-mod course;
+mod run_state;
 mod overload;
-mod pace;
-mod start;
+mod growth_rate_control;
+mod precrack;
 mod stop;
 mod tip_end;
-mod track;
+mod history;
 
 use std::sync::Arc;
 
@@ -24,23 +24,23 @@ use super::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::fatigue::ageing::{AgeingBond, ageing_bonds, candidates, strain_share, threshold_strain};
+use crate::fatigue::ageing::{FatigueBond, candidates, fatigue_bonds, strain_share, threshold_strain};
 use crate::fatigue::crack_tip::{CrackTip, share_out};
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::fatigue::{FatigueLaw, FatigueSettings};
 use crate::solver::{Equilibrium, Focus, SolverUsed};
 use crate::state::Bonds;
-use course::Course;
+use growth_rate_control::{GrowthRateControl, TipRateControl};
+use history::History;
 use overload::{overstretched, stretched};
-use pace::{Pace, TipPace};
-use start::Start;
+use precrack::Precrack;
+use run_state::RunState;
 use tip_end::{break_through, retire_tips};
-use track::Past;
 
 /// Growth of the load's work by overload within one block, at constant load, from which the plate counts as severed: it has
 /// lost half of its stiffness without a cycle, and what is left only gets softer.
-const GIVEN_WAY: f64 = 2.0;
+const LOST_STIFFNESS: f64 = 2.0;
 /// Share of a bond's whole life within which the next break is one of those before it.
 const AT_ONCE: f64 = 1e-6;
 
@@ -52,17 +52,17 @@ pub struct BondRates {
     pub over_k: Option<Box<dyn GrowthLaw>>,
 }
 
-/// [`CrackGrowth`] by bonds that age.
+/// [`CrackGrowth`] by fatigue bonds.
 pub struct BondStrain<'a> {
     case: &'a Case,
     plate: Arc<Plate>,
     law: FatigueLaw,
-    pace: Option<Pace>,
-    start: Start,
+    pace: Option<GrowthRateControl>,
+    start: Precrack,
     end: Option<End>,
     /// Strain of a cycle over that at maximum load, and the range of strain below which nothing ages.
     range: (f64, f64),
-    run: Course,
+    run: RunState,
     equilibrium: Equilibrium,
     displacement: Vec<f64>,
     /// Bonds that may age in the next block.
@@ -88,8 +88,8 @@ pub struct BondStrainState {
     life: Vec<(Bond, f64)>,
     tips: Vec<CrackTip>,
     near_limit: Vec<Bond>,
-    pace: Option<Vec<TipPace>>,
-    past: Past,
+    pace: Option<Vec<TipRateControl>>,
+    past: History,
     broken_bonds: usize,
     statistics: SolverStatistics,
 }
@@ -108,7 +108,7 @@ impl<'a> BondStrain<'a> {
     /// # Errors
     /// As [`Plate::build`]; a crack too short to be grown, cracks that cut the plate in two, no fatigue law.
     pub fn start(case: &'a Case, rates: impl FnOnce(f64) -> Result<BondRates>) -> Result<Self> {
-        let start = Start::of(case)?;
+        let start = Precrack::of(case)?;
         let plate = Plate::build(&start.specimen, &case.specimen, &case.material, &case.model)?;
         let body = &plate.body;
         let BondRates { bonds: law, over_k } = rates(body.horizon())?;
@@ -118,9 +118,9 @@ impl<'a> BondStrain<'a> {
             Some(_) => 0.0,
             None => share * threshold_strain(&case.fatigue, &case.material, body.horizon()) / case.loading.range_share(),
         };
-        let pace = over_k.map(|over_k| Pace::new(case, &start, body, over_k));
-        let mut run = Course::start(case, body, start.tips(body));
-        if start::cuts_in_two(body, &run.bonds, case)
+        let pace = over_k.map(|over_k| GrowthRateControl::new(case, &start, body, over_k));
+        let mut run = RunState::start(case, body, start.tips(body));
+        if precrack::cuts_in_two(body, &run.bonds, case)
             || remove_fragments(body, &mut run.bonds, &body.pre_cut) == Connectivity::Severed
         {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
@@ -170,8 +170,8 @@ impl<'a> BondStrain<'a> {
         let body = &self.plate.body;
         let counting = self.start.is_over(&run.tips);
         if counting && run.track.begin() {
-            run.tips.iter_mut().for_each(CrackTip::leave_rails);
-            self.pace.iter_mut().for_each(Pace::begin);
+            run.tips.iter_mut().for_each(CrackTip::leave_fixed_line);
+            self.pace.iter_mut().for_each(GrowthRateControl::begin);
         }
         self.near = if counting {
             candidates(body, &run.bonds, &run.tips, &case.fatigue)
@@ -182,13 +182,13 @@ impl<'a> BondStrain<'a> {
         self.watched = self.near.iter().chain(&run.near_limit).copied().collect();
     }
 
-    /// The bonds that age, by the strains of the displacement at hand.
-    fn ageing(&mut self) -> Vec<AgeingBond> {
+    /// The fatigue bonds, by the strains of the displacement at hand.
+    fn ageing(&mut self) -> Vec<FatigueBond> {
         let (body, run) = (&self.plate.body, &self.run);
         // Growth to the initial lengths is none of the load's: no threshold holds it up.
         let (share, threshold) = self.range;
         let threshold = if run.track.is_counting() { threshold } else { 0.0 };
-        let mut ageing = ageing_bonds(body, &self.near, &self.displacement, (share, threshold));
+        let mut ageing = fatigue_bonds(body, &self.near, &self.displacement, (share, threshold));
         if let Some(pace) = &mut self.pace {
             pace.set(body, &run.tips, &self.law, &mut ageing);
         }
@@ -223,7 +223,7 @@ impl<'a> BondStrain<'a> {
                 run.near_limit = stretched(body, &run.bonds, case, &self.displacement, equilibrium.window());
             }
             overloaded |= !newly.is_empty();
-            if overloaded && equilibrium.work() > GIVEN_WAY * work_before {
+            if overloaded && equilibrium.work() > LOST_STIFFNESS * work_before {
                 return (spent, Some(StopReason::Severed));
             }
             spent.extend(&newly);
@@ -372,7 +372,7 @@ impl CrackGrowth for BondStrain<'_> {
             life: run.life.begun(),
             tips: run.tips.clone(),
             near_limit: run.near_limit.clone(),
-            pace: self.pace.as_ref().map(Pace::state),
+            pace: self.pace.as_ref().map(GrowthRateControl::state),
             past: run.track.past().clone(),
             broken_bonds: run.broken_bonds,
             statistics: self.statistics(),
@@ -436,7 +436,7 @@ impl CrackGrowth for BondStrain<'_> {
     }
 
     fn statistics(&self) -> SolverStatistics {
-        let Course { solves, iterations, had_window, .. } = self.run;
+        let RunState { solves, iterations, had_window, .. } = self.run;
         let solver = if had_window { SolverUsed::Window } else { self.equilibrium.used() };
         SolverStatistics { points_solved: self.equilibrium.points(&self.plate.body), solves, iterations, solver: Some(solver) }
     }
@@ -447,7 +447,7 @@ impl CrackGrowth for BondStrain<'_> {
 }
 
 /// Solver of the bonds as they stand, which knows nothing of what went before.
-fn solver(case: &Case, plate: &Plate, run: &Course) -> Equilibrium {
+fn solver(case: &Case, plate: &Plate, run: &RunState) -> Equilibrium {
     plate.equilibrium(&case.model, &run.bonds, case.loading.maximum)
 }
 

@@ -1,7 +1,7 @@
 //! K of a run against an independent K of the same plate: what drives the cracks could be wrong without a sign of it otherwise.
 //!
 //! K of tips, read on rings near them, is compared with what the whole plate gives off: while cracks grow under constant load,
-//! `½ ΔW = B Σ ∫ K_eq²/E' da` with W the work of the loads (Irwin 1957), over intervals of some horizons. Bonds that age, whose K is that
+//! `½ ΔW = B Σ ∫ K_eq²/E' da` with W the work of the loads (Irwin 1957), over intervals of some horizons. Fatigue bonds, whose K is that
 //! energy, are compared with the ring on the plate with cleanly cut initial cracks.
 
 use serde::{Deserialize, Serialize};

@@ -9,9 +9,9 @@ use crate::body::lattice::LANES;
 use crate::body::{Body, Bond};
 use crate::case::Model;
 use crate::error::Result;
+use crate::levels::multi_level_body::{MultiLevelBody, clear_way, words};
+use crate::levels::{Discretisation, MultiLevelSpec, PointGrid};
 use crate::material::Material;
-use crate::net::levelled::{Levelled, clear_way, words};
-use crate::net::{Arrangement, Ask, PointGrid};
 use crate::solver::Equilibrium;
 use crate::solver::field::Layout;
 use crate::specimen::{Point, Specimen, Support};
@@ -23,22 +23,22 @@ pub struct Plate {
     /// The points whose bonds can break.
     pub body: Body,
     /// All levels, where there are several.
-    levels: Option<Arc<Levelled>>,
+    levels: Option<Arc<MultiLevelBody>>,
 }
 
 impl Plate {
     /// Discretises `specimen`, with its cracks as they are cut; regions around flaws are those of `flaws`.
     ///
     /// # Errors
-    /// As [`Body::build`] and [`Levelled::build`].
+    /// As [`Body::build`] and [`MultiLevelBody::build`].
     pub fn build(specimen: &Specimen, flaws: &Specimen, material: &Material, model: &Model) -> Result<Plate> {
         let (law, ratio, angle) = (&model.bond_law, model.horizon_ratio, model.lattice_angle);
-        if model.arrangement == Arrangement::Lattice {
+        if model.arrangement == Discretisation::Lattice {
             let body = Body::build(specimen, material, law, model.spacing, ratio, angle)?;
             return Ok(Plate { body, levels: None });
         }
         let holds = |support: &Support| !matches!(support, Support::RigidEnds);
-        let ask = Ask {
+        let ask = MultiLevelSpec {
             specimen,
             flaws,
             material,
@@ -50,7 +50,7 @@ impl Plate {
             refinement: model.refinement.as_ref(),
             floating: !specimen.supports.iter().any(holds),
         };
-        let (body, levelled) = Levelled::build(&ask)?;
+        let (body, levelled) = MultiLevelBody::build(&ask)?;
         Ok(Plate { body, levels: Some(Arc::new(levelled)) })
     }
 
@@ -156,7 +156,7 @@ fn of_body(body: &Body, bonds: &Bonds, displacement: &[f64], lives: &[(Bond, f64
 }
 
 /// The same for all points of a net.
-fn of_levels(levels: &Levelled, body: &Body, bonds: &Bonds, displacement: &[f64], lives: &[(Bond, f64)]) -> Fields {
+fn of_levels(levels: &MultiLevelBody, body: &Body, bonds: &Bonds, displacement: &[f64], lives: &[(Bond, f64)]) -> Fields {
     let net = &levels.net;
     let layout = Layout::of(&body.lattice, net.unknowns);
     let mut share = vec![1.0; net.bonds.len()];

@@ -13,7 +13,7 @@ mod slice;
 pub use document::Document;
 pub use folder::Folder;
 pub use quantity::*;
-pub use sections::{Sections, Strangers};
+pub use sections::{ForeignSections, Sections};
 pub(crate) use slice::shorten;
 pub use slice::{OF_SCENES, PLANNED, slice, table_of, value_at};
 

@@ -6,7 +6,7 @@ use super::slice::shorten;
 use crate::error::{Result, input, input_missing};
 
 /// Sections of another sort of file: their names, what is wrong with them here, what would be right.
-pub type Strangers = (&'static [&'static str], &'static str, &'static str);
+pub type ForeignSections = (&'static [&'static str], &'static str, &'static str);
 
 /// The sections of one file, all of them known and tables.
 pub struct Sections<'t> {
@@ -19,7 +19,7 @@ impl<'t> Sections<'t> {
     ///
     /// # Errors
     /// Anything but a table under one of the `known` names; `strangers` get words of their own.
-    pub fn of(table: &'t Table, known: &[&str], strangers: &[Strangers]) -> Result<Self> {
+    pub fn of(table: &'t Table, known: &[&str], strangers: &[ForeignSections]) -> Result<Self> {
         for (name, value) in table {
             if !known.contains(&name.as_str()) {
                 if let Some((_, problem, remedy)) = strangers.iter().find(|(names, ..)| names.contains(&name.as_str())) {

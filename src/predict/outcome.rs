@@ -7,7 +7,7 @@ pub use crate::growth::cross_check::CrossCheck;
 use crate::growth::plate::Plate;
 pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
 use crate::growth::{CrackGrowth, GrowthStatus};
-use crate::net::PointGrid;
+use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
 
 /// Picture of the damaged plate at one moment.

@@ -9,7 +9,7 @@ use super::{CurvePoint, Observer, Prediction, Progress, RunFigures, StopReason, 
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::growth::CrackGrowth;
-use crate::net::PointGrid;
+use crate::levels::PointGrid;
 
 /// A run at its start.
 pub struct Record<'a> {

@@ -14,7 +14,7 @@ use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind, Transverse};
-use crate::fracture::scene::{Arrangement, DamageEntry, DamageLaw, PointLaw, SceneSolver, ZeroEnergyControl};
+use crate::fracture::scene::{DamageEntry, DamageLaw, Discretisation, PointLaw, SceneSolver, ZeroEnergyControl};
 use crate::input::Folder;
 use crate::kinds::KindLine;
 use crate::loading::LoadingKind;
@@ -49,7 +49,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         Rotation::lines(),
         SurfaceCorrection::lines(),
         Kinematics::lines(),
-        Arrangement::lines(),
+        Discretisation::lines(),
         Symmetry::lines(),
         SolverKind::lines(),
         beside(&SolverKind::lines(), SceneSolver::lines()),

@@ -54,7 +54,7 @@ impl Row {
 pub fn a_n(prediction: &Prediction) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
-    // Bonds that age by their own strain know no K of a tip.
+    // Fatigue bonds, driven by their own strain know no K of a tip.
     let has_factors = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.factors.is_some());
     let has_t = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.t_stress.is_some());
     for tip in 0..prediction.curve.first().map_or(0, |point| point.tips.len()) {

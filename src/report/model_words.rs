@@ -6,7 +6,7 @@ use super::json::clean;
 use crate::bond_law::BondLawKind;
 use crate::case::{Case, LawSource, Method};
 use crate::fracture::scene::{Scene, SceneLaw};
-use crate::net::Refinement;
+use crate::levels::Refinement;
 use crate::predict::RunFigures;
 use crate::solver::SolverUsed;
 use crate::specimen::handbook::handbook;

@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-11;
 const ITERATIONS_MAX: usize = 400;
 /// Work of the loads over that of the displacement a solve starts from at which the plate is a mechanism, and every how many
 /// iterations that is asked.
-const GIVEN_WAY: f64 = 1e3;
+const LOST_STIFFNESS: f64 = 1e3;
 const ITERATIONS_PER_LOOK: usize = 20;
 /// Iterations above those of a fresh hierarchy at which it is rebuilt.
 const ITERATIONS_SLACK: usize = 3;
@@ -153,8 +153,8 @@ impl<const N: usize> MultigridSolver<N> {
             }
             if iteration % ITERATIONS_PER_LOOK == 0 && work_before > 0.0 {
                 let work = dot(&layout, f, u);
-                if work > GIVEN_WAY * work_before {
-                    tracing::debug!(iteration, work, work_before, "the plate gives way");
+                if work > LOST_STIFFNESS * work_before {
+                    tracing::debug!(iteration, work, work_before, "the plate loses its stiffness");
                     return Err(Error::LossOfStiffness);
                 }
             }

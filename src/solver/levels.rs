@@ -14,9 +14,9 @@ use super::window::condense::{Condensed, FORK, LEAF, Plate, condense_plate};
 use super::{Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::Result;
-use crate::net::Net;
-use crate::net::equilibrium::{Equilibrium, FullLoad, Pull, Shape};
-use crate::net::levelled::Levelled;
+use crate::levels::Net;
+use crate::levels::equilibrium::{Equilibrium, FullLoad, Pull, Shape};
+use crate::levels::multi_level_body::MultiLevelBody;
 use crate::specimen::geometry::bounding_box;
 use crate::state::Bonds;
 
@@ -27,7 +27,7 @@ const TASK: usize = 4096;
 
 /// The whole plate.
 pub(super) struct Levels<const N: usize> {
-    plate: Arc<Levelled>,
+    plate: Arc<MultiLevelBody>,
     full: FullLoad,
     springs: NetSprings<N>,
     equilibrium: Option<Equilibrium>,
@@ -36,7 +36,7 @@ pub(super) struct Levels<const N: usize> {
 
 /// Springs of a net with the bonds that are left.
 struct NetSprings<const N: usize> {
-    plate: Arc<Levelled>,
+    plate: Arc<MultiLevelBody>,
     /// 1 where a bond carries, 0 where it is broken.
     share: Vec<f64>,
     pulls: Vec<[f64; 3]>,
@@ -69,7 +69,7 @@ impl<const N: usize> Pull for NetSprings<N> {
 
 impl<const N: usize> Levels<N> {
     /// A plate with its present bonds under `load` times its unit load.
-    pub fn new(plate: Arc<Levelled>, body: &Body, bonds: &Bonds, load: f64) -> Self {
+    pub fn new(plate: Arc<MultiLevelBody>, body: &Body, bonds: &Bonds, load: f64) -> Self {
         debug_assert_eq!(plate.net.unknowns, body.stencil.unknowns);
         let mut full = plate.full.clone();
         full.external.iter_mut().for_each(|force| *force *= load);
@@ -146,7 +146,7 @@ impl<const N: usize> Whole<N> for Levels<N> {
 
     fn condense(&self, _: System<'_, N>, places: &[u32]) -> Option<Condensed> {
         let parts = Parts::of(&self.plate, &self.springs.share, places);
-        let net = OnNet::<N> { plate: &self.plate, full: &self.full, share: &self.springs.share, parts };
+        let net = GraphPlate::<N> { plate: &self.plate, full: &self.full, share: &self.springs.share, parts };
         let mut condensed = condense_plate(&net, places, &[])?;
         let held = |index: usize| net.is_held(places[index / N] as usize, index % N);
         let order = N * places.len();
@@ -176,9 +176,9 @@ impl<const N: usize> Whole<N> for Levels<N> {
     }
 }
 
-/// A net in parts, its points named as [`Levelled::ids`] does.
-struct OnNet<'a, const N: usize> {
-    plate: &'a Levelled,
+/// A net in parts, its points named as [`MultiLevelBody::ids`] does.
+struct GraphPlate<'a, const N: usize> {
+    plate: &'a MultiLevelBody,
     full: &'a FullLoad,
     share: &'a [f64],
     parts: Parts,
@@ -210,7 +210,7 @@ struct Part {
 
 impl Parts {
     /// Parts of all points with a bond but those of a window.
-    fn of(plate: &Levelled, share: &[f64], window: &[u32]) -> Parts {
+    fn of(plate: &MultiLevelBody, share: &[f64], window: &[u32]) -> Parts {
         let net = &plate.net;
         let carries = |point: &usize| net.bonds_of(*point).any(|(bond, ..)| share[bond] > 0.0);
         let is_kept = |point: &usize| window.binary_search(&plate.ids[*point]).is_ok();
@@ -263,14 +263,14 @@ fn halves(net: &Net, share: &[f64], points: &[usize], side: &mut [u8]) -> Option
     (!a.is_empty() && !b.is_empty()).then_some([a, b, between])
 }
 
-impl<const N: usize> OnNet<'_, N> {
+impl<const N: usize> GraphPlate<'_, N> {
     fn net_point(&self, place: usize) -> usize {
         // Only numbers of points are asked for.
         self.plate.point(place).unwrap_or_default()
     }
 }
 
-impl<const N: usize> Plate<N> for OnNet<'_, N> {
+impl<const N: usize> Plate<N> for GraphPlate<'_, N> {
     type Region = Part;
 
     fn places(&self) -> usize {

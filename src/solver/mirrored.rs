@@ -2,7 +2,7 @@
 //!
 //! Bonds break in mirror images of each other as long as the plate is symmetric. When they do not, the whole plate takes over.
 
-use super::{Balance, Focus, SolverKind, SolverUsed, sides};
+use super::{EquilibriumBackend, Focus, SolverKind, SolverUsed, sides};
 use crate::body::mirror::{Mirror, Part, signs};
 use crate::body::{Body, Bond};
 use crate::error::Result;
@@ -21,7 +21,7 @@ crate::kinds! {
 pub(super) struct Mirrored {
     part: Part,
     bonds: Bonds,
-    inner: Box<dyn Balance>,
+    inner: Box<dyn EquilibriumBackend>,
     displacement: Vec<f64>,
     /// The plate's points on which the displacement is always right.
     window: Option<Vec<u32>>,
@@ -115,7 +115,7 @@ fn for_copies(part: &Part, whole: &Body, places: &[u32], mut take: impl FnMut(Co
     }
 }
 
-impl Balance for Mirrored {
+impl EquilibriumBackend for Mirrored {
     fn set_tolerance(&mut self, tolerance: f64) {
         self.tolerance = Some(tolerance);
         self.inner.set_tolerance(tolerance);

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use crate::body::{Body, Bond};
 use crate::error::Result;
-use crate::net::levelled::Levelled;
+use crate::levels::multi_level_body::MultiLevelBody;
 use crate::specimen::Point;
 use crate::state::Bonds;
 use mirrored::Mirrored;
@@ -57,7 +57,7 @@ pub struct Focus {
     pub direction: Point,
     /// Way behind it on which bonds may still break, oldest place first.
     pub wake: Vec<Point>,
-    /// Distance from that way and its continuation within which the ends of ageing bonds lie, m.
+    /// Distance from that way and its continuation within which the ends of fatigue bonds lie, m.
     pub reach: f64,
 }
 
@@ -136,13 +136,13 @@ fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
 
 /// Keeps a body in equilibrium with its load while bonds break.
 pub struct Equilibrium {
-    inner: Box<dyn Balance>,
+    inner: Box<dyn EquilibriumBackend>,
     /// Solves since it was built.
     solves: usize,
 }
 
 /// Both sides of the system, with the number of unknowns and mirror images hidden.
-trait Balance: Send {
+trait EquilibriumBackend: Send {
     fn set_tolerance(&mut self, tolerance: f64);
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]);
@@ -168,7 +168,7 @@ impl Equilibrium {
     /// Equilibrium of a body under `load` times its unit load (Pa or N, as the specimen measures load).
     #[must_use]
     pub fn new(kind: SolverKind, symmetry: Symmetry, body: &Body, bonds: &Bonds, load: f64) -> Self {
-        let inner = in_pool(|| -> Box<dyn Balance> {
+        let inner = in_pool(|| -> Box<dyn EquilibriumBackend> {
             let mirrored = match symmetry {
                 Symmetry::Auto => Mirrored::new(kind, body, bonds, load),
                 Symmetry::Off => None,
@@ -186,9 +186,9 @@ impl Equilibrium {
     /// every other kind is taken for the first.
     ///
     /// Displacements are those of the body in its layout, and behind them those of all other points, unknown by unknown, in the
-    /// order of their numbers ([`Levelled::ids`]).
+    /// order of their numbers ([`MultiLevelBody::ids`]).
     #[must_use]
-    pub fn of_levels(kind: SolverKind, plate: Arc<Levelled>, body: &Body, bonds: &Bonds, load: f64) -> Self {
+    pub fn of_levels(kind: SolverKind, plate: Arc<MultiLevelBody>, body: &Body, bonds: &Bonds, load: f64) -> Self {
         Equilibrium { inner: in_pool(|| sides::balance_levels(kind, plate, body, bonds, load)), solves: 0 }
     }
 

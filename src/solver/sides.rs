@@ -9,14 +9,14 @@ use super::field::{self, Layout};
 use super::levels::Levels;
 use super::product::{Into, Product};
 use super::window::WindowSolver;
-use super::{Balance, Focus, LinearSolver, SolverKind, SolverUsed, System};
+use super::{EquilibriumBackend, Focus, LinearSolver, SolverKind, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::Result;
-use crate::net::levelled::Levelled;
+use crate::levels::multi_level_body::MultiLevelBody;
 use crate::state::Bonds;
 
 /// Load, held components and the linear solver of a body with N unknowns a point.
-struct Sides<const N: usize> {
+struct ConstrainedSystem<const N: usize> {
     product: Product<N>,
     solver: Box<dyn LinearSolver<N>>,
     f: Vec<f64>,
@@ -42,22 +42,28 @@ struct Grips {
 }
 
 /// Load, supports and linear solver of a body under `load` times its unit load.
-pub(super) fn balance(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Box<dyn Balance> {
+pub(super) fn balance(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Box<dyn EquilibriumBackend> {
     match body.stencil.unknowns {
-        3 => Box::new(Sides::<3>::new(kind, body, bonds, load)),
-        _ => Box::new(Sides::<2>::new(kind, body, bonds, load)),
+        3 => Box::new(ConstrainedSystem::<3>::new(kind, body, bonds, load)),
+        _ => Box::new(ConstrainedSystem::<2>::new(kind, body, bonds, load)),
     }
 }
 
 /// The same for a plate of several levels, `body` being its finest points.
-pub(super) fn balance_levels(kind: SolverKind, plate: Arc<Levelled>, body: &Body, bonds: &Bonds, load: f64) -> Box<dyn Balance> {
+pub(super) fn balance_levels(
+    kind: SolverKind,
+    plate: Arc<MultiLevelBody>,
+    body: &Body,
+    bonds: &Bonds,
+    load: f64,
+) -> Box<dyn EquilibriumBackend> {
     match body.stencil.unknowns {
-        3 => Box::new(Sides::<3>::of_levels(kind, plate, body, bonds, load)),
-        _ => Box::new(Sides::<2>::of_levels(kind, plate, body, bonds, load)),
+        3 => Box::new(ConstrainedSystem::<3>::of_levels(kind, plate, body, bonds, load)),
+        _ => Box::new(ConstrainedSystem::<2>::of_levels(kind, plate, body, bonds, load)),
     }
 }
 
-impl<const N: usize> Sides<N> {
+impl<const N: usize> ConstrainedSystem<N> {
     fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Self {
         let layout = Layout::of(&body.lattice, N);
         let mut fixed: Vec<usize> = Vec::new();
@@ -105,11 +111,11 @@ impl<const N: usize> Sides<N> {
             SolverKind::AdaptiveDynamicRelaxation => Box::new(DynamicRelaxation::new(body, bonds, &product)),
         };
         let (u, points) = (layout.zeros(), body.points.len());
-        Sides { product, solver, f, grips, u, work: 0.0, points }
+        ConstrainedSystem { product, solver, f, grips, u, work: 0.0, points }
     }
 
     /// A plate of several levels: its loads and supports are not those of the body, which is a part of it.
-    fn of_levels(kind: SolverKind, plate: Arc<Levelled>, body: &Body, bonds: &Bonds, load: f64) -> Self {
+    fn of_levels(kind: SolverKind, plate: Arc<MultiLevelBody>, body: &Body, bonds: &Bonds, load: f64) -> Self {
         let product = Product::<N>::new(body, Vec::new());
         let layout = Layout::of(&body.lattice, N);
         let (points, size) = (plate.net.len(), layout.len() + N * (plate.numbers() - body.places()));
@@ -124,11 +130,11 @@ impl<const N: usize> Sides<N> {
         let levels = Levels::new(plate, body, bonds, load);
         let solver: Box<dyn LinearSolver<N>> = Box::new(WindowSolver::of_whole(levels, kind == SolverKind::Direct));
         let f = layout.zeros();
-        Sides { product, solver, f, grips, u: vec![0.0; size], work: 0.0, points }
+        ConstrainedSystem { product, solver, f, grips, u: vec![0.0; size], work: 0.0, points }
     }
 }
 
-impl<const N: usize> Sides<N> {
+impl<const N: usize> ConstrainedSystem<N> {
     /// The solver and the system it works on, with its unknown.
     fn parts<'a>(
         &'a mut self,
@@ -182,7 +188,7 @@ impl<const N: usize> Sides<N> {
     }
 }
 
-impl<const N: usize> Balance for Sides<N> {
+impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
     fn set_tolerance(&mut self, tolerance: f64) {
         self.solver.set_tolerance(tolerance);
     }

@@ -9,7 +9,7 @@ use crate::bond_law::SurfaceCorrection;
 use crate::case::Case;
 use crate::error::{Error, Result, input};
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
-use crate::net::Arrangement;
+use crate::levels::Discretisation;
 use crate::solver::{Equilibrium, SolverKind};
 use crate::specimen::geometry::{distance, distance_to_polygon, distance_to_segment};
 use crate::specimen::{Crack, Point, Specimen};
@@ -43,7 +43,7 @@ impl<'a> CrackedPlate<'a> {
     /// As [`Body::build`], and points of several levels.
     pub fn new(case: &'a Case) -> Result<Self> {
         let model = &case.model;
-        if model.arrangement != Arrangement::Lattice {
+        if model.arrangement != Discretisation::Lattice {
             let problem = "has points of several levels, and K is read off a lattice of one spacing";
             return Err(input("model.discretisation", format!("\"{}\"", model.arrangement), problem, "use \"lattice\""));
         }

@@ -99,7 +99,7 @@ pub struct RingFactors {
     /// Stress along the crack T, Pa.
     pub t_stress: f64,
     /// How far ahead of the end of the line the field has its tip, m.
-    pub ahead: f64,
+    pub tip_offset: f64,
     /// Outer radius of the ring, m.
     pub radius: f64,
 }
@@ -151,9 +151,9 @@ impl RingGeometry {
         let Balanced { body, lines, .. } = plate;
         let line = &lines[end.line];
         let frame = TipFrame { origin: line.end(end.at_last), ahead: line.direction(end.at_last), line: 0.0 };
-        let own = Behind::new(body, line, end.at_last, &frame);
+        let own = CrackFaces::new(body, line, end.at_last, &frame);
         let inner = (INNER_SHARE * outer).max((INNER_HORIZONS * body.horizon()).min(0.5 * outer));
-        let around = Around { surroundings: self, plate, frame, own, inner, outer, known: RefCell::default() };
+        let around = RingIntegral { surroundings: self, plate, frame, own, inner, outer, known: RefCell::default() };
         let mut sums: PerAuxiliary = [0.0; 5];
         let mut add = |part: PerAuxiliary| sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
         let near = |at: Point| distance(at, frame.origin) < outer;
@@ -189,8 +189,8 @@ impl RingGeometry {
             }
         }
         let [k_i, k_ii, shifted_i, shifted_ii, half_t] = sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum);
-        let ahead = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
-        RingFactors { factors: [k_i, k_ii], t_stress: 2.0 * half_t, ahead, radius: outer }
+        let tip_offset = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
+        RingFactors { factors: [k_i, k_ii], t_stress: 2.0 * half_t, tip_offset, radius: outer }
     }
 }
 
@@ -209,12 +209,12 @@ fn faces(body: &Body, piece: [Point; 2]) -> impl Iterator<Item = Facet> {
 }
 
 /// The crack behind a tip in its frame.
-struct Behind {
+struct CrackFaces {
     /// Pieces from the tip on, as the bonds see them.
     pieces: Vec<[Point; 2]>,
 }
 
-impl Behind {
+impl CrackFaces {
     fn new(body: &Body, line: &CrackLine, at_last: bool, frame: &TipFrame) -> Self {
         let piece = |piece: [Point; 2]| {
             let ends = as_cut(body, piece).map(|p| frame.local(p));
@@ -224,7 +224,7 @@ impl Behind {
         if at_last {
             pieces.reverse();
         }
-        Behind { pieces }
+        CrackFaces { pieces }
     }
 
     /// Angle by which the crack at a distance r behind the tip lies off the line straight behind it, counter-clockwise.
@@ -258,18 +258,18 @@ impl Behind {
 }
 
 /// A ring around a tip.
-struct Around<'a> {
+struct RingIntegral<'a> {
     surroundings: &'a RingGeometry,
     plate: Balanced<'a>,
     frame: TipFrame,
-    own: Behind,
+    own: CrackFaces,
     inner: f64,
     outer: f64,
     /// Derivatives at points that were asked for: those beside a rim serve many pieces of it.
     known: RefCell<HashMap<usize, Option<Derivatives>>>,
 }
 
-impl Around<'_> {
+impl RingIntegral<'_> {
     /// q and its slope over r: 1 - 10t³ + 15t⁴ - 6t⁵ over the ring, whose curvature is continuous at both of its rims.
     fn weight(&self, r: f64) -> (f64, f64) {
         let t = ((r - self.inner) / (self.outer - self.inner)).clamp(0.0, 1.0);

@@ -17,9 +17,9 @@ use crate::fracture::correspondence::{Correspondence, NET_LAW};
 use crate::fracture::interaction::{Damaging, Interaction};
 use crate::fracture::platens::{Platen, Pressed};
 use crate::fracture::quasi_static::relaxation::{Breaking, Loads, Relaxation, RestEnd};
-use crate::fracture::scene::{Action, Damage, DamageLaw, Drive, SceneLaw, ZeroEnergyControl};
+use crate::fracture::scene::{Action, Damage, DamageLaw, SceneLaw, SceneLoad, ZeroEnergyControl};
+use crate::levels::Net;
 use crate::material::{Material, Plane};
-use crate::net::Net;
 use crate::quadrature;
 use crate::specimen::{Edge, Point};
 use crate::units::MM;
@@ -51,7 +51,7 @@ pub fn scene((control, factor): (ZeroEnergyControl, f64), spacing: f64, travel: 
         [0.5 * DIAMETER * cos, 0.5 * DIAMETER * sin]
     };
     specimen.outline = (0..CORNERS).map(corner).collect();
-    let platen = |edge, y: f64| Drive::on_side(edge, Action::Platen([0.0, y]));
+    let platen = |edge, y: f64| SceneLoad::on_side(edge, Action::Platen([0.0, y]));
     Scene {
         drives: vec![platen(Edge::Top, -travel), platen(Edge::Bottom, travel)],
         damage: Damage { law: DamageLaw::PrincipalStress, ..Damage::NONE },

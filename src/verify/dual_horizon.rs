@@ -11,10 +11,10 @@ use crate::fracture::failure::Failure;
 use crate::fracture::interaction::{Damaging, Interaction};
 use crate::fracture::quasi_static::equilibrium::{Equilibrium, Shape};
 use crate::fracture::quasi_static::full_load::FullLoad;
-use crate::fracture::scene::{Arrangement, RefinedRegion, Refinement, Scene, SceneLaw};
+use crate::fracture::scene::{Discretisation, RefinedRegion, Refinement, Scene, SceneLaw};
 use crate::fracture::springs::Springs;
+use crate::levels::{Net, NetBond};
 use crate::material::{Material, Plane};
-use crate::net::{Net, NetBond};
 use crate::specimen::{Crack, Hole, Point, Slot, Specimen};
 use crate::units::MM;
 
@@ -55,7 +55,7 @@ pub fn material(law: &BondLaw) -> Material {
 #[must_use]
 pub fn scene(specimen: Specimen, law: BondLaw, spacing: f64, regions: &[(RefinedRegion, usize)]) -> Scene {
     let mut scene = Scene::bare("levels", specimen, material(&law), SceneLaw::Bonds(law), spacing);
-    scene.model.arrangement = Arrangement::DualHorizon;
+    scene.model.arrangement = Discretisation::DualHorizon;
     scene.refinement = Some(Refinement { regions: regions.to_vec() });
     scene
 }
@@ -118,7 +118,7 @@ fn left(net: &Net, u: &[f64]) -> Left {
 ///
 /// # Errors
 /// As [`fracture::build`].
-fn ghost(law: BondLaw, arrangement: Arrangement) -> Result<f64> {
+fn ghost(law: BondLaw, arrangement: Discretisation) -> Result<f64> {
     let mut scene = boxed(law, [[10.0 * MM, -30.0 * MM], [50.0 * MM, 30.0 * MM]], 1);
     scene.model.arrangement = arrangement;
     let net = fracture::build(&scene)?.0;
@@ -296,7 +296,7 @@ fn momentum(table: &mut Table) -> Result<()> {
 fn ghosts(table: &mut Table) -> Result<()> {
     let unbalanced = || laws().filter(|law| law.surface_correction != SurfaceCorrection::Balanced);
     let all = |arrangement| unbalanced().map(|law| ghost(law, arrangement)).collect::<Result<Vec<f64>>>();
-    let (dual, without) = (all(Arrangement::DualHorizon)?, all(Arrangement::VariableHorizon)?);
+    let (dual, without) = (all(Discretisation::DualHorizon)?, all(Discretisation::VariableHorizon)?);
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     let source = "Ren, Zhuang, Cai and Rabczuk 2016";
     table.error("dual_horizon, worst law: resultant of a uniform strain, percent", 100.0 * largest(&dual), ROUND_OFF, source);

@@ -119,7 +119,7 @@ const TOPICS: &[Topic] = &[
     },
 ];
 
-/// All topics: lives and paths by K of the tips first, ageing bonds last.
+/// All topics: lives and paths by K of the tips first, fatigue bonds last.
 pub fn all_topics() -> impl Iterator<Item = &'static Topic> {
     TOPICS.iter().chain(bond_strain::TOPICS)
 }

@@ -7,8 +7,8 @@ use perilife::fracture::bonds::BondState;
 use perilife::fracture::correspondence::{Correspondence, NET_LAW};
 use perilife::fracture::interaction::{Damaging, Interaction, Reaction};
 use perilife::fracture::scene::{SceneLaw, ZeroEnergyControl};
+use perilife::levels::Net;
 use perilife::material::{Material, Plane};
-use perilife::net::Net;
 use perilife::specimen::Specimen;
 use perilife::verify::uniform_tension::strip;
 

@@ -2,7 +2,9 @@
 
 use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use perilife::fracture::Scene;
-use perilife::fracture::scene::{Action, Damage, DamageLaw, Drive, Procedure, RefinedRegion, Refinement, SceneLaw, SceneSolver};
+use perilife::fracture::scene::{
+    Action, Damage, DamageLaw, Procedure, RefinedRegion, Refinement, SceneLaw, SceneLoad, SceneSolver,
+};
 use perilife::material::{Material, Plane};
 use perilife::specimen::{self, Edge, Point, Specimen};
 use perilife::verify::dual_horizon;
@@ -34,7 +36,7 @@ pub fn torn(law: BondLaw, damage: DamageLaw, spacing: f64, velocity: f64, durati
     assert_eq!((square.cracks.len(), square.tips.len()), (1, 2));
     let nu = if law.kind == BondLawKind::BondBased { 1.0 / 3.0 } else { 0.25 };
     let steel = Material { fracture_energy: Some(83e3), density: Some(8000.0), ..Material::elastic(192e9, nu, Plane::Stress) };
-    let end = |edge: Edge| Drive::on_side(edge, Action::Velocity([None, Some(velocity * edge.normal()[1])]));
+    let end = |edge: Edge| SceneLoad::on_side(edge, Action::Velocity([None, Some(velocity * edge.normal()[1])]));
     let mut scene = Scene {
         drives: vec![end(Edge::Top), end(Edge::Bottom)],
         damage: Damage { law: damage, ..Damage::NONE },
@@ -47,7 +49,7 @@ pub fn torn(law: BondLaw, damage: DamageLaw, spacing: f64, velocity: f64, durati
 
 /// A plate of 4 mm whose ends move apart by `pull` each and are held across it, one static solve, nothing breaks.
 pub fn pulled(width: f64, length: f64, spacing: f64, pull: f64, law: BondLaw) -> Scene {
-    let drive = |(end, motion)| Drive::on_side(end, Action::Displacement([Some(0.0), Some(motion)]));
+    let drive = |(end, motion)| SceneLoad::on_side(end, Action::Displacement([Some(0.0), Some(motion)]));
     let plate = Specimen { loads: vec![], thickness: 4.0 * MM, ..strip(width, length) };
     Scene {
         drives: [(Edge::Top, pull), (Edge::Bottom, -pull)].map(drive).to_vec(),
@@ -62,7 +64,7 @@ pub fn plate(keys: &str, law: BondLaw, spacing: f64, regions: &[(RefinedRegion, 
 
 /// The scene on a dual horizon with these regions.
 pub fn refined(mut scene: Scene, regions: &[(RefinedRegion, usize)]) -> Scene {
-    scene.model.arrangement = perilife::fracture::scene::Arrangement::DualHorizon;
+    scene.model.arrangement = perilife::fracture::scene::Discretisation::DualHorizon;
     scene.refinement = Some(Refinement { regions: regions.to_vec() });
     scene
 }

@@ -165,7 +165,7 @@ fn broken_calibration_files_say_what_would_be_right() {
              use growth_rate = \"stress_intensity\"",
         ),
         (
-            "bonds that age where no tip is",
+            "fatigue bonds where no tip is",
             format!("{GOOD}[fatigue]\nageing = \"everywhere\"\n"),
             "fatigue.ageing = \"everywhere\": cannot be given to a calibration",
         ),

@@ -9,7 +9,8 @@ use perilife::fracture::Scene;
 use perilife::fracture::preview::preview;
 use perilife::fracture::read::is_scene;
 use perilife::fracture::scene::{
-    Action, Arrangement, DamageEntry, DamageLaw, Procedure, RefinedRegion, Region, Rise, SceneLaw, SceneSolver, ZeroEnergyControl,
+    Action, DamageEntry, DamageLaw, Discretisation, LoadRamp, Procedure, RefinedRegion, Region, SceneLaw, SceneSolver,
+    ZeroEnergyControl,
 };
 use perilife::input::Document;
 use perilife::specimen::geometry::{distance, polygon_area};
@@ -36,7 +37,7 @@ fn what_is_left_out_is_chosen() {
     assert_eq!((law.kind, law.kernel), (BondLawKind::TwoParameter, Kernel::Conical));
     assert_eq!((law.rotation, law.surface_correction), (Rotation::Resisted, SurfaceCorrection::VolumeAndSurface));
     assert_eq!((scene.model.horizon_ratio, scene.model.lattice_angle, scene.model.finite), (3.015, 0.0, false));
-    assert_eq!((scene.model.arrangement, scene.model.solver), (Arrangement::Lattice, SceneSolver::Secant));
+    assert_eq!((scene.model.arrangement, scene.model.solver), (Discretisation::Lattice, SceneSolver::Secant));
     assert!((scene.model.spacing - 0.4e-3).abs() < 1e-12, "a hundredth of the width: {}", scene.model.spacing);
     assert_eq!((scene.damage.law, scene.damage.enters), (DamageLaw::None, DamageEntry::Influence));
     assert_eq!(scene.procedure, Procedure::QuasiStatic { steps: 50, iterations: None });
@@ -63,7 +64,7 @@ fn kernel_and_solver_follow_law_and_procedure() {
     let scene = read(&text, &[]).unwrap();
     assert_eq!(scene.model.solver, SceneSolver::VelocityVerlet);
     assert_eq!(scene.procedure, Procedure::Dynamic { duration: 1e-5, time_step: Some(1e-8) });
-    assert!(scene.drives.iter().all(|drive| drive.rise == Rise { from: 0.0, ramp: 1e-6 }));
+    assert!(scene.drives.iter().all(|drive| drive.rise == LoadRamp { from: 0.0, ramp: 1e-6 }));
     let scene = read(&format!("{PLATE}{}", STEPS.replace("steps = 50\n", "")), &[]).unwrap();
     assert_eq!(scene.procedure, Procedure::Static);
 }
@@ -104,8 +105,8 @@ fn loads_rise_one_after_another() {
                  { kind = \"velocity\", velocity_mm_s = 1, edges = [\"right\"], from_s = 2e-5, ramp_s = 0 }, \
                  { kind = \"displacement\", displacement_mm = 1, edges = [\"left\"], from_s = 3e-5, ramp_s = 8e-5 }]";
     let scene = read(&format!("{PLATE}[loading]\n{parts}\n"), &[]).unwrap();
-    let rises: Vec<Rise> = scene.drives.iter().map(|drive| drive.rise).collect();
-    let [common, sudden, late] = [(0.0, 1e-5), (2e-5, 0.0), (3e-5, 8e-5)].map(|(from, ramp)| Rise { from, ramp });
+    let rises: Vec<LoadRamp> = scene.drives.iter().map(|drive| drive.rise).collect();
+    let [common, sudden, late] = [(0.0, 1e-5), (2e-5, 0.0), (3e-5, 8e-5)].map(|(from, ramp)| LoadRamp { from, ramp });
     assert_eq!(rises, [common, common, sudden, late]);
     assert!(scene.warnings.iter().any(|line| line.contains("left") && line.contains("0.00011")), "{:?}", scene.warnings);
     let keys: Vec<&str> = scene.drives.iter().map(|drive| drive.key.as_str()).collect();
@@ -113,14 +114,14 @@ fn loads_rise_one_after_another() {
     // One load has the keys of all.
     let text = STEPS.replace("steps = 50", "duration_s = 1e-5\nramp_s = 1e-6\nfrom_s = 2e-6");
     let scene = read(&format!("{PLATE}{text}"), &[]).unwrap();
-    assert_eq!(scene.drives[0].rise, Rise { from: 2e-6, ramp: 1e-6 });
+    assert_eq!(scene.drives[0].rise, LoadRamp { from: 2e-6, ramp: 1e-6 });
     assert!(scene.warnings.is_empty());
 }
 
 /// Share, its slope and its integral agree, whatever start and length.
 #[test]
 fn a_rise_is_its_own_integral() {
-    for rise in [Rise { from: 0.0, ramp: 2.0 }, Rise { from: 1.5, ramp: 2.0 }] {
+    for rise in [LoadRamp { from: 0.0, ramp: 2.0 }, LoadRamp { from: 1.5, ramp: 2.0 }] {
         let (step, mut share, mut sum) = (1e-3, 0.0, 0.0);
         for i in 0..5000 {
             // Middles of steps: exact, since the corners lie between steps.
@@ -131,10 +132,10 @@ fn a_rise_is_its_own_integral() {
             assert!((rise.sum(end) - sum).abs() < 1e-9, "{rise:?} at {end}: {} and {sum}", rise.sum(end));
         }
     }
-    let sudden = Rise { from: 1.5, ramp: 0.0 };
+    let sudden = LoadRamp { from: 1.5, ramp: 0.0 };
     assert_eq!([1.0, 1.5, 4.0].map(|time| sudden.share(time)), [0.0, 1.0, 1.0]);
     assert_eq!([1.0, 1.5, 4.0].map(|time| sudden.sum(time)), [0.0, 0.0, 2.5]);
-    assert_eq!((Rise::AT_ONCE.share(0.0), Rise::AT_ONCE.sum(3.0), Rise::AT_ONCE.slope(0.0)), (1.0, 3.0, 0.0));
+    assert_eq!((LoadRamp::AT_ONCE.share(0.0), LoadRamp::AT_ONCE.sum(3.0), LoadRamp::AT_ONCE.slope(0.0)), (1.0, 3.0, 0.0));
 }
 
 /// Tractions stand on the plate in Pa, on the part of the side that is asked for.

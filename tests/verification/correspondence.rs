@@ -100,7 +100,7 @@ fn a_checkerboard_costs_nothing_without_control() {
 }
 
 /// A plate with a random displacement and broken bonds, some points with one bond or none left.
-fn torn(scene: &Scene, net: &perilife::net::Net) -> (Vec<f64>, perilife::fracture::bonds::BondState) {
+fn torn(scene: &Scene, net: &perilife::levels::Net) -> (Vec<f64>, perilife::fracture::bonds::BondState) {
     let mut noise = Noise::new(3);
     let u: Vec<f64> = (0..2 * net.len()).map(|_| 0.03 * scene.model.spacing * noise.normal()).collect();
     let mut bonds = bonds(net);

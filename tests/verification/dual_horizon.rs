@@ -6,9 +6,9 @@ use perilife::bond_law::stencil::{Stencil, plane_stiffness};
 use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use perilife::fracture::failure::critical_stretch;
 use perilife::fracture::fronts::CRACKED;
-use perilife::fracture::scene::{Action, Arrangement, DamageLaw, RefinedRegion, Scene};
+use perilife::fracture::scene::{Action, DamageLaw, Discretisation, RefinedRegion, Scene};
 use perilife::fracture::{self, Fracture, SceneEnd};
-use perilife::net::Net;
+use perilife::levels::Net;
 use perilife::predict::Silent;
 use perilife::specimen::Point;
 use perilife::verify::dual_horizon::{PUBLISHED, Patch, forces, laws, material, patch};
@@ -50,7 +50,7 @@ fn equal_horizons_give_the_ordinary_net() {
             let mut scene = plate(FLAWED, law, 2e-3, &[]);
             scene.model.lattice_angle = angle;
             let dual = fracture::build(&scene).unwrap().0;
-            scene.model.arrangement = Arrangement::Lattice;
+            scene.model.arrangement = Discretisation::Lattice;
             let lattice = fracture::build(&scene).unwrap().0;
             assert_eq!(dual.positions, lattice.positions);
             assert_eq!((dual.bonds.len(), &dual.pre_cut), (lattice.bonds.len(), &lattice.pre_cut));
@@ -142,7 +142,7 @@ fn wrong_refinements_are_refused() {
     let mut scene =
         plate(PLAIN, BondLaw { surface_correction: SurfaceCorrection::Balanced, ..PUBLISHED }, 2e-3, &[(around(5e-3), 1)]);
     assert!(fracture::build(&scene).is_ok());
-    scene.model.arrangement = Arrangement::VariableHorizon;
+    scene.model.arrangement = Discretisation::VariableHorizon;
     assert!(fracture::build(&scene).unwrap_err().to_string().contains("balanced"));
 }
 

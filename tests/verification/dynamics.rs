@@ -11,7 +11,7 @@ use perilife::fracture::lattice_springs::LatticeSprings;
 use perilife::fracture::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
 use perilife::fracture::springs::Springs;
 use perilife::fracture::{self, SceneEnd};
-use perilife::net::Net;
+use perilife::levels::Net;
 use perilife::predict::Silent;
 
 use crate::noise::Noise;

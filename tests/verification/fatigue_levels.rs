@@ -3,7 +3,7 @@
 use perilife::case::Case;
 use perilife::fatigue::ageing::stretch;
 use perilife::growth::plate::Plate;
-use perilife::net::PointGrid;
+use perilife::levels::PointGrid;
 use perilife::predict::{Prediction, Silent, Snapshot, StopReason, predict};
 use perilife::solver::field::Layout;
 use perilife::specimen::Point;

@@ -9,7 +9,7 @@ use perilife::fracture::interaction::{Damaging, Interaction, Reaction};
 use perilife::fracture::quasi_static::relaxation::{Breaking, Loads, Relaxation, RestEnd, Rested};
 use perilife::fracture::scene::{Scene, SceneLaw};
 use perilife::fracture::springs::Springs;
-use perilife::net::Net;
+use perilife::levels::Net;
 
 use crate::scenes::{MM, law, pulled};
 
@@ -62,7 +62,7 @@ fn a_swing_breaks_no_bond_that_equilibrium_spares() {
     let (_, _, u) = relax(Relaxation::default(), Failure::Never, SOURCE_LAW);
     let scene = pulled(20.0 * MM, 40.0 * MM, 1.0 * MM, 0.02 * MM, SOURCE_LAW);
     let (net, ..) = setting(&scene);
-    let stretch = |b: &perilife::net::NetBond| {
+    let stretch = |b: &perilife::levels::NetBond| {
         let (i, j) = (2 * b.from as usize, 2 * b.to as usize);
         ((u[j] - u[i]) * b.normal[0] + (u[j + 1] - u[i + 1]) * b.normal[1]) / b.length
     };

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use perilife::fracture::scene::{Arrangement, Procedure, SceneSolver, Softening};
+use perilife::fracture::scene::{Discretisation, Procedure, SceneSolver, Softening};
 use perilife::fracture::{self, Fracture, Scene, SceneEnd};
 use perilife::predict::Silent;
 
@@ -129,7 +129,7 @@ fn symmetric_plates_are_damaged_symmetrically() {
 #[test]
 fn forces_without_energy_have_no_path() {
     let mut scene = notched(30.0, 0.03, "");
-    scene.model.arrangement = Arrangement::VariableHorizon;
+    scene.model.arrangement = Discretisation::VariableHorizon;
     let refusal = fracture::run(&scene, &Silent).unwrap_err().to_string();
     for words in ["model.solver", "secant", "variable_horizon", "adaptive_dynamic_relaxation"] {
         assert!(refusal.contains(words), "{words}: {refusal}");

@@ -103,7 +103,7 @@ fn a_ring_reads_an_exact_field() {
             for horizons in [2.0, 3.0, 4.0] {
                 let ring = surroundings.factors(plate, LineEnd { line: 0, at_last: true }, horizons * body.horizon());
                 let read = ring.factors.map(|factor| factor / 1e6);
-                let ahead = (ring.ahead / body.lattice.spacing) - shift;
+                let ahead = (ring.tip_offset / body.lattice.spacing) - shift;
                 println!(
                     "lattice {angle}°, tip at {end}, ring {horizons}: {read:.4?} of {wanted:?}, ahead {ahead:+.4} off {shift}"
                 );

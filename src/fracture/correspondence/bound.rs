@@ -6,7 +6,7 @@ use super::control::Control;
 use super::elasticity::Elasticity;
 use super::neighbours::Neighbours;
 use super::shape::Shape;
-use crate::net::Net;
+use crate::levels::Net;
 
 /// Allowance for finite strain: `|F|²` up to a strain of 5 %.
 const FINITE_STRAIN: f64 = 1.1;

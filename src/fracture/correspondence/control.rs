@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 
 use crate::error::{Result, input};
 use crate::fracture::scene::ZeroEnergyControl;
+use crate::levels::Net;
 use crate::material::Material;
-use crate::net::Net;
 
 /// Factor H of `silling` where none is given.
 pub const SILLING_FACTOR: f64 = 1.0;

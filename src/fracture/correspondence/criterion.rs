@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use crate::error::{Result, input, input_missing};
 use crate::fracture::bonds::BondState;
 use crate::fracture::scene::{DamageLaw, Scene};
+use crate::levels::Net;
 use crate::material::{Material, Plane};
-use crate::net::Net;
 
 /// Without time, bonds loaded as much as this share of the most loaded one break together with it; the others wait for the
 /// next equilibrium, in which a crack beside them may have relieved them. Else all bonds of a broad field of nearly even stress,
@@ -83,7 +83,7 @@ impl Criterion {
                 net.bonds.par_iter().with_min_len(4096).map(|bond| mean(bond.from, bond.to)).collect()
             }
             Limit::Stretch(critical) => {
-                let stretch = |bond: &crate::net::NetBond| {
+                let stretch = |bond: &crate::levels::NetBond| {
                     let (a, b) = (2 * bond.from as usize, 2 * bond.to as usize);
                     let y = [0, 1].map(|i| bond.length * bond.normal[i] + u[b + i] - u[a + i]);
                     (y[0].hypot(y[1]) / bond.length - 1.0) / critical

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::net::Net;
+use crate::levels::Net;
 
 /// A bond seen from one of its ends.
 #[derive(Debug, Clone, Copy)]

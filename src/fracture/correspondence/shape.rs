@@ -7,7 +7,7 @@ use super::in_shape;
 use super::neighbours::Neighbours;
 use crate::fracture::bonds::BondState;
 use crate::fracture::scene::DamageEntry;
-use crate::net::Net;
+use crate::levels::Net;
 
 /// `det K / (tr K)²` below which the bonds of a point lie along one line (1/4 in a whole neighbourhood).
 const SINGULAR: f64 = 1e-6;

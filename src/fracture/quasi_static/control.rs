@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::super::bonds::BondState;
 use super::super::failure::{Failure, Measures};
 use super::super::springs::Springs;
-use crate::net::Net;
+use crate::levels::Net;
 
 /// Loads, relative, within which bonds count as reaching their limit together: mirror twins, and those whose order the size of a
 /// step decides.

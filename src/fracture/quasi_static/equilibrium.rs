@@ -5,9 +5,9 @@ use super::super::failure::Failure;
 use super::super::interaction::{Damaging, Interaction};
 use super::super::springs::Springs;
 use crate::error::Result;
-use crate::net::Net;
-pub use crate::net::equilibrium::Shape;
-use crate::net::equilibrium::{self, FullLoad, Pull, Spent};
+use crate::levels::Net;
+pub use crate::levels::equilibrium::Shape;
+use crate::levels::equilibrium::{self, FullLoad, Pull, Spent};
 
 /// Residual over load at which a solve ends: damage of mirror twins shall agree to 1e-9.
 const TOLERANCE: f64 = 1e-10;

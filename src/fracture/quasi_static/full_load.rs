@@ -3,8 +3,8 @@
 use super::super::boundary::{Boundary, Motion};
 use super::relaxation::Loads;
 use crate::error::{Result, input};
-use crate::net::Net;
-pub use crate::net::equilibrium::FullLoad;
+use crate::levels::Net;
+pub use crate::levels::equilibrium::FullLoad;
 
 impl FullLoad {
     /// Loads and supports of a boundary.

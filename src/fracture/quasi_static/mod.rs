@@ -19,9 +19,9 @@ use super::failure::Failure;
 use super::interaction::Interaction;
 use super::log::Log;
 use super::outcome::{Fracture, SceneFigures};
-use super::scene::{Arrangement, DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
+use super::scene::{DamageLaw, Discretisation, Procedure, Scene, SceneLaw, SceneSolver};
 use crate::error::{Result, input};
-use crate::net::Net;
+use crate::levels::Net;
 use account::Recorder;
 use full_load::FullLoad;
 use marching::March;
@@ -112,7 +112,7 @@ fn secant_law<'f>(scene: &Scene, failure: Option<&'f Failure>) -> Result<&'f Fai
     let Some(failure) = failure else {
         return Err(refuse("needs springs in bonds, and the law has none"));
     };
-    if scene.model.arrangement == Arrangement::VariableHorizon {
+    if scene.model.arrangement == Discretisation::VariableHorizon {
         return Err(refuse("needs forces with an energy, and those of discretisation = \"variable_horizon\" have none"));
     }
     if scene.model.finite {

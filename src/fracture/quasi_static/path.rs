@@ -24,8 +24,8 @@ use super::control::Control;
 use super::equilibrium::Equilibrium;
 use super::full_load::FullLoad;
 use crate::error::{Error, Result};
-use crate::net::Net;
-use crate::net::equilibrium::Shape;
+use crate::levels::Net;
+use crate::levels::equilibrium::Shape;
 
 /// Settings of path following.
 #[derive(Debug, Clone, Copy, PartialEq)]

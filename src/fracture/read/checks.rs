@@ -3,7 +3,7 @@
 use super::region::{around, overlap};
 use crate::bond_law::BondLawKind;
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::{Action, Arrangement, DamageLaw, Drive, Procedure, Region, Rise, Scene, SceneLaw};
+use crate::fracture::scene::{Action, DamageLaw, Discretisation, LoadRamp, Procedure, Region, Scene, SceneLaw, SceneLoad};
 use crate::loading::imbalance;
 use crate::specimen::{Point, Support};
 
@@ -67,11 +67,11 @@ fn check_arrangement(scene: &Scene) -> Result<()> {
     const KEY: &str = "model.discretisation";
     let arrangement = scene.model.arrangement;
     match (arrangement, scene.model.law) {
-        (Arrangement::Lattice, _) if scene.refinement.is_some() => {
+        (Discretisation::Lattice, _) if scene.refinement.is_some() => {
             let problem = "has one spacing everywhere, and there is a section [refinement]";
             Err(input(KEY, format!("\"{arrangement}\""), problem, "use \"dual_horizon\", or remove the section"))
         }
-        (Arrangement::DualHorizon | Arrangement::VariableHorizon, SceneLaw::Correspondence { .. }) => {
+        (Discretisation::DualHorizon | Discretisation::VariableHorizon, SceneLaw::Correspondence { .. }) => {
             let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";
             Err(input(KEY, format!("\"{arrangement}\""), problem, "use \"lattice\", or a law of bonds"))
         }
@@ -80,7 +80,7 @@ fn check_arrangement(scene: &Scene) -> Result<()> {
 }
 
 /// What a load prescribes: displacement or velocity of each component.
-fn prescribed(drive: &Drive) -> [Option<f64>; 2] {
+fn prescribed(drive: &SceneLoad) -> [Option<f64>; 2] {
     match drive.action {
         Action::Displacement(components) | Action::Velocity(components) => components,
         Action::Traction(_) | Action::Platen(_) => [None; 2],
@@ -88,13 +88,13 @@ fn prescribed(drive: &Drive) -> [Option<f64>; 2] {
 }
 
 /// A prescribed motion with how it rises; rest is rest, however it comes.
-fn rising(drive: &Drive) -> [Option<(f64, Rise)>; 2] {
-    prescribed(drive).map(|value| value.map(|value| (value, if value == 0.0 { Rise::AT_ONCE } else { drive.rise })))
+fn rising(drive: &SceneLoad) -> [Option<(f64, LoadRamp)>; 2] {
+    prescribed(drive).map(|value| value.map(|value| (value, if value == 0.0 { LoadRamp::AT_ONCE } else { drive.rise })))
 }
 
 /// No point is told two different motions.
 fn check_conflicts(scene: &Scene) -> Result<()> {
-    let at_rest = |held: bool| held.then_some((0.0, Rise::AT_ONCE));
+    let at_rest = |held: bool| held.then_some((0.0, LoadRamp::AT_ONCE));
     let drives = scene.drives.iter().map(|drive| (&drive.region, rising(drive), "a load"));
     let holds = scene.holds.iter().map(|hold| (&hold.region, hold.components.map(at_rest), "a support"));
     let all: Vec<_> = drives.chain(holds).collect();
@@ -175,7 +175,7 @@ pub fn lines(scene: &Scene) -> Vec<String> {
             )
         }));
     }
-    let graded = scene.model.arrangement != Arrangement::Lattice;
+    let graded = scene.model.arrangement != Discretisation::Lattice;
     if graded && scene.refinement.is_none() {
         lines.push(format!("{} without [refinement]: all points are of one level", scene.model.arrangement));
     }

@@ -5,7 +5,7 @@ use toml::Value;
 
 use super::region;
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::{Action, Drive, Region, Rise};
+use crate::fracture::scene::{Action, LoadRamp, Region, SceneLoad};
 use crate::input::{Quantity, number, slice};
 use crate::specimen::{Edge, Point, Specimen};
 use crate::units::{MM, MPA};
@@ -72,7 +72,7 @@ pub struct Clock {
 }
 
 /// One load: a drive for each of its edges or regions.
-pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Specimen) -> Result<Vec<Drive>> {
+pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Specimen) -> Result<Vec<SceneLoad>> {
     let load: LoadInput = slice(value, path)?;
     let size = size(&load, path)?;
     let direction = direction(&load, path)?;
@@ -99,7 +99,7 @@ pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Sp
             // A platen presses: it moves against the outward normal.
             LoadKind::Platens => Action::Platen(vector.map(|component| -component)),
         };
-        let drive = Drive { region, action, rise, key };
+        let drive = SceneLoad { region, action, rise, key };
         if kind == LoadKind::Traction {
             push_traction(&drive, path, specimen)?;
         }
@@ -109,13 +109,13 @@ pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Sp
 }
 
 /// How a load rises: in a scene of motion by its own `ramp_s`, or that of all loads, from `from_s` on.
-fn rise(load: &LoadInput, path: &str, clock: Option<Clock>) -> Result<Rise> {
+fn rise(load: &LoadInput, path: &str, clock: Option<Clock>) -> Result<LoadRamp> {
     const TIME: Quantity = number("a time in s", 0.0, 1e6);
     let (ramp_key, from_key) = (format!("{path}.ramp_s"), format!("{path}.from_s"));
     let Some(clock) = clock else {
         let given = [(&ramp_key, load.ramp_s), (&from_key, load.from_s)];
         return match given.into_iter().find_map(|(key, value)| Some((key, value?))) {
-            None => Ok(Rise::AT_ONCE),
+            None => Ok(LoadRamp::AT_ONCE),
             Some((key, value)) => {
                 Err(input(key, value, "has no meaning without duration_s", "give loading.duration_s, or leave it out"))
             }
@@ -131,7 +131,7 @@ fn rise(load: &LoadInput, path: &str, clock: Option<Clock>) -> Result<Rise> {
         let problem = "is missing: a displacement at once would be an infinite velocity";
         return Err(input_missing(&ramp_key, problem, "give the time in which the displacement is reached"));
     }
-    Ok(Rise { from, ramp })
+    Ok(LoadRamp { from, ramp })
 }
 
 /// The one size of a load, SI.
@@ -242,7 +242,7 @@ fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<(Reg
 }
 
 /// Puts a traction on the part of a side that it acts on.
-fn push_traction(drive: &Drive, path: &str, specimen: &mut Specimen) -> Result<()> {
+fn push_traction(drive: &SceneLoad, path: &str, specimen: &mut Specimen) -> Result<()> {
     let loads = drive.loads(specimen);
     if loads.is_empty() {
         let key = format!("{path}.range_mm");

@@ -5,7 +5,7 @@ use toml::{Table, Value};
 
 use super::load::{self, Clock};
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::{Drive, Procedure};
+use crate::fracture::scene::{Procedure, SceneLoad};
 use crate::input::{TIME, number, shorten, slice, table_of};
 use crate::specimen::Specimen;
 
@@ -33,7 +33,7 @@ struct CommonInput {
 /// What `[loading]` asks for.
 pub struct Loading {
     /// Loads.
-    pub drives: Vec<Drive>,
+    pub drives: Vec<SceneLoad>,
     /// How they are worked through.
     pub procedure: Procedure,
 }

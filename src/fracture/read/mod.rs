@@ -54,8 +54,8 @@ use toml::{Table, Value};
 
 use super::scene::{Scene, SceneLaw};
 use crate::error::Result;
-use crate::input::{Document, Folder, Sections, Strangers, value_at};
-use crate::net::read as refinement;
+use crate::input::{Document, Folder, ForeignSections, Sections, value_at};
+use crate::levels::read as refinement;
 use crate::{material, specimen};
 
 /// Sections of a scene file.
@@ -65,7 +65,7 @@ pub const SECTIONS: &[&str] = &["specimen", "material", "model", "loading", "sup
 pub const SCENE_SECTIONS: &[&str] = &["damage", "micro_cracks"];
 
 /// Sections of other files.
-const STRANGERS: &[Strangers] = &[
+const STRANGERS: &[ForeignSections] = &[
     (
         &["fatigue", "stop"],
         "belongs to a fatigue case, not to a fracture scene, which has no cycles",

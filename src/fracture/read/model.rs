@@ -7,7 +7,7 @@ use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection,
 use crate::case::HORIZON_RATIO;
 use crate::case::model::{check_spacing, default_spacing};
 use crate::error::{Error, Result, input, input_missing};
-use crate::fracture::scene::{Arrangement, PointLaw, Procedure, SceneLaw, SceneModel, SceneSolver, ZeroEnergyControl};
+use crate::fracture::scene::{Discretisation, PointLaw, Procedure, SceneLaw, SceneModel, SceneSolver, ZeroEnergyControl};
 use crate::input::{LENGTH, number, slice};
 use crate::material::Material;
 use crate::specimen::Specimen;
@@ -31,7 +31,7 @@ struct Input {
     spacing_mm: Option<f64>,
     horizon_ratio: Option<f64>,
     lattice_angle_deg: Option<f64>,
-    discretisation: Option<Arrangement>,
+    discretisation: Option<Discretisation>,
     solver: Option<SceneSolver>,
     zero_energy_control: Option<ZeroEnergyControl>,
     zero_energy_factor: Option<f64>,
@@ -46,7 +46,7 @@ pub fn from_value(value: &Value, specimen: &Specimen, material: &Material, proce
     let ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
     let angle = number("an angle in degrees", -90.0, 90.0).read_optional("model.lattice_angle_deg", input.lattice_angle_deg)?;
     let law = law(&input, material)?;
-    let arrangement = input.discretisation.unwrap_or(Arrangement::Lattice);
+    let arrangement = input.discretisation.unwrap_or(Discretisation::Lattice);
     let solver = solver(input.solver, law, arrangement, *procedure)?;
     Ok(SceneModel {
         finite: finite(&input, law, solver)?,
@@ -161,13 +161,13 @@ fn check_sign(factor: f64) -> Result<f64> {
 }
 
 /// The solver of procedure, law and arrangement, or the one asked for where it suits them.
-fn solver(asked: Option<SceneSolver>, law: SceneLaw, arrangement: Arrangement, procedure: Procedure) -> Result<SceneSolver> {
+fn solver(asked: Option<SceneSolver>, law: SceneLaw, arrangement: Discretisation, procedure: Procedure) -> Result<SceneSolver> {
     const KEY: &str = "model.solver";
     let timed = matches!(procedure, Procedure::Dynamic { .. });
     let by_points = matches!(law, SceneLaw::Correspondence { .. });
     let marches = matches!(procedure, Procedure::QuasiStatic { iterations: Some(_), .. });
     // Forces that pull at one end of a bond only have neither energy nor a symmetric stiffness.
-    let one_sided = arrangement == Arrangement::VariableHorizon;
+    let one_sided = arrangement == Discretisation::VariableHorizon;
     let usual = match (timed, by_points || one_sided || marches) {
         (true, _) => SceneSolver::VelocityVerlet,
         (false, true) => SceneSolver::AdaptiveDynamicRelaxation,

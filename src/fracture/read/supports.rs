@@ -5,7 +5,7 @@ use toml::Value;
 
 use super::region;
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::{Hold, Region};
+use crate::fracture::scene::{Region, SceneSupport};
 use crate::input::{shorten, slice, table_of};
 use crate::specimen::{Component, Edge, Specimen};
 
@@ -29,7 +29,7 @@ struct BoxInput {
 }
 
 /// Reads `[supports]`: `bottom = { rows_mm, range_mm, fix }`, or under any other name `{ from_mm, to_mm, fix }`.
-pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Vec<Hold>> {
+pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Vec<SceneSupport>> {
     let mut holds = Vec::new();
     for (name, value) in table_of(value, "supports")? {
         let path = format!("supports.{name}");
@@ -55,7 +55,7 @@ pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Vec<Hold>> {
             return Err(input_missing(&format!("{path}.fix"), "holds nothing", remedy));
         }
         let components = [Component::X, Component::Y].map(|component| fix.contains(&component));
-        holds.push(Hold { region, components, key });
+        holds.push(SceneSupport { region, components, key });
     }
     Ok(holds)
 }

@@ -1,23 +1,23 @@
 //! Reasons to stop a run.
 
-use super::track::Track;
+use super::history::GrowthHistory;
 use crate::body::Body;
 use crate::case::Case;
 use crate::fatigue::FatigueSettings;
-use crate::fatigue::ageing::AgeingBond;
+use crate::fatigue::ageing::FatigueBond;
 use crate::fatigue::crack_tip::{CrackTip, TipState};
 use crate::growth::end_of_life::End;
 use crate::growth::record::StopReason;
-use crate::net::levelled::clear_way;
+use crate::levels::multi_level_body::clear_way;
 use crate::specimen::Point;
 
 /// Reasons that show before a block: the crack is too long for its load, no tip is left, or nothing ages.
 pub(super) fn before_block(
     case: &Case,
     end: Option<End>,
-    track: &Track,
+    track: &GrowthHistory,
     tips: &[CrackTip],
-    ageing: &[AgeingBond],
+    ageing: &[FatigueBond],
 ) -> Option<StopReason> {
     if let Some(end) = end.filter(|end| end.crack_length <= case.specimen.crack_length && track.is_counting()) {
         return Some(end.reason);
@@ -45,11 +45,11 @@ pub(super) fn at_rim(body: &Body, tips: &[CrackTip], settings: &FatigueSettings)
 
 /// Reasons that show after a block: a known end is passed. The run goes on for a spacing more, so that the length averaged over
 /// a spacing of growth is known up to the end; the curve stops there.
-pub(super) fn after_block(case: &Case, end: Option<End>, track: &Track) -> Option<StopReason> {
+pub(super) fn after_block(case: &Case, end: Option<End>, track: &GrowthHistory) -> Option<StopReason> {
     end.filter(|end| track.last().crack_length >= end.crack_length + case.model.spacing).map(|end| end.reason)
 }
 
 /// The reason that counts where a run had passed a known end before it stopped for another reason.
-pub(super) fn settled(end: Option<End>, track: &Track, stop: StopReason) -> StopReason {
+pub(super) fn settled(end: Option<End>, track: &GrowthHistory, stop: StopReason) -> StopReason {
     end.filter(|end| track.last().crack_length >= end.crack_length).map_or(stop, |end| end.reason)
 }

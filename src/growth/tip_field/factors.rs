@@ -100,7 +100,7 @@ impl TipField<'_> {
             // place by x the term r^{3/2} of the field counts, too: K of a short central crack is read low by 3x/8a.
             let first = ring(excess);
             // Beside a rim what is read as a shift may be something else.
-            let ahead = if first.ahead.abs() < AHEAD_HORIZONS * horizon { first.ahead } else { 0.0 };
+            let ahead = if first.tip_offset.abs() < AHEAD_HORIZONS * horizon { first.tip_offset } else { 0.0 };
             let ring = if ahead == 0.0 { first } else { ring(excess + ahead) };
             Reading { factors: ring.factors, t_stress: ring.t_stress, length_offset: excess + ahead }
         };

@@ -11,7 +11,7 @@ use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 
 use super::App;
-use super::documents::{self, Asked, submission};
+use super::documents::{self, JobRequest, submission};
 use super::security::Caller;
 use crate::service::job::{Job, JobKind, State};
 use crate::service::problem::{Answer, Problem};
@@ -135,7 +135,7 @@ pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
 #[utoipa::path(post, path = "/v1/{collection}", tag = "jobs",
     params(("collection" = String, Path, description = "`calibrations` or `predictions`"),
         ("Idempotency-Key" = Option<String>, Header, description = "Text of the caller's choice, new for every new job")),
-    request_body = Asked,
+    request_body = JobRequest,
     responses((status = 202, body = JobView, description = "Accepted: it will be run, whatever happens to this server"),
         (status = 200, body = JobView, description = "The job of an earlier request with this key"),
         (status = 400, body = Problem), (status = 403, body = Problem), (status = 409, body = Problem),
@@ -154,7 +154,7 @@ pub async fn submit(
     let body = documents::read(&app, request).await?;
     let fingerprint = format!("{kind} {}", body.fingerprint);
     let calibration = body.asked.calibration.clone();
-    // Asked before the body is looked into: what it refers to may be gone since it was accepted.
+    // JobRequest before the body is looked into: what it refers to may be gone since it was accepted.
     let submitted = match app.store.submitted(&caller.name, key.as_deref(), &fingerprint).await? {
         Some(earlier) => earlier,
         None => {

@@ -36,7 +36,7 @@ const NAME_MAX: usize = 200;
 /// What is asked for, as it came.
 #[derive(Debug, Clone, Default, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Asked {
+pub struct JobRequest {
     /// Name of the case.
     pub name: Option<String>,
     /// The input: TOML text, or an object of the same keys.
@@ -67,7 +67,7 @@ pub type Fields = (BTreeMap<String, String>, Vec<(String, Vec<u8>)>);
 /// A body that was read, with its room among those that may be in memory, and its hash.
 pub struct Body {
     /// What was asked for.
-    pub asked: Asked,
+    pub asked: JobRequest,
     /// Hash of it.
     pub fingerprint: String,
     /// Given back when the body is done with.
@@ -92,7 +92,7 @@ pub async fn read(app: &App, request: Request) -> Answer<Body> {
             hash.update(content);
         }
         let mut field = |name: &str| fields.remove(name);
-        let asked = Asked {
+        let asked = JobRequest {
             name: field("name"),
             input: field("input").map(input_of_form).transpose()?,
             calibration: field("calibration"),
@@ -111,7 +111,7 @@ pub async fn read(app: &App, request: Request) -> Answer<Body> {
                 return Err(too_long());
             }
             let text = String::from_utf8(bytes.into()).map_err(|_| Problem::bad_request("the body is not UTF-8 text"))?;
-            Asked { input: Some(Value::String(text)), ..Asked::default() }
+            JobRequest { input: Some(Value::String(text)), ..JobRequest::default() }
         } else {
             json(&bytes, "the body", "known are input, name, calibration, files")?
         };
@@ -215,7 +215,7 @@ fn check_name(key: &str, name: &str) -> Answer<()> {
 ///
 /// # Errors
 /// What is wrong with it, as the command line would say it.
-pub async fn submission(app: &App, kind: Option<JobKind>, asked: Asked) -> Answer<Submission> {
+pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> Answer<Submission> {
     let given = asked.input.ok_or_else(|| Problem::bad_request("the body has no `input`: give TOML text or an object"))?;
     let name = asked.name.unwrap_or_else(|| kind.map_or("case", JobKind::name).to_owned());
     check_name("name", &name)?;

@@ -9,7 +9,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::App;
-use super::documents::{self, Asked, check_points, submission};
+use super::documents::{self, JobRequest, check_points, submission};
 use crate::calibration::measured::{CycleUnit, LengthUnit, MeasuredCurve, Shape, Survey, Units, survey};
 use crate::case::Case;
 use crate::check;
@@ -132,7 +132,7 @@ fn found(file: String, content: &[u8], units: Units) -> FoundFile {
 }
 
 /// Checks a case, a calibration or a fracture scene without running it: what was understood, and a drawing.
-#[utoipa::path(post, path = "/v1/check", tag = "inputs", request_body = Asked,
+#[utoipa::path(post, path = "/v1/check", tag = "inputs", request_body = JobRequest,
     responses((status = 200, body = Value), (status = 400, body = Problem), (status = 422, body = Problem)))]
 pub async fn check(State(app): State<App>, request: Request) -> Answer<Json<Value>> {
     let body = documents::read(&app, request).await?;

@@ -19,7 +19,7 @@ use sqlx::{AnyPool, Connection};
 
 pub use files::{File, FileEntry, Origin, media_type};
 pub use jobs::{Listing, NewJob, Submitted};
-pub use queue::{Beat, Claim, Growth, Outcome};
+pub use queue::{Claim, Growth, Heartbeat, Outcome};
 pub use tokens::{Role, Token, hash, hex};
 
 /// What a statement can fail with; see [`is_gone`].

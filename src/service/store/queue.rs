@@ -23,7 +23,7 @@ pub struct Claim {
 
 /// What a sign of life brings back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Beat {
+pub enum Heartbeat {
     /// Go on.
     Held,
     /// Somebody asks for the end of the job.
@@ -118,7 +118,7 @@ impl Store {
     ///
     /// # Errors
     /// The database does not answer; the claim may still hold.
-    pub async fn beat(&self, claim: &Claim, lease_ms: i64, progress: Option<&JobProgress>) -> Result<Beat> {
+    pub async fn beat(&self, claim: &Claim, lease_ms: i64, progress: Option<&JobProgress>) -> Result<Heartbeat> {
         let progress = progress.and_then(|progress| serde_json::to_string(progress).ok());
         let mut transaction = self.begin().await?;
         let asked: Option<i64> = sqlx::query_scalar(self.sql(
@@ -133,7 +133,7 @@ impl Store {
         .fetch_optional(&mut *transaction)
         .await?;
         transaction.commit().await?;
-        Ok(asked.map_or(Beat::Lost, |asked| if asked == 0 { Beat::Held } else { Beat::Cancel }))
+        Ok(asked.map_or(Heartbeat::Lost, |asked| if asked == 0 { Heartbeat::Held } else { Heartbeat::Cancel }))
     }
 
     /// Stores the state of a job, from which any worker can go on. Whether the claim still holds.

@@ -16,7 +16,7 @@ use crate::predict::checkpoint::Checkpoint;
 use crate::predict::{Prediction, predict, resume};
 use crate::service::job::{JobKind, State, Submission};
 use crate::service::problem::Problem;
-use crate::service::store::{Beat, Claim, Growth, Outcome, is_gone};
+use crate::service::store::{Claim, Growth, Heartbeat, Outcome, is_gone};
 
 /// Time between two signs of life, in which a wish to cancel comes back as well.
 const BEAT: Duration = Duration::from_millis(400);
@@ -155,9 +155,9 @@ fn tell(shared: &Shared, claim: &Claim, watch: &Watch<'_>) {
     let lease_ms = milliseconds(shared.settings.lease);
     let told = shared.handle.block_on(async {
         match shared.store.beat(claim, lease_ms, news.progress.as_ref()).await {
-            Ok(Beat::Held) => {}
-            Ok(Beat::Cancel) => watch.stop(Stop::Cancelled),
-            Ok(Beat::Lost) => watch.stop(Stop::Lost),
+            Ok(Heartbeat::Held) => {}
+            Ok(Heartbeat::Cancel) => watch.stop(Stop::Cancelled),
+            Ok(Heartbeat::Lost) => watch.stop(Stop::Lost),
             Err(error) => {
                 if let Some(growth) = news.growth {
                     watch.untold(growth);

@@ -30,18 +30,18 @@ pub enum Stop {
 
 /// The plate as it was last seen, to be drawn by who has time for it.
 #[derive(Debug)]
-pub struct Look {
+pub struct LivePicture {
     snapshot: Snapshot,
     grid: PointGrid,
     cracks: Vec<Crack>,
     paths: Vec<Vec<Point>>,
 }
 
-impl Look {
+impl LivePicture {
     /// What is said of the picture, JSON, and its PNG; `None` if it cannot be drawn.
     #[must_use]
     pub fn draw(&self) -> Option<(String, Vec<u8>)> {
-        let Look { snapshot, grid, cracks, paths } = self;
+        let LivePicture { snapshot, grid, cracks, paths } = self;
         let caption = cycles_and_length(snapshot);
         let picture = DamagePicture { grid, field: PointField::Damage, snapshot, cracks, paths, caption: &caption };
         let about = serde_json::json!({ "cycles": snapshot.cycles, "crack_length_mm": snapshot.crack_length / MM });
@@ -51,13 +51,13 @@ impl Look {
 
 /// What a run has told since it was last asked.
 #[derive(Debug, Default)]
-pub struct News {
+pub struct Update {
     /// How far it is.
     pub progress: Option<JobProgress>,
     /// Where its curve has got to.
     pub growth: Option<Growth>,
     /// Its latest look.
-    pub look: Option<Look>,
+    pub look: Option<LivePicture>,
 }
 
 /// Takes a checkpoint's bytes to where they are kept; whether that worked.
@@ -72,11 +72,11 @@ pub struct Watch<'a> {
     started: Instant,
     /// 0 or a [`Stop`].
     stop: AtomicU8,
-    told: Mutex<Told>,
+    told: Mutex<Pending>,
 }
 
 /// What the run has told.
-struct Told {
+struct Pending {
     progress: Option<Progress>,
     /// Share at which this worker took it up.
     first_share: f64,
@@ -85,7 +85,7 @@ struct Told {
     paths: Vec<Vec<Point>>,
     entries: Growth,
     last_entry: f64,
-    look: Option<Look>,
+    look: Option<LivePicture>,
     kept: Instant,
     keep_cost: Duration,
 }
@@ -99,7 +99,7 @@ impl<'a> Watch<'a> {
     pub fn new(cracks: &'a [Crack], growth: &Growth, keep: Option<Keep<'a>>, keep_every: Duration) -> Self {
         let tips = growth.tips.first().map_or(0, Vec::len);
         let path = |tip: usize| growth.tips.iter().filter_map(|entry| Some(entry.get(tip)?.map(|mm| mm * MM))).collect();
-        let told = Told {
+        let told = Pending {
             progress: None,
             first_share: f64::NAN,
             tips: Vec::new(),
@@ -127,7 +127,7 @@ impl<'a> Watch<'a> {
 
     /// What was told since the last time.
     #[must_use]
-    pub fn news(&self) -> News {
+    pub fn news(&self) -> Update {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         let elapsed_s = self.started.elapsed().as_secs_f64();
         let first_share = told.first_share;
@@ -141,7 +141,7 @@ impl<'a> Watch<'a> {
             let next = told.entries.from + told.entries.cycles.len();
             std::mem::replace(&mut told.entries, Growth { from: next, ..Growth::default() })
         });
-        News { progress, growth, look: told.look.take() }
+        Update { progress, growth, look: told.look.take() }
     }
 
     /// Puts back what could not be told.
@@ -186,7 +186,7 @@ impl Observer for Watch<'_> {
         let cycles = told.progress.map_or(0.0, |progress| progress.cycles);
         let snapshot = Snapshot { cycles, ..snapshot.clone() };
         let paths = told.paths.clone();
-        told.look = Some(Look { snapshot, grid: grid.clone(), cracks: self.cracks.to_vec(), paths });
+        told.look = Some(LivePicture { snapshot, grid: grid.clone(), cracks: self.cracks.to_vec(), paths });
     }
 
     fn may_keep(&self, checkpoint: &dyn Fn() -> Checkpoint) {

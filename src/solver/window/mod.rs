@@ -59,9 +59,9 @@ pub(in crate::solver) trait Whole<const N: usize>: Send {
 }
 
 /// A body alone: multigrid, or a factorisation where that breaks down.
-pub(in crate::solver) struct Alone<const N: usize>(MultigridSolver<N>);
+pub(in crate::solver) struct SingleLattice<const N: usize>(MultigridSolver<N>);
 
-impl<const N: usize> Whole<N> for Alone<N> {
+impl<const N: usize> Whole<N> for SingleLattice<N> {
     const USED: SolverUsed = SolverUsed::Multigrid;
 
     fn set_tolerance(&mut self, tolerance: f64) {
@@ -120,10 +120,10 @@ struct Window {
     springs: usize,
 }
 
-impl<const N: usize> WindowSolver<N, Alone<N>> {
+impl<const N: usize> WindowSolver<N, SingleLattice<N>> {
     /// Starts without a window on a body alone.
     pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
-        WindowSolver::of_whole(Alone(MultigridSolver::for_few_solves(body, bonds, product)), false)
+        WindowSolver::of_whole(SingleLattice(MultigridSolver::for_few_solves(body, bonds, product)), false)
     }
 }
 
@@ -333,7 +333,7 @@ impl Window {
     }
 }
 
-/// By factorisation what iteration did not manage for an error; a plate that gives way is beyond both.
+/// By factorisation what iteration did not manage for an error; a plate that loses its stiffness is beyond both.
 fn factorised<const N: usize>(error: Error, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
     if matches!(error, Error::LossOfStiffness) { Err(error) } else { DirectSolver::default().solve(system, u) }
 }

@@ -26,7 +26,7 @@ pub struct Grown {
     pub broken: Vec<Bond>,
 }
 
-/// Grows the cracks of a case by bonds that age.
+/// Grows the cracks of a case by fatigue bonds.
 ///
 /// # Errors
 /// As [`crate::predict::predict`].
@@ -39,7 +39,7 @@ pub fn grow(case: &Case) -> Result<Grown> {
         }
     };
     let State::Bonds(state) = growth.state() else {
-        return Err(Error::Mechanics(format!("{}: no bonds that age", case.name)));
+        return Err(Error::Mechanics(format!("{}: no fatigue bonds", case.name)));
     };
     let (specimen, model) = (&case.specimen, &case.model);
     let body = Body::build(specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)?;

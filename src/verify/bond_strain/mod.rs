@@ -1,4 +1,4 @@
-//! Bonds that age by their own strain (`driver = "bond_strain"`): lives, paths, resolution.
+//! Fatigue bonds, driven by their own strain (`driver = "bond_strain"`): lives, paths, resolution.
 //!
 //! The rate of such bonds is controlled by the K of their tip, so that lives are those of K; these rows show how well the
 //! controller holds in other specimens, lattices and resolutions, and what the bonds alone decide: where the crack goes and how
@@ -16,25 +16,25 @@ use super::Topic;
 pub(super) const TOPICS: &[Topic] = &[
     Topic {
         name: "bond_strain_standard",
-        about: "ageing bonds: lives of standard specimens whatever p, Poisson's ratio, lattice and horizon ratio",
+        about: "fatigue bonds: lives of standard specimens whatever p, Poisson's ratio, lattice and horizon ratio",
         misses: 0,
         fill: standard::rows,
     },
     Topic {
         name: "bond_strain_spacing",
-        about: "ageing bonds: one A for every spacing and horizon ratio",
+        about: "fatigue bonds: one A for every spacing and horizon ratio",
         misses: 0,
         fill: resolution::spacing,
     },
     Topic {
         name: "bond_strain_clean_cracks",
-        about: "ageing bonds: broken bonds over those that a clean cut severs",
+        about: "fatigue bonds: broken bonds over those that a clean cut severs",
         misses: 0,
         fill: resolution::clean_cracks,
     },
     Topic {
         name: "bond_strain_paths",
-        about: "ageing bonds: kinks, cracks that join or turn into a hole, clean curved cracks",
+        about: "fatigue bonds: kinks, cracks that join or turn into a hole, clean curved cracks",
         misses: 4,
         fill: paths::all,
     },

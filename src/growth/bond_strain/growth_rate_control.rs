@@ -20,13 +20,13 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use super::start::Start;
+use super::precrack::Precrack;
 use crate::body::pre_crack::{bonds_across, places_near};
 use crate::body::severed::{severed_per_length, severed_weight};
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::fatigue::FatigueLaw;
-use crate::fatigue::ageing::AgeingBond;
+use crate::fatigue::ageing::FatigueBond;
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::growth::record::TipRecord;
@@ -76,7 +76,7 @@ const STILL_HORIZONS: f64 = 1e-6;
 const TWINS: f64 = 1e-6;
 
 /// Rates of the tips of a run.
-pub(super) struct Pace {
+pub(super) struct GrowthRateControl {
     law: Box<dyn GrowthLaw>,
     surroundings: RingGeometry,
     specimen: Specimen,
@@ -87,16 +87,16 @@ pub(super) struct Pace {
     /// Maximum load, Pa or N, and stress ratio.
     load: f64,
     ratio: f64,
-    tips: Vec<TipPace>,
+    tips: Vec<TipRateControl>,
     /// Whether cycles count.
     is_counting: bool,
 }
 
 /// What a tip's pace depends on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct TipPace {
+pub(super) struct TipRateControl {
     /// Where the tip has been, in pieces.
-    way: Vec<Point>,
+    path: Vec<Point>,
     /// Growth at the last piece.
     taken_at: f64,
     /// The last readings, the newest at the end; empty where that said nothing.
@@ -104,13 +104,13 @@ pub(super) struct TipPace {
     /// Growth at which a reading was last tried.
     tried_at: Option<f64>,
     /// Length of crack, m, that the life spent since the cut would have made at η = 1.
-    spent: f64,
+    nominal_growth: f64,
     /// Growth and that length over the last [`PAST_HORIZONS`].
     past: VecDeque<[f64; 2]>,
     /// da/dN of its K, m/cycle, where it is known.
     rate: Option<f64>,
     /// Growth by that rate since it was known, less that of the tip, m.
-    behind: f64,
+    growth_deficit: f64,
     /// F, 1/cycle; none while bonds age by their law.
     scale: Option<f64>,
     /// Whether the cycles of its first growth do not count.
@@ -124,18 +124,18 @@ struct Reading {
     length: f64,
 }
 
-impl TipPace {
+impl TipRateControl {
     /// A tip at its cut, grown before N = 0 or not.
     fn of(is_grown_before: bool) -> Self {
-        TipPace {
-            way: Vec::new(),
+        TipRateControl {
+            path: Vec::new(),
             taken_at: 0.0,
             readings: VecDeque::new(),
             tried_at: None,
-            spent: 0.0,
+            nominal_growth: 0.0,
             past: VecDeque::from([[0.0; 2]]),
             rate: None,
-            behind: 0.0,
+            growth_deficit: 0.0,
             scale: None,
             is_grown_before,
         }
@@ -168,15 +168,15 @@ impl TipPace {
     }
 }
 
-impl Pace {
-    pub(super) fn new(case: &Case, start: &Start, body: &Body, law: Box<dyn GrowthLaw>) -> Self {
-        let (specimen, lags) = (&start.specimen, start.lags());
+impl GrowthRateControl {
+    pub(super) fn new(case: &Case, start: &Precrack, body: &Body, law: Box<dyn GrowthLaw>) -> Self {
+        let (specimen, pre_growths) = (&start.specimen, start.pre_growths());
         let count = specimen.tips.len();
         let tip = |tip: usize| {
             let start_of_way = specimen.line_end(tip).is_none().then_some(specimen.tips[tip].position);
-            TipPace { way: start_of_way.into_iter().collect(), ..TipPace::of(lags[tip] > 0.0) }
+            TipRateControl { path: start_of_way.into_iter().collect(), ..TipRateControl::of(pre_growths[tip] > 0.0) }
         };
-        Pace {
+        GrowthRateControl {
             law,
             surroundings: RingGeometry::new(body, specimen, &case.material),
             specimen: specimen.clone(),
@@ -192,7 +192,7 @@ impl Pace {
     /// Whether a tip has grown so far that its K is to be read.
     pub(super) fn is_due(&self, body: &Body, tips: &[CrackTip]) -> bool {
         let step = (READ_HORIZONS - STILL_HORIZONS) * body.horizon();
-        let is_due = |(tip, pace): (&CrackTip, &TipPace)| pace.tried_at.is_none_or(|then| tip.growth >= then + step);
+        let is_due = |(tip, pace): (&CrackTip, &TipRateControl)| pace.tried_at.is_none_or(|then| tip.growth >= then + step);
         tips.iter().zip(&self.tips).filter(|(tip, _)| tip.is_active()).any(is_due)
     }
 
@@ -215,12 +215,12 @@ impl Pace {
                 return None;
             }
             let first = ring(end, 0.0)?;
-            if first.ahead.is_nan() || first.ahead.abs() > AHEAD_HORIZONS * horizon {
+            if first.tip_offset.is_nan() || first.tip_offset.abs() > AHEAD_HORIZONS * horizon {
                 return None;
             }
-            let second = ring(end, first.ahead)?;
+            let second = ring(end, first.tip_offset)?;
             let factors = second.factors;
-            equivalent_factor(factors).is_finite().then_some((factors, first.ahead + second.ahead))
+            equivalent_factor(factors).is_finite().then_some((factors, first.tip_offset + second.tip_offset))
         };
         let mut found: Vec<Option<([f64; 2], f64)>> =
             ends.iter().zip(tips).map(|(end, tip)| end.filter(|_| tip.is_active()).and_then(read)).collect();
@@ -247,9 +247,9 @@ impl Pace {
     fn cracks(&self, body: &Body, records: &[TipRecord]) -> (Vec<CrackLine>, Vec<Option<LineEnd>>) {
         let mut lines = self.lines.clone();
         let least = LAST_PIECE_HORIZONS * body.horizon();
-        let mut end_of = |((pace, record), end): ((&TipPace, &TipRecord), &Option<LineEnd>)| {
+        let mut end_of = |((pace, record), end): ((&TipRateControl, &TipRecord), &Option<LineEnd>)| {
             let here = record.position;
-            let way = pace.way.iter().filter(|at| distance(**at, here) > least).copied();
+            let way = pace.path.iter().filter(|at| distance(**at, here) > least).copied();
             let Some(end) = *end else {
                 // From a slot.
                 let points: Vec<Point> = way.chain([here]).collect();
@@ -273,9 +273,9 @@ impl Pace {
         (lines, ends)
     }
 
-    /// Multiplies the strains of ageing bonds so that every tip grows at the rate of its K. Bonds of a tip that does not grow are left
+    /// Multiplies the strains of fatigue bonds so that every tip grows at the rate of its K. Bonds of a tip that does not grow are left
     /// out.
-    pub(super) fn set(&mut self, body: &Body, tips: &[CrackTip], law: &FatigueLaw, ageing: &mut Vec<AgeingBond>) {
+    pub(super) fn set(&mut self, body: &Body, tips: &[CrackTip], law: &FatigueLaw, ageing: &mut Vec<FatigueBond>) {
         let horizon = body.horizon();
         let lengths = lengths(body, tips, ageing, |strain| strain.powf(ORDER));
         for ((pace, tip), per_scale) in self.tips.iter_mut().zip(tips).zip(lengths) {
@@ -287,7 +287,7 @@ impl Pace {
                 continue;
             }
             if let Some(((_, efficiency), rate)) = known.zip(pace.rate).filter(|_| per_scale > 0.0) {
-                let catch_up = (1.0 + pace.behind / (CATCH_UP_HORIZONS * horizon)).clamp(CATCH_UP.0, CATCH_UP.1);
+                let catch_up = (1.0 + pace.growth_deficit / (CATCH_UP_HORIZONS * horizon)).clamp(CATCH_UP.0, CATCH_UP.1);
                 pace.scale = Some(catch_up * rate / (efficiency * per_scale));
             }
         }
@@ -300,19 +300,19 @@ impl Pace {
     }
 
     /// Takes in the life that bonds spent.
-    pub(super) fn spend(&mut self, body: &Body, tips: &[CrackTip], law: &FatigueLaw, cycles: f64, ageing: &[AgeingBond]) {
+    pub(super) fn spend(&mut self, body: &Body, tips: &[CrackTip], law: &FatigueLaw, cycles: f64, ageing: &[FatigueBond]) {
         let lengths = lengths(body, tips, ageing, |strain| law.a * strain.powf(law.p));
         for (pace, per_cycle) in self.tips.iter_mut().zip(lengths) {
-            pace.spent += cycles * per_cycle;
+            pace.nominal_growth += cycles * per_cycle;
             // Others wait for those that are not at their initial lengths yet.
-            pace.behind += pace.rate.filter(|_| per_cycle > 0.0).map_or(0.0, |rate| cycles * rate);
+            pace.growth_deficit += pace.rate.filter(|_| per_cycle > 0.0).map_or(0.0, |rate| cycles * rate);
         }
     }
 
     /// Lets the growth of tips count from here on: what they were behind before is no matter.
     pub(super) fn begin(&mut self) {
         self.is_counting = true;
-        self.tips.iter_mut().for_each(|tip| tip.behind = 0.0);
+        self.tips.iter_mut().for_each(|tip| tip.growth_deficit = 0.0);
     }
 
     /// Takes in where the tips are.
@@ -321,9 +321,9 @@ impl Pace {
         for ((pace, tip), record) in self.tips.iter_mut().zip(tips).zip(records) {
             if pace.past.back().is_some_and(|last| tip.growth > last[0] + STILL_HORIZONS * horizon) {
                 if pace.rate.is_some() {
-                    pace.behind -= tip.growth - pace.past.back().map_or(0.0, |last| last[0]);
+                    pace.growth_deficit -= tip.growth - pace.past.back().map_or(0.0, |last| last[0]);
                 }
-                pace.past.push_back([tip.growth, pace.spent]);
+                pace.past.push_back([tip.growth, pace.nominal_growth]);
                 let oldest = (tip.growth - PAST_HORIZONS * horizon).max(FRESH_HORIZONS * horizon) - STILL_HORIZONS * horizon;
                 while pace.past.len() > 1 && pace.past[0][0] < oldest {
                     pace.past.pop_front();
@@ -331,17 +331,17 @@ impl Pace {
             }
             if tip.growth >= pace.taken_at + (PIECE_HORIZONS - STILL_HORIZONS) * horizon {
                 pace.taken_at = tip.growth;
-                pace.way.push(record.position);
+                pace.path.push(record.position);
             }
         }
     }
 
-    pub(super) fn state(&self) -> Vec<TipPace> {
+    pub(super) fn state(&self) -> Vec<TipRateControl> {
         self.tips.clone()
     }
 
     /// Goes on from a state of an earlier run; whether it is one of so many tips.
-    pub(super) fn restore(&mut self, state: Vec<TipPace>, is_counting: bool) -> bool {
+    pub(super) fn restore(&mut self, state: Vec<TipRateControl>, is_counting: bool) -> bool {
         let fits = state.len() == self.tips.len() && state.iter().all(|tip| !tip.past.is_empty());
         if fits {
             (self.tips, self.is_counting) = (state, is_counting);
@@ -351,7 +351,7 @@ impl Pace {
 }
 
 /// Length of crack, m, that the bonds of every tip would sever if each counted by the life it spends: `Σ g_k s(ε_k) / ρ(n)`.
-fn lengths(body: &Body, tips: &[CrackTip], ageing: &[AgeingBond], spending: impl Fn(f64) -> f64) -> Vec<f64> {
+fn lengths(body: &Body, tips: &[CrackTip], ageing: &[FatigueBond], spending: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut weights = vec![0.0; tips.len()];
     for bond in ageing {
         if let Some(tip) = owner(body, tips, bond.bond) {

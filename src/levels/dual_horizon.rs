@@ -26,7 +26,7 @@ mod loads;
 pub mod regions;
 mod surface;
 
-use super::{Arrangement, Net, NetBond, PointGrid, Refinement};
+use super::{Discretisation, Net, NetBond, PointGrid, Refinement};
 use crate::body::balanced::load_rows;
 use crate::body::lattice::Lattice;
 use crate::body::obstacles::Obstacles;
@@ -44,7 +44,7 @@ use regions::Area;
 
 /// What points of several levels are asked for.
 #[derive(Debug, Clone, Copy)]
-pub struct Ask<'a> {
+pub struct MultiLevelSpec<'a> {
     /// Plate, its cracks as they are cut.
     pub specimen: &'a Specimen,
     /// The same plate, its cracks as regions around flaws mean them.
@@ -60,7 +60,7 @@ pub struct Ask<'a> {
     /// Angle of the lattice rows against x, rad.
     pub lattice_angle: f64,
     /// With or without the dual horizon.
-    pub arrangement: Arrangement,
+    pub arrangement: Discretisation,
     /// Where finer points lie; `None` leaves the coarsest level everywhere.
     pub refinement: Option<&'a Refinement>,
     /// Whether nothing holds the plate, so that its loads must balance.
@@ -69,7 +69,7 @@ pub struct Ask<'a> {
 
 /// Points of several levels.
 #[derive(Debug, Clone)]
-pub struct Built {
+pub struct MultiLevelMesh {
     /// Points and bonds.
     pub net: Net,
     /// The lattices they stand on.
@@ -84,13 +84,13 @@ pub struct Built {
 ///
 /// # Errors
 /// Wrong input, or choices that do not go together.
-pub fn build(ask: &Ask<'_>) -> Result<Built> {
-    let Ask { specimen, law, arrangement, .. } = *ask;
+pub fn build(ask: &MultiLevelSpec<'_>) -> Result<MultiLevelMesh> {
+    let MultiLevelSpec { specimen, law, arrangement, .. } = *ask;
     if law.kind == BondLawKind::StateBased {
         let problem = format!("has a dilatation of every point, and \"{arrangement}\" joins points by springs only");
         return Err(input("model.bond_law", format!("\"{}\"", law.kind), problem, "use a bond-based or two-parameter law"));
     }
-    if arrangement == Arrangement::VariableHorizon && law.surface_correction == SurfaceCorrection::Balanced {
+    if arrangement == Discretisation::VariableHorizon && law.surface_correction == SurfaceCorrection::Balanced {
         let problem = format!("balances springs that pull both ends, and \"{arrangement}\" has others");
         return Err(input("model.surface_correction", "\"balanced\"", problem, "use \"none\" or \"volume_and_surface\""));
     }
@@ -120,7 +120,7 @@ pub fn build(ask: &Ask<'_>) -> Result<Built> {
         spacings: of_level(|stencil| stencil.spacing),
         horizons: of_level(|stencil| stencil.horizon),
         mutual,
-        owner_only: arrangement == Arrangement::VariableHorizon,
+        owner_only: arrangement == Discretisation::VariableHorizon,
         unknowns: stencils[0].unknowns,
         rotation_length: stencils[0].spacing,
         forces,
@@ -140,7 +140,7 @@ pub fn build(ask: &Ask<'_>) -> Result<Built> {
         }
         SurfaceCorrection::Balanced => balanced::balance(&mut net, specimen, &levels, &stencils, &sharing)?,
     }
-    Ok(Built { net, levels, stencils, loaded })
+    Ok(MultiLevelMesh { net, levels, stencils, loaded })
 }
 
 /// Bonds that cracks cut, ascending.

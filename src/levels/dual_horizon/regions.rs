@@ -1,7 +1,7 @@
 //! Areas of finer points, as a case or a scene asks for them.
 
 use crate::error::{Error, Result, input, input_missing};
-use crate::net::{RefinedRegion, Refinement};
+use crate::levels::{RefinedRegion, Refinement};
 use crate::specimen::geometry::{bounding_box, distance_to_polygon, distance_to_segment, point_in_polygon};
 use crate::specimen::{Point, Specimen};
 

@@ -14,7 +14,7 @@ use crate::body::balanced::{BOUNDS, ROWS_LEAST, ROWS_MORE, asked, gain};
 use crate::body::facets::facets;
 use crate::bond_law::stencil::Stencil;
 use crate::error::{Error, Result};
-use crate::net::Net;
+use crate::levels::Net;
 use crate::specimen::Specimen;
 
 /// A pair of points with its bonds.

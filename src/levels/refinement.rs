@@ -4,7 +4,7 @@ use crate::specimen::Point;
 
 crate::kinds! {
     /// How points lie and reach each other.
-    pub enum Arrangement for "model.discretisation" {
+    pub enum Discretisation for "model.discretisation" {
         Lattice = "lattice": "square lattice of one spacing",
         DualHorizon = "dual_horizon": "points of several levels, each split in four where refinement.regions say, with horizon and dual horizon (Ren et al. 2016)",
         VariableHorizon = "variable_horizon": "the same points without the dual horizon: shows the ghost forces that the dual horizon removes; fracture scenes",

@@ -1,13 +1,13 @@
 //! A plate of several levels whose cracks stay on the finest: the body of the finest points, and everything beside it.
 //!
 //! Bonds break between finest points only. These make up a [`Body`] on their lattice, which knows of the rest as what it is
-//! tied to ([`Beyond`]); loads, supports and stiffness of the whole plate are those of its [`Net`]. Points of the body are named by
+//! tied to ([`CoarseNeighbours`]); loads, supports and stiffness of the whole plate are those of its [`Net`]. Points of the body are named by
 //! their place there, all others by the numbers that follow behind the last place.
 
-use super::dual_horizon::{self, Ask, Built};
+use super::dual_horizon::{self, MultiLevelMesh, MultiLevelSpec};
 use super::equilibrium::FullLoad;
 use super::{Net, NetBond};
-use crate::body::beyond::Beyond;
+use crate::body::beyond::CoarseNeighbours;
 use crate::body::boundary::{Boundary, GRIP_STIFFNESS};
 use crate::body::lattice::Lattice;
 use crate::body::surface_correction::{interior_gain, settled};
@@ -18,7 +18,7 @@ use crate::error::{Error, Result, input_missing};
 use crate::specimen::geometry::{bounding_box, distance_to_segment};
 use crate::specimen::{Point, Specimen, Support};
 
-/// Distance of a tip from the ends of its ageing bonds to the rim of the finest level, in horizons, from which its growth is that
+/// Distance of a tip from the ends of its fatigue bonds to the rim of the finest level, in horizons, from which its growth is that
 /// on fine points everywhere. On a panel refined around its crack (1 to 2 mm, horizon 3 mm, region 15 mm wide) the cycles of every
 /// millimetre were 0.7 to 0.8 % too many up to 1.5 horizons from the rim, and 7 % too many in the next one.
 const CLEAR_HORIZONS: f64 = 1.0;
@@ -35,7 +35,7 @@ const NONE: u32 = u32::MAX;
 
 /// The whole plate beside the body of its finest points.
 #[derive(Debug, Clone)]
-pub struct Levelled {
+pub struct MultiLevelBody {
     /// Points and bonds of all levels.
     pub net: Net,
     /// Loads at unit nominal load, and supports. Clamped grips move one finest spacing, up or down.
@@ -53,13 +53,13 @@ pub struct Levelled {
     turn: f64,
 }
 
-impl Levelled {
+impl MultiLevelBody {
     /// Builds a plate of several levels, and the body of its finest points.
     ///
     /// # Errors
     /// Wrong input, choices that do not go together.
-    pub fn build(ask: &Ask<'_>) -> Result<(Body, Levelled)> {
-        let Built { mut net, levels, mut stencils, loaded } = dual_horizon::build(ask)?;
+    pub fn build(ask: &MultiLevelSpec<'_>) -> Result<(Body, MultiLevelBody)> {
+        let MultiLevelMesh { mut net, levels, mut stencils, loaded } = dual_horizon::build(ask)?;
         let level = levels.lattices.len() - 1;
         let padding = ask.horizon_ratio.floor() as usize;
         let lattice = levels.finest().padded(padding);
@@ -92,7 +92,7 @@ impl Levelled {
             bond_count: 0,
             thickness: ask.specimen.thickness,
             mirror: crate::body::mirror::Mirror::default(),
-            beyond: Beyond::default(),
+            beyond: CoarseNeighbours::default(),
             lattice,
             stencil,
         };
@@ -121,7 +121,7 @@ impl Levelled {
         }
         body.pre_cut = pre_crack::bonds_cut_by(&body, &ask.specimen.cracks);
         let turn = body.lattice.spacing / net.rotation_length;
-        let levelled = Levelled {
+        let levelled = MultiLevelBody {
             full: held.full,
             grip_force: held.grip_force,
             lattice: body.lattice.clone(),
@@ -166,7 +166,7 @@ impl Levelled {
         [x, y, self.turn * u[2]]
     }
 
-    /// The inverse of [`Levelled::to_body`].
+    /// The inverse of [`MultiLevelBody::to_body`].
     #[must_use]
     pub fn to_net(&self, u: [f64; 3]) -> [f64; 3] {
         let [x, y] = self.lattice.from_axes([u[0], u[1]]);
@@ -327,7 +327,7 @@ fn end_blocks<'a>(specimen: &Specimen, net: &'a Net) -> impl Iterator<Item = (u3
 }
 
 /// The pieces of coarser points, and what of the body is tied to them.
-fn beyond(net: &Net, ids: &[u32], places: usize, full: &FullLoad) -> Beyond {
+fn beyond(net: &Net, ids: &[u32], places: usize, full: &FullLoad) -> CoarseNeighbours {
     let is_finest = |point: u32| (ids[point as usize] as usize) < places;
     let mut cut = vec![false; net.bonds.len()];
     net.pre_cut.iter().for_each(|&bond| cut[bond as usize] = true);
@@ -358,5 +358,5 @@ fn beyond(net: &Net, ids: &[u32], places: usize, full: &FullLoad) -> Beyond {
         let (near, far) = if from { (bond.from, bond.to) } else { (bond.to, bond.from) };
         (from != to).then(|| (ids[near as usize], piece_of[far as usize]))
     });
-    Beyond::new(across.collect(), loaded)
+    CoarseNeighbours::new(across.collect(), loaded)
 }

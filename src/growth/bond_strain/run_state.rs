@@ -1,6 +1,6 @@
 //! All that a run carries from block to block. The displacement is not among it: the solver makes it of the bonds.
 
-use super::track::Track;
+use super::history::GrowthHistory;
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::fatigue::crack_tip::CrackTip;
@@ -8,7 +8,7 @@ use crate::fatigue::remaining_life::BondLife;
 use crate::state::Bonds;
 
 /// Where a run stands.
-pub(super) struct Course {
+pub(super) struct RunState {
     /// Which bonds carry.
     pub bonds: Bonds,
     /// What life is left to them.
@@ -18,7 +18,7 @@ pub(super) struct Course {
     /// Bonds that come near the critical stretch, also away from the tips.
     pub near_limit: Vec<Bond>,
     /// The curve so far.
-    pub track: Track,
+    pub track: GrowthHistory,
     /// Bonds broken since the start, those set aside not counted.
     pub broken_bonds: usize,
     /// Equilibrium solves.
@@ -29,13 +29,13 @@ pub(super) struct Course {
     pub had_window: bool,
 }
 
-impl Course {
+impl RunState {
     /// The start of a run with these tips, all bonds but those of the initial cracks whole.
     pub(super) fn start(case: &Case, body: &Body, tips: Vec<CrackTip>) -> Self {
         let bonds = Bonds::new(body);
-        Course {
+        RunState {
             life: BondLife::whole(bonds.multiplier.len()),
-            track: Track::new(case),
+            track: GrowthHistory::new(case),
             near_limit: Vec::new(),
             broken_bonds: 0,
             solves: 0,

@@ -8,15 +8,15 @@
 pub mod dual_horizon;
 pub mod equilibrium;
 pub mod grid;
-pub mod levelled;
+pub mod multi_level_body;
 pub mod read;
 pub mod refinement;
 pub mod rigid;
 pub mod stiffness;
 
-pub use dual_horizon::Ask;
+pub use dual_horizon::MultiLevelSpec;
 pub use grid::PointGrid;
-pub use refinement::{Arrangement, RefinedRegion, Refinement};
+pub use refinement::{Discretisation, RefinedRegion, Refinement};
 
 use rayon::prelude::*;
 

@@ -3,7 +3,7 @@
 use super::levels::{Leaf, Levels};
 use crate::body::obstacles::Obstacles;
 use crate::bond_law::stencil::Stencil;
-use crate::net::{Arrangement, NetBond};
+use crate::levels::{Discretisation, NetBond};
 use crate::specimen::{Point, Specimen};
 
 /// Relative round-off of a distance against a horizon.
@@ -37,12 +37,12 @@ impl<'a> Linking<'a> {
         levels: &'a Levels,
         stencils: &'a [Stencil],
         positions: &'a [Point],
-        arrangement: Arrangement,
+        arrangement: Discretisation,
     ) -> Self {
         let obstacles = stencils.iter().map(|s| Obstacles::of(specimen, s.spacing, s.horizon)).collect();
         let strongest = stencils.iter().map(|s| s.bonds.iter().fold(0.0, |k: f64, bond| k.max(bond.k_n))).collect();
         // Half here, the other half from the dual bond; all of it where there is no dual.
-        let share = if arrangement == Arrangement::VariableHorizon { 1.0 } else { 0.5 };
+        let share = if arrangement == Discretisation::VariableHorizon { 1.0 } else { 0.5 };
         Linking { levels, stencils, positions, obstacles, share, strongest, rotation_length: stencils[0].spacing }
     }
 

@@ -47,8 +47,8 @@ impl Row {
 }
 
 /// All rows of a run so far.
-pub struct Track {
-    past: Past,
+pub struct GrowthHistory {
+    past: History,
     formula: Option<HandbookFormula>,
     /// Crack length at which N = 0.
     origin: f64,
@@ -61,7 +61,7 @@ pub struct Track {
 
 /// What a track has taken down.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct Past {
+pub(super) struct History {
     rows: Vec<Row>,
     cycles: f64,
     /// Row at which cycles began to count.
@@ -70,7 +70,7 @@ pub(super) struct Past {
     longest: f64,
 }
 
-impl Past {
+impl History {
     /// Whether cycles count.
     pub(super) fn is_counting(&self) -> bool {
         self.zero.is_some()
@@ -84,11 +84,11 @@ impl Past {
     }
 }
 
-impl Track {
+impl GrowthHistory {
     /// Nothing is taken down yet.
     pub(super) fn new(case: &Case) -> Self {
-        Track {
-            past: Past::default(),
+        GrowthHistory {
+            past: History::default(),
             formula: handbook(&case.specimen),
             origin: case.specimen.crack_length,
             specimen: case.specimen.clone(),
@@ -101,12 +101,12 @@ impl Track {
     }
 
     /// Goes on from what was taken down before.
-    pub(super) fn go_on_from(&mut self, past: Past) {
+    pub(super) fn go_on_from(&mut self, past: History) {
         self.past = past;
     }
 
     /// What was taken down so far.
-    pub(super) fn past(&self) -> &Past {
+    pub(super) fn past(&self) -> &History {
         &self.past
     }
 

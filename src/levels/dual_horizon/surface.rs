@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::body::lattice::Lattice;
-use crate::net::Net;
+use crate::levels::Net;
 
 /// Energy factors of Madenci and Oterkus (2014, Peridynamic Theory and Its Applications, ch. 4 and 7) on a net.
 ///
