@@ -276,11 +276,3 @@ pub fn nearest_tip(body: &Body, tips: &[CrackTip], bond: Bond) -> Option<usize> 
         })
         .min_by(|&a, &b| distance(tips[a].position, middle).total_cmp(&distance(tips[b].position, middle)))
 }
-
-/// Length of crack that broken bonds near a tip stand for, m.
-#[must_use]
-pub fn severed_length(body: &Body, tip: &CrackTip, broken: &[Bond]) -> f64 {
-    let along = body.lattice.to_axes(tip.direction);
-    let per_length = severed_per_length(body, [-along[1], along[0]]);
-    broken.iter().map(|&bond| severed_weight(body, body.ends(bond).0) / per_length).sum()
-}

@@ -10,6 +10,7 @@ pub mod hand_calculation;
 pub mod plate;
 pub mod record;
 pub mod tip_field;
+mod tip_ring;
 
 use std::sync::Arc;
 

@@ -42,9 +42,6 @@ use crate::state::Bonds;
 use crate::stress_intensity::ring::RingGeometry;
 use step::StepControl;
 
-/// Outer radius of the ring, in horizons, where there is room. On three horizons K is read 0.1 % lower, and first kinks of one crack on
-/// lattices of all directions spread over 0.7° instead of 0.4°.
-const RING_HORIZONS: f64 = 4.0;
 /// Distance from coarser points, in horizons, at which a run ends: the ring, which must not reach them, would be too narrow.
 const RING_HORIZONS_IN_LEVELS: f64 = 1.5;
 /// Length, in horizons, by which cracks are shorter at first, to see how K changes with it; a quarter of a crack at the most.

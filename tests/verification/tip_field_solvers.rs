@@ -53,8 +53,8 @@ const LATTICES: [(&str, &[&str]); 2] = [
         "levels",
         &[
             "model.discretisation=dual_horizon",
-            "model.spacing_mm=4",
-            "refinement.regions=[{box_mm=[[-30,-20],[30,24]],levels=1}]",
+            "model.spacing_mm=3",
+            "refinement.regions=[{box_mm=[[-30,-26],[30,28]],levels=1}]",
         ],
     ),
 ];

@@ -32,11 +32,12 @@ use crate::fatigue::growth_law::GrowthLaw;
 use crate::growth::record::TipRecord;
 use crate::growth::tip_field::steering::equivalent_factor;
 use crate::growth::tip_field::step::is_near_rim;
+use crate::growth::tip_ring::{CORE_HORIZONS, RING_HORIZONS, TipRings, pair_twins};
 use crate::line::line;
 use crate::specimen::geometry::{distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
 use crate::state::Bonds;
-use crate::stress_intensity::ring::{Balanced, RingGeometry};
+use crate::stress_intensity::ring::RingGeometry;
 
 /// Exponent by which strains share out the life spent around a tip. Where the rate is that of K it sets the order of breaks alone: high
 /// ones lock a crack to rows of points (lives on turned lattices were wrong by up to 40 % at p = 6 and ordered by it), 2 spends life
@@ -58,8 +59,6 @@ const CATCH_UP_HORIZONS: f64 = 1.0;
 const CATCH_UP: (f64, f64) = (0.5, 2.0);
 /// Least growth after that which shows it.
 const PAST_LEAST_HORIZONS: f64 = 0.25;
-/// Outer radius of the ring, in horizons, where there is room, and below which it says nothing.
-const RING_HORIZONS: [f64; 2] = [1.2, 4.0];
 /// Length of the pieces, in horizons, in which the way of a tip is taken down.
 const PIECE_HORIZONS: f64 = 0.5;
 /// Least length of the last of them, which shows where the tip heads: on shorter ones the bonds that broke last turn it by degrees.
@@ -68,8 +67,6 @@ const LAST_PIECE_HORIZONS: f64 = 1.0;
 const SHORT_HORIZONS: f64 = 0.25;
 /// How far from the place of a tip its field may stand, in horizons: farther off it is that of something else.
 const AHEAD_HORIZONS: f64 = 0.5;
-/// Distance of a rim ahead, in horizons, within which K is not read.
-const RIM_HORIZONS: f64 = 0.6;
 /// Growth, in horizons, that is none: round-off must not tell mirror twins apart.
 const STILL_HORIZONS: f64 = 1e-6;
 /// Relative difference of K below which tips are mirror twins.
@@ -200,31 +197,36 @@ impl GrowthRateControl {
     pub(super) fn read(&mut self, body: &Body, bonds: &Bonds, displacement: &[f64], tips: &[CrackTip], records: &[TipRecord]) {
         let horizon = body.horizon();
         let (lines, ends) = self.cracks(body, records);
-        let bonds = &sound_bonds(body, bonds, &lines, records, RING_HORIZONS[1] * horizon);
+        let bonds = &sound_bonds(body, bonds, &lines, records, RING_HORIZONS * horizon);
         let active: Vec<LineEnd> = ends.iter().zip(tips).filter(|(_, tip)| tip.is_active()).filter_map(|(end, _)| *end).collect();
-        let ring = |end: LineEnd, by: f64| {
-            let mut lines = lines.clone();
-            lines[end.line].stretch(end.at_last, by);
-            let radius = self.surroundings.radius(body, &lines, end, &active, RING_HORIZONS[1] * horizon);
-            let radius = body.rim_distance(lines[end.line].end(end.at_last), radius).unwrap_or(radius);
-            let plate = Balanced { body, bonds, displacement, load: self.load, lines: &lines };
-            (radius >= RING_HORIZONS[0] * horizon).then(|| self.surroundings.factors(plate, end, radius))
+        let rings = TipRings {
+            body,
+            bonds,
+            displacement,
+            load: self.load,
+            geometry: &self.surroundings,
+            lines: &lines,
+            active: &active,
         };
         let read = |end: LineEnd| {
-            if is_near_rim(&self.specimen, &lines, end, RIM_HORIZONS * horizon) {
+            if is_near_rim(&self.specimen, &lines, end, CORE_HORIZONS * horizon) {
                 return None;
             }
-            let first = ring(end, 0.0)?;
+            let first = rings.read(end, 0.0, false)?;
             if first.tip_offset.is_nan() || first.tip_offset.abs() > AHEAD_HORIZONS * horizon {
                 return None;
             }
-            let second = ring(end, first.tip_offset)?;
-            let factors = second.factors;
-            equivalent_factor(factors).is_finite().then_some((factors, first.tip_offset + second.tip_offset))
+            let second = rings.read(end, first.tip_offset, false)?;
+            let is_known = equivalent_factor(second.factors).is_finite();
+            is_known.then_some((second.factors, first.tip_offset + second.tip_offset))
         };
         let mut found: Vec<Option<([f64; 2], f64)>> =
             ends.iter().zip(tips).map(|(end, tip)| end.filter(|_| tip.is_active()).and_then(read)).collect();
-        pair_twins(&mut found);
+        let mut factors: Vec<Option<[f64; 2]>> = found.iter().map(|found| found.map(|(factors, _)| factors)).collect();
+        for (twin, first) in pair_twins(&mut factors, TWINS) {
+            // The offset is the same as well.
+            found[twin] = factors[twin].zip(found[first].map(|(_, offset)| offset));
+        }
         for ((pace, tip), found) in self.tips.iter_mut().zip(tips).zip(found) {
             if !tip.is_active() {
                 continue;
@@ -400,19 +402,4 @@ fn sound_bonds(body: &Body, bonds: &Bonds, lines: &[CrackLine], records: &[TipRe
         .collect();
     loose.into_iter().flatten().for_each(|bond| sound.cut(body, bond));
     sound
-}
-
-/// Gives tips whose K agree but for round-off and sign the same K and the same lead: mirror twins stay twins.
-fn pair_twins(found: &mut [Option<([f64; 2], f64)>]) {
-    for i in 1..found.len() {
-        for j in 0..i {
-            let (Some((here, _)), Some((there, ahead))) = (found[i], found[j]) else { continue };
-            let size = there[0].abs().max(there[1].abs());
-            let equal = |mode: usize| (here[mode].abs() - there[mode].abs()).abs() <= TWINS * size;
-            if equal(0) && equal(1) {
-                found[i] = Some(([0, 1].map(|mode| there[mode].abs().copysign(here[mode])), ahead));
-                break;
-            }
-        }
-    }
 }

@@ -6,22 +6,17 @@ use serde::{Deserialize, Serialize};
 use super::coalescence::GAP_HORIZONS;
 use super::steering::equivalent_factor;
 use super::step::is_near_rim;
-use super::{PROBE_HORIZONS, RING_HORIZONS, Tip, TipField};
+use super::{PROBE_HORIZONS, Tip, TipField};
 use crate::body::severed::represented_excess;
 use crate::fatigue::crack_tip::TipState;
+use crate::growth::tip_ring::{CORE_HORIZONS, RING_HORIZONS, RING_HORIZONS_MIN, TipRings, pair_twins};
 use crate::specimen::geometry::{direction, distance};
 use crate::specimen::{CrackLine, LineEnd, Point};
-use crate::stress_intensity::ring::Balanced;
 use crate::units::MM;
 
-/// Outer radius below which a ring says nothing, in horizons.
-const RING_HORIZONS_MIN: f64 = 1.2;
 /// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.05 to 0.09 at ν = 0.3, 0.04 at ν = 0.1,
 /// whatever the spacing.
 const AHEAD_HORIZONS: f64 = 0.15;
-/// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate: K is held where it
-/// is read to fall.
-const CORE_HORIZONS: f64 = 0.6;
 /// Growth after a corner, in horizons, below which points do not resolve the kink: K would be read up to 5 % low.
 const KINK_HORIZONS: f64 = 0.5;
 /// Relative difference within which factors are those of mirror twins: far above what solver and tie breaks make of equal ones, far
@@ -82,30 +77,29 @@ impl TipField<'_> {
         let horizon = body.horizon();
         let tips: Vec<&Tip> = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).collect();
         let active: Vec<LineEnd> = tips.iter().map(|tip| tip.end).collect();
-        let (bonds, displacement, surroundings) = (&self.bonds, &*self.displacement, &self.surroundings);
-        let load = self.case.loading.maximum;
+        let rings = TipRings {
+            body,
+            bonds: &self.bonds,
+            displacement: &self.displacement,
+            load: self.case.loading.maximum,
+            geometry: &self.surroundings,
+            lines,
+            active: &active,
+        };
         let read = |tip: &&Tip| {
             let end = tip.end;
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
-            let clear_of = lines[end.line].end(end.at_last);
-            let ring = |excess: f64| {
-                let mut lines = lines.to_vec();
-                lines[end.line].stretch(end.at_last, excess);
-                let plate = Balanced { body, bonds, displacement, load, lines: &lines };
-                let radius = surroundings.radius(body, &lines, end, &active, RING_HORIZONS * horizon);
-                let clear = body.rim_distance(clear_of, radius).unwrap_or(radius);
-                surroundings.factors(plate, end, clear.max(RING_HORIZONS_MIN * horizon))
-            };
-            // Around the place to which the cut bonds reach, the field shows where its tip is; around that, its factors. About another
-            // place by x the term r^{3/2} of the field counts, too: K of a short central crack is read low by 3x/8a.
-            let first = ring(excess);
+            let first = rings.read(end, excess, true)?;
             // Beside a rim what is read as a shift may be something else.
             let ahead = if first.tip_offset.abs() < AHEAD_HORIZONS * horizon { first.tip_offset } else { 0.0 };
-            let ring = if ahead == 0.0 { first } else { ring(excess + ahead) };
-            Reading { factors: ring.factors, t_stress: ring.t_stress, length_offset: excess + ahead }
+            let ring = if ahead == 0.0 { first } else { rings.read(end, excess + ahead, true)? };
+            Some(Reading { factors: ring.factors, t_stress: ring.t_stress, length_offset: excess + ahead })
         };
-        let mut readings: Vec<Reading> = tips.par_iter().map(read).collect();
-        pair_twins(&mut readings);
+        // Every ring must be read, so that none is missing.
+        let mut readings: Vec<Reading> = tips.par_iter().filter_map(read).collect();
+        let mut factors: Vec<Option<[f64; 2]>> = readings.iter().map(|reading| Some(reading.factors)).collect();
+        pair_twins(&mut factors, ROUND_OFF);
+        readings.iter_mut().zip(factors).for_each(|(reading, factors)| reading.factors = factors.unwrap_or(reading.factors));
         readings
     }
 
@@ -191,21 +185,6 @@ impl TipField<'_> {
                 tip.factors = factors;
             }
             tip.rate = self.law.rate(tip.equivalent(), self.case.loading.ratio);
-        }
-    }
-}
-
-/// Gives tips whose factors agree but for round-off and sign the same factors: mirror twins stay twins.
-fn pair_twins(readings: &mut [Reading]) {
-    for i in 1..readings.len() {
-        for j in 0..i {
-            let (here, there) = (readings[i].factors, readings[j].factors);
-            let size = there[0].abs().max(there[1].abs());
-            let equal = |mode: usize| (here[mode].abs() - there[mode].abs()).abs() <= ROUND_OFF * size;
-            if equal(0) && equal(1) {
-                readings[i].factors = [0, 1].map(|mode| there[mode].abs().copysign(here[mode]));
-                break;
-            }
         }
     }
 }

@@ -1,0 +1,64 @@
+//! K_I, K_II and T of a tip off a ring around it, for every driver.
+//!
+//! Around the place to which the cut bonds reach, the field shows where it has its tip; around that place its factors are read. About
+//! another place by x the term r^{3/2} of the field counts, too: K of a short central crack is read low by 3x/8a.
+
+use crate::body::Body;
+use crate::specimen::{CrackLine, LineEnd};
+use crate::state::Bonds;
+use crate::stress_intensity::ring::{Balanced, RingFactors, RingGeometry};
+
+/// Outer radius of the ring, in horizons, where there is room. On three horizons K is read 0.1 % lower, and first kinks of one crack on
+/// lattices of all directions spread over 0.7° instead of 0.4°.
+pub(super) const RING_HORIZONS: f64 = 4.0;
+/// Outer radius below which a ring says nothing, in horizons.
+pub(super) const RING_HORIZONS_MIN: f64 = 1.2;
+/// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate.
+pub(super) const CORE_HORIZONS: f64 = 0.6;
+
+/// A plate in equilibrium with what rings of its tips need.
+pub(super) struct TipRings<'a> {
+    pub body: &'a Body,
+    pub bonds: &'a Bonds,
+    pub displacement: &'a [f64],
+    /// Maximum load, Pa or N.
+    pub load: f64,
+    pub geometry: &'a RingGeometry,
+    pub lines: &'a [CrackLine],
+    /// Tips that have not ended: rings do not reach them.
+    pub active: &'a [LineEnd],
+}
+
+impl TipRings<'_> {
+    /// The field around the end of a crack whose line is longer by `offset`, m; `None` where there is no room for a ring, unless it
+    /// `must` be read.
+    pub(super) fn read(&self, end: LineEnd, offset: f64, must: bool) -> Option<RingFactors> {
+        let TipRings { body, bonds, displacement, load, geometry, active, .. } = *self;
+        let least = RING_HORIZONS_MIN * body.horizon();
+        let mut lines = self.lines.to_vec();
+        lines[end.line].stretch(end.at_last, offset);
+        let radius = geometry.radius(body, &lines, end, active, RING_HORIZONS * body.horizon());
+        let radius = body.rim_distance(self.lines[end.line].end(end.at_last), radius).unwrap_or(radius);
+        let plate = Balanced { body, bonds, displacement, load, lines: &lines };
+        (must || radius >= least).then(|| geometry.factors(plate, end, radius.max(least)))
+    }
+}
+
+/// Pairs of tips, the later first, whose factors agree within a relative `tolerance` but for their signs: mirror twins, which get the
+/// same factors so that they stay twins.
+pub(super) fn pair_twins(factors: &mut [Option<[f64; 2]>], tolerance: f64) -> Vec<(usize, usize)> {
+    let mut pairs = Vec::new();
+    for i in 1..factors.len() {
+        for j in 0..i {
+            let (Some(here), Some(there)) = (factors[i], factors[j]) else { continue };
+            let size = there[0].abs().max(there[1].abs());
+            let is_equal = |mode: usize| (here[mode].abs() - there[mode].abs()).abs() <= tolerance * size;
+            if is_equal(0) && is_equal(1) {
+                factors[i] = Some([0, 1].map(|mode| there[mode].abs().copysign(here[mode])));
+                pairs.push((i, j));
+                break;
+            }
+        }
+    }
+    pairs
+}
