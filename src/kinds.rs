@@ -1,5 +1,9 @@
 //! One macro for the choices an input file can make: a list of kinds gives the enum, its input names,
 //! the messages for unknown names and the lines of `perilife list`.
+//!
+//! To add a kind (a specimen, bond law, solver, growth law): a new file `src/<room>/<name>.rs`, its `mod`, and its name and meaning in the
+//! list of kinds, after which the compiler names every `match` that must know it. Input check, `perilife list` and the tests that
+//! loop over kinds find it by themselves.
 
 /// One line of `perilife list`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

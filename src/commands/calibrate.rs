@@ -21,6 +21,10 @@ use crate::report::output::OutputFolder;
 
 /// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_long_help = "DIR holds the law (fitted.toml, for fatigue.fitted), fit.json, tables of curve, band and specimens, and charts.\n\
+                       How to fit your own material: calibration/README.md of the source."
+)]
 pub struct Args {
     /// Calibration file
     #[arg(value_name = "CALIBRATION.toml")]

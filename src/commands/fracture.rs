@@ -13,6 +13,12 @@ use crate::units::{KN, MM};
 
 /// Arguments of `perilife fracture`.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_long_help = "Loads: traction, displacement, velocity or platens. [damage]: critical stretch, critical energy, softening or principal stress.\n\
+                       A growing load is followed along the path of equilibrium through snap-back (model.solver = \"secant\"), by relaxation to rest, or\n\
+                       with loading.iterations_per_step as many published examples are, which is not at rest.\n\
+                       Scenes of the literature: data/cases/fracture of the source."
+)]
 pub struct Args {
     /// Scene file
     #[arg(value_name = "CASE.toml")]

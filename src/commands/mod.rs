@@ -96,6 +96,8 @@ commands! {
     arg_required_else_help = true,
     after_help = "Units: mm, MPa, GPa, N, MPa√m, mm/cycle; every key and column carries its own.\n\
                   Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble.\n\
+                  A run that ends for a mechanical reason after its crack has grown is done: stop_reason says why it stopped.\n\
+                  An output folder appears when it is whole, and replaces only one that this program made (it holds .perilife).\n\
                   `perilife <COMMAND> --help` explains a command."
 )]
 pub struct CommandLine {

@@ -18,6 +18,10 @@ use crate::units::MM;
 
 /// Arguments of `perilife predict`.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_long_help = "DIR holds the curve (a_n.csv), the path of every tip (crack_path.csv), result.json, charts, pictures and paraview/run.pvd.\n\
+                       A run that was killed goes on from its checkpoint to the same curve, bit for bit on the same kind of processor."
+)]
 pub struct Args {
     /// Case file
     #[arg(value_name = "CASE.toml")]

@@ -11,6 +11,12 @@ use crate::service::{Settings, serve};
 
 /// Arguments of `perilife serve`.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_long_help = "Page: / with drawings, fits, runs as they go on and remaining life. Interface: /docs, for programs /openapi.json. A script submits by\n  curl -H \"content-type: application/toml\" --data-binary @case.toml localhost:8080/v1/predictions\n\
+                       and asks /v1/predictions/ID/remaining?crack_length_mm=20&factor=3 for the cycles that are left and the inspection interval.\n\
+                       Watching: /healthz, /metrics for Prometheus, the log by -v or RUST_LOG.\n\
+                       Without tokens it answers this machine alone. To let others in: perilife token add, --listen, and a proxy with TLS before it."
+)]
 pub struct Args {
     /// Address; beyond this machine it needs tokens (`perilife token`) and a proxy that adds TLS
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", help_heading = "Service")]

@@ -26,6 +26,11 @@ const NAMED: usize = 5;
 
 /// Arguments of `perilife sweep`.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_long_help = "Designs: a grid over any keys, latin_hypercube over distributions, or fitted_scatter: laws that scatter as the specimens of a\n\
+                       calibration did, or within the errors of one fit. Examples: data/sweeps of the source.\n\
+                       DIR holds sweep.csv with a row for every case, sweep.json with quantiles of life, life.svg, and the files of each in cases/."
+)]
 pub struct Args {
     /// Sweep file
     #[arg(value_name = "SWEEP.toml")]

@@ -51,8 +51,8 @@ crate::kinds! {
 crate::kinds! {
     /// What sets how fast a crack grows whose bonds age.
     pub enum GrowthRate for "fatigue.growth_rate" {
-        StressIntensity = "stress_intensity": "K of the tip, by the interaction integral: the strains around it are scaled so that its bonds break at that rate",
-        BondStrain = "bond_strain": "the strains of its bonds as computed, which depend on lattice, horizon and Poisson's ratio",
+        StressIntensity = "stress_intensity": "K of the tip, by the interaction integral: its bonds lose life by F ε², with the one F that makes it grow at that rate",
+        BondStrain = "bond_strain": "dλ/dN = -A ε^p by the strains of its bonds as computed, which depend on lattice, horizon and Poisson's ratio",
     }
 }
 

@@ -6,7 +6,12 @@
 //!
 //! A job is accepted once it is committed, claimed by one worker at a time (a number that grows with every claim fences off one
 //! that was taken for dead and is not), kept alive by signs of life, taken up from its last checkpoint wherever its worker died,
-//! and finished once, together with its files, in one transaction.
+//! and finished once, together with its files, in one transaction. After a crash a prediction goes on to the same curve, bit for bit on
+//! the same kind of processor; a calibration, which takes seconds, begins anew. The same `Idempotency-Key` makes no second job while
+//! the first is kept. A database that is gone or a disk that is full is a 503 until it is back.
+//!
+//! Owners of tokens take turns, so that nobody's thousand jobs keep the others waiting. Of tokens only hashes are kept; bodies, files,
+//! points, waiting jobs and requests a second are limited, and files go out in parts, so that readers who do not read cost little.
 
 pub mod api;
 pub mod job;
