@@ -208,7 +208,7 @@ impl Interaction for Correspondence<'_> {
         2
     }
 
-    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
+    fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
         self.shape.follow(self.net, &self.neighbours, bonds);
         self.deform(u);
         let mut reaction = Reaction { strain: self.push(u, force), ..Reaction::default() };

@@ -120,7 +120,7 @@ impl Run<'_> {
         let mut work = self.kinetic(&motion.v);
         let mut fracture = 0.0;
         let mut largest: f64 = 0.0;
-        interaction.react(&motion.u, bonds, Damaging::Frozen, &mut motion.force);
+        interaction.internal_force(&motion.u, bonds, Damaging::Frozen, &mut motion.force);
         let stride = self.steps.div_ceil(ROWS).max(1);
         let mut end = SceneEnd::Done;
         for step in 1..=self.steps {
@@ -140,7 +140,7 @@ impl Run<'_> {
                 .collect();
             let pushed = self.pushed(&pushes, &motion.v, [before, time]);
             interaction.load_at(time);
-            let reaction = interaction.react(&motion.u, bonds, Damaging::Allowed, &mut motion.force);
+            let reaction = interaction.internal_force(&motion.u, bonds, Damaging::Allowed, &mut motion.force);
             push_at(&pushes, time, &mut external);
             self.kick(&mut motion, &external);
             for ((i, held), moved) in held.iter().zip(&moved) {

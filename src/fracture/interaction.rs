@@ -58,7 +58,7 @@ pub trait Interaction: Send {
     }
 
     /// Writes the internal forces -dW/du at displacement `u` into `force`, after damage by `u` where that is allowed.
-    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction;
+    fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction;
 
     /// Upper bound of the largest eigenvalue of every point's rows of the stiffness (Gershgorin), N/m, for displacements and, with
     /// three unknowns, for the rotation: what density and time step of explicit motion follow from.

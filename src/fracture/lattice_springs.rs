@@ -371,7 +371,7 @@ impl Interaction for LatticeSprings<'_> {
         2
     }
 
-    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
+    fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
         std::mem::swap(&mut self.u, &mut self.last);
         self.spread(u);
         let limit = if damaging == Damaging::Allowed { self.limit } else { Limit::Never };

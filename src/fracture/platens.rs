@@ -138,8 +138,8 @@ impl Interaction for Pressed<'_> {
         self.inner.unknowns()
     }
 
-    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
-        let mut reaction = self.inner.react(u, bonds, damaging, force);
+    fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
+        let mut reaction = self.inner.internal_force(u, bonds, damaging, force);
         let unknowns = self.inner.unknowns();
         let (mut load, mut rate, mut work, mut penetration) = (0.0, 0.0, self.driven.work, 0.0_f64);
         for ((platen, &way), last) in self.platens.iter().zip(&self.ways).zip(&mut self.last) {

@@ -42,7 +42,7 @@ impl<'n> Springs<'n> {
             let length = (y[0] * y[0] + y[1] * y[1]).sqrt();
             return (length - bond.length, 0.0, [y[0] / length, y[1] / length]);
         }
-        let [e_n, e_t] = bond.opening::<N>(u);
+        let [e_n, e_t] = bond.deformation::<N>(u);
         (e_n, e_t, n)
     }
 
@@ -56,7 +56,7 @@ impl<'n> Springs<'n> {
     }
 
     /// Forces of the bonds `first..` of one task.
-    fn pull<const FINITE: bool, const N: usize>(&self, u: &[f64], damaging: Damaging, task: Task<'_>) -> Reaction {
+    fn forces<const FINITE: bool, const N: usize>(&self, u: &[f64], damaging: Damaging, task: Task<'_>) -> Reaction {
         let mut reaction = Reaction::default();
         let bonds = &self.net.bonds[task.first..task.first + task.pulls.len()];
         for (i, bond) in bonds.iter().enumerate() {
@@ -92,7 +92,7 @@ impl<'n> Springs<'n> {
             let share = task.share[i];
             reaction.strain += share * energy;
             let (normal, tangential) = (share * bond.k_n * e_n, share * bond.k_t * e_t);
-            task.pulls[i] = bond.pull::<N>(n, normal, tangential);
+            task.pulls[i] = bond.force::<N>(n, normal, tangential);
         }
         reaction
     }
@@ -106,7 +106,7 @@ impl<'n> Springs<'n> {
             .zip(bonds.may_fail.par_chunks(TASK))
             .enumerate()
             .map(|(i, (((pulls, share), peak), may_fail))| Task { first: i * TASK, pulls, share, peak, may_fail });
-        let parts: Vec<Reaction> = tasks.map(|task| self.pull::<FINITE, N>(u, damaging, task)).collect();
+        let parts: Vec<Reaction> = tasks.map(|task| self.forces::<FINITE, N>(u, damaging, task)).collect();
         self.pulls = pulls;
         parts.into_iter().fold(Reaction::default(), Reaction::and)
     }
@@ -139,7 +139,7 @@ impl Interaction for Springs<'_> {
         self.net.unknowns
     }
 
-    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
+    fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
         let reaction = match (self.finite, self.net.unknowns) {
             (true, _) => {
                 let reaction = self.pull_all::<true, 2>(u, bonds, damaging);

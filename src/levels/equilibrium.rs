@@ -73,11 +73,11 @@ impl FullLoad {
 }
 
 /// Springs that the iteration works on.
-pub trait Pull {
+pub trait InternalForce {
     /// Share of its stiffness that every bond has.
     fn share(&self) -> &[f64];
     /// Forces of the bonds on the points at a displacement, N, and the strain energy, J.
-    fn pull(&mut self, u: &[f64], force: &mut [f64]) -> f64;
+    fn internal_force(&mut self, u: &[f64], force: &mut [f64]) -> f64;
 }
 
 /// Solver with its factor.
@@ -142,7 +142,7 @@ impl Equilibrium {
         &mut self,
         net: &Net,
         full: &FullLoad,
-        springs: &mut dyn Pull,
+        springs: &mut dyn InternalForce,
         shape: &mut Shape,
         tolerance: f64,
     ) -> Result<usize> {
@@ -171,10 +171,10 @@ impl Equilibrium {
     }
 
     /// Iterations to the tolerance, or `None` without it.
-    fn iterate(&mut self, full: &FullLoad, springs: &mut dyn Pull, shape: &mut Shape, tolerance: f64) -> Option<usize> {
+    fn iterate(&mut self, full: &FullLoad, springs: &mut dyn InternalForce, shape: &mut Shape, tolerance: f64) -> Option<usize> {
         let [mut r, mut z, mut p, mut q] = std::mem::take(&mut self.vectors);
         p.fill(0.0);
-        shape.strain = springs.pull(&shape.u, &mut shape.force);
+        shape.strain = springs.internal_force(&shape.u, &mut shape.force);
         let residual = |force: &[f64], r: &mut [f64]| {
             for (i, r) in r.iter_mut().enumerate() {
                 *r = if full.held[i] { 0.0 } else { force[i] + full.external[i] };
@@ -194,7 +194,7 @@ impl Equilibrium {
             let beta = last.map_or(0.0, |last: f64| rz / last);
             last = Some(rz);
             p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + beta * *p);
-            springs.pull(&p, &mut q);
+            springs.internal_force(&p, &mut q);
             // The force is -K p; held rows play no part.
             let curvature = -dot(&p, &q);
             if curvature.is_nan() || curvature <= 0.0 {
@@ -208,7 +208,7 @@ impl Equilibrium {
             self.spent.iterations += 1;
         }
         if found.is_some_and(|iterations| iterations > 0) {
-            shape.strain = springs.pull(&shape.u, &mut shape.force);
+            shape.strain = springs.internal_force(&shape.u, &mut shape.force);
         }
         self.vectors = [r, z, p, q];
         found

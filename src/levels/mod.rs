@@ -55,7 +55,7 @@ impl NetBond {
     /// Relative displacement of its ends along and across it, `η·n` and `η·t - r (θ + θ')`, m, with N unknowns a point.
     #[inline(always)]
     #[must_use]
-    pub fn opening<const N: usize>(&self, u: &[f64]) -> [f64; 2] {
+    pub fn deformation<const N: usize>(&self, u: &[f64]) -> [f64; 2] {
         let (a, b) = (self.from as usize * N, self.to as usize * N);
         let (eta, n) = ([u[b] - u[a], u[b + 1] - u[a + 1]], self.normal);
         let across = eta[1] * n[0] - eta[0] * n[1];
@@ -66,7 +66,7 @@ impl NetBond {
     /// Force on the owner of a bond that pulls so hard along `n` and across it, and the couple on both ends with three unknowns, N.
     #[inline(always)]
     #[must_use]
-    pub fn pull<const N: usize>(&self, n: Point, normal: f64, tangential: f64) -> [f64; 3] {
+    pub fn force<const N: usize>(&self, n: Point, normal: f64, tangential: f64) -> [f64; 3] {
         let couple = if N == 3 { tangential * self.lever } else { 0.0 };
         [normal * n[0] - tangential * n[1], normal * n[1] + tangential * n[0], couple]
     }

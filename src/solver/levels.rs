@@ -15,7 +15,7 @@ use super::{Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::Result;
 use crate::levels::Net;
-use crate::levels::equilibrium::{Equilibrium, FullLoad, Pull, Shape};
+use crate::levels::equilibrium::{Equilibrium, FullLoad, InternalForce, Shape};
 use crate::levels::multi_level_body::MultiLevelBody;
 use crate::specimen::geometry::bounding_box;
 use crate::state::Bonds;
@@ -42,22 +42,22 @@ struct NetSprings<const N: usize> {
     pulls: Vec<[f64; 3]>,
 }
 
-impl<const N: usize> Pull for NetSprings<N> {
+impl<const N: usize> InternalForce for NetSprings<N> {
     fn share(&self) -> &[f64] {
         &self.share
     }
 
-    fn pull(&mut self, u: &[f64], force: &mut [f64]) -> f64 {
+    fn internal_force(&mut self, u: &[f64], force: &mut [f64]) -> f64 {
         let net = &self.plate.net;
         let tasks = self.pulls.par_chunks_mut(TASK).zip(self.share.par_chunks(TASK)).zip(net.bonds.par_chunks(TASK));
         let energies: Vec<f64> = tasks
             .map(|((pulls, shares), bonds)| {
                 let mut energy = 0.0;
                 for ((pull, share), bond) in pulls.iter_mut().zip(shares).zip(bonds) {
-                    let [e_n, e_t] = bond.opening::<N>(u);
+                    let [e_n, e_t] = bond.deformation::<N>(u);
                     let (normal, tangential) = (share * bond.k_n * e_n, share * bond.k_t * e_t);
                     energy += 0.5 * (normal * e_n + tangential * e_t);
-                    *pull = bond.pull::<N>(bond.normal, normal, tangential);
+                    *pull = bond.force::<N>(bond.normal, normal, tangential);
                 }
                 energy
             })

@@ -103,7 +103,7 @@ pub fn elastic(control: (ZeroEnergyControl, f64), spacing: f64, travel: f64) -> 
     let driven = pressed.driven().unwrap_or_default();
     // The law alone shows the forces that the platens balance, and the stresses.
     let (mut law, mut force) = (law()?, vec![0.0; size]);
-    law.react(&u, &mut bonds, Damaging::Frozen, &mut force);
+    law.internal_force(&u, &mut bonds, Damaging::Frozen, &mut force);
     let from_centre = |&i: &usize| net.positions[i][0].hypot(net.positions[i][1]);
     let centre = (0..net.len()).min_by(|a, b| from_centre(a).total_cmp(&from_centre(b))).unwrap_or(0);
     let stress = law.stresses().nth(centre).unwrap_or_default();

@@ -87,7 +87,7 @@ fn boxed(law: BondLaw, [low, high]: [Point; 2], levels: usize) -> Scene {
 pub fn forces(net: &Net, u: &[f64]) -> Vec<f64> {
     let mut bonds = BondState::new(net, &vec![false; net.len()]);
     let mut force = vec![0.0; u.len()];
-    Springs::new(net, Failure::Never, false).react(u, &mut bonds, Damaging::Frozen, &mut force);
+    Springs::new(net, Failure::Never, false).internal_force(u, &mut bonds, Damaging::Frozen, &mut force);
     force
 }
 

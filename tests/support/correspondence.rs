@@ -64,7 +64,7 @@ pub fn field(net: &Net, u: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<f64> {
 /// Forces at a displacement, bonds as they are.
 pub fn forces(law: &mut Correspondence<'_>, bonds: &mut BondState, u: &[f64]) -> (Vec<f64>, Reaction) {
     let mut force = vec![0.0; u.len()];
-    let reaction = law.react(u, bonds, Damaging::Frozen, &mut force);
+    let reaction = law.internal_force(u, bonds, Damaging::Frozen, &mut force);
     (force, reaction)
 }
 

@@ -55,8 +55,8 @@ fn lattice_kernel_gives_what_the_list_gives() {
             let (mut f, mut g) = (vec![0.0; u.len()], vec![0.0; u.len()]);
             let what = format!("{kind} {failure:.0?} finite {finite} angle {angle}").chars().take(90).collect::<String>();
             for damaging in [Damaging::Frozen, Damaging::Allowed, Damaging::Allowed] {
-                let of_list = list.react(&u, &mut a, damaging, &mut f);
-                let of_lattice = fast.react(&u, &mut b, damaging, &mut g);
+                let of_list = list.internal_force(&u, &mut a, damaging, &mut f);
+                let of_lattice = fast.internal_force(&u, &mut b, damaging, &mut g);
                 assert_eq!(of_list.broken, of_lattice.broken, "{what}");
                 assert!((of_list.strain / of_lattice.strain - 1.0).abs() < 1e-12, "{what}");
                 assert!((of_list.released - of_lattice.released).abs() <= 1e-12 * of_list.strain, "{what}");

@@ -88,8 +88,8 @@ impl Interaction for Understated<'_> {
         self.0.unknowns()
     }
 
-    fn react(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
-        self.0.react(u, bonds, damaging, force)
+    fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
+        self.0.internal_force(u, bonds, damaging, force)
     }
 
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {

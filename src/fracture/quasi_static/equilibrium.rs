@@ -7,7 +7,7 @@ use super::super::springs::Springs;
 use crate::error::Result;
 use crate::levels::Net;
 pub use crate::levels::equilibrium::Shape;
-use crate::levels::equilibrium::{self, FullLoad, Pull, Spent};
+use crate::levels::equilibrium::{self, FullLoad, InternalForce, Spent};
 
 /// Residual over load at which a solve ends: damage of mirror twins shall agree to 1e-9.
 const TOLERANCE: f64 = 1e-10;
@@ -26,13 +26,13 @@ struct Frozen<'a, 'n> {
     bonds: &'a mut BondState,
 }
 
-impl Pull for Frozen<'_, '_> {
+impl InternalForce for Frozen<'_, '_> {
     fn share(&self) -> &[f64] {
         &self.bonds.share
     }
 
-    fn pull(&mut self, u: &[f64], force: &mut [f64]) -> f64 {
-        self.springs.react(u, self.bonds, Damaging::Frozen, force).strain
+    fn internal_force(&mut self, u: &[f64], force: &mut [f64]) -> f64 {
+        self.springs.internal_force(u, self.bonds, Damaging::Frozen, force).strain
     }
 }
 

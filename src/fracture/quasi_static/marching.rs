@@ -62,7 +62,7 @@ impl March<'_> {
             let external: Vec<f64> = full.external.iter().map(|force| level * force).collect();
             let loads = Loads { held: &full.held, external: &external };
             for _ in 0..self.iterations {
-                let reaction = interaction.react(&u, bonds, Damaging::Allowed, &mut force);
+                let reaction = interaction.internal_force(&u, bonds, Damaging::Allowed, &mut force);
                 account.fracture += reaction.released;
                 recorder.log.broke(step, reaction.broken);
                 account.go(State::new(full, level, &u, &force, reaction.strain));

@@ -130,7 +130,7 @@ impl Relaxation {
             if self.breaking != Breaking::AtRest || rested.end != RestEnd::AtRest {
                 return rested;
             }
-            let damage = interaction.react(u, bonds, Damaging::Allowed, &mut rested.force);
+            let damage = interaction.internal_force(u, bonds, Damaging::Allowed, &mut rested.force);
             rested.evaluations += 1;
             rested.add(damage);
             if damage.broken == 0 && damage.damaged <= self.quiet {
@@ -161,7 +161,7 @@ impl Relaxation {
         let mut swing = Swing::at_rest(u.len());
         let mut start = 0.0_f64;
         for iteration in 0..self.iterations {
-            let reaction = interaction.react(u, bonds, damaging, &mut rested.force);
+            let reaction = interaction.internal_force(u, bonds, damaging, &mut rested.force);
             rested.evaluations += 1;
             rested.add(reaction);
             let disturbed = reaction.broken > 0 || reaction.damaged > self.quiet;

@@ -185,11 +185,11 @@ impl TipField<'_> {
         // Where a tip is gone, K of the others is that of another crack at the end of the step, not of this one grown longer.
         let lead = &self.state.tips[step.lead];
         let rate_then = if lead.is_growing() && !is_over && !has_ended { lead.rate } else { step.rate };
-        let (cycles, curvature_fraction) = step::cycles(step.past, step.rate, rate_then, growth);
+        let (cycles, curvature_share) = step::cycles(step.past, step.rate, rate_then, growth);
         if has_ended {
             self.state.step = self.steps.first();
         } else if growth > 0.0 && !is_over {
-            self.state.step = self.steps.next(growth, curvature_fraction);
+            self.state.step = self.steps.next(growth, curvature_share);
         }
         let closing = self.state.tips.iter().any(|tip| tip.state == TipState::Active && self.is_closing(tip));
         if has_ended || closing || is_over {

@@ -19,7 +19,7 @@ const STEP_HORIZONS: f64 = 0.75;
 /// Next step over the last one, at the most.
 const STEP_RISE: f64 = 1.6;
 /// Share of a block's cycles that the parabola may add: beyond it the rates lie on none.
-const BEND_MOST: f64 = 0.02;
+const CURVATURE_SHARE_MOST: f64 = 0.02;
 /// Growth in a block at the most, in horizons, where a rim or another crack lies near, and K changes fast.
 const STEP_NEAR_HORIZONS: f64 = 0.2;
 /// How near that is, in horizons.
@@ -56,9 +56,9 @@ impl StepControl {
         STEP_FIRST_HORIZONS * self.measure
     }
 
-    /// Growth of a tip at the most in the block after one of length `grown`, m, in which the parabola added the share `bend`.
-    pub(super) fn next(&self, grown: f64, bend: f64) -> f64 {
-        let most = (self.error / bend.abs().max(f64::MIN_POSITIVE)).sqrt().min(STEP_RISE) * grown;
+    /// Growth of a tip at the most in the block after one of length `grown`, m, in which the parabola added the share `curvature_share`.
+    pub(super) fn next(&self, grown: f64, curvature_share: f64) -> f64 {
+        let most = (self.error / curvature_share.abs().max(f64::MIN_POSITIVE)).sqrt().min(STEP_RISE) * grown;
         most.clamp(STEP_NEAR_HORIZONS * self.measure, STEP_HORIZONS * self.measure)
     }
 
@@ -129,9 +129,9 @@ impl TipField<'_> {
 /// Cycles of a step of the fastest tip: its rates at the start of the step before, where known, with that step's length, at the
 /// start and at the end of this one, m/cycle, whose length is `grown`, m. Gives the share that the parabola adds, too.
 pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f64) -> (f64, f64) {
-    let bend = past.map_or(0.0, |[before, way]| bend([before, rate, rate_then], [way, grown]));
-    let counted = if bend.abs() < BEND_MOST { bend } else { 0.0 };
-    (grown * mean_inverse(rate, rate_then) * (1.0 + counted), bend)
+    let curvature_share = past.map_or(0.0, |[before, way]| curvature_share([before, rate, rate_then], [way, grown]));
+    let counted = if curvature_share.abs() < CURVATURE_SHARE_MOST { curvature_share } else { 0.0 };
+    (grown * mean_inverse(rate, rate_then) * (1.0 + counted), curvature_share)
 }
 
 /// Whether a rim or another crack lies within `reach` straight ahead of a tip or 45° to either side.
@@ -156,7 +156,7 @@ fn mean_inverse(from: f64, to: f64) -> f64 {
 
 /// Share by which a parabola of ln r through three rates raises `∫ da/r` over the second of the `ways` between them, m, above that
 /// of the straight line: `c h²/6` with c the second divided difference.
-fn bend([before, from, to]: [f64; 3], [first, second]: [f64; 2]) -> f64 {
+fn curvature_share([before, from, to]: [f64; 3], [first, second]: [f64; 2]) -> f64 {
     let slope = |a: f64, b: f64, way: f64| (b / a).ln() / way;
     let curvature = (slope(from, to, second) - slope(before, from, first)) / (first + second);
     let share = curvature * second * second / 6.0;

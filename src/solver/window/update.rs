@@ -37,7 +37,7 @@ pub struct Update {
     /// D.
     pivots: Vec<f64>,
     /// Wᵀ u₀.
-    opening: Vec<f64>,
+    deformation: Vec<f64>,
 }
 
 impl Update {
@@ -69,7 +69,7 @@ impl Update {
         if holds.is_nan() || holds <= PIVOT_MIN {
             return false;
         }
-        self.opening.push(term.vector.iter().map(|&(i, w)| w * base[i]).sum());
+        self.deformation.push(term.vector.iter().map(|&(i, w)| w * base[i]).sum());
         self.rows.push(row);
         self.pivots.push(pivot);
         self.terms.push(term);
@@ -81,7 +81,7 @@ impl Update {
     pub fn displacement(&self, inverse: &Mat<f64>, base: &[f64]) -> (Vec<f64>, f64) {
         // L z = b, D Lᵀ y = z.
         let mut y: Vec<f64> = Vec::with_capacity(self.rank());
-        for (row, b) in self.rows.iter().zip(&self.opening) {
+        for (row, b) in self.rows.iter().zip(&self.deformation) {
             let done: f64 = row.iter().zip(&y).map(|(l, z)| l * z).sum();
             y.push(b - done);
         }
@@ -91,7 +91,7 @@ impl Update {
                 y[j] -= self.rows[i][j] * y[i];
             }
         }
-        let gain = y.iter().zip(&self.opening).map(|(y, b)| y * b).sum();
+        let gain = y.iter().zip(&self.deformation).map(|(y, b)| y * b).sum();
         let mut force = vec![0.0; base.len()];
         for (term, y) in self.terms.iter().zip(&y) {
             term.vector.iter().for_each(|&(i, w)| force[i] += w * y);
