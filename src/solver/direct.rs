@@ -9,6 +9,7 @@ use faer::sparse::{SparseColMat, Triplet};
 use super::assembly::{Assembly, MIXED, Mixed, Springs, for_joints};
 use super::field::dot;
 use super::product::Product;
+use super::rigid_motion::RigidMotion;
 use super::{LinearSolver, Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
@@ -90,6 +91,9 @@ fn factorise_and_solve<const N: usize, const M: usize>(
     u.fill(0.0);
     for (i, &(place, c)) in unknowns.iter().enumerate().filter(|(_, (_, c))| *c < N) {
         u[layout.index(place) + c * layout.stride] = solution[(i, 0)];
+    }
+    if let Some(rigid) = RigidMotion::of(body, bonds, *layout) {
+        rigid.take_off(u);
     }
     product.mirror(u);
     Ok(())

@@ -1,11 +1,13 @@
 //! Rigid motion of a floating plate: it costs no energy, so an iteration must not go along it.
 //!
 //! A preconditioner that is not exact for rigid motion (lattices turned against the edges, round-off of single precision) lets
-//! it grow until it drowns the curvature of the search direction.
+//! it grow until it drowns the curvature of the search direction. A factorisation holds the plate at two points instead, and its
+//! solution is turned back: K off a ring, a sum over points, feels a rigid turn by some 1e-5.
 
 use rayon::prelude::*;
 
 use super::field::Layout;
+use super::kernel::Real;
 use crate::body::Body;
 use crate::state::Bonds;
 
@@ -45,21 +47,21 @@ impl RigidMotion {
         });
         let shifts = [0, 1].map(|axis| if free[axis] { 1.0 } else { 0.0 });
         let mut motion = RigidMotion { layout, carries, count: 0.0, centre: [0.0; 2], inertia: f64::INFINITY, shifts };
-        let [count, x, y] = motion.sum(|_, _, seat| [1.0, seat[0], seat[1]], &[]);
+        let [count, x, y] = motion.sum(|_, _, seat| [1.0, seat[0], seat[1]], &[0.0_f32; 0]);
         (motion.count, motion.centre) = (count, [x / count, y / count]);
         if free[2] {
             let own = if layout.unknowns == 3 { 1.0 } else { 0.0 };
-            [motion.inertia, ..] = motion.sum(|_, _, [x, y]| [x * x + y * y + own, 0.0, 0.0], &[]);
+            [motion.inertia, ..] = motion.sum(|_, _, [x, y]| [x * x + y * y + own, 0.0, 0.0], &[0.0_f32; 0]);
         }
         Some(motion)
     }
 
     /// Takes its rigid motion off a field.
-    pub fn take_off(&self, field: &mut [f32]) {
+    pub fn take_off<T: Real + Into<f64>>(&self, field: &mut [T]) {
         let (stride, has_turns) = (self.layout.stride, self.layout.unknowns == 3);
-        let motion = |row: &[f32], column: usize, [x, y]: [f64; 2]| {
-            let (u, v) = (f64::from(row[column]), f64::from(row[column + stride]));
-            let own = if has_turns { f64::from(row[column + 2 * stride]) } else { 0.0 };
+        let motion = |row: &[T], column: usize, [x, y]: [f64; 2]| {
+            let (u, v): (f64, f64) = (row[column].into(), row[column + stride].into());
+            let own = if has_turns { row[column + 2 * stride].into() } else { 0.0 };
             [u, v, x * v - y * u + own]
         };
         let [u, v, turn] = self.sum(motion, field);
@@ -70,10 +72,10 @@ impl RigidMotion {
                 let y = row as f64 - self.centre[1];
                 for (column, &carries) in carries.iter().enumerate() {
                     let (carries, x) = (f64::from(carries), column as f64 - self.centre[0]);
-                    values[column] -= (carries * (shift[0] - turn * y)) as f32;
-                    values[column + stride] -= (carries * (shift[1] + turn * x)) as f32;
+                    values[column] -= T::of(carries * (shift[0] - turn * y));
+                    values[column + stride] -= T::of(carries * (shift[1] + turn * x));
                     if has_turns {
-                        values[column + 2 * stride] -= (carries * turn) as f32;
+                        values[column + 2 * stride] -= T::of(carries * turn);
                     }
                 }
             },
@@ -82,7 +84,7 @@ impl RigidMotion {
 
     /// Sum over the points that carry, row by row in a fixed order, of what `of` makes of a row of a field, the column in it and
     /// the way from the centre in columns and rows.
-    fn sum(&self, of: impl Fn(&[f32], usize, [f64; 2]) -> [f64; 3] + Sync, field: &[f32]) -> [f64; 3] {
+    fn sum<T: Sync>(&self, of: impl Fn(&[T], usize, [f64; 2]) -> [f64; 3] + Sync, field: &[T]) -> [f64; 3] {
         let (stride, row_len) = (self.layout.stride, self.layout.row_len());
         let row_sum = |(row, carries): (usize, &[f32])| {
             let values = field.get(row * row_len..(row + 1) * row_len).unwrap_or(&[]);
