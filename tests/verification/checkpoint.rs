@@ -96,8 +96,6 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
         ("window, clamped, grown", CLAMPED, vec![FINE, "fatigue.precrack=grown", "model.symmetry=off"]),
         ("window, slant", SLANT, vec![FINE]),
         ("window, state-based", SLANT, vec![FINE, "model.bond_law=state_based"]),
-        ("window, two cracks", TWO, vec!["model.spacing_mm=0.7"]),
-        ("window, hole, no precrack", HOLE, vec!["model.spacing_mm=0.5", "fatigue.precrack=none"]),
         ("window, levels", BROAD, vec![LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=30"]),
         (
             "direct, levels",
