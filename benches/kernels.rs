@@ -174,7 +174,9 @@ mod forces {
         let mut slow = Springs::new(&net, failure, finite);
         let interaction: &mut dyn Interaction = if list { &mut slow } else { &mut fast };
         let items = ItemsCount::new(2 * net.bonds.len());
-        bencher.counter(items).bench_local(|| interaction.react(black_box(&u), &mut bonds, Damaging::Allowed, &mut force));
+        bencher
+            .counter(items)
+            .bench_local(|| interaction.internal_force(black_box(&u), &mut bonds, Damaging::Allowed, &mut force));
     }
 
     #[divan::bench(sample_count = SAMPLES)]

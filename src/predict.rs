@@ -45,7 +45,7 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 /// As [`predict`]; [`crate::Error::Input`] if the checkpoint is not one of this case.
 pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
     checkpoint.check(case)?;
-    follow(Record::new(case, observer).from_checkpoint(checkpoint))
+    follow(Record::new(case, observer).resumed_from(checkpoint))
 }
 
 /// A run by what its case asks to be driven by.

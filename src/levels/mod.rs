@@ -229,7 +229,7 @@ impl Net {
         self.bonds_of(point).filter(|&(b, _, owned)| owned || b < self.mutual).map(|(b, other, _)| (b, other))
     }
 
-    /// Forces on the points, N unknowns each, from what every bond does to its owner ([`NetBond::pull`]): point by point, in
+    /// Forces on the points, N unknowns each, from what every bond does to its owner ([`NetBond::force`]): point by point, in
     /// parallel and always in the same order.
     pub fn gather<const N: usize>(&self, pulls: &[[f64; 3]], force: &mut [f64]) {
         force.par_chunks_mut(TASK * N).enumerate().for_each(|(task, force)| {

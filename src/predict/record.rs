@@ -41,7 +41,7 @@ impl<'a> Record<'a> {
 
     /// Goes on from where an earlier run of the same case stood.
     #[must_use]
-    pub(super) fn from_checkpoint(self, checkpoint: Checkpoint) -> Self {
+    pub(super) fn resumed_from(self, checkpoint: Checkpoint) -> Self {
         Record { checkpoint: Some(checkpoint), ..self }
     }
 

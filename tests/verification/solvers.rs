@@ -94,17 +94,20 @@ fn distance(a: &Loaded, b: &Loaded) -> f64 {
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let columns = if body.stencil.resists_rotation() { 2 } else { 3 };
     let mut rows = Vec::new();
-    let mut size = 0.0_f64;
+    // The size is that of the spread, which no shift of a floating plate changes.
+    let mut spread = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for &point in body.points.iter().filter(|&&point| a.bonds.intact_at(body, point as usize) > 0) {
         let at = layout.index(point as usize);
         let (column, row) = body.lattice.column_row(point as usize);
         let seat = [column as f64 / body.lattice.columns as f64, row as f64 / body.lattice.columns as f64];
         for (c, motion) in [[1.0, 0.0, -seat[1]], [0.0, 1.0, seat[0]]].into_iter().enumerate() {
             let index = at + c * layout.stride;
-            size = size.max(a.displacement[index].abs());
+            let [low, high] = spread[c];
+            spread[c] = [low.min(a.displacement[index]), high.max(a.displacement[index])];
             rows.push((motion, a.displacement[index] - b.displacement[index]));
         }
     }
+    let size = spread.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
     let difference = DVector::from_iterator(rows.len(), rows.iter().map(|row| row.1));
     if !body.boundary.floating {
         return difference.amax() / size;

@@ -60,8 +60,9 @@ const LATTICES: [(&str, &[&str]); 2] = [
 ];
 /// Relative difference of lives, and of paths over a spacing.
 const EQUAL: f64 = 1e-6;
-/// The same where dynamic relaxation solves, whose residual of 1e-6 of the load leaves K right to some 1e-6.
-const EQUAL_RELAXED: f64 = 1e-4;
+/// The same where dynamic relaxation solves, whose residual of 1e-6 of the load leaves K right to some 1e-6: lives differ
+/// by 1e-5.
+const EQUAL_RELAXED: f64 = 3e-5;
 
 fn grow(specimen: &str, set: &[&str]) -> Prediction {
     let set: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
@@ -97,8 +98,10 @@ fn every_solver_by_every_law_gives_one_life_and_one_path() {
                     [stop].into_iter().chain(of_lattice.iter().copied()).chain(law_keys.iter().map(|key| &**key)).collect();
                 let reference = grow(specimen, &common);
                 assert!(reference.curve.len() > 8 && reference.life_cycles() > 0.0, "{plate}, {lattice}, {law}: a run");
+                // Points of several levels have two ways of solving.
+                let solvers = if of_lattice.is_empty() { SolverKind::ALL } else { &[SolverKind::Window, SolverKind::Direct][..] };
                 let symmetries: &[&str] = if is_symmetric { &["auto", "off"] } else { &["auto"] };
-                for &solver in SolverKind::ALL {
+                for &solver in solvers {
                     for symmetry in symmetries {
                         let keys = [format!("model.solver={solver}"), format!("model.symmetry={symmetry}")];
                         let set: Vec<&str> = common.iter().copied().chain(keys.iter().map(|key| &**key)).collect();
@@ -116,7 +119,7 @@ fn every_solver_by_every_law_gives_one_life_and_one_path() {
             }
         }
     }
-    assert_eq!(runs, 2 * BondLawKind::ALL.len() * SolverKind::ALL.len() * (PLATES.len() + 1));
+    assert_eq!(runs, BondLawKind::ALL.len() * (SolverKind::ALL.len() + 2) * (PLATES.len() + 1));
 }
 
 #[test]

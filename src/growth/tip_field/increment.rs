@@ -77,7 +77,7 @@ impl Increment {
 }
 
 impl TipField<'_> {
-    /// Growth of every tip over the same cycles, the fastest by one step ([`step`]). To be asked while a tip grows
+    /// Growth of every tip over the same cycles, the fastest by one step. To be asked while a tip grows
     /// ([`TipField::reason_to_stop`]).
     #[must_use]
     pub fn increments(&self) -> Increment {
