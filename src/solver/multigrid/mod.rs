@@ -12,6 +12,7 @@ mod fine;
 pub mod smoother;
 pub mod transfer;
 
+use faer::linalg::solvers::DenseSolveCore;
 use rayon::prelude::*;
 
 use super::field::Layout;
@@ -30,6 +31,9 @@ const DEGREE: usize = 3;
 const COARSEST: usize = 300;
 /// Stiffness between two coarse places below which, relative to the diagonal, they count as severed.
 const SEVERED: f64 = 1e-7;
+
+/// Shift of the coarsest operator over its largest diagonal entry.
+const SHIFT: f64 = 1e-7;
 
 /// Values that one task rounds.
 const PART: usize = 1 << 14;
@@ -115,7 +119,7 @@ impl<const N: usize> Multigrid<N> {
         }
     }
 
-    /// The same, coarse levels around these points included; that without smoothing stays as it is.
+    /// The same, coarse levels around these points included, and the coarsest anew.
     pub fn refresh_levels(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, places: &[usize]) {
         self.refresh_points(body, bonds, product, places);
         let fine = Fine::new(body, bonds, product);
@@ -137,6 +141,7 @@ impl<const N: usize> Multigrid<N> {
             };
             size = level.transfer.coarse_size();
         }
+        self.coarsest = Coarsest::new(&self.levels[self.levels.len() - 1]);
     }
 
     /// M r, one V-cycle from zero in single precision.
@@ -206,6 +211,14 @@ fn descend<const N: usize>(levels: &mut [Level<N>], coarsest: &Coarsest, residua
         coarsest.solve(&work.r, &mut work.x);
     } else {
         cycle(operator, smoother, work, |residual, correction| descend(rest, coarsest, residual, correction));
+        if rest.len() == 1 {
+            // Once more above the coarsest level, which costs little: holes and cracks are drawn badly there.
+            let Work { r, d, .. } = work;
+            smoother.residual(operator, d, r);
+            let first = work.x.clone();
+            cycle(operator, smoother, work, |residual, correction| descend(rest, coarsest, residual, correction));
+            work.x.iter_mut().zip(&first).for_each(|(x, first)| *x += first);
+        }
     }
     transfer.prolong(&work.x, correction);
 }
@@ -344,17 +357,12 @@ impl Coarsest {
             }
         }
         let mut inverse = vec![0.0; n * n];
-        if let Ok(eigen) = matrix.self_adjoint_eigen(faer::Side::Lower) {
-            let (values, vectors) = (eigen.S().column_vector(), eigen.U());
-            let top = (0..n).map(|k| values[k]).fold(0.0, f64::max);
-            for k in (0..n).filter(|&k| values[k] > 1e-10 * top) {
-                for i in 0..n {
-                    let scaled = vectors[(i, k)] / values[k];
-                    for j in 0..n {
-                        inverse[i * n + j] += scaled * vectors[(j, k)];
-                    }
-                }
-            }
+        // A shift in place of a pseudo-inverse: rigid motion that round-off brings in is taken off the fine level anyway.
+        let top = (0..n).map(|k| matrix[(k, k)]).fold(0.0, f64::max);
+        (0..n).for_each(|k| matrix[(k, k)] += SHIFT * top);
+        if let Ok(factor) = matrix.llt(faer::Side::Lower) {
+            let found = factor.inverse();
+            (0..n * n).for_each(|at| inverse[at] = found[(at / n, at % n)]);
         }
         Coarsest { unknowns, inverse }
     }
