@@ -139,12 +139,18 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
             let (at, place, start) = (first + chunk * LANES, place + chunk * LANES, padding + chunk * LANES);
             let block = &regular[chunk..inhabited.end.min(chunk + B * L / LANES)];
             let wide = block.len() * LANES == B * L && !block.contains(&false);
+            let pair = L == 2 * LANES && chunk + 1 < inhabited.end && !(regular[chunk] && regular[chunk + 1]);
+            if pair {
+                give::<T, N, 1, L>(&self.masked::<L>(&shares, x, at, place), out, start, stride, into);
+                chunk += 2;
+                continue;
+            }
             if wide {
                 give::<T, N, B, L>(&self.regular(x, at), out, start, stride, into);
             } else if regular[chunk] {
                 give::<T, N, 1, LANES>(&self.regular(x, at), out, start, stride, into);
             } else {
-                give::<T, N, 1, LANES>(&self.masked(&shares, x, at, place), out, start, stride, into);
+                give::<T, N, 1, LANES>(&self.masked::<LANES>(&shares, x, at, place), out, start, stride, into);
             }
             chunk += if wide { B * L / LANES } else { 1 };
         }
@@ -194,34 +200,42 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
 
     /// Any multipliers: both directions of every bond by themselves.
     #[inline(always)]
-    fn masked(&self, shares: &Shares, x: &[T], at: usize, place: usize) -> Sums<T, N, 1, LANES> {
+    fn masked<const W: usize>(&self, shares: &Shares, x: &[T], at: usize, place: usize) -> Sums<T, N, 1, W> {
         let stride = self.layout.stride;
-        let mut y = [[[T::default(); LANES]; 1]; N];
-        let mut here = [[T::default(); LANES]; N];
+        let mut y = [[[T::default(); W]; 1]; N];
+        let mut here = [[T::default(); W]; N];
         for (c, here) in here.iter_mut().enumerate() {
-            *here = load::<T, LANES>(x, at + c * stride);
+            *here = load::<T, W>(x, at + c * stride);
         }
         for (k, spring) in self.springs.iter().enumerate() {
             let ([a_xx, a_xy, a_yy], [c_x, c_y, c_w]) = (spring.a, spring.c);
-            for (step, owner, c_x, c_y) in
-                [(spring.step, place, c_x, c_y), (-spring.step, place.wrapping_add_signed(-spring.place_step), -c_x, -c_y)]
-            {
-                let share = load::<f32, LANES>(shares.multiplier, k * shares.places + owner);
-                let other = at.wrapping_add_signed(step);
-                let (u, v) = (load::<T, LANES>(x, other), load::<T, LANES>(x, other + stride));
-                let w = if N == 3 { load::<T, LANES>(x, other + 2 * stride) } else { [T::default(); LANES] };
-                for lane in 0..LANES {
-                    let share = T::of_share(share[lane]);
-                    let (du, dv) = (here[0][lane] - u[lane], here[1][lane] - v[lane]);
-                    let (mut f_x, mut f_y) = (a_xx.mul_add(du, a_xy * dv), a_xy.mul_add(du, a_yy * dv));
-                    if N == 3 {
-                        let turn = w[lane] + here[2][lane];
-                        f_x = c_x.mul_add(turn, f_x);
-                        f_y = c_y.mul_add(turn, f_y);
-                        y[2][0][lane] = share.mul_add(c_x.mul_add(du, c_y.mul_add(dv, c_w * turn)), y[2][0][lane]);
-                    }
-                    y[0][0][lane] = share.mul_add(f_x, y[0][0][lane]);
-                    y[1][0][lane] = share.mul_add(f_y, y[1][0][lane]);
+            let behind = place.wrapping_add_signed(-spring.place_step);
+            let (s_p, s_m) = (
+                load::<f32, W>(shares.multiplier, k * shares.places + place),
+                load::<f32, W>(shares.multiplier, k * shares.places + behind),
+            );
+            let (plus, minus) = (at.wrapping_add_signed(spring.step), at.wrapping_add_signed(-spring.step));
+            let (u_p, u_m) = (load::<T, W>(x, plus), load::<T, W>(x, minus));
+            let (v_p, v_m) = (load::<T, W>(x, plus + stride), load::<T, W>(x, minus + stride));
+            let (w_p, w_m) = if N == 3 {
+                (load::<T, W>(x, plus + 2 * stride), load::<T, W>(x, minus + 2 * stride))
+            } else {
+                ([T::default(); W], [T::default(); W])
+            };
+            for lane in 0..W {
+                let (s_p, s_m) = (T::of_share(s_p[lane]), T::of_share(s_m[lane]));
+                let (du_p, du_m) = (s_p * (here[0][lane] - u_p[lane]), here[0][lane] - u_m[lane]);
+                let (dv_p, dv_m) = (s_p * (here[1][lane] - v_p[lane]), here[1][lane] - v_m[lane]);
+                let (u, v) = (s_m.mul_add(du_m, du_p), s_m.mul_add(dv_m, dv_p));
+                y[0][0][lane] = a_xx.mul_add(u, a_xy.mul_add(v, y[0][0][lane]));
+                y[1][0][lane] = a_xy.mul_add(u, a_yy.mul_add(v, y[1][0][lane]));
+                if N == 3 {
+                    let (t_p, t_m) = (s_p * (here[2][lane] + w_p[lane]), here[2][lane] + w_m[lane]);
+                    let (turn, both) = ((-s_m).mul_add(t_m, t_p), s_m.mul_add(t_m, t_p));
+                    let (u, v) = ((-s_m).mul_add(du_m, du_p), (-s_m).mul_add(dv_m, dv_p));
+                    y[0][0][lane] = c_x.mul_add(turn, y[0][0][lane]);
+                    y[1][0][lane] = c_y.mul_add(turn, y[1][0][lane]);
+                    y[2][0][lane] = c_x.mul_add(u, c_y.mul_add(v, c_w.mul_add(both, y[2][0][lane])));
                 }
             }
         }

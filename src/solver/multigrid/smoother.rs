@@ -273,11 +273,9 @@ impl<const N: usize> pulp::WithSimd for Rest<'_, N> {
                 let sums = self.smoother.inverse_times(row, chunk, r);
                 for (c, sum) in sums.iter().enumerate() {
                     let start = c * layout.stride + layout.padding + chunk * LANES;
-                    let (d, x) = (&mut d[start..start + LANES], &mut x[start..start + LANES]);
-                    for lane in 0..LANES {
-                        d[lane] = self.b * sum[lane];
-                        x[lane] = d[lane];
-                    }
+                    let scaled = sum.map(|sum| self.b * sum);
+                    d[start..start + LANES].copy_from_slice(&scaled);
+                    x[start..start + LANES].copy_from_slice(&scaled);
                 }
             }
         }
@@ -313,12 +311,15 @@ impl<O: Operator, const N: usize> pulp::WithSimd for Relax<'_, O, N> {
                 let sums = self.smoother.inverse_times(row, chunk, r);
                 for (c, sum) in sums.iter().enumerate() {
                     let start = c * layout.stride + layout.padding + chunk * LANES;
-                    let d = load::<f32, LANES>(d, start);
-                    let (next, x) = (&mut next[start..start + LANES], &mut x[start..start + LANES]);
+                    let (d, before) = (load::<f32, LANES>(d, start), load::<f32, LANES>(x, start));
+                    // Whole registers: loops over the slices themselves are not turned into vector instructions.
+                    let (mut step, mut sums) = ([0.0_f32; LANES], [0.0_f32; LANES]);
                     for lane in 0..LANES {
-                        next[lane] = a.mul_add(d[lane], b * sum[lane]);
-                        x[lane] += last.mul_add(d[lane], next[lane]);
+                        step[lane] = a.mul_add(d[lane], b * sum[lane]);
+                        sums[lane] = before[lane] + last.mul_add(d[lane], step[lane]);
                     }
+                    next[start..start + LANES].copy_from_slice(&step);
+                    x[start..start + LANES].copy_from_slice(&sums);
                 }
             }
         }
