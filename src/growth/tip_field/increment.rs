@@ -53,6 +53,8 @@ pub struct Increment {
     changed: Vec<Bond>,
     /// How many of them were cut.
     cut: usize,
+    /// Whether the cut left two loaded pieces.
+    is_severed: bool,
     /// Whether the displacement is that of the new cracks.
     is_settled: bool,
     /// Why there is no next increment.
@@ -93,6 +95,7 @@ impl TipField<'_> {
             before: self.energies(),
             changed: Vec::new(),
             cut: 0,
+            is_severed: false,
             is_settled: false,
             end: None,
         }
@@ -129,7 +132,7 @@ impl TipField<'_> {
         cut.dedup();
         cut.iter().for_each(|&bond| self.bonds.cut(body, bond));
         match remove_fragments(body, &mut self.bonds, &cut) {
-            Connectivity::Severed => step.end = Some(StopReason::Severed),
+            Connectivity::Severed => (step.is_severed, step.end) = (true, Some(StopReason::Severed)),
             Connectivity::Connected(fragments) => cut.extend(fragments),
         }
         step.cut = cut.len();
@@ -201,7 +204,7 @@ impl TipField<'_> {
         let work = if is_over { f64::NAN } else { self.equilibrium.work() };
         let is_left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
         // What the last tip has met is known, whatever is left of the plate.
-        if !is_left && step.end != Some(StopReason::Severed) {
+        if !is_left && !step.is_severed {
             step.end = Some(self.gone());
         }
         let (row, reason) = self.row_after(cycles, work, step.cut, step.end);
