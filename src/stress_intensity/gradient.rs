@@ -1,6 +1,6 @@
 //! Derivatives of the displacement on the lattice by moving least squares.
 //!
-//! RingIntegral a point the displacement is fitted by a quadratic over the points it is bonded to: `u(ξ) = u + H ξ + ½ ξ·Q ξ`,
+//! Around a point the displacement is fitted by a quadratic over the points it is bonded to: `u(ξ) = u + H ξ + ½ ξ·Q ξ`,
 //! weights falling with the distance. Bonds that the crack cut take no part, so a gradient never looks across the crack;
 //! the quadratic terms keep it second order on the crack faces, where the neighbours lie on one side only.
 

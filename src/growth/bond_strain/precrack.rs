@@ -88,7 +88,7 @@ impl Precrack {
     }
 
     /// Every tip with its growth since it had its initial length, negative before, at the end of the sharp crack of the same
-    /// compliance. From a clean cut the front_offset of the front builds up over the first horizon.
+    /// compliance. From a clean cut the offset of the front builds up over the first horizon.
     pub(super) fn records(&self, tips: &[CrackTip]) -> Vec<TipRecord> {
         let record = |(tip, &pre_growth): (&CrackTip, &f64)| {
             let front_offset =

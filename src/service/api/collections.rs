@@ -154,7 +154,7 @@ pub async fn submit(
     let body = documents::read(&app, request).await?;
     let fingerprint = format!("{kind} {}", body.fingerprint);
     let calibration = body.asked.calibration.clone();
-    // JobRequest before the body is looked into: what it refers to may be gone since it was accepted.
+    // Asked before the body is looked into: what it refers to may be gone since it was accepted.
     let submitted = match app.store.submitted(&caller.name, key.as_deref(), &fingerprint).await? {
         Some(earlier) => earlier,
         None => {
