@@ -58,7 +58,7 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
         (Method::Peridynamics, Driver::TipField) => {
             // A law of bonds takes a run of its own ([`bond_rate`]).
             let (law, plate) = rayon::join(|| laws::growth_law(case), || TipField::plate(case));
-            record.follow(&mut TipField::start_on(case, plate?, law?)?, increment)
+            record.follow(&mut TipField::start_on(case, plate?, law?)?, |cracks| Ok(increment(cracks)))
         }
         (Method::Peridynamics, Driver::BondStrain) => {
             let rates = |horizon| laws::bond_rates(case, horizon);
@@ -70,12 +70,10 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
 /// One increment of all cracks by the stress intensity of their tips, which makes one row; the reason why there is no next one.
 ///
 /// Before the first increment the plate with its initial cracks is in equilibrium and K of its tips is known.
-///
-/// # Errors
-/// None: mechanics that fail end the run with the rows that stand.
-pub fn increment(cracks: &mut TipField<'_>) -> Result<Option<StopReason>> {
+/// Mechanics that fail end the run with the rows that stand.
+pub fn increment(cracks: &mut TipField<'_>) -> Option<StopReason> {
     if let Some(reason) = cracks.reason_to_stop() {
-        return Ok(Some(reason));
+        return Some(reason);
     }
     // Δa_i = ∫ r_i dN over the same cycles for every tip, the fastest by one step.
     let mut step = cracks.increments();
@@ -92,5 +90,5 @@ pub fn increment(cracks: &mut TipField<'_>) -> Result<Option<StopReason>> {
     // r = da/dN of K_eq = cos(θ/2) [K_I cos²(θ/2) - 3/2 K_II sin θ] and R; C ΔK^m = β A δ^(1-p/2) (ΔK/E')^p for a law of bonds.
     cracks.set_rates(&step);
     // N ← N + ∫ da/r; the bonds ahead of every tip lose remaining life, dλ/dN = -r/ℓ.
-    Ok(cracks.add_row(step))
+    cracks.add_row(step)
 }

@@ -30,17 +30,29 @@ pub(super) struct TipRings<'a> {
 }
 
 impl TipRings<'_> {
-    /// The field around the end of a crack whose line is longer by `offset`, m; `None` where there is no room for a ring, unless it
-    /// `must` be read.
-    pub(super) fn read(&self, end: LineEnd, offset: f64, must: bool) -> Option<RingFactors> {
-        let TipRings { body, bonds, displacement, load, geometry, active, .. } = *self;
-        let least = RING_HORIZONS_MIN * body.horizon();
+    /// Whether there is room for a ring around the end of a crack whose line is longer by `offset`, m.
+    pub(super) fn have_room(&self, end: LineEnd, offset: f64) -> bool {
+        self.radius(&self.stretched(end, offset), end) >= RING_HORIZONS_MIN * self.body.horizon()
+    }
+
+    /// The field around the same place; where there is no room for a ring, off the least one.
+    pub(super) fn read(&self, end: LineEnd, offset: f64) -> RingFactors {
+        let TipRings { body, bonds, displacement, load, geometry, .. } = *self;
+        let lines = self.stretched(end, offset);
+        let radius = self.radius(&lines, end).max(RING_HORIZONS_MIN * body.horizon());
+        geometry.factors(Balanced { body, bonds, displacement, load, lines: &lines }, end, radius)
+    }
+
+    fn stretched(&self, end: LineEnd, offset: f64) -> Vec<CrackLine> {
         let mut lines = self.lines.to_vec();
         lines[end.line].stretch(end.at_last, offset);
-        let radius = geometry.radius(body, &lines, end, active, RING_HORIZONS * body.horizon());
-        let radius = body.rim_distance(self.lines[end.line].end(end.at_last), radius).unwrap_or(radius);
-        let plate = Balanced { body, bonds, displacement, load, lines: &lines };
-        (must || radius >= least).then(|| geometry.factors(plate, end, radius.max(least)))
+        lines
+    }
+
+    /// Outer radius that the surroundings leave, m.
+    fn radius(&self, lines: &[CrackLine], end: LineEnd) -> f64 {
+        let radius = self.geometry.radius(self.body, lines, end, self.active, RING_HORIZONS * self.body.horizon());
+        self.body.rim_distance(self.lines[end.line].end(end.at_last), radius).unwrap_or(radius)
     }
 }
 

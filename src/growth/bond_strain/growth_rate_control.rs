@@ -205,11 +205,12 @@ impl GrowthRateControl {
             if is_near_rim(&self.specimen, &lines, end, CORE_HORIZONS * horizon) {
                 return None;
             }
-            let first = rings.read(end, 0.0, false)?;
+            let read = |offset: f64| rings.have_room(end, offset).then(|| rings.read(end, offset));
+            let first = read(0.0)?;
             if first.tip_offset.is_nan() || first.tip_offset.abs() > AHEAD_HORIZONS * horizon {
                 return None;
             }
-            let second = rings.read(end, first.tip_offset, false)?;
+            let second = read(first.tip_offset)?;
             let is_known = equivalent_factor(second.factors).is_finite();
             is_known.then_some((second.factors, first.tip_offset + second.tip_offset))
         };

@@ -89,14 +89,13 @@ impl TipField<'_> {
         let read = |tip: &&Tip| {
             let end = tip.end;
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
-            let first = rings.read(end, excess, true)?;
+            let first = rings.read(end, excess);
             // Beside a rim what is read as a shift may be something else.
             let ahead = if first.tip_offset.abs() < AHEAD_HORIZONS * horizon { first.tip_offset } else { 0.0 };
-            let ring = if ahead == 0.0 { first } else { rings.read(end, excess + ahead, true)? };
-            Some(Reading { factors: ring.factors, t_stress: ring.t_stress, length_offset: excess + ahead })
+            let ring = if ahead == 0.0 { first } else { rings.read(end, excess + ahead) };
+            Reading { factors: ring.factors, t_stress: ring.t_stress, length_offset: excess + ahead }
         };
-        // Every ring must be read, so that none is missing.
-        let mut readings: Vec<Reading> = tips.par_iter().filter_map(read).collect();
+        let mut readings: Vec<Reading> = tips.par_iter().map(read).collect();
         let mut factors: Vec<Option<[f64; 2]>> = readings.iter().map(|reading| Some(reading.factors)).collect();
         pair_twins(&mut factors, ROUND_OFF);
         readings.iter_mut().zip(factors).for_each(|(reading, factors)| reading.factors = factors.unwrap_or(reading.factors));

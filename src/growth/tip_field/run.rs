@@ -173,7 +173,11 @@ impl CrackGrowth for TipField<'_> {
         let places = plate.body.multiplier.len();
         let fits = growth.fits(&self.state)
             && !curve.is_empty()
-            && broken.iter().chain(scaled.iter().map(|(bond, _)| bond)).all(|&bond| (bond as usize) < places);
+            && broken
+                .iter()
+                .chain(scaled.iter().map(|(bond, _)| bond))
+                .chain(growth.remaining_life.iter().map(|(bond, _)| bond))
+                .all(|&bond| (bond as usize) < places);
         if !fits {
             return Ok(false);
         }
