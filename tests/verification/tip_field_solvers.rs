@@ -62,7 +62,7 @@ const LATTICES: [(&str, &[&str]); 2] = [
 const EQUAL: f64 = 1e-6;
 /// The same where dynamic relaxation solves, whose residual of 1e-6 of the load leaves K right to some 1e-5; a turn is read off small
 /// differences of K_II.
-const EQUAL_RELAXED: [f64; 2] = [1e-4, 1e-2];
+const EQUAL_RELAXED: [f64; 2] = [4e-5, 3e-3];
 
 fn grow(specimen: &str, set: &[&str]) -> Prediction {
     let set: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
