@@ -6,7 +6,7 @@
 //! cycles, and the bonds that the longer lines cross are cut: that is [`predict::increment`], the main page.
 //!
 //! Fatigue of a bond is `dλ/dN = -A ε^p`: its remaining life λ decreases from 1, and at 0 it breaks. Integrated through the zone of a
-//! steady tip this is `da/dN = β A δ^(1-p/2) (K/E')^p`, a Paris law with m = p ([`predict::bond_rate`]). So A and p drive a tip by its K
+//! steady tip this is `da/dN = β A δ^(1-p/2) (K/E')^p`, a Paris law with m = p ([`fatigue::rate_constant`]). So A and p drive a tip by its K
 //! ([`growth::tip_field`], the default), or every bond by its own strain ([`growth::bond_strain`]). Limits: linear elasticity, small-scale
 //! yielding, through cracks in plane stress or plane strain. `src/README.md` has the theory room by room, with symbols, limits and sources.
 //!

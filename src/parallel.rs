@@ -1,4 +1,4 @@
-//! The same digits whatever the number of threads.
+//! Threads, and the same digits whatever their number.
 
 use std::sync::Once;
 
@@ -9,4 +9,10 @@ const PARTS: usize = 4;
 pub fn fix_parts() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| faer::set_global_parallelism(faer::Par::rayon(PARTS)));
+}
+
+/// Runs `work` on a thread of the pool. Loops that threads outside share out cost each some 20 to 50 µs to hand over and to wait, and an
+/// iteration of a solver has forty of them.
+pub fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    rayon::scope(|_| work())
 }

@@ -5,7 +5,6 @@
 //! that fail by their own strain (`fatigue.driver = "bond_strain"`) and K of a handbook (`model.method = "handbook"`). Command, service
 //! and calibration all come through here. The theory in the order of the rooms stands in `src/README.md`.
 
-pub mod bond_rate;
 pub mod checkpoint;
 pub mod factor_curve;
 pub mod guard;
@@ -27,6 +26,7 @@ use crate::fatigue::Driver;
 use crate::growth::bond_strain::BondStrain;
 use crate::growth::hand_calculation::HandCalculation;
 use crate::growth::tip_field::TipField;
+use crate::parallel::in_pool;
 use checkpoint::Checkpoint;
 use record::Record;
 
@@ -35,7 +35,7 @@ use record::Record;
 /// # Errors
 /// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
-    follow(Record::new(case, observer))
+    in_pool(|| follow(Record::new(case, observer)))
 }
 
 /// Goes on with a run of a case from a checkpoint of it; gives what [`predict`] gives, bit for bit, its wall time counted from the
@@ -45,7 +45,7 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 /// As [`predict`]; [`crate::Error::Input`] if the checkpoint is not one of this case.
 pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
     checkpoint.check(case)?;
-    follow(Record::new(case, observer).resumed_from(checkpoint))
+    in_pool(|| follow(Record::new(case, observer).resumed_from(checkpoint)))
 }
 
 /// A run by what its case asks to be driven by.
@@ -56,9 +56,7 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
             record.follow(&mut HandCalculation::start(case, laws::growth_law(case)?)?, |hand| hand.next_interval())
         }
         (Method::Peridynamics, Driver::TipField) => {
-            // A law of bonds takes a run of its own ([`bond_rate`]).
-            let (law, plate) = rayon::join(|| laws::growth_law(case), || TipField::plate(case));
-            record.follow(&mut TipField::start_on(case, plate?, law?)?, |cracks| Ok(increment(cracks)))
+            record.follow(&mut TipField::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks)))
         }
         (Method::Peridynamics, Driver::BondStrain) => {
             let rates = |horizon| laws::bond_rates(case, horizon);

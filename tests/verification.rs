@@ -27,6 +27,8 @@ mod tip_field;
 mod tip_field_solvers;
 #[path = "verification/tension_plate.rs"]
 mod tension_plate;
+#[path = "verification/rate_constant.rs"]
+mod rate_constant;
 #[path = "verification/product.rs"]
 mod product;
 #[path = "verification/solvers.rs"]

@@ -54,7 +54,7 @@ pub struct Fit {
     pub confidence: Confidence,
     /// Paris equivalents of the record.
     pub paris: Paris,
-    /// β of the record's exponent ([`crate::predict::bond_rate`]), where A is that of bonds.
+    /// β of the record's exponent ([`crate::fatigue::rate_constant`]), where A is that of bonds.
     pub rate_constant: Option<f64>,
     /// Horizon that A belongs to, m; NaN where K is that of a handbook.
     pub horizon: f64,

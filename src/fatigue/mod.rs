@@ -8,6 +8,7 @@ pub mod length_average;
 pub mod no_fail;
 pub mod paris;
 pub mod pieces;
+pub mod rate_constant;
 pub mod remaining_life;
 
 use crate::error::{Error, input};
@@ -56,7 +57,7 @@ crate::kinds! {
     }
 }
 
-/// Exponents p of bonds for which a crack was seen to grow steadily, so that its rate is known (`predict::bond_rate`).
+/// Exponents p of bonds for which a crack was seen to grow steadily, so that its rate is known ([`rate_constant`]).
 pub const STEADY_EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=8.0;
 
 /// The error of an exponent outside [`STEADY_EXPONENTS`].

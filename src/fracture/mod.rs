@@ -32,6 +32,7 @@ use crate::body::Body;
 use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::error::{Result, input};
 use crate::levels::{MultiLevelSpec, Net, dual_horizon};
+use crate::parallel::in_pool;
 use crate::predict::memory;
 use bonds::BondState;
 use boundary::Boundary;
@@ -69,6 +70,10 @@ impl SceneObserver for crate::predict::Silent {
 /// # Errors
 /// Wrong input that shows only now, choices that do not go together, a run that was cancelled.
 pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
+    in_pool(|| follow(scene, observer))
+}
+
+fn follow(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
     let started = Instant::now();
     let (net, body) = build(scene)?;
     let boundary = Boundary::of(scene, &net)?;

@@ -1,11 +1,11 @@
 //! The law of a case in the form that its driver needs: of bonds, or over K.
 
 use super::CurvePoint;
-use super::bond_rate::ReferenceModel;
 use crate::case::{Case, LawSource};
 use crate::error::{Result, input_missing};
 use crate::fatigue::growth_law::{Bounded, GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
+use crate::fatigue::rate_constant::rate_constant;
 use crate::fatigue::{FatigueLaw, GrowthRate};
 use crate::growth::CrackGrowth;
 use crate::growth::bond_strain::BondRates;
@@ -14,7 +14,7 @@ use crate::units::MM;
 /// The law over K of a case, for driver `tip_field` and method `handbook`.
 ///
 /// # Errors
-/// A case without law; as [`ReferenceModel::rate_constant`] where it is one of bonds.
+/// A case without law; as [`rate_constant`] where it is one of bonds.
 pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
     let threshold = case.fatigue.threshold;
     Ok(match &case.law {
@@ -71,7 +71,7 @@ pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) ->
 pub fn paris_law(case: &Case) -> Result<ParisLaw> {
     match &case.law {
         LawSource::Inline(law) => {
-            let beta = ReferenceModel::of(&case.model).rate_constant(law.p)?;
+            let beta = rate_constant(case.model.bond_law.kernel, law.p)?;
             Ok(ParisLaw::of_bonds(law, beta, case.material.plane_modulus()))
         }
         _ => case.paris_law(),
@@ -82,11 +82,11 @@ pub fn paris_law(case: &Case) -> Result<ParisLaw> {
 /// gives.
 ///
 /// # Errors
-/// A case without law; as [`ReferenceModel::rate_constant`] where it is one over K.
+/// A case without law; as [`rate_constant`] where it is one over K.
 pub fn bond_law(case: &Case, horizon: f64) -> Result<FatigueLaw> {
     match &case.law {
         LawSource::Paris(law) => {
-            let beta = ReferenceModel::of(&case.model).rate_constant(law.m)?;
+            let beta = rate_constant(case.model.bond_law.kernel, law.m)?;
             Ok(law.to_bonds(beta, case.material.plane_modulus(), horizon))
         }
         _ => case.fatigue_law(horizon),

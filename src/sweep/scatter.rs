@@ -8,7 +8,7 @@
 //! ```
 //!
 //! For hand calculation (A is C, p is m) `s = ln ΔK` exactly. For bonds, steady growth `R = β A δ^(1-p/2) (ΔK/E')^p` gives
-//! `s = ln(ΔK / (E' √δ)) + ∂ ln β / ∂p`, with [`BETA_SLOPE`]; E' = E or E/(1-ν²).
+//! `s = ln(ΔK / (E' √δ)) + ∂ ln β / ∂p`, with the slope of ln β ([`rate_constant_slope`]); E' = E or E/(1-ν²).
 
 use std::path::Path;
 use std::str::FromStr;
@@ -17,15 +17,14 @@ use serde::Deserialize;
 
 use super::design::Scatter;
 use super::distribution::normal_quantile;
+use crate::bond_law::Kernel;
 use crate::calibration::record::FittedRecord;
 use crate::case::Method;
 use crate::error::{Error, Result, input, input_missing};
+use crate::fatigue::rate_constant::rate_constant_slope;
 use crate::material::Plane;
 use crate::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
 
-/// `∂ ln β / ∂p`. Measured by fits of A at given p to one curve (`calibration/al2024-t3`, spacing 1 mm): β is 0.201, 0.183 and
-/// 0.169 at p = 2.6, 3.0 and 3.4; the covariance of the fit of both says -0.237.
-pub const BETA_SLOPE: f64 = -0.22;
 /// Fewest specimens whose covariance is taken for that of all.
 pub const SPECIMENS_MIN: usize = 5;
 /// Report of a calibration, beside its record.
@@ -128,9 +127,11 @@ impl LawScatter {
         let has_errors = !by_hand && record.paris_m_error > 0.0 && record.p_error > 0.0;
         let m_per_p = if has_errors { record.paris_m_error / record.p_error } else { 1.0 };
         let m = record.paris_m + m_per_p * more;
+        let of_drawn = |beta: f64| beta_slope(record).map(|slope| beta * (slope * more).exp());
+        let rate_constant = record.rate_constant.map(of_drawn).transpose()?;
         Ok(FittedRecord {
             a: record.a * (change - slope(record)? * more).exp(),
-            rate_constant: record.rate_constant.map(|beta| beta * (BETA_SLOPE * more).exp()),
+            rate_constant,
             p,
             paris_c_mm_per_cycle: (ln_rate - m * record.pivot_delta_k_mpa_sqrt_m.ln()).exp(),
             paris_m: m,
@@ -182,5 +183,10 @@ pub fn slope(record: &FittedRecord) -> Result<f64> {
         Plane::Stress => modulus,
         Plane::Strain => modulus / (1.0 - record.poisson_ratio.powi(2)),
     };
-    Ok((pivot * MPA_SQRT_M / (modulus * (record.horizon_mm * MM).sqrt())).ln() + BETA_SLOPE)
+    Ok((pivot * MPA_SQRT_M / (modulus * (record.horizon_mm * MM).sqrt())).ln() + beta_slope(record)?)
+}
+
+/// ∂ ln β / ∂p of the kernel of a record at its exponent.
+fn beta_slope(record: &FittedRecord) -> Result<f64> {
+    rate_constant_slope(Kernel::from_str(&record.kernel)?, record.p)
 }

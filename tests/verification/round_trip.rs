@@ -10,7 +10,7 @@ use perilife::calibration::search::Constants;
 use perilife::case::Case;
 use perilife::fatigue::FatigueLaw;
 use perilife::fatigue::paris::ParisLaw;
-use perilife::predict::bond_rate::ReferenceModel;
+use perilife::fatigue::rate_constant::rate_constant;
 use perilife::predict::factor_curve::FactorCurve;
 use perilife::predict::{Silent, predict};
 use perilife::specimen::handbook::handbook;
@@ -83,7 +83,7 @@ fn the_engine_recovers_its_own_constants() {
 #[test]
 fn truth_lies_inside_the_95_percent_ellipse_of_engine_fits() {
     let (panel, horizon, found) = fits(3.0, 0.05, 200);
-    let beta = ReferenceModel::of(&panel.model).rate_constant(P).unwrap();
+    let beta = rate_constant(panel.model.bond_law.kernel, P).unwrap();
     let truth = ParisLaw::of_bonds(&FatigueLaw { a: known(horizon).0, p: P, horizon }, beta, panel.material.plane_modulus());
     let is_inside = |fit: &&Fit| {
         let Constants { a: c, p: m } = fit.record.constants;

@@ -1,7 +1,7 @@
 //! Remaining life λ of the bonds ahead of tips that grow by their K.
 //!
 //! The law of a bond, `dλ/dN = -A ε^p`, makes a tip grow steadily at `da/dN = β A δ^(1-p/2) (K_eq/E')^p`
-//! ([`crate::predict::bond_rate`]): on the length ℓ of the fatigue zone ahead of the tip a bond that the line crosses loses its whole
+//! ([`crate::fatigue::rate_constant`]): on the length ℓ of the fatigue zone ahead of the tip a bond that the line crosses loses its whole
 //! remaining life. Here the rate is known from K, so that these bonds lose it at `dλ/dN = -(da/dN)/ℓ`: λ is 1 where the line crosses
 //! them ℓ ahead of the tip and falls linearly to 0 at the tip. Remaining life never rises: bonds beside a crack that has turned away
 //! keep what they have left.
