@@ -7,9 +7,14 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::amd;
-use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky};
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Side};
+
+/// The fronts are too small to be shared out: four parts take half as long again.
+const PAR: faer::Par = faer::Par::Seq;
 
 /// Order and structure of the factor of matrices with one pattern.
 pub struct Structure(SymbolicCholesky<usize>);
@@ -45,20 +50,32 @@ impl Structure {
         factorize_symbolic_cholesky(pattern, Side::Lower, order, params).ok().map(Structure)
     }
 
-    /// Solves `A x = b` in place of b, for an A of the pattern by its lower triangle; `None` where A is not positive definite.
+    /// The factor of an A of the pattern by its lower triangle; `None` where A is not positive definite.
     #[must_use]
-    pub fn solve(&self, matrix: SparseColMatRef<'_, usize, f64>, b: &mut [f64]) -> Option<()> {
-        // The fronts are too small to be shared out: four parts take half as long again.
-        let par = faer::Par::Seq;
+    pub fn factor(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Option<Factor<'_>> {
         let mut values = vec![0.0; self.0.len_val()];
-        let factor_scratch = self.0.factorize_numeric_llt_scratch::<f64>(par, faer::Spec::default());
-        let solve_scratch = self.0.solve_in_place_scratch::<f64>(1, par);
-        let mut memory = MemBuffer::try_new(factor_scratch.or(solve_scratch)).ok()?;
-        let stack = MemStack::new(&mut memory);
+        let mut memory = MemBuffer::try_new(self.0.factorize_numeric_llt_scratch::<f64>(PAR, faer::Spec::default())).ok()?;
         let (side, none) = (Side::Lower, faer::linalg::cholesky::llt::factor::LltRegularization::default());
-        let factor = self.0.factorize_numeric_llt(&mut values, matrix, side, none, par, stack, faer::Spec::default()).ok()?;
+        let stack = MemStack::new(&mut memory);
+        self.0.factorize_numeric_llt(&mut values, matrix, side, none, PAR, stack, faer::Spec::default()).ok()?;
+        Some(Factor { symbolic: &self.0, values })
+    }
+}
+
+/// Factor L of a matrix `A = L Lᵀ`.
+pub struct Factor<'a> {
+    symbolic: &'a SymbolicCholesky<usize>,
+    values: Vec<f64>,
+}
+
+impl Factor<'_> {
+    /// Solves `A x = b` in place of b; `None` where memory is short.
+    #[must_use]
+    pub fn solve(&self, b: &mut [f64]) -> Option<()> {
+        let mut memory = MemBuffer::try_new(self.symbolic.solve_in_place_scratch::<f64>(1, PAR)).ok()?;
         let n = b.len();
-        factor.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(b, n, 1), par, stack);
+        let b = MatMut::from_column_major_slice_mut(b, n, 1);
+        LltRef::new(self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, b, PAR, MemStack::new(&mut memory));
         Some(())
     }
 }

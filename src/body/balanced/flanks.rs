@@ -12,6 +12,8 @@
 
 use std::collections::HashMap;
 
+use rayon::prelude::*;
+
 use super::least_squares::{BondGain, Gain, Link, Problem};
 use super::{BOUNDS, asked, gains, load_rows};
 use crate::body::facets::{Facet, behind};
@@ -184,37 +186,46 @@ fn areas(body: &Body, pieces: &[[Point; 2]], number: &HashMap<usize, u32>) -> Ve
     let (lattice, spacing) = (&body.lattice, body.lattice.spacing);
     let rows = load_rows(&body.stencil) as f64;
     let mut areas = vec![[0.0; 2]; number.len()];
-    for &[a, b] in pieces {
-        let (length, [x, y]) = (distance(a, b), direction(a, b));
-        let count = (PIECES_PER_SPACING * length / spacing).ceil().max(1.0);
-        for i in 0..count as usize {
-            let at = along(a, b, (i as f64 + 0.5) / count);
-            let beside: Vec<&[Point; 2]> =
-                pieces.iter().filter(|[p, q]| distance_to_segment(at, *p, *q) < 2.0 * (rows + 1.0) * spacing).collect();
-            for normal in [[y, -x], [-y, x]] {
-                let facet = Facet { at, normal, length: length / count };
-                let from = behind(&facet, spacing);
-                let sees = |place: u32| {
-                    let to = lattice.position(place as usize);
-                    !beside.iter().any(|[p, q]| segments_touch(from, to, *p, *q))
-                };
-                let [column, row] = lattice.locate(at);
-                let shares = (0..WIDENINGS).find_map(|i| {
-                    let widen = WIDEN.powi(i as i32);
-                    let (deep, wide) = (widen * (rows + 0.5), widen);
-                    let candidates = places_near(body, at, at, deep.hypot(wide) * spacing).map(|place| {
-                        let (c, r) = lattice.column_row(place);
-                        (place as u32, [c as f64 - column, r as f64 - row], 1.0)
-                    });
-                    linear_shares(lattice.to_axes(normal), deep, wide, candidates, sees)
-                });
-                let whole = lattice.to_axes(normal.map(|n| n * facet.length / spacing));
-                for (place, share) in shares.unwrap_or_default() {
-                    if let Some(&i) = number.get(&(place as usize)) {
-                        let sum = &mut areas[i as usize];
-                        *sum = [sum[0] + share * whole[0], sum[1] + share * whole[1]];
-                    }
-                }
+    let facets: Vec<Facet> = pieces
+        .iter()
+        .flat_map(|&[a, b]| {
+            let (length, [x, y]) = (distance(a, b), direction(a, b));
+            let count = (PIECES_PER_SPACING * length / spacing).ceil().max(1.0);
+            let facet = move |i: usize, normal: [f64; 2]| Facet {
+                at: along(a, b, (i as f64 + 0.5) / count),
+                normal,
+                length: length / count,
+            };
+            (0..count as usize).flat_map(move |i| [[y, -x], [-y, x]].map(|normal| facet(i, normal)))
+        })
+        .collect();
+    let shares = |facet: &Facet| {
+        let near = 2.0 * (rows + 1.0) * spacing;
+        let beside: Vec<&[Point; 2]> = pieces.iter().filter(|[p, q]| distance_to_segment(facet.at, *p, *q) < near).collect();
+        let from = behind(facet, spacing);
+        let sees = |place: u32| {
+            let to = lattice.position(place as usize);
+            !beside.iter().any(|[p, q]| segments_touch(from, to, *p, *q))
+        };
+        let [column, row] = lattice.locate(facet.at);
+        let shares = (0..WIDENINGS).find_map(|i| {
+            let widen = WIDEN.powi(i as i32);
+            let (deep, wide) = (widen * (rows + 0.5), widen);
+            let candidates = places_near(body, facet.at, facet.at, deep.hypot(wide) * spacing).map(|place| {
+                let (c, r) = lattice.column_row(place);
+                (place as u32, [c as f64 - column, r as f64 - row], 1.0)
+            });
+            linear_shares(lattice.to_axes(facet.normal), deep, wide, candidates, sees)
+        });
+        shares.unwrap_or_default()
+    };
+    let shares: Vec<_> = facets.par_iter().map(shares).collect();
+    for (facet, shares) in facets.iter().zip(shares) {
+        let whole = lattice.to_axes(facet.normal.map(|n| n * facet.length / spacing));
+        for (place, share) in shares {
+            if let Some(&i) = number.get(&(place as usize)) {
+                let sum = &mut areas[i as usize];
+                *sum = [sum[0] + share * whole[0], sum[1] + share * whole[1]];
             }
         }
     }

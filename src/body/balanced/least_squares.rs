@@ -6,9 +6,12 @@
 //! line search makes it converge from anywhere. Without active bounds it ends after one step. The matrix couples the two ends
 //! of bonds near the rim only, so cost grows with the length of the rim.
 
-use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+use std::collections::BTreeMap;
 
-use crate::block_cholesky::Structure;
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use rayon::prelude::*;
+
+use crate::block_cholesky::{Factor, Structure};
 
 /// Equations of a point: four of force, two of rotation.
 pub(super) const EQUATIONS: usize = 6;
@@ -19,6 +22,10 @@ const SOFTNESS: [f64; 3] = [1e-7, 1e-5, 1e-3];
 const SOFTNESS_TURN: f64 = 1.0;
 /// Newton steps at one softness.
 const STEPS: usize = 25;
+/// Rounds of one step of all equations and steps of parts.
+const ROUNDS: usize = 8;
+/// Links from an equation whose bonds are at a bound to the border of its part.
+const HOPS: usize = 8;
 /// Gradient over the largest residual at which a step is the last.
 const TOLERANCE: f64 = 1e-8;
 
@@ -51,32 +58,19 @@ pub struct Problem<'a> {
     /// Sorted by owner, then by other end.
     links: Vec<Link>,
     missing: Vec<Gain>,
-    /// First link of every point.
-    first: Vec<usize>,
-    symbolic: SymbolicSparseColMat<usize>,
+}
+
+/// Multipliers of the equations, and what they make of the unknowns before these are clipped: `y = Gᵀλ`.
+struct Dual {
+    lambda: Vec<Gain>,
+    y: Vec<f64>,
 }
 
 impl<'a> Problem<'a> {
     /// Equations `Σ gain x = missing` of all points.
     #[must_use]
     pub fn new(gains: &'a [BondGain], links: Vec<Link>, missing: Vec<Gain>) -> Self {
-        let points = missing.len();
-        let mut first = vec![0; points + 1];
-        links.iter().for_each(|link| first[link.from as usize + 1] += 1);
-        (0..points).for_each(|p| first[p + 1] += first[p]);
-        let (mut starts, mut rows) = (vec![0], Vec::new());
-        for point in 0..points {
-            for c in 0..EQUATIONS {
-                rows.extend((c..EQUATIONS).map(|d| point * EQUATIONS + d));
-                for link in &links[first[point]..first[point + 1]] {
-                    rows.extend((0..EQUATIONS).map(|d| link.to as usize * EQUATIONS + d));
-                }
-                starts.push(rows.len());
-            }
-        }
-        let n = points * EQUATIONS;
-        let symbolic = SymbolicSparseColMat::new_checked(n, n, starts, None, rows);
-        Problem { gains, links, missing, first, symbolic }
+        Problem { gains, links, missing }
     }
 
     /// The changes within their bounds, with the smallest softness that Newton's method manages; `None` if it manages none.
@@ -88,92 +82,281 @@ impl<'a> Problem<'a> {
     /// The same with other values of ε of the equations of force, the first of them that Newton's method manages.
     #[must_use]
     pub fn solve_to(&self, softness: &[f64], bounds: [f64; 2]) -> Option<Vec<f64>> {
-        if self.links.is_empty() {
-            return Some(Vec::new());
+        let solve = |(points, links): (Vec<u32>, Vec<u32>)| {
+            let part = Part::new(self, points, links)?;
+            let solved = softness.iter().find_map(|&softness| part.solve(Bounded { softness, bounds }))?;
+            Some((part.links, solved))
+        };
+        let mut changes = vec![0.0; self.links.len()];
+        for (links, solved) in
+            self.parts(vec![true; self.missing.len()]).into_par_iter().map(solve).collect::<Option<Vec<_>>>()?
+        {
+            links.iter().zip(solved).for_each(|(&link, change)| changes[link as usize] = change);
         }
-        let structure = Structure::of(self.symbolic.as_ref(), EQUATIONS)?;
-        softness.iter().find_map(|&softness| self.newton(&structure, softness, bounds))
+        Some(changes)
     }
 
-    fn newton(&self, structure: &Structure, softness: f64, [lo, hi]: [f64; 2]) -> Option<Vec<f64>> {
-        let n = self.missing.len() * EQUATIONS;
-        let epsilon = |i: usize| if i % EQUATIONS < 4 { softness } else { SOFTNESS_TURN };
-        let missing = self.missing.as_flattened();
-        let scale = missing.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
-        let clip = |y: f64| y.clamp(lo, hi);
-        let (mut lambda, mut y) = (vec![0.0; n], vec![0.0; self.links.len()]);
-        for _ in 0..STEPS {
-            let x: Vec<f64> = y.iter().map(|&y| clip(y)).collect();
-            let carried = self.apply(&x);
-            let gradient: Vec<f64> = (0..n).map(|i| missing[i] - carried[i] - epsilon(i) * lambda[i]).collect();
-            if gradient.iter().all(|g| g.abs() <= TOLERANCE * scale) {
-                return Some(x);
+    /// Points that are inside and all their links, by parts that no link joins.
+    fn parts(&self, inside: Vec<bool>) -> Vec<(Vec<u32>, Vec<u32>)> {
+        // Each point's part by the smallest number that its links lead to.
+        let mut part: Vec<u32> = (0..inside.len() as u32).collect();
+        let root = |part: &mut [u32], mut point: u32| {
+            while part[point as usize] != point {
+                part[point as usize] = part[part[point as usize] as usize];
+                point = part[point as usize];
             }
-            let free: Vec<bool> = y.iter().map(|&y| y > lo && y < hi).collect();
-            let matrix = SparseColMat::new(self.symbolic.clone(), self.normal_matrix(&free, epsilon));
-            let mut step = gradient;
-            structure.solve(matrix.as_ref(), &mut step)?;
-            let z = self.apply_transposed(&step);
-            // Slope of the dual along the step: falls as the way grows.
-            let fixed = (0..n).map(|i| step[i] * (missing[i] - epsilon(i) * lambda[i])).sum::<f64>();
-            let curved = (0..n).map(|i| step[i] * step[i] * epsilon(i)).sum::<f64>();
-            let slope = |way: f64| {
-                let carried: f64 = y.iter().zip(&z).map(|(y, z)| z * clip(y + way * z)).sum();
-                fixed - way * curved - carried
-            };
-            let way = if slope(1.0) >= -1e-9 * slope(0.0) { 1.0 } else { root(slope) };
-            lambda.iter_mut().zip(&step).for_each(|(l, d)| *l += way * d);
-            y.iter_mut().zip(&z).for_each(|(y, z)| *y += way * z);
+            point
+        };
+        for link in self.links.iter().filter(|link| inside[link.from as usize] && inside[link.to as usize]) {
+            let [a, b] = [link.from, link.to].map(|end| root(&mut part, end));
+            part[a.max(b) as usize] = a.min(b);
+        }
+        let mut parts: BTreeMap<u32, (Vec<u32>, Vec<u32>)> = BTreeMap::new();
+        for point in (0..inside.len() as u32).filter(|&point| inside[point as usize]) {
+            parts.entry(root(&mut part, point)).or_default().0.push(point);
+        }
+        for (index, link) in self.links.iter().enumerate() {
+            if let Some(end) = [link.from, link.to].into_iter().find(|&end| inside[end as usize]) {
+                parts.entry(root(&mut part, end)).or_default().1.push(index as u32);
+            }
+        }
+        parts.into_values().collect()
+    }
+}
+
+/// ε of the equations of force, and bounds of the unknowns.
+#[derive(Clone, Copy)]
+struct Bounded {
+    softness: f64,
+    bounds: [f64; 2],
+}
+
+impl Bounded {
+    fn clip(self, y: f64) -> f64 {
+        y.clamp(self.bounds[0], self.bounds[1])
+    }
+
+    fn is_free(self, y: f64) -> bool {
+        y > self.bounds[0] && y < self.bounds[1]
+    }
+
+    fn epsilon(self, equation: usize) -> f64 {
+        if equation % EQUATIONS < 4 { self.softness } else { SOFTNESS_TURN }
+    }
+}
+
+fn is_small(gradient: &[f64], tolerance: f64) -> bool {
+    gradient.iter().all(|g| g.abs() <= tolerance)
+}
+
+/// Equations of some points, with all links that these have; multipliers of other points stay.
+struct Part<'a> {
+    problem: &'a Problem<'a>,
+    /// Ascending.
+    points: Vec<u32>,
+    /// Ascending.
+    links: Vec<u32>,
+    /// Ends of every link among the points: of the owner, of the other.
+    ends: Vec<[Option<u32>; 2]>,
+    symbolic: SymbolicSparseColMat<usize>,
+    structure: Structure,
+}
+
+impl<'a> Part<'a> {
+    /// `None` where there are too many.
+    fn new(problem: &'a Problem<'a>, points: Vec<u32>, links: Vec<u32>) -> Option<Self> {
+        let mut number = vec![None; problem.missing.len()];
+        points.iter().enumerate().for_each(|(i, &point)| number[point as usize] = Some(i as u32));
+        let ends: Vec<[Option<u32>; 2]> = links
+            .iter()
+            .map(|&link| {
+                let Link { from, to, .. } = problem.links[link as usize];
+                [number[from as usize], number[to as usize]]
+            })
+            .collect();
+        let mut others: Vec<Vec<u32>> = vec![Vec::new(); points.len()];
+        for [from, to] in &ends {
+            if let (Some(from), Some(to)) = (from, to) {
+                others[*from as usize].push(*to);
+            }
+        }
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        for (point, others) in others.iter().enumerate() {
+            for c in 0..EQUATIONS {
+                rows.extend((c..EQUATIONS).map(|d| point * EQUATIONS + d));
+                for other in others {
+                    rows.extend((0..EQUATIONS).map(|d| *other as usize * EQUATIONS + d));
+                }
+                starts.push(rows.len());
+            }
+        }
+        let n = points.len() * EQUATIONS;
+        let symbolic = SymbolicSparseColMat::new_checked(n, n, starts, None, rows);
+        let structure = Structure::of(symbolic.as_ref(), EQUATIONS)?;
+        Some(Part { problem, points, links, ends, symbolic, structure })
+    }
+
+    /// Newton's method from rest on the equations of points that no link joins with others; the changes of the links. Its first step,
+    /// before any bound is active, is one of all equations. What active bounds change stays near them, so that further steps are those
+    /// of few points, in turn with corrections of all by the factor of the first.
+    fn solve(&self, limits: Bounded) -> Option<Vec<f64>> {
+        let problem = self.problem;
+        let mut dual = Dual { lambda: vec![[0.0; EQUATIONS]; problem.missing.len()], y: vec![0.0; problem.links.len()] };
+        let missing = self.points.iter().flat_map(|&point| &problem.missing[point as usize]);
+        let tolerance = TOLERANCE * missing.fold(0.0_f64, |m, r| m.max(r.abs()));
+        let mut gradient = self.gradient(&dual, limits);
+        if !is_small(&gradient, tolerance) {
+            let all_free = self.factor(&dual, limits)?;
+            for _ in 0..ROUNDS {
+                self.step(&all_free, gradient, &mut dual, limits)?;
+                gradient = self.gradient(&dual, limits);
+                if is_small(&gradient, tolerance) {
+                    break;
+                }
+                let near = self.near(&gradient, tolerance);
+                if 2 * near.iter().filter(|near| **near).count() > self.points.len() {
+                    break;
+                }
+                let solve = |(points, links): (Vec<u32>, Vec<u32>)| {
+                    let part = Part::new(problem, points, links)?;
+                    let mut own = Dual { lambda: dual.lambda.clone(), y: dual.y.clone() };
+                    part.newton(&mut own, limits, tolerance)?;
+                    Some((part.points, part.links, own))
+                };
+                let solved: Vec<_> = problem.parts(near).into_par_iter().map(solve).collect::<Option<_>>().unwrap_or_default();
+                for (points, links, own) in solved {
+                    points.iter().for_each(|&point| dual.lambda[point as usize] = own.lambda[point as usize]);
+                    links.iter().for_each(|&link| dual.y[link as usize] = own.y[link as usize]);
+                }
+                gradient = self.gradient(&dual, limits);
+                if is_small(&gradient, tolerance) {
+                    break;
+                }
+            }
+        }
+        self.newton(&mut dual, limits, tolerance)?;
+        Some(self.links.iter().map(|&link| limits.clip(dual.y[link as usize])).collect())
+    }
+
+    /// Which points of the problem are near equations of these whose gradient is not small yet.
+    fn near(&self, gradient: &[f64], tolerance: f64) -> Vec<bool> {
+        let mut near = vec![false; self.problem.missing.len()];
+        for (own, &point) in gradient.chunks(EQUATIONS).zip(&self.points) {
+            near[point as usize] = !is_small(own, tolerance);
+        }
+        for _ in 0..HOPS {
+            let before = near.clone();
+            for &link in &self.links {
+                let Link { from, to, .. } = self.problem.links[link as usize];
+                if before[from as usize] || before[to as usize] {
+                    (near[from as usize], near[to as usize]) = (true, true);
+                }
+            }
+        }
+        near
+    }
+
+    /// Newton's method on these equations.
+    fn newton(&self, dual: &mut Dual, limits: Bounded, tolerance: f64) -> Option<()> {
+        for _ in 0..STEPS {
+            let gradient = self.gradient(dual, limits);
+            if is_small(&gradient, tolerance) {
+                return Some(());
+            }
+            self.step(&self.factor(dual, limits)?, gradient, dual, limits)?;
         }
         None
     }
 
-    /// G x.
-    fn apply(&self, x: &[f64]) -> Vec<f64> {
-        let mut sums = vec![[0.0; EQUATIONS]; self.missing.len()];
-        for (link, &x) in self.links.iter().zip(x) {
-            let gain = &self.gains[link.k];
-            for (end, gain) in [(link.from, &gain.at_owner), (link.to, &gain.at_other)] {
-                sums[end as usize].iter_mut().zip(gain).for_each(|(sum, g)| *sum += g * x);
-            }
-        }
-        sums.into_flattened()
+    /// `(G_f G_fᵀ + ε)⁻¹` over the columns f that are not at a bound.
+    fn factor(&self, dual: &Dual, limits: Bounded) -> Option<Factor<'_>> {
+        let values = self.normal_matrix(&dual.y, limits);
+        self.structure.factor(SparseColMatRef::new(self.symbolic.as_ref(), &values))
     }
 
-    /// Gᵀ λ.
+    /// Adds what a factor makes of the gradient, as far as the dual rises.
+    fn step(&self, factor: &Factor<'_>, gradient: Vec<f64>, dual: &mut Dual, limits: Bounded) -> Option<()> {
+        let mut step = gradient;
+        factor.solve(&mut step)?;
+        let z = self.apply_transposed(&step);
+        let y: Vec<f64> = self.links.iter().map(|&link| dual.y[link as usize]).collect();
+        // Slope of the dual along the step: falls as the way grows.
+        let (mut fixed, mut curved) = (0.0, 0.0);
+        for (i, step) in step.iter().enumerate() {
+            let (point, c) = (self.points[i / EQUATIONS] as usize, i % EQUATIONS);
+            fixed += step * (self.problem.missing[point][c] - limits.epsilon(i) * dual.lambda[point][c]);
+            curved += step * step * limits.epsilon(i);
+        }
+        let slope = |way: f64| {
+            let carried: f64 = y.iter().zip(&z).map(|(y, z)| z * limits.clip(y + way * z)).sum();
+            fixed - way * curved - carried
+        };
+        let way = if slope(1.0) >= -1e-9 * slope(0.0) { 1.0 } else { root(slope) };
+        for (step, &point) in step.chunks(EQUATIONS).zip(&self.points) {
+            dual.lambda[point as usize].iter_mut().zip(step).for_each(|(l, d)| *l += way * d);
+        }
+        self.links.iter().zip(&z).for_each(|(&link, z)| dual.y[link as usize] += way * z);
+        Some(())
+    }
+
+    fn gain(&self, link: u32) -> &BondGain {
+        &self.problem.gains[self.problem.links[link as usize].k]
+    }
+
+    /// `r - G x - ε λ`.
+    fn gradient(&self, dual: &Dual, limits: Bounded) -> Vec<f64> {
+        let left = |&point: &u32| -> Gain {
+            let (missing, lambda) = (&self.problem.missing[point as usize], &dual.lambda[point as usize]);
+            std::array::from_fn(|c| missing[c] - limits.epsilon(c) * lambda[c])
+        };
+        let mut left: Vec<Gain> = self.points.iter().map(left).collect();
+        for (&link, ends) in self.links.iter().zip(&self.ends) {
+            let (gain, x) = (self.gain(link), limits.clip(dual.y[link as usize]));
+            for (end, gain) in ends.iter().zip([&gain.at_owner, &gain.at_other]) {
+                if let Some(end) = end {
+                    left[*end as usize].iter_mut().zip(gain).for_each(|(left, g)| *left -= g * x);
+                }
+            }
+        }
+        left.into_flattened()
+    }
+
+    /// Gᵀ of multipliers of these equations alone.
     fn apply_transposed(&self, lambda: &[f64]) -> Vec<f64> {
-        let dot = |end: u32, gain: &Gain| -> f64 {
-            let at = end as usize * EQUATIONS;
+        let dot = |end: &Option<u32>, gain: &Gain| -> f64 {
+            let Some(end) = end else { return 0.0 };
+            let at = *end as usize * EQUATIONS;
             lambda[at..at + EQUATIONS].iter().zip(gain).map(|(l, g)| l * g).sum()
         };
-        self.links
-            .iter()
-            .map(|link| {
-                let gain = &self.gains[link.k];
-                dot(link.from, &gain.at_owner) + dot(link.to, &gain.at_other)
-            })
-            .collect()
+        let of_link = |(&link, [from, to]): (&u32, &[Option<u32>; 2])| {
+            let gain = self.gain(link);
+            dot(from, &gain.at_owner) + dot(to, &gain.at_other)
+        };
+        self.links.iter().zip(&self.ends).map(of_link).collect()
     }
 
     /// Values of the lower triangle of `G_f G_fᵀ + ε` in the order of the symbolic matrix.
-    fn normal_matrix(&self, free: &[bool], epsilon: impl Fn(usize) -> f64) -> Vec<f64> {
-        let mut own = vec![[[0.0; EQUATIONS]; EQUATIONS]; self.missing.len()];
-        for (link, _) in self.links.iter().zip(free).filter(|(_, free)| **free) {
-            let gain = &self.gains[link.k];
-            for (end, gain) in [(link.from, &gain.at_owner), (link.to, &gain.at_other)] {
+    fn normal_matrix(&self, y: &[f64], limits: Bounded) -> Vec<f64> {
+        let mut own = vec![[[0.0; EQUATIONS]; EQUATIONS]; self.points.len()];
+        let mut joining: Vec<Vec<(&BondGain, bool)>> = vec![Vec::new(); self.points.len()];
+        for (&link, ends) in self.links.iter().zip(&self.ends) {
+            let (gain, is_free) = (self.gain(link), limits.is_free(y[link as usize]));
+            if let [Some(from), Some(_)] = ends {
+                joining[*from as usize].push((gain, is_free));
+            }
+            for (end, gain) in ends.iter().zip([&gain.at_owner, &gain.at_other]) {
+                let Some(end) = end.filter(|_| is_free) else { continue };
                 for (column, g) in own[end as usize].iter_mut().zip(gain) {
                     column.iter_mut().zip(gain).for_each(|(sum, h)| *sum += g * h);
                 }
             }
         }
         let mut values = Vec::with_capacity(self.symbolic.row_idx().len());
-        for (point, own) in own.iter().enumerate() {
-            let range = self.first[point]..self.first[point + 1];
+        for (own, joining) in own.iter().zip(&joining) {
             for (c, column) in own.iter().enumerate() {
-                values.extend((c..EQUATIONS).map(|d| column[d] + if c == d { epsilon(point * EQUATIONS + c) } else { 0.0 }));
-                for (link, &free) in self.links[range.clone()].iter().zip(&free[range.clone()]) {
-                    let gain = &self.gains[link.k];
-                    let g = if free { gain.at_owner[c] } else { 0.0 };
+                values.extend((c..EQUATIONS).map(|d| column[d] + if c == d { limits.epsilon(c) } else { 0.0 }));
+                for (gain, is_free) in joining {
+                    let g = if *is_free { gain.at_owner[c] } else { 0.0 };
                     values.extend(gain.at_other.iter().map(|h| g * h));
                 }
             }
