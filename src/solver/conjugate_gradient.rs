@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::field::dot;
+use super::field::{Layout, dot, dots, lane_sum};
 use super::multigrid::Multigrid;
 use super::product::{Into, Product};
 use super::rigid_motion::RigidMotion;
@@ -91,13 +91,14 @@ impl<const N: usize> MultigridSolver<N> {
                 self.multigrid.refresh_points(body, bonds, product, &changed);
             }
         }
-        let mut spent = self.iterate(tolerance, system, u)?;
-        if spent.is_none() && self.broken_since > 0 {
-            // The hierarchy belongs to an older crack: try once more with a new one, from rest.
-            self.multigrid = Multigrid::new(body, bonds, product);
+        let work_before = dot(product.layout(), f, u);
+        let mut spent = self.iterate(tolerance, system, u, work_before)?;
+        if spent.is_none() {
+            // The hierarchy belongs to an older crack, or to a plate that is nearly a mechanism: once more with a new one, from rest.
+            self.multigrid = Multigrid::new(body, bonds, product).cautious();
             self.broken_since = 0;
             u.fill(0.0);
-            spent = self.iterate(tolerance, system, u)?;
+            spent = self.iterate(tolerance, system, u, work_before)?;
         }
         let spent = spent.ok_or_else(|| {
             Error::Mechanics(format!(
@@ -114,8 +115,8 @@ impl<const N: usize> MultigridSolver<N> {
         Ok(Solved { iterations: spent, work: dot(product.layout(), f, u) })
     }
 
-    /// Iterations to a residual over load; `None` where it is not reached.
-    fn iterate(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Option<usize>> {
+    /// Iterations to a residual over load; `None` where it is not reached. `work_before` is the work of the loads before bonds broke.
+    fn iterate(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64], work_before: f64) -> Result<Option<usize>> {
         let System { body, bonds, product, f } = system;
         let layout = *product.layout();
         let target = tolerance * dot(&layout, f, f).sqrt();
@@ -125,7 +126,6 @@ impl<const N: usize> MultigridSolver<N> {
             return Ok(Some(0));
         }
         let rigid = RigidMotion::of(body, bonds, layout);
-        let work_before = dot(&layout, f, u);
         // r·z and the step of the last iteration.
         let mut last: Option<(f64, f64)> = None;
         for iteration in 1..=ITERATIONS_MAX {
@@ -133,11 +133,15 @@ impl<const N: usize> MultigridSolver<N> {
             if let Some(rigid) = &rigid {
                 rigid.take_off(z);
             }
-            let rz = dot(&layout, &self.r, z);
+            let [rz, qz] = dots(&layout, [&self.r, &self.q], z);
             // z·(r - r_last) / (r·z)_last, with r - r_last = -α q: a preconditioner in single precision is not the same linear
             // operator every time (Notay 2000, SIAM J. Sci. Comput. 22:1444).
-            let beta = last.map_or(0.0, |(rz_last, alpha)| -alpha * dot(&layout, &self.q, z) / rz_last);
-            update(&mut self.p, z, |p, z| z + beta * p);
+            if !(rz > 0.0 && rz.is_finite()) {
+                tracing::debug!(iteration, rz, "the preconditioner is not positive");
+                return Ok(None);
+            }
+            let beta = last.map_or(0.0, |(rz_last, alpha)| -alpha * qz / rz_last);
+            turn(&layout, &mut self.p, z, beta);
             product.apply(bonds, &mut self.p, &mut self.q, Into::Set);
             let curvature = dot(&layout, &self.p, &self.q);
             if !(curvature > 0.0 && curvature.is_finite()) {
@@ -146,9 +150,7 @@ impl<const N: usize> MultigridSolver<N> {
             }
             let alpha = rz / curvature;
             last = Some((rz, alpha));
-            update(u, &self.p, |u, p| u + alpha * p);
-            update(&mut self.r, &self.q, |r, q| r - alpha * q);
-            if dot(&layout, &self.r, &self.r).sqrt() <= target {
+            if advance(&layout, alpha, [u, &mut self.r], [&self.p, &self.q]).sqrt() <= target {
                 return Ok(Some(iteration));
             }
             if iteration % ITERATIONS_PER_LOOK == 0 && work_before > 0.0 {
@@ -164,12 +166,27 @@ impl<const N: usize> MultigridSolver<N> {
     }
 }
 
-/// v = new(v, w) component by component, shared out to threads.
-fn update<T: Copy + Sync + std::convert::Into<f64>>(v: &mut [f64], w: &[T], new: impl Fn(f64, f64) -> f64 + Sync) {
-    const PART: usize = 1 << 14;
-    v.par_chunks_mut(PART).zip(w.par_chunks(PART)).for_each(|(v, w)| {
-        v.iter_mut().zip(w).for_each(|(v, &w)| *v = new(*v, w.into()));
+/// p = z + β p.
+fn turn(layout: &Layout, p: &mut [f64], z: &[f32], beta: f64) {
+    let part = layout.part();
+    p.par_chunks_mut(part).zip(z.par_chunks(part)).for_each(|(p, z)| {
+        p.iter_mut().zip(z).for_each(|(p, &z)| *p = beta.mul_add(*p, z.into()));
     });
+}
+
+/// u += α p, r -= α q in one pass; r·r of the new r.
+fn advance(layout: &Layout, alpha: f64, [u, r]: [&mut [f64]; 2], [p, q]: [&[f64]; 2]) -> f64 {
+    let part = layout.part();
+    let state = u.par_chunks_mut(part).zip(r.par_chunks_mut(part));
+    let rows = state.zip(p.par_chunks(part).zip(q.par_chunks(part)));
+    let squares: Vec<f64> = rows
+        .map(|((u, r), (p, q))| {
+            u.iter_mut().zip(p).for_each(|(u, p)| *u = alpha.mul_add(*p, *u));
+            r.iter_mut().zip(q).for_each(|(r, q)| *r = (-alpha).mul_add(*q, *r));
+            lane_sum(r, r)
+        })
+        .collect();
+    squares.iter().sum()
 }
 
 impl<const N: usize> LinearSolver<N> for MultigridSolver<N> {

@@ -78,6 +78,12 @@ impl Layout {
     pub fn rows_per_task(&self) -> usize {
         PLACES_PER_TASK.div_ceil(self.stride)
     }
+
+    /// Values of a vector that one task takes.
+    #[must_use]
+    pub fn part(&self) -> usize {
+        self.row_len() * self.rows_per_task()
+    }
 }
 
 /// Scalar product, summed part by part in a fixed order: the same digits whatever the number of threads. The second vector may
@@ -85,9 +91,19 @@ impl Layout {
 #[must_use]
 pub fn dot<T: Copy + Sync + Into<f64>>(layout: &Layout, a: &[f64], b: &[T]) -> f64 {
     use rayon::prelude::*;
-    let part = layout.row_len() * layout.rows_per_task();
+    let part = layout.part();
     let parts: Vec<f64> = a.par_chunks(part).zip(b.par_chunks(part)).map(|(a, b)| lane_sum(a, b)).collect();
     parts.iter().sum()
+}
+
+/// Scalar products of two vectors with a third in one pass, summed like [`dot`].
+#[must_use]
+pub fn dots(layout: &Layout, [a, b]: [&[f64]; 2], z: &[f32]) -> [f64; 2] {
+    use rayon::prelude::*;
+    let part = layout.part();
+    let both = |((a, b), z): ((&[f64], &[f64]), &[f32])| [lane_sum(a, z), lane_sum(b, z)];
+    let parts: Vec<[f64; 2]> = a.par_chunks(part).zip(b.par_chunks(part)).zip(z.par_chunks(part)).map(both).collect();
+    parts.iter().fold([0.0; 2], |[a, b], part| [a + part[0], b + part[1]])
 }
 
 /// Euclidean norm of a vector in single precision, summed like [`dot`].
@@ -95,12 +111,12 @@ pub fn dot<T: Copy + Sync + Into<f64>>(layout: &Layout, a: &[f64], b: &[T]) -> f
 pub fn norm(layout: &Layout, a: &[f32]) -> f64 {
     use rayon::prelude::*;
     let square = |part: &[f32]| part.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>();
-    let parts: Vec<f64> = a.par_chunks(layout.row_len() * layout.rows_per_task()).map(square).collect();
+    let parts: Vec<f64> = a.par_chunks(layout.part()).map(square).collect();
     parts.iter().sum::<f64>().sqrt()
 }
 
-/// Sum of products with eight running sums, which the compiler turns into vector instructions.
-fn lane_sum<T: Copy + Into<f64>>(a: &[f64], b: &[T]) -> f64 {
+/// Sum of products with running sums side by side, which the compiler turns into vector instructions.
+pub(super) fn lane_sum<T: Copy + Into<f64>>(a: &[f64], b: &[T]) -> f64 {
     let mut sums = [0.0; LANES];
     let (a_lanes, a_rest) = a.as_chunks::<LANES>();
     let (b_lanes, b_rest) = b.as_chunks::<LANES>();

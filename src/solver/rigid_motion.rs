@@ -11,6 +11,9 @@ use super::kernel::Real;
 use crate::body::Body;
 use crate::state::Bonds;
 
+/// Places that are summed side by side.
+const SIDE: usize = 8;
+
 /// The rigid motions of the points that carry.
 pub struct RigidMotion {
     layout: Layout,
@@ -47,11 +50,11 @@ impl RigidMotion {
         });
         let shifts = [0, 1].map(|axis| if free[axis] { 1.0 } else { 0.0 });
         let mut motion = RigidMotion { layout, carries, count: 0.0, centre: [0.0; 2], inertia: f64::INFINITY, shifts };
-        let [count, x, y] = motion.sum(|_, _, seat| [1.0, seat[0], seat[1]], &[0.0_f32; 0]);
+        let [count, x, y] = motion.sum(|seat| [1.0, seat[0], seat[1]]);
         (motion.count, motion.centre) = (count, [x / count, y / count]);
         if free[2] {
             let own = if layout.unknowns == 3 { 1.0 } else { 0.0 };
-            [motion.inertia, ..] = motion.sum(|_, _, [x, y]| [x * x + y * y + own, 0.0, 0.0], &[0.0_f32; 0]);
+            [motion.inertia, ..] = motion.sum(|[x, y]| [x * x + y * y + own, 0.0, 0.0]);
         }
         Some(motion)
     }
@@ -59,12 +62,14 @@ impl RigidMotion {
     /// Takes its rigid motion off a field.
     pub fn take_off<T: Real + Into<f64>>(&self, field: &mut [T]) {
         let (stride, has_turns) = (self.layout.stride, self.layout.unknowns == 3);
-        let motion = |row: &[T], column: usize, [x, y]: [f64; 2]| {
-            let (u, v): (f64, f64) = (row[column].into(), row[column + stride].into());
-            let own = if has_turns { row[column + 2 * stride].into() } else { 0.0 };
-            [u, v, x * v - y * u + own]
+        let rows = field.par_chunks_exact(self.layout.row_len()).zip(self.carries.par_chunks_exact(stride)).enumerate();
+        let of_row = |(row, (values, carries)): (usize, (&[T], &[f32]))| {
+            let y = row as f64 - self.centre[1];
+            let [u, v, arm, own] = self.row_sums(values, carries);
+            [u, v, arm - y * u + own]
         };
-        let [u, v, turn] = self.sum(motion, field);
+        let sums: Vec<[f64; 3]> = rows.map(of_row).collect();
+        let [u, v, turn] = sums.iter().fold([0.0; 3], |sum, add| [sum[0] + add[0], sum[1] + add[1], sum[2] + add[2]]);
         let shift = [self.shifts[0] * u / self.count, self.shifts[1] * v / self.count];
         let turn = turn / self.inertia;
         field.par_chunks_exact_mut(self.layout.row_len()).zip(self.carries.par_chunks(stride)).enumerate().for_each(
@@ -82,19 +87,43 @@ impl RigidMotion {
         );
     }
 
-    /// Sum over the points that carry, row by row in a fixed order, of what `of` makes of a row of a field, the column in it and
-    /// the way from the centre in columns and rows.
-    fn sum<T: Sync>(&self, of: impl Fn(&[T], usize, [f64; 2]) -> [f64; 3] + Sync, field: &[T]) -> [f64; 3] {
-        let (stride, row_len) = (self.layout.stride, self.layout.row_len());
+    /// Σ u, Σ v, Σ x v and the sum of the own turns over the points of a row that carry, x from the centre in columns.
+    fn row_sums<T: Real + Into<f64>>(&self, values: &[T], carries: &[f32]) -> [f64; 4] {
+        let stride = self.layout.stride;
+        // Without turns the first component stands in for them and counts nothing.
+        let (turns, counts) = if self.layout.unknowns == 3 { (&values[2 * stride..], 1.0) } else { (values, 0.0) };
+        let (u, v) = (&values[..stride], &values[stride..2 * stride]);
+        let mut sums = [[0.0; SIDE]; 4];
+        for start in (0..stride).step_by(SIDE) {
+            let here = start..(start + SIDE).min(stride);
+            let mut lanes = [[0.0; SIDE]; 4];
+            let [us, vs, own, carry] = &mut lanes;
+            us.iter_mut().zip(&u[here.clone()]).for_each(|(lane, &value)| *lane = value.into());
+            vs.iter_mut().zip(&v[here.clone()]).for_each(|(lane, &value)| *lane = value.into());
+            own.iter_mut().zip(&turns[here.clone()]).for_each(|(lane, &value)| *lane = value.into());
+            carry.iter_mut().zip(&carries[here]).for_each(|(lane, &value)| *lane = value.into());
+            let x = start as f64 - self.centre[0];
+            for lane in 0..SIDE {
+                let v = carry[lane] * vs[lane];
+                sums[0][lane] += carry[lane] * us[lane];
+                sums[1][lane] += v;
+                sums[2][lane] += (x + lane as f64) * v;
+                sums[3][lane] += counts * carry[lane] * own[lane];
+            }
+        }
+        sums.map(|lanes| lanes.iter().sum())
+    }
+
+    /// Sum over the points that carry, row by row in a fixed order, of a function of the way from the centre in columns and rows.
+    fn sum(&self, of: impl Fn([f64; 2]) -> [f64; 3] + Sync) -> [f64; 3] {
         let row_sum = |(row, carries): (usize, &[f32])| {
-            let values = field.get(row * row_len..(row + 1) * row_len).unwrap_or(&[]);
             let y = row as f64 - self.centre[1];
             carries.iter().enumerate().filter(|(_, carries)| **carries > 0.0).fold([0.0; 3], |sum, (column, _)| {
-                let add = of(values, column, [column as f64 - self.centre[0], y]);
+                let add = of([column as f64 - self.centre[0], y]);
                 [sum[0] + add[0], sum[1] + add[1], sum[2] + add[2]]
             })
         };
-        let rows: Vec<[f64; 3]> = self.carries.par_chunks(stride).enumerate().map(row_sum).collect();
+        let rows: Vec<[f64; 3]> = self.carries.par_chunks(self.layout.stride).enumerate().map(row_sum).collect();
         rows.iter().fold([0.0; 3], |sum, add| [sum[0] + add[0], sum[1] + add[1], sum[2] + add[2]])
     }
 }

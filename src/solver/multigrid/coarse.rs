@@ -46,8 +46,11 @@ pub struct CoarseOperator<const N: usize> {
     common_single: Vec<f32>,
 }
 
-/// A row of blocks of the fine operator: neighbour offsets with their blocks.
-pub type BlockRow<const N: usize> = Vec<([isize; 2], [[f64; N]; N])>;
+/// An operator that is coarsened, given row by row of blocks.
+pub trait BlockRows<const N: usize>: Sync {
+    /// Shows every block of a place that is not zero: the way to the neighbour, the block.
+    fn visit_row(&self, column: usize, row: usize, visit: impl FnMut([isize; 2], &[[f64; N]; N]));
+}
 
 impl<const N: usize> CoarseOperator<N> {
     /// Values of a chunk.
@@ -85,27 +88,12 @@ impl<const N: usize> CoarseOperator<N> {
         }
     }
 
-    /// Blocks of a place that are not zero.
-    #[must_use]
-    pub fn block_row(&self, column: usize, row: usize) -> BlockRow<N> {
-        let mut blocks = Vec::with_capacity(BLOCKS);
-        for dy in -REACH..=REACH {
-            for dx in -REACH..=REACH {
-                let block = self.block(column, row, dx, dy);
-                if block.iter().flatten().any(|&v| v != 0.0) {
-                    blocks.push(([dx, dy], block));
-                }
-            }
-        }
-        blocks
-    }
-
-    /// Pᵀ A P of a fine operator given row by row of blocks. `regular(column, row)` names coarse places whose whole
+    /// Pᵀ A P of a fine operator. `regular(column, row)` names coarse places whose whole
     /// surroundings are interior and uncut: they all share the row of the first of them.
     pub fn galerkin(
         transfer: &Transfer<N>,
         size: [usize; 2],
-        block_row: impl Fn(usize, usize) -> BlockRow<N> + Sync,
+        fine: &impl BlockRows<N>,
         regular: impl Fn(usize, usize) -> bool + Sync,
     ) -> Self {
         let (layout, [columns, rows]) = (*transfer.coarse(), transfer.coarse_size());
@@ -113,7 +101,7 @@ impl<const N: usize> CoarseOperator<N> {
         let template = (0..rows)
             .flat_map(|row| (0..columns).map(move |column| [column, row]))
             .find(|&[column, row]| regular(column, row))
-            .map(|place| coarse_row(transfer, size, &block_row, place));
+            .map(|place| coarse_row(transfer, size, fine, place));
         let mut own = Vec::new();
         let mut slots = vec![COMMON; rows * chunks];
         for (index, slot) in slots.iter_mut().enumerate() {
@@ -128,7 +116,7 @@ impl<const N: usize> CoarseOperator<N> {
             for column in first..(first + LANES).min(columns) {
                 let blocks = match &template {
                     Some(template) if regular(column, row) => *template,
-                    _ => coarse_row(transfer, size, &block_row, [column, row]),
+                    _ => coarse_row(transfer, size, fine, [column, row]),
                 };
                 for (entry, value) in blocks.as_flattened().as_flattened().iter().enumerate() {
                     values[entry * LANES + column - first] = *value;
@@ -154,14 +142,8 @@ impl<const N: usize> CoarseOperator<N> {
     }
 
     /// Sets the rows of some places anew, with what [`CoarseOperator::galerkin`] was given.
-    pub fn refresh(
-        &mut self,
-        transfer: &Transfer<N>,
-        size: [usize; 2],
-        block_row: impl Fn(usize, usize) -> BlockRow<N> + Sync,
-        places: &[[usize; 2]],
-    ) {
-        let rows: Vec<CoarseRow<N>> = places.par_iter().map(|&place| coarse_row(transfer, size, &block_row, place)).collect();
+    pub fn refresh(&mut self, transfer: &Transfer<N>, size: [usize; 2], fine: &impl BlockRows<N>, places: &[[usize; 2]]) {
+        let rows: Vec<CoarseRow<N>> = places.par_iter().map(|&place| coarse_row(transfer, size, fine, place)).collect();
         for (&[column, row], blocks) in places.iter().zip(&rows) {
             let first = self.own_slot(row, column / LANES) * Self::CHUNK + column % LANES;
             for (entry, &value) in blocks.as_flattened().as_flattened().iter().enumerate() {
@@ -184,6 +166,19 @@ impl<const N: usize> CoarseOperator<N> {
             self.single.extend(single);
         }
         *slot as usize
+    }
+}
+
+impl<const N: usize> BlockRows<N> for CoarseOperator<N> {
+    fn visit_row(&self, column: usize, row: usize, mut visit: impl FnMut([isize; 2], &[[f64; N]; N])) {
+        for dy in -REACH..=REACH {
+            for dx in -REACH..=REACH {
+                let block = self.block(column, row, dx, dy);
+                if block.as_flattened().iter().any(|&v| v != 0.0) {
+                    visit([dx, dy], &block);
+                }
+            }
+        }
     }
 }
 
@@ -239,7 +234,7 @@ impl<const N: usize> Operator for CoarseOperator<N> {
 fn coarse_row<const N: usize>(
     transfer: &Transfer<N>,
     size: [usize; 2],
-    block_row: &impl Fn(usize, usize) -> BlockRow<N>,
+    fine: &impl BlockRows<N>,
     place: [usize; 2],
 ) -> CoarseRow<N> {
     let mut result = [[[0.0; N]; N]; BLOCKS];
@@ -254,15 +249,15 @@ fn coarse_row<const N: usize>(
                 continue;
             };
             let mut t = [[[0.0; N]; N]; BLOCKS];
-            for ([dx, dy], block) in block_row(column, row) {
+            fine.visit_row(column, row, |[dx, dy], block| {
                 let other = [column.wrapping_add_signed(dx), row.wrapping_add_signed(dy)];
                 for (parent, weight, arm) in transfer.parents(other[0], other[1]) {
                     if weight != 0.0 {
                         let index = block_of(parent[0] as isize - place[0] as isize, parent[1] as isize - place[1] as isize);
-                        times_interpolation(&block, weight, arm, &mut t[index]);
+                        times_interpolation(block, weight, arm, &mut t[index]);
                     }
                 }
-            }
+            });
             for (sum, t) in result.iter_mut().zip(&t) {
                 for d in 0..N {
                     for c in 0..N {

@@ -1,7 +1,7 @@
 //! The body's own operator as multigrid sees it: block rows of points, and which points may use which coarse ones.
 
 use super::super::product::Product;
-use super::coarse::BlockRow;
+use super::coarse::BlockRows;
 use super::transfer::Link;
 use crate::body::Body;
 use crate::body::lattice::LANES;
@@ -91,20 +91,22 @@ impl<'a, const N: usize> Fine<'a, N> {
     /// Diagonal block of a point, held components cleared, bonds to its own images included.
     pub(super) fn diagonal(&self, column: usize, row: usize) -> [[f64; N]; N] {
         let mut sum = [[0.0; N]; N];
-        for (_, block) in self.block_row(column, row).iter().filter(|(step, _)| *step == [0, 0]) {
-            sum.iter_mut().flatten().zip(block.iter().flatten()).for_each(|(sum, value)| *sum += value);
-        }
+        self.visit_row(column, row, |step, block| {
+            if step == [0, 0] {
+                sum.as_flattened_mut().iter_mut().zip(block.as_flattened()).for_each(|(sum, value)| *sum += value);
+            }
+        });
         sum
     }
+}
 
-    /// Blocks of a point: itself first, then its intact bonds; those to mirror images belong to the points behind them.
-    pub(super) fn block_row(&self, column: usize, row: usize) -> BlockRow<N> {
+impl<const N: usize> BlockRows<N> for Fine<'_, N> {
+    /// The intact bonds of a point, then itself; bonds to mirror images belong to the points behind them.
+    fn visit_row(&self, column: usize, row: usize, mut visit: impl FnMut([isize; 2], &[[f64; N]; N])) {
         let (body, places) = (self.body, self.body.places());
         let place = body.lattice.place(column, row);
         let own_held = self.held_at(column, row);
-        let mut blocks: BlockRow<N> = Vec::with_capacity(2 * body.steps.len() + 1);
         let mut diagonal = [[0.0; N]; N];
-        blocks.push(([0, 0], diagonal));
         for (k, bond) in body.stencil.bonds.iter().enumerate() {
             for sign in [1_isize, -1] {
                 let owner = if sign > 0 { place } else { place.wrapping_add_signed(-body.steps[k]) };
@@ -125,13 +127,12 @@ impl<'a, const N: usize> Fine<'a, N> {
                             diagonal[c][d] += own[c][d];
                         }
                     }
-                    blocks.push(([dx, dy], off));
+                    visit([dx, dy], &off);
                 }
             }
         }
         clear(&mut diagonal, own_held, own_held);
-        blocks[0].1 = diagonal;
-        blocks
+        visit([0, 0], &diagonal);
     }
 }
 

@@ -20,7 +20,7 @@ use super::product::Product;
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::state::Bonds;
-use coarse::{BlockRow, CoarseOperator};
+use coarse::{BlockRows, CoarseOperator};
 use fine::Fine;
 use smoother::{Operator, Smoother, Step, Work};
 use transfer::{Link, Transfer};
@@ -38,7 +38,7 @@ const SHIFT: f64 = 1e-7;
 /// Values that one task rounds.
 const PART: usize = 1 << 14;
 /// Coarsening factor of the levels after the first.
-const COARSENING: usize = 3;
+const COARSENING: usize = 2;
 
 /// One coarse level.
 struct Level<const N: usize> {
@@ -61,6 +61,8 @@ pub struct Multigrid<const N: usize> {
     levels: Vec<Level<N>>,
     coarsest: Coarsest,
     work: Work,
+    /// Whether levels below the first are cycled twice.
+    cycles_twice: bool,
 }
 
 /// Coarsening factor of the first level for bonds of a reach: the coarse stencil must not outgrow five by five, and the
@@ -68,7 +70,8 @@ pub struct Multigrid<const N: usize> {
 fn first_factor(reach: usize, horizon_ratio: f64) -> usize {
     match reach {
         0..=2 if horizon_ratio < 8.0_f64.sqrt() => 2,
-        0..=4 => 3,
+        0..=2 => 3,
+        3 | 4 => 4,
         _ => reach - 1,
     }
 }
@@ -94,12 +97,8 @@ impl<const N: usize> Multigrid<N> {
         let reach = factor as isize - 1 + body.stencil.reach as isize;
         let odd = |row, chunk| !(fine.is_whole(row, chunk) && transfer.is_plain(row, chunk));
         let surroundings = regular_surroundings(&transfer, [columns, rows], reach, odd);
-        let operator = CoarseOperator::galerkin(
-            &transfer,
-            [columns, rows],
-            |c, r| fine.block_row(c, r),
-            |c, r| surroundings[r * transfer.coarse_size()[0] + c],
-        );
+        let operator =
+            CoarseOperator::galerkin(&transfer, [columns, rows], &fine, |c, r| surroundings[r * transfer.coarse_size()[0] + c]);
         let mut levels = vec![Level::new(transfer, operator)];
         let mut unit = factor as f64;
         while let Some(level) = levels[levels.len() - 1].coarsened(unit) {
@@ -107,7 +106,14 @@ impl<const N: usize> Multigrid<N> {
             levels.push(level);
         }
         let coarsest = Coarsest::new(&levels[levels.len() - 1]);
-        Multigrid { smoother, levels, coarsest, work }
+        Multigrid { smoother, levels, coarsest, work, cycles_twice: true }
+    }
+
+    /// With one cycle on every level: two are no positive operator where one makes a motion more than twice as large as it is, as it can
+    /// where a plate is nearly a mechanism.
+    #[must_use]
+    pub fn cautious(self) -> Self {
+        Multigrid { cycles_twice: false, ..self }
     }
 
     /// Takes over the changed diagonal of a few points without rebuilding coarse levels.
@@ -131,12 +137,12 @@ impl<const N: usize> Multigrid<N> {
             changed = match finer.last() {
                 None => {
                     let (is_point, link) = (|c, r| fine.is_point(c, r), |a, b| fine.link(a, b));
-                    level.refresh(&changed, size, body.stencil.reach, is_point, link, |c, r| fine.block_row(c, r))
+                    level.refresh(&changed, size, body.stencil.reach, is_point, link, &fine)
                 }
                 Some(Level { operator, .. }) => {
                     let is_point = |c: usize, r: usize| scale(operator, [c, r]) > 0.0;
-                    let (link, row) = (|a, b| link(operator, a, b), |c, r| operator.block_row(c, r));
-                    level.refresh(&changed, size, coarse::REACH as usize, is_point, link, row)
+                    let link = |a, b| link(operator, a, b);
+                    level.refresh(&changed, size, coarse::REACH as usize, is_point, link, operator)
                 }
             };
             size = level.transfer.coarse_size();
@@ -146,12 +152,13 @@ impl<const N: usize> Multigrid<N> {
 
     /// M r, one V-cycle from zero in single precision.
     pub fn precondition(&mut self, bonds: &Bonds, product: &Product<N>, r: &[f64]) -> &mut [f32] {
-        let Multigrid { smoother, levels, coarsest, work } = self;
+        let Multigrid { smoother, levels, coarsest, work, cycles_twice } = self;
         work.r.par_chunks_mut(PART).zip(r.par_chunks(PART)).for_each(|(single, r)| {
             single.iter_mut().zip(r).for_each(|(single, r)| *single = *r as f32);
         });
         cycle(&Springs { product, bonds }, smoother, work, |residual, correction| {
-            descend(levels, coarsest, residual, correction);
+            let depth = if *cycles_twice { Depth::First } else { Depth::Cautious };
+            descend(levels, coarsest, residual, correction, depth);
             product.fixed().iter().for_each(|&index| correction[index] = 0.0);
         });
         &mut work.x
@@ -202,21 +209,36 @@ fn cycle<const N: usize>(
     }
 }
 
+/// Where a cycle stands, for the number of cycles.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Depth {
+    First,
+    Below,
+    /// One cycle everywhere.
+    Cautious,
+}
+
+impl Depth {
+    fn below(self) -> Self {
+        if self == Depth::Cautious { self } else { Depth::Below }
+    }
+}
+
 /// correction = P (coarse correction for the residual).
-fn descend<const N: usize>(levels: &mut [Level<N>], coarsest: &Coarsest, residual: &[f32], correction: &mut [f32]) {
+fn descend<const N: usize>(levels: &mut [Level<N>], coarsest: &Coarsest, residual: &[f32], correction: &mut [f32], depth: Depth) {
     let Some((level, rest)) = levels.split_first_mut() else { return };
     let Level { transfer, operator, smoother, work } = level;
     transfer.restrict(residual, &mut work.r);
     if rest.is_empty() {
         coarsest.solve(&work.r, &mut work.x);
     } else {
-        cycle(operator, smoother, work, |residual, correction| descend(rest, coarsest, residual, correction));
-        if rest.len() == 1 {
-            // Once more above the coarsest level, which costs little: holes and cracks are drawn badly there.
+        cycle(operator, smoother, work, |residual, correction| descend(rest, coarsest, residual, correction, depth.below()));
+        if depth == Depth::Below || (depth == Depth::First && rest.len() == 1) {
+            // Once more below the first level, which costs little: holes and cracks are drawn badly there.
             let Work { r, d, .. } = work;
             smoother.residual(operator, d, r);
             let first = work.x.clone();
-            cycle(operator, smoother, work, |residual, correction| descend(rest, coarsest, residual, correction));
+            cycle(operator, smoother, work, |residual, correction| descend(rest, coarsest, residual, correction, depth.below()));
             work.x.iter_mut().zip(&first).for_each(|(x, first)| *x += first);
         }
     }
@@ -246,13 +268,13 @@ impl<const N: usize> Level<N> {
         reach: usize,
         is_point: impl Fn(usize, usize) -> bool + Sync,
         link: impl Fn([usize; 2], [usize; 2]) -> Link + Sync,
-        block_row: impl Fn(usize, usize) -> BlockRow<N> + Sync,
+        finer: &impl BlockRows<N>,
     ) -> Vec<[usize; 2]> {
         let Level { transfer, operator, smoother, .. } = self;
         let mut sources = transfer.refresh(changed, is_point, link);
         sources.extend(changed);
         let places = transfer.coarse_around(&sources, reach);
-        operator.refresh(transfer, size, block_row, &places);
+        operator.refresh(transfer, size, finer, &places);
         for &[column, row] in &places {
             smoother.set_block(column, row, &operator.block(column, row, 0, 0));
         }
@@ -273,7 +295,7 @@ impl<const N: usize> Level<N> {
         let reach = COARSENING as isize - 1 + coarse::REACH;
         let surroundings = regular_surroundings(&transfer, size, reach, odd);
         let regular = |c: usize, r: usize| surroundings[r * transfer.coarse_size()[0] + c];
-        let next = CoarseOperator::galerkin(&transfer, size, |c, r| operator.block_row(c, r), regular);
+        let next = CoarseOperator::galerkin(&transfer, size, operator, regular);
         Some(Level::new(transfer, next))
     }
 }
@@ -347,14 +369,14 @@ impl Coarsest {
         let n = unknowns.len();
         let mut matrix = faer::Mat::<f64>::zeros(n, n);
         for (i, &(column, row)) in places.iter().enumerate() {
-            for ([dx, dy], block) in operator.block_row(column, row) {
+            operator.visit_row(column, row, |[dx, dy], block| {
                 let j = number[row.wrapping_add_signed(dy) * size[0] + column.wrapping_add_signed(dx)];
-                for c in 0..N {
-                    for d in 0..N {
-                        matrix[(i * N + c, j * N + d)] = block[c][d];
+                for (c, row) in block.iter().enumerate() {
+                    for (d, &value) in row.iter().enumerate() {
+                        matrix[(i * N + c, j * N + d)] = value;
                     }
                 }
-            }
+            });
         }
         let mut inverse = vec![0.0; n * n];
         // A shift in place of a pseudo-inverse: rigid motion that round-off brings in is taken off the fine level anyway.
