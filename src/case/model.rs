@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::choices::{Choices, Method};
-use super::{Case, HORIZON_RATIO, Model};
+use super::{Case, HORIZON_RATIO, Model, RESIDUAL};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
 use crate::error::{Result, input};
 use crate::fatigue::Ageing;
@@ -78,6 +78,7 @@ pub(super) fn from_values(
         lattice_angle: angle.to_radians(),
         solver: input.solver.unwrap_or(SolverKind::Window),
         symmetry: input.symmetry.unwrap_or(Symmetry::Auto),
+        residual: RESIDUAL,
         arrangement,
         refinement,
     };

@@ -46,9 +46,6 @@ use step::StepControl;
 const RING_HORIZONS_IN_LEVELS: f64 = 1.5;
 /// Length, in horizons, by which cracks are shorter at first, to see how K changes with it; a quarter of a crack at the most.
 const PROBE_HORIZONS: f64 = 0.5;
-/// Residual over load of an equilibrium: factors are right to some 1e-8. Round-off allows no less where what is left of a plate is
-/// nearly a mechanism.
-const TOLERANCE: f64 = 1e-8;
 /// Growth by the field of every tip.
 pub struct TipField<'a> {
     case: &'a Case,
@@ -184,5 +181,5 @@ fn bonds_at_tips(body: &Body, state: &TipFieldState) -> Vec<Bond> {
 
 /// Solver of a run.
 fn solver(case: &Case, plate: &Plate, bonds: &Bonds) -> Equilibrium {
-    plate.equilibrium(&case.model, bonds, case.loading.maximum).to_tolerance(TOLERANCE)
+    plate.equilibrium(&case.model, bonds, case.loading.maximum).to_tolerance(case.model.residual)
 }

@@ -86,7 +86,7 @@ const HOLE: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n
 const FINE: &str = "model.spacing_mm=1";
 const TIPS: &str = "fatigue.driver=tip_field";
 /// Short steps, so that a crack across a small plate takes some hundred blocks.
-const SHORT: &str = "fatigue.step_error_percent=0.02";
+const SHORT: &str = "fatigue.step_error_percent=0.03";
 const LEVELS: [&str; 2] = ["model.discretisation=dual_horizon", "refinement.regions=[{box_mm=[[-45,-24],[45,24]],levels=1}]"];
 
 /// Name, `[specimen]`, settings; every one has a checkpoint at least.
@@ -94,15 +94,19 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
     vec![
         ("window, quarter of a panel", MIDDLE, vec![FINE]),
         ("window, clamped, grown", CLAMPED, vec![FINE, "fatigue.precrack=grown", "model.symmetry=off"]),
-        ("window, slant", SLANT, vec![FINE]),
-        ("window, state-based", SLANT, vec![FINE, "model.bond_law=state_based"]),
+        ("window, slant", SLANT, vec![FINE, "stop.crack_length_mm=40"]),
+        ("window, state-based", SLANT, vec![FINE, "model.bond_law=state_based", "stop.crack_length_mm=40"]),
         ("window, levels", BROAD, vec![LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=30"]),
         (
             "direct, levels",
             BROAD,
             vec![LEVELS[0], LEVELS[1], "model.spacing_mm=3", "model.solver=direct", "stop.crack_length_mm=19.5"],
         ),
-        ("multigrid, clamped, grown", CLAMPED, vec![FINE, "model.solver=multigrid", "fatigue.precrack=grown"]),
+        (
+            "multigrid, clamped, grown",
+            CLAMPED,
+            vec![FINE, "model.solver=multigrid", "fatigue.precrack=grown", "stop.crack_length_mm=30"],
+        ),
         (
             "multigrid, ageing everywhere",
             SLANT,
@@ -134,15 +138,13 @@ fn a_run_taken_up_is_the_undisturbed_one() {
         if number % 4 == 0 {
             assert_same(name, &predict(&case, &Silent).unwrap(), &whole);
         }
-        let mut places = vec![kept.len() / 3, kept.len() - 1];
-        places.dedup();
-        for at in places {
-            let again = Keeping::default();
-            let run = resume(&case, read(&kept[at].0), &again).unwrap();
-            assert_same(&format!("{name}, checkpoint {at}"), &run, &whole);
-            // It goes on where the other stood, and comes by the same places.
-            assert_eq!(again.kept().len(), kept.len() - at - 1, "{name}");
-        }
+        // Early in the run and at its end, in turn.
+        let at = if number % 2 == 0 { kept.len() / 3 } else { kept.len() - 1 };
+        let again = Keeping::default();
+        let run = resume(&case, read(&kept[at].0), &again).unwrap();
+        assert_same(&format!("{name}, checkpoint {at}"), &run, &whole);
+        // It goes on where the other stood, and comes by the same places.
+        assert_eq!(again.kept().len(), kept.len() - at - 1, "{name}");
     }
 }
 

@@ -165,12 +165,9 @@ fn assert_same_growth(name: &str, specimen: &str, set: &[&str], relaxed: Option<
 fn every_solver_grows_the_same_crack() {
     let clamped = EDGE.replace("uniform_stress", "clamped");
     for (name, specimen, set) in [
-        ("panel", PANEL, vec!["stop.crack_length_mm=20"]),
         ("slant", SLANT, vec!["stop.crack_length_mm=22"]),
         ("clamped", &clamped, vec!["stop.crack_length_mm=18"]),
         ("slot", SLOT, vec!["stop.crack_length_mm=24"]),
-        ("resisted", SLANT, vec!["model.rotation=resisted", "stop.crack_length_mm=22"]),
-        ("turned", PANEL, vec!["model.lattice_angle_deg=30", "stop.crack_length_mm=15"]),
         ("state-based", SLANT, vec!["model.bond_law=state_based", "material.poisson_ratio=0.4", "stop.crack_length_mm=22"]),
     ] {
         // Relaxation takes the most time by far, and goes through the coarse plates below by every law.
@@ -222,7 +219,7 @@ fn the_start_decides_only_the_first_cycles() {
 #[test]
 fn life_does_not_depend_on_how_the_lattice_lies() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=120\nlength_mm=160\nthickness_mm=2\ncrack_length_mm=20\n";
-    for nu in [0.2, 0.3] {
+    for (nu, angle) in [(0.2, 15), (0.3, 45)] {
         let run = |angle: u32, rate: &str| {
             let set = [
                 format!("model.lattice_angle_deg={angle}"),
@@ -232,18 +229,16 @@ fn life_does_not_depend_on_how_the_lattice_lies() {
             grow(panel, &["stop.crack_length_mm=40", "model.spacing_mm=1", &set[0], &set[1], &set[2]])
         };
         let upright = run(0, "stress_intensity").life_cycles();
-        for angle in [15, 45] {
-            let turned = run(angle, "stress_intensity");
-            for tip in &turned.curve.last().unwrap().tips {
-                let (way, y) = (tip.position[0].abs() - 20.0 * MM, tip.position[1]);
-                println!("{angle} degrees: growth {:.3} mm, way {:.3} mm, y {:.3} mm", tip.growth / MM, way / MM, y / MM);
-                assert!(y.abs() < 2.0 * turned.figures.horizon, "{angle}");
-                assert!((tip.growth - way).abs() < 0.1 * way, "{angle}: {} and {way}", tip.growth);
-            }
-            let ratio = turned.life_cycles() / upright;
-            println!("nu {nu}, {angle} degrees: life over upright {ratio:.4}");
-            assert!((ratio - 1.0).abs() < 0.04, "{angle}: {ratio}");
+        let turned = run(angle, "stress_intensity");
+        for tip in &turned.curve.last().unwrap().tips {
+            let (way, y) = (tip.position[0].abs() - 20.0 * MM, tip.position[1]);
+            println!("{angle} degrees: growth {:.3} mm, way {:.3} mm, y {:.3} mm", tip.growth / MM, way / MM, y / MM);
+            assert!(y.abs() < 2.0 * turned.figures.horizon, "{angle}");
+            assert!((tip.growth - way).abs() < 0.1 * way, "{angle}: {} and {way}", tip.growth);
         }
+        let ratio = turned.life_cycles() / upright;
+        println!("nu {nu}, {angle} degrees: life over upright {ratio:.4}");
+        assert!((ratio - 1.0).abs() < 0.04, "{angle}: {ratio}");
         let by_strain = run(15, "bond_strain").life_cycles() / run(0, "bond_strain").life_cycles();
         println!("nu {nu}, 15 degrees by the strain of bonds: {by_strain:.4}");
         assert!(by_strain > 1.1, "strains alone would do: {by_strain}");

@@ -21,7 +21,7 @@ spacing_mm = 2
 [fatigue]
 paris_c_mm_per_cycle = 1e-8
 paris_m = 3.0
-step_error_percent = 0.05
+step_error_percent = 0.02
 ";
 
 /// Name, `[specimen]`, crack length at which the run ends, mm, and whether the plate has a mirror image.
@@ -62,11 +62,13 @@ const LATTICES: [(&str, &[&str]); 2] = [
 const EQUAL: f64 = 1e-6;
 /// The same where dynamic relaxation solves, whose residual of 1e-6 of the load leaves K right to some 1e-5; a turn is read off small
 /// differences of K_II.
-const EQUAL_RELAXED: [f64; 2] = [4e-5, 3e-3];
+const EQUAL_RELAXED: [f64; 2] = [1.2e-4, 2e-2];
 
 fn grow(specimen: &str, set: &[&str]) -> Prediction {
     let set: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
-    let case = Case::from_toml(&format!("[specimen]\n{specimen}\n{REST}"), "plate", Path::new("."), &set).unwrap();
+    let mut case = Case::from_toml(&format!("[specimen]\n{specimen}\n{REST}"), "plate", Path::new("."), &set).unwrap();
+    // Runs by default stop at a residual that shows in K; here solvers are compared.
+    case.model.residual = 1e-9;
     predict(&case, &Silent).unwrap()
 }
 
