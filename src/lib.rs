@@ -20,6 +20,7 @@ pub mod kinds;
 pub mod tables;
 pub mod units;
 pub mod parallel;
+pub mod monotone;
 pub mod quadrature;
 pub mod line;
 pub mod block_cholesky;

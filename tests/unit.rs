@@ -35,6 +35,8 @@ mod layering;
 mod measured;
 #[path = "unit/misfit.rs"]
 mod misfit;
+#[path = "unit/monotone.rs"]
+mod monotone;
 #[path = "unit/obstacles.rs"]
 mod obstacles;
 #[path = "unit/output.rs"]

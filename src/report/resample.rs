@@ -1,9 +1,12 @@
 //! The a-N curve of a run at chosen cycles.
 //!
-//! Between two rows everything is linear in N, so the curve stays monotone; first and last row are kept exactly.
+//! Between two rows cycles are a monotone cubic of crack length ([`Monotone`]): rows lie up to 1.5 horizons apart, and straight lines
+//! between them would be up to 2.5 % of life off in the first of them. ΔK and da/dN are linear in crack length. First and last row are
+//! kept exactly.
 
 use super::csv::Row;
 use crate::error::{Result, input};
+use crate::monotone::Monotone;
 
 /// Most rows; more is a slip of the pen.
 pub const ROWS_MAX: u64 = 10_000_000;
@@ -28,7 +31,8 @@ impl Sampling {
             Sampling::Points(count) => equally_spaced(first, last, count),
             Sampling::EveryCycles(step) => every(first, last, step, option)?,
         };
-        Ok(cycles.iter().map(|n| at(curve, *n)).collect())
+        let table = cycles_over_length(curve);
+        Ok(cycles.iter().map(|n| at(curve, &table, *n)).collect())
     }
 }
 
@@ -59,14 +63,14 @@ fn every(first: f64, last: f64, step: f64, option: &str) -> Result<Vec<f64>> {
 
 /// The curve (at least one row) at `cycles`, which lies within it. Where several rows share these cycles the last one counts; at the very
 /// start the first one does, so that the curve begins at the initial crack length.
-pub fn at(curve: &[Row], cycles: f64) -> Row {
+fn at(curve: &[Row], table: &Monotone, cycles: f64) -> Row {
     if cycles <= curve[0].cycles && curve[curve.len() - 1].cycles > curve[0].cycles {
         return curve[0];
     }
     let after = curve.partition_point(|row| row.cycles <= cycles);
     let from = curve[after.saturating_sub(1)];
     let Some(to) = curve.get(after) else { return from };
-    let share = (cycles - from.cycles) / (to.cycles - from.cycles);
+    let share = if cycles > from.cycles { table.fraction(after - 1, cycles) } else { 0.0 };
     // Written so that share 0 and 1 give the rows themselves and rounding cannot leave the interval.
     let between = |a: f64, b: f64| if share <= 0.0 { a } else { (a + share * (b - a)).clamp(a.min(b), a.max(b)) };
     Row {
@@ -75,6 +79,12 @@ pub fn at(curve: &[Row], cycles: f64) -> Row {
         delta_k_mpa_sqrt_m: unknown_or(between, from.delta_k_mpa_sqrt_m, to.delta_k_mpa_sqrt_m),
         da_dn_mm_per_cycle: unknown_or(between, from.da_dn_mm_per_cycle, to.da_dn_mm_per_cycle),
     }
+}
+
+/// Cycles over crack length of a curve, mm.
+#[must_use]
+pub fn cycles_over_length(curve: &[Row]) -> Monotone {
+    Monotone::new(curve.iter().map(|row| [row.crack_length_mm, row.cycles]))
 }
 
 /// `clamp` refuses NaN bounds, so an unknown end makes the value unknown before it is asked.

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::table::Table;
 use crate::case::Case;
 use crate::error::{Error, Result};
+use crate::monotone::Monotone;
 use crate::predict::{Prediction, Silent, StopReason, predict};
 use crate::specimen::Point;
 use crate::specimen::geometry::{distance, distance_to_segment};
@@ -91,18 +92,16 @@ impl Curve {
         self.0.windows(2).map(|pair| distance(pair[0].1, pair[1].1)).sum()
     }
 
-    /// Cycles at a length of way, linear in between.
+    /// Cycles at a length of way, by a monotone cubic between the points.
     #[must_use]
     pub fn cycles_at(&self, way: f64) -> f64 {
         let mut done = 0.0;
-        for pair in self.0.windows(2) {
-            let step = distance(pair[0].1, pair[1].1);
-            if step > 0.0 && done + step >= way {
-                return pair[0].0 + (way - done) / step * (pair[1].0 - pair[0].0);
-            }
-            done += step;
-        }
-        self.0.last().map_or(f64::NAN, |last| last.0)
+        let steps = self.0.windows(2).map(|pair| {
+            done += distance(pair[0].1, pair[1].1);
+            [done, pair[1].0]
+        });
+        let first = self.0.first().map(|first| [0.0, first.0]);
+        Monotone::new(first.into_iter().chain(steps)).at(way)
     }
 
     /// Its part up to a length of way.

@@ -18,7 +18,7 @@ use super::App;
 use super::collections::{is_id, job_of};
 use crate::error::input;
 use crate::report::csv::{self, A_N_FILE, Row};
-use crate::report::resample::Sampling;
+use crate::report::resample::{Sampling, cycles_over_length};
 use crate::service::job::{Job, State};
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::{FileEntry, Origin, Store, media_type};
@@ -245,17 +245,12 @@ pub async fn remaining(
     }))
 }
 
-/// Cycles at which a curve reaches a length, linear between rows; where it stays at one for a while, their end.
+/// Cycles at which a curve reaches a length, by a monotone cubic between rows; where it stays at one for a while, their end.
 fn cycles_at(rows: &[Row], length: f64) -> Answer<f64> {
     let (first, last) = (rows[0].crack_length_mm, rows[rows.len() - 1].crack_length_mm);
     if !(first..=last).contains(&length) {
         let problem = format!("is not on the curve, which goes from {first} to {last} mm");
         return Err(input("crack_length_mm", length, problem, "give a length between them").into());
     }
-    // Between both, so there is a row on either side, or it is the last.
-    let after = rows.partition_point(|row| row.crack_length_mm <= length);
-    let from = rows[after - 1];
-    let Some(to) = rows.get(after) else { return Ok(from.cycles) };
-    let share = (length - from.crack_length_mm) / (to.crack_length_mm - from.crack_length_mm);
-    Ok(from.cycles + share * (to.cycles - from.cycles))
+    Ok(cycles_over_length(rows).at(length))
 }
