@@ -35,7 +35,7 @@ fn cheap_topics_keep_their_bounds() {
 }
 
 #[test]
-#[ignore = "long: the whole verification, a quarter of an hour"]
+#[ignore = "long: the whole verification, three minutes"]
 fn the_table_of_all_topics_is_what_the_program_computes() {
     let (topics, rows) = sound(&[]);
     let written = std::fs::read_to_string("tests/ACCURACY.md").unwrap();
