@@ -11,8 +11,8 @@ pub fn fix_parts() {
     ONCE.call_once(|| faer::set_global_parallelism(faer::Par::rayon(PARTS)));
 }
 
-/// Runs `work` on a thread of the pool. Loops that threads outside share out cost each some 20 to 50 µs to hand over and to wait, and an
-/// iteration of a solver has forty of them.
+/// Runs `work` on a thread of the pool. A loop that a thread outside shares out is handed over and waited for, and an iteration of a
+/// solver has dozens of them, most of them short.
 pub fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     rayon::scope(|_| work())
 }

@@ -1,7 +1,7 @@
 //! The a-N curve of a run at chosen cycles.
 //!
-//! Between two rows cycles are a monotone cubic of crack length ([`Monotone`]): rows lie up to 1.5 horizons apart, and straight lines
-//! between them would be up to 2.5 % of life off in the first of them. ΔK and da/dN are linear in crack length. First and last row are
+//! Between two rows cycles are a monotone cubic of crack length ([`Monotone`]): rows lie up to 1.5 horizons apart, and
+//! on straight lines between them cycles were read up to 2.5 % short at a quarter of the growth. ΔK and da/dN are linear in crack length. First and last row are
 //! kept exactly.
 
 use super::csv::Row;

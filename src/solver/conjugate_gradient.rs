@@ -141,7 +141,7 @@ impl<const N: usize> MultigridSolver<N> {
                 return Ok(None);
             }
             let beta = last.map_or(0.0, |(rz_last, alpha)| -alpha * qz / rz_last);
-            turn(&layout, &mut self.p, z, beta);
+            next_direction(&layout, &mut self.p, z, beta);
             product.apply(bonds, &mut self.p, &mut self.q, Into::Set);
             let curvature = dot(&layout, &self.p, &self.q);
             if !(curvature > 0.0 && curvature.is_finite()) {
@@ -167,7 +167,7 @@ impl<const N: usize> MultigridSolver<N> {
 }
 
 /// p = z + β p.
-fn turn(layout: &Layout, p: &mut [f64], z: &[f32], beta: f64) {
+fn next_direction(layout: &Layout, p: &mut [f64], z: &[f32], beta: f64) {
     let part = layout.part();
     p.par_chunks_mut(part).zip(z.par_chunks(part)).for_each(|(p, z)| {
         p.iter_mut().zip(z).for_each(|(p, &z)| *p = beta.mul_add(*p, z.into()));

@@ -96,7 +96,7 @@ trait LinearSolver<const N: usize>: Send {
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
     /// What has solved since it was built.
     fn used(&self) -> SolverUsed;
-    /// Told to what residual over load to solve; direct and explicit solvers have one of their own.
+    /// Told to what residual over load to solve; the direct solver has one of its own, dynamic relaxation one that it does not pass.
     fn set_tolerance(&mut self, _: f64) {}
     /// Makes `u` right at the ends of `watched` bonds, and gets ready for breaks around the tips; what a solve of the whole plate
     /// took and gave if that needed one.

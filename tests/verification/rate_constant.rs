@@ -6,7 +6,7 @@ use std::path::Path;
 use perilife::bond_law::Kernel;
 use perilife::case::{Case, HORIZON_RATIO};
 use perilife::fatigue::STEADY_EXPONENTS;
-use perilife::fatigue::rate_constant::rate_constant;
+use perilife::fatigue::rate_constant::{OFF_THE_ROWS, rate_constant};
 use perilife::predict::factor_curve::FactorCurve;
 use perilife::predict::{Silent, StopReason, predict};
 use perilife::quadrature::integrate;
@@ -14,8 +14,6 @@ use perilife::quadrature::integrate;
 /// Size of the reference plate, crack length (half) before and after, in horizons.
 const WIDTH: f64 = 60.0;
 const CRACK: [f64; 2] = [14.0, 16.0];
-/// Strain of bonds around a crack off the rows over that along them, as `src/fatigue/rate_constant.rs` has it.
-const OFF_THE_ROWS: f64 = 0.9343;
 /// Exponents at which the crack is computed, and terms of the series that are kept of so many.
 const NODES: usize = 96;
 const TERMS: usize = 10;

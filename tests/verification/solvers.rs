@@ -32,7 +32,9 @@ fn agreement(solver: SolverKind, scene: &str) -> f64 {
 /// thousand times stiffer than the plate beside them, which the coarse places smear (35 and 22 at the worst).
 fn iterations_max(name: &str, ratio: f64) -> usize {
     match (name.contains("pinned"), ratio < 3.0) {
-        (false, false) => 17,
+        // The end of the slot is drawn badly on the first coarse level.
+        (false, false) if name == "slot" => 17,
+        (false, false) => 15,
         (false, true) => 22,
         (true, false) => 24,
         (true, true) => 38,

@@ -104,31 +104,30 @@ fn a_part_of_a_symmetric_plate_says_everything() {
 #[test]
 fn a_part_grows_the_crack_of_the_whole() {
     for scene in scenes().into_iter() {
-        for (law, solver) in [("free", SolverKind::Window), ("state-based", SolverKind::Multigrid)] {
-            for &(law, choices) in LAWS.iter().filter(|(name, _)| *name == law) {
-                let chosen = format!("model.solver={solver}");
-                let grown = |symmetry: &str| {
-                    let fixed = [symmetry, &*chosen, "stop.cycles_max=1e6"];
-                    let all: Vec<&str> =
-                        fixed.into_iter().chain(choices.iter().copied()).chain(scene.set.iter().copied()).collect();
-                    let mut case = case(&scene.specimen, &all);
-                    case.stop.crack_length = case.specimen.crack_length + 3e-3;
-                    predict(&case, &Silent).unwrap()
-                };
-                let (part, whole) = (grown("model.symmetry=auto"), grown("model.symmetry=off"));
-                let life = part.life_cycles() / whole.life_cycles() - 1.0;
-                println!(
-                    "{:>22} {law:>12} {solver:>10} life {:.6e} {life:+.1e}, {} of {} points",
-                    scene.name,
-                    part.life_cycles(),
-                    part.figures.points_solved,
-                    part.figures.points
-                );
-                assert!(life.abs() < 1e-6, "{}, {law}, {solver}: {life:e}", scene.name);
-                assert_eq!(part.stop, whole.stop, "{}, {law}, {solver}", scene.name);
-                let (a, b) = (part.curve.last().unwrap(), whole.curve.last().unwrap());
-                assert_eq!(a.broken_bonds, b.broken_bonds, "{}, {law}, {solver}", scene.name);
-            }
+        for &(law, choices) in LAWS.iter().filter(|(law, _)| matches!(*law, "free" | "state-based")) {
+            // Each law by one of both; every law by every solver: `tip_field_solvers.rs`.
+            let solver = if law == "free" { SolverKind::Window } else { SolverKind::Multigrid };
+            let chosen = format!("model.solver={solver}");
+            let grown = |symmetry: &str| {
+                let fixed = [symmetry, &*chosen, "stop.cycles_max=1e6"];
+                let all: Vec<&str> = fixed.into_iter().chain(choices.iter().copied()).chain(scene.set.iter().copied()).collect();
+                let mut case = case(&scene.specimen, &all);
+                case.stop.crack_length = case.specimen.crack_length + 3e-3;
+                predict(&case, &Silent).unwrap()
+            };
+            let (part, whole) = (grown("model.symmetry=auto"), grown("model.symmetry=off"));
+            let life = part.life_cycles() / whole.life_cycles() - 1.0;
+            println!(
+                "{:>22} {law:>12} {solver:>10} life {:.6e} {life:+.1e}, {} of {} points",
+                scene.name,
+                part.life_cycles(),
+                part.figures.points_solved,
+                part.figures.points
+            );
+            assert!(life.abs() < 1e-6, "{}, {law}, {solver}: {life:e}", scene.name);
+            assert_eq!(part.stop, whole.stop, "{}, {law}, {solver}", scene.name);
+            let (a, b) = (part.curve.last().unwrap(), whole.curve.last().unwrap());
+            assert_eq!(a.broken_bonds, b.broken_bonds, "{}, {law}, {solver}", scene.name);
         }
     }
 }

@@ -7,6 +7,7 @@ use perilife::bond_law::BondLawKind;
 use perilife::case::Case;
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::solver::SolverKind;
+use perilife::specimen::geometry::{distance, distance_to_segment};
 
 const REST: &str = "
 [material]
@@ -60,9 +61,8 @@ const LATTICES: [(&str, &[&str]); 2] = [
 ];
 /// Relative difference of lives, and of paths over a spacing.
 const EQUAL: f64 = 1e-6;
-/// The same where dynamic relaxation solves, whose residual of 1e-6 of the load leaves K right to some 1e-5; a turn is read off small
-/// differences of K_II.
-const EQUAL_RELAXED: [f64; 2] = [1.2e-4, 2e-2];
+/// The same where dynamic relaxation solves, whose residual counts the load of grips too.
+const EQUAL_RELAXED: [f64; 2] = [2e-6, 1e-4];
 
 fn grow(specimen: &str, set: &[&str]) -> Prediction {
     let set: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
@@ -72,12 +72,18 @@ fn grow(specimen: &str, set: &[&str]) -> Prediction {
     predict(&case, &Silent).unwrap()
 }
 
-/// Largest difference of lives, relative, and of the places of tips at equal rows, over a spacing.
-fn differences(a: &Prediction, b: &Prediction) -> (f64, f64) {
+/// Difference of lives, relative, and the largest one of the places of tips, over a spacing: at equal rows, or, where the length of steps
+/// may differ, from the other path.
+fn differences(a: &Prediction, b: &Prediction, at_equal_rows: bool) -> (f64, f64) {
     let mut path = 0.0_f64;
-    for (a, b) in a.curve.iter().zip(&b.curve) {
-        for (a, b) in a.tips.iter().zip(&b.tips) {
-            path = path.max((a.position[0] - b.position[0]).hypot(a.position[1] - b.position[1]));
+    for (row, (here, there)) in a.curve.iter().zip(&b.curve).enumerate() {
+        for (tip, (here, there)) in here.tips.iter().zip(&there.tips).enumerate() {
+            let near = &b.curve[row.saturating_sub(1)..(row + 2).min(b.curve.len())];
+            let to_path = near
+                .windows(2)
+                .map(|pair| distance_to_segment(here.position, pair[0].tips[tip].position, pair[1].tips[tip].position))
+                .fold(f64::INFINITY, f64::min);
+            path = path.max(if at_equal_rows { distance(here.position, there.position) } else { to_path });
         }
     }
     ((a.life_cycles() / b.life_cycles() - 1.0).abs(), path / a.figures.spacing)
@@ -91,7 +97,7 @@ fn of_law(law: BondLawKind) -> [String; 2] {
 
 #[test]
 fn every_solver_by_every_law_gives_one_life_and_one_path() {
-    let mut runs = 0;
+    let (mut runs, mut faults) = (0, Vec::new());
     for (plate, specimen, stop, is_symmetric) in PLATES {
         for (lattice, of_lattice) in LATTICES {
             // Points of several levels are joined by springs only.
@@ -111,19 +117,22 @@ fn every_solver_by_every_law_gives_one_life_and_one_path() {
                         let set: Vec<&str> = common.iter().copied().chain(keys.iter().map(|key| &**key)).collect();
                         let run = grow(specimen, &set);
                         runs += 1;
-                        let (life, path) = differences(&run, &reference);
+                        let relaxes = solver == SolverKind::AdaptiveDynamicRelaxation;
+                        let (life, path) = differences(&run, &reference, !relaxes);
                         let what =
                             format!("{plate}, {lattice}, {law}, {solver}, symmetry {symmetry}: life {life:.1e}, path {path:.1e}");
                         println!("{what}");
-                        let relaxes = solver == SolverKind::AdaptiveDynamicRelaxation;
                         let bounds = if relaxes { EQUAL_RELAXED } else { [EQUAL; 2] };
-                        assert!(life < bounds[0] && path < bounds[1], "{what}");
+                        if !(life < bounds[0] && path < bounds[1]) {
+                            faults.push(what.clone());
+                        }
                         assert_eq!((run.stop, run.curve.len()), (reference.stop, reference.curve.len()), "{what}");
                     }
                 }
             }
         }
     }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
     let laws = BondLawKind::ALL.len();
     assert_eq!(runs, (laws * SolverKind::ALL.len() + 2 * (laws - 1)) * (PLATES.len() + 1));
 }

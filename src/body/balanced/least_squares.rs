@@ -204,38 +204,37 @@ impl<'a> Part<'a> {
         let mut dual = Dual { lambda: vec![[0.0; EQUATIONS]; problem.missing.len()], y: vec![0.0; problem.links.len()] };
         let missing = self.points.iter().flat_map(|&point| &problem.missing[point as usize]);
         let tolerance = TOLERANCE * missing.fold(0.0_f64, |m, r| m.max(r.abs()));
-        let mut gradient = self.gradient(&dual, limits);
-        if !is_small(&gradient, tolerance) {
-            let all_free = self.factor(&dual, limits)?;
-            for _ in 0..ROUNDS {
-                self.step(&all_free, gradient, &mut dual, limits)?;
-                gradient = self.gradient(&dual, limits);
-                if is_small(&gradient, tolerance) {
-                    break;
-                }
-                let near = self.near(&gradient, tolerance);
-                if 2 * near.iter().filter(|near| **near).count() > self.points.len() {
-                    break;
-                }
-                let solve = |(points, links): (Vec<u32>, Vec<u32>)| {
-                    let part = Part::new(problem, points, links)?;
-                    let mut own = Dual { lambda: dual.lambda.clone(), y: dual.y.clone() };
-                    part.newton(&mut own, limits, tolerance)?;
-                    Some((part.points, part.links, own))
-                };
-                let solved: Vec<_> = problem.parts(near).into_par_iter().map(solve).collect::<Option<_>>().unwrap_or_default();
-                for (points, links, own) in solved {
-                    points.iter().for_each(|&point| dual.lambda[point as usize] = own.lambda[point as usize]);
-                    links.iter().for_each(|&link| dual.y[link as usize] = own.y[link as usize]);
-                }
-                gradient = self.gradient(&dual, limits);
-                if is_small(&gradient, tolerance) {
-                    break;
-                }
+        let all_free = self.factor(&dual, limits)?;
+        for _ in 0..ROUNDS {
+            let gradient = self.gradient(&dual, limits);
+            if is_small(&gradient, tolerance) {
+                break;
             }
+            self.step(&all_free, gradient, &mut dual, limits)?;
+            let near = self.near(&self.gradient(&dual, limits), tolerance);
+            if 2 * near.iter().filter(|near| **near).count() > self.points.len() {
+                break;
+            }
+            self.solve_near(near, &mut dual, limits, tolerance);
         }
+        // Where these rounds did not do, steps of all equations.
         self.newton(&mut dual, limits, tolerance)?;
         Some(self.links.iter().map(|&link| limits.clip(dual.y[link as usize])).collect())
+    }
+
+    /// Newton's method on the equations of some points, by parts that no link joins; where one of them fails, nothing changes.
+    fn solve_near(&self, near: Vec<bool>, dual: &mut Dual, limits: Bounded, tolerance: f64) {
+        let solve = |(points, links): (Vec<u32>, Vec<u32>)| {
+            let part = Part::new(self.problem, points, links)?;
+            let mut own = Dual { lambda: dual.lambda.clone(), y: dual.y.clone() };
+            part.newton(&mut own, limits, tolerance)?;
+            Some((part.points, part.links, own))
+        };
+        let solved: Vec<_> = self.problem.parts(near).into_par_iter().map(solve).collect::<Option<_>>().unwrap_or_default();
+        for (points, links, own) in solved {
+            points.iter().for_each(|&point| dual.lambda[point as usize] = own.lambda[point as usize]);
+            links.iter().for_each(|&link| dual.y[link as usize] = own.y[link as usize]);
+        }
     }
 
     /// Which points of the problem are near equations of these whose gradient is not small yet.

@@ -24,8 +24,8 @@ const CURVATURE_SHARE_MOST: f64 = 0.02;
 const STEP_NEAR_HORIZONS: f64 = 0.2;
 /// How near that is, in horizons.
 const NEAR_HORIZONS: f64 = 3.0;
-/// Turn of a tip in a block at the most, rad, unless that makes the block shorter than the step near rims. With 2° the life of an edge
-/// crack that curves into a hole errs by 1.6 instead of 0.5 %.
+/// Turn of a tip in a block at the most, rad, unless that makes the block shorter than the step near rims. With 2° cycles half way
+/// of an edge crack that curves into a hole are -0.7 instead of -0.5 % off finite elements, its path 0.13 instead of 0.10 mm.
 const TURN: f64 = std::f64::consts::PI / 180.0;
 /// Growth of a tip over that of the fastest, at the most, where rates are extrapolated.
 const SHARE_MOST: f64 = 1.5;

@@ -1,5 +1,5 @@
 //! Lattice multigrid as preconditioner: symmetric V-cycles with Chebyshev smoothing, Galerkin coarse operators, crack-aware
-//! interpolation, and a spectral pseudo-inverse on the coarsest level, which makes floating plates no special case.
+//! interpolation, and a shifted Cholesky factor on the coarsest level, which makes floating plates no special case.
 //!
 //! Coarse lattices are laid symmetrically over fine ones, so that a symmetric plate has a symmetric preconditioner and
 //! mirror twins keep equal displacements to round-off even before an iteration has converged.
@@ -61,12 +61,11 @@ pub struct Multigrid<const N: usize> {
     levels: Vec<Level<N>>,
     coarsest: Coarsest,
     work: Work,
-    /// Whether levels below the first are cycled twice.
-    cycles_twice: bool,
+    depth: Depth,
 }
 
 /// Coarsening factor of the first level for bonds of a reach: the coarse stencil must not outgrow five by five, and the
-/// farthest coarse place a point uses must be within its bonds.
+/// farthest coarse place a point uses must be within its bonds, or bonded to what it is bonded to.
 fn first_factor(reach: usize, horizon_ratio: f64) -> usize {
     match reach {
         0..=2 if horizon_ratio < 8.0_f64.sqrt() => 2,
@@ -106,14 +105,14 @@ impl<const N: usize> Multigrid<N> {
             levels.push(level);
         }
         let coarsest = Coarsest::new(&levels[levels.len() - 1]);
-        Multigrid { smoother, levels, coarsest, work, cycles_twice: true }
+        Multigrid { smoother, levels, coarsest, work, depth: Depth::First }
     }
 
     /// With one cycle on every level: two are no positive operator where one makes a motion more than twice as large as it is, as it can
     /// where a plate is nearly a mechanism.
     #[must_use]
     pub fn cautious(self) -> Self {
-        Multigrid { cycles_twice: false, ..self }
+        Multigrid { depth: Depth::Cautious, ..self }
     }
 
     /// Takes over the changed diagonal of a few points without rebuilding coarse levels.
@@ -152,13 +151,12 @@ impl<const N: usize> Multigrid<N> {
 
     /// M r, one V-cycle from zero in single precision.
     pub fn precondition(&mut self, bonds: &Bonds, product: &Product<N>, r: &[f64]) -> &mut [f32] {
-        let Multigrid { smoother, levels, coarsest, work, cycles_twice } = self;
+        let Multigrid { smoother, levels, coarsest, work, depth } = self;
         work.r.par_chunks_mut(PART).zip(r.par_chunks(PART)).for_each(|(single, r)| {
             single.iter_mut().zip(r).for_each(|(single, r)| *single = *r as f32);
         });
         cycle(&Springs { product, bonds }, smoother, work, |residual, correction| {
-            let depth = if *cycles_twice { Depth::First } else { Depth::Cautious };
-            descend(levels, coarsest, residual, correction, depth);
+            descend(levels, coarsest, residual, correction, *depth);
             product.fixed().iter().for_each(|&index| correction[index] = 0.0);
         });
         &mut work.x
