@@ -13,7 +13,7 @@ pub use law_source::{LAW_KEYS, fitted_record};
 pub use read::SECTIONS;
 
 use crate::body::lattice::fitting_spacing;
-use crate::bond_law::{BondLaw, BondLawKind, SurfaceCorrection};
+use crate::bond_law::{BondLaw, SurfaceCorrection};
 use crate::calibration::record::FittedRecord;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
@@ -61,9 +61,10 @@ pub struct Model {
 
 impl Model {
     /// The surface correction that gives K of a tip best where the case leaves it open: what a rim at an angle to the rows does to
-    /// the plate is 1 % of K with `volume_and_surface` and 0.3 % with `balanced`, which knows springs on one lattice.
+    /// the plate is 1 % of K with `volume_and_surface` and 0.3 % with `balanced`, which knows one lattice. What of a dilatation is uniform is then in equilibrium, too
+    /// ([`crate::solver::dilatation`]).
     fn take_most_accurate_rim(&mut self) {
-        if self.bond_law.kind != BondLawKind::StateBased && self.arrangement == Discretisation::Lattice {
+        if self.arrangement == Discretisation::Lattice {
             self.bond_law.surface_correction = SurfaceCorrection::Balanced;
         }
     }

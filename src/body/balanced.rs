@@ -16,6 +16,8 @@
 //! reciprocity of two strain states the plate must be as wide for one as it is for the other. Loads put on the last
 //! row of points violate that by spacing × (1/width - 1/length).
 //!
+//! The dilatation of a state-based law has the same four equations: `Σ m k_n r n = -4 S₂₂ A` is their trace.
+//!
 //! Only bonds change that have an end within one row of a point that misses a neighbour; the others keep 1. Damped least squares on equilibrium, after an idea of point-wise
 //! energy matching (Madenci and Oterkus 2014, Peridynamic Theory and Its Applications, ch. 4), here with forces.
 

@@ -10,6 +10,9 @@ use crate::specimen::{Point, Specimen};
 /// Lattice places processed together; rows are padded to a multiple of it.
 pub const LANES: usize = 8;
 
+/// Distance in spacings within which a point lies on a rim: far above round-off, far below what shows in a result.
+pub const ON_RIM: f64 = 1e-6;
+
 /// Geometry of the lattice and of the arrays over its places.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lattice {
@@ -29,16 +32,30 @@ pub struct Lattice {
     pub stride: usize,
 }
 
-/// The spacing nearest to the requested one that divides the gross width; the requested one itself on a turned lattice, m.
+/// The spacing nearest to the requested one that divides the gross width, an even number of times where a crack lies on its middle
+/// line; the requested one itself on a turned lattice, m.
 #[must_use]
 pub fn fitting_spacing(specimen: &Specimen, spacing: f64, angle: f64) -> f64 {
-    let across = (specimen.gross_width / spacing).round().max(1.0);
-    if angle == 0.0 { specimen.gross_width / across } else { spacing }
+    if angle == 0.0 { specimen.gross_width / across(specimen, spacing) } else { spacing }
+}
+
+/// Rows on a length of so many spacings; halves up, whatever round-off makes of them.
+fn rounded(spacings: f64) -> f64 {
+    (spacings + 0.5 + ON_RIM).floor()
+}
+
+/// Columns on the gross width.
+fn across(specimen: &Specimen, spacing: f64) -> f64 {
+    let [low, high] = bounding_box(&specimen.outline);
+    let middle = 0.5 * (low[0] + high[0]);
+    let is_middle = specimen.crack_plane_x.is_some_and(|plane| (plane - middle).abs() < ON_RIM * spacing);
+    let fold = if is_middle { 2.0 } else { 1.0 };
+    fold * (specimen.gross_width / (fold * spacing)).round().max(1.0)
 }
 
 impl Lattice {
     /// Lattice over a specimen: the requested spacing is moved to the nearest one that divides the gross width, and rows
-    /// are laid so that a central horizontal crack falls between two of them.
+    /// and columns are laid so that a crack along them falls between two of them.
     ///
     /// With an angle the lattice covers the bounding circle and keeps the requested spacing.
     ///
@@ -47,7 +64,7 @@ impl Lattice {
     pub fn over(specimen: &Specimen, spacing: f64, angle: f64, padding: usize) -> Result<Self> {
         let [low, high] = bounding_box(&specimen.outline);
         let upright = angle == 0.0;
-        let across = (specimen.gross_width / spacing).round().max(1.0);
+        let across = across(specimen, spacing);
         let spacing = fitting_spacing(specimen, spacing, angle);
         if across < 4.0 {
             return Err(input(
@@ -58,20 +75,18 @@ impl Lattice {
             ));
         }
         let (columns, rows, origin) = if upright {
-            let columns = ((high[0] - low[0]) / spacing).round().max(1.0);
-            let x0 = 0.5 * (low[0] + high[0]) - 0.5 * (columns - 1.0) * spacing;
-            let (rows, y0) = match specimen.crack_plane_y {
-                // Half a spacing above and below the crack plane, as many rows as have their middle inside the plate.
+            // Half a spacing to either side of a crack plane, as many as have their middle inside the plate or on its edge.
+            let laid = |axis: usize, plane: Option<f64>| match plane {
                 Some(plane) => {
-                    let below = ((plane - low[1]) / spacing).round();
-                    let above = ((high[1] - plane) / spacing).round();
+                    let [below, above] = [plane - low[axis], high[axis] - plane].map(|extent| rounded(extent / spacing));
                     (below + above, plane - (below - 0.5) * spacing)
                 }
                 None => {
-                    let rows = ((high[1] - low[1]) / spacing).round().max(1.0);
-                    (rows, 0.5 * (low[1] + high[1]) - 0.5 * (rows - 1.0) * spacing)
+                    let count = ((high[axis] - low[axis]) / spacing).round().max(1.0);
+                    (count, 0.5 * (low[axis] + high[axis]) - 0.5 * (count - 1.0) * spacing)
                 }
             };
+            let ((columns, x0), (rows, y0)) = (laid(0, specimen.crack_plane_x), laid(1, specimen.crack_plane_y));
             (columns, rows, [x0, y0])
         } else {
             let centre = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];

@@ -292,6 +292,21 @@ impl Part {
         whole.lattice.place(column + self.first[0], row + self.first[1])
     }
 
+    /// The place of the part that a place of the plate is or is the image of, and what weights on the displacements of the latter are on
+    /// those of the former.
+    #[must_use]
+    pub fn weights_of(&self, whole: &Body, place: usize, weights: [f64; 2]) -> (u32, [f64; 2]) {
+        let seat = <[usize; 2]>::from(whole.lattice.column_row(place));
+        let count = [whole.lattice.columns, whole.lattice.rows];
+        let flips = [0, 1].map(|axis| seat[axis] < self.first[axis]);
+        let [column, row] = [0, 1].map(|axis| {
+            let own = if flips[axis] { count[axis] - 1 - seat[axis] } else { seat[axis] };
+            own - self.first[axis]
+        });
+        let signs = signs(flips);
+        (self.body.lattice.place(column, row) as u32, [0, 1].map(|axis| signs[axis] * weights[axis]))
+    }
+
     /// Places of the plate that a point of the part stands for, itself among them, with how each is mirrored.
     pub fn images(&self, whole: &Body, place: usize) -> impl Iterator<Item = (usize, Flips)> + use<> {
         self.orbit((self.place_in(whole, place), [false; 2]), |reflection, (place, mut flips)| {

@@ -90,7 +90,7 @@ impl Body {
         let mut points = Vec::new();
         for row in 0..lattice.rows {
             for column in 0..lattice.columns {
-                if specimen.contains(lattice.position_of(column as f64, row as f64)) {
+                if specimen.has_point_at(lattice.position_of(column as f64, row as f64), lattice::ON_RIM * lattice.spacing) {
                     let place = lattice.place(column, row);
                     is_point[place] = true;
                     points.push(place as u32);
@@ -142,7 +142,7 @@ impl Body {
         }
         body.boundary.balance(&body.lattice)?;
         body.boundary.stiffen_grips(&body.lattice, &body.steps, &mut body.multiplier);
-        body.pre_cut = pre_crack::bonds_cut_by(&body, &specimen.cracks);
+        body.pre_cut = pre_crack::bonds_cut_by(&body, specimen);
         Ok(body)
     }
 

@@ -3,6 +3,7 @@
 //! The lattice knows a curved or tilted rim no better than about a quarter of its spacing, so a bond that only grazes a
 //! hole or a slot by less than that stays. Cracks have no width and are cut apart from these ([`super::pre_crack`]).
 
+use super::lattice::ON_RIM;
 use crate::specimen::geometry::{
     along, direction, distance, distance_to_polygon, distance_to_segment, edges, point_in_polygon, segments_touch, turn,
 };
@@ -10,9 +11,6 @@ use crate::specimen::{Hole, Point, Slot, Specimen};
 
 /// Depth in spacings to which a bond may graze a hole or a slot.
 const GRAZE: f64 = 0.25;
-/// Distance in spacings within which a point counts as lying on an edge of the outline.
-const ON_EDGE: f64 = 1e-6;
-
 /// The voids of a specimen as a lattice of one spacing and horizon sees them.
 #[derive(Debug, Clone)]
 pub struct Obstacles<'a> {
@@ -53,7 +51,7 @@ impl<'a> Obstacles<'a> {
     /// Whether a bond crosses the outline. An edge on which one of its points lies does not count, or a row of points along
     /// the outline would lose its bonds by round-off; a bond between two such points is judged by its middle.
     fn leaves_outline(&self, a: Point, b: Point) -> bool {
-        let slack = ON_EDGE * self.spacing;
+        let slack = ON_RIM * self.spacing;
         let crossed = edges(self.outline).any(|(c, d)| {
             let beside = slack * distance(c, d);
             let (from_a, from_b) = (turn(c, d, a), turn(c, d, b));

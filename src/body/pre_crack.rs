@@ -2,18 +2,39 @@
 
 use super::{Body, Bond};
 use crate::specimen::geometry::{direction, distance, distance_to_segment, segments_touch};
-use crate::specimen::{Crack, Point};
+use crate::specimen::{Crack, Point, Specimen};
 
 /// Share of the spacing by which a crack is shifted sideways, so that a crack along a row of points has that row on one side.
 const TIE_BREAK: f64 = 1e-7;
 
-/// Bonds of the body that a list of cracks cuts, ascending.
+/// Bonds of the body that the cracks of a specimen cut, ascending.
 #[must_use]
-pub fn bonds_cut_by(body: &Body, cracks: &[Crack]) -> Vec<Bond> {
+pub fn bonds_cut_by(body: &Body, specimen: &Specimen) -> Vec<Bond> {
+    let cracks = through_mouths(specimen, body.lattice.spacing);
     let mut cut: Vec<Bond> = cracks.iter().flat_map(|crack| bonds_across(body, crack.from, crack.to)).collect();
     cut.sort_unstable();
     cut.dedup();
     cut
+}
+
+/// Steps in which the way through a mouth is tried.
+const MOUTH_STEPS: usize = 8;
+
+/// The cracks of a specimen, longer by a spacing, m, at every mouth, as far as there is no material: bonds that graze the void there
+/// would hold the mouth shut.
+#[must_use]
+pub fn through_mouths(specimen: &Specimen, spacing: f64) -> Vec<Crack> {
+    let longer = |end: Point, other: Point| {
+        let [x, y] = direction(other, end);
+        let at = |step: usize| {
+            let way = spacing * step as f64 / MOUTH_STEPS as f64;
+            [end[0] + way * x, end[1] + way * y]
+        };
+        let is_tip = specimen.tips.iter().any(|tip| tip.position == end);
+        let steps = if is_tip { 0 } else { (1..=MOUTH_STEPS).take_while(|&step| !specimen.contains(at(step))).count() };
+        if steps == 0 { end } else { at(steps) }
+    };
+    specimen.cracks.iter().map(|crack| Crack { from: longer(crack.from, crack.to), to: longer(crack.to, crack.from) }).collect()
 }
 
 /// How far a crack from `a` to `b` is shifted, to its left, before bonds are cut, m.

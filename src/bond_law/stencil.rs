@@ -113,12 +113,8 @@ pub fn is_within_springs(material: &Material) -> bool {
 /// Bond-based: ν is 1/3 or 1/4 (Silling 2000; Gerstle, Sau and Silling 2005 for the plane). State-based: any.
 ///
 /// # Errors
-/// `Error::Input` on `material.poisson_ratio` or `model.surface_correction`.
+/// `Error::Input` on `material.poisson_ratio`.
 pub fn check(law: &BondLaw, material: &Material) -> Result<(), Error> {
-    if law.kind == BondLawKind::StateBased && law.surface_correction == SurfaceCorrection::Balanced {
-        let problem = "balances springs only, and bond_law is \"state_based\"";
-        return Err(input("model.surface_correction", "\"balanced\"", problem, "use \"volume_and_surface\""));
-    }
     const KEY: &str = "material.poisson_ratio";
     let (kind, nu, limit) = (law.kind, material.poisson_ratio, poisson_limit(material.plane));
     let words = match material.plane {

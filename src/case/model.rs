@@ -40,13 +40,14 @@ struct Input {
 }
 
 /// Reads `[model]` and, if there is one, `[refinement]`; what is left out gets the program's choice. Explicit choices go into
-/// `choices`.
+/// `choices`, what is to be said of the program's into `warnings`.
 pub(super) fn from_values(
     value: &Value,
     refinement: Option<&Value>,
     specimen: &Specimen,
     material: &Material,
     choices: &mut Choices,
+    warnings: &mut Vec<String>,
 ) -> Result<Model> {
     let input: Input = slice(value, "model")?;
     let arrangement = input.discretisation.unwrap_or(Discretisation::Lattice);
@@ -61,7 +62,11 @@ pub(super) fn from_values(
     let levels = refinement.as_ref().map_or(0, Refinement::deepest);
     let spacing = match LENGTH.read_optional("model.spacing_mm", input.spacing_mm)? {
         Some(coarsest) => coarsest / 2.0_f64.powi(levels as i32),
-        None => default_spacing(specimen),
+        None => {
+            let (spacing, warning) = default_spacing(specimen);
+            warnings.extend(warning);
+            spacing
+        }
     };
     let angle =
         number("an angle in degrees", -90.0, 90.0).read("model.lattice_angle_deg", input.lattice_angle_deg.unwrap_or(0.0))?;
@@ -131,10 +136,40 @@ fn check_formula(specimen: &Specimen) -> Result<()> {
     Err(input("model.method", "\"handbook\"", problem, remedy))
 }
 
-/// Spacing where an input file says nothing: a ninth of the smallest flaw, a hundredth of the width at the most.
+/// Share of the longest flaw below which a flaw does not decide the life: its rate is an eighth or less of that of the longest at m = 3.
+const SMALL_FLAW: f64 = 0.25;
+/// Points on the least gap beside a tip, and on a flaw that does not decide.
+const POINTS_ON_GAP: f64 = 6.0;
+/// Points to which a gap beside a tip refines a plate at the most.
+const POINTS_FOR_GAP: f64 = 3e5;
+
+/// Spacing where an input file says nothing: a ninth of the smallest flaw that can decide the life, a sixth of every other and of the
+/// least gap between a tip and a rim, another tip or another crack, a hundredth of the width at the most. What is said where a gap asks
+/// for more than [`POINTS_FOR_GAP`] points or a small flaw for too many comes beside.
 #[must_use]
-pub fn default_spacing(specimen: &Specimen) -> f64 {
-    (specimen.smallest_flaw() / 9.0).min(specimen.width / 100.0)
+pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
+    let sizes = specimen.flaw_sizes();
+    let longest = sizes.iter().copied().fold(0.0, f64::max);
+    let deciding = sizes.iter().copied().filter(|size| *size >= SMALL_FLAW * longest).fold(f64::INFINITY, f64::min);
+    let usual = (deciding / 9.0).min(specimen.width / 100.0);
+    let smallest = sizes.iter().copied().fold(f64::INFINITY, f64::min);
+    let gap = specimen.least_gap();
+    let wanted = usual.min(smallest / POINTS_ON_GAP).min(gap / POINTS_ON_GAP);
+    let finest = (specimen.area() / POINTS_FOR_GAP).sqrt().min(usual);
+    if wanted >= finest {
+        return (wanted, None);
+    }
+    // A flaw has at least a point of its own.
+    let spacing = finest.min(smallest);
+    let warning = format!(
+        "model.spacing_mm: {} mm were taken, since {} mm would make more than {POINTS_FOR_GAP:.0e} points; a gap of {} mm or a flaw of {} \
+         mm at a tip has fewer than {POINTS_ON_GAP} spacings: give model.spacing_mm if its growth decides the life",
+        round_mm(spacing),
+        round_mm(wanted),
+        round_mm(gap),
+        round_mm(smallest)
+    );
+    (spacing, Some(warning))
 }
 
 /// The spacing resolves crack and plate, and the number of points can be held.

@@ -75,7 +75,8 @@ impl Case {
         let material = material::from_value(sections.required("material")?, folder, &mut warnings)?;
         let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
         let refinement = sections.given("refinement");
-        let model = model::from_values(sections.optional("model"), refinement, &specimen, &material, &mut choices)?;
+        let model = sections.optional("model");
+        let model = model::from_values(model, refinement, &specimen, &material, &mut choices, &mut warnings)?;
         let fatigue = fatigue::from_value(
             sections.optional("fatigue"),
             model.method,

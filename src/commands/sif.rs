@@ -8,8 +8,9 @@ use serde_json::{Map, Value, json};
 use super::console::Console;
 use super::unaged::case_without_law;
 use crate::error::{Error, Result};
+use crate::fatigue::crack_tip::TipState;
 use crate::stress_intensity::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
-use crate::units::{MM, MPA_SQRT_M};
+use crate::units::{MM, MPA, MPA_SQRT_M};
 
 /// Arguments of `perilife sif`.
 #[derive(Debug, clap::Args)]
@@ -17,7 +18,7 @@ pub struct Args {
     /// Case file (a calibration file does as well); its fatigue law is not needed
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Methods: energy_release, domain_integral; all where none is given
+    /// Methods: ring, energy_release; all where none is given
     #[arg(long, value_name = "METHOD", num_args = 1.., help_heading = "Method")]
     pub method: Vec<String>,
     /// Override a key of the case (repeatable), e.g. --set specimen.crack_length_mm=20
@@ -71,10 +72,16 @@ fn in_mpa(factor: Option<f64>) -> Option<f64> {
 
 fn object(tip: &TipResult) -> Value {
     let mut methods = Map::new();
-    for MethodResult { method, intensity, note, wall_s } in &tip.methods {
+    for MethodResult { method, intensity, t_stress, is_closed, note, wall_s } in &tip.methods {
         let mut entry = json!({
             "k_i_mpa_sqrt_m": in_mpa(intensity.k_i), "k_ii_mpa_sqrt_m": in_mpa(intensity.k_ii), "wall_s": wall_s
         });
+        if *is_closed {
+            entry["state"] = json!(TipState::Closed.name());
+        }
+        if let Some(t_stress) = t_stress {
+            entry["t_stress_mpa"] = json!(t_stress / MPA);
+        }
         if let Some(note) = note {
             entry["note"] = json!(note);
         }
@@ -90,8 +97,8 @@ fn object(tip: &TipResult) -> Value {
 /// One line a tip and method; K in MPa√m.
 fn table(tips: &[TipResult]) -> String {
     let mut text = format!(
-        "{:>10} {:>10}  {:<22} {:>12} {:>12} {:>12} {:>8}\n",
-        "x_mm", "y_mm", "method", "K_I MPa√m", "K_II MPa√m", "handbook K_I", "time s"
+        "{:>10} {:>10}  {:<14} {:>12} {:>12} {:>9} {:>12} {:>8}\n",
+        "x_mm", "y_mm", "method", "K_I MPa√m", "K_II MPa√m", "T MPa", "handbook K_I", "time s"
     );
     let words = |factor: Option<f64>| in_mpa(factor).map_or_else(|| "-".to_owned(), |k| format!("{k:.4}"));
     for tip in tips {
@@ -100,10 +107,11 @@ fn table(tips: &[TipResult]) -> String {
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "{x:>10.4} {y:>10.4}  {:<22} {:>12} {:>12} {:>12} {:>8.2}",
+                "{x:>10.4} {y:>10.4}  {:<14} {:>12} {:>12} {:>9} {:>12} {:>8.2}",
                 result.method,
                 words(result.intensity.k_i),
                 words(result.intensity.k_ii),
+                result.t_stress.map_or_else(|| "-".to_owned(), |t| format!("{:.2}", t / MPA)),
                 words(tip.handbook_k_i),
                 result.wall_s
             );

@@ -38,17 +38,15 @@ pub(super) const ROUND_OFF: f64 = 1e-9;
 /// Marks that stand for the crack behind a tip at the start.
 const SEED_MARKS: usize = 48;
 
-/// What has become of a tip.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum TipState {
-    /// Grows, or could.
-    Active,
-    /// Has crossed the outline.
-    LeftPlate,
-    /// Has run into a hole or a slot.
-    EnteredHole,
-    /// Has run into another crack.
-    LinkedUp,
+crate::kinds! {
+    /// What has become of a tip.
+    pub enum TipState for "state of a tip" {
+        Active = "active": "grows, or could",
+        Closed = "closed": "the load presses its flanks together: it does not grow until that ends",
+        LeftPlate = "left_plate": "has crossed the outline",
+        EnteredHole = "entered_hole": "has run into a hole or a slot",
+        LinkedUp = "linked_up": "has run into another crack",
+    }
 }
 
 /// Centre of bonds that broke together near a tip, and the length of crack they stand for.

@@ -7,6 +7,7 @@ use super::record::{CurvePoint, StopReason, TipRecord};
 use super::{CrackGrowth, GrowthStatus, State};
 use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
+use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::quadrature::integrate;
 use crate::specimen::geometry::along;
@@ -86,6 +87,7 @@ impl<'a> HandCalculation<'a> {
                 .tips
                 .iter()
                 .map(|seed| TipRecord {
+                    state: TipState::Active,
                     position: ahead(seed),
                     growth,
                     factors: Some([delta_k / loading.range_share(), 0.0]),

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::fatigue::crack_tip::TipState;
 use crate::specimen::Point;
 
 crate::kinds! {
@@ -13,6 +14,7 @@ crate::kinds! {
         Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
         LeftPlate = "left_plate": "every crack tip has left the plate",
         EnteredHole = "entered_hole": "the last crack tip ran into a hole",
+        LigamentUnresolved = "ligament_unresolved": "a crack tip passes a rim within a spacing: points do not resolve what is between them; the life is a lower bound",
         LeftRefinement = "left_refinement": "a crack tip came to the rim of the finest level of points: the refined region is too small",
         NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
         NoGrowth = "no_growth": "bonds went on breaking, but no crack tip grew",
@@ -24,6 +26,8 @@ crate::kinds! {
 /// State of one tip at a recorded step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TipRecord {
+    /// What has become of it.
+    pub state: TipState,
     /// Position, m.
     pub position: Point,
     /// Growth since N = 0, m.
@@ -60,6 +64,7 @@ impl CurvePoint {
     pub fn between(self, before: &CurvePoint, share: f64) -> CurvePoint {
         let mix = |a: f64, b: f64| a + share * (b - a);
         let tip = |(a, b): (&TipRecord, &TipRecord)| TipRecord {
+            state: b.state,
             position: [0, 1].map(|i| mix(a.position[i], b.position[i])),
             growth: mix(a.growth, b.growth),
             factors: a.factors.zip(b.factors).map(|(a, b)| [0, 1].map(|i| mix(a[i], b[i]))),

@@ -10,8 +10,10 @@
 
 mod ahead;
 mod coalescence;
+mod contact;
 mod factors;
 mod increment;
+mod kink;
 mod readings;
 mod remaining_life;
 mod run;
@@ -28,7 +30,8 @@ use super::CrackGrowth;
 use super::cross_check::EnergyBalance;
 use super::end_of_life::{End, first_end};
 use super::plate::Plate;
-use super::record::CurvePoint;
+use super::record::{CurvePoint, TipRecord};
+use super::tip_ring::DIRECTION_SPACINGS;
 use crate::body::pre_crack::bonds_across;
 use crate::body::{Body, Bond};
 use crate::case::Case;
@@ -37,9 +40,10 @@ use crate::fatigue::growth_law::{GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::solver::Equilibrium;
-use crate::specimen::Point;
+use crate::specimen::{CrackLine, LineEnd, Point};
 use crate::state::Bonds;
 use crate::stress_intensity::ring::RingGeometry;
+use contact::Contact;
 use step::StepControl;
 
 /// Distance from coarser points, in horizons, at which a run ends: the ring, which must not reach them, would be too narrow.
@@ -62,6 +66,8 @@ pub struct TipField<'a> {
     /// Cracks and tips.
     pub state: TipFieldState,
     equilibrium: Equilibrium,
+    /// Where flanks are in contact.
+    contact: Contact,
     /// In the layout of the equilibrium, m.
     displacement: Vec<f64>,
     solves: usize,
@@ -133,6 +139,7 @@ impl<'a> TipField<'a> {
             bonds,
             state,
             equilibrium,
+            contact: Contact::default(),
             displacement: Vec::new(),
             solves: 0,
             iterations: 0,
@@ -154,14 +161,33 @@ impl<'a> TipField<'a> {
     fn position(&self, tip: &Tip) -> Point {
         self.state.lines[tip.end.line].end(tip.end.at_last)
     }
+
+    /// Unit vector in which the crack of a tip points.
+    fn heading(&self, end: LineEnd) -> Point {
+        heading(&self.plate.body, &self.state.lines, end)
+    }
+}
+
+/// Unit vector in which a crack points at one of its ends; pieces shorter than [`DIRECTION_SPACINGS`] do not show it.
+fn heading(body: &Body, lines: &[CrackLine], end: LineEnd) -> Point {
+    lines[end.line].blunted(end.at_last, DIRECTION_SPACINGS * body.lattice.spacing).direction(end.at_last)
+}
+
+/// K and T of the initial tips at maximum load, in the order of `Specimen::tips`, and what the user should know of them.
+///
+/// # Errors
+/// As [`TipField::start`] and [`CrackGrowth::open`].
+pub fn initial_tips(case: &Case) -> Result<(Vec<TipRecord>, Vec<String>)> {
+    let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
+    let mut growth = TipField::start(case, Box::new(law))?;
+    growth.open()?;
+    Ok((growth.last().tips.clone(), growth.warnings()))
 }
 
 /// Largest K_eq of the tips at maximum load, Pa√m, of the plate with its initial cracks cleanly cut; `None` where it cannot be read.
 pub fn initial_factor(case: &Case) -> Option<f64> {
-    let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
-    let mut growth = TipField::start(case, Box::new(law)).ok()?;
-    growth.open().ok()?;
-    growth.state.tips.iter().map(Tip::equivalent).max_by(f64::total_cmp)
+    let (tips, _) = initial_tips(case).ok()?;
+    tips.iter().filter_map(|tip| tip.factors).map(steering::equivalent_factor).max_by(f64::total_cmp)
 }
 
 /// Bonds that the last [`PROBE_HORIZONS`] of the initial cracks cut, and nothing else of them, in ascending order.

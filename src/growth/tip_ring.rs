@@ -6,7 +6,7 @@
 use crate::body::Body;
 use crate::specimen::{CrackLine, LineEnd};
 use crate::state::Bonds;
-use crate::stress_intensity::ring::{Balanced, RingFactors, RingGeometry};
+use crate::stress_intensity::ring::{Balanced, FlankPressure, RingFactors, RingGeometry};
 
 /// Outer radius of the ring, in horizons, where there is room. On three horizons K is read 0.1 % lower, and first kinks of one crack on
 /// lattices of all directions spread over 0.7° instead of 0.4°.
@@ -15,6 +15,9 @@ pub(super) const RING_HORIZONS: f64 = 4.0;
 pub(super) const RING_HORIZONS_MIN: f64 = 1.2;
 /// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate.
 pub(super) const CORE_HORIZONS: f64 = 0.6;
+
+/// Length of crack, in spacings, below which its last piece shows no direction: of a tip that hardly grows it is round-off.
+pub(super) const DIRECTION_SPACINGS: f64 = 0.1;
 
 /// A plate in equilibrium with what rings of its tips need.
 pub(super) struct TipRings<'a> {
@@ -27,6 +30,8 @@ pub(super) struct TipRings<'a> {
     pub lines: &'a [CrackLine],
     /// Tips that have not ended: rings do not reach them.
     pub active: &'a [LineEnd],
+    /// Flanks in contact.
+    pub pressures: &'a [FlankPressure],
 }
 
 impl TipRings<'_> {
@@ -37,14 +42,15 @@ impl TipRings<'_> {
 
     /// The field around the same place; where there is no room for a ring, off the least one.
     pub(super) fn read(&self, end: LineEnd, offset: f64) -> RingFactors {
-        let TipRings { body, bonds, displacement, load, geometry, .. } = *self;
+        let TipRings { body, bonds, displacement, load, geometry, pressures, .. } = *self;
         let lines = self.stretched(end, offset);
         let radius = self.radius(&lines, end).max(RING_HORIZONS_MIN * body.horizon());
-        geometry.factors(Balanced { body, bonds, displacement, load, lines: &lines }, end, radius)
+        geometry.factors(Balanced { body, bonds, displacement, load, lines: &lines, pressures }, end, radius)
     }
 
     fn stretched(&self, end: LineEnd, offset: f64) -> Vec<CrackLine> {
         let mut lines = self.lines.to_vec();
+        lines[end.line] = lines[end.line].blunted(end.at_last, DIRECTION_SPACINGS * self.body.lattice.spacing);
         lines[end.line].stretch(end.at_last, offset);
         lines
     }

@@ -30,7 +30,7 @@ use super::{Discretisation, Net, NetBond, PointGrid, Refinement};
 use crate::body::balanced::load_rows;
 use crate::body::lattice::Lattice;
 use crate::body::obstacles::Obstacles;
-use crate::body::pre_crack::cutting_line;
+use crate::body::pre_crack::{cutting_line, through_mouths};
 use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::bond_law::{BondLaw, BondLawKind, SurfaceCorrection};
 use crate::error::{Result, input};
@@ -115,7 +115,7 @@ pub fn build(ask: &MultiLevelSpec<'_>) -> Result<MultiLevelMesh> {
     let forces = loads::forces(specimen, &sharing, ask.floating)?;
     let loaded = loads::seats(specimen, &sharing);
     let mut net = Net {
-        pre_cut: cut_by(&specimen.cracks, &bonds, &positions, finest),
+        pre_cut: cut_by(&through_mouths(specimen, finest), &bonds, &positions, finest),
         volumes: of_level(|stencil| stencil.spacing * stencil.spacing).into_iter().map(|a| a * specimen.thickness).collect(),
         spacings: of_level(|stencil| stencil.spacing),
         horizons: of_level(|stencil| stencil.horizon),

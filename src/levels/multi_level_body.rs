@@ -119,7 +119,7 @@ impl MultiLevelBody {
         for place in 0..places {
             body.no_fail[place] |= body.beyond.is_rim(place);
         }
-        body.pre_cut = pre_crack::bonds_cut_by(&body, &ask.specimen.cracks);
+        body.pre_cut = pre_crack::bonds_cut_by(&body, ask.specimen);
         let turn = body.lattice.spacing / net.rotation_length;
         let levelled = MultiLevelBody {
             full: held.full,

@@ -143,6 +143,10 @@ impl<const N: usize> LinearSolver<N> for DynamicRelaxation<N> {
         Ok(Solved { iterations, work: dot(product.layout(), f, u) })
     }
 
+    fn knows_contact(&self) -> bool {
+        false
+    }
+
     fn set_tolerance(&mut self, tolerance: f64) {
         self.tolerance = tolerance.min(TOLERANCE);
     }

@@ -7,6 +7,7 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 
 use super::assembly::{Assembly, MIXED, Mixed, Springs, for_joints};
+use super::contact::GapSpring;
 use super::field::dot;
 use super::product::Product;
 use super::rigid_motion::RigidMotion;
@@ -62,6 +63,7 @@ fn factorise_and_solve<const N: usize, const M: usize>(
     }
     let definite = (0..M).all(|c| assembly.pivot_sign(c) > 0.0);
     let mut entries = entries(body, bonds, assembly, &number);
+    add_contact(product.contact(), &number, &mut entries);
     if definite {
         entries.retain(|entry| entry.col <= entry.row);
     }
@@ -125,6 +127,18 @@ fn entries<const M: usize>(
         });
     }
     entries
+}
+
+/// Entries of springs between flanks in contact.
+fn add_contact<const M: usize>(contact: &[GapSpring], number: &[[usize; M]], entries: &mut Vec<Triplet<usize, usize, f64>>) {
+    for spring in contact {
+        let unknowns =
+            spring.weights.iter().flat_map(|&(place, weights)| [0, 1].map(|c| (number[place as usize][c], weights[c])));
+        let unknowns: Vec<(usize, f64)> = unknowns.filter(|(number, weight)| *number != usize::MAX && *weight != 0.0).collect();
+        for &(row, a) in &unknowns {
+            entries.extend(unknowns.iter().map(|&(column, b)| Triplet::new(row, column, spring.stiffness * a * b)));
+        }
+    }
 }
 
 /// Components that hold a floating plate without carrying load, as place and component.

@@ -2,6 +2,7 @@
 //!
 //! Bonds break in mirror images of each other as long as the plate is symmetric. When they do not, the whole plate takes over.
 
+use super::contact::GapSpring;
 use super::{EquilibriumBackend, Focus, SolverKind, SolverUsed, sides};
 use crate::body::mirror::{Mirror, Part, signs};
 use crate::body::{Body, Bond};
@@ -152,6 +153,19 @@ impl EquilibriumBackend for Mirrored {
 
     fn work(&self) -> f64 {
         self.inner.work()
+    }
+
+    fn set_contact(&mut self, body: &Body, contact: &[GapSpring]) -> Result<()> {
+        if self.is_lost {
+            return self.inner.set_contact(body, contact);
+        }
+        // All springs of the plate on the displacements of its part, each with the share of the energy that the part has.
+        let share = 1.0 / self.part.body.mirror.copies() as f64;
+        let of_part = |spring: &GapSpring| GapSpring {
+            weights: spring.weights.iter().map(|&(place, weights)| self.part.weights_of(body, place as usize, weights)).collect(),
+            stiffness: share * spring.stiffness,
+        };
+        self.inner.set_contact(&self.part.body, &contact.iter().map(of_part).collect::<Vec<_>>())
     }
 
     fn reach(

@@ -3,6 +3,7 @@
 pub mod adaptive_dynamic_relaxation;
 pub mod assembly;
 pub mod conjugate_gradient;
+pub mod contact;
 pub mod dilatation;
 pub mod direct;
 pub mod field;
@@ -19,10 +20,11 @@ pub mod window;
 use std::sync::Arc;
 
 use crate::body::{Body, Bond};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::levels::multi_level_body::MultiLevelBody;
 use crate::specimen::Point;
 use crate::state::Bonds;
+use contact::GapSpring;
 use mirrored::Mirrored;
 pub use mirrored::Symmetry;
 use product::Product;
@@ -119,10 +121,20 @@ trait LinearSolver<const N: usize>: Send {
     fn is_whole(&self) -> bool {
         true
     }
+    /// Whether it knows springs between flanks in contact.
+    fn knows_contact(&self) -> bool {
+        true
+    }
     /// Points, ascending, on which `u` is always right; `None` if that is all of them.
     fn window(&self) -> Option<&[u32]> {
         None
     }
+}
+
+/// What is said where a solver knows no contact.
+fn no_contact(solver: SolverUsed) -> Error {
+    let problem = format!("the load presses flanks of cracks together, and {solver} knows no contact");
+    Error::Mechanics(format!("{problem}: use model.solver = \"window\", \"multigrid\" or \"direct\" on a lattice of one spacing"))
 }
 
 /// Solves of the whole plate after which a solver begins anew. That takes three to four of them: a solve from rest, and where
@@ -147,6 +159,7 @@ trait EquilibriumBackend: Send {
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]);
     fn work(&self) -> f64;
+    fn set_contact(&mut self, body: &Body, contact: &[GapSpring]) -> Result<()>;
     fn reach(
         &mut self,
         body: &Body,
@@ -224,6 +237,14 @@ impl Equilibrium {
     /// Tells the solver which bonds were cut, or got another multiplier, since the last solve.
     pub fn bonds_changed(&mut self, body: &Body, bonds: &Bonds, changed: &[Bond]) {
         self.inner.broke(body, bonds, changed);
+    }
+
+    /// Puts these springs between flanks in contact, in place of those that were there; places are those of the body.
+    ///
+    /// # Errors
+    /// A solver that knows no such springs.
+    pub fn set_contact(&mut self, body: &Body, contact: &[GapSpring]) -> Result<()> {
+        self.inner.set_contact(body, contact)
     }
 
     /// Makes the displacement right at the ends of `watched` bonds, and gets ready for breaks around the tips; returns the

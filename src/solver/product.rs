@@ -9,6 +9,7 @@ pub mod sweep;
 use rayon::prelude::*;
 
 use super::assembly::{Blocks, Spring};
+use super::contact::GapSpring;
 use super::dilatation::Dilatation;
 use super::field::Layout;
 use super::ghosts::Ghosts;
@@ -84,6 +85,8 @@ pub struct Product<const N: usize> {
     /// What a state-based law stores beside its springs.
     dilatation: Option<Dilatation>,
     ghosts: Ghosts,
+    /// Springs between flanks in contact.
+    contact: Vec<GapSpring>,
 }
 
 impl<const N: usize> Product<N> {
@@ -97,7 +100,17 @@ impl<const N: usize> Product<N> {
         let (double, single) = (Kernel::new(body, layout), Kernel::new(body, layout));
         let dilatation = Dilatation::of(body, layout);
         let ghosts = Ghosts::of_motion(body, layout);
-        Product { layout, springs, double, single, lattice_rows: body.lattice.rows, fixed, dilatation, ghosts }
+        Product {
+            layout,
+            springs,
+            double,
+            single,
+            lattice_rows: body.lattice.rows,
+            fixed,
+            dilatation,
+            ghosts,
+            contact: Vec::new(),
+        }
     }
 
     /// Layout of its vectors.
@@ -118,6 +131,17 @@ impl<const N: usize> Product<N> {
         self.dilatation.as_ref()
     }
 
+    /// Springs between flanks in contact.
+    #[must_use]
+    pub fn contact(&self) -> &[GapSpring] {
+        &self.contact
+    }
+
+    /// Puts other springs between flanks.
+    pub(super) fn set_contact(&mut self, contact: Vec<GapSpring>) {
+        self.contact = contact;
+    }
+
     /// Puts the mirror images of a field into its padding.
     pub(super) fn mirror<T: Real>(&self, x: &mut [T]) {
         self.ghosts.fill(x);
@@ -129,6 +153,10 @@ impl<const N: usize> Product<N> {
         self.apply_springs(bonds, x, y, into);
         if let Some(dilatation) = &self.dilatation {
             dilatation.apply(bonds, x, y, into);
+        }
+        let sign = if into == Into::Set { 1.0 } else { -1.0 };
+        self.contact.iter().for_each(|spring| spring.add_force(&self.layout, sign, x, y));
+        if self.dilatation.is_some() || !self.contact.is_empty() {
             self.fixed.iter().for_each(|&index| y[index] = 0.0);
         }
     }

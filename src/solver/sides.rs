@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use super::adaptive_dynamic_relaxation::DynamicRelaxation;
 use super::conjugate_gradient::MultigridSolver;
+use super::contact::GapSpring;
 use super::direct::DirectSolver;
 use super::field::{self, Layout};
 use super::levels::Levels;
 use super::product::{Into, Product};
 use super::window::WindowSolver;
-use super::{EquilibriumBackend, Focus, LinearSolver, SolverKind, SolverUsed, System};
+use super::{EquilibriumBackend, Focus, LinearSolver, SolverKind, SolverUsed, System, no_contact};
 use crate::body::{Body, Bond};
 use crate::error::Result;
 use crate::levels::multi_level_body::MultiLevelBody;
@@ -173,7 +174,8 @@ impl<const N: usize> ConstrainedSystem<N> {
         displacement.iter_mut().zip(&self.u).for_each(|(d, u)| *d += u);
         // (g + u)ᵀK(g + u) = gᵀKg - f·u with f = -Kg.
         if grips.constant.is_nan() {
-            let free = Product::<N>::new(body, Vec::new());
+            let mut free = Product::<N>::new(body, Vec::new());
+            free.set_contact(self.product.contact().to_vec());
             let mut forces = self.product.layout().zeros();
             free.apply(bonds, displacement, &mut forces, Into::Set);
             grips.constant = field::dot(self.product.layout(), displacement, &forces) + work;
@@ -207,6 +209,14 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
 
     fn work(&self) -> f64 {
         self.work
+    }
+
+    fn set_contact(&mut self, _: &Body, contact: &[GapSpring]) -> Result<()> {
+        if !contact.is_empty() && !self.solver.knows_contact() {
+            return Err(no_contact(self.solver.used()));
+        }
+        self.product.set_contact(contact.to_vec());
+        Ok(())
     }
 
     fn reach(

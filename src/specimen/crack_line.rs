@@ -49,6 +49,25 @@ impl CrackLine {
         if at_last { direction(self.points[n - 2], self.points[n - 1]) } else { direction(self.points[1], self.points[0]) }
     }
 
+    /// The line without its corners nearer than `least` to one of its ends, m: a piece that short shows no direction.
+    #[must_use]
+    pub fn blunted(&self, at_last: bool, least: f64) -> Self {
+        let mut points = self.points.clone();
+        if !at_last {
+            points.reverse();
+        }
+        while let [.., corner, end] = points[..]
+            && points.len() > 2
+            && distance(corner, end) < least
+        {
+            points.remove(points.len() - 2);
+        }
+        if !at_last {
+            points.reverse();
+        }
+        CrackLine { points }
+    }
+
     /// Moves one of its ends along the line, m: ahead in the direction of its last piece, back over earlier pieces if need be, where it
     /// keeps a stub of the last one and so its direction; at most to a tenth of the first piece.
     pub fn stretch(&mut self, at_last: bool, by: f64) {

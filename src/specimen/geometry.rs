@@ -151,6 +151,17 @@ impl Specimen {
             && !self.slots.iter().any(|slot| slot.contains(point))
     }
 
+    /// The same of a point of a lattice: on the outline, within `slack`, m, a point is one on every side of the plate, and none on the
+    /// rim of a hole or a slot, so that a plate that is its own mirror image has points that are.
+    #[must_use]
+    pub fn has_point_at(&self, point: Point, slack: f64) -> bool {
+        let is_inside = || point_in_polygon(point, &self.outline) || distance_to_polygon(point, &self.outline) <= slack;
+        let is_void = |slot: &Slot| slot.contains(point) || distance_to_polygon(point, &slot.corners()) <= slack;
+        is_inside()
+            && self.holes.iter().all(|hole| distance(point, hole.centre) > hole.radius + slack)
+            && !self.slots.iter().any(is_void)
+    }
+
     /// Length of the part of a segment that lies inside the outline, m, for a segment that crosses it at most once.
     #[must_use]
     pub fn length_inside(&self, from: Point, to: Point) -> f64 {

@@ -177,8 +177,10 @@ pub struct Specimen {
     pub width: f64,
     /// Width that the lattice spacing has to divide, m (C(T): 1.25 W).
     pub gross_width: f64,
-    /// A line y = const through a horizontal crack that must fall between two rows of points, and x likewise; None = free.
+    /// A line y = const through a horizontal crack that must fall between two rows of points; None = free.
     pub crack_plane_y: Option<f64>,
+    /// A line x = const through a vertical crack that must fall between two columns of points; None = free.
+    pub crack_plane_x: Option<f64>,
     /// Crack length at the start in the specimen's convention, m.
     pub crack_length: f64,
     /// How growth of tips adds up to crack length.
@@ -206,6 +208,7 @@ impl Specimen {
             width,
             gross_width: width,
             crack_plane_y: Some(0.0),
+            crack_plane_x: None,
             crack_length: 0.0,
             convention: LengthConvention::MeanOfTips,
             loads: vec![
@@ -224,19 +227,46 @@ impl Specimen {
         high[1] - low[1]
     }
 
-    /// Smallest size of a flaw that the spacing and the horizon have to resolve, m: half length of a crack with two tips,
-    /// whole length of one with one tip, length of a slot; C(T) from the load line.
+    /// Sizes of the flaws that spacing and horizon have to resolve, m: half length of a crack with two tips, whole length of one with
+    /// one tip, length of a slot; C(T) from the load line.
     #[must_use]
-    pub fn smallest_flaw(&self) -> f64 {
+    pub fn flaw_sizes(&self) -> Vec<f64> {
         if self.kind != SpecimenKind::Plate {
-            return self.crack_length;
+            return vec![self.crack_length];
         }
         let tips_of = |crack: &Crack| {
             self.tips.iter().filter(|tip| !tip.from_slot && (tip.position == crack.from || tip.position == crack.to)).count()
         };
         let cracks = self.cracks.iter().map(|crack| geometry::distance(crack.from, crack.to) / tips_of(crack).max(1) as f64);
         let slots = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to));
-        cracks.chain(slots).fold(f64::INFINITY, f64::min)
+        cracks.chain(slots).collect()
+    }
+
+    /// The smallest of the [`Specimen::flaw_sizes`], m.
+    #[must_use]
+    pub fn smallest_flaw(&self) -> f64 {
+        self.flaw_sizes().into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Distance of a place from the nearest rim, m: outline, holes, slots.
+    #[must_use]
+    pub fn rim_distance(&self, at: Point) -> f64 {
+        let holes = self.holes.iter().map(|hole| (geometry::distance(at, hole.centre) - hole.radius).abs());
+        let slots = self.slots.iter().map(|slot| geometry::distance_to_polygon(at, &slot.corners()));
+        holes.chain(slots).fold(geometry::distance_to_polygon(at, &self.outline), f64::min)
+    }
+
+    /// Least distance of the tip of a crack from a rim or from a crack that it does not end, m; infinite without such a tip.
+    #[must_use]
+    pub fn least_gap(&self) -> f64 {
+        let lines = self.crack_lines();
+        let gap = |tip: usize| {
+            let end = self.line_end(tip)?;
+            let at = self.tips[tip].position;
+            let others = lines.iter().enumerate().filter(|(line, _)| *line != end.line).map(|(_, line)| line.distance(at));
+            Some(others.fold(self.rim_distance(at), f64::min))
+        };
+        (0..self.tips.len()).filter_map(gap).fold(f64::INFINITY, f64::min)
     }
 
     /// Area of the material, m²: outline less holes and slots.

@@ -98,14 +98,14 @@ pub(super) fn from_value(value: &Value) -> Result<Specimen> {
     check_holes(&specimen)?;
     let slot_tips = place_slots(&mut specimen, slots)?;
     place_cracks(&mut specimen, cracks, slot_tips)?;
-    specimen.crack_plane_y = common_height(&specimen.cracks);
+    [specimen.crack_plane_x, specimen.crack_plane_y] = [0, 1].map(|axis| common_line(&specimen.cracks, axis));
     Ok(specimen)
 }
 
-/// y of the cracks if all are horizontal on one line: that line must fall between two rows of points.
-fn common_height(cracks: &[Crack]) -> Option<f64> {
-    let first = cracks.first()?.from[1];
-    cracks.iter().all(|crack| crack.from[1] == first && crack.to[1] == first).then_some(first)
+/// x (axis 0) or y of the cracks if all lie on one line along the other axis: it must fall between two columns or rows of points.
+fn common_line(cracks: &[Crack], axis: usize) -> Option<f64> {
+    let first = cracks.first()?.from[axis];
+    cracks.iter().all(|crack| crack.from[axis] == first && crack.to[axis] == first).then_some(first)
 }
 
 /// Outline, counter-clockwise and simple.

@@ -70,7 +70,7 @@ impl<'a> CrackedPlate<'a> {
                 self.case.name
             )));
         }
-        self.body.pre_cut = bonds_cut_by(&self.body, &specimen.cracks);
+        self.body.pre_cut = bonds_cut_by(&self.body, &specimen);
         let mut bonds = Bonds::new(&self.body);
         if remove_fragments(&self.body, &mut bonds, &self.body.pre_cut) == Connectivity::Severed {
             return Err(Error::Mechanics(format!("{}: the cracks cut the plate in two", self.case.name)));

@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use super::{CrackedPlate, Field, Intensity, MethodResult, StressIntensityMethod};
 use crate::body::mirror::Mirror;
+use crate::case::Case;
 use crate::error::Result;
 use crate::specimen::SpecimenKind;
 
@@ -26,8 +27,9 @@ const ALIGNED: f64 = 1e-6;
 ///
 /// # Errors
 /// Mechanics without equilibrium at one of the crack lengths.
-pub fn all_tips(plate: &mut CrackedPlate, tips: &[usize]) -> Result<Vec<MethodResult>> {
+pub fn all_tips(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>> {
     let started = Instant::now();
+    let plate = &mut CrackedPlate::new(case)?;
     let unmoved = plate.solve(&plate.growth_of_all(0.0))?;
     let shared = started.elapsed().as_secs_f64();
     let is_plate = plate.case.specimen.kind == SpecimenKind::Plate;
@@ -40,12 +42,14 @@ pub fn all_tips(plate: &mut CrackedPlate, tips: &[usize]) -> Result<Vec<MethodRe
             (Some(opening_factor(plate, group, &unmoved)?), None)
         } else {
             let note = "straight growth gives K_I² + K_II² only, and the plate is not symmetric about this crack: \
-                        use domain_integral";
+                        use ring";
             (None, Some(note.to_owned()))
         };
         let result = MethodResult {
             method: StressIntensityMethod::EnergyRelease,
             intensity: Intensity { k_i, k_ii: None },
+            t_stress: None,
+            is_closed: false,
             note,
             wall_s: shared + started.elapsed().as_secs_f64(),
         };

@@ -1,16 +1,15 @@
 //! Stress intensity factors K_I and K_II of every crack tip, from equilibrium at maximum load.
 //!
-//! Both methods are independent of each other but for the equilibrium itself: one takes the energy that crack growth
-//! releases, which tells K_I of cracks that open only, one an integral over a ring around the tip. A crack cut into bonds reaches up
-//! to half a spacing farther or less far than asked ([`crate::body::severed`]); both methods therefore look at crack
-//! lengths on both sides of the one asked for and interpolate: K belongs to the requested length.
+//! Two methods that are independent of each other but for the equilibrium itself: an integral over a ring around the tip, as
+//! [`crate::growth::tip_field`] reads it for every row of a prediction, and the energy that crack growth releases, which tells K_I of
+//! cracks that open only. A crack cut into bonds reaches up to half a spacing farther or less far than asked
+//! ([`crate::body::severed`]); both therefore look at other lengths, too: K belongs to the requested one.
 //!
 //! Signs, in the frame of a tip (x₁ ahead of the tip, x₂ a quarter turn counter-clockwise from it): K_I > 0 opens the
 //! crack, K_II > 0 slides the face on the side of x₂ > 0 towards x₁ > 0.
 
 mod cracked_plate;
 mod cut_cells;
-mod domain_integral;
 mod energy_release;
 mod gradient;
 pub mod ring;
@@ -21,16 +20,19 @@ use std::time::Instant;
 
 use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
+use crate::fatigue::crack_tip::TipState;
+use crate::growth::record::TipRecord;
+use crate::growth::tip_field::initial_tips;
+use crate::specimen::TipSeed;
 use crate::specimen::handbook::handbook;
-use crate::specimen::{Point, TipSeed};
 pub use cracked_plate::{CrackedPlate, Field};
 pub use tip_frame::TipFrame;
 
 crate::kinds! {
     /// Ways to the stress intensity factors.
     pub enum StressIntensityMethod for "sif --method" {
+        Ring = "ring": "interaction integral over a ring around the tip, as predict reads it",
         EnergyRelease = "energy_release": "energy released between slightly different crack lengths: K_I where the plate is symmetric about the crack, an independent check",
-        DomainIntegral = "domain_integral": "interaction integral over a ring around the tip, gradients by least squares on displacements",
     }
 }
 
@@ -51,6 +53,27 @@ impl Intensity {
     }
 }
 
+/// K of every sharp tip off its ring, with T: those of the first row of a prediction driven by K.
+fn by_ring(case: &Case) -> Result<Vec<MethodResult>> {
+    let started = Instant::now();
+    // End faces of slots have no K.
+    let mut sharp = case.clone();
+    sharp.specimen.tips.retain(|tip| !tip.from_slot);
+    let (tips, warnings) = initial_tips(&sharp)?;
+    let wall_s = started.elapsed().as_secs_f64() / tips.len().max(1) as f64;
+    // What is to be said of several tips is said once.
+    let mut warnings = Some(warnings.join("; ")).filter(|warnings| !warnings.is_empty());
+    let result = |tip: TipRecord| MethodResult {
+        method: StressIntensityMethod::Ring,
+        intensity: tip.factors.map(Intensity::both).unwrap_or_default(),
+        t_stress: tip.t_stress,
+        note: warnings.take(),
+        is_closed: tip.state == TipState::Closed,
+        wall_s,
+    };
+    Ok(tips.into_iter().map(result).collect())
+}
+
 /// What one method says about one tip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodResult {
@@ -58,10 +81,22 @@ pub struct MethodResult {
     pub method: StressIntensityMethod,
     /// Its factors.
     pub intensity: Intensity,
-    /// Why a factor is missing.
+    /// Stress along the crack T, Pa; `None` where a method cannot tell.
+    pub t_stress: Option<f64>,
+    /// Whether the load presses its flanks together.
+    pub is_closed: bool,
+    /// What is to be said of the tip, or why a factor is missing.
     pub note: Option<String>,
     /// Seconds for this tip, with the solutions it rests on.
     pub wall_s: f64,
+}
+
+impl MethodResult {
+    /// A method that failed.
+    fn nothing(method: StressIntensityMethod, error: &Error) -> Self {
+        let note = Some(error.to_string());
+        MethodResult { method, intensity: Intensity::default(), t_stress: None, is_closed: false, note, wall_s: 0.0 }
+    }
 }
 
 /// A crack tip with its factors.
@@ -90,7 +125,6 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
             "give a crack that starts in the notch",
         ));
     }
-    let mut plate = CrackedPlate::new(case)?;
     let handbook_k_i = handbook(&case.specimen)
         .filter(|formula| formula.holds_at(case.specimen.crack_length))
         .map(|formula| formula.k_i(case.specimen.crack_length, case.loading.maximum));
@@ -100,51 +134,14 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
         .collect();
     for &method in methods {
         let columns = match method {
-            StressIntensityMethod::EnergyRelease => energy_release::all_tips(&mut plate, &tips)?,
-            StressIntensityMethod::DomainIntegral => {
-                let fields = Straddling::solve(&mut plate)?;
-                tips.iter().map(|&tip| fields.interpolate(&plate, tip)).collect()
-            }
+            StressIntensityMethod::Ring => by_ring(case)?,
+            // A second look at K_I: what it cannot tell does not hide the first.
+            StressIntensityMethod::EnergyRelease => energy_release::all_tips(case, &tips).or_else(|error| match methods {
+                [StressIntensityMethod::EnergyRelease] => Err(error),
+                _ => Ok(vec![MethodResult::nothing(method, &error); tips.len()]),
+            })?,
         };
         results.iter_mut().zip(columns).for_each(|(tip, result)| tip.methods.push(result));
     }
     Ok(results)
-}
-
-/// Two solutions with cracks half a spacing shorter and longer than asked.
-struct Straddling {
-    fields: [Field; 2],
-    wall_s: f64,
-}
-
-impl Straddling {
-    fn solve(plate: &mut CrackedPlate) -> Result<Self> {
-        let started = Instant::now();
-        let half = 0.5 * plate.body.lattice.spacing;
-        let mut at = |growth: f64| plate.solve(&plate.growth_of_all(growth));
-        Ok(Straddling { fields: [at(-half)?, at(half)?], wall_s: started.elapsed().as_secs_f64() })
-    }
-
-    /// Factors of both solutions, on the straight line through them at the length asked for.
-    fn interpolate(&self, plate: &CrackedPlate, tip: usize) -> MethodResult {
-        let started = Instant::now();
-        let asked = plate.case.specimen.tips[tip].position;
-        let of_field = |field: &Field| -> Result<(f64, [f64; 2])> {
-            let excess = plate.frame(&field.specimen, tip).local(asked)[0];
-            Ok((-excess, domain_integral::factors(plate, field, tip)?))
-        };
-        let both = of_field(&self.fields[0]).and_then(|a| Ok((a, of_field(&self.fields[1])?)));
-        let (intensity, note) = match both {
-            Ok(((from, a), (to, b))) => (Intensity::both([0, 1].map(|i| (a[i] * to - b[i] * from) / (to - from))), None),
-            Err(error) => (Intensity::default(), Some(error.to_string())),
-        };
-        let wall_s = self.wall_s + started.elapsed().as_secs_f64();
-        MethodResult { method: StressIntensityMethod::DomainIntegral, intensity, note, wall_s }
-    }
-}
-
-/// A tip that stands too close to something for a method, in words.
-fn too_close(what: &str, tip: Point) -> Error {
-    let [x, y] = tip.map(|metres| metres / crate::units::MM);
-    Error::Mechanics(format!("{what} around the crack tip at ({x:.6}, {y:.6}) mm; give a smaller model.spacing_mm"))
 }

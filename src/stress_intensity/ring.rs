@@ -8,7 +8,7 @@
 //! for K^aux = 1, q being 1 inside the ring and 0 outside it. P is free of divergence, so that the second integral, over all
 //! rims of the material within the outer radius with outward normal m, makes up for what is not ring: faces of the own crack
 //! where it leaves the line straight behind its tip, holes, edges, faces of other cracks. Real tractions there are those of the
-//! loads: `P_j m_j = t_i u^aux_i,1 + σ^aux_ij m_j u_i,1 - σ_ik ε^aux_ik m_1`. On the faces of a straight crack it vanishes.
+//! loads and of flanks in contact: `P_j m_j = t_i u^aux_i,1 + σ^aux_ij m_j u_i,1 - σ_ik ε^aux_ik m_1`. On the faces of a straight crack it vanishes.
 //!
 //! The auxiliary field is continued across ±π to the faces of the real crack: angles are counted from x₁ to the face on the
 //! side of a point, wherever it lies. It stays in equilibrium there and only its tractions on the faces are not zero.
@@ -52,6 +52,8 @@ const CORE_HORIZONS: f64 = 0.75;
 const NEIGHBOURS_LEAST: usize = 6;
 /// Pieces of a crack face per spacing.
 const PIECES_PER_SPACING: f64 = 2.0;
+/// Relative difference of distances that are equal.
+const EQUAL: f64 = 1e-3;
 /// Room left, in horizons, between a ring and what it cannot take in: another tip, a support.
 const ROOM_HORIZONS: f64 = 0.2;
 
@@ -89,6 +91,17 @@ pub struct Balanced<'a> {
     pub load: f64,
     /// All cracks as they are cut.
     pub lines: &'a [CrackLine],
+    /// Flanks in contact, both of every place.
+    pub pressures: &'a [FlankPressure],
+}
+
+/// Pressure on a piece of flank.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlankPressure {
+    /// The piece.
+    pub facet: Facet,
+    /// Pa.
+    pub pressure: f64,
 }
 
 /// K_I and K_II, and the ring they were read on.
@@ -102,6 +115,8 @@ pub struct RingFactors {
     pub tip_offset: f64,
     /// Outer radius of the ring, m.
     pub radius: f64,
+    /// What the pressure between flanks adds to K_I, Pa√m.
+    pub of_pressure: f64,
 }
 
 impl RingGeometry {
@@ -183,14 +198,25 @@ impl RingGeometry {
             for piece in line.pieces().filter(|[a, b]| distance_to_segment(frame.origin, *a, *b) < outer) {
                 faces(body, piece).filter(|facet| near(facet.at)).for_each(|facet| {
                     if index != end.line || distance(facet.at, frame.origin) > CORE_HORIZONS * body.horizon() {
-                        add(around.rim(&facet, true));
+                        let is_pressed = |place: &FlankPressure| distance(place.facet.at, facet.at) < 0.5 * place.facet.length;
+                        add(around.rim(&facet, !plate.pressures.iter().any(is_pressed)));
                     }
                 });
             }
         }
+        let pressed = || plate.pressures.iter().filter(|flank| near(flank.facet.at));
+        let nearest = pressed().map(|flank| distance(flank.facet.at, frame.origin)).fold(f64::INFINITY, f64::min);
+        let mut of_pressure = 0.0;
+        for flank in pressed() {
+            // The last piece reaches up to the tip of the ring.
+            let is_last = nearest < spacing && distance(flank.facet.at, frame.origin) < (1.0 + EQUAL) * nearest;
+            let part = around.pressure(flank, is_last);
+            of_pressure += 0.5 * self.elasticity.plane_modulus * part[0];
+            add(part);
+        }
         let [k_i, k_ii, shifted_i, shifted_ii, half_t] = sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum);
         let tip_offset = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
-        RingFactors { factors: [k_i, k_ii], t_stress: 2.0 * half_t, tip_offset, radius: outer }
+        RingFactors { factors: [k_i, k_ii], t_stress: 2.0 * half_t, tip_offset, radius: outer, of_pressure }
     }
 }
 
@@ -341,6 +367,20 @@ impl RingIntegral<'_> {
         let (q, _) = self.weight(r);
         let scale = self.plate.load / self.surroundings.specimen.thickness;
         let [t1, t2] = self.frame.vector(piece.force).map(|force| scale * force);
+        self.auxiliary(r, theta).map(|auxiliary| -(t1 * auxiliary[0][0] + t2 * auxiliary[1][0]) * q)
+    }
+
+    /// The same of a pressure on a flank, the traction -p m. The auxiliary gradient goes with r^-½ over the piece, which is taken as if
+    /// it lay straight behind the tip: `∫ r^-½ dr` in place of its middle.
+    fn pressure(&self, flank: &FlankPressure, is_last: bool) -> PerAuxiliary {
+        let FlankPressure { facet, pressure } = *flank;
+        let spacing = self.plate.body.lattice.spacing;
+        let inside = [0, 1].map(|i| facet.at[i] - 1e-6 * spacing * facet.normal[i]);
+        let (r, theta) = self.own.polar(self.frame.local(inside));
+        let (q, _) = self.weight(r);
+        let [near, far] = [if is_last { 0.0 } else { (r - 0.5 * facet.length).max(0.0) }, r + 0.5 * facet.length];
+        let length = 2.0 * (far.sqrt() - near.sqrt()) * r.sqrt();
+        let [t1, t2] = self.frame.vector(facet.normal).map(|m| -pressure * m * length);
         self.auxiliary(r, theta).map(|auxiliary| -(t1 * auxiliary[0][0] + t2 * auxiliary[1][0]) * q)
     }
 

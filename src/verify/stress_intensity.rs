@@ -36,7 +36,7 @@ const HALF_CRACK: f64 = 18.0;
 const SPACING_MM: f64 = 1.5;
 const STRESS: f64 = 100e6;
 /// Methods that tell the modes of a crack apart.
-const BOTH_MODES: &[StressIntensityMethod] = &[StressIntensityMethod::DomainIntegral];
+const BOTH_MODES: &[StressIntensityMethod] = &[StressIntensityMethod::Ring];
 
 pub(super) fn scene(specimen: &str, set: &[&str]) -> Result<Case> {
     let text = format!("[specimen]\n{specimen}{REST}");

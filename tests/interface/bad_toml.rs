@@ -229,11 +229,6 @@ const BAD: &[Bad] = &[
     panel("spacing_mm = 1.0", "horizon_ratio = 0.5", &["model.horizon_ratio", "between 1.5 and"]),
     panel("spacing_mm = 1.0", "bond_law = \"springs\"", &["model.bond_law", "springs", "bond_based, two_parameter"]),
     panel("spacing_mm = 1.0", "bond_law = \"correspondence\"", &["model.bond_law", "fracture scenes", "perilife fracture"]),
-    panel(
-        "spacing_mm = 1.0",
-        "bond_law = \"state_based\"\nsurface_correction = \"balanced\"",
-        &["model.surface_correction", "balanced", "state_based", "volume_and_surface"],
-    ),
     // Points of several levels
     panel("[stop]", "[refinement]\nlevel = 2\n[stop]", &["refinement.level", "not a known key", "regions"]),
     panel(

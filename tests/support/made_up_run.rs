@@ -57,7 +57,13 @@ fn curve() -> Vec<CurvePoint> {
             cycles += 0.2e-3 / growth_rate;
         }
         let y = y0 + 1.2e-3 * (1.0 - (-growth / 2e-3).exp());
-        let tip = |sign: f64| TipRecord { position: [sign * (x0 + growth), sign * y], growth, factors: None, t_stress: None };
+        let tip = |sign: f64| TipRecord {
+            state: perilife::fatigue::crack_tip::TipState::Active,
+            position: [sign * (x0 + growth), sign * y],
+            growth,
+            factors: None,
+            t_stress: None,
+        };
         curve.push(CurvePoint {
             cycles,
             crack_length,

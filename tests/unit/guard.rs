@@ -10,7 +10,13 @@ fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
 }
 
 fn tip(growth: f64) -> TipRecord {
-    TipRecord { position: [growth, 0.0], growth, factors: None, t_stress: None }
+    TipRecord {
+        state: perilife::fatigue::crack_tip::TipState::Active,
+        position: [growth, 0.0],
+        growth,
+        factors: None,
+        t_stress: None,
+    }
 }
 
 #[test]

@@ -21,7 +21,13 @@ impl Steady {
             growth_rate: 1e-6,
             work: f64::NAN,
             broken_bonds: 0,
-            tips: vec![TipRecord { position: [growth, 0.0], growth, factors: None, t_stress: None }],
+            tips: vec![TipRecord {
+                state: perilife::fatigue::crack_tip::TipState::Active,
+                position: [growth, 0.0],
+                growth,
+                factors: None,
+                t_stress: None,
+            }],
         });
     }
 }

@@ -98,7 +98,8 @@ fn a_ring_reads_an_exact_field() {
                 let axes = body.lattice.to_axes(u);
                 (displacement[at], displacement[at + layout.stride]) = (axes[0], axes[1]);
             }
-            let plate = Balanced { body: &body, bonds: &bonds, displacement: &displacement, load: 0.0, lines: &lines };
+            let plate =
+                Balanced { body: &body, bonds: &bonds, displacement: &displacement, load: 0.0, lines: &lines, pressures: &[] };
             let surroundings = RingGeometry::new(&body, &case.specimen, &case.material);
             for horizons in [2.0, 3.0, 4.0] {
                 let ring = surroundings.factors(plate, LineEnd { line: 0, at_last: true }, horizons * body.horizon());

@@ -181,10 +181,37 @@ fn bonds_at(body: &Body, k: usize, place: usize) -> [usize; 2] {
     [place, place.wrapping_add_signed(-body.steps[k])].map(|owner| k * body.places() + owner)
 }
 
+/// Shares of points in the field at a piece of flank, on the side that it faces away from, past the cracks of which `pieces` are some or
+/// all, as the bonds see them; `None` where no points determine a linear field there.
+pub(crate) fn shares(body: &Body, facet: &Facet, pieces: &[[Point; 2]]) -> Option<Vec<(u32, f64)>> {
+    let (lattice, spacing) = (&body.lattice, body.lattice.spacing);
+    let near = reach_of_shares(body);
+    let beside: Vec<&[Point; 2]> = pieces.iter().filter(|[p, q]| distance_to_segment(facet.at, *p, *q) < near).collect();
+    let from = behind(facet, spacing);
+    let sees = |place: u32| {
+        let to = lattice.position(place as usize);
+        !beside.iter().any(|[p, q]| segments_touch(from, to, *p, *q))
+    };
+    let [column, row] = lattice.locate(facet.at);
+    (0..WIDENINGS).find_map(|i| {
+        let widen = WIDEN.powi(i as i32);
+        let (deep, wide) = (widen * (load_rows(&body.stencil) as f64 + 0.5), widen);
+        let candidates = places_near(body, facet.at, facet.at, deep.hypot(wide) * spacing).map(|place| {
+            let (c, r) = lattice.column_row(place);
+            (place as u32, [c as f64 - column, r as f64 - row], 1.0)
+        });
+        linear_shares(lattice.to_axes(facet.normal), deep, wide, candidates, sees)
+    })
+}
+
+/// Distance of a crack from a piece of flank within which it may change the [`shares`], m.
+pub(crate) fn reach_of_shares(body: &Body) -> f64 {
+    2.0 * (load_rows(&body.stencil) as f64 + 1.0) * body.lattice.spacing
+}
+
 /// Flank that every member stands for, as [`super`] has it of the rim.
 fn areas(body: &Body, pieces: &[[Point; 2]], number: &HashMap<usize, u32>) -> Vec<[f64; 2]> {
     let (lattice, spacing) = (&body.lattice, body.lattice.spacing);
-    let rows = load_rows(&body.stencil) as f64;
     let mut areas = vec![[0.0; 2]; number.len()];
     let facets: Vec<Facet> = pieces
         .iter()
@@ -199,27 +226,7 @@ fn areas(body: &Body, pieces: &[[Point; 2]], number: &HashMap<usize, u32>) -> Ve
             (0..count as usize).flat_map(move |i| [[y, -x], [-y, x]].map(|normal| facet(i, normal)))
         })
         .collect();
-    let shares = |facet: &Facet| {
-        let near = 2.0 * (rows + 1.0) * spacing;
-        let beside: Vec<&[Point; 2]> = pieces.iter().filter(|[p, q]| distance_to_segment(facet.at, *p, *q) < near).collect();
-        let from = behind(facet, spacing);
-        let sees = |place: u32| {
-            let to = lattice.position(place as usize);
-            !beside.iter().any(|[p, q]| segments_touch(from, to, *p, *q))
-        };
-        let [column, row] = lattice.locate(facet.at);
-        let shares = (0..WIDENINGS).find_map(|i| {
-            let widen = WIDEN.powi(i as i32);
-            let (deep, wide) = (widen * (rows + 0.5), widen);
-            let candidates = places_near(body, facet.at, facet.at, deep.hypot(wide) * spacing).map(|place| {
-                let (c, r) = lattice.column_row(place);
-                (place as u32, [c as f64 - column, r as f64 - row], 1.0)
-            });
-            linear_shares(lattice.to_axes(facet.normal), deep, wide, candidates, sees)
-        });
-        shares.unwrap_or_default()
-    };
-    let shares: Vec<_> = facets.par_iter().map(shares).collect();
+    let shares: Vec<_> = facets.par_iter().map(|facet| shares(body, facet, pieces).unwrap_or_default()).collect();
     for (facet, shares) in facets.iter().zip(shares) {
         let whole = lattice.to_axes(facet.normal.map(|n| n * facet.length / spacing));
         for (place, share) in shares {

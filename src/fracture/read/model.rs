@@ -41,7 +41,7 @@ struct Input {
 /// Reads `[model]`; what is left out gets the program's choice.
 pub fn from_value(value: &Value, specimen: &Specimen, material: &Material, procedure: &Procedure) -> Result<SceneModel> {
     let input: Input = slice(value, "model")?;
-    let spacing = LENGTH.read_optional("model.spacing_mm", input.spacing_mm)?.unwrap_or_else(|| default_spacing(specimen));
+    let spacing = LENGTH.read_optional("model.spacing_mm", input.spacing_mm)?.unwrap_or_else(|| default_spacing(specimen).0);
     check_spacing(spacing, 0, specimen)?;
     let ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
     let angle = number("an angle in degrees", -90.0, 90.0).read_optional("model.lattice_angle_deg", input.lattice_angle_deg)?;

@@ -199,8 +199,16 @@ impl GrowthRateControl {
         let (lines, ends) = self.cracks(body, records);
         let bonds = &sound_bonds(body, bonds, &lines, records, RING_HORIZONS * horizon);
         let active: Vec<LineEnd> = ends.iter().zip(tips).filter(|(_, tip)| tip.is_active()).filter_map(|(end, _)| *end).collect();
-        let rings =
-            TipRings { body, bonds, displacement, load: self.load, geometry: &self.surroundings, lines: &lines, active: &active };
+        let rings = TipRings {
+            body,
+            bonds,
+            displacement,
+            load: self.load,
+            geometry: &self.surroundings,
+            lines: &lines,
+            active: &active,
+            pressures: &[],
+        };
         let read = |end: LineEnd| {
             if is_near_rim(&self.specimen, &lines, end, CORE_HORIZONS * horizon) {
                 return None;

@@ -95,7 +95,7 @@ impl Precrack {
                 if pre_growth > 0.0 { self.front_offset } else { self.front_offset * (tip.growth / self.horizon).min(1.0) };
             let before = if pre_growth > 0.0 { pre_growth - self.front_offset } else { 0.0 };
             let position = [0, 1].map(|i| tip.position[i] - front_offset * tip.direction[i]);
-            TipRecord { position, growth: tip.growth - before - front_offset, factors: None, t_stress: None }
+            TipRecord { state: tip.state, position, growth: tip.growth - before - front_offset, factors: None, t_stress: None }
         };
         tips.iter().zip(&self.pre_growths).map(record).collect()
     }
@@ -123,7 +123,7 @@ impl Precrack {
 /// Whether the cracks at their initial length leave two loaded pieces.
 pub(super) fn cuts_in_two(body: &Body, bonds: &Bonds, case: &Case) -> bool {
     let mut bonds = bonds.clone();
-    let cut = bonds_cut_by(body, &case.specimen.cracks);
+    let cut = bonds_cut_by(body, &case.specimen);
     cut.iter().for_each(|&bond| bonds.cut(body, bond));
     remove_fragments(body, &mut bonds, &cut) == Connectivity::Severed
 }

@@ -4,14 +4,16 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::coalescence::GAP_HORIZONS;
+use super::kink::Kink;
 use super::steering::equivalent_factor;
 use super::step::is_near_rim;
-use super::{PROBE_HORIZONS, Tip, TipField};
+use super::{PROBE_HORIZONS, Tip, TipField, ahead, heading};
 use crate::body::severed::represented_excess;
 use crate::fatigue::crack_tip::TipState;
 use crate::growth::tip_ring::{CORE_HORIZONS, RING_HORIZONS, RING_HORIZONS_MIN, TipRings, pair_twins};
 use crate::specimen::geometry::{direction, distance};
 use crate::specimen::{CrackLine, LineEnd, Point};
+use crate::stress_intensity::ring::RingFactors;
 use crate::units::MM;
 
 /// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.05 to 0.09 at ν = 0.3, 0.04 at ν = 0.1,
@@ -23,10 +25,19 @@ const KINK_HORIZONS: f64 = 0.5;
 /// below what shows in a life.
 const ROUND_OFF: f64 = 1e-4;
 
+/// Distance of a rim from a tip at the start, in horizons, below which the user is told.
+const RIM_HORIZONS: f64 = 1.5;
+/// K over that before beyond which a reading beside a rim is none: the ring overlaps what it cannot take in.
+const RISE_MOST: f64 = 3.0;
+/// Distance of a rim that a tip passes, in spacings, from which points cannot resolve what is between them.
+const PASSING_SPACINGS: f64 = 1.0;
+/// Cosine of the angle between a tip and the way to a rim below which it passes that.
+const PASSING: f64 = 0.5;
+
 /// Cosine of the angle between a tip and the way to another one within which they face each other.
 const FACING: f64 = 0.94;
-/// K_I below zero, over the largest factor of all tips, that is no round-off.
-const IN_CONTACT: f64 = 0.05;
+/// |K_II| over the |K_I| that the load presses a tip with, below which it is noise of the reading.
+const STANDING: f64 = 0.01;
 
 /// What the ring of a tip says.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -37,6 +48,18 @@ pub(super) struct Reading {
     t_stress: f64,
     /// How far ahead of the end of its line the crack is that has them, m.
     length_offset: f64,
+    /// Whether flanks are in contact up to the tip.
+    is_closed: bool,
+    /// What the pressure between flanks adds to K_I, Pa√m.
+    of_pressure: f64,
+}
+
+impl Reading {
+    /// Whether the load presses the tip shut, and its flanks do not slide but for the noise of the reading.
+    fn stands(&self) -> bool {
+        let pressed = if self.is_closed { self.of_pressure } else { self.factors[0] };
+        self.factors[0] <= 0.0 && self.factors[1].abs() < STANDING * pressed.abs()
+    }
 }
 
 impl TipField<'_> {
@@ -56,17 +79,28 @@ impl TipField<'_> {
                 (RING_HORIZONS_MIN + 0.2) * horizon / MM
             )
         };
-        Some(short.count()).filter(|&count| count > 0).map(words).into_iter().collect()
+        let narrow = Some(short.count()).filter(|&count| count > 0).map(words);
+        let gap = |end: &LineEnd| self.case.specimen.rim_distance(self.state.lines[end.line].end(end.at_last));
+        let nearest = ends.iter().map(gap).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        let near_rim = nearest.filter(|(_, gap)| *gap < RIM_HORIZONS * horizon).map(|(tip, gap)| {
+            format!(
+                "tip {tip} starts {:.3} mm from a rim, {:.2} horizons: K is read up to some percent off there; give model.spacing_mm = {:.4}",
+                gap / MM,
+                gap / horizon,
+                gap / (RIM_HORIZONS * self.case.model.horizon_ratio) / MM
+            )
+        });
+        narrow.into_iter().chain(near_rim).collect()
     }
 
-    /// Flanks in contact carry nothing here.
+    /// What the user should know of tips that the load presses shut.
     pub(super) fn contact_warning(&self) -> Option<String> {
-        let tips = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.in_contact).map(|(index, _)| index.to_string());
-        let tips = tips.collect::<Vec<_>>().join(", ");
+        let closed = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.state == TipState::Active && tip.is_closed);
+        let tips = closed.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
         (!tips.is_empty()).then(|| {
             format!(
-                "the load presses the flanks of the crack together at tip {tips}: they would carry load there, which \
-                 this model does not know: the plate is taken as more compliant than it is"
+                "the load presses the crack shut at tip {tips}, which does not grow: its flanks carry pressure, and slide without \
+                 friction"
             )
         })
     }
@@ -77,6 +111,7 @@ impl TipField<'_> {
         let horizon = body.horizon();
         let tips: Vec<&Tip> = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).collect();
         let active: Vec<LineEnd> = tips.iter().map(|tip| tip.end).collect();
+        let pressures = self.contact.pressures(&self.layout(), &self.displacement, body.thickness);
         let rings = TipRings {
             body,
             bonds: &self.bonds,
@@ -85,7 +120,9 @@ impl TipField<'_> {
             geometry: &self.surroundings,
             lines,
             active: &active,
+            pressures: &pressures,
         };
+        let contact = &self.contact;
         let read = |tip: &&Tip| {
             let end = tip.end;
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
@@ -93,7 +130,10 @@ impl TipField<'_> {
             // Beside a rim what is read as a shift may be something else.
             let ahead = if first.tip_offset.abs() < AHEAD_HORIZONS * horizon { first.tip_offset } else { 0.0 };
             let ring = if ahead == 0.0 { first } else { rings.read(end, excess + ahead) };
-            Reading { factors: ring.factors, t_stress: ring.t_stress, length_offset: excess + ahead }
+            let is_closed = contact.is_closed(lines, end, body.lattice.spacing);
+            let factors = if is_closed { [0.0, ring.factors[1]] } else { ring.factors };
+            let RingFactors { t_stress, of_pressure, .. } = ring;
+            Reading { factors, t_stress, length_offset: excess + ahead, is_closed, of_pressure }
         };
         let mut readings: Vec<Reading> = tips.par_iter().map(read).collect();
         let mut factors: Vec<Option<[f64; 2]>> = readings.iter().map(|reading| Some(reading.factors)).collect();
@@ -116,10 +156,7 @@ impl TipField<'_> {
 
     /// Distance of a tip from the nearest one that it faces, m.
     fn gap(&self, tip: &Tip) -> Option<f64> {
-        let end = |tip: &Tip| {
-            let line = &self.state.lines[tip.end.line];
-            (line.end(tip.end.at_last), line.direction(tip.end.at_last))
-        };
+        let end = |tip: &Tip| (self.position(tip), self.heading(tip.end));
         let (here, ahead) = end(tip);
         let others = self.state.tips.iter().filter(|other| other.state == TipState::Active && other.end != tip.end);
         let gap = |other: &Tip| {
@@ -144,12 +181,29 @@ impl TipField<'_> {
         }
     }
 
+    /// The first of the tips that pass a rim so near that points do not resolve what is between them, and that distance, m.
+    pub(super) fn unresolved_ligament(&self) -> Option<(usize, f64)> {
+        let reach = PASSING_SPACINGS * self.plate.body.lattice.spacing;
+        let passes = |tip: &Tip| {
+            let (at, ahead) = (self.position(tip), self.heading(tip.end));
+            let (nearest, _) = ahead::beside(&self.case.specimen, &[], 0, at, reach)?;
+            let way = direction(at, nearest);
+            (ahead[0] * way[0] + ahead[1] * way[1] < PASSING).then(|| distance(at, nearest))
+        };
+        let grown = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.is_growing() && tip.growth > 0.0);
+        grown.filter_map(|(index, tip)| Some((index, passes(tip)?))).next()
+    }
+
     /// Lets every active tip choose its direction.
     pub(super) fn choose_directions(&mut self) {
         let horizon = self.plate.body.horizon();
         for tip in &mut self.state.tips {
-            let Some(Reading { factors, .. }) = tip.reading else { continue };
-            let ahead = self.state.lines[tip.end.line].direction(tip.end.at_last);
+            let Some(reading @ Reading { factors, .. }) = tip.reading else { continue };
+            tip.is_closed = reading.stands();
+            if tip.is_closed {
+                continue;
+            }
+            let ahead = heading(&self.plate.body, &self.state.lines, tip.end);
             tip.steering.read(factors, tip.growth, ahead, horizon);
         }
     }
@@ -157,33 +211,55 @@ impl TipField<'_> {
     /// K at the length of every line, and da/dN of it.
     pub(super) fn choose_rates(&mut self) {
         let horizon = self.plate.body.horizon();
-        let sizes =
-            self.state.tips.iter().filter_map(|tip| tip.reading).map(|reading| reading.factors[0].hypot(reading.factors[1]));
-        let largest = sizes.fold(0.0, f64::max);
         let gaps: Vec<Option<f64>> = self.state.tips.iter().map(|tip| self.gap(tip)).collect();
         for (tip, gap) in self.state.tips.iter_mut().zip(gaps) {
             tip.rate = 0.0;
-            let Some(Reading { factors: read, t_stress, length_offset }) = tip.reading else { continue };
+            let Some(Reading { factors: read, t_stress, length_offset, is_closed: pressed_shut, .. }) = tip.reading else {
+                continue;
+            };
             (tip.length_offset, tip.t_stress) = (length_offset, t_stress);
-            tip.in_contact |= read[0] < -IN_CONTACT * largest;
+            if tip.is_closed {
+                tip.factors = read;
+                continue;
+            }
             tip.readings.take(equivalent_factor(read), tip.growth, length_offset, tip.steering.corner(), horizon);
             // Both modes alike: what the tip's field lacks or has too much is length.
             let mut ratio = tip.readings.ratio(length_offset, tip.length + tip.growth, horizon);
-            // K that opens a kink starts at that of its direction; until the bonds show the kink, less is read.
-            if tip.steering.corner().is_some_and(|corner| tip.growth < corner + KINK_HORIZONS * horizon && tip.growth > corner) {
+            // Until the bonds show a kink, less is read.
+            let begins_kink = tip.steering.corner() == Some(tip.growth);
+            if begins_kink || tip.steering.corner().is_none() {
+                tip.kink = None;
+            }
+            if let Some(factor) = tip.kink.and_then(|kink| kink.factor(tip.growth, tip.length, horizon)) {
+                ratio = factor / equivalent_factor(read);
+            } else if tip
+                .steering
+                .corner()
+                .is_some_and(|corner| tip.growth < corner + KINK_HORIZONS * horizon && tip.growth > corner)
+            {
                 ratio = ratio.max(tip.equivalent() / equivalent_factor(read));
             }
             let mut factors = read.map(|factor| ratio * factor);
             if let Some(gap) = gap {
                 factors = tip.coalescence.factors(factors, gap, horizon);
             }
-            let is_near =
-                tip.growth > 0.0 && is_near_rim(&self.case.specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
+            // Beside a rim a ring that overlaps it may say anything.
+            let is_read = tip.growth == 0.0
+                || tip.equivalent() == 0.0
+                || equivalent_factor(factors) < RISE_MOST * tip.equivalent()
+                || self.case.specimen.rim_distance(self.state.lines[tip.end.line].end(tip.end.at_last)) > CORE_HORIZONS * horizon;
+            let is_near = !pressed_shut
+                && tip.growth > 0.0
+                && is_near_rim(&self.case.specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
             let has_risen = equivalent_factor(factors) >= tip.equivalent();
-            if has_risen || !is_near {
+            if is_read && (has_risen || !is_near) {
                 tip.factors = factors;
             }
-            tip.rate = self.law.rate(tip.equivalent(), self.case.loading.ratio);
+            if begins_kink {
+                tip.kink = Kink::new(tip.factors, t_stress, tip.growth);
+            }
+            let first_step = tip.kink.filter(|_| begins_kink).map(|kink| kink.first_factor(self.steps.first()));
+            tip.rate = self.law.rate(first_step.unwrap_or_else(|| tip.equivalent()), self.case.loading.ratio);
         }
     }
 }

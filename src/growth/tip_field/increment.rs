@@ -11,8 +11,11 @@ use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::growth::cross_check::ReleasedEnergy;
 use crate::growth::record::StopReason;
+use crate::growth::tip_ring::DIRECTION_SPACINGS;
+use crate::solver::field::Layout;
 use crate::specimen::geometry::{along, distance};
 use crate::specimen::{CrackLine, Point};
+use crate::units::MM;
 
 /// Distance from an edge, in spacings, from which points cannot resolve what is left.
 const THROUGH_SPACINGS: f64 = 0.75;
@@ -21,6 +24,14 @@ const BESIDE_SPACINGS: f64 = 0.5;
 /// Distance between a tip and the place where another meets its crack, in horizons, within which both are joined if they face each
 /// other.
 const JOINED_HORIZONS: f64 = 1.0;
+
+/// Spacings on a ligament that resolve it.
+const LIGAMENT_SPACINGS: f64 = 4.0;
+/// Solves of an increment in which flanks come into contact or part; the last set of places is taken then. Where little is left of a
+/// plate a few places flicker.
+const CONTACT_SOLVES_MOST: usize = 20;
+/// Overlap of flanks, in spacings times the mean strain of the plate, that is round-off.
+const CONTACT_LEAST: f64 = 1e-3;
 
 /// A new straight segment of crack, and what becomes of the tip at its end.
 struct Segment {
@@ -149,10 +160,14 @@ impl TipField<'_> {
         if step.end.is_some() {
             return;
         }
-        match self.settle(&step.changed) {
+        let lines = self.state.lines.clone();
+        match self.settle(&step.changed, &lines) {
             Ok(()) => step.is_settled = true,
             Err(Error::LossOfStiffness) => step.end = Some(StopReason::Severed),
-            Err(_) => step.end = Some(StopReason::NoConvergence),
+            Err(error) => {
+                self.warnings.push(format!("the run ends before its end: {error}"));
+                step.end = Some(StopReason::NoConvergence);
+            }
         }
     }
 
@@ -206,6 +221,19 @@ impl TipField<'_> {
         // What the last tip has met is known, whatever is left of the plate.
         if !is_left && !step.is_severed {
             step.end = Some(self.gone());
+        }
+        if step.end.is_none()
+            && let Some((tip, ligament)) = self.unresolved_ligament()
+        {
+            let spacing = self.plate.body.lattice.spacing;
+            self.warnings.push(format!(
+                "tip {tip} passes a rim at {:.3} mm, less than the spacing of {:.3} mm: the run ends there; model.spacing_mm = {:.4} would \
+                 resolve what is between them",
+                ligament / MM,
+                spacing / MM,
+                ligament / LIGAMENT_SPACINGS / MM
+            ));
+            step.end = Some(StopReason::LigamentUnresolved);
         }
         let (row, reason) = self.row_after(cycles, work, step.cut, step.end);
         if step.cut > 0 || cycles > 0.0 {
@@ -272,7 +300,7 @@ impl TipField<'_> {
     fn segment(&self, tip: &Tip, length: f64) -> Segment {
         let (specimen, lines, body) = (&self.case.specimen, &self.state.lines, &self.plate.body);
         let spacing = body.lattice.spacing;
-        let (from, ahead) = (self.position(tip), lines[tip.end.line].direction(tip.end.at_last));
+        let (from, ahead) = (self.position(tip), self.heading(tip.end));
         let direction = tip.steering.direction(tip.growth, length, ahead, body.horizon());
         let at = |length: f64| [0, 1].map(|i| from[i] + length * direction[i]);
         let (reach, next) = (at(length + THROUGH_SPACINGS * spacing), at(length));
@@ -302,21 +330,54 @@ impl TipField<'_> {
         changed.into_iter().map(|(bond, _)| bond).collect()
     }
 
-    /// Equilibrium after bonds were cut or corrected; the displacement stays as it was where there is none.
-    pub(super) fn settle(&mut self, changed: &[Bond]) -> Result<()> {
+    /// Equilibrium after bonds were cut or corrected, with flanks that do not overlap; the displacement stays as it was where there is
+    /// none.
+    pub(super) fn settle(&mut self, changed: &[Bond], lines: &[CrackLine]) -> Result<()> {
         let plate = self.plate.clone();
         let body = &plate.body;
         self.equilibrium.bonds_changed(body, &self.bonds, changed);
+        let blunted = self.blunted(lines);
+        self.contact.follow(body, &blunted, self.case.material.plane_modulus());
         let before = self.displacement.clone();
-        match self.equilibrium.solve(body, &self.bonds, &mut self.displacement) {
-            Ok(iterations) => self.iterations += iterations,
-            Err(error) => {
-                self.displacement = before;
-                return Err(error);
+        for _ in 0..CONTACT_SOLVES_MOST {
+            let solved = self
+                .equilibrium
+                .set_contact(body, &self.contact.springs())
+                .and_then(|()| self.equilibrium.solve(body, &self.bonds, &mut self.displacement));
+            match solved {
+                Ok(iterations) => self.iterations += iterations,
+                Err(error) => {
+                    self.displacement = before;
+                    return Err(error);
+                }
+            }
+            self.solves += 1;
+            let least = CONTACT_LEAST * self.mean_strain() * body.lattice.spacing;
+            if !self.contact.update(&self.layout(), &self.displacement, least) {
+                break;
             }
         }
-        self.solves += 1;
         Ok(())
+    }
+
+    /// Cracks whose ends are as long as they have to be to show a direction.
+    fn blunted(&self, lines: &[CrackLine]) -> Vec<CrackLine> {
+        let mut blunted = lines.to_vec();
+        for Tip { end, .. } in &self.state.tips {
+            let line = &mut blunted[end.line];
+            *line = line.blunted(end.at_last, DIRECTION_SPACINGS * self.plate.body.lattice.spacing);
+        }
+        blunted
+    }
+
+    /// Root mean square of the strain, of which the energy of the plate tells.
+    fn mean_strain(&self) -> f64 {
+        let volume = self.case.specimen.area() * self.case.specimen.thickness;
+        (self.equilibrium.work() / (volume * self.case.material.youngs_modulus)).max(0.0).sqrt()
+    }
+
+    pub(super) fn layout(&self) -> Layout {
+        Layout::of(&self.plate.body.lattice, self.plate.body.stencil.unknowns)
     }
 }
 

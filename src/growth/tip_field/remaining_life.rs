@@ -19,7 +19,7 @@ impl TipField<'_> {
         let body = &self.plate.body;
         let length = ZONE_RADIUS_HORIZONS * body.horizon();
         let ahead = |tip: &Tip| {
-            let (from, [x, y]) = (self.position(tip), self.state.lines[tip.end.line].direction(tip.end.at_last));
+            let (from, [x, y]) = (self.position(tip), self.heading(tip.end));
             let to = [from[0] + length * x, from[1] + length * y];
             let life = move |bond: Bond| {
                 let (_, a, b) = body.ends(bond);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::contact::Contact;
 use super::{PROBE_HORIZONS, RING_HORIZONS_IN_LEVELS, Tip, TipField, TipsState, solver};
 use crate::body::balanced::flanks::FlankRange;
 use crate::error::{Error, Result};
@@ -29,6 +30,7 @@ impl TipField<'_> {
     /// The plate as it stands, as a row; ΔK and da/dN are those of the fastest tip.
     fn row(&self, cycles: f64, work: f64, broken_bonds: usize) -> CurvePoint {
         let now = |tip: &Tip| TipRecord {
+            state: if tip.state == TipState::Active && tip.is_closed { TipState::Closed } else { tip.state },
             position: self.position(tip),
             growth: tip.growth,
             factors: Some(tip.factors),
@@ -106,7 +108,7 @@ impl CrackGrowth for TipField<'_> {
         // What is read belongs to a length that differs from the one asked for by part of a spacing: that takes the slope of K.
         let drawn_back = self.state.drawn_back(PROBE_HORIZONS * self.plate.body.horizon());
         let changed = self.correct_flanks(&drawn_back, FlankRange::All);
-        self.settle(&changed)?;
+        self.settle(&changed, &drawn_back)?;
         self.read_slopes();
         let mut cut = std::mem::take(&mut self.at_tips);
         let plate = self.plate.clone();
@@ -114,7 +116,7 @@ impl CrackGrowth for TipField<'_> {
         remove_fragments(&plate.body, &mut self.bonds, &cut);
         let lines = self.state.lines.clone();
         cut.extend(self.correct_flanks(&lines, FlankRange::All));
-        self.settle(&cut)?;
+        self.settle(&cut, &lines)?;
         self.read_fields();
         self.choose_directions();
         self.choose_rates();
@@ -153,7 +155,8 @@ impl CrackGrowth for TipField<'_> {
     fn rebuild_solver(&mut self) -> Result<()> {
         self.rows_at_rebuild = self.curve.len();
         self.equilibrium = solver(self.case, &self.plate, &self.bonds);
-        self.settle(&[])
+        let lines = self.state.lines.clone();
+        self.settle(&[], &lines)
     }
 
     fn state(&self) -> State {
@@ -161,6 +164,7 @@ impl CrackGrowth for TipField<'_> {
             growth: self.state.clone(),
             broken: self.bonds.broken(&self.plate.body),
             scaled: self.bonds.scaled(&self.plate.body),
+            closed: self.contact.closed_places().collect(),
             displacement: self.displacement.clone(),
             curve: self.curve.clone(),
             statistics: self.statistics(),
@@ -168,7 +172,9 @@ impl CrackGrowth for TipField<'_> {
     }
 
     fn restore(&mut self, state: State) -> Result<bool> {
-        let State::Tips(TipsState { growth, broken, scaled, displacement, curve, statistics }) = state else { return Ok(false) };
+        let State::Tips(TipsState { growth, broken, scaled, closed, displacement, curve, statistics }) = state else {
+            return Ok(false);
+        };
         let plate = self.plate.clone();
         let places = plate.body.multiplier.len();
         let fits = growth.fits(&self.state)
@@ -184,6 +190,7 @@ impl CrackGrowth for TipField<'_> {
         broken.iter().chain(&self.at_tips).for_each(|&bond| self.bonds.cut(&plate.body, bond));
         scaled.iter().for_each(|&(bond, multiplier)| self.bonds.set(&plate.body, bond, multiplier));
         (self.state, self.displacement, self.curve) = (growth, displacement, curve);
+        self.contact = Contact::resumed(closed);
         (self.solves, self.iterations) = (statistics.solves, statistics.iterations);
         Ok(self.rebuild_solver().is_ok())
     }

@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::coalescence::Coalescence;
+use super::contact::ClosedPlace;
 use super::factors::Reading;
+use super::kink::Kink;
 use super::readings::Readings;
 use super::steering::{Steering, equivalent_factor};
 use crate::body::Bond;
@@ -42,8 +44,10 @@ pub struct Tip {
     pub(super) readings: Readings,
     pub(super) coalescence: Coalescence,
     pub(super) steering: Steering,
-    /// Whether the load has pressed its flanks together.
-    pub(super) in_contact: bool,
+    /// The kink at its last corner.
+    pub(super) kink: Option<Kink>,
+    /// Whether its flanks are in contact, or would be: it does not grow.
+    pub(super) is_closed: bool,
 }
 
 impl Tip {
@@ -66,7 +70,8 @@ impl Tip {
             readings: Readings::default(),
             coalescence: Coalescence::default(),
             steering: Steering::default(),
-            in_contact: false,
+            kink: None,
+            is_closed: false,
         }
     }
 
@@ -92,7 +97,7 @@ impl Tip {
     pub(super) fn forget_history(&mut self) {
         (self.before, self.past) = (None, None);
         (self.readings, self.steering) = (Readings::default(), Steering::default());
-        self.coalescence = Coalescence::default();
+        (self.coalescence, self.kink) = (Coalescence::default(), None);
     }
 
     /// K_eq at maximum load of the requested length, Pa√m.
@@ -142,6 +147,8 @@ pub struct TipsState {
     pub(super) broken: Vec<Bond>,
     /// Bonds beside flanks, and their multipliers.
     pub(super) scaled: Vec<(Bond, f32)>,
+    /// Places of the cracks whose flanks are in contact.
+    pub(super) closed: Vec<ClosedPlace>,
     pub(super) displacement: Vec<f64>,
     pub(super) curve: Vec<CurvePoint>,
     pub(super) statistics: SolverStatistics,

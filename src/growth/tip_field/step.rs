@@ -120,7 +120,7 @@ impl TipField<'_> {
     /// Way of a tip straight ahead to a rim or another crack, m, if it is short.
     fn last_way(&self, tip: usize) -> Option<f64> {
         let tip = &self.state.tips[tip];
-        let (from, [x, y]) = (self.position(tip), self.state.lines[tip.end.line].direction(tip.end.at_last));
+        let (from, [x, y]) = (self.position(tip), self.heading(tip.end));
         let reach = LEFT_HORIZONS * self.plate.body.horizon();
         let to = [from[0] + reach * x, from[1] + reach * y];
         ahead::first_rim(&self.case.specimen, &self.state.lines, tip.end.line, from, to).map(|(share, _)| share * reach)

@@ -1,7 +1,7 @@
 //! Points of several levels: places of nested lattices, every level with half the spacing of the one before.
 
 use super::regions::Area;
-use crate::body::lattice::Lattice;
+use crate::body::lattice::{Lattice, ON_RIM};
 use crate::error::{Result, input};
 use crate::specimen::{Point, Specimen};
 
@@ -71,7 +71,10 @@ impl Levels {
         }
         for (level, (split, before)) in split.iter().zip(&before).enumerate() {
             let lattice = &levels.lattices[level];
-            let inside = |place: usize| specimen.contains(position(lattice, place % lattice.columns, place / lattice.columns));
+            let inside = |place: usize| {
+                let at = position(lattice, place % lattice.columns, place / lattice.columns);
+                specimen.has_point_at(at, ON_RIM * lattice.spacing)
+            };
             for place in (0..split.len()).filter(|&place| split[place] && inside(place)) {
                 levels.splits[level][usize::from(!before[place])] += 1;
             }
@@ -93,7 +96,7 @@ impl Levels {
             for (y, x) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 self.grow(specimen, split, Leaf { level: level + 1, column: 2 * column + x, row: 2 * row + y });
             }
-        } else if specimen.contains(self.position(leaf)) {
+        } else if specimen.has_point_at(self.position(leaf), ON_RIM * self.lattices[level].spacing) {
             self.number[level][row * columns + column] = self.leaves.len() as u32;
             self.leaves.push(leaf);
         }

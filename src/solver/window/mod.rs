@@ -54,6 +54,8 @@ pub(in crate::solver) trait Whole<const N: usize>: Send {
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
     /// What it solves by.
     const USED: SolverUsed;
+    /// Whether it knows springs between flanks in contact.
+    const KNOWS_CONTACT: bool = false;
     /// Condenses the plate with its present bonds onto some places; `None` where that cannot be done in these digits.
     fn condense(&self, system: System<'_, N>, places: &[u32]) -> Option<Condensed>;
 }
@@ -63,6 +65,7 @@ pub(in crate::solver) struct SingleLattice<const N: usize>(MultigridSolver<N>);
 
 impl<const N: usize> Whole<N> for SingleLattice<N> {
     const USED: SolverUsed = SolverUsed::Multigrid;
+    const KNOWS_CONTACT: bool = true;
 
     fn set_tolerance(&mut self, tolerance: f64) {
         self.0.set_tolerance(tolerance);
@@ -210,6 +213,11 @@ impl<const N: usize, W: Whole<N>> LinearSolver<N> for WindowSolver<N, W> {
             }
         }
         self.solve_whole(system, u)
+    }
+
+    fn knows_contact(&self) -> bool {
+        // A condensed window does not.
+        W::KNOWS_CONTACT && self.window.is_none()
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {

@@ -205,7 +205,7 @@ pub fn hole(table: &mut Table) -> Result<()> {
 
 /// Slope -2 K_II/K_I of the path of the first tip, by domain integral.
 fn slope(case: &Case) -> Result<f64> {
-    let tips = stress_intensity(case, &[StressIntensityMethod::DomainIntegral])?;
+    let tips = stress_intensity(case, &[StressIntensityMethod::Ring])?;
     let intensity = tips[0].methods[0].intensity;
     Ok(intensity.k_i.zip(intensity.k_ii).map_or(f64::NAN, |(k_i, k_ii)| -2.0 * k_ii / k_i))
 }

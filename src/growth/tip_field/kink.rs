@@ -1,0 +1,80 @@
+//! K of a short kink (Amestoy and Leblond 1992, Int. J. Solids Struct. 29:465).
+//!
+//! A crack with K_I, K_II and T that has kinked by θ and grown by s since has at its new tip, with m = θ/π,
+//!
+//! `K_I' = F₁₁(m) K_I + F₁₂(m) K_II + G₁(m) T √s + O(s)`,
+//!
+//! counter-clockwise θ and K_II as in [`crate::stress_intensity`]. K before the kink in the direction of the largest circumferential
+//! stress is none of it (up to 10 % below F₁₁ K_I + F₁₂ K_II), and bonds show the kink only once it is as long as the core of the
+//! tip. The term of order s is taken as that of a crack that grows straight, `√(1 + s/a)`.
+
+use serde::{Deserialize, Serialize};
+
+use super::steering::kink_angle;
+
+/// Growth after a kink, in horizons, over which K is that of a short kink.
+const KINK_HORIZONS: f64 = 0.3;
+/// K of a short kink at the least, over that of none.
+const SHARE_LEAST: f64 = 0.5;
+
+/// A kink of a tip.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Kink {
+    /// K_I of the infinitesimal kink, Pa√m.
+    factor: f64,
+    /// G₁ T, Pa.
+    slope: f64,
+    /// Growth of the tip at which it began, m.
+    growth: f64,
+}
+
+impl Kink {
+    /// The kink that a tip with these factors (Pa√m), T (Pa) and growth begins; `None` where it would not open.
+    pub(super) fn new(factors: [f64; 2], t_stress: f64, growth: f64) -> Option<Self> {
+        let [k_i, k_ii] = [factors[0].max(0.0), factors[1]];
+        let [f11, f12, g1] = coefficients(kink_angle([k_i, k_ii]));
+        let factor = f11 * k_i + f12 * k_ii;
+        (factor > 0.0).then_some(Kink { factor, slope: g1 * t_stress, growth })
+    }
+
+    /// K after so much growth of the tip, of a crack that was `length` long at the start, Pa√m; `None` where the kink is not short any
+    /// more.
+    pub(super) fn factor(&self, growth: f64, length: f64, horizon: f64) -> Option<f64> {
+        let way = growth - self.growth;
+        let is_short = way > 0.0 && way < KINK_HORIZONS * horizon;
+        is_short.then(|| self.opening(way.sqrt()) * (1.0 + way / (length + self.growth)).sqrt())
+    }
+
+    /// K that stands for a first step of this length, m: at its start √s has no slope that the cycles of the step could be counted with.
+    pub(super) fn first_factor(&self, step: f64) -> f64 {
+        self.opening(step.sqrt() / 3.0)
+    }
+
+    fn opening(&self, root: f64) -> f64 {
+        (self.factor + self.slope * root).max(SHARE_LEAST * self.factor)
+    }
+}
+
+/// F₁₁, F₁₂ and G₁ of a kink by θ, rad; the terms left out are below 1e-4 up to 80°.
+#[must_use]
+pub(super) fn coefficients(theta: f64) -> [f64; 3] {
+    let pi = std::f64::consts::PI;
+    let m = theta / pi;
+    let q = m * m;
+    let power = |n: i32| pi.powi(n);
+    let f11 = 1.0 - 3.0 * power(2) / 8.0 * q
+        + (power(2) - 5.0 * power(4) / 128.0) * q.powi(2)
+        + (power(2) / 9.0 - 11.0 * power(4) / 72.0 + 119.0 * power(6) / 15360.0) * q.powi(3)
+        + 5.07790 * q.powi(4)
+        - 2.88312 * q.powi(5);
+    let f12 = m
+        * (-1.5 * pi
+            + (10.0 * pi / 3.0 + power(3) / 16.0) * q
+            + (-2.0 * pi - 133.0 * power(3) / 180.0 + 59.0 * power(5) / 1280.0) * q.powi(2)
+            + 12.313906 * q.powi(3)
+            - 7.32433 * q.powi(4)
+            + 1.5793 * q.powi(5));
+    let g1 =
+        (2.0 * pi).powf(1.5) * q - 47.933390 * q.powi(2) + 63.665987 * q.powi(3) - 50.70880 * q.powi(4) + 26.66807 * q.powi(5);
+    [f11, f12, g1]
+}

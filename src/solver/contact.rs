@@ -1,0 +1,37 @@
+//! Springs between the flanks of a crack that are in contact.
+//!
+//! A spring acts on one sum of displacements, the gap `g = Σ w_i·u_i` between the flanks at a place of the crack, with energy
+//! `½ k g²`: a penalty without friction, since w is normal to the crack.
+
+use super::field::Layout;
+
+/// A spring on a gap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GapSpring {
+    /// Places with their weights on both displacements (lattice axes).
+    pub weights: Vec<(u32, [f64; 2])>,
+    /// k, N/m.
+    pub stiffness: f64,
+}
+
+impl GapSpring {
+    /// The gap in a displacement, m.
+    #[must_use]
+    pub fn gap(&self, layout: &Layout, displacement: &[f64]) -> f64 {
+        let of_place = |&(place, [x, y]): &(u32, [f64; 2])| {
+            let at = layout.index(place as usize);
+            x * displacement[at] + y * displacement[at + layout.stride]
+        };
+        self.weights.iter().map(of_place).sum()
+    }
+
+    /// y += sign × k w g.
+    pub(super) fn add_force(&self, layout: &Layout, sign: f64, displacement: &[f64], y: &mut [f64]) {
+        let force = sign * self.stiffness * self.gap(layout, displacement);
+        for &(place, weights) in &self.weights {
+            let at = layout.index(place as usize);
+            y[at] += force * weights[0];
+            y[at + layout.stride] += force * weights[1];
+        }
+    }
+}
