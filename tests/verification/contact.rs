@@ -1,5 +1,6 @@
 //! Flanks of cracks that the load presses together: a closed crack is none across itself, and free to slide and to turn.
 
+use std::f64::consts::PI;
 use std::path::Path;
 
 use perilife::body::pre_crack::cutting_line;
@@ -47,7 +48,11 @@ fn a_plate_pressed_across_a_slit_is_as_stiff_as_one_without() {
     let run = fracture::run(&Scene::from_file(&path, &[]).unwrap(), &Silent).unwrap();
     let flanks = run.figures.touching.unwrap();
     println!("load {} N, {} of {} columns pressed", run.peak_load(), flanks.pressed, flanks.columns);
-    assert!((run.peak_load() / 2940.0 - 1.0).abs() < 0.01, "{} N", run.peak_load());
+    let cracks = "specimen.cracks=[]".to_owned();
+    let whole = fracture::run(&Scene::from_file(&path, &[cracks]).unwrap(), &Silent).unwrap().peak_load();
+    assert!((run.peak_load() / whole - 1.0).abs() < 0.002, "{} N, {whole} N without slit", run.peak_load());
+    // Driven and held rows of points lie half a spacing inside the plate, which is so much shorter: 1.8 % with and without slit.
+    assert!((run.peak_load() / 2940.0 - 1.0).abs() < 0.02, "{} N", run.peak_load());
     assert!(flanks.share() > 0.95 && run.warnings.is_empty(), "{flanks:?}, {:?}", run.warnings);
     // Faces in touch: between the rows beside the slit there is the strain of the plate, and no more.
     let (grid, last) = (&run.grid, run.snapshots.last().unwrap());
@@ -59,7 +64,8 @@ fn a_plate_pressed_across_a_slit_is_as_stiff_as_one_without() {
     assert!((0.5..2.0).contains(&(shortened / 0.7e-6)), "{shortened} m between the faces");
 }
 
-/// A frictionless slit at 20° slides, and the plate is softer by the energy of K_II: 0.992. By every law of springs.
+/// A frictionless slit slides, and the plate is softer by the energy of `K_II = σ √(π a sec(π a cos φ / W)) sin φ cos φ`: at constant
+/// load the strain energy rises by `∫ K_II²/E` over both halves, a share of `2 π a² sec sin²φ cos²φ / (W L)`. By every law of springs.
 #[test]
 fn closed_slits_slide_without_friction() {
     for (law, nu) in [("two_parameter", "0.2"), ("one_bond_two_parameter", "0.3"), ("bond_based", "0.3333333333333333")] {
@@ -68,23 +74,26 @@ fn closed_slits_slide_without_friction() {
             let key = format!("model.surface_correction={correction}");
             let set = [keys[0].as_str(), &keys[1], &key];
             let whole = without(&set);
-            for (degrees, right) in [(0.0, 1.0), (20.0, 0.992), (-20.0, 0.992)] {
+            for degrees in [0.0, 20.0, -20.0] {
+                let (sin, cos) = f64::to_radians(degrees).sin_cos();
+                let widened = 1.0 / (PI * 10.0 * cos / 60.0).cos();
+                let right = 1.0 - 2.0 * PI * 100.0 * widened * (sin * cos).powi(2) / (60.0 * 100.0);
                 let run = run(&slit(degrees), &set);
                 let share = run.peak_load() / whole;
                 println!("{law}, {correction}, {degrees}°: {share:.4}, {right}, {:?}", run.figures.touching);
-                assert!((share - right).abs() < 0.004, "{law}, {correction}, {degrees}°: {share} of the plate without slit");
+                assert!((share - right).abs() < 0.002, "{law}, {correction}, {degrees}°: {share} of the plate without slit");
             }
         }
     }
 }
 
-/// Columns that are all pressed store nothing while the plate turns, or one side of a slit from edge to edge slides along the other.
+/// Columns that are all pressed store nothing while the plate turns, or one side of a slit slides along the other.
 #[test]
 fn contact_is_free_under_turning_and_sliding() {
     for degrees in [0.0, 20.0, -37.0, 90.0] {
         for discretisation in ["lattice", "dual_horizon"] {
             let (sin, cos) = f64::to_radians(degrees).sin_cos();
-            let long = format!("cracks = [{{ from_mm = [{}, {}], to_mm = [{}, {}] }}]", -70.0 * cos, -70.0 * sin, 70.0 * cos, 70.0 * sin);
+            let long = format!("cracks = [{{ from_mm = [{}, {}], to_mm = [{}, {}] }}]", -29.0 * cos, -29.0 * sin, 29.0 * cos, 29.0 * sin);
             let key = format!("model.discretisation={discretisation}");
             let set = [key.as_str(), "refinement.regions=[{box_mm=[[-20,-20],[20,20]],levels=1}]"];
             let scene = scene(&PRESSED.replace("CRACKS", &long), if discretisation == "lattice" { &[] } else { &set });
@@ -143,15 +152,6 @@ fn a_crack_that_grew_closes_as_one_that_was_there() {
         assert!((grew.0 / was_there.0 - 1.0).abs() < 0.002, "{degrees}°: {grew:?}, {was_there:?}");
         assert!(grew.1.pressed as f64 > 0.95 * was_there.1.pressed as f64, "{degrees}°: {grew:?}, {was_there:?}");
     }
-}
-
-/// A piece that nothing but the other half holds.
-#[test]
-fn halves_that_are_pressed_together_hold_each_other() {
-    let through = PRESSED.replace("CRACKS", "cracks = [{ from_mm = [-30, 0], to_mm = [30, 0] }]");
-    let run = run(&through, &["supports.side={from_mm=[-1,49],to_mm=[1,50],fix=[\"x\"]}"]);
-    let share = run.peak_load() / without(&["supports.side={from_mm=[-1,49],to_mm=[1,50],fix=[\"x\"]}"]);
-    assert!((share - 1.0).abs() < 0.01, "{share}, {:?}", run.figures.touching);
 }
 
 /// Open cracks have no pressed column, and where there is no contact overlap is told.

@@ -64,17 +64,17 @@ fn a_rigid_turn_of_a_scene_costs_nothing() {
     assert!(counted.iter().all(|&count| count >= 3), "{laws:?}: {counted:?} ways");
 }
 
-/// Whoever asks for the printed law is told what a turn of this body costs: (C₁₁ - 3 C₁₂)/C₁₁ = 1 - 3 ν in plane stress, less at
-/// the rim; nothing at 1/3.
+/// Whoever asks for the printed law is told what a turn of this body costs: 8 c_t/(3 c_n + c_t) = 2 (C₁₁ - 3 C₁₂)/C₁₁ = 2 (1 - 3 ν) of
+/// the energy of an extension in plane stress, less at the rim; nothing at 1/3.
 #[test]
 fn what_resists_a_turn_is_told_with_its_cost() {
     for law in ["two_parameter", "one_bond_two_parameter"] {
-        for (nu, least) in [("0.0", 0.75), ("0.1", 0.5), ("0.2", 0.3), ("0.3", 0.07)] {
+        for nu in ["0.0", "0.1", "0.2", "0.3"] {
             for way in ["loading.steps=1", "loading.duration_s=1e-6", "model.discretisation=dual_horizon"] {
                 let keys = [format!("model.bond_law={law}"), format!("material.poisson_ratio={nu}")];
                 let scene = scene(&[&keys[0], &keys[1], "model.rotation=resisted", way]).unwrap();
-                let (cost, most) = (cost(&scene), 1.05 * (1.0 - 3.0 * nu.parse::<f64>().unwrap()));
-                assert!(cost > least && cost < most, "{law}, nu {nu}, {way}: {cost}");
+                let (cost, inside) = (cost(&scene), 2.0 * (1.0 - 3.0 * nu.parse::<f64>().unwrap()));
+                assert!(cost > 0.7 * inside && cost < 1.05 * inside, "{law}, nu {nu}, {way}: {cost}");
                 let warnings = run(&scene, &Silent).unwrap().warnings;
                 let words = format!("{:.3} % of the energy of stretching", 100.0 * cost);
                 let told = warnings.iter().any(|w| w.contains("model.rotation = \"resisted\"") && w.contains(&words));
@@ -96,7 +96,7 @@ fn what_resists_a_turn_is_told_with_its_cost() {
 #[test]
 fn a_rigid_turn_of_a_plate_costs_nothing() {
     const SLANT: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=80\nthickness_mm=2\ncracks=[{from_mm=[-7,-5],to_mm=[7,5]}]\n";
-    let levels = ["model.discretisation=dual_horizon", "refinement.regions=[{box_mm=[[-20,-12],[20,12]],levels=1}]"];
+    let levels = ["model.discretisation=dual_horizon", "refinement.regions=[{box_mm=[[-25,-22],[25,22]],levels=1}]"];
     let mut counted = 0;
     for kind in BondLawKind::ALL {
         for correction in SurfaceCorrection::ALL {
