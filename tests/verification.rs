@@ -10,6 +10,8 @@ mod noise;
 mod statics;
 #[path = "support/scenes.rs"]
 mod scenes;
+#[path = "support/shared.rs"]
+mod shared;
 #[path = "support/correspondence.rs"]
 mod correspondence_bodies;
 
@@ -19,6 +21,12 @@ mod dynamics;
 mod correspondence;
 #[path = "verification/disc.rs"]
 mod disc;
+#[path = "verification/rigid_turn.rs"]
+mod rigid_turn;
+#[path = "verification/contact.rs"]
+mod contact;
+#[path = "verification/scene_default_law.rs"]
+mod scene_default_law;
 #[path = "verification/elasticity.rs"]
 mod elasticity;
 #[path = "verification/tip_field.rs"]

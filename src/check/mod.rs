@@ -121,7 +121,8 @@ pub fn checked_case(document: &Document, kind: &'static str, case: &Case, mut wa
 
 fn checked_scene(document: &Document) -> Result<Checked> {
     let scene = Scene::from_document(document)?;
-    let lines = scene_lines(&scene).map_err(|error| document.locate(error))?;
+    let (lines, of_points) = scene_lines(&scene).map_err(|error| document.locate(error))?;
     let drawing = scene_drawing(&scene);
-    Ok(Checked { kind: "fracture", name: scene.name, lines, warnings: scene.warnings, drawing, echo: scene.echo })
+    let warnings = scene.warnings.into_iter().chain(of_points).collect();
+    Ok(Checked { kind: "fracture", name: scene.name, lines, warnings, drawing, echo: scene.echo })
 }

@@ -15,8 +15,9 @@ const LINES_MAX: usize = 8;
 /// Points up to which points and bonds are built; below a second.
 const POINTS_BUILT: f64 = 1e5;
 
-/// One line for each thing understood; points and bonds are built where that is quick, since only then some troubles show.
-pub(super) fn scene_lines(scene: &Scene) -> Result<Vec<Line>> {
+/// One line for each thing understood, and what the user should know; points and bonds are built where that is quick, since only
+/// then some troubles show.
+pub(super) fn scene_lines(scene: &Scene) -> Result<(Vec<Line>, Vec<String>)> {
     let about = scene.specimen.area() / scene.model.spacing.powi(2);
     let built = (about <= POINTS_BUILT).then(|| preview(scene).map_err(as_input)).transpose()?;
     let specimen = &scene.specimen;
@@ -41,7 +42,7 @@ pub(super) fn scene_lines(scene: &Scene) -> Result<Vec<Line>> {
     lines.extend(scene.holds.iter().map(|hold| line("support", hold_words(hold))));
     lines.extend(scene.refinement.as_ref().map(|refinement| line("refinement", refinement.words())));
     lines.push(line("damage", damage_words(scene)));
-    Ok(lines)
+    Ok((lines, built.map_or_else(Vec::new, |built| built.warnings)))
 }
 
 fn procedure_words(scene: &Scene) -> String {

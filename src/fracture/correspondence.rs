@@ -53,7 +53,7 @@ const TASK: usize = 256;
 pub const NET_LAW: BondLaw = BondLaw {
     kind: BondLawKind::StateBased,
     kernel: Kernel::Constant,
-    rotation: Rotation::Resisted,
+    rotation: Rotation::Free,
     surface_correction: SurfaceCorrection::None,
 };
 

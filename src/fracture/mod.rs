@@ -6,6 +6,7 @@
 
 pub mod bonds;
 pub mod boundary;
+pub mod contact;
 pub mod correspondence;
 pub mod dynamics;
 pub mod failure;
@@ -20,6 +21,7 @@ pub mod preview;
 pub mod quasi_static;
 pub mod read;
 mod region;
+pub mod rotation;
 pub mod scene;
 pub mod springs;
 
@@ -79,8 +81,8 @@ fn follow(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
     let boundary = Boundary::of(scene, &net)?;
     let mut bonds = BondState::new(&net, &boundary.no_fail);
     let failure = failure(scene, &net)?;
-    // Only explicit motion leaves the state of the bonds to the fast kernel alone.
-    let body = body.filter(|_| matches!(scene.procedure, Procedure::Dynamic { .. }));
+    let body = of_motion(scene, body);
+    let turning = rotation::warning(scene, &net, body.as_ref(), &bonds, failure.as_ref())?;
     let mut interaction = interact(scene, &net, body.as_ref(), &bonds, failure.as_ref())?;
     let mut fracture = match scene.procedure {
         Procedure::Dynamic { duration, time_step } => {
@@ -103,10 +105,16 @@ fn follow(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
             quasi_static::run(scene, &net, &boundary, interaction.as_mut(), failure.as_ref(), &mut bonds, observer)?
         }
     };
-    fracture.warnings.extend(net.warnings.iter().cloned());
+    let overlap = contact::warning(scene, &net, &bonds, &fracture);
+    fracture.warnings.extend(net.warnings.iter().cloned().chain(turning).chain(overlap));
     fracture.figures.wall_s = started.elapsed().as_secs_f64();
     fracture.figures.memory_mb = memory::peak_mb();
     Ok(fracture)
+}
+
+/// The body whose springs the fast kernel works through: only explicit motion leaves the state of the bonds to it alone.
+fn of_motion(scene: &Scene, body: Option<Body>) -> Option<Body> {
+    body.filter(|_| matches!(scene.procedure, Procedure::Dynamic { .. }))
 }
 
 /// Points and bonds of a scene, and the lattice body behind them if there is one.

@@ -1,5 +1,6 @@
 //! What a fracture scene gives.
 
+use super::contact::Touching;
 use crate::predict::{PointGrid, Snapshot};
 use crate::specimen::Point;
 
@@ -65,6 +66,8 @@ pub struct SceneFigures {
     pub evaluations: usize,
     /// Time step, s; 0 without time.
     pub time_step: f64,
+    /// How flanks stand at the end, where they are kept apart.
+    pub touching: Option<Touching>,
     /// Wall time, s.
     pub wall_s: f64,
     /// Peak memory of the process, MB.

@@ -1,7 +1,9 @@
 //! The points and bonds that a run would compute, looked at before anything moves.
 
+use super::bonds::BondState;
 use super::boundary::Boundary;
 use super::scene::Scene;
+use super::{of_motion, rotation};
 use crate::error::Result;
 
 /// What the discretisation makes of a scene.
@@ -19,6 +21,8 @@ pub struct Preview {
     pub spacings: [f64; 2],
     /// Points of every load, in the order of the scene.
     pub loaded: Vec<usize>,
+    /// What the user should know about them.
+    pub warnings: Vec<String>,
 }
 
 /// Builds points, bonds, loads and supports of a scene.
@@ -26,8 +30,10 @@ pub struct Preview {
 /// # Errors
 /// What a run would find wrong before it starts.
 pub fn preview(scene: &Scene) -> Result<Preview> {
-    let (net, _) = super::build(scene)?;
+    let (net, body) = super::build(scene)?;
     let boundary = Boundary::of(scene, &net)?;
+    let (bonds, failure) = (BondState::new(&net, &boundary.no_fail), super::failure(scene, &net)?);
+    let turning = rotation::warning(scene, &net, of_motion(scene, body).as_ref(), &bonds, failure.as_ref())?;
     let range = |values: &[f64]| {
         values.iter().fold([f64::INFINITY, 0.0], |[low, high], &value| [f64::min(low, value), f64::max(high, value)])
     };
@@ -38,5 +44,6 @@ pub fn preview(scene: &Scene) -> Result<Preview> {
         horizons: range(&net.horizons),
         spacings: range(&net.spacings),
         loaded: boundary.groups.iter().map(|group| group.points.len()).collect(),
+        warnings: net.warnings.into_iter().chain(turning).collect(),
     })
 }

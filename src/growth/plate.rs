@@ -10,7 +10,8 @@ use crate::body::{Body, Bond};
 use crate::case::Model;
 use crate::error::Result;
 use crate::levels::multi_level_body::{MultiLevelBody, clear_way, words};
-use crate::levels::{Discretisation, MultiLevelSpec, PointGrid};
+use crate::levels::rigid::{RESISTED, turning_cost_of_springs, turning_warning};
+use crate::levels::{Discretisation, MultiLevelSpec, Net, PointGrid};
 use crate::material::Material;
 use crate::solver::Equilibrium;
 use crate::solver::field::Layout;
@@ -96,7 +97,18 @@ impl Plate {
     /// What the user should know about its points.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        self.levels.as_ref().map_or_else(Vec::new, |levels| levels.net.warnings.clone())
+        let turning = self.body.stencil.resists_rotation().then(|| turning_warning(self.turning_cost(), RESISTED)).flatten();
+        let of_levels = self.levels.iter().flat_map(|levels| levels.net.warnings.iter().cloned());
+        of_levels.chain(turning).collect()
+    }
+
+    /// Energy of a rigid turn over that of an extension, of the springs of the plate.
+    #[must_use]
+    pub fn turning_cost(&self) -> Option<f64> {
+        match &self.levels {
+            None => turning_cost_of_springs(&Net::of_body(&self.body)),
+            Some(levels) => turning_cost_of_springs(&levels.net),
+        }
     }
 
     /// What is to be said of a tip that has come to the rim of the finest level.

@@ -10,6 +10,7 @@ use super::Net;
 use super::rigid::minimal_constraints;
 use super::stiffness::Stiffness;
 use crate::error::{Error, Result};
+use crate::specimen::Point;
 
 /// Iterations from which the factor is renewed for the next solve.
 const RENEW: usize = 12;
@@ -72,10 +73,27 @@ impl FullLoad {
     }
 }
 
+/// A spring along one direction between two points that need not have a bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strut {
+    /// One end.
+    pub from: u32,
+    /// The other.
+    pub to: u32,
+    /// Unit vector along which it acts.
+    pub normal: Point,
+    /// Spring, N/m.
+    pub stiffness: f64,
+}
+
 /// Springs that the iteration works on.
 pub trait InternalForce {
     /// Share of its stiffness that every bond has.
     fn share(&self) -> &[f64];
+    /// What the factor has to stand for beside the bonds.
+    fn struts(&self) -> &[Strut] {
+        &[]
+    }
     /// Forces of the bonds on the points at a displacement, N, and the strain energy, J.
     fn internal_force(&mut self, u: &[f64], force: &mut [f64]) -> f64;
 }
@@ -134,6 +152,11 @@ impl Equilibrium {
         })
     }
 
+    /// Has the next solve find a factor of its own.
+    pub fn renew(&mut self) {
+        self.stale = true;
+    }
+
     /// Moves `shape` to the equilibrium of these springs, to a residual of `tolerance` times the load; returns the iterations.
     ///
     /// # Errors
@@ -153,7 +176,7 @@ impl Equilibrium {
         let mut fresh = false;
         loop {
             if self.stale {
-                self.stiffness.factorise(net, springs.share())?;
+                self.stiffness.factorise(net, springs.share(), springs.struts())?;
                 self.spent.factorisations += 1;
                 (self.stale, fresh) = (false, true);
             }

@@ -1,6 +1,8 @@
-//! Least supports of a plate that floats: components which, held, take its rigid motions and no load.
+//! Rigid motions of a plate: the least supports of one that floats, components which, held, take its rigid motions and no load; and
+//! what a turn of it costs, which should be nothing.
 
-use super::Net;
+use super::{Net, NetBond};
+use crate::specimen::Point;
 use crate::specimen::geometry::distance;
 
 /// A component that holds a rigid motion: its row `[u_x, u_y, ω]`, lengths over the size of the plate.
@@ -45,4 +47,51 @@ fn add(basis: &mut Vec<Row>, mut row: Row) -> bool {
         basis.push(row.map(|a| a / size));
     }
     is_new
+}
+
+/// Turn of the body, rad, and strain that it is compared with.
+const TURN: f64 = 1e-3;
+/// Energy of the turn over that of the strain that is more than round-off.
+const COSTS: f64 = 1e-6;
+/// The choice of springs that resist a turn, and the remedy.
+pub const RESISTED: [&str; 2] = ["model.rotation = \"resisted\"", "use \"free\", the default"];
+
+/// What it costs a body to turn as a whole: the strain energy of a rigid turn by 1 mrad over that of an extension by 1e-3 along y
+/// (`u_y = ε y`), both from the `energy` of its bonds, J. The turn is the true one, `u = (R - 1) x`, where strain is `finite`, else the
+/// linear one, `u = ω (-y, x)`. It must be zero; tangential springs between points that do not turn have `(C₁₁ - 3 C₁₂)/C₁₁`
+/// away from the rim. `None` where the extension costs nothing.
+#[must_use]
+pub fn turning_cost(net: &Net, finite: bool, mut energy: impl FnMut(&[f64]) -> f64) -> Option<f64> {
+    let mut of_field = |field: &dyn Fn(Point) -> [f64; 3]| {
+        let points = net.positions.iter().flat_map(|&x| field(x).into_iter().take(net.unknowns));
+        energy(&points.collect::<Vec<f64>>())
+    };
+    let (sin, versed) = if finite { (TURN.sin(), 2.0 * (0.5 * TURN).sin().powi(2)) } else { (TURN, 0.0) };
+    let turn = of_field(&|[x, y]| [-versed * x - sin * y, sin * x - versed * y, TURN * net.rotation_length]);
+    let strain = of_field(&|[_, y]| [0.0, TURN * y, 0.0]);
+    (strain > 0.0).then(|| turn / strain)
+}
+
+/// [`turning_cost`] of the springs of a net that nothing has broken.
+#[must_use]
+pub fn turning_cost_of_springs(net: &Net) -> Option<f64> {
+    let energy = |u: &[f64]| -> f64 {
+        let of = |bond: &NetBond| {
+            let [e_n, e_t] = if net.unknowns == 3 { bond.deformation::<3>(u) } else { bond.deformation::<2>(u) };
+            0.5 * (bond.k_n * e_n * e_n + bond.k_t * e_t * e_t)
+        };
+        net.bonds.iter().map(of).sum()
+    };
+    turning_cost(net, false, energy)
+}
+
+/// What is to be said of a body that a turn costs energy: which choice brings it, and which is free of it; `None` where it is
+/// round-off.
+#[must_use]
+pub fn turning_warning(cost: Option<f64>, [choice, remedy]: [&str; 2]) -> Option<String> {
+    let percent = 100.0 * cost.filter(|cost| *cost > COSTS)?;
+    Some(format!(
+        "{choice}: to turn this body rigidly by 1 mrad costs {percent:.3} % of the energy of stretching it by 1e-3, and should cost \
+         nothing: it is too stiff wherever material turns, in shear, in bending and beside cracks; {remedy}"
+    ))
 }

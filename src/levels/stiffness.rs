@@ -5,6 +5,7 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
 
+use super::equilibrium::Strut;
 use super::{Net, NetBond};
 use crate::error::{Error, Result};
 
@@ -55,11 +56,12 @@ impl Stiffness {
         Ok(Stiffness { slots, diagonal, number, matrix, symbolic, factor: None })
     }
 
-    /// Factorises the stiffness of the net with these shares of the bonds.
+    /// Factorises the stiffness of the net with these shares of the bonds, and struts between points that the pattern joins.
     ///
     /// # Errors
     /// A stiffness that is not positive definite.
-    pub fn factorise(&mut self, net: &Net, share: &[f64]) -> Result<()> {
+    pub fn factorise(&mut self, net: &Net, share: &[f64], struts: &[Strut]) -> Result<()> {
+        let added: Vec<(usize, f64)> = struts.iter().flat_map(|strut| self.strut_entries(net, strut)).collect();
         let values = self.matrix.val_mut();
         values.fill(0.0);
         let mut slots = self.slots.iter();
@@ -70,6 +72,7 @@ impl Stiffness {
                 }
             }
         }
+        added.into_iter().for_each(|(slot, value)| values[slot] += value);
         let largest = self.diagonal.iter().map(|&slot| values[slot as usize]).fold(0.0, f64::max);
         let mut added = 0.0;
         let mut trouble = None;
@@ -86,6 +89,24 @@ impl Stiffness {
             }
         }
         Err(Error::Mechanics(format!("the stiffness matrix is not positive definite: {trouble:?}")))
+    }
+
+    /// Places and values of a strut; none where its ends are not joined.
+    fn strut_entries(&self, net: &Net, strut: &Strut) -> Vec<(usize, f64)> {
+        let (columns, rows) = (self.matrix.symbolic().col_ptr(), self.matrix.symbolic().row_idx());
+        let unknown = |i: usize| self.number[[strut.from, strut.to][i / 2] as usize * net.unknowns + i % 2];
+        let gradient = |i: usize| [-1.0, 1.0][i / 2] * strut.normal[i % 2];
+        let mut entries = Vec::with_capacity(10);
+        for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+            let (row, column) = (unknown(i), unknown(j));
+            if row == usize::MAX || column == usize::MAX || column > row {
+                continue;
+            }
+            let span = columns[column]..columns[column + 1];
+            let Ok(place) = rows[span.clone()].binary_search(&row) else { return Vec::new() };
+            entries.push((span.start + place, strut.stiffness * gradient(i) * gradient(j)));
+        }
+        entries
     }
 
     /// Applies the inverse of the last factorised stiffness to a vector of all unknowns; 0 where they are held.

@@ -1,4 +1,5 @@
-//! Picture of the damaged plate: one square a point, coloured by its fraction of broken bonds, or by the fraction of life that its
+//! Picture of the damaged plate: one square a point, coloured by the fraction of its bonds that cracks of the start cut or
+//! that broke, or by the fraction of life that its
 //! bonds have spent; crack path, colour bar, scale.
 
 use std::path::Path;
@@ -26,7 +27,7 @@ const PATH: Rgb = [0, 150, 255];
 /// What points are coloured by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PointField {
-    /// Fraction of a point's bonds that are broken.
+    /// Fraction of a point's bonds that are gone: cut by a crack of the start, or broken.
     Damage,
     /// 1 - λ of the bond of a point that has the least remaining life.
     LifeSpent,
@@ -42,7 +43,7 @@ impl PointField {
 
     fn words(self) -> [&'static str; 2] {
         match self {
-            PointField::Damage => ["damage", "share of broken bonds"],
+            PointField::Damage => ["damage", "bonds cut or broken"],
             PointField::LifeSpent => ["1 - remaining life", "of the most used bond"],
         }
     }

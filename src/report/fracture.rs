@@ -120,7 +120,7 @@ fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture, snapshots: &[Sn
     let first = snapshots.first().map(|snapshot| ("damage_first.png", snapshot, &none));
     let last = snapshots.last().map(|snapshot| ("damage.png", snapshot, &paths));
     for (file, snapshot, paths) in first.into_iter().chain(last) {
-        let caption = caption(scene, snapshot);
+        let caption = caption(scene, fracture, snapshot);
         let picture = DamagePicture {
             grid: &fracture.grid,
             field: PointField::Damage,
@@ -135,10 +135,18 @@ fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture, snapshots: &[Sn
 }
 
 /// When a snapshot was taken.
-fn caption(scene: &Scene, snapshot: &Snapshot) -> Vec<String> {
+fn caption(scene: &Scene, fracture: &Fracture, snapshot: &Snapshot) -> Vec<String> {
     match scene.procedure {
         Procedure::Static => vec!["static".to_owned()],
-        Procedure::QuasiStatic { steps, .. } => vec![format!("step {:.0} of {steps}", snapshot.cycles)],
+        Procedure::QuasiStatic { steps, iterations: Some(_) } => vec![format!("load step {:.0} of {steps}", snapshot.cycles)],
+        // States of equilibrium stand closer than the steps of the load where bonds are damaged: they are no share of these.
+        Procedure::QuasiStatic { .. } => {
+            let state = snapshot.cycles as usize;
+            let row = fracture.history.iter().find(|row| row.step == state);
+            let moved = row.map(|row| format!("displacement {:.4e} mm", row.displacement / MM));
+            let last = fracture.history.last().map_or(state, |row| row.step);
+            std::iter::once(format!("state {state} of {last}")).chain(moved).collect()
+        }
         Procedure::Dynamic { .. } => vec![format!("time {:.3} µs", snapshot.cycles * 1e6)],
     }
 }

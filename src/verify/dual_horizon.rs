@@ -156,7 +156,7 @@ pub fn patch(law: BondLaw) -> Result<Patch> {
     let full = FullLoad { motion, external: vec![0.0; size], held, pins: Vec::new() };
     let mut bonds = BondState::new(&net, &vec![true; net.len()]);
     let mut shape = Shape { u: vec![0.0; size], force: vec![0.0; size], strain: 0.0 };
-    Equilibrium::new(&net, &full)?.solve(&mut bonds, &mut shape)?;
+    Equilibrium::new(&net, &[], &full)?.solve(&mut bonds, &mut shape)?;
     let u = &shape.u;
     let off = u.chunks_exact(n).zip(exact.chunks_exact(n)).fold(0.0, |m: f64, (a, b)| m.max((a[0] - b[0]).abs()));
     let between = |bond: &NetBond| {

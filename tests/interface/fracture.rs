@@ -150,7 +150,7 @@ fn check_understands_a_scene() {
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     for words in [
         "1 crack, 0 slots, 0 holes, 1 tip",
-        "one_bond_two_parameter, kernel constant, rotation resisted",
+        "one_bond_two_parameter, kernel constant, rotation free",
         "400 and",
         "motion over 2e-5 s",
         "velocity (0, 5000) mm/s on top",

@@ -35,7 +35,7 @@ fn what_is_left_out_is_chosen() {
     let scene = steps(&[]);
     let SceneLaw::Bonds(law) = scene.model.law else { panic!("bonds") };
     assert_eq!((law.kind, law.kernel), (BondLawKind::TwoParameter, Kernel::Conical));
-    assert_eq!((law.rotation, law.surface_correction), (Rotation::Resisted, SurfaceCorrection::VolumeAndSurface));
+    assert_eq!((law.rotation, law.surface_correction), (Rotation::Free, SurfaceCorrection::VolumeAndSurface));
     assert_eq!((scene.model.horizon_ratio, scene.model.lattice_angle, scene.model.finite), (3.015, 0.0, false));
     assert_eq!((scene.model.arrangement, scene.model.solver), (Discretisation::Lattice, SceneSolver::Secant));
     assert!((scene.model.spacing - 0.4e-3).abs() < 1e-12, "a hundredth of the width: {}", scene.model.spacing);

@@ -1,28 +1,34 @@
-//! Equilibrium of the springs of a scene at full load with the damage they have.
+//! Equilibrium of the springs of a scene at full load with the damage they have, and with its flanks in contact.
 
 use super::super::bonds::BondState;
+use super::super::contact::{Contact, Touching};
 use super::super::failure::Failure;
 use super::super::interaction::{Damaging, Interaction};
 use super::super::springs::Springs;
 use crate::error::Result;
 use crate::levels::Net;
 pub use crate::levels::equilibrium::Shape;
-use crate::levels::equilibrium::{self, FullLoad, InternalForce, Spent};
+use crate::levels::equilibrium::{self, FullLoad, InternalForce, Spent, Strut};
+use crate::specimen::Crack;
 
 /// Residual over load at which a solve ends: damage of mirror twins shall agree to 1e-9.
 const TOLERANCE: f64 = 1e-10;
+/// Times that contact is looked at after which the last set of pressed columns stays: what flickers then carries next to nothing.
+const LOOKS: usize = 20;
 
 /// Solver for a net with its loads.
 pub struct Equilibrium<'n> {
     net: &'n Net,
     full: &'n FullLoad,
     springs: Springs<'n>,
+    contact: Contact<'n>,
     inner: equilibrium::Equilibrium,
 }
 
 /// Springs whose damage stays as it is.
 struct Frozen<'a, 'n> {
     springs: &'a mut Springs<'n>,
+    contact: &'a Contact<'n>,
     bonds: &'a mut BondState,
 }
 
@@ -31,19 +37,23 @@ impl InternalForce for Frozen<'_, '_> {
         &self.bonds.share
     }
 
+    fn struts(&self) -> &[Strut] {
+        self.contact.struts()
+    }
+
     fn internal_force(&mut self, u: &[f64], force: &mut [f64]) -> f64 {
-        self.springs.internal_force(u, self.bonds, Damaging::Frozen, force).strain
+        self.springs.internal_force(u, self.bonds, Damaging::Frozen, force).strain + self.contact.push(u, force)
     }
 }
 
 impl<'n> Equilibrium<'n> {
-    /// A solver for a net with its loads.
+    /// A solver for a net with its loads, whose flanks touch across these cracks and those that grow from them.
     ///
     /// # Errors
     /// Out of memory.
-    pub fn new(net: &'n Net, full: &'n FullLoad) -> Result<Self> {
+    pub fn new(net: &'n Net, cracks: &[Crack], full: &'n FullLoad) -> Result<Self> {
         let springs = Springs::new(net, Failure::Never, false);
-        Ok(Equilibrium { net, full, springs, inner: equilibrium::Equilibrium::new(net, full)? })
+        Ok(Equilibrium { net, full, springs, contact: Contact::new(net, cracks), inner: equilibrium::Equilibrium::new(net, full)? })
     }
 
     /// What solving has cost so far.
@@ -52,12 +62,34 @@ impl<'n> Equilibrium<'n> {
         self.inner.spent
     }
 
+    /// How its flanks stand at the last equilibrium.
+    #[must_use]
+    pub fn touching(&self) -> Touching {
+        self.contact.touching()
+    }
+
     /// Moves `shape` to the equilibrium with these bonds.
     ///
     /// # Errors
-    /// No convergence: nothing holds what the loads pull at.
+    /// No convergence: nothing holds what the loads pull at, nor does contact.
     pub fn solve(&mut self, bonds: &mut BondState, shape: &mut Shape) -> Result<()> {
-        let mut frozen = Frozen { springs: &mut self.springs, bonds };
-        self.inner.solve(self.net, self.full, &mut frozen, shape, TOLERANCE).map(|_| ())
+        for _ in 0..LOOKS {
+            let before = shape.clone();
+            let mut frozen = Frozen { springs: &mut self.springs, contact: &self.contact, bonds };
+            let found = self.inner.solve(self.net, self.full, &mut frozen, shape, TOLERANCE);
+            if let Err(error) = found {
+                *shape = before;
+                // What the load drives against another piece is held by contact alone.
+                if !self.contact.press_all(bonds) {
+                    return Err(error);
+                }
+                self.inner.renew();
+                continue;
+            }
+            if !self.contact.settle(bonds, &shape.u) {
+                break;
+            }
+        }
+        Ok(())
     }
 }

@@ -84,6 +84,6 @@ impl March<'_> {
                 break;
             }
         }
-        Ok(Walked { end, u, account, evaluations })
+        Ok(Walked { end, u, account, evaluations, touching: None })
     }
 }

@@ -65,7 +65,7 @@ pub fn run(
         },
         SceneSolver::Secant => {
             let failure = secant_law(scene, failure)?;
-            let path = Path { net, full: &full, failure, steps, settings: Settings::default() };
+            let path = Path { net, cracks: &scene.specimen.cracks, full: &full, failure, steps, settings: Settings::default() };
             path.follow(bonds, recorder)?
         }
         SceneSolver::VelocityVerlet => {
@@ -77,8 +77,8 @@ pub fn run(
             ));
         }
     };
-    let Walked { end, u, account, evaluations } = walked;
-    let mut fracture = log.close(end, &u, bonds, SceneFigures { evaluations, ..SceneFigures::default() });
+    let Walked { end, u, account, evaluations, touching } = walked;
+    let mut fracture = log.close(end, &u, bonds, SceneFigures { evaluations, touching, ..SceneFigures::default() });
     let excess = account.excess();
     if iterations.is_some() {
         fracture.warnings.push(format!(

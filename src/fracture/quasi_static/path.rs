@@ -16,6 +16,7 @@
 //! fails to find the path.
 
 use super::super::bonds::BondState;
+use super::super::contact::Touching;
 use super::super::failure::Failure;
 use super::super::outcome::SceneEnd;
 use super::super::pieces::is_separated;
@@ -26,6 +27,7 @@ use super::full_load::FullLoad;
 use crate::error::{Error, Result};
 use crate::levels::Net;
 use crate::levels::equilibrium::Shape;
+use crate::specimen::Crack;
 
 /// Settings of path following.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +57,8 @@ const ROW_BROKEN: usize = 10;
 pub struct Path<'a> {
     /// Points and bonds.
     pub net: &'a Net,
+    /// Cracks of the start, whose flanks may touch.
+    pub cracks: &'a [Crack],
     /// Loads.
     pub full: &'a FullLoad,
     /// Law of damage, not in its printed form.
@@ -91,6 +95,8 @@ pub struct Walked {
     pub account: Account,
     /// Evaluations of the forces.
     pub evaluations: usize,
+    /// How flanks stand at the end, where they are kept apart.
+    pub touching: Option<Touching>,
 }
 
 impl Path<'_> {
@@ -102,7 +108,7 @@ impl Path<'_> {
         let size = self.full.held.len();
         let mut walk = Walk {
             path: self,
-            equilibrium: Equilibrium::new(self.net, self.full)?,
+            equilibrium: Equilibrium::new(self.net, self.cracks, self.full)?,
             control: Control::new(self.net, self.failure),
             shape: Shape::at_rest(size),
             account: Account::default(),
@@ -119,9 +125,9 @@ impl Path<'_> {
         let end = walk.run(bonds)?;
         let spent = walk.equilibrium.spent();
         tracing::info!(solves = spent.solves, iterations = spent.iterations, factorisations = spent.factorisations, "path");
-        let level = walk.account.state.level;
+        let (level, touching) = (walk.account.state.level, walk.equilibrium.touching());
         let u = walk.shape.u.iter().map(|u| level * u).collect();
-        Ok(Walked { end, u, account: walk.account, evaluations: spent.iterations + spent.solves })
+        Ok(Walked { end, u, account: walk.account, evaluations: spent.iterations + spent.solves, touching: Some(touching) })
     }
 }
 

@@ -82,7 +82,7 @@ pub fn follow(
             step = (2.0 * step).min(nominal);
         }
     }
-    Ok(Walked { end, u, account, evaluations })
+    Ok(Walked { end, u, account, evaluations, touching: None })
 }
 
 /// Moves on from rest at one share of the full load to rest at another.

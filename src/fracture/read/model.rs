@@ -102,7 +102,7 @@ fn bonds(name: Option<&str>, given: &Input, material: &Material) -> Result<Scene
     let law = BondLaw {
         kind,
         kernel: given.kernel.unwrap_or(kernel),
-        rotation: given.rotation.unwrap_or(Rotation::Resisted),
+        rotation: given.rotation.unwrap_or(Rotation::Free),
         surface_correction: given.surface_correction.unwrap_or(SurfaceCorrection::VolumeAndSurface),
     };
     stencil::check(&law, material).map_err(|error| beyond_springs(error, &law, material))?;

@@ -31,6 +31,7 @@ pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
         "separated_time_s": fracture.separated_step.and_then(|step| time_of(step, fracture)),
         "broken_bonds": last.map(|row| row.broken_bonds),
         "energy_balance_error": energy_error(fracture),
+        "flanks_pressed_share": figures.touching.map(|flanks| clean(flanks.share())),
         "fronts": fronts(fracture),
         "points": figures.points,
         "bonds": figures.bonds,

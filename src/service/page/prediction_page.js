@@ -22,7 +22,7 @@ export async function openPrediction(root, id, signal) {
   const chartPlace = element("div");
   const ratePlace = element("div");
   const picturePlace = element("div");
-  const { node: damage, image } = createPicture("Share of broken bonds over the plate, with the crack path");
+  const { node: damage, image } = createPicture("Share of bonds cut or broken over the plate, with the crack path");
   const imageNote = element("p", { class: "quiet" }, "No picture yet.");
   const rates = section("rates", "Growth rate", ratePlace);
   rates.hidden = true;
@@ -125,7 +125,7 @@ export async function openPrediction(root, id, signal) {
       if (has("damage.png")) {
         revision = Infinity;
         await showBlob(image, await getBlob(path("damage.png"), signal));
-        imageNote.textContent = "Share of broken bonds at the end of the run.";
+        imageNote.textContent = "Share of bonds cut by initial cracks or broken, at the end of the run.";
       }
     } catch (error) {
       if (error.name !== "AbortError") below.prepend(problemBox(error, () => finish(whole)));

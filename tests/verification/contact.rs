@@ -1,0 +1,174 @@
+//! Flanks of cracks that the load presses together: a closed crack is none across itself, and free to slide and to turn.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use perilife::body::pre_crack::cutting_line;
+use perilife::fracture::bonds::BondState;
+use perilife::fracture::contact::Contact;
+use perilife::fracture::quasi_static::equilibrium::{Equilibrium, Shape};
+use perilife::fracture::quasi_static::full_load::FullLoad;
+use perilife::fracture::{self, Fracture, Scene, boundary::Boundary};
+use perilife::predict::Silent;
+use perilife::specimen::geometry::segments_touch;
+use perilife::specimen::Point;
+
+use crate::shared::shared;
+
+/// A plate of 60 x 100 mm pressed by 0.07 mm.
+const PRESSED: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 100\nthickness_mm = 1\nCRACKS\n\
+                       [material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.2\ndensity_kg_m3 = 2700\nfracture_energy_j_m2 = 500\n\
+                       [model]\nbond_law = \"two_parameter\"\nspacing_mm = 1\n\
+                       [loading]\nkind = \"displacement\"\ndisplacement_mm = -0.07\nedges = [\"top\"]\n\
+                       [supports]\nbottom = { fix = [\"y\"] }\npin = { from_mm = [-1, -50], to_mm = [1, -49], fix = [\"x\"] }\n";
+
+/// The plate with a slit of 20 mm about its middle, turned by so many degrees.
+fn slit(degrees: f64) -> String {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    PRESSED.replace("CRACKS", &format!("cracks = [{{ from_mm = [{}, {}], to_mm = [{}, {}] }}]", -10.0 * cos, -10.0 * sin, 10.0 * cos, 10.0 * sin))
+}
+
+fn scene(text: &str, set: &[&str]) -> Scene {
+    let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
+    Scene::from_toml(text, "pressed", Path::new("."), &overrides).unwrap()
+}
+
+fn run(text: &str, set: &[&str]) -> Fracture {
+    fracture::run(&scene(text, set), &Silent).unwrap()
+}
+
+fn without(set: &[&str]) -> f64 {
+    run(&PRESSED.replace("CRACKS", ""), set).peak_load()
+}
+
+/// 2940 N is E ε W t. Faces that pass through each other gave 2667 N.
+#[test]
+fn a_plate_pressed_across_a_slit_is_as_stiff_as_one_without() {
+    let Some(path) = shared("field/mechanics/closed_crack/scene_pressed_slit.toml") else { return };
+    let run = fracture::run(&Scene::from_file(&path, &[]).unwrap(), &Silent).unwrap();
+    let flanks = run.figures.touching.unwrap();
+    println!("load {} N, {} of {} columns pressed", run.peak_load(), flanks.pressed, flanks.columns);
+    let cracks = "specimen.cracks=[]".to_owned();
+    let whole = fracture::run(&Scene::from_file(&path, &[cracks]).unwrap(), &Silent).unwrap().peak_load();
+    assert!((run.peak_load() / whole - 1.0).abs() < 0.002, "{} N, {whole} N without slit", run.peak_load());
+    // Driven and held rows of points lie half a spacing inside the plate, which is so much shorter: 1.8 % with and without slit.
+    assert!((run.peak_load() / 2940.0 - 1.0).abs() < 0.02, "{} N", run.peak_load());
+    assert!(flanks.share() > 0.95 && run.warnings.is_empty(), "{flanks:?}, {:?}", run.warnings);
+    // Faces in touch: between the rows beside the slit there is the strain of the plate, and no more.
+    let (grid, last) = (&run.grid, run.snapshots.last().unwrap());
+    let of_row = |y: f64| {
+        let [c, r] = [0, 1].map(|i| (([0.5e-3, y][i] - grid.origin[i]) / grid.spacing).round() as usize);
+        last.displacement[grid.point_at[r * grid.columns + c].unwrap() as usize][1]
+    };
+    let shortened = of_row(-0.5e-3) - of_row(0.5e-3);
+    assert!((0.5..2.0).contains(&(shortened / 0.7e-6)), "{shortened} m between the faces");
+}
+
+/// A frictionless slit slides, and the plate is softer by the energy of `K_II = σ √(π a sec(π a cos φ / W)) sin φ cos φ`: at constant
+/// load the strain energy rises by `∫ K_II²/E` over both halves, a share of `2 π a² sec sin²φ cos²φ / (W L)`. By every law of springs.
+#[test]
+fn closed_slits_slide_without_friction() {
+    for (law, nu) in [("two_parameter", "0.2"), ("one_bond_two_parameter", "0.3"), ("bond_based", "0.3333333333333333")] {
+        let keys = [format!("model.bond_law={law}"), format!("material.poisson_ratio={nu}")];
+        for correction in ["volume_and_surface", "balanced"] {
+            let key = format!("model.surface_correction={correction}");
+            let set = [keys[0].as_str(), &keys[1], &key];
+            let whole = without(&set);
+            for degrees in [0.0, 20.0, -20.0] {
+                let (sin, cos) = f64::to_radians(degrees).sin_cos();
+                let widened = 1.0 / (PI * 10.0 * cos / 60.0).cos();
+                let right = 1.0 - 2.0 * PI * 100.0 * widened * (sin * cos).powi(2) / (60.0 * 100.0);
+                let run = run(&slit(degrees), &set);
+                let share = run.peak_load() / whole;
+                println!("{law}, {correction}, {degrees}°: {share:.4}, {right}, {:?}", run.figures.touching);
+                assert!((share - right).abs() < 0.002, "{law}, {correction}, {degrees}°: {share} of the plate without slit");
+            }
+        }
+    }
+}
+
+/// Columns that are all pressed store nothing while the plate turns, or one side of a slit slides along the other.
+#[test]
+fn contact_is_free_under_turning_and_sliding() {
+    for degrees in [0.0, 20.0, -37.0, 90.0] {
+        for discretisation in ["lattice", "dual_horizon"] {
+            let (sin, cos) = f64::to_radians(degrees).sin_cos();
+            let long = format!("cracks = [{{ from_mm = [{}, {}], to_mm = [{}, {}] }}]", -29.0 * cos, -29.0 * sin, 29.0 * cos, 29.0 * sin);
+            let key = format!("model.discretisation={discretisation}");
+            let set = [key.as_str(), "refinement.regions=[{box_mm=[[-20,-20],[20,20]],levels=1}]"];
+            let scene = scene(&PRESSED.replace("CRACKS", &long), if discretisation == "lattice" { &[] } else { &set });
+            let (net, _) = fracture::build(&scene).unwrap();
+            let bonds = BondState::new(&net, &vec![false; net.len()]);
+            let mut contact = Contact::new(&net, &scene.specimen.cracks);
+            contact.press_all(&bonds);
+            let columns = contact.touching();
+            assert!(columns.columns > 500 && columns.pressed == columns.columns, "{columns:?}");
+            let mut energy = |field: &dyn Fn(Point) -> Point| {
+                let of = |&x: &Point| {
+                    let [x, y] = field(x);
+                    [x, y, 0.0].into_iter().take(net.unknowns)
+                };
+                let u: Vec<f64> = net.positions.iter().flat_map(of).collect();
+                let mut force = vec![0.0; u.len()];
+                let energy = contact.push(&u, &mut force);
+                let resultant = (0..2).map(|c| force.iter().skip(c).step_by(net.unknowns).sum::<f64>().abs()).fold(0.0, f64::max);
+                assert!(resultant <= 1e-9 * force.iter().fold(0.0, |a: f64, f| a.max(f.abs())) || energy < 1e-20, "{resultant} N");
+                energy
+            };
+            let above = |[x, y]: Point| y * cos - x * sin > 0.0;
+            let pressed = energy(&|[x, y]| [1e-3 * sin * (y * cos - x * sin), -1e-3 * cos * (y * cos - x * sin)]);
+            let turned = energy(&|[x, y]| [-1e-3 * y, 1e-3 * x]);
+            let slid = energy(&|x| if above(x) { [1e-4 * cos, 1e-4 * sin] } else { [0.0, 0.0] });
+            println!("{degrees}°, {discretisation}: pressed {pressed:.3e} J, turned {turned:.1e} J, slid {slid:.1e} J");
+            assert!(turned < 1e-18 * pressed && slid < 1e-18 * pressed, "{degrees}°, {discretisation}: {turned:e}, {slid:e}, {pressed:e} J");
+        }
+    }
+}
+
+/// Bonds that broke across a line are a crack that grew: its plane is found, and contact is that of a slit that was there.
+#[test]
+fn a_crack_that_grew_closes_as_one_that_was_there() {
+    for degrees in [0.0, 20.0] {
+        let load = |scene: &Scene, broken: &dyn Fn(Point, Point) -> bool| {
+            let (net, _) = fracture::build(scene).unwrap();
+            let boundary = Boundary::of(scene, &net).unwrap();
+            let full = FullLoad::of(&net, &boundary).unwrap();
+            let mut bonds = BondState::new(&net, &boundary.no_fail);
+            for (b, bond) in net.bonds.iter().enumerate() {
+                if broken(net.positions[bond.from as usize], net.positions[bond.to as usize]) {
+                    bonds.share[b] = 0.0;
+                }
+            }
+            let mut shape = Shape::at_rest(full.held.len());
+            let mut equilibrium = Equilibrium::new(&net, &scene.specimen.cracks, &full).unwrap();
+            equilibrium.solve(&mut bonds, &mut shape).unwrap();
+            (boundary.measure(net.unknowns, 1.0, &shape.u, &shape.force).1, equilibrium.touching())
+        };
+        let was_there = load(&scene(&slit(degrees), &[]), &|_, _| false);
+        let (sin, cos) = f64::to_radians(degrees).sin_cos();
+        let [p, q] = cutting_line(1e-3, [-1e-2 * cos, -1e-2 * sin], [1e-2 * cos, 1e-2 * sin]);
+        let grew = load(&scene(&PRESSED.replace("CRACKS", ""), &[]), &|a, b| segments_touch(a, b, p, q));
+        println!("{degrees}°: there {was_there:?}, grown {grew:?}");
+        assert!((grew.0 / was_there.0 - 1.0).abs() < 0.002, "{degrees}°: {grew:?}, {was_there:?}");
+        assert!(grew.1.pressed as f64 > 0.95 * was_there.1.pressed as f64, "{degrees}°: {grew:?}, {was_there:?}");
+    }
+}
+
+/// Open cracks have no pressed column, and where there is no contact overlap is told.
+#[test]
+fn overlap_is_told_where_nothing_keeps_flanks_apart() {
+    let pulled = run(&slit(20.0), &["loading.displacement_mm=0.07"]);
+    assert!(pulled.figures.touching.unwrap().pressed == 0 && pulled.warnings.is_empty(), "{:?}", pulled.warnings);
+    let ways: [(&[&str], &str); 3] = [
+        (&["loading.steps=1", "model.solver=adaptive_dynamic_relaxation"], "solver = \"adaptive_dynamic_relaxation\""),
+        (&["model.bond_law=correspondence"], "bond_law = \"correspondence\""),
+        (&["loading.duration_s=1e-4", "loading.ramp_s=1e-4"], "motion in time"),
+    ];
+    for (way, words) in ways {
+        let told = |run: &Fracture| run.warnings.iter().any(|w| w.contains("passed through each other") && w.contains(words));
+        let pressed = run(&slit(0.0), way);
+        assert!(told(&pressed) && pressed.figures.touching.is_none(), "{way:?}: {:?}", pressed.warnings);
+        let set = [way, &["loading.displacement_mm=0.07"]].concat();
+        assert!(!told(&run(&slit(0.0), &set)), "{way:?}, pulled");
+    }
+}

@@ -1,0 +1,71 @@
+//! Scenes by their default law where material turns: bending, shear, flanks of a crack. References are finite elements of the same
+//! plates (`mechanics/scene_default_law` of the shared data).
+
+use std::path::Path;
+
+use perilife::fracture::scene::{SceneLaw, ZeroEnergyControl};
+use perilife::fracture::{self, Fracture, Scene};
+use perilife::predict::Silent;
+
+use crate::shared::shared;
+
+fn scene(file: &str, set: &[&str]) -> Option<Scene> {
+    let path = shared(&format!("field/mechanics/scene_default_law/{file}.toml"))?;
+    let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
+    Some(Scene::from_file(&path, &overrides).unwrap())
+}
+
+fn run(file: &str, set: &[&str]) -> Option<Fracture> {
+    scene(file, set).map(|scene| fracture::run(&scene, &Silent).unwrap())
+}
+
+fn assert_within(what: &str, found: f64, reference: f64, percent: f64) {
+    let error = 100.0 * (found / reference - 1.0);
+    println!("{what}: {found:.5}, reference {reference}, {error:+.2} %");
+    assert!(error.abs() <= percent, "{what}: {found} is {error:+.2} % from {reference}, bound {percent} %");
+}
+
+/// Arms 40 x 10 mm whose ends go apart by 0.1 mm each: 19.9 N by finite elements; beam theory with the root correction of 0.67 h/a
+/// about 20 N. Springs that resist a turn gave 795 N.
+#[test]
+fn arms_bend_as_beams_do() {
+    let Some(run) = run("double_cantilever", &[]) else { return };
+    assert!(run.warnings.is_empty(), "{:?}", run.warnings);
+    assert_within("double cantilever, N", run.peak_load(), 19.9, 10.0);
+}
+
+/// Opening at the middle of a crack of 10 mm in a square of 50 mm under 50 MPa, mm: displacement of the rows beside it.
+#[test]
+fn a_crack_opens_as_by_finite_elements() {
+    let Some(run) = run("crack_opening", &[]) else { return };
+    let (grid, last) = (&run.grid, run.snapshots.last().unwrap());
+    let mean_of = |side: f64| {
+        let at = |x: f64| {
+            let place = [x, 0.25e-3 * side].map(|x| x);
+            let [c, r] = [0, 1].map(|i| ((place[i] - grid.origin[i]) / grid.spacing).round() as usize);
+            last.displacement[grid.point_at[r * grid.columns + c].unwrap() as usize][1]
+        };
+        0.5 * (at(-0.25e-3) + at(0.25e-3))
+    };
+    assert_within("opening, mm", 1e3 * (mean_of(1.0) - mean_of(-1.0)), 0.01464, 6.0);
+}
+
+/// A square of 1 mm with an edge crack, its top moved sideways: the crack turns down as the largest circumferential stress has it.
+/// Path and load of finite elements with linear fracture mechanics.
+#[test]
+fn a_sheared_square_cracks_as_by_finite_elements() {
+    const PATH: [[f64; 2]; 5] = [[-0.11, 0.035], [-0.19, 0.071], [-0.27, 0.114], [-0.33, 0.152], [-0.39, 0.197]];
+    let Some(run) = run("shear_notched_square", &[]) else { return };
+    let first = run.history.iter().find(|row| (row.displacement - 1e-6).abs() < 1e-12).expect("a row at 0.001 mm");
+    assert_within("sheared square at 0.001 mm, N", first.load, 46.8, 4.0);
+    let way: Vec<[f64; 2]> = run.path.iter().filter(|at| at.tip == 0).map(|at| at.position.map(|x| 1e3 * x)).collect();
+    for [y, x] in PATH {
+        let after = way.iter().position(|at| at[1] <= y).unwrap_or_else(|| panic!("the path ends above {y}: {way:?}"));
+        let (a, b) = (way[after - 1], way[after]);
+        let found = a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]);
+        println!("path at y = {y} mm: {found:.4}, {x}");
+        assert!((found - x).abs() <= 0.03, "path at y = {y} mm: {found} instead of {x}");
+    }
+    let fallen = run.history.last().unwrap().load;
+    assert!(fallen < 0.95 * run.peak_load(), "load {fallen} N at the end, {} N at the most", run.peak_load());
+}
