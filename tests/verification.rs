@@ -43,6 +43,10 @@ mod product;
 mod solvers;
 #[path = "verification/symmetry.rs"]
 mod symmetry;
+#[path = "verification/pressed_cracks.rs"]
+mod pressed_cracks;
+#[path = "verification/mirror_images.rs"]
+mod mirror_images;
 #[path = "verification/near_tip_fields.rs"]
 mod near_tip_fields;
 #[path = "verification/stress_intensity.rs"]

@@ -34,7 +34,7 @@ pub fn through_mouths(specimen: &Specimen, spacing: f64) -> Vec<Crack> {
         let steps = if is_tip { 0 } else { (1..=MOUTH_STEPS).take_while(|&step| !specimen.contains(at(step))).count() };
         if steps == 0 { end } else { at(steps) }
     };
-    specimen.cracks.iter().map(|crack| Crack { from: longer(crack.from, crack.to), to: longer(crack.to, crack.from) }).collect()
+    specimen.cracks.iter().map(|crack| Crack::straight(longer(crack.from, crack.to), longer(crack.to, crack.from))).collect()
 }
 
 /// How far a crack from `a` to `b` is shifted, to its left, before bonds are cut, m.

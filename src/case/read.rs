@@ -14,8 +14,7 @@ use crate::fatigue::paris::ParisLaw;
 use crate::input::{Document, Folder, ForeignSections, OF_SCENES, Sections, value_at};
 use crate::loading::LoadingKind;
 use crate::material::Plane;
-use crate::specimen::Crack;
-use crate::specimen::geometry::distance;
+use crate::specimen::CrackLine;
 use crate::units::{MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use crate::{loading, material, specimen};
 
@@ -200,9 +199,9 @@ fn short_line(case: &Case) -> Option<String> {
     /// Horizons below which K is read more than 1 % low: cracks with two tips by their half, and with one.
     const LEAST: [f64; 2] = [1.2, 2.5];
     let (specimen, horizon) = (&case.specimen, case.model.horizon_ratio * case.model.spacing);
-    let tips_of =
-        |crack: &Crack| specimen.tips.iter().filter(|tip| tip.position == crack.from || tip.position == crack.to).count().max(1);
-    let sizes = specimen.cracks.iter().map(|crack| (distance(crack.from, crack.to) / tips_of(crack) as f64, tips_of(crack)));
+    let size = |line: &CrackLine| (line.length() / specimen.tips_of(line).max(1) as f64, specimen.tips_of(line));
+    let lines = specimen.crack_lines();
+    let sizes = lines.iter().map(size);
     let short = sizes.filter(|(size, tips)| *size < LEAST[usize::from(*tips == 1)] * horizon).map(|(size, _)| size);
     let size = short.min_by(f64::total_cmp)?;
     let (flaw, horizon) = (model::round_mm(size), model::round_mm(horizon));

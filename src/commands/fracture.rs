@@ -100,9 +100,12 @@ fn summary(scene: &Scene, fracture: &Fracture, out: &Path) -> Vec<String> {
         format!("  separated      {}", when(fracture.separated_step)),
         format!("  broken         {} of {} bonds", last.broken_bonds, figures.bonds),
     ];
-    lines.extend(figures.touching.filter(|flanks| flanks.pressed > 0).map(|flanks| {
-        format!("  flanks         pressed together over {:.0} % of the cracks", 100.0 * flanks.share())
-    }));
+    lines.extend(
+        figures
+            .touching
+            .filter(|flanks| flanks.pressed > 0)
+            .map(|flanks| format!("  flanks         pressed together over {:.0} % of the cracks", 100.0 * flanks.share())),
+    );
     lines.extend([
         format!("  computed       {} points, {way}, {:.1} s", figures.points, figures.wall_s),
         format!("  results        {}", out.display()),

@@ -300,9 +300,7 @@ impl<'n> Contact<'n> {
     fn shares(&self, place: Point, beyond: u32, plane: Plane) -> Option<Vec<(u32, f64)>> {
         let net = self.net;
         let spacing = net.spacings[beyond as usize];
-        let side = |x: Point| {
-            plane.through.map_or(0.0, |at| (x[0] - at[0]) * plane.normal[0] + (x[1] - at[1]) * plane.normal[1])
-        };
+        let side = |x: Point| plane.through.map_or(0.0, |at| (x[0] - at[0]) * plane.normal[0] + (x[1] - at[1]) * plane.normal[1]);
         let own = side(net.positions[beyond as usize]);
         let sees = |point: u32| {
             let x = net.positions[point as usize];

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::case::{Case, LawSource};
+use crate::growth::record::TipRecord;
 use crate::predict::laws::paris_law;
 use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
@@ -30,6 +31,7 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "converged": prediction.stop != StopReason::NoConvergence,
         "crack_length_initial_mm": clean(case.specimen.crack_length / MM),
         "crack_length_final_mm": clean(prediction.crack_length_final() / MM),
+        "tips": tips(prediction),
         "life_share_extrapolated": life_share_extrapolated(case, prediction),
         "plastic_zone": plastic_zone(case, prediction),
         "k_cross_check": prediction.cross_check.map(|check| json!({
@@ -51,6 +53,21 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "version": env!("CARGO_PKG_VERSION"),
         "case": case.echo,
     })
+}
+
+/// Every tip at the start and at the end: state, place, growth.
+fn tips(prediction: &Prediction) -> Vec<Value> {
+    let [Some(first), Some(last)] = [prediction.curve.first(), prediction.curve.last()] else { return Vec::new() };
+    let of_tip = |(start, end): (&TipRecord, &TipRecord)| {
+        json!({
+            "state_initial": start.state.name(),
+            "state": end.state.name(),
+            "x_mm": clean(end.position[0] / MM),
+            "y_mm": clean(end.position[1] / MM),
+            "growth_mm": clean(end.growth / MM),
+        })
+    };
+    first.tips.iter().zip(&last.tips).map(of_tip).collect()
 }
 
 /// Plastic zone at the first and the last row whose K is known; `null` without yield strength.

@@ -45,7 +45,7 @@ pub(super) fn from_value(value: &Value) -> Result<Specimen> {
     Ok(Specimen {
         outline: vec![[front, -half_height], [w, -half_height], [w, half_height], [front, half_height]],
         holes: vec![hole(1.0), hole(-1.0)],
-        cracks: vec![Crack { from: [front, 0.0], to: [a, 0.0] }],
+        cracks: vec![Crack::straight([front, 0.0], [a, 0.0])],
         tips: vec![TipSeed { position: [a, 0.0], direction: [1.0, 0.0], from_slot: false }],
         gross_width: 1.25 * w,
         crack_length: a,

@@ -1,7 +1,7 @@
 //! A crack as a line of straight pieces.
 
 use super::Point;
-use super::geometry::{direction, distance, distance_to_segment};
+use super::geometry::{direction, distance, distance_to_segment, segments_touch};
 
 /// Share of the last piece that is kept where an end is drawn back over it.
 const STUB: f64 = 0.1;
@@ -111,6 +111,14 @@ impl CrackLine {
     /// Its straight pieces, in its own sense.
     pub fn pieces(&self) -> impl Iterator<Item = [Point; 2]> + '_ {
         self.points.windows(2).map(|piece| [piece[0], piece[1]])
+    }
+
+    /// Whether a straight segment crosses the line or comes as near to it as `slack`, m, with one of its ends.
+    #[must_use]
+    pub fn meets(&self, from: Point, to: Point, slack: f64) -> bool {
+        self.pieces()
+            .any(|[a, b]| segments_touch(from, to, a, b) || [a, b].iter().any(|p| distance_to_segment(*p, from, to) < slack))
+            || [from, to].iter().any(|end| self.distance(*end) < slack)
     }
 
     /// Distance of a point from the line, m.

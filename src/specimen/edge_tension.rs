@@ -77,5 +77,5 @@ fn sizes(kind: SpecimenKind, [width, length, thickness, crack]: [f64; 4]) -> Res
 /// Crack of length `a` from the edge x = side W/2 inwards.
 fn edge_crack(width: f64, a: f64, side: f64) -> (Crack, TipSeed) {
     let (mouth, end) = ([side * width / 2.0, 0.0], [side * (width / 2.0 - a), 0.0]);
-    (Crack { from: mouth, to: end }, TipSeed { position: end, direction: [-side, 0.0], from_slot: false })
+    (Crack::straight(mouth, end), TipSeed { position: end, direction: [-side, 0.0], from_slot: false })
 }

@@ -37,7 +37,7 @@ pub(super) fn from_value(value: &Value) -> Result<Specimen> {
     check_crack(input.crack_length_mm, input.width_mm / 2.0, "the half width")?;
     let tip = |sign: f64| TipSeed { position: [sign * a, 0.0], direction: [sign, 0.0], from_slot: false };
     Ok(Specimen {
-        cracks: vec![Crack { from: [-a, 0.0], to: [a, 0.0] }],
+        cracks: vec![Crack::straight([-a, 0.0], [a, 0.0])],
         tips: vec![tip(-1.0), tip(1.0)],
         crack_length: a,
         ..Specimen::strip(SpecimenKind::MiddleTension, width, length, thickness)

@@ -62,13 +62,23 @@ pub struct Slot {
     pub width: f64,
 }
 
-/// A straight through crack.
+/// A straight through crack, or a straight piece of one with bends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crack {
     /// One end, m.
     pub from: Point,
     /// Other end, m.
     pub to: Point,
+    /// Whether it goes on from the end of the crack before it in the list, as the next piece of the same line.
+    pub continues: bool,
+}
+
+impl Crack {
+    /// A straight crack.
+    #[must_use]
+    pub fn straight(from: Point, to: Point) -> Self {
+        Crack { from, to, continues: false }
+    }
 }
 
 /// Where growth can start: a crack end inside the plate, or the middle of a slot's end face that lies in the material
@@ -234,12 +244,16 @@ impl Specimen {
         if self.kind != SpecimenKind::Plate {
             return vec![self.crack_length];
         }
-        let tips_of = |crack: &Crack| {
-            self.tips.iter().filter(|tip| !tip.from_slot && (tip.position == crack.from || tip.position == crack.to)).count()
-        };
-        let cracks = self.cracks.iter().map(|crack| geometry::distance(crack.from, crack.to) / tips_of(crack).max(1) as f64);
+        let cracks = self.crack_lines().into_iter().map(|line| line.length() / self.tips_of(&line).max(1) as f64);
         let slots = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to));
         cracks.chain(slots).collect()
+    }
+
+    /// Number of tips of a crack.
+    #[must_use]
+    pub fn tips_of(&self, line: &CrackLine) -> usize {
+        let ends = |tip: &&TipSeed| !tip.from_slot && [true, false].iter().any(|&at_last| line.end(at_last) == tip.position);
+        self.tips.iter().filter(ends).count()
     }
 
     /// The smallest of the [`Specimen::flaw_sizes`], m.
@@ -290,15 +304,27 @@ impl Specimen {
     /// The cracks as lines, in their order.
     #[must_use]
     pub fn crack_lines(&self) -> Vec<CrackLine> {
-        self.cracks.iter().map(|crack| CrackLine::straight(crack.from, crack.to)).collect()
+        let mut lines: Vec<CrackLine> = Vec::with_capacity(self.cracks.len());
+        for crack in &self.cracks {
+            match lines.last_mut().filter(|_| crack.continues) {
+                Some(line) => line.grow(true, crack.to),
+                None => lines.push(CrackLine::straight(crack.from, crack.to)),
+            }
+        }
+        lines
     }
 
     /// Which end of which of the [`Specimen::crack_lines`] a tip is; `None` for the end face of a slot.
     #[must_use]
     pub fn line_end(&self, tip: usize) -> Option<LineEnd> {
         let seed = self.tips.get(tip).filter(|seed| !seed.from_slot)?;
-        let line = self.cracks.iter().position(|crack| crack.from == seed.position || crack.to == seed.position)?;
-        Some(LineEnd { line, at_last: self.cracks[line].to == seed.position })
+        let mut lines = self.crack_lines().into_iter().enumerate();
+        lines.find_map(|(line, crack)| {
+            [true, false]
+                .into_iter()
+                .find(|&at_last| crack.end(at_last) == seed.position)
+                .map(|at_last| LineEnd { line, at_last })
+        })
     }
 
     /// Whether it has tips, and all of them are those of sharp cracks.

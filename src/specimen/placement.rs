@@ -3,7 +3,7 @@
 use super::geometry::{
     along, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share, point_in_polygon, segments_touch,
 };
-use super::{Crack, Hole, Point, Slot, Specimen, TipSeed};
+use super::{Crack, CrackLine, Hole, Point, Slot, Specimen, TipSeed};
 use crate::error::{Error, Result, input_missing};
 use crate::units::MM;
 
@@ -84,44 +84,113 @@ pub(super) fn place_slots(specimen: &mut Specimen, slots: Vec<Slot>) -> Result<V
     Ok(seeds)
 }
 
-/// Puts the cracks in, cut off where they leave the material, and then all tips: cracks first, slots after them.
-pub(super) fn place_cracks(specimen: &mut Specimen, cracks: Vec<Crack>, mut slot_seeds: Vec<TipSeed>) -> Result<()> {
-    for (i, asked) in cracks.into_iter().enumerate() {
+/// Puts the cracks in, lines with all their corners, cut off where they leave the material, and then all tips: cracks first, slots after
+/// them. An end that lies on another crack is no tip.
+pub(super) fn place_cracks(specimen: &mut Specimen, paths: Vec<Vec<Point>>, mut slot_seeds: Vec<TipSeed>) -> Result<()> {
+    let mut ends: Vec<TipSeed> = Vec::new();
+    for (i, path) in with_shared_ends_joined(paths) {
         let key = format!("specimen.cracks[{i}]");
-        let (from, from_open) = trimmed_end(specimen, asked.from, asked.to, &key)?;
-        let (to, to_open) = trimmed_end(specimen, asked.to, asked.from, &key)?;
-        let crack = Crack { from, to };
-        let ahead = direction(asked.from, asked.to);
-        let length = (to[0] - from[0]) * ahead[0] + (to[1] - from[1]) * ahead[1];
-        if length < 10.0 * TOUCH {
+        let [Some(&asked_from), Some(&asked_to)] = [path.first(), path.last()] else { continue };
+        let (second, last_but_one) = (path[1], path[path.len() - 2]);
+        let (from, from_open) = trimmed_end(specimen, asked_from, second, &key)?;
+        let (to, to_open) = trimmed_end(specimen, asked_to, last_but_one, &key)?;
+        let mut corners = path.clone();
+        corners[0] = from;
+        if let Some(last) = corners.last_mut() {
+            *last = to;
+        }
+        let is_left = |asked: [Point; 2], left: [Point; 2]| {
+            let ahead = direction(asked[0], asked[1]);
+            (left[1][0] - left[0][0]) * ahead[0] + (left[1][1] - left[0][1]) * ahead[1] >= 10.0 * TOUCH
+        };
+        let pieces = || corners.windows(2).map(|piece| [piece[0], piece[1]]);
+        if !path.windows(2).zip(pieces()).all(|(asked, left)| is_left([asked[0], asked[1]], left)) {
             return Err(refuse(key, "does not reach into the material", "end it inside the plate, beyond hole and slot"));
         }
-        if from_open && to_open {
-            return Err(refuse(key, "has no end inside the material that could grow", "end it inside the plate"));
-        }
-        check_path(specimen, crack, &key)?;
-        if let Some(j) = specimen.cracks.iter().position(|other| cracks_meet(crack, *other)) {
-            return Err(refuse(
-                key,
-                format!("touches or crosses cracks[{j}]"),
-                "leave at least a spacing between cracks; crossing cracks are not supported",
-            ));
+        let cracks: Vec<Crack> = pieces().enumerate().map(|(j, [from, to])| Crack { from, to, continues: j > 0 }).collect();
+        for &crack in &cracks {
+            check_path(specimen, crack, &key)?;
+            if let Some(other) = specimen.cracks.iter().find(|other| is_overlap(crack, **other)) {
+                let line =
+                    specimen.crack_lines().iter().position(|line| line.pieces().any(|piece| piece == [other.from, other.to]));
+                let problem = format!("lies along cracks[{}] over some length", line.unwrap_or(0));
+                return Err(refuse(key, problem, "give both as one crack"));
+            }
         }
         // A crack that starts from the end face of a slot takes the place of that face's seed.
         slot_seeds.retain(|seed| {
             distance(seed.position, from) > half_width_at(specimen, seed)
                 && distance(seed.position, to) > half_width_at(specimen, seed)
         });
-        for (end, other, open) in [(from, to, from_open), (to, from, to_open)] {
+        for (end, other, open) in [(from, corners[1], from_open), (to, corners[corners.len() - 2], to_open)] {
             if !open {
-                specimen.tips.push(TipSeed { position: end, direction: direction(other, end), from_slot: false });
+                ends.push(TipSeed { position: end, direction: direction(other, end), from_slot: false });
             }
         }
-        specimen.crack_length += length;
-        specimen.cracks.push(crack);
+        specimen.crack_length += pieces().map(|[a, b]| distance(a, b)).sum::<f64>();
+        specimen.cracks.extend(cracks);
     }
+    let lines = specimen.crack_lines();
+    let is_free = |seed: &TipSeed| {
+        let is_end = |line: &CrackLine| [true, false].iter().any(|&at_last| line.end(at_last) == seed.position);
+        lines.iter().all(|line| is_end(line) || line.distance(seed.position) > TOUCH)
+            && lines.iter().filter(|line| is_end(line)).count() == 1
+    };
+    specimen.tips.extend(ends.into_iter().filter(is_free));
     specimen.tips.append(&mut slot_seeds);
+    for (i, line) in lines.iter().enumerate() {
+        let is_joined =
+            || lines.iter().enumerate().any(|(other, crack)| other != i && line.pieces().any(|[a, b]| crack.meets(a, b, TOUCH)));
+        if specimen.tips_of(line) == 0 && !is_joined() {
+            return Err(refuse(
+                format!("specimen.cracks[{i}]"),
+                "has no end inside the material that could grow",
+                "end it inside the plate",
+            ));
+        }
+    }
     Ok(())
+}
+
+/// Paths with their numbers; two that share an end, where no third comes, are one crack with a bend there.
+fn with_shared_ends_joined(paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
+    let mut joined: Vec<(usize, Vec<Point>)> = paths.into_iter().enumerate().collect();
+    let is_same = |a: Point, b: Point| distance(a, b) < TOUCH;
+    let ends = |path: &[Point]| [path[0], path[path.len() - 1]];
+    loop {
+        let comes = |path: &[Point], at: Point| path.windows(2).any(|piece| distance_to_segment(at, piece[0], piece[1]) < TOUCH);
+        let pair = (0..joined.len()).flat_map(|i| (i + 1..joined.len()).map(move |j| (i, j))).find_map(|(i, j)| {
+            let shared: Vec<Point> =
+                ends(&joined[i].1).into_iter().filter(|&a| ends(&joined[j].1).into_iter().any(|b| is_same(a, b))).collect();
+            let [at] = shared[..] else { return None };
+            (joined.iter().filter(|(_, path)| comes(path, at)).count() == 2).then_some((i, j, at))
+        });
+        let Some((i, j, at)) = pair else { return joined };
+        let (_, mut second) = joined.remove(j);
+        let first = &mut joined[i].1;
+        let at_start = is_same(first[0], at);
+        if is_same(second[0], at) == at_start {
+            second.reverse();
+        }
+        // The corner is the end that the earlier of both gives.
+        if at_start {
+            second.pop();
+            first.splice(0..0, second);
+        } else {
+            first.extend(second.into_iter().skip(1));
+        }
+    }
+}
+
+/// Whether two straight cracks lie on one line over some length.
+fn is_overlap(a: Crack, b: Crack) -> bool {
+    let ahead = direction(a.from, a.to);
+    let seat = |p: Point| {
+        let [x, y] = [p[0] - a.from[0], p[1] - a.from[1]];
+        [x * ahead[0] + y * ahead[1], y * ahead[0] - x * ahead[1]]
+    };
+    let ([s, off_s], [t, off_t]) = (seat(b.from), seat(b.to));
+    off_s.abs() < TOUCH && off_t.abs() < TOUCH && s.min(t).max(0.0) + TOUCH < s.max(t).min(distance(a.from, a.to))
 }
 
 /// Where a crack really ends, and whether that end is open (on an edge, in a hole or in a slot) and so not a tip.
@@ -195,12 +264,6 @@ fn check_path(specimen: &Specimen, crack: Crack, key: &str) -> Result<()> {
         ));
     }
     Ok(())
-}
-
-fn cracks_meet(a: Crack, b: Crack) -> bool {
-    segments_touch(a.from, a.to, b.from, b.to)
-        || [a.from, a.to].iter().any(|p| distance_to_segment(*p, b.from, b.to) < TOUCH)
-        || [b.from, b.to].iter().any(|p| distance_to_segment(*p, a.from, a.to) < TOUCH)
 }
 
 fn slot_meets_hole(slot: &Slot, hole: &Hole) -> bool {

@@ -1,4 +1,4 @@
-//! A plate of any outline with round holes, slots and straight through cracks at any angle.
+//! A plate of any outline with round holes, slots and through cracks.
 //!
 //! ```toml
 //! [specimen]
@@ -7,10 +7,10 @@
 //! length_mm = 300.0
 //! thickness_mm = 2.0
 //! holes = [{ x_mm = 20.0, y_mm = 0.0, diameter_mm = 8.0 }]
-//! cracks = [{ from_mm = [-5.0, 0.0], to_mm = [5.0, 0.0] }]
+//! cracks = [{ from_mm = [-5.0, 0.0], to_mm = [5.0, 0.0] }]   # or { path_mm = [[x, y], [x, y], ...] }: a crack with bends
 //! notches = [{ from_mm = [-50.0, 20.0], to_mm = [-40.0, 20.0], width_mm = 2.0 }]
 //! ```
-//! A crack may start on an edge, in a hole or in a slot: what lies outside the material is cut off and only the inner end
+//! Cracks that share a point or cross are joined; an end that lies on another crack is no tip. A crack may start on an edge, in a hole or in a slot: what lies outside the material is cut off and only the inner end
 //! is a tip. The tip seed of a slot is the middle of each end face that lies in the material. Crack length is the sum of
 //! all cracks and slots inside the plate plus all growth. The load is chosen in `[loading]`.
 
@@ -18,7 +18,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use toml::Value;
 
-use super::geometry::{bounding_box, distance, polygon_area, self_intersection};
+use super::geometry::{bounding_box, distance, polygon_area, segments_touch, self_intersection, turn};
 use super::placement::{check_holes, place_cracks, place_slots};
 use super::{Crack, Hole, LengthConvention, Point, Slot, Specimen, SpecimenKind};
 use crate::error::{Result, input, input_missing};
@@ -57,8 +57,9 @@ struct HoleInput {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CrackInput {
-    from_mm: [f64; 2],
-    to_mm: [f64; 2],
+    from_mm: Option<[f64; 2]>,
+    to_mm: Option<[f64; 2]>,
+    path_mm: Option<Vec<[f64; 2]>>,
 }
 
 #[derive(Deserialize)]
@@ -81,10 +82,7 @@ pub(super) fn from_value(value: &Value) -> Result<Specimen> {
         let (from, to) = ends(path, item.from_mm, item.to_mm)?;
         Ok(Slot { from, to, width: LENGTH.read(&format!("{path}.width_mm"), item.width_mm)? })
     })?;
-    let cracks = items("specimen.cracks", &input.cracks, |item: CrackInput, path| {
-        let (from, to) = ends(path, item.from_mm, item.to_mm)?;
-        Ok(Crack { from, to })
-    })?;
+    let cracks = items("specimen.cracks", &input.cracks, |item: CrackInput, path| crack_path(path, item))?;
     let [low, high] = bounding_box(&outline);
     let (width, length) = (high[0] - low[0], high[1] - low[1]);
     let mut specimen = Specimen {
@@ -214,6 +212,43 @@ fn items<I: DeserializeOwned, T>(key: &str, list: &[Value], read: impl Fn(I, &st
         read(slice(item, &path)?, &path)
     };
     list.iter().enumerate().map(one).collect()
+}
+
+/// Corners of a crack, both ends included.
+fn crack_path(path: &str, item: CrackInput) -> Result<Vec<Point>> {
+    const REMEDY: &str = "give from_mm and to_mm, or path_mm = [[x, y], [x, y], ...]";
+    let corners = match (item.from_mm, item.to_mm, item.path_mm) {
+        (Some(from), Some(to), None) => {
+            let (from, to) = ends(path, from, to)?;
+            return Ok(vec![from, to]);
+        }
+        (None, None, Some(corners)) => corners,
+        (None, None, None) => return Err(input_missing(path, "has no ends", REMEDY)),
+        (from, _, None) => {
+            let key = format!("{path}.{}", if from.is_none() { "from_mm" } else { "to_mm" });
+            return Err(input_missing(&key, "is missing", REMEDY));
+        }
+        (_, _, Some(_)) => return Err(input_missing(&format!("{path}.path_mm"), "stands beside from_mm or to_mm", REMEDY)),
+    };
+    let key = format!("{path}.path_mm");
+    if corners.len() < 2 || corners.len() > ITEMS_MAX {
+        return Err(input(&key, format!("{} points", corners.len()), "is no path", format!("give 2 to {ITEMS_MAX} points")));
+    }
+    let line: Vec<Point> =
+        corners.iter().enumerate().map(|(i, &corner)| point(&format!("{key}[{i}]"), corner)).collect::<Result<_>>()?;
+    if let Some(i) = (1..line.len()).find(|&i| distance(line[i - 1], line[i]) < 1e-6) {
+        return Err(input_missing(&format!("{key}[{i}]"), "coincides with the point before it", "leave one of them out"));
+    }
+    let pieces: Vec<[Point; 2]> = line.windows(2).map(|piece| [piece[0], piece[1]]).collect();
+    for (j, [c, d]) in pieces.iter().enumerate() {
+        let folds =
+            j > 0 && turn(pieces[j - 1][0], *c, *d) == 0.0 && distance(pieces[j - 1][0], *d) < distance(pieces[j - 1][0], *c);
+        if folds || pieces[..j.saturating_sub(1)].iter().any(|[a, b]| segments_touch(*a, *b, *c, *d)) {
+            let problem = format!("crosses, touches or folds back on itself after point {j}");
+            return Err(input_missing(&key, problem, "give branches as cracks of their own that share a point with this one"));
+        }
+    }
+    Ok(line)
 }
 
 /// Two different end points.

@@ -162,7 +162,7 @@ fn own_crack(specimen: &Specimen, tip: usize) -> Own {
     let here = specimen.tips[tip].position;
     let is_own = |crack: &&Crack| crack.from == here || crack.to == here;
     // Every sharp tip was placed at an end of its crack and moves with it; a lone tip stands for itself.
-    let crack = specimen.cracks.iter().find(is_own).copied().unwrap_or(Crack { from: here, to: here });
+    let crack = specimen.cracks.iter().find(is_own).copied().unwrap_or(Crack::straight(here, here));
     let at_to = crack.to == here;
     let other = if at_to { crack.from } else { crack.to };
     let shared = specimen.tips.iter().any(|seed| seed.position == other);

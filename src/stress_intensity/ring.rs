@@ -37,7 +37,7 @@ use crate::body::facets::{Facet, facets};
 use crate::body::pre_crack::{as_cut, places_near};
 use crate::material::Material;
 use crate::solver::field::Layout;
-use crate::specimen::geometry::{distance, distance_to_segment};
+use crate::specimen::geometry::{direction, distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen, Support};
 use crate::state::Bonds;
 
@@ -52,6 +52,8 @@ const CORE_HORIZONS: f64 = 0.75;
 const NEIGHBOURS_LEAST: usize = 6;
 /// Pieces of a crack face per spacing.
 const PIECES_PER_SPACING: f64 = 2.0;
+/// Distance between cracks, in spacings, that are joined.
+const JOINED_SPACINGS: f64 = 1e-3;
 /// Relative difference of distances that are equal.
 const EQUAL: f64 = 1e-3;
 /// Room left, in horizons, between a ring and what it cannot take in: another tip, a support.
@@ -166,7 +168,7 @@ impl RingGeometry {
         let Balanced { body, lines, .. } = plate;
         let line = &lines[end.line];
         let frame = TipFrame { origin: line.end(end.at_last), ahead: line.direction(end.at_last), line: 0.0 };
-        let own = CrackFaces::new(body, line, end.at_last, &frame);
+        let own = CrackFaces::new(body, &continued(lines, end, JOINED_SPACINGS * body.lattice.spacing), end.at_last, &frame);
         let inner = (INNER_SHARE * outer).max((INNER_HORIZONS * body.horizon()).min(0.5 * outer));
         let around = RingIntegral { surroundings: self, plate, frame, own, inner, outer, known: RefCell::default() };
         let mut sums: PerAuxiliary = [0.0; 5];
@@ -218,6 +220,41 @@ impl RingGeometry {
         let tip_offset = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
         RingFactors { factors: [k_i, k_ii], t_stress: 2.0 * half_t, tip_offset, radius: outer, of_pressure }
     }
+}
+
+/// The crack of a tip with one that its other end lies on, within `slack`, m: behind the place where both are joined the auxiliary field
+/// is cut along that one, not through the material.
+fn continued(lines: &[CrackLine], end: LineEnd, slack: f64) -> CrackLine {
+    let mut points = lines[end.line].points.clone();
+    // From the tip back.
+    if end.at_last {
+        points.reverse();
+    }
+    let mut seen = vec![end.line];
+    while let [.., before, joint] = points[..] {
+        let is_joined = |line: &usize| !seen.contains(line) && lines[*line].distance(joint) < slack;
+        let Some(other) = (0..lines.len()).find(is_joined) else { break };
+        seen.push(other);
+        let corners = &lines[other].points;
+        let piece = (1..corners.len()).find(|&i| distance_to_segment(joint, corners[i - 1], corners[i]) < slack).unwrap_or(1);
+        let arms = [corners[..piece].iter().rev().copied().collect::<Vec<_>>(), corners[piece..].to_vec()];
+        let back = direction(before, joint);
+        // The arm that turns least.
+        let straightness = |arm: &Vec<Point>| {
+            let far = arm.iter().find(|corner| distance(**corner, joint) > slack);
+            far.map_or(f64::NEG_INFINITY, |&far| {
+                let way = direction(joint, far);
+                back[0] * way[0] + back[1] * way[1]
+            })
+        };
+        let [first, second] = arms;
+        let arm = if straightness(&second) > straightness(&first) { second } else { first };
+        points.extend(arm.into_iter().filter(|corner| distance(*corner, joint) > slack));
+    }
+    if end.at_last {
+        points.reverse();
+    }
+    CrackLine { points }
 }
 
 /// Both faces of a straight piece of crack, as the bonds see it: a trifle aside of the line that was asked for.

@@ -72,7 +72,7 @@ fn flawed(law: BondLaw) -> Scene {
     let mm = |point: Point| point.map(|x| x * MM);
     specimen.holes.push(Hole { centre: mm([22.0, 12.0]), radius: 6.0 * MM });
     specimen.slots.push(Slot { from: mm([-50.0, -5.0]), to: mm([-30.0, -5.0]), width: 2.0 * MM });
-    specimen.cracks.push(Crack { from: mm([0.0, -14.0]), to: mm([9.0, -10.0]) });
+    specimen.cracks.push(Crack::straight(mm([0.0, -14.0]), mm([9.0, -10.0])));
     let side = RefinedRegion::Box { low: mm([-50.0, -30.0]), high: mm([50.0, -24.0]) };
     scene(specimen, law, SPACING, &[(RefinedRegion::AroundFlaws { distance: 3.0 * MM }, 2), (side, 1)])
 }

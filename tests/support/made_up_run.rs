@@ -12,7 +12,7 @@ const SPACING: f64 = 1e-3;
 /// The crack before N = 0: 10 mm long, 60° to the load.
 pub fn cracks() -> Vec<Crack> {
     let (x, y) = (5e-3 * (PI / 6.0).cos(), 5e-3 * (PI / 6.0).sin());
-    vec![Crack { from: [-x, -y], to: [x, y] }]
+    vec![Crack::straight([-x, -y], [x, y])]
 }
 
 /// The run, on a lattice turned by `angle`.

@@ -31,7 +31,7 @@ fn the_same_seed_gives_the_same_cracks() {
 fn they_keep_off_edges_holes_cracks_and_grips() {
     let specimen = Scene::from_toml(TEXT, "scene", Path::new(""), &[]).unwrap().specimen;
     let (spacing, horizon) = (0.5e-3, 3.015 * 0.5e-3);
-    for Crack { from, to } in cracks(&[]) {
+    for Crack { from, to, .. } in cracks(&[]) {
         for end in [from, to] {
             assert!(specimen.contains(end) && distance_to_polygon(end, &specimen.outline) > spacing);
             assert!(end[1].abs() < 20e-3 - 2e-3 - horizon, "{end:?}");
@@ -57,7 +57,7 @@ fn length_angle_and_place_are_those_asked_for() {
         "micro_cracks.regions=[{ from_mm = [-15, 5], to_mm = [0, 12] }]",
     ];
     for crack in cracks(&set) {
-        let Crack { from, to } = crack;
+        let Crack { from, to, .. } = crack;
         assert!((1e-3..1.5e-3).contains(&length(&crack)));
         let angle = (to[1] - from[1]).atan2(to[0] - from[0]).to_degrees();
         assert!((30.0 - 1e-9..40.0 + 1e-9).contains(&angle), "{angle}");

@@ -10,8 +10,8 @@ use perilife::fracture::quasi_static::equilibrium::{Equilibrium, Shape};
 use perilife::fracture::quasi_static::full_load::FullLoad;
 use perilife::fracture::{self, Fracture, Scene, boundary::Boundary};
 use perilife::predict::Silent;
-use perilife::specimen::geometry::segments_touch;
 use perilife::specimen::Point;
+use perilife::specimen::geometry::segments_touch;
 
 use crate::shared::shared;
 
@@ -25,7 +25,10 @@ const PRESSED: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 
 /// The plate with a slit of 20 mm about its middle, turned by so many degrees.
 fn slit(degrees: f64) -> String {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    PRESSED.replace("CRACKS", &format!("cracks = [{{ from_mm = [{}, {}], to_mm = [{}, {}] }}]", -10.0 * cos, -10.0 * sin, 10.0 * cos, 10.0 * sin))
+    PRESSED.replace(
+        "CRACKS",
+        &format!("cracks = [{{ from_mm = [{}, {}], to_mm = [{}, {}] }}]", -10.0 * cos, -10.0 * sin, 10.0 * cos, 10.0 * sin),
+    )
 }
 
 fn scene(text: &str, set: &[&str]) -> Scene {
@@ -93,7 +96,13 @@ fn contact_is_free_under_turning_and_sliding() {
     for degrees in [0.0, 20.0, -37.0, 90.0] {
         for discretisation in ["lattice", "dual_horizon"] {
             let (sin, cos) = f64::to_radians(degrees).sin_cos();
-            let long = format!("cracks = [{{ from_mm = [{}, {}], to_mm = [{}, {}] }}]", -29.0 * cos, -29.0 * sin, 29.0 * cos, 29.0 * sin);
+            let long = format!(
+                "cracks = [{{ from_mm = [{}, {}], to_mm = [{}, {}] }}]",
+                -29.0 * cos,
+                -29.0 * sin,
+                29.0 * cos,
+                29.0 * sin
+            );
             let key = format!("model.discretisation={discretisation}");
             let set = [key.as_str(), "refinement.regions=[{box_mm=[[-20,-20],[20,20]],levels=1}]"];
             let scene = scene(&PRESSED.replace("CRACKS", &long), if discretisation == "lattice" { &[] } else { &set });
@@ -103,7 +112,7 @@ fn contact_is_free_under_turning_and_sliding() {
             contact.press_all(&bonds);
             let columns = contact.touching();
             assert!(columns.columns > 500 && columns.pressed == columns.columns, "{columns:?}");
-            let mut energy = |field: &dyn Fn(Point) -> Point| {
+            let energy = |field: &dyn Fn(Point) -> Point| {
                 let of = |&x: &Point| {
                     let [x, y] = field(x);
                     [x, y, 0.0].into_iter().take(net.unknowns)
@@ -112,7 +121,10 @@ fn contact_is_free_under_turning_and_sliding() {
                 let mut force = vec![0.0; u.len()];
                 let energy = contact.push(&u, &mut force);
                 let resultant = (0..2).map(|c| force.iter().skip(c).step_by(net.unknowns).sum::<f64>().abs()).fold(0.0, f64::max);
-                assert!(resultant <= 1e-9 * force.iter().fold(0.0, |a: f64, f| a.max(f.abs())) || energy < 1e-20, "{resultant} N");
+                assert!(
+                    resultant <= 1e-9 * force.iter().fold(0.0, |a: f64, f| a.max(f.abs())) || energy < 1e-20,
+                    "{resultant} N"
+                );
                 energy
             };
             let above = |[x, y]: Point| y * cos - x * sin > 0.0;
@@ -120,7 +132,10 @@ fn contact_is_free_under_turning_and_sliding() {
             let turned = energy(&|[x, y]| [-1e-3 * y, 1e-3 * x]);
             let slid = energy(&|x| if above(x) { [1e-4 * cos, 1e-4 * sin] } else { [0.0, 0.0] });
             println!("{degrees}°, {discretisation}: pressed {pressed:.3e} J, turned {turned:.1e} J, slid {slid:.1e} J");
-            assert!(turned < 1e-18 * pressed && slid < 1e-18 * pressed, "{degrees}°, {discretisation}: {turned:e}, {slid:e}, {pressed:e} J");
+            assert!(
+                turned < 1e-18 * pressed && slid < 1e-18 * pressed,
+                "{degrees}°, {discretisation}: {turned:e}, {slid:e}, {pressed:e} J"
+            );
         }
     }
 }

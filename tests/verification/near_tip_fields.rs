@@ -113,7 +113,7 @@ fn the_represented_length_swings_about_the_requested_one() {
         let mut excess: Vec<f64> = Vec::new();
         for i in 0..samples {
             let a = 20e-3 + spacing * f64::from(spacings * i) / f64::from(samples);
-            let crack = Crack { from: [-a * cos, -a * sin], to: [a * cos, a * sin] };
+            let crack = Crack::straight([-a * cos, -a * sin], [a * cos, a * sin]);
             let [here, there] = [true, false].map(|at_to| represented_end(&body, &crack, at_to, a));
             // The lattice is symmetric under half a turn, and so is a crack through its centre.
             if angle == 20.0 || angle == 37.0 {

@@ -1,9 +1,6 @@
 //! Scenes by their default law where material turns: bending, shear, flanks of a crack. References are finite elements of the same
 //! plates (`mechanics/scene_default_law` of the shared data).
 
-use std::path::Path;
-
-use perilife::fracture::scene::{SceneLaw, ZeroEnergyControl};
 use perilife::fracture::{self, Fracture, Scene};
 use perilife::predict::Silent;
 

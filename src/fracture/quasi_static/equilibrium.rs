@@ -53,7 +53,13 @@ impl<'n> Equilibrium<'n> {
     /// Out of memory.
     pub fn new(net: &'n Net, cracks: &[Crack], full: &'n FullLoad) -> Result<Self> {
         let springs = Springs::new(net, Failure::Never, false);
-        Ok(Equilibrium { net, full, springs, contact: Contact::new(net, cracks), inner: equilibrium::Equilibrium::new(net, full)? })
+        Ok(Equilibrium {
+            net,
+            full,
+            springs,
+            contact: Contact::new(net, cracks),
+            inner: equilibrium::Equilibrium::new(net, full)?,
+        })
     }
 
     /// What solving has cost so far.

@@ -136,7 +136,7 @@ impl Field {
         let within = |range: [f64; 2], share: f64| range[0] + share * (range[1] - range[0]);
         let half = within(self.lengths, random.share()) / 2.0;
         let (sin, cos) = within(self.angles, random.share()).sin_cos();
-        Crack { from: [middle[0] - half * cos, middle[1] - half * sin], to: [middle[0] + half * cos, middle[1] + half * sin] }
+        Crack::straight([middle[0] - half * cos, middle[1] - half * sin], [middle[0] + half * cos, middle[1] + half * sin])
     }
 }
 
@@ -152,7 +152,7 @@ fn kept_clear(scene: &Scene) -> Vec<(Point, Point)> {
 /// loads and supports. Micro cracks may cross each other.
 fn fits(crack: Crack, scene: &Scene, kept_clear: &[(Point, Point)]) -> bool {
     let (specimen, margin) = (&scene.specimen, scene.model.spacing);
-    let Crack { from, to } = crack;
+    let Crack { from, to, .. } = crack;
     let inside = |p: Point| specimen.contains(p) && distance_to_polygon(p, &specimen.outline) > margin;
     let low = [from[0].min(to[0]), from[1].min(to[1])];
     let high = [from[0].max(to[0]), from[1].max(to[1])];

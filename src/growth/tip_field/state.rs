@@ -13,7 +13,6 @@ use crate::fatigue::crack_tip::TipState;
 use crate::growth::SolverStatistics;
 use crate::growth::cross_check::EnergyBalance;
 use crate::growth::record::CurvePoint;
-use crate::specimen::geometry::distance;
 use crate::specimen::{CrackLine, LineEnd, Specimen};
 
 /// A tip that grows by its own K.
@@ -53,8 +52,7 @@ pub struct Tip {
 impl Tip {
     pub(super) fn new(specimen: &Specimen, end: LineEnd) -> Self {
         // All of its crack belongs to it, or half where both ends are tips.
-        let crack = specimen.cracks[end.line];
-        let tips = specimen.tips.iter().filter(|tip| tip.position == crack.from || tip.position == crack.to).count();
+        let line = &specimen.crack_lines()[end.line];
         Tip {
             end,
             state: TipState::Active,
@@ -64,7 +62,7 @@ impl Tip {
             rate: 0.0,
             before: None,
             past: None,
-            length: distance(crack.from, crack.to) / tips.max(1) as f64,
+            length: line.length() / specimen.tips_of(line).max(1) as f64,
             length_offset: 0.0,
             reading: None,
             readings: Readings::default(),

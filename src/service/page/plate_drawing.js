@@ -30,10 +30,15 @@ export function geometryOf(specimen) {
     case "plate": {
       const d = specimen.diameter_mm;
       const outline = specimen.outline_mm ?? (d > 0 ? disc(d / 2) : sized ? strip() : null);
-      return outline && { ...bare, outline, holes: specimen.holes ?? [], cracks: specimen.cracks ?? [], notches: specimen.notches ?? [] };
+      return outline && { ...bare, outline, holes: specimen.holes ?? [], cracks: straightCracks(specimen.cracks ?? []), notches: specimen.notches ?? [] };
     }
     default: return null;
   }
+}
+
+/** Cracks with bends as straight ones that share their corners, which are joined. */
+export function straightCracks(cracks) {
+  return cracks.flatMap((crack) => crack.path_mm?.slice(1).map((to_mm, index) => ({ from_mm: crack.path_mm[index], to_mm })) ?? [crack]);
 }
 
 function disc(radius) {

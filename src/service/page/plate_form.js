@@ -2,6 +2,7 @@
 
 import { button, element, show } from "./dom.js";
 import { fillIn, numberIn } from "./form.js";
+import { straightCracks } from "./plate_drawing.js";
 import { createSketch } from "./sketch.js";
 
 const LISTS = {
@@ -128,7 +129,7 @@ export function createPlate(form, { size, onChange }) {
     },
     fill({ holes = [], cracks = [] }) {
       rebuild("holes", holes.map((hole) => [hole.x_mm, hole.y_mm, hole.diameter_mm]));
-      rebuild("cracks", cracks.map((crack) => [...crack.from_mm, ...crack.to_mm]));
+      rebuild("cracks", straightCracks(cracks).map((crack) => [...crack.from_mm, ...crack.to_mm]));
       sketch.draw();
     },
   };
