@@ -14,7 +14,7 @@ fn heights() -> impl Iterator<Item = f64> {
 
 fn plate(height: f64, rest: &str) -> Case {
     let text = format!("kind=\"plate\"\nwidth_mm=40\nlength_mm={height:.12}\nthickness_mm=2\n{rest}\n");
-    let mut case = case(&text, &["fatigue={paris_c_mm_per_cycle=1e-8,paris_m=3}", "model.spacing_mm=1"]);
+    let mut case = case(&text, &["fatigue.driver=tip_field", "model.spacing_mm=1"]);
     case.model.residual = 1e-11;
     case
 }
@@ -47,7 +47,7 @@ fn an_upright_crack_in_bending_has_no_sliding_mode() {
             a = x - 0.5 * width,
             b = x + 0.5 * width
         );
-        let case = case(&text, &["fatigue={paris_c_mm_per_cycle=1e-8,paris_m=3}", "model.spacing_mm=1"]);
+        let case = case(&text, &["fatigue.driver=tip_field", "model.spacing_mm=1"]);
         let (tips, _) = initial_tips(&case).unwrap();
         let [k_i, k_ii] = tips[0].factors.unwrap();
         assert!((k_ii / k_i).abs() < 1e-6, "width {width}, x {x}: K_II {:e} of K_I", k_ii / k_i);

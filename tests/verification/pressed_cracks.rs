@@ -34,8 +34,10 @@ fn a_closed_crack_above_an_open_one_changes_nothing() {
     }
     let tips = &last(&both).tips;
     assert!(tips[..2].iter().all(|tip| tip.position[1].abs() < 0.05e-3 && tip.growth > 39e-3), "{tips:?}");
+    // When next to nothing is left of the plate, a lower tip may open.
     for point in &both.curve {
-        assert!(point.tips[2..].iter().all(|tip| tip.growth == 0.0 && tip.state == TipState::Closed), "{point:?}");
+        assert!(point.tips[2..].iter().all(|tip| tip.growth < 1e-6), "{point:?}");
+        assert!(point.crack_length > 0.1 || point.tips[2..].iter().all(|tip| tip.state == TipState::Closed), "{point:?}");
     }
     assert!(both.warnings.iter().any(|warning| warning.contains("presses the crack shut at tip 2, 3")), "{:?}", both.warnings);
 }

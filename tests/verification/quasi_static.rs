@@ -60,7 +60,7 @@ fn notched(length: f64, pull: f64, more: &str) -> Scene {
         "[specimen]\nkind = \"plate\"\nwidth_mm = 20.0\nlength_mm = {length}\nthickness_mm = 4.0\n\
          notches = [{{ from_mm = [-10.0, 0.0], to_mm = [-5.0, 0.0], width_mm = 2.0 }}, {{ from_mm = [10.0, 0.0], to_mm = [5.0, 0.0], \
          width_mm = 2.0 }}]\n[material]\nyoungs_modulus_gpa = 203.0\npoisson_ratio = 0.3\nyield_strength_mpa = 345.0\n\
-         tensile_strength_mpa = 572.0\n[model]\nbond_law = \"two_parameter\"\nkernel = \"conical\"\nspacing_mm = 1.0\n\
+         tensile_strength_mpa = 572.0\n[model]\nbond_law = \"two_parameter\"\nrotation = \"resisted\"\nkernel = \"conical\"\nspacing_mm = 1.0\n\
          [loading]\nkind = \"displacement\"\nedges = [\"top\", \"bottom\"]\ntransverse = \"held\"\ndisplacement_mm = {pull}\nsteps = 100\n\
          [damage]\nlaw = \"nonlinear_two_parameter\"\nfinal_ratio = 3.0\n{more}"
     );

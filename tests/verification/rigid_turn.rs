@@ -70,15 +70,15 @@ fn a_rigid_turn_of_a_scene_costs_nothing() {
 fn what_resists_a_turn_is_told_with_its_cost() {
     for law in ["two_parameter", "one_bond_two_parameter"] {
         for nu in ["0.0", "0.1", "0.2", "0.3"] {
-            for way in ["loading.steps=1", "loading.duration_s=1e-6", "model.discretisation=dual_horizon"] {
+            for way in [&["loading.steps=1"][..], &["loading.duration_s=1e-6"], &["model.discretisation=dual_horizon", LEVELS]] {
                 let keys = [format!("model.bond_law={law}"), format!("material.poisson_ratio={nu}")];
-                let scene = scene(&[&keys[0], &keys[1], "model.rotation=resisted", way]).unwrap();
+                let scene = scene(&[&[keys[0].as_str(), &keys[1], "model.rotation=resisted"], way].concat()).unwrap();
                 let (cost, inside) = (cost(&scene), 2.0 * (1.0 - 3.0 * nu.parse::<f64>().unwrap()));
-                assert!(cost > 0.7 * inside && cost < 1.05 * inside, "{law}, nu {nu}, {way}: {cost}");
+                assert!(cost > 0.7 * inside && cost < 1.05 * inside, "{law}, nu {nu}, {way:?}: {cost}");
                 let warnings = run(&scene, &Silent).unwrap().warnings;
                 let words = format!("{:.3} % of the energy of stretching", 100.0 * cost);
                 let told = warnings.iter().any(|w| w.contains("model.rotation = \"resisted\"") && w.contains(&words));
-                assert!(told, "{law}, nu {nu}, {way}: {words} in {warnings:?}");
+                assert!(told, "{law}, nu {nu}, {way:?}: {words} in {warnings:?}");
             }
         }
         let keys = [format!("model.bond_law={law}"), "material.poisson_ratio=0.3333333333333333".to_owned()];

@@ -95,11 +95,11 @@ impl TipField<'_> {
 
     /// What the user should know of tips that the load presses shut.
     pub(super) fn contact_warning(&self) -> Option<String> {
-        let closed = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.state == TipState::Active && tip.is_closed);
+        let closed = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.was_closed);
         let tips = closed.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
         (!tips.is_empty()).then(|| {
             format!(
-                "the load presses the crack shut at tip {tips}, which does not grow: its flanks carry pressure, and slide without \
+                "the load presses the crack shut at tip {tips}, which does not grow while it does: flanks carry pressure, and slide without \
                  friction"
             )
         })
@@ -200,6 +200,7 @@ impl TipField<'_> {
         for tip in &mut self.state.tips {
             let Some(reading @ Reading { factors, .. }) = tip.reading else { continue };
             tip.is_closed = reading.stands();
+            tip.was_closed |= tip.is_closed;
             if tip.is_closed {
                 continue;
             }

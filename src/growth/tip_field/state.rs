@@ -47,6 +47,8 @@ pub struct Tip {
     pub(super) kink: Option<Kink>,
     /// Whether its flanks are in contact, or would be: it does not grow.
     pub(super) is_closed: bool,
+    /// Whether that was so at any time.
+    pub(super) was_closed: bool,
 }
 
 impl Tip {
@@ -70,6 +72,7 @@ impl Tip {
             steering: Steering::default(),
             kink: None,
             is_closed: false,
+            was_closed: false,
         }
     }
 
