@@ -156,7 +156,28 @@ const BAD: &[Bad] = &[
     plate("to_mm = [5, 0]", "to_mm = [-5, 0]", &["specimen.cracks[0]", "no length"]),
     plate("to_mm = [5, 0]", "to_mm = [5]", &["specimen.cracks[0].to_mm", "pair of numbers"]),
     plate("to_mm = [5, 0]", "to_mm = [5, 0], depth = 1", &["specimen.cracks[0].depth", "not a known key", "from_mm"]),
-    plate("cracks = [", "cracks = [{ from_mm = [0, -5], to_mm = [0, 5] }, ", &["specimen.cracks[1]", "crosses cracks[0]"]),
+    plate(
+        "cracks = [",
+        "cracks = [{ from_mm = [-3, 0], to_mm = [3, 0] }, ",
+        &["specimen.cracks[1]", "lies along cracks[0]", "one crack"],
+    ),
+    plate(
+        "to_mm = [5, 0]",
+        "to_mm = [5, 0], path_mm = [[0, 0], [5, 0]]",
+        &["specimen.cracks[0].path_mm", "stands beside from_mm"],
+    ),
+    plate("to_mm = [5, 0]", "path_mm = [[5, 0]]", &["specimen.cracks[0].path_mm", "stands beside from_mm"]),
+    plate("from_mm = [-5, 0], to_mm = [5, 0]", "path_mm = [[0, 0]]", &["specimen.cracks[0].path_mm", "1 points", "2 to 500"]),
+    plate(
+        "from_mm = [-5, 0], to_mm = [5, 0]",
+        "path_mm = [[0, 0], [5, 0], [5, 0]]",
+        &["specimen.cracks[0].path_mm[2]", "coincides"],
+    ),
+    plate(
+        "from_mm = [-5, 0], to_mm = [5, 0]",
+        "path_mm = [[0, 0], [5, 0], [5, 5], [2, -3]]",
+        &["specimen.cracks[0].path_mm", "folds back on itself after point 2", "share a point"],
+    ),
     plate(
         "cracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]",
         "cracks = [{ from_mm = [-50, 70], to_mm = [50, 70] }]",
