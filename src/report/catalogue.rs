@@ -10,6 +10,7 @@ use crate::calibration::criterion::Criterion;
 use crate::calibration::rates::RateMethod;
 use crate::case::growth_law::TableEnds;
 use crate::case::{Failure, Method};
+use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
 use crate::fracture::SceneEnd;
@@ -71,6 +72,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         RateMethod::lines(),
         SolverUsed::lines(),
         StopReason::lines(),
+        TipState::lines(),
         beside(&StopReason::lines(), SceneEnd::lines()),
     ];
     let of_sweeps = [DesignKind::lines(), Scatter::lines(), Scale::lines(), DistributionKind::lines()];
