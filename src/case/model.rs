@@ -145,7 +145,7 @@ const POINTS_FOR_GAP: f64 = 3e5;
 
 /// Spacing where an input file says nothing: a ninth of the smallest flaw that can decide the life, a sixth of every other and of the
 /// least gap between a tip and a rim, another tip or another crack, a hundredth of the width at the most. What is said where a gap asks
-/// for more than [`POINTS_FOR_GAP`] points or a small flaw for too many comes beside.
+/// for more than 3e5 points or a small flaw for too many comes beside.
 #[must_use]
 pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
     let sizes = specimen.flaw_sizes();

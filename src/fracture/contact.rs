@@ -22,7 +22,7 @@
 //! by the contraction of about a horizon.
 //!
 //! The plane of an initial crack is that of its piece which the bond crosses. That of a crack that grew is the line through the
-//! middles of the broken bonds around (largest principal axis within [`AROUND`] horizons); where they lie on no line (a cloud of
+//! middles of the broken bonds around (largest principal axis within `AROUND` horizons); where they lie on no line (a cloud of
 //! broken bonds, a branch) there is no plane and no column.
 
 use std::collections::HashMap;
