@@ -13,7 +13,7 @@ mod coalescence;
 mod contact;
 mod factors;
 mod increment;
-mod kink;
+pub mod kink;
 mod readings;
 mod remaining_life;
 mod run;
@@ -173,20 +173,32 @@ fn heading(body: &Body, lines: &[CrackLine], end: LineEnd) -> Point {
     lines[end.line].blunted(end.at_last, DIRECTION_SPACINGS * body.lattice.spacing).direction(end.at_last)
 }
 
-/// K and T of the initial tips at maximum load, in the order of `Specimen::tips`, and what the user should know of them.
+/// The tips of the initial cracks at maximum load.
+#[derive(Debug, Clone)]
+pub struct InitialTips {
+    /// K and T, in the order of `Specimen::tips`.
+    pub tips: Vec<TipRecord>,
+    /// Whether the load presses flanks together anywhere.
+    pub in_contact: bool,
+    /// What the user should know of them.
+    pub warnings: Vec<String>,
+}
+
+/// Reads the initial tips of a case: those of the first row of its prediction by K.
 ///
 /// # Errors
 /// As [`TipField::start`] and [`CrackGrowth::open`].
-pub fn initial_tips(case: &Case) -> Result<(Vec<TipRecord>, Vec<String>)> {
+pub fn initial_tips(case: &Case) -> Result<InitialTips> {
     let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
     let mut growth = TipField::start(case, Box::new(law))?;
     growth.open()?;
-    Ok((growth.last().tips.clone(), growth.warnings()))
+    let in_contact = growth.contact.closed_places().next().is_some();
+    Ok(InitialTips { tips: growth.last().tips.clone(), in_contact, warnings: growth.warnings() })
 }
 
 /// Largest K_eq of the tips at maximum load, Pa√m, of the plate with its initial cracks cleanly cut; `None` where it cannot be read.
 pub fn initial_factor(case: &Case) -> Option<f64> {
-    let (tips, _) = initial_tips(case).ok()?;
+    let InitialTips { tips, .. } = initial_tips(case).ok()?;
     tips.iter().filter_map(|tip| tip.factors).map(steering::equivalent_factor).max_by(f64::total_cmp)
 }
 

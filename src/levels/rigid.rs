@@ -58,8 +58,8 @@ pub const RESISTED: [&str; 2] = ["model.rotation = \"resisted\"", "use \"free\",
 
 /// What it costs a body to turn as a whole: the strain energy of a rigid turn by 1 mrad over that of an extension by 1e-3 along y
 /// (`u_y = ε y`), both from the `energy` of its bonds, J. The turn is the true one, `u = (R - 1) x`, where strain is `finite`, else the
-/// linear one, `u = ω (-y, x)`. It must be zero; tangential springs between points that do not turn have `(C₁₁ - 3 C₁₂)/C₁₁`
-/// away from the rim. `None` where the extension costs nothing.
+/// linear one, `u = ω (-y, x)`. It must be zero; tangential springs between points that do not turn have
+/// `8 c_t/(3 c_n + c_t) = 2 (C₁₁ - 3 C₁₂)/C₁₁` away from the rim. `None` where the extension costs nothing.
 #[must_use]
 pub fn turning_cost(net: &Net, finite: bool, mut energy: impl FnMut(&[f64]) -> f64) -> Option<f64> {
     let mut of_field = |field: &dyn Fn(Point) -> [f64; 3]| {

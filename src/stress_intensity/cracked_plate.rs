@@ -1,9 +1,8 @@
 //! A plate in equilibrium at several lengths of its cracks; points and uncut bonds are built once.
 
-use super::TipFrame;
 use crate::body::Body;
 use crate::body::balanced::flanks::{self, FlankRange};
-use crate::body::pre_crack::{bonds_cut_by, tie_break};
+use crate::body::pre_crack::bonds_cut_by;
 use crate::body::severed::{RepresentedEnd, represented_end};
 use crate::bond_law::SurfaceCorrection;
 use crate::case::Case;
@@ -11,7 +10,7 @@ use crate::error::{Error, Result, input};
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::levels::Discretisation;
 use crate::solver::{Equilibrium, SolverKind};
-use crate::specimen::geometry::{distance, distance_to_polygon, distance_to_segment};
+use crate::specimen::geometry::distance;
 use crate::specimen::{Crack, Point, Specimen};
 use crate::state::Bonds;
 use crate::units::MM;
@@ -117,35 +116,6 @@ impl<'a> CrackedPlate<'a> {
     #[must_use]
     pub fn crack_behind(&self, specimen: &Specimen, tip: usize) -> f64 {
         own_crack(specimen, tip).length
-    }
-
-    /// Frame of a tip: in the middle of the gap that the cut bonds leave, at the place to which they reach.
-    #[must_use]
-    pub fn frame(&self, specimen: &Specimen, tip: usize) -> TipFrame {
-        let seed = &specimen.tips[tip];
-        let crack = own_crack(specimen, tip).crack;
-        let RepresentedEnd { excess, aside } = self.represented(specimen, tip);
-        let [x, y] = seed.direction;
-        let origin = [seed.position[0] + excess * x - aside * y, seed.position[1] + excess * y + aside * x];
-        let mut frame = TipFrame { origin, ahead: seed.direction, line: 0.0 };
-        // Bonds are cut by a line a trifle beside the crack.
-        let shift = tie_break(&self.body, crack.from, crack.to);
-        frame.line = frame.local([seed.position[0] + shift[0], seed.position[1] + shift[1]])[1];
-        frame
-    }
-
-    /// Radius around a tip that stays clear, by one horizon, of everything but the flanks of its own crack, m.
-    #[must_use]
-    pub fn clear_radius(&self, specimen: &Specimen, tip: usize) -> f64 {
-        let here = specimen.tips[tip].position;
-        let Own { crack: own, at_to, .. } = own_crack(specimen, tip);
-        let other_end = if at_to { own.from } else { own.to };
-        let holes = specimen.holes.iter().map(|hole| distance(here, hole.centre) - hole.radius);
-        let slots = specimen.slots.iter().map(|slot| distance_to_polygon(here, &slot.corners()));
-        let cracks = specimen.cracks.iter().filter(|&crack| *crack != own);
-        let cracks = cracks.map(|crack| distance_to_segment(here, crack.from, crack.to));
-        let edge = distance_to_polygon(here, &specimen.outline).min(distance(here, other_end));
-        holes.chain(slots).chain(cracks).fold(edge, f64::min) - self.body.horizon()
     }
 }
 

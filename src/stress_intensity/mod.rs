@@ -22,7 +22,7 @@ use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::crack_tip::TipState;
 use crate::growth::record::TipRecord;
-use crate::growth::tip_field::initial_tips;
+use crate::growth::tip_field::{InitialTips, initial_tips};
 use crate::specimen::TipSeed;
 use crate::specimen::handbook::handbook;
 pub use cracked_plate::{CrackedPlate, Field};
@@ -53,13 +53,17 @@ impl Intensity {
     }
 }
 
+/// The tips of the cracks of a case; end faces of slots have no K.
+fn sharp_tips(case: &Case) -> Result<InitialTips> {
+    let mut sharp = case.clone();
+    sharp.specimen.tips.retain(|tip| !tip.from_slot);
+    initial_tips(&sharp)
+}
+
 /// K of every sharp tip off its ring, with T: those of the first row of a prediction driven by K.
 fn by_ring(case: &Case) -> Result<Vec<MethodResult>> {
     let started = Instant::now();
-    // End faces of slots have no K.
-    let mut sharp = case.clone();
-    sharp.specimen.tips.retain(|tip| !tip.from_slot);
-    let (tips, warnings) = initial_tips(&sharp)?;
+    let InitialTips { tips, warnings, .. } = sharp_tips(case)?;
     let wall_s = started.elapsed().as_secs_f64() / tips.len().max(1) as f64;
     // What is to be said of several tips is said once.
     let mut warnings = Some(warnings.join("; ")).filter(|warnings| !warnings.is_empty());
@@ -72,6 +76,15 @@ fn by_ring(case: &Case) -> Result<Vec<MethodResult>> {
         wall_s,
     };
     Ok(tips.into_iter().map(result).collect())
+}
+
+/// K_I from the energy released, of plates whose flanks nothing presses together: the lengths in between are solved without contact.
+fn by_energy(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>> {
+    if sharp_tips(case)?.in_contact {
+        let problem = "the load presses flanks of cracks together, which the energy released between open cracks does not know";
+        return Err(Error::Mechanics(format!("{}: {problem}: use ring", case.name)));
+    }
+    energy_release::all_tips(case, tips)
 }
 
 /// What one method says about one tip.
@@ -136,7 +149,7 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
         let columns = match method {
             StressIntensityMethod::Ring => by_ring(case)?,
             // A second look at K_I: what it cannot tell does not hide the first.
-            StressIntensityMethod::EnergyRelease => energy_release::all_tips(case, &tips).or_else(|error| match methods {
+            StressIntensityMethod::EnergyRelease => by_energy(case, &tips).or_else(|error| match methods {
                 [StressIntensityMethod::EnergyRelease] => Err(error),
                 _ => Ok(vec![MethodResult::nothing(method, &error); tips.len()]),
             })?,

@@ -8,7 +8,8 @@
 //! for K^aux = 1, q being 1 inside the ring and 0 outside it. P is free of divergence, so that the second integral, over all
 //! rims of the material within the outer radius with outward normal m, makes up for what is not ring: faces of the own crack
 //! where it leaves the line straight behind its tip, holes, edges, faces of other cracks. Real tractions there are those of the
-//! loads and of flanks in contact: `P_j m_j = t_i u^aux_i,1 + σ^aux_ij m_j u_i,1 - σ_ik ε^aux_ik m_1`. On the faces of a straight crack it vanishes.
+//! loads and of flanks in contact: `P_j m_j = t_i u^aux_i,1 + σ^aux_ij m_j u_i,1 - σ_ik ε^aux_ik m_1`. On the free faces of a straight
+//! crack it vanishes.
 //!
 //! The auxiliary field is continued across ±π to the faces of the real crack: angles are counted from x₁ to the face on the
 //! side of a point, wherever it lies. It stays in equilibrium there and only its tractions on the faces are not zero.
@@ -167,7 +168,7 @@ impl RingGeometry {
     pub fn factors(&self, plate: Balanced<'_>, end: LineEnd, outer: f64) -> RingFactors {
         let Balanced { body, lines, .. } = plate;
         let line = &lines[end.line];
-        let frame = TipFrame { origin: line.end(end.at_last), ahead: line.direction(end.at_last), line: 0.0 };
+        let frame = TipFrame { origin: line.end(end.at_last), ahead: line.direction(end.at_last) };
         let own = CrackFaces::new(body, &continued(lines, end, JOINED_SPACINGS * body.lattice.spacing), end.at_last, &frame);
         let inner = (INNER_SHARE * outer).max((INNER_HORIZONS * body.horizon()).min(0.5 * outer));
         let around = RingIntegral { surroundings: self, plate, frame, own, inner, outer, known: RefCell::default() };

@@ -24,7 +24,7 @@ fn a_level_crack_has_no_sliding_mode() {
     let mut last = None;
     for height in heights() {
         for crack in ["[-20,0],to_mm=[-8,0]", "[20,0],to_mm=[8,0]", "[-9,0],to_mm=[9,0]"] {
-            let (tips, _) = initial_tips(&plate(height, &format!("cracks=[{{from_mm={crack}}}]"))).unwrap();
+            let tips = initial_tips(&plate(height, &format!("cracks=[{{from_mm={crack}}}]"))).unwrap().tips;
             for tip in tips {
                 let [k_i, k_ii] = tip.factors.unwrap();
                 assert!((k_ii / k_i).abs() < 1e-6, "{height}, {crack}: K_II {:e} of K_I", k_ii / k_i);
@@ -48,7 +48,7 @@ fn an_upright_crack_in_bending_has_no_sliding_mode() {
             b = x + 0.5 * width
         );
         let case = case(&text, &["fatigue.driver=tip_field", "model.spacing_mm=1"]);
-        let (tips, _) = initial_tips(&case).unwrap();
+        let tips = initial_tips(&case).unwrap().tips;
         let [k_i, k_ii] = tips[0].factors.unwrap();
         assert!((k_ii / k_i).abs() < 1e-6, "width {width}, x {x}: K_II {:e} of K_I", k_ii / k_i);
     }
@@ -63,7 +63,7 @@ fn the_mirror_image_of_a_plate_lives_as_long() {
             (run.curve.last().unwrap().cycles, run.stop)
         };
         let (above, below) = (life(1.0), life(-1.0));
-        assert!((above.0 / below.0 - 1.0).abs() < 1e-6 && above.1 == below.1, "{height}: {above:?}, {below:?}");
+        assert!((above.0 / below.0 - 1.0).abs() < 1e-9 && above.1 == below.1, "{height}: {above:?}, {below:?}");
     }
 }
 
@@ -77,7 +77,7 @@ fn double_cantilevers_keep_their_middle_line() {
         let at = |length: f64| run.curve.iter().find(|point| point.crack_length >= length).unwrap().cycles;
         let first = run.curve[0].tips[0].factors.unwrap()[0] / 1e6;
         println!("{name}: K_I {first:.4}, {:.4e} cycles to 100 mm", at(0.1));
-        assert!((first / k_i - 1.0).abs() < 0.008 && (at(0.1) / life - 1.0).abs() < 0.02, "{name}: {first}, {}", at(0.1));
+        assert!((first / k_i - 1.0).abs() < 0.006 && (at(0.1) / life - 1.0).abs() < 0.015, "{name}: {first}, {}", at(0.1));
         assert!(run.curve.iter().all(|point| point.tips[0].position[1].abs() < 0.05e-3), "{name}: off the middle line");
     }
 }

@@ -87,18 +87,10 @@ fn the_singular_functions_have_unit_factors() {
 }
 
 #[test]
-fn a_frame_turns_there_and_back_and_keeps_the_faces_apart() {
-    let frame = TipFrame { origin: [1.0, 2.0], ahead: [0.6, 0.8], line: 0.1 };
+fn a_frame_turns_there_and_back() {
+    let frame = TipFrame { origin: [1.0, 2.0], ahead: [0.6, 0.8] };
     let back = frame.in_plate(frame.vector([0.3, -0.7]));
     assert!((back[0] - 0.3).abs() < 1e-15 && (back[1] + 0.7).abs() < 1e-15);
-    let place = |x: f64, y: f64| {
-        let [u, v] = frame.in_plate([x, y]);
-        [frame.origin[0] + u, frame.origin[1] + v]
-    };
-    // Between the middle of the gap and the line that cut the bonds a point stays on its own side.
-    let (_, theta) = frame.polar(place(-1.0, 0.05));
-    assert!(theta < -PI, "{theta}");
-    assert!(frame.polar(place(-1.0, 0.2)).1 > 0.0 && frame.polar(place(1.0, 0.05)).1 > 0.0);
 }
 
 /// The end that the bonds represent swings about the one asked for: with the period of the lattice for a crack along its rows,

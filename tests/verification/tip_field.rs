@@ -1,6 +1,7 @@
 //! Cracks driven by the K of their tips: what the ring reads, the criterion of direction, cuts, ends, symmetry. Lives and paths are
 //! rows of `perilife verify`.
 
+use std::f64::consts::PI;
 use std::path::Path;
 
 use std::sync::Arc;
@@ -12,6 +13,7 @@ use perilife::fatigue::growth_law::Walker;
 use perilife::growth::CrackGrowth;
 use perilife::growth::plate::Plate;
 use perilife::growth::tip_field::TipField;
+use perilife::growth::tip_field::kink::coefficients;
 use perilife::growth::tip_field::steering::{equivalent_factor, kink_angle};
 use perilife::predict::{Prediction, Silent, StopReason, increment, predict};
 use perilife::solver::field::Layout;
@@ -68,7 +70,7 @@ fn a_ring_reads_an_exact_field() {
         let bonds = Bonds::new(&body);
         let elasticity = Elasticity::of(&case.material);
         let (layout, tip) = (Layout::of(&body.lattice, body.stencil.unknowns), [end * 1e-3, 0.001e-3]);
-        let frame = TipFrame { origin: tip, ahead: [1.0, 0.0], line: 0.0 };
+        let frame = TipFrame { origin: tip, ahead: [1.0, 0.0] };
         let lines = [CrackLine::straight([-0.03, 0.001e-3], tip)];
         // Factors, and by how much of a spacing the field has its tip ahead of the line's end.
         // In the last there is a stress along the crack, too, whose quadrature disturbs the factors a little.
@@ -225,4 +227,18 @@ fn reasons_to_stop() {
     let still = with(&["fatigue.delta_k_threshold_mpa_sqrt_m=30"]);
     assert_eq!((still.stop, still.curve.len()), (StopReason::NothingAges, 1));
     assert!(matches!(with(&[]).stop, StopReason::Severed | StopReason::LeftPlate));
+}
+
+/// Amestoy and Leblond: 1 - 3θ²/8 and -3θ/2 for small kinks; with the direction of either sense F₁₂ changes its sign, the others do not.
+/// In pure sliding the largest K of a kink is 6 % above that of the largest circumferential stress (2/√3).
+#[test]
+fn a_short_kink_has_the_k_of_its_series() {
+    let [f11, f12, g1] = coefficients(0.01);
+    assert!((f11 - 1.0 + 3.0 / 8.0 * 1e-4).abs() < 1e-8 && (f12 + 0.015).abs() < 1e-6, "{f11}, {f12}");
+    assert!((g1 - (2.0 * PI).powf(1.5) * (0.01 / PI).powi(2)).abs() < 1e-7, "{g1}");
+    let (here, there) = (coefficients(1.2), coefficients(-1.2));
+    assert_eq!([here[0], -here[1], here[2]], there);
+    let at = kink_angle([0.0, 1.0]);
+    let over = coefficients(at)[1] / equivalent_factor([0.0, 1.0]);
+    assert!((over - 1.06).abs() < 0.01, "{at}: {over}");
 }

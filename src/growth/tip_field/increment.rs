@@ -165,7 +165,7 @@ impl TipField<'_> {
             Ok(()) => step.is_settled = true,
             Err(Error::LossOfStiffness) => step.end = Some(StopReason::Severed),
             Err(error) => {
-                self.warnings.push(format!("the run ends before its end: {error}"));
+                self.warnings.push(format!("the run ends here: {error}"));
                 step.end = Some(StopReason::NoConvergence);
             }
         }
@@ -339,7 +339,7 @@ impl TipField<'_> {
         let blunted = self.blunted(lines);
         self.contact.follow(body, &blunted, self.case.material.plane_modulus());
         let before = self.displacement.clone();
-        for _ in 0..CONTACT_SOLVES_MOST {
+        for solve in 1..=CONTACT_SOLVES_MOST {
             let solved = self
                 .equilibrium
                 .set_contact(body, &self.contact.springs())
@@ -353,7 +353,7 @@ impl TipField<'_> {
             }
             self.solves += 1;
             let least = CONTACT_LEAST * self.mean_strain() * body.lattice.spacing;
-            if !self.contact.update(&self.layout(), &self.displacement, least) {
+            if solve == CONTACT_SOLVES_MOST || !self.contact.update(&self.layout(), &self.displacement, least) {
                 break;
             }
         }

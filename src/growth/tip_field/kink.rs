@@ -5,7 +5,7 @@
 //! `K_I' = F₁₁(m) K_I + F₁₂(m) K_II + G₁(m) T √s + O(s)`,
 //!
 //! counter-clockwise θ and K_II as in [`crate::stress_intensity`]. K before the kink in the direction of the largest circumferential
-//! stress is none of it (up to 10 % below F₁₁ K_I + F₁₂ K_II), and bonds show the kink only once it is as long as the core of the
+//! stress is none of it (5 % below F₁₂ K_II in pure sliding), and bonds show the kink only once it is as long as the core of the
 //! tip. The term of order s is taken as that of a crack that grows straight, `√(1 + s/a)`.
 
 use serde::{Deserialize, Serialize};
@@ -55,9 +55,9 @@ impl Kink {
     }
 }
 
-/// F₁₁, F₁₂ and G₁ of a kink by θ, rad; the terms left out are below 1e-4 up to 80°.
+/// F₁₁, F₁₂ and G₁ of a kink by θ, rad, up to m¹⁰ and m¹¹.
 #[must_use]
-pub(super) fn coefficients(theta: f64) -> [f64; 3] {
+pub fn coefficients(theta: f64) -> [f64; 3] {
     let pi = std::f64::consts::PI;
     let m = theta / pi;
     let q = m * m;
