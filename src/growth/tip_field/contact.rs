@@ -108,7 +108,7 @@ impl Contact {
                 place(body, at, [a, b], length, &all, stiffness)
                     .map(|new| Place { in_contact: closed.iter().any(was_closed), ..new })
             };
-            Piece { line, ends: [a, b], places: (0..count as usize).map(place).collect() }
+            Piece { line, ends: [a, b], places: (0..count as usize).into_par_iter().map(place).collect() }
         };
         self.pieces = new.par_iter().zip(&of_old).map(piece).collect();
     }
