@@ -20,6 +20,8 @@ pub struct Boundary {
     pub couples: Vec<(u32, f64)>,
     /// Places nearest to where the loads act.
     loaded: Vec<u32>,
+    /// Places at the corners of a plate on whose cracks alone a load acts, ascending: cracks that part two of them part the plate.
+    pub corners: Vec<u32>,
     /// Force that the plate carries from end to end along y at unit nominal load, N.
     through: f64,
     /// Held places with what is held: the components in lattice axes, and the rotation.
@@ -81,6 +83,11 @@ impl Boundary {
                 *sum = [sum[0] + share * whole[0], sum[1] + share * whole[1]];
             }
         }
+        if specimen.loads.is_empty() && specimen.crack_pressure > 0.0 {
+            boundary.corners = specimen.outline.iter().filter_map(|&corner| sharing.nearest_point(corner)).collect();
+            boundary.corners.sort_unstable();
+            boundary.corners.dedup();
+        }
         boundary.loaded.sort_unstable();
         boundary.loaded.dedup();
         boundary.forces = force.into_iter().collect();
@@ -131,6 +138,7 @@ impl Boundary {
             forces: forces.collect(),
             couples: self.couples.iter().filter_map(|(p, c)| here(p).map(|p| (p, share(p) * c))).collect(),
             loaded: self.loaded.iter().filter_map(here).collect(),
+            corners: self.corners.iter().filter_map(here).collect(),
             through: self.through,
             fixed,
             clamped: self.clamped.iter().filter_map(|(p, side)| Some((here(p)?, *side))).collect(),

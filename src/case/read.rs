@@ -12,10 +12,12 @@ use crate::fatigue::GrowthRate;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{Document, Folder, ForeignSections, OF_SCENES, Sections, value_at};
+use crate::levels::Discretisation;
 use crate::loading::LoadingKind;
 use crate::material::Plane;
+use crate::solver::SolverKind;
 use crate::specimen::CrackLine;
-use crate::units::{MM_PER_CYCLE, MPA, MPA_SQRT_M};
+use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use crate::{loading, material, specimen};
 
 /// Sections of a case file.
@@ -113,6 +115,7 @@ impl Case {
             None => {}
         }
         model::check_law(&case)?;
+        check_load(&case)?;
         case.warnings.extend(yield_line(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
@@ -143,11 +146,39 @@ impl Case {
 fn refuse_scene(table: &Table) -> Result<()> {
     const KIND: &str = "loading.kind";
     let kind = table.get("loading").and_then(|loading| value_at(loading, "kind")).and_then(Value::as_str);
-    let of_scenes = |kind: &&str| OF_SCENES.iter().any(|(key, names)| *key == KIND && names.contains(kind));
+    // Both have loads that are a displacement; only that of a scene has one size without maximum or range.
+    let is_of_one_size = table.get("loading").is_some_and(|loading| value_at(loading, "displacement_mm").is_some());
+    let of_scenes = |kind: &&str| is_of_one_size || OF_SCENES.iter().any(|(key, names)| *key == KIND && names.contains(kind));
     let Some(kind) = kind.filter(of_scenes) else { return Ok(()) };
     let known = LoadingKind::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
     let problem = "belongs to fracture scenes, not to a fatigue case";
     Err(input(KIND, format!("\"{kind}\""), problem, format!("run `perilife fracture`, or use one of {known}")))
+}
+
+/// Loads that only growth by K of the tips knows, on points of one spacing where they press on flanks.
+fn check_load(case: &Case) -> Result<()> {
+    let pressed = case.specimen.crack_pressure > 0.0;
+    let (key, value, what) = match case.loading.displacement() {
+        Some(most) => ("loading.kind", "\"displacement\"".to_owned(), format!("cycles of {} mm are", most / MM)),
+        None if pressed => ("loading.crack_pressure_mpa", (case.specimen.crack_pressure * case.loading.maximum / MPA).to_string(), "pressure on cracks is".to_owned()),
+        None => return Ok(()),
+    };
+    if !case.is_driven_by_tips() {
+        let problem = format!("{what} known to peridynamics driven by the field of every tip alone");
+        return Err(input(key, value, problem, "use model.method = \"peridynamics\" and fatigue.driver = \"tip_field\""));
+    }
+    if !pressed {
+        return Ok(());
+    }
+    if case.model.arrangement != Discretisation::Lattice {
+        let problem = format!("does not go with discretisation \"{}\"", case.model.arrangement);
+        return Err(input(key, value, problem, "use model.discretisation = \"lattice\""));
+    }
+    if case.model.solver == SolverKind::AdaptiveDynamicRelaxation {
+        let problem = format!("is not known to the solver \"{}\"", case.model.solver);
+        return Err(input(key, value, problem, "use model.solver = \"window\", \"multigrid\" or \"direct\""));
+    }
+    Ok(())
 }
 
 /// What the user should know about law and horizon of this case.
@@ -297,6 +328,9 @@ fn coarse_line(case: &Case) -> Option<String> {
 
 /// Nothing elastic happens above yield.
 fn yield_line(case: &Case) -> Option<String> {
+    if case.loading.displacement().is_some() {
+        return None;
+    }
     let (stress, limit) =
         (case.specimen.net_section_stress(case.specimen.crack_length, case.loading.maximum)?, case.material.yield_strength?);
     (stress >= limit).then(|| {

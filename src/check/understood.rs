@@ -127,7 +127,19 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         &case.material,
         ("crack", specimen.cracks.len(), format!("; length {} mm", mm(specimen.crack_length))),
     );
-    lines.push(line("loading", format!("{load} {least} to {most} {symbol}, R = {}; {held}", loading.ratio)));
+    let mut cycles = match (loading.displacement(), specimen.crack_pressure) {
+        (Some(displacement), _) => {
+            let [least, most] = [loading.ratio, 1.0].map(|share| mm(share * displacement));
+            format!("displacement of the loaded places {least} to {most} mm; the load falls as cracks grow")
+        }
+        (None, pressure) if pressure > 0.0 && specimen.loads.is_empty() => format!("pressure on the cracks {least} to {most} {symbol}"),
+        (None, pressure) if pressure > 0.0 => {
+            format!("{load} {least} to {most} {symbol}, pressure on the cracks up to {} MPa", short(pressure * loading.maximum / MPA))
+        }
+        _ => format!("{load} {least} to {most} {symbol}"),
+    };
+    cycles += &format!(", R = {}; {held}", loading.ratio);
+    lines.push(line("loading", cycles));
     let by_points = case.model.method == Method::Peridynamics;
     lines.extend(by_points.then(|| line("bonds", model_words::words(&chosen, &model_words::OF_BONDS))));
     lines.push(line("points", points));

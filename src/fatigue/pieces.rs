@@ -96,6 +96,7 @@ fn is_loaded(body: &Body, node: usize) -> bool {
     let place = node as u32;
     let boundary = &body.boundary;
     boundary.forces.binary_search_by_key(&place, |f| f.0).is_ok()
+        || boundary.corners.binary_search(&place).is_ok()
         || boundary.fixed.iter().any(|f| f.0 == place)
         || boundary.clamped.iter().any(|c| c.0 == place)
 }

@@ -14,13 +14,17 @@ pub struct End {
 }
 
 /// The first of: the length the case stops at, K_max = toughness (where a handbook has K), yield of the whole net section
-/// (standard kinds). `None` where nothing of that is given.
+/// (standard kinds). `None` where nothing of that is given. Where cycles are of a displacement the load is not known before the run:
+/// only the length that the case stops at is.
 #[must_use]
 pub fn first_end(case: &Case) -> Option<End> {
     let (specimen, load) = (&case.specimen, case.loading.maximum);
     let (start, limit) = (specimen.crack_length, specimen.length_limit().0);
     let end = |crack_length: f64, reason| End { crack_length, reason };
     let wanted = case.stop.crack_length.is_finite().then(|| end(case.stop.crack_length, StopReason::CrackLengthReached));
+    if case.loading.displacement().is_some() {
+        return wanted;
+    }
     let toughness =
         case.material.toughness.zip(handbook(specimen)).map(|(toughness, formula)| {
             end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), StopReason::Toughness)

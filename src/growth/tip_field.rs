@@ -158,6 +158,21 @@ impl<'a> TipField<'a> {
         growing.max_by(|a, b| a.1.rate.total_cmp(&b.1.rate).then(b.0.cmp(&a.0))).map(|(index, _)| index)
     }
 
+    /// Load of the cycle over that which the equilibrium is solved for.
+    fn load_share(&self) -> f64 {
+        self.case.loading.share(self.equilibrium.work())
+    }
+
+    /// Work of the load of the cycle, J.
+    fn work(&self) -> f64 {
+        self.load_share().powi(2) * self.equilibrium.work()
+    }
+
+    /// Pressure on the flanks at the maximum load, Pa.
+    fn crack_pressure(&self) -> f64 {
+        self.case.specimen.crack_pressure * self.case.loading.maximum
+    }
+
     fn position(&self, tip: &Tip) -> Point {
         self.state.lines[tip.end.line].end(tip.end.at_last)
     }

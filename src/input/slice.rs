@@ -16,7 +16,7 @@ pub const OF_SCENES: &[(&str, &[&str])] = &[
     ("model.bond_law", &["correspondence"]),
     ("model.discretisation", &["variable_horizon"]),
     ("model.solver", &["velocity_verlet", "secant"]),
-    ("loading.kind", &["traction", "displacement", "velocity", "platens"]),
+    ("loading.kind", &["traction", "velocity", "platens"]),
 ];
 
 /// Keys that earlier versions knew, and what to do in their place.

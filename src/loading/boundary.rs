@@ -32,6 +32,7 @@ pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Spec
     let kind = specimen.kind;
     let given = [
         ("loading.edges", input.edges.is_some()),
+        ("loading.direction", input.direction.is_some()),
         ("loading.pins", input.pins.is_some()),
         ("loading.rollers", input.rollers.is_some()),
         ("supports", supports.is_some()),
@@ -65,6 +66,10 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
                 "give edges, or pins and rollers",
             ));
         }
+        Some((key, _)) if input_.direction.is_some() => {
+            let problem = format!("stands beside {key}: it is that of the traction on edges");
+            return Err(input_missing("loading.direction", problem, "give edges, or the direction of each pin or roller"));
+        }
         Some((key, _)) if parallel_ratio != 0.0 => {
             let problem = format!("does not go with {key}");
             return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out"));
@@ -83,14 +88,14 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
             }
             1.0
         }
-        None => load_edges(input_.edges.as_deref(), &held, specimen, parallel_ratio)?,
+        None => load_edges(input_, &held, specimen, parallel_ratio)?,
     };
     check_balance(specimen, by_forces.map_or("loading.edges", |(key, _)| key))?;
     Ok(area)
 }
 
 /// Reads `[supports]` into the specimen; returns the sides held along their normal.
-fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -> Result<Vec<Edge>> {
+pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -> Result<Vec<Edge>> {
     let mut held = Vec::new();
     let Some(supports) = supports else { return Ok(held) };
     for (name, value) in table_of(supports, "supports")? {
@@ -130,9 +135,11 @@ fn stretches(edge: Edge, specimen: &Specimen, key: &str) -> Result<Vec<(Point, P
     Ok(found)
 }
 
-/// Uniform stress on the asked sides (default: top and bottom, less what is held); returns the section of the first.
-fn load_edges(asked: Option<&[Edge]>, held: &[Edge], specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+/// Uniform stress on the asked sides (default: top and bottom, less what is held), along their normals or `direction`; returns the
+/// section of the first.
+fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
     const KEY: &str = "loading.edges";
+    let asked = input_.edges.as_deref();
     let loaded: Vec<Edge> = match asked {
         None => [Edge::Top, Edge::Bottom].into_iter().filter(|edge| !held.contains(edge)).collect(),
         Some(asked) => {
@@ -162,7 +169,19 @@ fn load_edges(asked: Option<&[Edge]>, held: &[Edge], specimen: &mut Specimen, pa
         let length: f64 = stretches(*edge, specimen, KEY)?.iter().map(|(from, to)| distance(*from, *to)).sum();
         areas.push(length * specimen.thickness);
     }
-    push_edge_loads(specimen, &loaded, 1.0);
+    match &input_.direction {
+        None => push_edge_loads(specimen, &loaded, 1.0),
+        Some(given) => {
+            if parallel_ratio != 0.0 {
+                let problem = "does not go with loading.direction";
+                return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "name all loaded sides in edges"));
+            }
+            for (edge, traction) in loaded.iter().zip(directions(given, &loaded)?) {
+                let loads = edge.stretches(specimen).into_iter().map(|(from, to)| Load::Edge { from, to, traction });
+                specimen.loads.extend(loads.collect::<Vec<_>>());
+            }
+        }
+    }
     if parallel_ratio != 0.0 {
         let vertical = first.normal()[0] == 0.0;
         let across = if vertical { [Edge::Left, Edge::Right] } else { [Edge::Bottom, Edge::Top] };
@@ -181,6 +200,30 @@ fn load_edges(asked: Option<&[Edge]>, held: &[Edge], specimen: &mut Specimen, pa
         push_edge_loads(specimen, &free, parallel_ratio);
     }
     Ok(areas[0])
+}
+
+/// Unit vectors of `direction`: one for all sides, or a list with one for each of them.
+fn directions(given: &Value, loaded: &[Edge]) -> Result<Vec<Point>> {
+    const KEY: &str = "loading.direction";
+    let wrong = |problem: String| input(KEY, shorten(given), problem, "give [x, y], or one [x, y] for each side of edges");
+    let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+    let pair = |value: &Value| match value.as_array().map(Vec::as_slice) {
+        Some([x, y]) => number(x).zip(number(y)).map(|(x, y)| [x, y]),
+        _ => None,
+    };
+    let vectors: Vec<Point> = match (pair(given), given.as_array()) {
+        (Some(one), _) => vec![one; loaded.len()],
+        (None, Some(list)) => list.iter().map(pair).collect::<Option<_>>().ok_or_else(|| wrong("is not a direction".into()))?,
+        (None, None) => return Err(wrong("is not a direction".into())),
+    };
+    if vectors.len() != loaded.len() {
+        return Err(wrong(format!("names {} directions for {} sides", vectors.len(), loaded.len())));
+    }
+    let unit = |&[x, y]: &Point| {
+        let size = x.hypot(y);
+        (1e-9..1e9).contains(&size).then(|| [x / size, y / size])
+    };
+    vectors.iter().map(unit).collect::<Option<_>>().ok_or_else(|| wrong("has no direction".into()))
 }
 
 /// Traction `share` along the outward normal on all stretches of these sides.

@@ -1,4 +1,4 @@
-//! Load history. Constant amplitude so far.
+//! Load history. Constant amplitude so far, of a load or of a displacement.
 
 mod boundary;
 mod forces;
@@ -11,14 +11,33 @@ crate::kinds! {
     /// Load histories.
     pub enum LoadingKind for "loading.kind" {
         ConstantAmplitude = "constant_amplitude": "sinusoidal or triangular cycles of one range and one stress ratio",
+        Displacement = "displacement": "cycles of one displacement of the loaded places: the load falls as the cracks make the plate compliant",
     }
+}
+
+/// What every cycle repeats.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LoadControl {
+    /// The load.
+    Load,
+    /// The displacement `δ` that the load does work on: `P δ = Σ f·u` over the loaded places, P being the force of the load. Of two
+    /// loaded ends it is the mean of what they move apart, of a pin that of the places it presses on.
+    Displacement {
+        /// Largest displacement of a cycle, m.
+        maximum: f64,
+        /// Force over nominal load, m² where that is a stress and 1 where it is a force.
+        section: f64,
+    },
 }
 
 /// Constant amplitude cycles between `ratio x maximum` and `maximum`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loading {
-    /// Largest nominal load of a cycle: gross stress in Pa, or force in N (see `Specimen::load_measure`).
+    /// Largest nominal load of a cycle: gross stress in Pa, or force in N (see `Specimen::load_measure`). Cycles of a displacement are
+    /// solved under [`UNIT_STRESS`] or [`UNIT_FORCE`] and scaled ([`Loading::share`]).
     pub maximum: f64,
+    /// What every cycle repeats.
+    pub control: LoadControl,
     /// Stress ratio R = minimum / maximum, below 1.
     pub ratio: f64,
     /// Stress along the crack over stress across it, applied to the side edges. `Specimen::loads` holds these loads
@@ -26,7 +45,31 @@ pub struct Loading {
     pub parallel_ratio: f64,
 }
 
+/// Nominal stress under which cycles of a displacement are solved, Pa.
+pub const UNIT_STRESS: f64 = crate::units::MPA;
+/// Force under which they are solved, N.
+pub const UNIT_FORCE: f64 = crate::units::KN;
+
 impl Loading {
+    /// Load of the cycle over [`Loading::maximum`], on a plate on which the latter does this work `Σ f·u`, J: 1 where the load is given,
+    /// else `δ_max / δ`.
+    #[must_use]
+    pub fn share(&self, work: f64) -> f64 {
+        match self.control {
+            LoadControl::Load => 1.0,
+            LoadControl::Displacement { maximum, section } => maximum * self.maximum * section / work,
+        }
+    }
+
+    /// Largest displacement of a cycle, m, where that is what is repeated.
+    #[must_use]
+    pub fn displacement(&self) -> Option<f64> {
+        match self.control {
+            LoadControl::Load => None,
+            LoadControl::Displacement { maximum, .. } => Some(maximum),
+        }
+    }
+
     /// Share of the maximum that counts as range, `1 - max(R, 0)`: a closed crack does not open under compression
     /// (theory: closure assumption for negative R).
     #[must_use]

@@ -4,10 +4,11 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::boundary;
-use super::{Loading, LoadingKind};
-use crate::error::{Result, input, input_missing};
+use super::{LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
+use crate::error::{self, Result, input, input_missing};
 use crate::input::{FORCE, FORCE_KN, Quantity, STRESS, number, shorten, slice, table_of};
 use crate::specimen::{Edge, LoadMeasure, Specimen, SpecimenKind};
+use crate::units::MM;
 
 /// Keys that ask for a load history.
 const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "spectrum_file", "history", "rainflow", "overloads"];
@@ -29,6 +30,9 @@ const BARE: &[&str] = &[
 
 const MAGNITUDES: &str = "stress_max_mpa, stress_range_mpa, force_max_n, force_range_n, force_max_kn, force_range_kn";
 
+const DISPLACEMENT: Quantity = Quantity { what: "a displacement", unit: "mm", low: 1e-9, high: 1e4, si: MM };
+const DISPLACEMENTS: &str = "displacement_max_mm, displacement_range_mm";
+
 /// The kind alone.
 #[derive(Deserialize)]
 struct KindInput {
@@ -40,17 +44,20 @@ struct KindInput {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Input {
-    #[serde(rename = "kind")]
-    _kind: Option<LoadingKind>,
+    kind: Option<LoadingKind>,
     stress_max_mpa: Option<f64>,
     stress_range_mpa: Option<f64>,
     force_max_n: Option<f64>,
     force_range_n: Option<f64>,
     force_max_kn: Option<f64>,
     force_range_kn: Option<f64>,
+    displacement_max_mm: Option<f64>,
+    displacement_range_mm: Option<f64>,
+    crack_pressure_mpa: Option<f64>,
     stress_ratio: Option<f64>,
     stress_parallel_ratio: Option<f64>,
     pub(super) edges: Option<Vec<Edge>>,
+    pub(super) direction: Option<Value>,
     pub(super) pins: Option<Vec<Value>>,
     pub(super) rollers: Option<Vec<Value>>,
 }
@@ -65,16 +72,19 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
     refuse_by_name(loading)?;
     let input: Input = slice(loading, "loading")?;
     let ratio = read_ratio(input.stress_ratio)?;
+    if input.is_of_cracks_alone() {
+        return pressure_alone(&input, supports, specimen, ratio);
+    }
     let magnitude = Magnitude::read(&input)?;
     let parallel_ratio =
         number("a ratio", -10.0, 10.0).read("loading.stress_parallel_ratio", input.stress_parallel_ratio.unwrap_or(0.0))?;
     let area = boundary::apply(&input, supports, specimen, parallel_ratio)?;
     // A range is maximum - minimum, hence maximum (1 - R), also where R is negative.
     let largest = if magnitude.is_range { magnitude.value / (1.0 - ratio) } else { magnitude.value };
-    let maximum = match (specimen.load_measure, magnitude.is_force) {
-        (LoadMeasure::Stress, false) | (LoadMeasure::Force, true) => largest,
-        (LoadMeasure::Stress, true) => largest / area,
-        (LoadMeasure::Force, false) => {
+    let (maximum, control) = match (specimen.load_measure, magnitude.of) {
+        (LoadMeasure::Stress, Of::Stress) | (LoadMeasure::Force, Of::Force) => (largest, LoadControl::Load),
+        (LoadMeasure::Stress, Of::Force) => (largest / area, LoadControl::Load),
+        (LoadMeasure::Force, Of::Stress) => {
             let who = if specimen.kind == SpecimenKind::CompactTension {
                 "compact_tension"
             } else {
@@ -83,8 +93,60 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
             let problem = format!("is a stress, but {who} takes a force");
             return Err(input_error(&magnitude, problem, "give force_max_n or force_range_n (or _kn)"));
         }
+        (measure, Of::Displacement) => {
+            for (key, given) in [("stress_parallel_ratio", input.stress_parallel_ratio), ("crack_pressure_mpa", input.crack_pressure_mpa)] {
+                if let Some(given) = given.filter(|given| *given != 0.0) {
+                    let problem = "does not go with cycles of a displacement, which one load follows";
+                    return Err(error::input(&format!("loading.{key}"), given, problem, "leave it out"));
+                }
+            }
+            let (unit, section) = match measure {
+                LoadMeasure::Stress => (UNIT_STRESS, area),
+                LoadMeasure::Force => (UNIT_FORCE, 1.0),
+            };
+            (unit, LoadControl::Displacement { maximum: largest, section })
+        }
     };
-    Ok(Loading { maximum, ratio, parallel_ratio })
+    if let Some(pressure) = read_crack_pressure(&input, specimen)? {
+        specimen.crack_pressure = pressure / maximum;
+    }
+    Ok(Loading { maximum, control, ratio, parallel_ratio })
+}
+
+/// Pressure on the cracks and no other load: the nominal load is the pressure.
+fn pressure_alone(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, ratio: f64) -> Result<Loading> {
+    let given = [
+        ("edges", input.edges.is_some()),
+        ("pins", input.pins.is_some()),
+        ("rollers", input.rollers.is_some()),
+        ("direction", input.direction.is_some()),
+        ("stress_parallel_ratio", input.stress_parallel_ratio.is_some()),
+    ];
+    if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
+        let problem = "says where a load acts, and none is given beside crack_pressure_mpa";
+        return Err(input_missing(&format!("loading.{key}"), problem, format!("leave it out, or give one of {MAGNITUDES}")));
+    }
+    boundary::read_supports(supports, specimen)?;
+    let maximum = read_crack_pressure(input, specimen)?.unwrap_or_default();
+    specimen.loads.clear();
+    specimen.load_measure = LoadMeasure::Stress;
+    specimen.crack_pressure = 1.0;
+    Ok(Loading { maximum, control: LoadControl::Load, ratio, parallel_ratio: 0.0 })
+}
+
+/// Largest pressure on the faces of the cracks, Pa, with a plate that has cracks to press on.
+fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>> {
+    const KEY: &str = "loading.crack_pressure_mpa";
+    let Some(given) = input.crack_pressure_mpa else { return Ok(None) };
+    let pressure = STRESS.read(KEY, given)?;
+    if specimen.kind != SpecimenKind::Plate {
+        let problem = format!("does not go with {}, whose handbook K knows its own load alone", specimen.kind);
+        return Err(error::input(KEY, given, problem, "describe the specimen as kind = \"plate\""));
+    }
+    if specimen.cracks.is_empty() {
+        return Err(error::input(KEY, given, "presses on nothing: the plate has no crack", "give specimen.cracks"));
+    }
+    Ok(Some(pressure))
 }
 
 fn input_error(magnitude: &Magnitude, problem: String, remedy: &str) -> crate::Error {
@@ -122,42 +184,69 @@ fn read_ratio(ratio: Option<f64>) -> Result<f64> {
     number("a ratio", -100.0, 0.999).read(KEY, ratio)
 }
 
+impl Input {
+    /// Whether the pressure on the cracks is the only load.
+    fn is_of_cracks_alone(&self) -> bool {
+        let is_of_load = self.kind != Some(LoadingKind::Displacement);
+        is_of_load && self.crack_pressure_mpa.is_some() && self.magnitudes().all(|(_, given, ..)| given.is_none())
+    }
+
+    /// Keys of a load with what is given.
+    fn magnitudes(&self) -> impl Iterator<Item = (&'static str, Option<f64>, Quantity, Of)> {
+        [
+            ("stress_max_mpa", self.stress_max_mpa, STRESS, Of::Stress),
+            ("stress_range_mpa", self.stress_range_mpa, STRESS, Of::Stress),
+            ("force_max_n", self.force_max_n, FORCE, Of::Force),
+            ("force_range_n", self.force_range_n, FORCE, Of::Force),
+            ("force_max_kn", self.force_max_kn, FORCE_KN, Of::Force),
+            ("force_range_kn", self.force_range_kn, FORCE_KN, Of::Force),
+            ("displacement_max_mm", self.displacement_max_mm, DISPLACEMENT, Of::Displacement),
+            ("displacement_range_mm", self.displacement_range_mm, DISPLACEMENT, Of::Displacement),
+        ]
+        .into_iter()
+    }
+}
+
+/// What a magnitude is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Of {
+    Stress,
+    Force,
+    Displacement,
+}
+
 /// The one load magnitude of the file.
 struct Magnitude {
     key: String,
     /// As given, in the unit of its key.
     given: f64,
-    /// Pa or N.
+    /// Pa, N or m.
     value: f64,
     is_range: bool,
-    is_force: bool,
+    of: Of,
 }
 
 impl Magnitude {
     fn read(slice: &Input) -> Result<Self> {
-        let choices: [(&str, Option<f64>, Quantity); 6] = [
-            ("stress_max_mpa", slice.stress_max_mpa, STRESS),
-            ("stress_range_mpa", slice.stress_range_mpa, STRESS),
-            ("force_max_n", slice.force_max_n, FORCE),
-            ("force_range_n", slice.force_range_n, FORCE),
-            ("force_max_kn", slice.force_max_kn, FORCE_KN),
-            ("force_range_kn", slice.force_range_kn, FORCE_KN),
-        ];
-        let given: Vec<_> = choices.iter().filter_map(|(key, value, quantity)| Some((*key, (*value)?, quantity))).collect();
+        let kind = slice.kind.unwrap_or(LoadingKind::ConstantAmplitude);
+        let (wanted, example) = match kind {
+            LoadingKind::ConstantAmplitude => (MAGNITUDES, "loading.stress_max_mpa"),
+            LoadingKind::Displacement => (DISPLACEMENTS, "loading.displacement_max_mm"),
+        };
+        let given: Vec<_> = slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of))).collect();
         match given[..] {
-            [(key, given, quantity)] => {
+            [(key, given, quantity, of)] => {
                 let path = format!("loading.{key}");
+                if (of == Of::Displacement) != (kind == LoadingKind::Displacement) {
+                    return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), format!("give exactly one of {wanted}")));
+                }
                 let value = quantity.read(&path, given)?;
-                Ok(Magnitude { key: path, given, value, is_range: key.contains("range"), is_force: key.starts_with("force") })
+                Ok(Magnitude { key: path, given, value, is_range: key.contains("range"), of })
             }
-            [] => Err(input_missing(
-                "loading.stress_max_mpa",
-                "is missing: there is no load",
-                format!("give exactly one of {MAGNITUDES}"),
-            )),
-            [(first, ..), (second, value, _), ..] => {
+            [] => Err(input_missing(example, "is missing: there is no load", format!("give exactly one of {wanted}"))),
+            [(first, ..), (second, value, ..), ..] => {
                 let problem = format!("stands beside {first}: one load is given twice");
-                Err(input(&format!("loading.{second}"), value, problem, format!("give exactly one of {MAGNITUDES}")))
+                Err(input(&format!("loading.{second}"), value, problem, format!("give exactly one of {wanted}")))
             }
         }
     }

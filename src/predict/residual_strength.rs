@@ -78,6 +78,10 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
 /// # Errors
 /// It has none; the net section of a `plate` is not known, so that its yield strength says nothing.
 pub fn check_strength(case: &Case) -> Result<()> {
+    if case.loading.displacement().is_some() {
+        let problem = "does not go with cycles of a displacement, whose load is not that of a strength";
+        return Err(input_missing("--residual-strength", problem, "give a case with cycles of a load"));
+    }
     let net_section = case.specimen.ligament(case.specimen.crack_length).and(case.material.yield_strength);
     if case.material.toughness.or(net_section).is_some() {
         return Ok(());

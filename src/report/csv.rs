@@ -49,11 +49,14 @@ impl Row {
 }
 
 /// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
-/// (load squared times compliance) and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
+/// (load squared times compliance), the force where the cycles are of a `displacement`, m, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
 #[must_use]
-pub fn a_n(prediction: &Prediction) -> String {
+pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
+    if displacement.is_some() {
+        text.push_str(",force_max_n");
+    }
     // Fatigue bonds, driven by their own strain know no K of a tip.
     let has_factors = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.factors.is_some());
     let has_t = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.t_stress.is_some());
@@ -69,6 +72,9 @@ pub fn a_n(prediction: &Prediction) -> String {
     text.push('\n');
     for point in &prediction.curve {
         let _ = write!(text, "{},{},{}", Row::of(point).fields(), point.broken_bonds, number(point.work));
+        if let Some(displacement) = displacement {
+            let _ = write!(text, ",{}", number(point.work / displacement));
+        }
         for tip in &point.tips {
             for length in [tip.position[0], tip.position[1], tip.growth] {
                 let _ = write!(text, ",{}", number(length / MM));

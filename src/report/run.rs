@@ -104,7 +104,7 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
     if let (Some(refusal), Some(object)) = (refusal(case, prediction), result.as_object_mut()) {
         object.insert("refused".to_owned(), refusal.to_string().into());
     }
-    write_file(&folder.join(csv::A_N_FILE), csv::a_n(prediction).as_bytes())?;
+    write_file(&folder.join(csv::A_N_FILE), csv::a_n(prediction, case.loading.displacement()).as_bytes())?;
     write_file(&folder.join("crack_path.csv"), csv::crack_path(prediction, &case.specimen.cracks).as_bytes())?;
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
     draw_curves(folder, case, prediction)?;

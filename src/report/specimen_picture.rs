@@ -71,9 +71,19 @@ fn load_words(case: &Case) -> String {
         LoadMeasure::Force => ("force P", loading.maximum / KN, "kN"),
     };
     let minimum = maximum * loading.ratio;
+    if let Some(most) = loading.displacement() {
+        let [least, most] = [loading.ratio * most, most].map(|metres| format!("{:.4}", metres / MM));
+        return format!("displacement cycles between {least} and {most} mm (R = {})", loading.ratio);
+    }
+    let pressure = case.specimen.crack_pressure;
+    let (symbol, beside) = match pressure {
+        _ if pressure > 0.0 && case.specimen.loads.is_empty() => ("pressure p on the cracks", String::new()),
+        _ if pressure > 0.0 => (symbol, format!(", pressure on the cracks up to {} MPa", short(pressure * loading.maximum / MPA))),
+        _ => (symbol, String::new()),
+    };
     let parallel =
         if loading.parallel_ratio == 0.0 { String::new() } else { format!(", on the sides {} σ", loading.parallel_ratio) };
-    format!("{symbol} cycles between {} and {} {unit} (R = {}){parallel}", short(minimum), short(maximum), loading.ratio)
+    format!("{symbol} cycles between {} and {} {unit} (R = {}){parallel}{beside}", short(minimum), short(maximum), loading.ratio)
 }
 
 /// A number with at most two decimals.

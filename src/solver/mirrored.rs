@@ -164,6 +164,7 @@ impl EquilibriumBackend for Mirrored {
         let of_part = |spring: &GapSpring| GapSpring {
             weights: spring.weights.iter().map(|&(place, weights)| self.part.weights_of(body, place as usize, weights)).collect(),
             stiffness: share * spring.stiffness,
+            force: share * spring.force,
         };
         self.inner.set_contact(&self.part.body, &contact.iter().map(of_part).collect::<Vec<_>>())
     }

@@ -133,7 +133,7 @@ trait LinearSolver<const N: usize>: Send {
 
 /// What is said where a solver knows no contact.
 fn no_contact(solver: SolverUsed) -> Error {
-    let problem = format!("the load presses flanks of cracks together, and {solver} knows no contact");
+    let problem = format!("flanks of cracks carry pressure, and {solver} knows neither contact nor pressure on flanks");
     Error::Mechanics(format!("{problem}: use model.solver = \"window\", \"multigrid\" or \"direct\" on a lattice of one spacing"))
 }
 
@@ -239,7 +239,8 @@ impl Equilibrium {
         self.inner.broke(body, bonds, changed);
     }
 
-    /// Puts these springs between flanks in contact, in place of those that were there; places are those of the body.
+    /// Puts these springs between flanks in contact, and forces between flanks under pressure, in place of those that were there; places
+    /// are those of the body.
     ///
     /// # Errors
     /// A solver that knows no such springs.

@@ -21,6 +21,8 @@ struct ConstrainedSystem<const N: usize> {
     product: Product<N>,
     solver: Box<dyn LinearSolver<N>>,
     f: Vec<f64>,
+    /// The load without pressure on flanks, where there is some.
+    without_pressure: Option<Vec<f64>>,
     /// Prescribed field of clamped grips, per unit of half their relative displacement.
     grips: Option<Grips>,
     u: Vec<f64>,
@@ -112,7 +114,7 @@ impl<const N: usize> ConstrainedSystem<N> {
             SolverKind::AdaptiveDynamicRelaxation => Box::new(DynamicRelaxation::new(body, bonds, &product)),
         };
         let (u, points) = (layout.zeros(), body.points.len());
-        ConstrainedSystem { product, solver, f, grips, u, work: 0.0, points }
+        ConstrainedSystem { product, solver, f, without_pressure: None, grips, u, work: 0.0, points }
     }
 
     /// A plate of several levels: its loads and supports are not those of the body, which is a part of it.
@@ -131,7 +133,7 @@ impl<const N: usize> ConstrainedSystem<N> {
         let levels = Levels::new(plate, body, bonds, load);
         let solver: Box<dyn LinearSolver<N>> = Box::new(WindowSolver::of_whole(levels, kind == SolverKind::Direct));
         let f = layout.zeros();
-        ConstrainedSystem { product, solver, f, grips, u: vec![0.0; size], work: 0.0, points }
+        ConstrainedSystem { product, solver, f, without_pressure: None, grips, u: vec![0.0; size], work: 0.0, points }
     }
 }
 
@@ -215,7 +217,14 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
         if !contact.is_empty() && !self.solver.knows_contact() {
             return Err(no_contact(self.solver.used()));
         }
-        self.product.set_contact(contact.to_vec());
+        if self.without_pressure.is_some() || contact.iter().any(|spring| spring.force != 0.0) {
+            let without = self.without_pressure.get_or_insert_with(|| self.f.clone());
+            self.f.clone_from(without);
+            let layout = self.product.layout();
+            contact.iter().filter(|spring| spring.force != 0.0).for_each(|spring| spring.add_load(layout, &mut self.f));
+            self.product.fixed().iter().for_each(|&index| self.f[index] = 0.0);
+        }
+        self.product.set_contact(contact.iter().filter(|spring| spring.stiffness > 0.0).cloned().collect());
         Ok(())
     }
 

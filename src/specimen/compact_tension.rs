@@ -51,6 +51,7 @@ pub(super) fn from_value(value: &Value) -> Result<Specimen> {
         crack_length: a,
         loads: vec![pin(0, 1.0), pin(1, -1.0)],
         load_measure: LoadMeasure::Force,
+        crack_pressure: 0.0,
         ..Specimen::strip(SpecimenKind::CompactTension, w, 1.2 * w, thickness)
     })
 }

@@ -197,6 +197,8 @@ pub struct Specimen {
     pub convention: LengthConvention,
     /// Loads per unit of nominal load.
     pub loads: Vec<Load>,
+    /// Pressure on the faces of all cracks, also where they grow, per unit of nominal load: Pa per Pa, or Pa per N.
+    pub crack_pressure: f64,
     /// Whether the nominal load is a stress or a force.
     pub load_measure: LoadMeasure,
     /// Supports; empty means the loads are in equilibrium by themselves and the plate floats.
@@ -226,6 +228,7 @@ impl Specimen {
                 Load::Edge { from: [-x, -y], to: [x, -y], traction: [0.0, -1.0] },
             ],
             load_measure: LoadMeasure::Stress,
+            crack_pressure: 0.0,
             supports: Vec::new(),
         }
     }

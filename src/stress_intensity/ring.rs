@@ -19,7 +19,9 @@
 //! Williams' series, which is orthogonal to all others of the field) the same integral gives K x.
 //!
 //! With the field of a force F along x₁ at the tip as auxiliary field, whose stress is `σ_rr = -F cos θ / (π r)` and which leaves the
-//! faces free, the integral is the stress along the crack (Kfouri 1986, Int. J. Fract. 30:301): `T = E' / F [...]`.
+//! faces free, the integral is the stress along the crack (Kfouri 1986, Int. J. Fract. 30:301): `T = E' / F [...]`. With a pressure p on
+//! the faces at the tip the field has the stress -p across the crack as well, of which the jump of the auxiliary displacement makes p: T is
+//! what is read less p.
 //!
 //! The bonds near the tip, where the displacement of a nonlocal body is not that of a sharp crack, lie inside the ring and take
 //! no part.
@@ -114,8 +116,10 @@ pub struct RingFactors {
     pub factors: [f64; 2],
     /// Stress along the crack T, Pa.
     pub t_stress: f64,
-    /// How far ahead of the end of the line the field has its tip, m.
+    /// How far ahead of the end of the line the field has its tip, m: of both modes together, the larger counting more.
     pub tip_offset: f64,
+    /// The same of either mode.
+    pub tip_offsets: [f64; 2],
     /// Outer radius of the ring, m.
     pub radius: f64,
     /// What the pressure between flanks adds to K_I, Pa√m.
@@ -209,17 +213,20 @@ impl RingGeometry {
         }
         let pressed = || plate.pressures.iter().filter(|flank| near(flank.facet.at));
         let nearest = pressed().map(|flank| distance(flank.facet.at, frame.origin)).fold(f64::INFINITY, f64::min);
-        let mut of_pressure = 0.0;
+        let (mut of_pressure, mut at_tip) = (0.0, 0.0);
         for flank in pressed() {
             // The last piece reaches up to the tip of the ring.
             let is_last = nearest < spacing && distance(flank.facet.at, frame.origin) < (1.0 + EQUAL) * nearest;
             let part = around.pressure(flank, is_last);
             of_pressure += 0.5 * self.elasticity.plane_modulus * part[0];
+            if is_last {
+                at_tip = flank.pressure;
+            }
             add(part);
         }
         let [k_i, k_ii, shifted_i, shifted_ii, half_t] = sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum);
         let tip_offset = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
-        RingFactors { factors: [k_i, k_ii], t_stress: 2.0 * half_t, tip_offset, radius: outer, of_pressure }
+        RingFactors { factors: [k_i, k_ii], t_stress: 2.0 * half_t - at_tip, tip_offset, tip_offsets: [shifted_i / k_i, shifted_ii / k_ii], radius: outer, of_pressure }
     }
 }
 

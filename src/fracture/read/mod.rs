@@ -54,7 +54,7 @@ use toml::{Table, Value};
 
 use super::scene::{Scene, SceneLaw};
 use crate::error::Result;
-use crate::input::{Document, Folder, ForeignSections, Sections, value_at};
+use crate::input::{Document, Folder, ForeignSections, Sections};
 use crate::levels::read as refinement;
 use crate::{material, specimen};
 
@@ -104,13 +104,16 @@ impl Scene {
     }
 }
 
-/// Whether a file describes a fracture scene rather than a fatigue case: by a section or a kind of loading that only scenes
-/// have.
+/// Whether a file describes a fracture scene rather than a fatigue case: by a section or a kind of loading that only scenes have.
+/// Displacements of cases have a maximum, or a range, and a ratio.
 #[must_use]
 pub fn is_scene(table: &Table) -> bool {
-    let kind = table.get("loading").and_then(|loading| value_at(loading, "kind")).and_then(Value::as_str);
+    const OF_CYCLES: [&str; 3] = ["displacement_max_mm", "displacement_range_mm", "stress_ratio"];
+    let loading = table.get("loading").and_then(Value::as_table);
+    let is_of_cycles = loading.is_some_and(|loading| OF_CYCLES.iter().any(|key| loading.contains_key(*key)));
+    let kind = loading.and_then(|loading| loading.get("kind")).and_then(Value::as_str).filter(|_| !is_of_cycles);
     SCENE_SECTIONS.iter().any(|section| table.contains_key(*section))
-        || table.get("loading").and_then(Value::as_table).is_some_and(|loading| loading.contains_key("parts"))
+        || loading.is_some_and(|loading| loading.contains_key("parts"))
         || kind.is_some_and(|kind| kind.parse::<LoadKind>().is_ok())
 }
 

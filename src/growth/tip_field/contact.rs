@@ -117,13 +117,15 @@ impl Contact {
         self.pieces.iter().flat_map(|piece| piece.places.iter().flatten())
     }
 
-    fn in_contact(&self) -> impl Iterator<Item = &Place> {
-        self.places().filter(|place| place.in_contact)
-    }
-
-    /// Springs of the places in contact.
-    pub(super) fn springs(&self) -> Vec<GapSpring> {
-        self.in_contact().map(|place| place.spring.clone()).collect()
+    /// Springs of the places in contact, and on all places the force of a pressure on the flanks, Pa.
+    pub(super) fn springs(&self, pressure: f64, thickness: f64) -> Vec<GapSpring> {
+        let acting = self.places().filter(|place| place.in_contact || pressure > 0.0);
+        let spring = |place: &Place| GapSpring {
+            weights: place.spring.weights.clone(),
+            stiffness: if place.in_contact { place.spring.stiffness } else { 0.0 },
+            force: pressure * place.length * thickness,
+        };
+        acting.map(spring).collect()
     }
 
     /// Opens the places whose flanks move apart and closes those that overlap by more than round-off and `least`, m; whether there are
@@ -164,17 +166,17 @@ impl Contact {
         !near.is_empty() && near.iter().take(PLACES_AT_TIP).all(|(_, in_contact)| *in_contact)
     }
 
-    /// Pressures on both flanks of the places in contact.
-    pub(super) fn pressures(&self, layout: &Layout, displacement: &[f64], thickness: f64) -> Vec<FlankPressure> {
+    /// Pressures on both flanks of the places in contact, and of all places where there is one of the load, Pa.
+    pub(super) fn pressures(&self, layout: &Layout, displacement: &[f64], thickness: f64, of_load: f64) -> Vec<FlankPressure> {
         let of_place = |place: &Place| {
-            let force = -place.spring.stiffness * place.spring.gap(layout, displacement);
-            let pressure = force / (place.length * thickness);
+            let gap = if place.in_contact { place.spring.gap(layout, displacement) } else { 0.0 };
+            let pressure = of_load - place.spring.stiffness * gap / (place.length * thickness);
             [1.0, -1.0].map(|sign| {
                 let normal = place.normal.map(|n| sign * n);
                 FlankPressure { facet: Facet { at: place.at, normal, length: place.length }, pressure }
             })
         };
-        self.in_contact().flat_map(of_place).collect()
+        self.places().filter(|place| place.in_contact || of_load > 0.0).flat_map(of_place).collect()
     }
 }
 
@@ -190,5 +192,5 @@ fn place(body: &Body, at: Point, [a, b]: [Point; 2], length: f64, all: &[[Point;
         let shares = flanks::shares(body, &facet, all)?;
         weights.extend(shares.into_iter().map(|(place, share)| (place, axes.map(|n| sign * share * n))));
     }
-    Some(Place { at, normal, length, spring: GapSpring { weights, stiffness }, in_contact: false })
+    Some(Place { at, normal, length, spring: GapSpring { weights, stiffness, force: 0.0 }, in_contact: false })
 }

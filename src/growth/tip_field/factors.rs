@@ -13,12 +13,15 @@ use crate::fatigue::crack_tip::TipState;
 use crate::growth::tip_ring::{CORE_HORIZONS, RING_HORIZONS, RING_HORIZONS_MIN, TipRings, pair_twins};
 use crate::specimen::geometry::{direction, distance};
 use crate::specimen::{CrackLine, LineEnd, Point};
-use crate::stress_intensity::ring::RingFactors;
 use crate::units::MM;
 
 /// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.05 to 0.09 at ν = 0.3, 0.04 at ν = 0.1,
 /// whatever the spacing.
 const AHEAD_HORIZONS: f64 = 0.15;
+/// How far ahead of its line a tip may stand in mode II, in horizons: 0.21 to 0.22 on lattices of 0.25 to 1.4 mm.
+const SLIDING_AHEAD_HORIZONS: f64 = 0.4;
+/// The smaller of K_I and K_II over the larger from which each is read where the field has its tip in that mode.
+const MIXED: f64 = 0.05;
 /// Growth after a corner, in horizons, below which points do not resolve the kink: K would be read up to 5 % low.
 const KINK_HORIZONS: f64 = 0.5;
 /// Relative difference within which factors are those of mirror twins: far above what solver and tie breaks make of equal ones, far
@@ -52,6 +55,19 @@ pub(super) struct Reading {
     is_closed: bool,
     /// What the pressure between flanks adds to K_I, Pa√m.
     of_pressure: f64,
+    /// Of a tip of both modes.
+    sliding: Option<Sliding>,
+}
+
+/// K_II where the field of a tip stands in mode II.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Sliding {
+    /// How far ahead of the end of its line the crack is that has it, m.
+    offset: f64,
+    /// Pa√m.
+    factor: f64,
+    /// The same at the end of the line.
+    at_line: f64,
 }
 
 impl Reading {
@@ -111,7 +127,8 @@ impl TipField<'_> {
         let horizon = body.horizon();
         let tips: Vec<&Tip> = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).collect();
         let active: Vec<LineEnd> = tips.iter().map(|tip| tip.end).collect();
-        let pressures = self.contact.pressures(&self.layout(), &self.displacement, body.thickness);
+        let pressures = self.contact.pressures(&self.layout(), &self.displacement, body.thickness, self.crack_pressure());
+        let share = self.load_share();
         let rings = TipRings {
             body,
             bonds: &self.bonds,
@@ -127,18 +144,35 @@ impl TipField<'_> {
             let end = tip.end;
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
             let first = rings.read(end, excess);
+            let [k_i, k_ii] = first.factors.map(f64::abs);
+            let is_mixed = k_i.min(k_ii) > MIXED * k_i.max(k_ii);
+            let offset = if is_mixed { first.tip_offsets[0] } else { first.tip_offset };
             // Beside a rim what is read as a shift may be something else.
-            let ahead = if first.tip_offset.abs() < AHEAD_HORIZONS * horizon { first.tip_offset } else { 0.0 };
+            let ahead = if offset.abs() < AHEAD_HORIZONS * horizon { offset } else { 0.0 };
             let ring = if ahead == 0.0 { first } else { rings.read(end, excess + ahead) };
             let is_closed = contact.is_closed(lines, end, body.lattice.spacing);
-            let factors = if is_closed { [0.0, ring.factors[1]] } else { ring.factors };
-            let RingFactors { t_stress, of_pressure, .. } = ring;
-            Reading { factors, t_stress, length_offset: excess + ahead, is_closed, of_pressure }
+            let mut factors = if is_closed { [0.0, ring.factors[1]] } else { ring.factors }.map(|factor| share * factor);
+            let beyond = ring.tip_offsets[1];
+            let is_beyond = is_mixed && !is_closed && beyond > 0.0 && beyond < SLIDING_AHEAD_HORIZONS * horizon;
+            let sliding = is_beyond.then(|| {
+                let offset = excess + ahead + beyond;
+                let factor = share * rings.read(end, offset).factors[1];
+                let less = |by: f64| factor * tip.sliding_ratio(factor, offset, by, horizon);
+                factors[1] = less(beyond);
+                Sliding { offset, factor, at_line: less(offset) }
+            });
+            let [t_stress, of_pressure] = [ring.t_stress, ring.of_pressure].map(|of_load| share * of_load);
+            Reading { factors, t_stress, length_offset: excess + ahead, is_closed, of_pressure, sliding }
         };
         let mut readings: Vec<Reading> = tips.par_iter().map(read).collect();
         let mut factors: Vec<Option<[f64; 2]>> = readings.iter().map(|reading| Some(reading.factors)).collect();
         pair_twins(&mut factors, ROUND_OFF);
         readings.iter_mut().zip(factors).for_each(|(reading, factors)| reading.factors = factors.unwrap_or(reading.factors));
+        let mut at_line: Vec<Option<[f64; 2]>> = readings.iter().map(|reading| reading.sliding.map(|s| [s.at_line; 2])).collect();
+        pair_twins(&mut at_line, ROUND_OFF);
+        for (reading, at_line) in readings.iter_mut().zip(at_line) {
+            reading.sliding.iter_mut().zip(at_line).for_each(|(sliding, at_line)| sliding.at_line = at_line[0]);
+        }
         readings
     }
 
@@ -147,10 +181,13 @@ impl TipField<'_> {
         let horizon = self.plate.body.horizon();
         let lines = self.state.drawn_back(PROBE_HORIZONS * horizon);
         let readings = self.read_rings(&lines);
-        for (tip, Reading { factors: read, length_offset, .. }) in self.state.tips.iter_mut().zip(readings) {
+        for (tip, Reading { factors: read, length_offset, sliding, .. }) in self.state.tips.iter_mut().zip(readings) {
             let end = tip.end;
             let back = distance(self.state.lines[end.line].end(end.at_last), lines[end.line].end(end.at_last));
             tip.readings.take(equivalent_factor(read), -back, length_offset, None, horizon);
+            if let Some(Sliding { offset, factor, .. }) = sliding {
+                tip.sliding_readings.take(factor.abs(), -back, offset, None, horizon);
+            }
         }
     }
 
@@ -215,7 +252,7 @@ impl TipField<'_> {
         let gaps: Vec<Option<f64>> = self.state.tips.iter().map(|tip| self.gap(tip)).collect();
         for (tip, gap) in self.state.tips.iter_mut().zip(gaps) {
             tip.rate = 0.0;
-            let Some(Reading { factors: read, t_stress, length_offset, is_closed: pressed_shut, .. }) = tip.reading else {
+            let Some(Reading { factors: read, t_stress, length_offset, is_closed: pressed_shut, sliding, .. }) = tip.reading else {
                 continue;
             };
             (tip.length_offset, tip.t_stress) = (length_offset, t_stress);
@@ -241,6 +278,9 @@ impl TipField<'_> {
                 ratio = ratio.max(tip.equivalent() / equivalent_factor(read));
             }
             let mut factors = read.map(|factor| ratio * factor);
+            if let Some(sliding) = sliding.filter(|_| tip.growth == 0.0) {
+                factors[1] = sliding.at_line;
+            }
             if let Some(gap) = gap {
                 factors = tip.coalescence.factors(factors, gap, horizon);
             }

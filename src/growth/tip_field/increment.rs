@@ -216,7 +216,7 @@ impl TipField<'_> {
             self.compare_energies(&step, cycles);
         }
         self.update_remaining_life();
-        let work = if is_over { f64::NAN } else { self.equilibrium.work() };
+        let work = if is_over { f64::NAN } else { self.work() };
         let is_left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
         // What the last tip has met is known, whatever is left of the plate.
         if !is_left && !step.is_severed {
@@ -252,7 +252,7 @@ impl TipField<'_> {
     fn energies(&self) -> (Vec<[f64; 2]>, f64) {
         let modulus = self.case.material.plane_modulus();
         let of_tip = |tip: &Tip| [tip.equivalent().powi(2) / modulus, tip.length_offset];
-        (self.state.tips.iter().map(of_tip).collect(), self.equilibrium.work())
+        (self.state.tips.iter().map(of_tip).collect(), self.work())
     }
 
     /// Compares the energy that the new segments released by their K with what the plate did.
@@ -267,9 +267,11 @@ impl TipField<'_> {
             self.case.specimen.crack_length_after(&growths)
         };
         let length = length_less(&vec![0.0; growths.len()]);
+        // What is released under a load is half of the work that this does more, and under a displacement the strain energy lost.
+        let sign = if self.case.loading.displacement().is_some() { -1.0 } else { 1.0 };
         let block = ReleasedEnergy {
             of_tips: self.case.specimen.thickness * released,
-            of_plate: 0.5 * (work_now - work),
+            of_plate: sign * 0.5 * (work_now - work),
             growth: growths.iter().sum(),
             lengthening: length - length_less(&growths),
             cycles,
@@ -342,7 +344,7 @@ impl TipField<'_> {
         for solve in 1..=CONTACT_SOLVES_MOST {
             let solved = self
                 .equilibrium
-                .set_contact(body, &self.contact.springs())
+                .set_contact(body, &self.contact.springs(self.crack_pressure(), body.thickness))
                 .and_then(|()| self.equilibrium.solve(body, &self.bonds, &mut self.displacement));
             match solved {
                 Ok(iterations) => self.iterations += iterations,

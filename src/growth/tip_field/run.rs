@@ -126,7 +126,7 @@ impl CrackGrowth for TipField<'_> {
             let problem = format!("{}: no stress intensity can be read at the crack tip at ({x:.4}, {y:.4}) mm", self.case.name);
             return Err(Error::Mechanics(format!("{problem}; give a smaller model.spacing_mm")));
         }
-        self.curve = vec![self.row(0.0, self.equilibrium.work(), 0)];
+        self.curve = vec![self.row(0.0, self.work(), 0)];
         self.rows_at_rebuild = 1;
         Ok(())
     }
@@ -141,7 +141,9 @@ impl CrackGrowth for TipField<'_> {
     }
 
     fn fields(&mut self) -> Result<Option<Fields>> {
-        Ok(Some(self.plate.fields(&self.bonds, &self.displacement, &self.state.remaining_life)))
+        let share = self.load_share();
+        let displacement: Vec<f64> = self.displacement.iter().map(|u| share * u).collect();
+        Ok(Some(self.plate.fields(&self.bonds, &displacement, &self.state.remaining_life)))
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {
