@@ -11,6 +11,7 @@ pub mod guard;
 pub mod laws;
 pub mod memory;
 mod outcome;
+pub mod path_stability;
 pub mod plastic_zone;
 pub mod record;
 pub mod residual_strength;

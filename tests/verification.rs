@@ -47,6 +47,8 @@ mod symmetry;
 mod pressed_cracks;
 #[path = "verification/mirror_images.rs"]
 mod mirror_images;
+#[path = "verification/loads.rs"]
+mod loads;
 #[path = "verification/joined_cracks.rs"]
 mod joined_cracks;
 #[path = "verification/near_tip_fields.rs"]

@@ -115,6 +115,9 @@ fn check_count(key: &str, given: &[Value], example: &str) -> Result<()> {
 }
 
 fn read_share(path: &str, share: f64) -> Result<f64> {
+    if share < 0.0 {
+        return Err(input(&format!("{path}.share"), share, "is negative", "give its size, and turn the direction round"));
+    }
     number("a share of the force", 1e-6, 1e6).read(&format!("{path}.share"), share)
 }
 

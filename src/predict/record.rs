@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::checkpoint::{self, Checkpoint};
 use super::guard::Guard;
 use super::snapshot::Snapshots;
-use super::{CurvePoint, Observer, Prediction, Progress, RunFigures, StopReason, laws, plastic_zone};
+use super::{CurvePoint, Observer, Prediction, Progress, RunFigures, StopReason, laws, path_stability, plastic_zone};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::growth::CrackGrowth;
@@ -138,5 +138,6 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, curve: &[CurvePoint]) -> Vec<
     warnings.extend(growth.warnings());
     warnings.extend(growth.law().and_then(|law| laws::beyond_warning(case, law, curve)));
     warnings.extend(plastic_zone::warnings(case, curve));
+    warnings.extend(path_stability::warning(curve));
     warnings
 }

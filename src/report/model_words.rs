@@ -114,14 +114,14 @@ pub fn of_scene(scene: &Scene, finest: Option<f64>) -> Vec<Choice> {
         SceneLaw::Bonds(law) => vec![
             chosen("bond_law", law.kind.name().into(), TWO_SPRINGS),
             chosen("kernel", law.kernel.name().into(), "default: that of the law's literature"),
-            chosen("rotation", law.rotation.name().into(), "default: as the law is printed"),
+            chosen("rotation", law.rotation.name().into(), "default: a rigid turn costs nothing"),
             chosen("surface_correction", law.surface_correction.name().into(), "default: that of the literature"),
             chosen("kinematics", if model.finite { "finite" } else { "small" }.into(), "default: strains are small"),
         ],
         SceneLaw::Correspondence { control, factor } => vec![
             chosen("bond_law", "correspondence".into(), TWO_SPRINGS),
             chosen("zero_energy_control", control.name().into(), "default: leaves uniform strain alone"),
-            chosen("zero_energy_factor", factor.into(), "default: 1"),
+            chosen("zero_energy_factor", factor.into(), "default: bending, shear and a pressed disc together"),
         ],
     };
     choices.push(chosen("discretisation", model.arrangement.name().into(), "default: one spacing"));

@@ -140,3 +140,57 @@ fn a_roller_presses_uniformly_on_its_contact() {
     let none = case(PLATE, "force_max_n = 10\nstress_ratio = 0\nrollers = []").unwrap_err().to_string();
     assert!(none.contains("loading.rollers") && none.contains("loads nothing"), "{none}");
 }
+
+/// Every wrong way to give a direction, a pressure on cracks or a displacement names what is wrong.
+#[test]
+fn directions_pressures_and_displacements_that_are_refused() {
+    let held = "stress_ratio = 0\nstress_max_mpa = 50\nedges = [\"top\", \"bottom\"]\n";
+    let kept = "stress_ratio = 0\nkind = \"displacement\"\n";
+    let refused = [
+        (PLATE, format!("{held}direction = [0, 0]"), "has no direction"),
+        (PLATE, format!("{held}direction = [[0, 1]]"), "names 1 directions for 2 sides"),
+        (PLATE, format!("{held}direction = \"up\""), "is not a direction"),
+        (PLATE, format!("{held}direction = [1, 0]"), "is not in equilibrium"),
+        (PLATE, format!("{held}direction = [[0, 1], [0, -1]]\nstress_parallel_ratio = 1"), "does not go with loading.direction"),
+        (PLATE, "stress_ratio = 0\nforce_max_n = 5\npins = [{ hole = 0, direction = [0, 1] }]\ndirection = [0, 1]".into(), "stands beside loading.pins"),
+        (PANEL, "stress_ratio = 0\nstress_max_mpa = 50\ndirection = [0, 1]".into(), "does not go with middle_tension"),
+        (PANEL, "stress_ratio = 0\ncrack_pressure_mpa = 50".into(), "does not go with middle_tension"),
+        (PLATE, "stress_ratio = 0\ncrack_pressure_mpa = -5".into(), "crack_pressure_mpa"),
+        (PLATE, "stress_ratio = 0\ncrack_pressure_mpa = 5\nedges = [\"top\", \"bottom\"]".into(), "none is given beside crack_pressure_mpa"),
+        (PLATE, format!("{kept}stress_max_mpa = 50"), "does not go with kind"),
+        (PLATE, format!("{kept}crack_pressure_mpa = 50"), "displacement_max_mm = "),
+        (PLATE, kept.into(), "is missing: there is no load"),
+        (PLATE, format!("{kept}displacement_max_mm = 0.1\ncrack_pressure_mpa = 5"), "does not go with cycles of a displacement"),
+        (PLATE, format!("{kept}displacement_max_mm = 0.1\ndisplacement_range_mm = 0.1"), "one load is given twice"),
+        (PLATE, "stress_ratio = 0\ndisplacement_max_mm = 0.1".into(), "does not go with kind"),
+        (PLATE, "kind = \"displacement\"\ndisplacement_mm = 0.1".into(), "belongs to fracture scenes"),
+    ];
+    for (specimen, loading, words) in refused {
+        let error = case(specimen, &loading).map(|_| ()).expect_err(&loading).to_string();
+        assert!(error.contains(words), "{loading}: {error}");
+    }
+}
+
+/// Loads that only growth by K of the tips knows are refused elsewhere.
+#[test]
+fn loads_of_one_driver() {
+    let loads = [
+        ("kind = \"displacement\"\ndisplacement_max_mm = 0.1", "cycles of 0.1 mm are known to"),
+        ("crack_pressure_mpa = 5", "pressure on cracks is known to"),
+    ];
+    for (loading, words) in loads {
+        let text = format!(
+            "[specimen]\n{PLATE}\n[material]\nname = \"al2024-t3\"\n[fatigue]\na = 1\np = 2\nhorizon_mm = 3\n[loading]\nstress_ratio = 0\n{loading}"
+        );
+        let read = |set: &[&str]| Case::from_toml(&text, "test", Path::new(""), &set.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>());
+        read(&[]).unwrap();
+        let error = read(&["fatigue.driver=\"bond_strain\""]).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+        if loading.starts_with("crack") {
+            for set in ["model.solver=\"adaptive_dynamic_relaxation\"", "model.discretisation=\"dual_horizon\""] {
+                let error = read(&[set]).unwrap_err().to_string();
+                assert!(error.contains("loading.crack_pressure_mpa"), "{set}: {error}");
+            }
+        }
+    }
+}

@@ -14,8 +14,8 @@ use crate::fracture::scene::ZeroEnergyControl;
 use crate::levels::Net;
 use crate::material::Material;
 
-/// Factor H of `silling` where none is given.
-pub const SILLING_FACTOR: f64 = 1.0;
+/// Factor H of `silling` where none is given. At 1 a double cantilever of ten points a arm is 14 % too stiff in bending, at 0.3 7 %.
+pub const SILLING_FACTOR: f64 = 0.3;
 
 /// Control with its constant.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,6 +7,7 @@ use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection,
 use crate::case::HORIZON_RATIO;
 use crate::case::model::{check_spacing, default_spacing};
 use crate::error::{Error, Result, input, input_missing};
+use crate::fracture::correspondence::control::SILLING_FACTOR;
 use crate::fracture::scene::{Discretisation, PointLaw, Procedure, SceneLaw, SceneModel, SceneSolver, ZeroEnergyControl};
 use crate::input::{LENGTH, number, slice};
 use crate::material::Material;
@@ -140,7 +141,7 @@ fn correspondence(given: &Input) -> Result<SceneLaw> {
             return Err(input(FACTOR, factor, problem, "leave it out, or use \"silling\" or \"spring\""));
         }
         (ZeroEnergyControl::None, None) => 0.0,
-        (ZeroEnergyControl::Silling, factor) => number("a factor", 0.0, 1e3).read(FACTOR, check_sign(factor.unwrap_or(1.0))?)?,
+        (ZeroEnergyControl::Silling, factor) => number("a factor", 0.0, 1e3).read(FACTOR, check_sign(factor.unwrap_or(SILLING_FACTOR))?)?,
         (ZeroEnergyControl::Spring, Some(factor)) => {
             number("a spring constant c_I in N/m⁷", 0.0, 1e40).read(FACTOR, check_sign(factor)?)?
         }

@@ -1,0 +1,149 @@
+//! Loads other than a tension of the ends: a direction of the traction on edges, pressure on cracks, cycles of a displacement.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use perilife::case::Case;
+use perilife::growth::tip_field::initial_tips;
+use perilife::predict::{Prediction, Silent, StopReason, predict};
+
+use crate::shared::shared;
+
+const STEADY: &str = "[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\nplane = \"stress\"\n\
+                      [fatigue]\nparis_c_mm_per_cycle = 1e-9\nparis_m = 3\n";
+
+fn case(specimen: &str, loading: &str, set: &[&str]) -> Case {
+    let text = format!("[specimen]\nthickness_mm = 2\n{specimen}\n[loading]\nstress_ratio = 0\n{loading}\n{STEADY}");
+    let set: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
+    Case::from_toml(&text, "load", Path::new(""), &set).unwrap()
+}
+
+fn plate(cracks: &str, loading: &str, spacing: f64) -> Case {
+    let specimen = format!("kind = \"plate\"\nwidth_mm = 60\nlength_mm = 120\ncracks = [{cracks}]");
+    case(&specimen, loading, &[&format!("model.spacing_mm={spacing}")])
+}
+
+/// K_I and K_II in MPa√m, T in MPa.
+fn tips(case: &Case) -> Vec<[f64; 3]> {
+    let tips = initial_tips(case).unwrap().tips;
+    tips.iter().map(|tip| [tip.factors.unwrap()[0] / 1e6, tip.factors.unwrap()[1] / 1e6, tip.t_stress.unwrap() / 1e6]).collect()
+}
+
+fn run(case: &Case) -> Prediction {
+    predict(case, &Silent).unwrap()
+}
+
+/// A pressure on the faces makes the K of a uniform stress of this size far away, since a plate without crack is uniform under that: of
+/// all directions if the crack is slanted. T of a stress across the crack is the same too; along it the uniform field adds its own.
+#[test]
+fn pressure_on_cracks_is_a_stress_far_away() {
+    let straight = "stress_max_mpa = 50";
+    let all_round = "stress_max_mpa = 50\nstress_parallel_ratio = 1";
+    let plates = [
+        ("central", "{ from_mm = [-8, 0], to_mm = [8, 0] }", straight, 0.0),
+        ("edge", "{ from_mm = [-30, 0], to_mm = [-15, 0] }", straight, 0.0),
+        ("slanted", "{ from_mm = [-8, -3], to_mm = [8, 4] }", all_round, 50.0),
+        ("kinked", "{ path_mm = [[-8, 0], [0, 0], [8, 6]] }", all_round, 50.0),
+    ];
+    for (name, crack, far, along) in plates {
+        let [pressed, pulled] = ["crack_pressure_mpa = 50", far].map(|loading| tips(&plate(crack, loading, 0.5)));
+        for (pressed, pulled) in pressed.iter().zip(&pulled) {
+            println!("{name}: pressure {pressed:.4?}, stress {pulled:.4?}");
+            let size = pulled[0].hypot(pulled[1]);
+            assert!((0..2).all(|i| (pressed[i] - pulled[i]).abs() < 0.006 * size), "{name}: {pressed:?}, {pulled:?}");
+            assert!((pressed[2] + along - pulled[2]).abs() < 0.02 * 50.0, "{name}: {pressed:?}, {pulled:?}");
+        }
+    }
+}
+
+/// A pressure beside a stress adds its K; a plate on whose crack alone a load acts is severed as any other.
+#[test]
+fn pressure_adds_to_a_stress_and_follows_the_crack() {
+    let crack = "{ from_mm = [-8, 0], to_mm = [8, 0] }";
+    let [both, pulled] = ["stress_max_mpa = 50\ncrack_pressure_mpa = 25", "stress_max_mpa = 50"].map(|l| tips(&plate(crack, l, 1.0))[0][0]);
+    assert!((both / pulled / 1.5 - 1.0).abs() < 0.005, "{both}, {pulled}");
+    let [pressed, pulled] = ["crack_pressure_mpa = 50", "stress_max_mpa = 50"].map(|l| run(&plate(crack, l, 1.0)));
+    let (life, right) = (pressed.life_cycles(), pulled.life_cycles());
+    println!("life {life}, under a stress {right}");
+    assert!((life / right - 1.0).abs() < 0.01, "{life}, {right}");
+    assert_eq!(pressed.stop, StopReason::Severed);
+}
+
+/// Edge crack in a plate held at the bottom, sheared at the top: finite elements 34.04 and 4.537 MPa√m; 34.0 and 4.55 by Yau, Wang and
+/// Corten (1980). K_II does not depend on the points.
+#[test]
+fn a_sheared_edge() {
+    let Some(path) = shared("field/mechanics/shear_edges/edge_crack_shear.toml") else { return };
+    for spacing in ["0.5", "0.7", "1"] {
+        let case = Case::from_file(&path, &[format!("model.spacing_mm={spacing}")]).unwrap();
+        let [k_i, k_ii, _] = tips(&case)[0];
+        println!("{spacing} mm: K_I {k_i:.4}, K_II {k_ii:.4}");
+        assert!((k_i / 34.04 - 1.0).abs() < 0.005 && (k_ii / 4.537 - 1.0).abs() < 0.005, "{k_i}, {k_ii}");
+    }
+}
+
+/// A square under pure shear of all its sides: K_II = τ√(πa) but for the sides, K_I = 0; turned by 45° the same crack opens.
+#[test]
+fn pure_shear() {
+    let sides = "edges = [\"top\", \"bottom\", \"right\", \"left\"]\ndirection = [[1, 0], [-1, 0], [0, 1], [0, -1]]\nstress_max_mpa = 50";
+    let cracks = [("{ from_mm = [-4, 0], to_mm = [4, 0] }", [0.0, 1.0]), ("{ from_mm = [-2.828, 2.828], to_mm = [2.828, -2.828] }", [1.0, 0.0])];
+    for (crack, right) in cracks {
+        let case = case(&format!("kind = \"plate\"\nwidth_mm = 80\nlength_mm = 80\ncracks = [{crack}]"), sides, &["model.spacing_mm=0.5"]);
+        let size = 50.0 * (PI * 4e-3_f64).sqrt();
+        for tip in tips(&case) {
+            println!("{crack}: {tip:.4?}, infinite plate {size:.4}");
+            let [k_i, k_ii, _] = tip.map(|k| k / size);
+            // Long against the crack, the sides add less than a percent.
+            assert!((k_i - right[0]).abs() < 0.015 && (k_ii.abs() - right[1]).abs() < 0.015, "{tip:?}");
+        }
+    }
+}
+
+/// Middle tension under a kept displacement: `P = δ/C(a)` with the compliance that K says, `C = L/(E W t) + 4t/(E P²) ∫ K² da`.
+#[test]
+fn cycles_of_a_displacement() {
+    let panel = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 200\ncrack_length_mm = 8";
+    let kept = "kind = \"displacement\"\ndisplacement_max_mm = 0.2";
+    let [kept, loaded] =
+        [kept, "force_max_n = 13719.7"].map(|loading| run(&case(panel, loading, &["stop.crack_length_mm=40"])));
+    let (width, length, thickness, modulus, displacement) = (0.1, 0.2, 2e-3, 70e9, 0.2e-3);
+    let factor = |a: f64| (PI * a / (PI * a / width).cos()).sqrt();
+    let section = width * thickness;
+    let compliance = |squares: f64| length / (modulus * section) + 4.0 * thickness / (modulus * section * section) * squares;
+    let (mut squares, mut cycles, step) = (0.0, 0.0, 1e-6);
+    let mut a = 0.5 * step;
+    while a < 40e-3 {
+        squares += factor(a).powi(2) * step;
+        if a > 8e-3 {
+            let k = displacement / compliance(squares) / section * factor(a) / 1e6;
+            cycles += 1e3 * step / (1e-9 * k.powi(3));
+        }
+        a += step;
+    }
+    let force = kept.curve.last().unwrap().work / displacement;
+    println!("life {}, quadrature {cycles}; force at the end {force}, {}", kept.life_cycles(), displacement / compliance(squares));
+    assert!((kept.life_cycles() / cycles - 1.0).abs() < 0.01);
+    assert!((force * compliance(squares) / displacement - 1.0).abs() < 0.01);
+    // Both begin with the same load.
+    assert!((loaded.curve[0].delta_k / kept.curve[0].delta_k - 1.0).abs() < 0.002);
+    assert!(kept.life_cycles() > 1.5 * loaded.life_cycles());
+    assert!(kept.cross_check.unwrap().difference.abs() < 0.05, "{:?}", kept.cross_check);
+}
+
+/// Compact tension: the displacement is that of the pins, which press their holes oval besides; what cracks add to the compliance is that
+/// of Saxena and Hudak (1978), `E B v/P = ((1+α)/(1-α))² (2.163 + 12.219α - 20.065α² - 0.9925α³ + 20.609α⁴ - 9.9314α⁵)`.
+#[test]
+fn compliance_of_a_compact_specimen() {
+    let specimen = "kind = \"compact_tension\"\nwidth_mm = 50\ncrack_length_mm = 20";
+    let kept = run(&case(specimen, "kind = \"displacement\"\ndisplacement_max_mm = 0.1", &["model.spacing_mm=0.5", "stop.crack_length_mm=32"]));
+    let handbook = |a: f64| {
+        let alpha = a / 50e-3;
+        let terms = [2.163, 12.219, -20.065, -0.9925, 20.609, -9.9314];
+        ((1.0 + alpha) / (1.0 - alpha)).powi(2) * terms.iter().rev().fold(0.0, |sum, term| sum * alpha + term)
+    };
+    let found = |work: f64| 70e9 * 2e-3 * 0.1e-3 / (work / 0.1e-3);
+    let ends = [&kept.curve[0], kept.curve.last().unwrap()];
+    let [less, more] = ends.map(|row| [found(row.work), handbook(row.crack_length)]);
+    println!("E B v/P of [points, handbook]: {less:.3?} to {more:.3?}");
+    assert!(((more[0] - less[0]) / (more[1] - less[1]) - 1.0).abs() < 0.015, "{less:?}, {more:?}");
+}
