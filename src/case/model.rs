@@ -139,11 +139,11 @@ fn check_formula(specimen: &Specimen) -> Result<()> {
 /// Share of the longest flaw below which a flaw does not decide the life: its rate is an eighth or less of that of the longest at m = 3.
 const SMALL_FLAW: f64 = 0.25;
 /// Points on the least gap beside a tip, and on a flaw that does not decide.
-const POINTS_ON_GAP: f64 = 6.0;
+const POINTS_ON_GAP: f64 = 9.0;
 /// Points to which a gap beside a tip refines a plate at the most.
 const POINTS_FOR_GAP: f64 = 3e5;
 
-/// Spacing where an input file says nothing: a ninth of the smallest flaw that can decide the life, a sixth of every other and of the
+/// Spacing where an input file says nothing: a ninth of the smallest flaw that can decide the life, of every other and of the
 /// least gap between a tip and a rim, another tip or another crack, a hundredth of the width at the most. What is said where a gap asks
 /// for more than 3e5 points or a small flaw for too many comes beside.
 #[must_use]

@@ -40,6 +40,7 @@ use crate::fatigue::growth_law::{GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::solver::Equilibrium;
+use crate::specimen::geometry::direction;
 use crate::specimen::{CrackLine, LineEnd, Point};
 use crate::state::Bonds;
 use crate::stress_intensity::ring::RingGeometry;
@@ -50,6 +51,11 @@ use step::StepControl;
 const RING_HORIZONS_IN_LEVELS: f64 = 1.5;
 /// Length, in horizons, by which cracks are shorter at first, to see how K changes with it; a quarter of a crack at the most.
 const PROBE_HORIZONS: f64 = 0.5;
+/// Turn of a crack from which strains at its corner are not uniform, rad.
+const CORNER: f64 = 0.35;
+/// Distance between cracks that meet, m: round-off of their points.
+const JOINED: f64 = 1e-9;
+
 /// Growth by the field of every tip.
 pub struct TipField<'a> {
     case: &'a Case,
@@ -75,6 +81,8 @@ pub struct TipField<'a> {
     curve: Vec<CurvePoint>,
     /// Rows at the last time that the solver was built.
     rows_at_rebuild: usize,
+    /// Corners and joints of the initial cracks, where strains are as little uniform as at a tip.
+    corners: Vec<Point>,
     /// About the rings of the initial tips.
     warnings: Vec<String>,
 }
@@ -145,6 +153,7 @@ impl<'a> TipField<'a> {
             iterations: 0,
             curve: Vec::new(),
             rows_at_rebuild: 0,
+            corners: corners(&specimen.crack_lines()),
             warnings: Vec::new(),
             plate,
         };
@@ -186,6 +195,20 @@ impl<'a> TipField<'a> {
 /// Unit vector in which a crack points at one of its ends; pieces shorter than [`DIRECTION_SPACINGS`] do not show it.
 fn heading(body: &Body, lines: &[CrackLine], end: LineEnd) -> Point {
     lines[end.line].blunted(end.at_last, DIRECTION_SPACINGS * body.lattice.spacing).direction(end.at_last)
+}
+
+/// Places where cracks turn by more than [`CORNER`] or meet.
+fn corners(lines: &[CrackLine]) -> Vec<Point> {
+    let turns = |corner: &&[Point]| {
+        let [[x, y], [to_x, to_y]] = [direction(corner[0], corner[1]), direction(corner[1], corner[2])];
+        x * to_x + y * to_y < CORNER.cos()
+    };
+    let bends = lines.iter().flat_map(|line| line.points.windows(3).filter(turns).map(|corner| corner[1]));
+    let ends = lines.iter().enumerate().flat_map(|(index, line)| [true, false].map(|at_last| (index, line.end(at_last))));
+    let is_met = |&(index, at): &(usize, Point)| {
+        lines.iter().enumerate().any(|(other, line)| other != index && line.distance(at) < JOINED)
+    };
+    bends.chain(ends.filter(is_met).map(|(_, at)| at)).collect()
 }
 
 /// The tips of the initial cracks at maximum load.

@@ -23,6 +23,13 @@ pub struct LineEnd {
 }
 
 impl CrackLine {
+    /// Length of its straight piece at one end, m.
+    #[must_use]
+    pub fn last_piece(&self, at_last: bool) -> f64 {
+        let piece = if at_last { self.points.windows(2).last() } else { self.points.windows(2).next() };
+        piece.map_or(0.0, |piece| distance(piece[0], piece[1]))
+    }
+
     /// A straight crack.
     #[must_use]
     pub fn straight(from: Point, to: Point) -> Self {

@@ -57,6 +57,8 @@ const NEIGHBOURS_LEAST: usize = 6;
 const PIECES_PER_SPACING: f64 = 2.0;
 /// Distance between cracks, in spacings, that are joined.
 const JOINED_SPACINGS: f64 = 1e-3;
+/// Distance of a joint of cracks from a tip, in horizons, from which the ring ends there: a smaller one would say less.
+const JOINT_HORIZONS: f64 = 2.0;
 /// Relative difference of distances that are equal.
 const EQUAL: f64 = 1e-3;
 /// Room left, in horizons, between a ring and what it cannot take in: another tip, a support.
@@ -157,14 +159,25 @@ impl RingGeometry {
         }
     }
 
-    /// Largest outer radius for a tip, m: up to `wanted`, short of the other end of its crack, other tips and supports.
+    /// Largest outer radius for a tip, m: up to `wanted`, short of the other end of its crack, other tips and supports, and not beyond a
+    /// joint of cracks that is not near.
     #[must_use]
     pub fn radius(&self, body: &Body, lines: &[CrackLine], end: LineEnd, tips: &[LineEnd], wanted: f64) -> f64 {
         let here = lines[end.line].end(end.at_last);
         let others = tips.iter().filter(|other| **other != end).map(|other| distance(here, lines[other.line].end(other.at_last)));
         let supports = self.supports.iter().map(|[a, b]| distance_to_segment(here, *a, *b));
-        others.chain(supports).fold(f64::INFINITY, f64::min).min(wanted + ROOM_HORIZONS * body.horizon())
-            - ROOM_HORIZONS * body.horizon()
+        // Past a joint the auxiliary field can follow one of the arms only.
+        let slack = JOINED_SPACINGS * body.lattice.spacing;
+        let own = &lines[end.line];
+        let other_lines = lines.iter().enumerate().filter(|(line, _)| *line != end.line).map(|(_, line)| line);
+        let on_own = other_lines.flat_map(|line| {
+            let ends = [true, false].map(|at_last| line.end(at_last)).into_iter().filter(|&at| own.distance(at) < slack);
+            let own_ends = [true, false].map(|at_last| own.end(at_last)).into_iter().filter(|&at| line.distance(at) < slack);
+            ends.chain(own_ends).collect::<Vec<_>>()
+        });
+        let joints = on_own.map(|at| distance(here, at)).filter(|away| *away > JOINT_HORIZONS * body.horizon());
+        let room = ROOM_HORIZONS * body.horizon();
+        others.chain(supports).chain(joints.map(|away| away + room)).fold(f64::INFINITY, f64::min).min(wanted + room) - room
     }
 
     /// K_I and K_II of a tip by a ring of some outer radius, m.

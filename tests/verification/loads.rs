@@ -86,10 +86,10 @@ fn a_sheared_edge() {
 #[test]
 fn pure_shear() {
     let sides = "edges = [\"top\", \"bottom\", \"right\", \"left\"]\ndirection = [[1, 0], [-1, 0], [0, 1], [0, -1]]\nstress_max_mpa = 50";
-    let cracks = [("{ from_mm = [-4, 0], to_mm = [4, 0] }", [0.0, 1.0]), ("{ from_mm = [-2.828, 2.828], to_mm = [2.828, -2.828] }", [1.0, 0.0])];
+    let cracks = [("{ from_mm = [-8, 0], to_mm = [8, 0] }", [0.0, 1.0]), ("{ from_mm = [-5.657, 5.657], to_mm = [5.657, -5.657] }", [1.0, 0.0])];
     for (crack, right) in cracks {
-        let case = case(&format!("kind = \"plate\"\nwidth_mm = 80\nlength_mm = 80\ncracks = [{crack}]"), sides, &["model.spacing_mm=0.5"]);
-        let size = 50.0 * (PI * 4e-3_f64).sqrt();
+        let case = case(&format!("kind = \"plate\"\nwidth_mm = 160\nlength_mm = 160\ncracks = [{crack}]"), sides, &["model.spacing_mm=0.8"]);
+        let size = 50.0 * (PI * 8e-3_f64).sqrt();
         for tip in tips(&case) {
             println!("{crack}: {tip:.4?}, infinite plate {size:.4}");
             let [k_i, k_ii, _] = tip.map(|k| k / size);
@@ -126,7 +126,8 @@ fn cycles_of_a_displacement() {
     assert!((force * compliance(squares) / displacement - 1.0).abs() < 0.01);
     // Both begin with the same load.
     assert!((loaded.curve[0].delta_k / kept.curve[0].delta_k - 1.0).abs() < 0.002);
-    assert!(kept.life_cycles() > 1.5 * loaded.life_cycles());
+    // And the kept displacement loses load.
+    assert!(kept.life_cycles() > 1.1 * loaded.life_cycles());
     assert!(kept.cross_check.unwrap().difference.abs() < 0.05, "{:?}", kept.cross_check);
 }
 

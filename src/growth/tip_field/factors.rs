@@ -18,9 +18,10 @@ use crate::units::MM;
 /// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.05 to 0.09 at ν = 0.3, 0.04 at ν = 0.1,
 /// whatever the spacing.
 const AHEAD_HORIZONS: f64 = 0.15;
-/// How far ahead of its line a tip may stand in mode II, in horizons: 0.21 to 0.22 on lattices of 0.25 to 1.4 mm.
+/// How far ahead of its line a tip may stand in mode II, in horizons: 0.21 to 0.22 on lattices of 0.25 to 1.4 mm, where the crack is
+/// straight in all of its ring. Where it is not, or where the ring is smaller, K_II is better as it is read.
 const SLIDING_AHEAD_HORIZONS: f64 = 0.4;
-/// The smaller of K_I and K_II over the larger from which each is read where the field has its tip in that mode.
+/// One of K_I and K_II over the other from which it is read where the field has its tip in that mode.
 const MIXED: f64 = 0.05;
 /// Growth after a corner, in horizons, below which points do not resolve the kink: K would be read up to 5 % low.
 const KINK_HORIZONS: f64 = 0.5;
@@ -144,16 +145,23 @@ impl TipField<'_> {
             let end = tip.end;
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
             let first = rings.read(end, excess);
+            let is_closed = contact.is_closed(lines, end, body.lattice.spacing);
             let [k_i, k_ii] = first.factors.map(f64::abs);
-            let is_mixed = k_i.min(k_ii) > MIXED * k_i.max(k_ii);
-            let offset = if is_mixed { first.tip_offsets[0] } else { first.tip_offset };
+            let is_mixed = k_ii > MIXED * k_i && !is_closed && tip.growth == 0.0;
+            let slides = is_mixed
+                && first.radius >= (1.0 - ROUND_OFF) * RING_HORIZONS * horizon
+                && lines[end.line].last_piece(end.at_last) > first.radius;
+            let offset = match is_mixed {
+                true if k_i > MIXED * k_ii => first.tip_offsets[0],
+                true if slides => 0.0,
+                _ => first.tip_offset,
+            };
             // Beside a rim what is read as a shift may be something else.
             let ahead = if offset.abs() < AHEAD_HORIZONS * horizon { offset } else { 0.0 };
             let ring = if ahead == 0.0 { first } else { rings.read(end, excess + ahead) };
-            let is_closed = contact.is_closed(lines, end, body.lattice.spacing);
             let mut factors = if is_closed { [0.0, ring.factors[1]] } else { ring.factors }.map(|factor| share * factor);
             let beyond = ring.tip_offsets[1];
-            let is_beyond = is_mixed && !is_closed && beyond > 0.0 && beyond < SLIDING_AHEAD_HORIZONS * horizon;
+            let is_beyond = slides && (0.0..SLIDING_AHEAD_HORIZONS * horizon).contains(&beyond);
             let sliding = is_beyond.then(|| {
                 let offset = excess + ahead + beyond;
                 let factor = share * rings.read(end, offset).factors[1];
@@ -278,7 +286,7 @@ impl TipField<'_> {
                 ratio = ratio.max(tip.equivalent() / equivalent_factor(read));
             }
             let mut factors = read.map(|factor| ratio * factor);
-            if let Some(sliding) = sliding.filter(|_| tip.growth == 0.0) {
+            if let Some(sliding) = sliding {
                 factors[1] = sliding.at_line;
             }
             if let Some(gap) = gap {

@@ -325,7 +325,8 @@ impl TipField<'_> {
         }
         let end = |tip: &Tip| lines[tip.end.line].end(tip.end.at_last);
         let ends: Vec<Point> = self.state.tips.iter().map(end).collect();
-        let tips: Vec<Point> = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).map(end).collect();
+        let active = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).map(end);
+        let tips: Vec<Point> = active.chain(self.corners.iter().copied()).collect();
         let body = &self.plate.body;
         let changed = flanks::multipliers(body, &self.bonds.multiplier, lines, &tips, &ends, range);
         changed.iter().for_each(|&(bond, multiplier)| self.bonds.set(body, bond, multiplier));

@@ -105,16 +105,12 @@ impl Tip {
         (self.coalescence, self.kink) = (Coalescence::default(), None);
     }
 
-    /// K_II of a tip of both modes over what is read where its field stands in mode II, `beyond` the place of mode I and `offset` ahead
-    /// of its line, m. The core of a nonlocal crack reaches a fifth of a horizon farther in mode II than in mode I.
-    pub(super) fn sliding_ratio(&self, k_ii: f64, offset: f64, beyond: f64, horizon: f64) -> f64 {
-        let length = self.length + self.growth;
-        if self.growth > 0.0 {
-            return self.readings.ratio(beyond, length, horizon);
-        }
+    /// K_II of a tip of both modes that has not grown over what is read where its field stands in mode II, `offset` ahead of its line,
+    /// for a crack shorter `by` so much, m. The core of a nonlocal crack reaches a fifth of a horizon farther in mode II than in mode I.
+    pub(super) fn sliding_ratio(&self, k_ii: f64, offset: f64, by: f64, horizon: f64) -> f64 {
         let mut readings = self.sliding_readings.clone();
         readings.take(k_ii.abs(), 0.0, offset, None, horizon);
-        readings.ratio(beyond, length, horizon)
+        readings.ratio(by, self.length, horizon)
     }
 
     /// K_eq at maximum load of the requested length, Pa√m.
