@@ -2,6 +2,7 @@
 
 mod choices;
 mod fatigue;
+pub mod first_load;
 pub mod growth_law;
 mod law;
 mod law_source;

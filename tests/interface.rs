@@ -37,6 +37,8 @@ mod export;
 mod bad_scenes;
 #[path = "interface/fracture.rs"]
 mod fracture;
+#[path = "interface/ends.rs"]
+mod ends;
 #[path = "interface/hand_calculation.rs"]
 mod hand_calculation;
 #[path = "interface/service.rs"]

@@ -49,6 +49,8 @@ mod pressed_cracks;
 mod mirror_images;
 #[path = "verification/loads.rs"]
 mod loads;
+#[path = "verification/hard_plates.rs"]
+mod hard_plates;
 #[path = "verification/joined_cracks.rs"]
 mod joined_cracks;
 #[path = "verification/near_tip_fields.rs"]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::choices::Choices;
-use super::{Case, LAW_KEYS, LawSource, fatigue, law, model};
+use super::{Case, LAW_KEYS, LawSource, fatigue, first_load, law, model};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
@@ -116,7 +116,7 @@ impl Case {
         }
         model::check_law(&case)?;
         check_load(&case)?;
-        case.warnings.extend(yield_line(&case));
+        case.warnings.extend(first_load::warning(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
         Ok(case)
@@ -160,7 +160,11 @@ fn check_load(case: &Case) -> Result<()> {
     let pressed = case.specimen.crack_pressure > 0.0;
     let (key, value, what) = match case.loading.displacement() {
         Some(most) => ("loading.kind", "\"displacement\"".to_owned(), format!("cycles of {} mm are", most / MM)),
-        None if pressed => ("loading.crack_pressure_mpa", (case.specimen.crack_pressure * case.loading.maximum / MPA).to_string(), "pressure on cracks is".to_owned()),
+        None if pressed => (
+            "loading.crack_pressure_mpa",
+            (case.specimen.crack_pressure * case.loading.maximum / MPA).to_string(),
+            "pressure on cracks is".to_owned(),
+        ),
         None => return Ok(()),
     };
     if !case.is_driven_by_tips() {
@@ -324,16 +328,4 @@ fn coarse_line(case: &Case) -> Option<String> {
         _ => return None,
     };
     Some(format!("horizon_ratio {ratio} leaves a point few neighbours: with the same A the life is {error}; give 3 or more"))
-}
-
-/// Nothing elastic happens above yield.
-fn yield_line(case: &Case) -> Option<String> {
-    if case.loading.displacement().is_some() {
-        return None;
-    }
-    let (stress, limit) =
-        (case.specimen.net_section_stress(case.specimen.crack_length, case.loading.maximum)?, case.material.yield_strength?);
-    (stress >= limit).then(|| {
-        format!("the section beside the initial crack carries {:.1} MPa, beyond the yield strength {:.1} MPa: the run will stop at once", stress / MPA, limit / MPA)
-    })
 }

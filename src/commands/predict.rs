@@ -8,9 +8,9 @@ use super::checkpoint;
 use super::console::Console;
 use crate::case::{Case, Method};
 use crate::error::Result;
-use crate::predict::Prediction;
 use crate::predict::plastic_zone::PlasticZone;
 use crate::predict::residual_strength::{check_strength, residual_strength};
+use crate::predict::{Prediction, StopReason};
 use crate::report::output::OutputFolder;
 use crate::report::{self, fit_use, run};
 use crate::specimen::handbook::handbook;
@@ -123,6 +123,8 @@ fn summary(case: &Case, prediction: &Prediction, out: &Path) -> Vec<String> {
     let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
     let mut lines = vec![
         match prediction.life() {
+            Some(life) if prediction.stop == StopReason::EnteredHole => format!("{}: {life:.1} cycles to the hole", case.name),
+            Some(life) if prediction.stop.is_lower_bound() => format!("{}: life at least {life:.1} cycles", case.name),
             Some(life) => format!("{}: life {life:.1} cycles", case.name),
             None => format!("{}: life unlimited", case.name),
         },

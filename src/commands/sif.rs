@@ -45,9 +45,12 @@ pub fn run(args: &Args) -> Result<()> {
         let notes: Vec<&str> = results().filter_map(|result| result.note.as_deref()).collect();
         return Err(Error::Mechanics(format!("{}: {}", case.name, notes.first().unwrap_or(&"no method gives a factor"))));
     }
+    let mut said: Vec<String> = Vec::new();
     for result in results() {
-        if let Some(note) = &result.note {
-            args.console.warn(&format!("{}: {note}", result.method));
+        let Some(words) = result.note.as_ref().map(|note| format!("{}: {note}", result.method)) else { continue };
+        if !said.contains(&words) {
+            args.console.warn(&words);
+            said.push(words);
         }
     }
     args.console.result(&table(&tips))?;

@@ -34,7 +34,10 @@ pub fn first_end(case: &Case) -> Option<End> {
         let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
         end(first_reach(stress, strength, start, limit), StopReason::NetSectionYield)
     });
-    [wanted, toughness, net_section].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
+    // A plate of any shape: its edges carry the gross stress at least.
+    let gross = case.material.yield_strength.zip(specimen.gross_stress(load).filter(|_| specimen.ligament(start).is_none()));
+    let gross = gross.filter(|(strength, stress)| stress >= strength).map(|_| end(start, StopReason::NetSectionYield));
+    [wanted, toughness, net_section, gross].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
 }
 
 /// Smallest `a` in `from..=to` at which `value`, which rises with `a`, has reached `wanted`. NaN counts as reached: formulas end

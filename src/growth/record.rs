@@ -13,13 +13,28 @@ crate::kinds! {
         NetSectionYield = "net_section_yield": "the remaining section yields throughout: its limit load at the yield strength is reached",
         Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
         LeftPlate = "left_plate": "every crack tip has left the plate",
-        EnteredHole = "entered_hole": "the last crack tip ran into a hole",
+        EnteredHole = "entered_hole": "the last crack tip ran into a hole: the life is a lower bound, cycles to the hole",
+        CracksJoined = "cracks_joined": "the last crack tips have met, and no other grows: the life is a lower bound",
         LigamentUnresolved = "ligament_unresolved": "a crack tip passes a rim within a spacing: points do not resolve what is between them; the life is a lower bound",
         LeftRefinement = "left_refinement": "a crack tip came to the rim of the finest level of points: the refined region is too small",
         NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
         NoGrowth = "no_growth": "bonds went on breaking, but no crack tip grew",
         RunOut = "run_out": "cycles_max was reached",
         NoConvergence = "no_convergence": "the equilibrium solver did not converge",
+    }
+}
+
+impl StopReason {
+    /// Whether a plate that has ended so lives on: what a crack does behind a hole, or one that has joined others, is not computed.
+    #[must_use]
+    pub fn is_lower_bound(self) -> bool {
+        matches!(self, StopReason::EnteredHole | StopReason::CracksJoined | StopReason::LigamentUnresolved)
+    }
+
+    /// Whether the load breaks a plate that has ended so.
+    #[must_use]
+    pub fn is_strength(self) -> bool {
+        matches!(self, StopReason::Toughness | StopReason::NetSectionYield)
     }
 }
 

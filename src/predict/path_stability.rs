@@ -11,13 +11,17 @@ const DECISIVE: f64 = 3.0;
 /// |K_II| over K_I up to which a path counts as one in mode I.
 const STRAIGHT: f64 = 0.05;
 
+/// Share of the life, at its end, in which a path does not matter any more.
+const END: f64 = 0.05;
+
 /// What the user should know of tips whose straight path is unstable, with T where it has become so.
 #[must_use]
 pub fn warning(curve: &[CurvePoint]) -> Option<String> {
     let tips = curve.first().map_or(0, |row| row.tips.len());
+    let counts = (1.0 - END) * curve.last().map_or(0.0, |row| row.cycles);
     let unstable = |tip: usize| {
         let mut exponent = 0.0;
-        curve.windows(2).find_map(|rows| {
+        curve.windows(2).take_while(|rows| rows[1].cycles <= counts).find_map(|rows| {
             let [before, now] = [&rows[0].tips[tip], &rows[1].tips[tip]];
             let ([k_i, k_ii], t_stress) = (now.factors?, now.t_stress?);
             if t_stress > 0.0 && k_i > 0.0 && k_ii.abs() < STRAIGHT * k_i {

@@ -99,12 +99,14 @@ impl<'a> Record<'a> {
         };
         let stop = growth.close(stop).or_else(|error| end_of_mechanics(error, &mut failure).map(|end| end.unwrap_or(stop)))?;
         snapshots.finish(growth);
+        // The curve is handed over once; what growth knows of it is asked before.
+        let of_growth = growth.warnings();
         let (curve, zero) = growth.curve();
         snapshots.count_from(zero, &curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
         let cross_check = is_checked.then(|| growth.cross_check(last)).flatten();
-        let mut warnings = warnings(case, growth, &curve);
+        let mut warnings = warnings(case, growth, of_growth, &curve);
         warnings.extend(cross_check.and_then(|check| check.warning()));
         warnings.extend(failure);
         Ok(Prediction {
@@ -133,9 +135,9 @@ fn end_of_mechanics(error: Error, failure: &mut Option<String>) -> Result<Option
 }
 
 /// What the user should know about a run.
-fn warnings(case: &Case, growth: &dyn CrackGrowth, curve: &[CurvePoint]) -> Vec<String> {
+fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve: &[CurvePoint]) -> Vec<String> {
     let mut warnings = growth.plate().map_or_else(Vec::new, |plate| plate.warnings());
-    warnings.extend(growth.warnings());
+    warnings.extend(of_growth);
     warnings.extend(growth.law().and_then(|law| laws::beyond_warning(case, law, curve)));
     warnings.extend(plastic_zone::warnings(case, curve));
     warnings.extend(path_stability::warning(curve));

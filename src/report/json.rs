@@ -26,6 +26,7 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
     json!({
         "name": case.name,
         "life_cycles": prediction.life(),
+        "life_is_lower_bound": prediction.stop.is_lower_bound(),
         "stop_reason": prediction.stop.name(),
         "stop_meaning": prediction.stop.meaning(),
         "converged": prediction.stop != StopReason::NoConvergence,

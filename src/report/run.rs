@@ -9,6 +9,7 @@ use super::csv::{self, Row};
 use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
 use super::output::write_file;
 use super::{fit_use, json, vtk};
+use crate::case::first_load;
 use crate::case::{Case, LawSource};
 use crate::error::{Error, Result, input};
 use crate::predict::guard::BLOCKS_WITHOUT_GROWTH;
@@ -67,7 +68,7 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
         StopReason::LeftRefinement if !grown => {
             return no_curve("the crack tip came to the rim of the finest level", "give refinement.regions around its whole way");
         }
-        StopReason::NothingAges | StopReason::LeftPlate | StopReason::EnteredHole if !grown => {
+        StopReason::NothingAges | StopReason::LeftPlate | StopReason::EnteredHole | StopReason::CracksJoined if !grown => {
             let why = format!("no bond that can fail is strained at a crack tip (stopped: {})", prediction.stop);
             return no_curve(
                 &why,
@@ -80,10 +81,21 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
     Ok(warnings)
 }
 
+/// What breaks at the first load, and the load that it would bear.
+fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
+    let [row] = prediction.curve.as_slice() else { return None };
+    let load = case.loading.share(row.work) * case.loading.maximum;
+    let k_max = row.delta_k / case.loading.range_share();
+    prediction.stop.is_strength().then(|| first_load::words(case, load, Some(k_max).filter(|k| *k > 0.0)))?
+}
+
 /// Why a run does not count though it came to an end: more than a quarter of its life lies outside the fitted range of ΔK, and the
 /// case does not allow that. It is written all the same, marked as refused: what it cost is not thrown away.
 #[must_use]
 pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
+    if let Some(problem) = breaks_at_once(case, prediction) {
+        return Some(Error::Mechanics(format!("{}: {problem}", case.name)));
+    }
     let share = json::life_share_extrapolated(case, prediction).unwrap_or(0.0);
     let LawSource::Fitted(record) = &case.law else { return None };
     if share <= EXTRAPOLATION_REFUSED || case.allow_extrapolation {

@@ -87,6 +87,12 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Whether its life is a lower bound ([`StopReason::is_lower_bound`]); `None` without one.
+    #[must_use]
+    pub fn is_lower_bound(&self) -> Option<bool> {
+        Some(self.stop_reason.as_deref()?.parse::<StopReason>().ok()?.is_lower_bound())
+    }
+
     /// A case without a result.
     #[must_use]
     pub fn failed(case: &DrawnCase, problem: &str, wall_s: f64) -> Self {
@@ -133,7 +139,7 @@ fn field(value: &toml::Value) -> String {
 #[must_use]
 pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
     let columns: String = plan.columns.iter().map(|key| format!("{},", quoted(key))).collect();
-    let mut text = format!("case,{columns}life_cycles,stop_reason,crack_length_final_mm,wall_s,problem\n");
+    let mut text = format!("case,{columns}life_cycles,stop_reason,crack_length_final_mm,wall_s,problem,life_is_lower_bound\n");
     for (i, (case, outcome)) in plan.cases.iter().zip(outcomes).enumerate() {
         let values: String = case.values.iter().map(|value| format!("{},", quoted(value))).collect();
         // Writing to a String cannot fail.
@@ -141,14 +147,15 @@ pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
         let _ = match outcome {
             Some(outcome) => writeln!(
                 text,
-                "{},{},{},{},{}",
+                "{},{},{},{},{},{}",
                 outcome.life_cycles.map_or_else(String::new, csv::exact),
                 outcome.stop_reason.as_deref().unwrap_or_default(),
                 outcome.crack_length_final_mm.map_or_else(String::new, csv::number),
                 csv::exact(outcome.wall_s),
-                quoted(&outcome.problem.as_deref().unwrap_or_default().replace('\n', " "))
+                quoted(&outcome.problem.as_deref().unwrap_or_default().replace('\n', " ")),
+                outcome.is_lower_bound().map_or_else(String::new, |is_lower| is_lower.to_string())
             ),
-            None => writeln!(text, ",,,,not run yet"),
+            None => writeln!(text, ",,,,not run yet,"),
         };
     }
     text

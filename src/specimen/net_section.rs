@@ -54,6 +54,13 @@ impl Specimen {
         Some(factor * self.force_per_thickness(load) / ligament)
     }
 
+    /// Largest stress that a `plate` carries whatever its cracks: that on its edges, Pa; `None` under forces on points.
+    #[must_use]
+    pub fn gross_stress(&self, load: f64) -> Option<f64> {
+        let pulled = self.loads.iter().any(|load| matches!(load, super::Load::Edge { .. }));
+        (pulled && self.load_measure == super::LoadMeasure::Stress).then_some(load)
+    }
+
     /// Whether the ligament is large enough for K to describe the crack, see [`small_scale_yielding`]; for a standard kind.
     #[must_use]
     pub fn small_scale_yielding(&self, crack_length: f64, load_max: f64, k_max: f64, yield_strength: f64) -> bool {

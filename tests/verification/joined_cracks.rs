@@ -1,5 +1,4 @@
-//! Kinked, branched and crossing initial cracks against finite elements (`../shared/data/field/mechanics/kinked_start`), and cracks that
-//! start at a hole (`../shared/data/hard_plates`).
+//! Kinked, branched and crossing initial cracks against finite elements (`../shared/data/field/mechanics/kinked_start`).
 
 use std::path::Path;
 
@@ -17,9 +16,9 @@ fn case(path: &Path, set: &[&str]) -> Case {
 #[test]
 fn k_of_joined_cracks() {
     let plates: [(&str, &str, &[[f64; 2]]); 4] = [
-        ("kinked_45", "0.5", &[[9.733, -0.314], [5.763, 5.644]]),
+        ("kinked_45", "1", &[[9.733, -0.314], [5.763, 5.644]]),
         ("cross", "1", &[[7.704, 0.0]; 4]),
-        ("tee", "0.5", &[[8.510, -1.381], [8.510, 1.381], [6.447, 0.0]]),
+        ("tee", "1", &[[8.510, -1.381], [8.510, 1.381], [6.447, 0.0]]),
         ("dcb_kinked", "0.5", &[[2.4446, -0.0037]]),
     ];
     for (name, spacing, reference) in plates {
@@ -69,36 +68,5 @@ fn a_kinked_double_cantilever_grows_as_by_finite_elements() {
         let found = at_height(&run, y);
         println!("y {y}: x {:.3}, {x}, {:.4e} cycles, {cycles:.4e}", found[0], found[1]);
         assert!((found[0] - x).abs() < 0.15 && (found[1] / cycles - 1.0).abs() < 0.02, "y {y}: {found:?}, {x}, {cycles}");
-    }
-}
-
-/// Bonds that graze the rim of a hole do not hold the mouth of a crack shut: lives at half and at 95 % of the growth within 1.5 %.
-#[test]
-fn cracks_at_holes_open_at_their_mouths() {
-    for name in ["hole_crack_43", "hole_crack_45"] {
-        let [Some(plate), Some(curve)] = ["toml", "csv"].map(|kind| shared(&format!("hard_plates/{name}.{kind}"))) else {
-            return;
-        };
-        let run = predict(&case(&plate, &[]), &Silent).unwrap();
-        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(curve).unwrap();
-        // Cycles and growth along the way of the reference.
-        let (mut grown, mut last) = (vec![], None::<[f64; 2]>);
-        for row in reader.deserialize::<(f64, usize, f64, f64)>() {
-            let (cycles, _, x, y) = row.unwrap();
-            let before = grown.last().map_or(0.0, |row: &[f64; 2]| row[0]);
-            grown.push([before + last.map_or(0.0, |[a, b]| (x - a).hypot(y - b)), cycles]);
-            last = Some([x, y]);
-        }
-        let ours: Vec<[f64; 2]> = run.curve.iter().map(|row| [1e3 * row.tips[0].growth, row.cycles]).collect();
-        let cycles_at = |rows: &[[f64; 2]], growth: f64| {
-            let pair = rows.windows(2).find(|pair| pair[1][0] >= growth).unwrap();
-            pair[0][1] + (growth - pair[0][0]) / (pair[1][0] - pair[0][0]) * (pair[1][1] - pair[0][1])
-        };
-        for share in [0.5, 0.95] {
-            let growth = share * grown.last().unwrap()[0];
-            let error = cycles_at(&ours, growth) / cycles_at(&grown, growth) - 1.0;
-            println!("{name} at {share}: {:+.2} %", 100.0 * error);
-            assert!(error.abs() < 0.015, "{name} at {share}: {error}");
-        }
     }
 }

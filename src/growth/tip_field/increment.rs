@@ -30,6 +30,9 @@ const LIGAMENT_SPACINGS: f64 = 4.0;
 /// Solves of an increment in which flanks come into contact or part; the last set of places is taken then. Where little is left of a
 /// plate a few places flicker.
 const CONTACT_SOLVES_MOST: usize = 20;
+/// Compliance over that at the start from which a plate without equilibrium is as good as severed: what one side of it has let go turns
+/// about the last points of the other.
+const MECHANISM: f64 = 20.0;
 /// Overlap of flanks, in spacings times the mean strain of the plate, that is round-off.
 const CONTACT_LEAST: f64 = 1e-3;
 
@@ -164,6 +167,14 @@ impl TipField<'_> {
         match self.settle(&step.changed, &lines) {
             Ok(()) => step.is_settled = true,
             Err(Error::LossOfStiffness) => step.end = Some(StopReason::Severed),
+            Err(error) if self.compliance_rise() > MECHANISM => {
+                self.warnings.push(format!(
+                    "the run ends here: the plate is {:.0} times as compliant as at the start, and what is left of it moves almost freely \
+                     ({error})",
+                    self.compliance_rise()
+                ));
+                step.end = Some(StopReason::Severed);
+            }
             Err(error) => {
                 self.warnings.push(format!("the run ends here: {error}"));
                 step.end = Some(StopReason::NoConvergence);
@@ -220,7 +231,8 @@ impl TipField<'_> {
         let is_left = self.state.tips.iter().any(|tip| tip.state == TipState::Active);
         // What the last tip has met is known, whatever is left of the plate.
         if !is_left && !step.is_severed {
-            step.end = Some(self.gone());
+            let last: Vec<TipState> = step.segments.iter().flatten().map(|segment| segment.state).collect();
+            step.end = Some(gone(&last));
         }
         if step.end.is_none()
             && let Some((tip, ligament)) = self.unresolved_ligament()
@@ -240,12 +252,6 @@ impl TipField<'_> {
             self.curve.push(row);
         }
         reason
-    }
-
-    /// Why growth ends where no tip is left.
-    pub(super) fn gone(&self) -> StopReason {
-        let entered = self.state.tips.iter().any(|tip| matches!(tip.state, TipState::EnteredHole | TipState::LinkedUp));
-        if entered { StopReason::EnteredHole } else { StopReason::LeftPlate }
     }
 
     /// Of every tip `K_eq²/E'`, J/m², and the length that its cut bonds stand for beyond that of its line, m; work of the loads, J.
@@ -363,6 +369,13 @@ impl TipField<'_> {
         Ok(())
     }
 
+    /// Compliance of the last equilibrium over that at the start.
+    fn compliance_rise(&self) -> f64 {
+        let rise = self.last().work / self.curve[0].work;
+        // Of a kept displacement the work falls as the compliance rises.
+        if self.case.loading.displacement().is_some() { 1.0 / rise } else { rise }
+    }
+
     /// Cracks whose ends are as long as they have to be to show a direction.
     fn blunted(&self, lines: &[CrackLine]) -> Vec<CrackLine> {
         let mut blunted = lines.to_vec();
@@ -381,6 +394,16 @@ impl TipField<'_> {
 
     pub(super) fn layout(&self) -> Layout {
         Layout::of(&self.plate.body.lattice, self.plate.body.stencil.unknowns)
+    }
+}
+
+/// Why growth ends where no tip is left, by what became of the last ones.
+pub(super) fn gone(last: &[TipState]) -> StopReason {
+    let any = |state: TipState| last.contains(&state);
+    match (any(TipState::EnteredHole), any(TipState::LinkedUp)) {
+        (true, _) => StopReason::EnteredHole,
+        (_, true) => StopReason::CracksJoined,
+        _ => StopReason::LeftPlate,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::contact::Contact;
+use super::increment::gone;
 use super::{PROBE_HORIZONS, RING_HORIZONS_IN_LEVELS, Tip, TipField, TipsState, solver};
 use crate::body::balanced::flanks::FlankRange;
 use crate::error::{Error, Result};
@@ -69,7 +70,7 @@ impl TipField<'_> {
         }
         let active = || self.state.tips.iter().filter(|tip| tip.state == TipState::Active);
         if active().next().is_none() {
-            return Some(self.gone());
+            return Some(gone(&self.state.tips.iter().map(|tip| tip.state).collect::<Vec<_>>()));
         }
         if self.fastest().is_none() {
             return Some(StopReason::NothingAges);

@@ -205,6 +205,8 @@ pub struct Remaining {
     factor: f64,
     /// Remaining cycles over the factor.
     inspection_interval_cycles: f64,
+    /// Whether the plate lives on where its curve ends, at a hole or where cracks have joined.
+    life_is_lower_bound: bool,
 }
 
 /// Factor of the inspection interval: two looks before the end.
@@ -230,7 +232,7 @@ pub async fn remaining(
         return Err(Problem::not_found("curve"));
     };
     let summary = job_of(&app, "predictions", &id).await?.summary;
-    if summary.is_some_and(|summary| summary["life_cycles"].is_null()) {
+    if summary.as_ref().is_some_and(|summary| summary["life_cycles"].is_null()) {
         return Err(Problem::conflict("the cracks stand still under these loads: the life is unlimited"));
     }
     let (cycles_at, life_cycles) = (cycles_at(&rows, from.crack_length_mm)?, rows[rows.len() - 1].cycles);
@@ -242,6 +244,7 @@ pub async fn remaining(
         remaining_cycles,
         factor,
         inspection_interval_cycles: remaining_cycles / factor,
+        life_is_lower_bound: summary.is_some_and(|summary| summary["life_is_lower_bound"] == true),
     }))
 }
 

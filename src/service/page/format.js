@@ -55,9 +55,10 @@ export function powerOf(exponent) {
   return String(exponent).replace(/./g, (sign) => SUPERSCRIPT[sign]);
 }
 
-/** The life of a summary: cycles, or that it has no end. */
+/** The life of a summary: cycles, at least so many where the plate lives on, or that it has no end. */
 export function lifeOf(summary) {
-  return summary.life_cycles === null ? "unlimited" : cycles(Math.round(summary.life_cycles));
+  if (summary.life_cycles === null) return "unlimited";
+  return `${summary.life_is_lower_bound ? "≥ " : ""}${cycles(Math.round(summary.life_cycles))}`;
 }
 
 /** Cycles: whole above a hundred, else with decimals. */

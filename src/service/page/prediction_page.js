@@ -177,7 +177,7 @@ function result(s) {
   return element("section", { class: "result", "aria-labelledby": "result-title", "data-part": "result" },
     element("h2", { id: "result-title", class: "visually-hidden" }, "Result"),
     terms([
-      ["Life", element("strong", { class: "large", "data-value": "life_cycles" }, s.life_cycles === null ? lifeOf(s) : `${lifeOf(s)} cycles`)],
+      [s.stop_reason === "entered_hole" ? "Cycles to the hole" : "Life", element("strong", { class: "large", "data-value": "life_cycles" }, s.life_cycles === null ? lifeOf(s) : `${lifeOf(s)} cycles`)],
       ["Crack length", `${fixed(s.crack_length_initial_mm, 2)} to ${fixed(s.crack_length_final_mm, 2)} mm`],
       ["Stopped because", sentence(s.stop_meaning ?? words(s.stop_reason))],
       ["Computed", `${whole(s.points)} points in ${duration(s.wall_s)}`],

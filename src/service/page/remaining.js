@@ -48,7 +48,7 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
       slider.setAttribute("aria-valuetext", `crack length ${fixed(got.crack_length_mm, 2)} mm`);
       const large = (key, value) => element("strong", { class: "large", "data-value": key }, `${cycles(value)} cycles`);
       show(answer, terms([
-        ["Remaining life", large("remaining_cycles", Math.round(got.remaining_cycles))],
+        [got.life_is_lower_bound ? "Remaining life, at least" : "Remaining life", large("remaining_cycles", Math.round(got.remaining_cycles))],
         // Rounded down: an interval is a promise.
         ["Inspection interval", large("inspection_interval_cycles", Math.floor(got.inspection_interval_cycles))],
         ["Used so far", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],

@@ -23,8 +23,9 @@ use crate::units::MM;
 pub type Results = (Value, Vec<File>);
 
 /// Keys of `result.json` that a summary has.
-const FIGURES: [&str; 13] = [
+const FIGURES: [&str; 14] = [
     "life_cycles",
+    "life_is_lower_bound",
     "stop_reason",
     "stop_meaning",
     "crack_length_initial_mm",
