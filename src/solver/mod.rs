@@ -133,7 +133,7 @@ trait LinearSolver<const N: usize>: Send {
 
 /// What is said where a solver knows no contact.
 fn no_contact(solver: SolverUsed) -> Error {
-    let problem = format!("flanks of cracks carry pressure, and {solver} knows neither contact nor pressure on flanks");
+    let problem = format!("the load presses flanks of cracks together, and {solver} knows no contact");
     Error::Mechanics(format!("{problem}: use model.solver = \"window\", \"multigrid\" or \"direct\" on a lattice of one spacing"))
 }
 
