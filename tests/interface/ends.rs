@@ -75,7 +75,7 @@ fn how_lives_end() {
         },
         Ending {
             specimen: HOLE,
-            loading: "stress_max_mpa = 30",
+            loading: "stress_max_mpa = 5",
             method: points,
             exit: 0,
             stop: "entered_hole",

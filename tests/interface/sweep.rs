@@ -58,7 +58,7 @@ fn a_grid_gives_the_lives_of_single_predictions() {
     let stdout = done(here, &["sweep", "sweep.toml", "--out", "out", "--threads", "3"]);
     assert!(stdout.contains("6 cases, 6 succeeded, 0 failed") && stdout.contains("median"), "{stdout}");
     let rows = rows(&here.join("out"));
-    let head = "case,specimen.crack_length_mm,loading.stress_range_mpa,life_cycles,stop_reason,crack_length_final_mm,problem";
+    let head = "case,specimen.crack_length_mm,loading.stress_range_mpa,life_cycles,stop_reason,crack_length_final_mm,problem,life_is_lower_bound";
     assert_eq!(rows[0].join(","), head);
     assert_eq!(rows.len(), 7);
     let mut lives = Vec::new();

@@ -146,7 +146,8 @@ fn shipped_calibrations_pass() {
 #[test]
 fn every_line_says_something_once() {
     let lines = lines();
-    let mut names: Vec<_> = lines.iter().map(|(key, name, _)| (key, name)).collect();
+    // A kind of load that cases and scenes both have stands there for either.
+    let mut names: Vec<_> = lines.iter().collect();
     names.sort();
     names.dedup();
     assert_eq!(names.len(), lines.len());

@@ -166,7 +166,7 @@ fn directions_pressures_and_displacements_that_are_refused() {
             "none is given beside crack_pressure_mpa",
         ),
         (PLATE, format!("{kept}stress_max_mpa = 50"), "does not go with kind"),
-        (PLATE, format!("{kept}crack_pressure_mpa = 50"), "displacement_max_mm = "),
+        (PLATE, format!("{kept}crack_pressure_mpa = 50"), "loading.displacement_max_mm: is missing"),
         (PLATE, kept.into(), "is missing: there is no load"),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ncrack_pressure_mpa = 5"), "does not go with cycles of a displacement"),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ndisplacement_range_mm = 0.1"), "one load is given twice"),
@@ -197,9 +197,10 @@ fn loads_of_one_driver() {
         let error = read(&["fatigue.driver=\"bond_strain\""]).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
         if loading.starts_with("crack") {
-            for set in ["model.solver=\"adaptive_dynamic_relaxation\"", "model.discretisation=\"dual_horizon\""] {
-                let error = read(&[set]).unwrap_err().to_string();
-                assert!(error.contains("loading.crack_pressure_mpa"), "{set}: {error}");
+            let levels = ["model.discretisation=\"dual_horizon\"", "refinement.regions=[{box_mm=[[-10,-10],[10,10]],levels=1}]"];
+            for set in [&["model.solver=\"adaptive_dynamic_relaxation\""][..], &levels] {
+                let error = read(set).unwrap_err().to_string();
+                assert!(error.contains("loading.crack_pressure_mpa"), "{set:?}: {error}");
             }
         }
     }
