@@ -8,13 +8,13 @@
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::SceneProgress;
 use super::bonds::KeptBonds;
 use super::dynamics;
 use super::interaction::Memory;
 use super::log::Records;
 use super::quasi_static::{equilibrium, marching, steps, walk};
 use super::scene::Scene;
-use super::SceneProgress;
 use crate::error::{Error, Result};
 use crate::sealed::{Seal, refused};
 
@@ -71,7 +71,11 @@ impl SceneCheckpoint {
     /// # Errors
     /// [`Error::Input`].
     pub fn check(&self, scene: &Scene) -> Result<()> {
-        if self.belongs_to(scene) { Ok(()) } else { Err(refused("belongs to another scene, or to this one before it was changed")) }
+        if self.belongs_to(scene) {
+            Ok(())
+        } else {
+            Err(refused("belongs to another scene, or to this one before it was changed"))
+        }
     }
 
     /// As bytes, with a checksum.

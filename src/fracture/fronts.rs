@@ -140,7 +140,14 @@ impl<'n> Fronts<'n> {
             if moves.is_empty() {
                 let Some((first, front)) = self.new_front(&left, time) else { break };
                 let position = front.at;
-                self.standing.path.push(PathPoint { tip: self.standing.fronts.len(), step, time, position, damage: damage[first], speed: 0.0 });
+                self.standing.path.push(PathPoint {
+                    tip: self.standing.fronts.len(),
+                    step,
+                    time,
+                    position,
+                    damage: damage[first],
+                    speed: 0.0,
+                });
                 self.standing.fronts.push(front);
                 left.retain(|&i| i != first);
             }
@@ -167,8 +174,14 @@ impl<'n> Fronts<'n> {
         let mut best: Vec<Option<(f64, usize)>> = vec![None; self.standing.fronts.len()];
         for &i in points {
             let (at, spacing, horizon) = (self.net.positions[i], self.net.spacings[i], self.net.horizons[i]);
-            let near = self.standing.fronts.iter().enumerate().filter_map(|(tip, front)| Some((tip, front.ahead(at, spacing, horizon)?)));
-            let nearest = near.min_by(|a, b| distance(self.standing.fronts[a.0].at, at).total_cmp(&distance(self.standing.fronts[b.0].at, at)));
+            let near = self
+                .standing
+                .fronts
+                .iter()
+                .enumerate()
+                .filter_map(|(tip, front)| Some((tip, front.ahead(at, spacing, horizon)?)));
+            let nearest = near
+                .min_by(|a, b| distance(self.standing.fronts[a.0].at, at).total_cmp(&distance(self.standing.fronts[b.0].at, at)));
             if let Some((tip, forward)) = nearest
                 && best[tip].is_none_or(|(most, _)| forward > most)
             {

@@ -73,11 +73,7 @@ impl<'a> Log<'a> {
     /// What it holds.
     #[must_use]
     pub fn records(&self) -> Records {
-        Records {
-            fronts: self.fronts.standing().clone(),
-            cracking: self.cracking.standing().clone(),
-            taken: self.taken.clone(),
-        }
+        Records { fronts: self.fronts.standing().clone(), cracking: self.cracking.standing().clone(), taken: self.taken.clone() }
     }
 
     /// Puts back what a log of an earlier run held; whether that was a run on this net.
@@ -121,7 +117,10 @@ impl<'a> Log<'a> {
             let damage = bonds.damage(self.net);
             self.fronts.advance(row.step, row.time, &damage);
             self.cracking.advance(row.step, row.time, &damage);
-            if self.taken.broken > self.taken.asked && self.taken.separated.is_none() && is_separated(self.net, self.boundary, bonds) {
+            if self.taken.broken > self.taken.asked
+                && self.taken.separated.is_none()
+                && is_separated(self.net, self.boundary, bonds)
+            {
                 self.taken.separated = Some(row.step);
             }
             self.taken.asked = self.taken.broken;

@@ -59,13 +59,9 @@ impl March<'_> {
         // Damage only softens the plate: what is stable for it whole stays so.
         let mobility = mobility(interaction, bonds, &full.held);
         let mut at = match recorder.take_up(bonds)? {
-            None => Standing {
-                step: 0,
-                u: vec![0.0; size],
-                swing: Swing::at_rest(size),
-                account: Account::default(),
-                evaluations: 0,
-            },
+            None => {
+                Standing { step: 0, u: vec![0.0; size], swing: Swing::at_rest(size), account: Account::default(), evaluations: 0 }
+            }
             Some(Place::March(at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
             Some(_) => return Err(of_another()),
         };
