@@ -160,11 +160,7 @@ fn check_load(case: &Case) -> Result<()> {
     let pressed = case.specimen.crack_pressure > 0.0;
     let (key, value, what) = match case.loading.displacement() {
         Some(most) => ("loading.kind", "\"displacement\"".to_owned(), format!("cycles of {} mm are", most / MM)),
-        None if pressed => (
-            "loading.crack_pressure_mpa",
-            (case.specimen.crack_pressure * case.loading.maximum / MPA).to_string(),
-            "pressure on cracks is".to_owned(),
-        ),
+        None if pressed => ("loading.crack_pressure_mpa", (case.specimen.crack_pressure * case.loading.maximum / MPA).to_string(), "pressure on cracks is".to_owned()),
         None => return Ok(()),
     };
     if !case.is_driven_by_tips() {

@@ -132,14 +132,9 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
             let [least, most] = [loading.ratio, 1.0].map(|share| mm(share * displacement));
             format!("displacement of the loaded places {least} to {most} mm; the load falls as cracks grow")
         }
-        (None, pressure) if pressure > 0.0 && specimen.loads.is_empty() => {
-            format!("pressure on the cracks {least} to {most} {symbol}")
-        }
+        (None, pressure) if pressure > 0.0 && specimen.loads.is_empty() => format!("pressure on the cracks {least} to {most} {symbol}"),
         (None, pressure) if pressure > 0.0 => {
-            format!(
-                "{load} {least} to {most} {symbol}, pressure on the cracks up to {} MPa",
-                short(pressure * loading.maximum / MPA)
-            )
+            format!("{load} {least} to {most} {symbol}, pressure on the cracks up to {} MPa", short(pressure * loading.maximum / MPA))
         }
         _ => format!("{load} {least} to {most} {symbol}"),
     };

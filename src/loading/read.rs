@@ -94,9 +94,7 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
             return Err(input_error(&magnitude, problem, "give force_max_n or force_range_n (or _kn)"));
         }
         (measure, Of::Displacement) => {
-            for (key, given) in
-                [("stress_parallel_ratio", input.stress_parallel_ratio), ("crack_pressure_mpa", input.crack_pressure_mpa)]
-            {
+            for (key, given) in [("stress_parallel_ratio", input.stress_parallel_ratio), ("crack_pressure_mpa", input.crack_pressure_mpa)] {
                 if let Some(given) = given.filter(|given| *given != 0.0) {
                     let problem = "does not go with cycles of a displacement, which one load follows";
                     return Err(error::input(&format!("loading.{key}"), given, problem, "leave it out"));
@@ -235,18 +233,12 @@ impl Magnitude {
             LoadingKind::ConstantAmplitude => (MAGNITUDES, "loading.stress_max_mpa"),
             LoadingKind::Displacement => (DISPLACEMENTS, "loading.displacement_max_mm"),
         };
-        let given: Vec<_> =
-            slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of))).collect();
+        let given: Vec<_> = slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of))).collect();
         match given[..] {
             [(key, given, quantity, of)] => {
                 let path = format!("loading.{key}");
                 if (of == Of::Displacement) != (kind == LoadingKind::Displacement) {
-                    return Err(input(
-                        &path,
-                        given,
-                        format!("does not go with kind = \"{kind}\""),
-                        format!("give exactly one of {wanted}"),
-                    ));
+                    return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), format!("give exactly one of {wanted}")));
                 }
                 let value = quantity.read(&path, given)?;
                 Ok(Magnitude { key: path, given, value, is_range: key.contains("range"), of })

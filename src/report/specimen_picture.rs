@@ -78,9 +78,7 @@ fn load_words(case: &Case) -> String {
     let pressure = case.specimen.crack_pressure;
     let (symbol, beside) = match pressure {
         _ if pressure > 0.0 && case.specimen.loads.is_empty() => ("pressure p on the cracks", String::new()),
-        _ if pressure > 0.0 => {
-            (symbol, format!(", pressure on the cracks up to {} MPa", short(pressure * loading.maximum / MPA)))
-        }
+        _ if pressure > 0.0 => (symbol, format!(", pressure on the cracks up to {} MPa", short(pressure * loading.maximum / MPA))),
         _ => (symbol, String::new()),
     };
     let parallel =

@@ -226,14 +226,7 @@ impl RingGeometry {
         }
         let [k_i, k_ii, shifted_i, shifted_ii, half_t] = sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum);
         let tip_offset = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
-        RingFactors {
-            factors: [k_i, k_ii],
-            t_stress: 2.0 * half_t - at_tip,
-            tip_offset,
-            tip_offsets: [shifted_i / k_i, shifted_ii / k_ii],
-            radius: outer,
-            of_pressure,
-        }
+        RingFactors { factors: [k_i, k_ii], t_stress: 2.0 * half_t - at_tip, tip_offset, tip_offsets: [shifted_i / k_i, shifted_ii / k_ii], radius: outer, of_pressure }
     }
 }
 

@@ -152,19 +152,11 @@ fn directions_pressures_and_displacements_that_are_refused() {
         (PLATE, format!("{held}direction = \"up\""), "is not a direction"),
         (PLATE, format!("{held}direction = [1, 0]"), "is not in equilibrium"),
         (PLATE, format!("{held}direction = [[0, 1], [0, -1]]\nstress_parallel_ratio = 1"), "does not go with loading.direction"),
-        (
-            PLATE,
-            "stress_ratio = 0\nforce_max_n = 5\npins = [{ hole = 0, direction = [0, 1] }]\ndirection = [0, 1]".into(),
-            "stands beside loading.pins",
-        ),
+        (PLATE, "stress_ratio = 0\nforce_max_n = 5\npins = [{ hole = 0, direction = [0, 1] }]\ndirection = [0, 1]".into(), "stands beside loading.pins"),
         (PANEL, "stress_ratio = 0\nstress_max_mpa = 50\ndirection = [0, 1]".into(), "does not go with middle_tension"),
         (PANEL, "stress_ratio = 0\ncrack_pressure_mpa = 50".into(), "does not go with middle_tension"),
         (PLATE, "stress_ratio = 0\ncrack_pressure_mpa = -5".into(), "crack_pressure_mpa"),
-        (
-            PLATE,
-            "stress_ratio = 0\ncrack_pressure_mpa = 5\nedges = [\"top\", \"bottom\"]".into(),
-            "none is given beside crack_pressure_mpa",
-        ),
+        (PLATE, "stress_ratio = 0\ncrack_pressure_mpa = 5\nedges = [\"top\", \"bottom\"]".into(), "none is given beside crack_pressure_mpa"),
         (PLATE, format!("{kept}stress_max_mpa = 50"), "does not go with kind"),
         (PLATE, format!("{kept}crack_pressure_mpa = 50"), "displacement_max_mm = "),
         (PLATE, kept.into(), "is missing: there is no load"),
@@ -190,9 +182,7 @@ fn loads_of_one_driver() {
         let text = format!(
             "[specimen]\n{PLATE}\n[material]\nname = \"al2024-t3\"\n[fatigue]\na = 1\np = 2\nhorizon_mm = 3\n[loading]\nstress_ratio = 0\n{loading}"
         );
-        let read = |set: &[&str]| {
-            Case::from_toml(&text, "test", Path::new(""), &set.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>())
-        };
+        let read = |set: &[&str]| Case::from_toml(&text, "test", Path::new(""), &set.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>());
         read(&[]).unwrap();
         let error = read(&["fatigue.driver=\"bond_strain\""]).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");

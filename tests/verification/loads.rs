@@ -60,8 +60,7 @@ fn pressure_on_cracks_is_a_stress_far_away() {
 #[test]
 fn pressure_adds_to_a_stress_and_follows_the_crack() {
     let crack = "{ from_mm = [-8, 0], to_mm = [8, 0] }";
-    let [both, pulled] =
-        ["stress_max_mpa = 50\ncrack_pressure_mpa = 25", "stress_max_mpa = 50"].map(|l| tips(&plate(crack, l, 1.0))[0][0]);
+    let [both, pulled] = ["stress_max_mpa = 50\ncrack_pressure_mpa = 25", "stress_max_mpa = 50"].map(|l| tips(&plate(crack, l, 1.0))[0][0]);
     assert!((both / pulled / 1.5 - 1.0).abs() < 0.005, "{both}, {pulled}");
     let [pressed, pulled] = ["crack_pressure_mpa = 50", "stress_max_mpa = 50"].map(|l| run(&plate(crack, l, 1.0)));
     let (life, right) = (pressed.life_cycles(), pulled.life_cycles());
@@ -86,18 +85,10 @@ fn a_sheared_edge() {
 /// A square under pure shear of all its sides: K_II = τ√(πa) but for the sides, K_I = 0; turned by 45° the same crack opens.
 #[test]
 fn pure_shear() {
-    let sides =
-        "edges = [\"top\", \"bottom\", \"right\", \"left\"]\ndirection = [[1, 0], [-1, 0], [0, 1], [0, -1]]\nstress_max_mpa = 50";
-    let cracks = [
-        ("{ from_mm = [-4, 0], to_mm = [4, 0] }", [0.0, 1.0]),
-        ("{ from_mm = [-2.828, 2.828], to_mm = [2.828, -2.828] }", [1.0, 0.0]),
-    ];
+    let sides = "edges = [\"top\", \"bottom\", \"right\", \"left\"]\ndirection = [[1, 0], [-1, 0], [0, 1], [0, -1]]\nstress_max_mpa = 50";
+    let cracks = [("{ from_mm = [-4, 0], to_mm = [4, 0] }", [0.0, 1.0]), ("{ from_mm = [-2.828, 2.828], to_mm = [2.828, -2.828] }", [1.0, 0.0])];
     for (crack, right) in cracks {
-        let case = case(
-            &format!("kind = \"plate\"\nwidth_mm = 80\nlength_mm = 80\ncracks = [{crack}]"),
-            sides,
-            &["model.spacing_mm=0.5"],
-        );
+        let case = case(&format!("kind = \"plate\"\nwidth_mm = 80\nlength_mm = 80\ncracks = [{crack}]"), sides, &["model.spacing_mm=0.5"]);
         let size = 50.0 * (PI * 4e-3_f64).sqrt();
         for tip in tips(&case) {
             println!("{crack}: {tip:.4?}, infinite plate {size:.4}");
@@ -113,7 +104,8 @@ fn pure_shear() {
 fn cycles_of_a_displacement() {
     let panel = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 200\ncrack_length_mm = 8";
     let kept = "kind = \"displacement\"\ndisplacement_max_mm = 0.2";
-    let [kept, loaded] = [kept, "force_max_n = 13719.7"].map(|loading| run(&case(panel, loading, &["stop.crack_length_mm=40"])));
+    let [kept, loaded] =
+        [kept, "force_max_n = 13719.7"].map(|loading| run(&case(panel, loading, &["stop.crack_length_mm=40"])));
     let (width, length, thickness, modulus, displacement) = (0.1, 0.2, 2e-3, 70e9, 0.2e-3);
     let factor = |a: f64| (PI * a / (PI * a / width).cos()).sqrt();
     let section = width * thickness;
@@ -129,11 +121,7 @@ fn cycles_of_a_displacement() {
         a += step;
     }
     let force = kept.curve.last().unwrap().work / displacement;
-    println!(
-        "life {}, quadrature {cycles}; force at the end {force}, {}",
-        kept.life_cycles(),
-        displacement / compliance(squares)
-    );
+    println!("life {}, quadrature {cycles}; force at the end {force}, {}", kept.life_cycles(), displacement / compliance(squares));
     assert!((kept.life_cycles() / cycles - 1.0).abs() < 0.01);
     assert!((force * compliance(squares) / displacement - 1.0).abs() < 0.01);
     // Both begin with the same load.
@@ -147,11 +135,7 @@ fn cycles_of_a_displacement() {
 #[test]
 fn compliance_of_a_compact_specimen() {
     let specimen = "kind = \"compact_tension\"\nwidth_mm = 50\ncrack_length_mm = 20";
-    let kept = run(&case(
-        specimen,
-        "kind = \"displacement\"\ndisplacement_max_mm = 0.1",
-        &["model.spacing_mm=0.5", "stop.crack_length_mm=32"],
-    ));
+    let kept = run(&case(specimen, "kind = \"displacement\"\ndisplacement_max_mm = 0.1", &["model.spacing_mm=0.5", "stop.crack_length_mm=32"]));
     let handbook = |a: f64| {
         let alpha = a / 50e-3;
         let terms = [2.163, 12.219, -20.065, -0.9925, 20.609, -9.9314];

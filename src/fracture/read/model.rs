@@ -141,9 +141,7 @@ fn correspondence(given: &Input) -> Result<SceneLaw> {
             return Err(input(FACTOR, factor, problem, "leave it out, or use \"silling\" or \"spring\""));
         }
         (ZeroEnergyControl::None, None) => 0.0,
-        (ZeroEnergyControl::Silling, factor) => {
-            number("a factor", 0.0, 1e3).read(FACTOR, check_sign(factor.unwrap_or(SILLING_FACTOR))?)?
-        }
+        (ZeroEnergyControl::Silling, factor) => number("a factor", 0.0, 1e3).read(FACTOR, check_sign(factor.unwrap_or(SILLING_FACTOR))?)?,
         (ZeroEnergyControl::Spring, Some(factor)) => {
             number("a spring constant c_I in N/m⁷", 0.0, 1e40).read(FACTOR, check_sign(factor)?)?
         }

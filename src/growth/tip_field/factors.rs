@@ -252,8 +252,7 @@ impl TipField<'_> {
         let gaps: Vec<Option<f64>> = self.state.tips.iter().map(|tip| self.gap(tip)).collect();
         for (tip, gap) in self.state.tips.iter_mut().zip(gaps) {
             tip.rate = 0.0;
-            let Some(Reading { factors: read, t_stress, length_offset, is_closed: pressed_shut, sliding, .. }) = tip.reading
-            else {
+            let Some(Reading { factors: read, t_stress, length_offset, is_closed: pressed_shut, sliding, .. }) = tip.reading else {
                 continue;
             };
             (tip.length_offset, tip.t_stress) = (length_offset, t_stress);
