@@ -12,6 +12,8 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// What a checkpoint is of.
 #[derive(Debug, Clone, Copy)]
 pub struct Seal {
+    /// What a file that does not begin with `magic` is no checkpoint of, in words.
+    pub of: &'static str,
     /// First bytes.
     pub magic: &'static [u8],
     /// Form of what follows; one higher with every change of it, or of what the program does with it.
@@ -35,7 +37,7 @@ impl Seal {
     /// one.
     pub fn read<T: DeserializeOwned>(self, bytes: &[u8]) -> Result<T> {
         let damaged = || refused("is damaged");
-        let rest = bytes.strip_prefix(self.magic).ok_or_else(|| refused("is no checkpoint of this program"))?;
+        let rest = bytes.strip_prefix(self.magic).ok_or_else(|| refused(format!("is no checkpoint of {}", self.of)))?;
         let (form, rest) = rest.split_first_chunk().ok_or_else(damaged)?;
         let (length, rest) = rest.split_first().ok_or_else(damaged)?;
         let (version, rest) = rest.split_at_checked(usize::from(*length)).ok_or_else(damaged)?;

@@ -15,6 +15,8 @@ mod shared;
 #[path = "support/correspondence.rs"]
 mod correspondence_bodies;
 
+#[path = "verification/scene_checkpoint.rs"]
+mod scene_checkpoint;
 #[path = "verification/dynamics.rs"]
 mod dynamics;
 #[path = "verification/correspondence.rs"]

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use super::checkpoint;
 use super::console::Console;
 use crate::error::{Error, Result};
 use crate::fracture::scene::Procedure;
-use crate::fracture::{self, Fracture, Scene, SceneEnd};
+use crate::fracture::{Fracture, Scene, SceneEnd};
 use crate::input::Document;
 use crate::report::fracture as report;
 use crate::report::output::OutputFolder;
@@ -17,6 +18,7 @@ use crate::units::{KN, MM};
     after_long_help = "Loads: traction, displacement, velocity or platens. [damage]: critical stretch, critical energy, softening or principal stress.\n\
                        A growing load is followed along the path of equilibrium through snap-back (model.solver = \"secant\"), by relaxation to rest, or\n\
                        with loading.iterations_per_step as many published examples are, which is not at rest.\n\
+                       A run that was killed goes on from its checkpoint to the same histories, bit for bit on the same kind of processor.\n\
                        Scenes of the literature: data/cases/fracture of the source."
 )]
 pub struct Args {
@@ -29,6 +31,9 @@ pub struct Args {
     /// Override a key of the scene (repeatable), e.g. --set model.spacing_mm=0.5
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
+    /// Keeping the run for later.
+    #[command(flatten)]
+    pub keeping: checkpoint::Args,
     /// What is printed.
     #[command(flatten)]
     pub console: Console,
@@ -48,8 +53,9 @@ pub fn run(args: &Args) -> Result<()> {
         args.console.warn(warning);
     }
     // Some wrong input shows only once points and bonds stand.
-    let fracture = fracture::run(&scene, &args.console.progress(&scene.name)).map_err(|error| document.locate(error))?;
-    keep(&scene, &fracture, folder, &args.console)
+    let fracture = args.keeping.run_scene(&scene, &args.console).map_err(|error| document.locate(error))?;
+    keep(&scene, &fracture, folder, &args.console)?;
+    checkpoint::remove(args.keeping.checkpoint.as_deref())
 }
 
 /// Writes the files of a run, puts the folder in place and prints what was found.

@@ -1,6 +1,9 @@
 //! What changes in the bonds of a scene: damage and the history it depends on. Written by the interaction alone.
 
+use serde::{Deserialize, Serialize};
+
 use crate::levels::Net;
+use crate::predict::checkpoint::{dense, sparse};
 
 /// State of every bond of a net.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +16,13 @@ pub struct BondState {
     pub may_fail: Vec<bool>,
 }
 
+/// What has changed in the bonds of a net: those that are not as at first.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KeptBonds {
+    share: Vec<(u32, f64)>,
+    peak: Vec<(u32, f64)>,
+}
+
 impl BondState {
     /// Bonds of the plate with its cracks cut. Bonds with an end among the `no_fail` points never fail.
     #[must_use]
@@ -23,6 +33,24 @@ impl BondState {
         }
         let may_fail = net.bonds.iter().map(|bond| !no_fail[bond.from as usize] && !no_fail[bond.to as usize]).collect();
         BondState { peak: vec![0.0; share.len()], share, may_fail }
+    }
+
+    /// What has changed in the bonds.
+    #[must_use]
+    pub fn kept(&self) -> KeptBonds {
+        KeptBonds { share: sparse(&self.share, 1.0), peak: sparse(&self.peak, 0.0) }
+    }
+
+    /// Puts the bonds where they stood; whether they are those of this net.
+    #[must_use]
+    pub fn restore(&mut self, kept: &KeptBonds) -> bool {
+        let count = self.share.len();
+        let fits = kept.share.iter().chain(&kept.peak).all(|(bond, _)| (*bond as usize) < count);
+        if fits {
+            self.share = dense(&kept.share, 1.0, count);
+            self.peak = dense(&kept.peak, 0.0, count);
+        }
+        fits
     }
 
     /// Damage of every point ([`Net::damage`]), 0 to 1.

@@ -246,8 +246,29 @@ impl<'n> Contact<'n> {
         self.struts = pressed.filter_map(|(column, _)| strut(column)).collect();
     }
 
+    /// Pressed columns by their numbers; `None` before any column was built.
+    #[must_use]
+    pub fn pressed(&self) -> Option<Vec<u32>> {
+        let pressed = self.columns.iter().zip(&self.pressed).filter(|(_, pressed)| **pressed);
+        (self.known > 0).then(|| pressed.map(|(column, _)| column.id).collect())
+    }
+
+    /// Begins anew from these bonds with what [`Contact::pressed`] gave.
+    pub fn renew(&mut self, pressed: Option<&[u32]>, bonds: &BondState) {
+        (self.known, self.columns, self.pressed, self.struts) = (0, Vec::new(), Vec::new(), Vec::new());
+        if let Some(pressed) = pressed {
+            self.build_with(bonds, true, pressed);
+        }
+    }
+
     /// Builds the columns of the bonds that are broken now; those that were pressed stay so.
     fn build(&mut self, bonds: &BondState, with_grown: bool) {
+        let held = self.pressed().unwrap_or_default();
+        self.build_with(bonds, with_grown, &held);
+    }
+
+    /// Builds the columns of the bonds that are broken now, unless they stand; those of these numbers are pressed.
+    fn build_with(&mut self, bonds: &BondState, with_grown: bool, held: &[u32]) {
         let net = self.net;
         let is_meant = |b: &usize| bonds.share[*b] == 0.0 && (with_grown || self.is_initial[*b]);
         let broken: Vec<usize> = (0..net.bonds.len()).filter(is_meant).collect();
@@ -261,8 +282,6 @@ impl<'n> Contact<'n> {
         }
         let widest = net.horizons.iter().fold(0.0, |most: f64, horizon| most.max(*horizon));
         self.middles = Cells::of(AROUND * widest, broken.iter().map(|&b| middle(net, b)));
-        let held: Vec<u32> =
-            self.columns.iter().zip(&self.pressed).filter(|(_, pressed)| **pressed).map(|(column, _)| column.id).collect();
         let columns: Vec<Column> = broken.iter().flat_map(|&b| self.columns_of(b)).collect();
         self.pressed = columns.iter().map(|column| held.binary_search(&column.id).is_ok()).collect();
         self.columns = columns;

@@ -35,7 +35,7 @@ use nalgebra::{Matrix2, Vector2};
 use rayon::prelude::*;
 
 use super::bonds::BondState;
-use super::interaction::{Damaging, Interaction, Reaction};
+use super::interaction::{Damaging, Interaction, Memory, Reaction};
 use super::scene::{DamageEntry, Procedure, Scene, ZeroEnergyControl};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::Result;
@@ -233,6 +233,15 @@ impl Interaction for Correspondence<'_> {
         let mut shape = self.shape.clone();
         shape.follow(self.net, &self.neighbours, bonds);
         bound::of_points(self.net, &self.neighbours, &shape, &self.elasticity, &self.control)
+    }
+
+    /// Nothing: shape tensors follow the bonds before every evaluation, and those of a point are always summed up whole.
+    fn memory(&self) -> Memory {
+        Memory::default()
+    }
+
+    fn restore(&mut self, memory: &Memory, _: &BondState) -> bool {
+        *memory == Memory::default()
     }
 }
 

@@ -10,15 +10,17 @@
 //! that is asked for, and shall not shorten the step.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::bonds::BondState;
 use super::boundary::{Boundary, Held};
+use super::checkpoint::{Place, of_another};
+use super::course::Course;
 use super::interaction::{Damaging, Driven, Interaction, Reaction};
 use super::log::Log;
 use super::outcome::{HistoryRow, SceneEnd};
 use super::scene::LoadRamp;
-use super::{SceneObserver, SceneProgress};
-use crate::error::{Error, Result, input};
+use crate::error::{Result, input};
 use crate::levels::Net;
 use crate::specimen::Point;
 
@@ -33,7 +35,7 @@ const WATCH: usize = 5;
 const FROM_NOWHERE: f64 = 0.5;
 
 /// State of the motion: displacement, velocity, force of the bonds; layout of [`Interaction`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// Displacement, m.
     pub u: Vec<f64>,
@@ -41,6 +43,19 @@ pub struct Motion {
     pub v: Vec<f64>,
     /// Force of the bonds, N.
     pub force: Vec<f64>,
+}
+
+/// Where a run stands after a step: all that its next steps depend on beside bonds and interaction.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
+    step: usize,
+    motion: Motion,
+    /// Work of loads and driven points so far but that of platens, J.
+    work: f64,
+    /// Energy taken by damage so far, J.
+    fracture: f64,
+    /// Largest energy so far, J.
+    largest: f64,
 }
 
 /// Masses of all unknowns, kg: `ρ V` of the displacements; rotations as said above.
@@ -81,6 +96,13 @@ pub fn time_step(asked: Option<f64>, stable: f64) -> Result<f64> {
     }
 }
 
+impl Standing {
+    /// Whether it is that of so many unknowns.
+    fn has(&self, unknowns: usize) -> bool {
+        [&self.motion.u, &self.motion.v, &self.motion.force].iter().all(|values| values.len() == unknowns)
+    }
+}
+
 /// A motion to be followed.
 pub struct Run<'a> {
     /// Loads.
@@ -94,38 +116,36 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Follows the motion from rest; returns why it ended, the last state, and the evaluations of the forces.
+    /// Follows the motion from rest, or from where it is taken up; returns why it ended, the last state, and the evaluations of the
+    /// forces.
     ///
     /// # Errors
-    /// A run that was cancelled.
+    /// A run that was cancelled, a checkpoint of another one.
     pub fn follow(
         &self,
         interaction: &mut dyn Interaction,
         bonds: &mut BondState,
         log: &mut Log<'_>,
-        observer: &dyn SceneObserver,
+        mut course: Course<'_>,
     ) -> Result<(SceneEnd, Motion, usize)> {
         let unknowns = interaction.unknowns();
         let size = self.masses.len();
-        let mut motion = Motion { u: vec![0.0; size], v: vec![0.0; size], force: vec![0.0; size] };
-        let pushes = self.pushes(unknowns);
-        let mut external = vec![0.0; size];
-        push_at(&pushes, 0.0, &mut external);
-        interaction.load_at(0.0);
         let held: Vec<(usize, Held)> =
             self.boundary.held.iter().map(|held| (held.point as usize * unknowns + held.component, *held)).collect();
-        for (i, held) in &held {
-            motion.v[*i] = held.at(0.0).1;
-        }
-        let mut work = self.kinetic(&motion.v);
-        let mut fracture = 0.0;
-        let mut largest: f64 = 0.0;
-        interaction.internal_force(&motion.u, bonds, Damaging::Frozen, &mut motion.force);
+        let mut at = match course.take_up(log, bonds)? {
+            None => self.start(interaction, bonds, &held),
+            Some(Place::Motion(at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
+            Some(_) => return Err(of_another()),
+        };
+        let pushes = self.pushes(unknowns);
+        let mut external = vec![0.0; size];
+        push_at(&pushes, at.step as f64 * self.step, &mut external);
         let stride = self.steps.div_ceil(ROWS).max(1);
         let mut end = SceneEnd::Done;
-        for step in 1..=self.steps {
+        for step in at.step + 1..=self.steps {
+            let Standing { motion, .. } = &mut at;
             let (before, time) = ((step - 1) as f64 * self.step, step as f64 * self.step);
-            self.drift(&mut motion, &external);
+            self.drift(motion, &external);
             let mut driven = 0.0;
             let moved: Vec<f64> = held
                 .iter()
@@ -142,39 +162,52 @@ impl Run<'_> {
             interaction.load_at(time);
             let reaction = interaction.internal_force(&motion.u, bonds, Damaging::Allowed, &mut motion.force);
             push_at(&pushes, time, &mut external);
-            self.kick(&mut motion, &external);
+            self.kick(motion, &external);
             for ((i, held), moved) in held.iter().zip(&moved) {
                 let (was, is) = (held.at(before).1, held.at(time).1);
                 motion.v[*i] = is;
                 // What holds the point also brings its own mass into motion.
                 driven += 0.5 * self.masses[*i] * (is * is - was * was) - 0.5 * motion.force[*i] * moved;
             }
-            work += driven + pushed;
+            at.step = step;
+            at.work += driven + pushed;
             let platens = interaction.driven();
-            fracture += reaction.released;
+            at.fracture += reaction.released;
             log.broke(step, reaction.broken);
             let look = step % WATCH == 0 || step % stride == 0 || step == self.steps;
             if look {
-                let all_work = work + platens.map_or(0.0, |driven| driven.work);
-                let row = self.row(step, &motion, &reaction, (fracture, all_work), platens, unknowns);
-                largest = largest.max(row.kinetic.max(row.strain).max(row.work.abs()));
+                let all_work = at.work + platens.map_or(0.0, |driven| driven.work);
+                let row = self.row(step, &at.motion, &reaction, (at.fracture, all_work), platens, unknowns);
+                at.largest = at.largest.max(row.kinetic.max(row.strain).max(row.work.abs()));
                 let nowhere = (row.kinetic + row.strain + row.fracture - row.work).abs();
                 // A negated comparison, so that NaN counts as blown up.
-                let is_still = largest == 0.0 && !nowhere.is_nan();
-                if !(nowhere <= FROM_NOWHERE * largest + self.lag(&pushes, time) || is_still) {
+                let is_still = at.largest == 0.0 && !nowhere.is_nan();
+                if !(nowhere <= FROM_NOWHERE * at.largest + self.lag(&pushes, time) || is_still) {
                     end = SceneEnd::Unstable;
                     break;
                 }
                 if step % stride == 0 || step == self.steps {
-                    log.row(row, &motion.u, bonds);
-                    if !observer.step_done(&SceneProgress { share: step as f64 / self.steps as f64 }) {
-                        return Err(Error::Mechanics("the run was cancelled".to_owned()));
-                    }
+                    log.row(row, &at.motion.u, bonds);
+                    course.step_done(step as f64 / self.steps as f64)?;
+                    course.may_keep(log, bonds, &|| Place::Motion(at.clone(), interaction.memory()));
                 }
             }
         }
         let evaluations = self.steps + 1;
-        Ok((end, motion, evaluations))
+        Ok((end, at.motion, evaluations))
+    }
+
+    /// At rest, but for what the loads drive.
+    fn start(&self, interaction: &mut dyn Interaction, bonds: &mut BondState, held: &[(usize, Held)]) -> Standing {
+        let size = self.masses.len();
+        let mut motion = Motion { u: vec![0.0; size], v: vec![0.0; size], force: vec![0.0; size] };
+        interaction.load_at(0.0);
+        for (i, held) in held {
+            motion.v[*i] = held.at(0.0).1;
+        }
+        let work = self.kinetic(&motion.v);
+        interaction.internal_force(&motion.u, bonds, Damaging::Frozen, &mut motion.force);
+        Standing { step: 0, motion, work, fracture: 0.0, largest: 0.0 }
     }
 
     /// Forces of the loads at full size by unknowns, N, with how they rise.

@@ -5,6 +5,8 @@
 //! wider behind its front moves nothing. Points cracked away from every front and its way begin a new one: a branch, or a crack
 //! from a place where there was none.
 
+use serde::{Deserialize, Serialize};
+
 use super::outcome::PathPoint;
 use crate::levels::Net;
 use crate::specimen::geometry::{direction, distance};
@@ -21,6 +23,7 @@ const REACH: f64 = 2.0;
 const AHEAD: f64 = 0.25;
 
 /// A crack front on its way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Front {
     at: Point,
     /// Unit vector of growth over the last horizon; zero before there was any.
@@ -67,17 +70,23 @@ impl Front {
     }
 }
 
-/// All fronts, and what they did.
+/// All fronts of a net.
 pub struct Fronts<'n> {
     net: &'n Net,
     /// Damage from which a point is cracked.
     threshold: f64,
+    standing: Standing,
+}
+
+/// Where all fronts are, and what they did.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
     cracked: Vec<bool>,
     fronts: Vec<Front>,
     /// Whether the points cracked at the start were taken down.
     begun: bool,
     /// Where fronts stood, in the order of time.
-    pub path: Vec<PathPoint>,
+    path: Vec<PathPoint>,
 }
 
 impl<'n> Fronts<'n> {
@@ -89,14 +98,35 @@ impl<'n> Fronts<'n> {
         let start =
             |(tip, front): (usize, &Front)| PathPoint { tip, step: 0, time: 0.0, position: front.at, damage: 0.0, speed: 0.0 };
         let path = fronts.iter().enumerate().map(start).collect();
-        Fronts { net, threshold, cracked: vec![false; net.len()], fronts, begun: false, path }
+        Fronts { net, threshold, standing: Standing { cracked: vec![false; net.len()], fronts, begun: false, path } }
+    }
+
+    /// Where they are.
+    #[must_use]
+    pub fn standing(&self) -> &Standing {
+        &self.standing
+    }
+
+    /// Puts them where they stood; whether they are those of this net.
+    #[must_use]
+    pub fn restore(&mut self, standing: Standing) -> bool {
+        let fits = standing.cracked.len() == self.net.len();
+        self.standing = standing;
+        fits
+    }
+
+    /// Where they stood, in the order of time.
+    #[must_use]
+    pub fn into_path(self) -> Vec<PathPoint> {
+        self.standing.path
     }
 
     /// Takes down where the fronts stand with this damage of the points.
     pub fn advance(&mut self, step: usize, time: f64, damage: &[f64]) {
-        let mut left: Vec<usize> = (0..damage.len()).filter(|&i| damage[i] >= self.threshold && !self.cracked[i]).collect();
-        left.iter().for_each(|&i| self.cracked[i] = true);
-        if !std::mem::replace(&mut self.begun, true) {
+        let cracked = &mut self.standing.cracked;
+        let mut left: Vec<usize> = (0..damage.len()).filter(|&i| damage[i] >= self.threshold && !cracked[i]).collect();
+        left.iter().for_each(|&i| cracked[i] = true);
+        if !std::mem::replace(&mut self.standing.begun, true) {
             return;
         }
         // A front may run through several points in one step: it goes on until nothing lies ahead of any.
@@ -104,14 +134,21 @@ impl<'n> Fronts<'n> {
             let moves = self.moves(&left);
             for &(tip, i) in &moves {
                 let position = self.net.positions[i];
-                let speed = self.fronts[tip].move_to(position, self.net.horizons[i], time);
-                self.path.push(PathPoint { tip, step, time, position, damage: damage[i], speed });
+                let speed = self.standing.fronts[tip].move_to(position, self.net.horizons[i], time);
+                self.standing.path.push(PathPoint { tip, step, time, position, damage: damage[i], speed });
             }
             if moves.is_empty() {
                 let Some((first, front)) = self.new_front(&left, time) else { break };
                 let position = front.at;
-                self.path.push(PathPoint { tip: self.fronts.len(), step, time, position, damage: damage[first], speed: 0.0 });
-                self.fronts.push(front);
+                self.standing.path.push(PathPoint {
+                    tip: self.standing.fronts.len(),
+                    step,
+                    time,
+                    position,
+                    damage: damage[first],
+                    speed: 0.0,
+                });
+                self.standing.fronts.push(front);
                 left.retain(|&i| i != first);
             }
         }
@@ -122,7 +159,7 @@ impl<'n> Fronts<'n> {
     fn new_front(&self, points: &[usize], time: f64) -> Option<(usize, Front)> {
         let off = |&i: &usize| {
             let (at, horizon) = (self.net.positions[i], self.net.horizons[i]);
-            let ways = self.fronts.iter().flat_map(|front| &front.way);
+            let ways = self.standing.fronts.iter().flat_map(|front| &front.way);
             let from = ways.min_by(|a, b| distance(**a, at).total_cmp(&distance(**b, at)));
             let away = from.map_or(f64::INFINITY, |&from| distance(from, at));
             let start = from.filter(|_| away <= 2.0 * REACH * horizon).map_or([0.0; 2], |&from| direction(from, at));
@@ -134,11 +171,17 @@ impl<'n> Fronts<'n> {
 
     /// The point farthest ahead of every front that has one; a point counts for the front nearest to it.
     fn moves(&self, points: &[usize]) -> Vec<(usize, usize)> {
-        let mut best: Vec<Option<(f64, usize)>> = vec![None; self.fronts.len()];
+        let mut best: Vec<Option<(f64, usize)>> = vec![None; self.standing.fronts.len()];
         for &i in points {
             let (at, spacing, horizon) = (self.net.positions[i], self.net.spacings[i], self.net.horizons[i]);
-            let near = self.fronts.iter().enumerate().filter_map(|(tip, front)| Some((tip, front.ahead(at, spacing, horizon)?)));
-            let nearest = near.min_by(|a, b| distance(self.fronts[a.0].at, at).total_cmp(&distance(self.fronts[b.0].at, at)));
+            let near = self
+                .standing
+                .fronts
+                .iter()
+                .enumerate()
+                .filter_map(|(tip, front)| Some((tip, front.ahead(at, spacing, horizon)?)));
+            let nearest = near
+                .min_by(|a, b| distance(self.standing.fronts[a.0].at, at).total_cmp(&distance(self.standing.fronts[b.0].at, at)));
             if let Some((tip, forward)) = nearest
                 && best[tip].is_none_or(|(most, _)| forward > most)
             {

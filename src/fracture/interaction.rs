@@ -1,5 +1,7 @@
 //! What a method has to supply: forces of the points for a displacement, and which bonds that damages.
 
+use serde::{Deserialize, Serialize};
+
 use super::bonds::BondState;
 
 /// What one evaluation of the forces found.
@@ -19,7 +21,7 @@ pub struct Reaction {
 }
 
 /// Rigid bodies that an interaction moves by itself (platens), as its last evaluation found them.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Driven {
     /// Way they have gone, summed over them, m.
     pub displacement: f64,
@@ -31,6 +33,17 @@ pub struct Driven {
     pub work: f64,
     /// Largest depth by which a point has passed one, m.
     pub penetration: f64,
+}
+
+/// What an interaction keeps from evaluation to evaluation beside the state of the bonds.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Memory {
+    /// Displacement at the last evaluation, two or three values a point along the interaction's own axes; empty where none is looked back at.
+    pub displacement: Vec<f64>,
+    /// Way and force of every platen at the last evaluation, m and N.
+    pub platens: Vec<(f64, f64)>,
+    /// What the platens did.
+    pub driven: Driven,
 }
 
 /// Whether an evaluation of the forces may damage bonds.
@@ -63,6 +76,13 @@ pub trait Interaction: Send {
     /// Upper bound of the largest eigenvalue of every point's rows of the stiffness (Gershgorin), N/m, for displacements and, with
     /// three unknowns, for the rotation: what density and time step of explicit motion follow from.
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]>;
+
+    /// All that later evaluations depend on beside displacement, load and the state of the bonds.
+    fn memory(&self) -> Memory;
+
+    /// Goes on from the [`Interaction::memory`] of an earlier run, at whose end the bonds stood like this; whether it is one of this
+    /// interaction.
+    fn restore(&mut self, memory: &Memory, bonds: &BondState) -> bool;
 
     /// What the interaction moves by itself; `None` where there is nothing.
     fn driven(&self) -> Option<Driven> {

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::bonds::BondState;
 use super::failure::Failure;
-use super::interaction::{Damaging, Interaction, Reaction};
+use super::interaction::{Damaging, Interaction, Memory, Reaction};
 use super::springs::stiffness_bound;
 use crate::body::Body;
 use crate::body::lattice::{LANES, Lattice};
@@ -392,5 +392,28 @@ impl Interaction for LatticeSprings<'_> {
 
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {
         stiffness_bound(self.net, bonds)
+    }
+
+    fn memory(&self) -> Memory {
+        let [x, y] = &self.u;
+        let displacement = self.places.iter().flat_map(|&place| [x[place as usize], y[place as usize]]).collect();
+        Memory { displacement, ..Memory::default() }
+    }
+
+    fn restore(&mut self, memory: &Memory, bonds: &BondState) -> bool {
+        if memory.displacement.len() != 2 * self.places.len() {
+            return false;
+        }
+        let [x, y] = &mut self.u;
+        for (&place, at) in self.places.iter().zip(memory.displacement.chunks_exact(2)) {
+            (x[place as usize], y[place as usize]) = (at[0], at[1]);
+        }
+        // Springs without a bond have no number.
+        for (carry, &number) in self.carry.iter_mut().zip(&self.numbers) {
+            if bonds.share.get(number as usize).is_some_and(|share| *share == 0.0) {
+                *carry = 0.0;
+            }
+        }
+        true
     }
 }

@@ -6,8 +6,10 @@
 
 pub mod bonds;
 pub mod boundary;
+pub mod checkpoint;
 pub mod contact;
 pub mod correspondence;
+mod course;
 pub mod dynamics;
 pub mod failure;
 pub mod fronts;
@@ -25,8 +27,6 @@ pub mod rotation;
 pub mod scene;
 pub mod springs;
 
-use std::time::Instant;
-
 pub use outcome::{Fracture, SceneEnd};
 pub use scene::Scene;
 
@@ -38,7 +38,9 @@ use crate::parallel::in_pool;
 use crate::predict::memory;
 use bonds::BondState;
 use boundary::Boundary;
+use checkpoint::SceneCheckpoint;
 use correspondence::Correspondence;
+use course::{Clock, Course};
 use failure::{Failure, critical_stretch};
 use interaction::Interaction;
 use lattice_springs::LatticeSprings;
@@ -59,6 +61,9 @@ pub struct SceneProgress {
 pub trait SceneObserver: Sync {
     /// Called after every recorded step.
     fn step_done(&self, progress: &SceneProgress) -> bool;
+
+    /// Called after steps from which the run can be taken up later; what is not asked for costs nothing.
+    fn may_keep(&self, _checkpoint: &dyn Fn() -> SceneCheckpoint) {}
 }
 
 impl SceneObserver for crate::predict::Silent {
@@ -72,11 +77,22 @@ impl SceneObserver for crate::predict::Silent {
 /// # Errors
 /// Wrong input that shows only now, choices that do not go together, a run that was cancelled.
 pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
-    in_pool(|| follow(scene, observer))
+    in_pool(|| follow(scene, observer, None))
 }
 
-fn follow(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
-    let started = Instant::now();
+/// Goes on with a run of a scene from a checkpoint of it; gives what [`run`] gives, bit for bit, its wall time counted from the start
+/// of the first run.
+///
+/// # Errors
+/// As [`run`]; [`crate::Error::Input`] if the checkpoint is not one of this scene.
+pub fn resume(scene: &Scene, checkpoint: SceneCheckpoint, observer: &dyn SceneObserver) -> Result<Fracture> {
+    checkpoint.check(scene)?;
+    in_pool(|| follow(scene, observer, Some(checkpoint)))
+}
+
+fn follow(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpoint>) -> Result<Fracture> {
+    let clock = Clock::start(from.as_ref());
+    let course = Course::new(scene, observer, clock, from);
     let (net, body) = build(scene)?;
     let boundary = Boundary::of(scene, &net)?;
     let mut bonds = BondState::new(&net, &boundary.no_fail);
@@ -97,17 +113,17 @@ fn follow(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
             let steps = (duration / step).round().max(1.0) as usize;
             let run = dynamics::Run { boundary: &boundary, masses: &masses, step, steps };
             let mut log = Log::new(scene, &net, &boundary, steps);
-            let (end, motion, evaluations) = run.follow(interaction.as_mut(), &mut bonds, &mut log, observer)?;
+            let (end, motion, evaluations) = run.follow(interaction.as_mut(), &mut bonds, &mut log, course)?;
             let figures = SceneFigures { evaluations, time_step: step, ..SceneFigures::default() };
             log.close(end, &motion.u, &bonds, figures)
         }
         Procedure::Static | Procedure::QuasiStatic { .. } => {
-            quasi_static::run(scene, &net, &boundary, interaction.as_mut(), failure.as_ref(), &mut bonds, observer)?
+            quasi_static::run(scene, &net, &boundary, interaction.as_mut(), failure.as_ref(), &mut bonds, course)?
         }
     };
     let overlap = contact::warning(scene, &net, &bonds, &fracture);
     fracture.warnings.extend(net.warnings.iter().cloned().chain(turning).chain(overlap));
-    fracture.figures.wall_s = started.elapsed().as_secs_f64();
+    fracture.figures.wall_s = clock.seconds();
     fracture.figures.memory_mb = memory::peak_mb();
     Ok(fracture)
 }

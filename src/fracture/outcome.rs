@@ -1,5 +1,7 @@
 //! What a fracture scene gives.
 
+use serde::{Deserialize, Serialize};
+
 use super::contact::Touching;
 use crate::predict::{PointGrid, Snapshot};
 use crate::specimen::Point;
@@ -16,7 +18,7 @@ crate::kinds! {
 }
 
 /// One row of `history.csv`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct HistoryRow {
     /// Load or time step.
     pub step: usize,
@@ -39,7 +41,7 @@ pub struct HistoryRow {
 }
 
 /// A point of a crack path: where a crack front stood after a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PathPoint {
     /// Front: initial tips first, in the order of `Specimen::tips`, then new fronts as they appear.
     pub tip: usize,

@@ -6,7 +6,7 @@
 //! point may leave the platen, never pass it but for the penetration of a stiff one-sided spring, which is reported.
 
 use super::bonds::BondState;
-use super::interaction::{Damaging, Driven, Interaction, Reaction};
+use super::interaction::{Damaging, Driven, Interaction, Memory, Reaction};
 use super::scene::{Action, LoadRamp, Region, Scene, SceneLoad};
 use crate::levels::Net;
 use crate::specimen::geometry::edges;
@@ -183,6 +183,21 @@ impl Interaction for Pressed<'_> {
 
     fn load_at(&mut self, time: f64) {
         self.ways = self.platens.iter().map(|platen| platen.rise.share(time) * platen.travel).collect();
+    }
+
+    fn memory(&self) -> Memory {
+        Memory { platens: self.last.clone(), driven: self.driven, ..self.inner.memory() }
+    }
+
+    fn restore(&mut self, memory: &Memory, bonds: &BondState) -> bool {
+        let Memory { displacement, platens, driven } = memory;
+        if platens.len() != self.platens.len() {
+            return false;
+        }
+        self.last.clone_from(platens);
+        self.ways = platens.iter().map(|(way, _)| *way).collect();
+        self.driven = *driven;
+        self.inner.restore(&Memory { displacement: displacement.clone(), ..Memory::default() }, bonds)
     }
 
     fn driven(&self) -> Option<Driven> {

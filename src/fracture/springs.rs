@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::bonds::BondState;
 use super::failure::{Failure, Measures};
-use super::interaction::{Damaging, Interaction, Reaction};
+use super::interaction::{Damaging, Interaction, Memory, Reaction};
 use crate::levels::{Net, NetBond};
 
 /// Bonds or points that one task works through.
@@ -163,6 +163,18 @@ impl Interaction for Springs<'_> {
 
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {
         stiffness_bound(self.net, bonds)
+    }
+
+    fn memory(&self) -> Memory {
+        Memory { displacement: self.last.clone(), ..Memory::default() }
+    }
+
+    fn restore(&mut self, memory: &Memory, _: &BondState) -> bool {
+        let fits = memory.displacement.len() == self.last.len();
+        if fits {
+            self.last.copy_from_slice(&memory.displacement);
+        }
+        fits
     }
 }
 

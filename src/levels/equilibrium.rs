@@ -5,6 +5,7 @@
 //! 11 000 points a factorisation costs as much as about `RENEW` iterations beyond those of a fresh factor.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::Net;
 use super::rigid::minimal_constraints;
@@ -108,7 +109,7 @@ pub struct Equilibrium {
 }
 
 /// What solving has cost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Spent {
     /// Solves.
     pub solves: usize,
@@ -119,7 +120,7 @@ pub struct Spent {
 }
 
 /// Equilibrium at full load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
     /// Displacement, m.
     pub u: Vec<f64>,

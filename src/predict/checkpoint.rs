@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::growth::{CrackGrowth, State};
 use crate::sealed::{Seal, refused};
 
-const SEAL: Seal = Seal { magic: b"perilife checkpoint\n", form: 4 };
+const SEAL: Seal = Seal { of: "this program", magic: b"perilife checkpoint\n", form: 4 };
 
 /// State of a run at one of the places where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -134,11 +134,12 @@ impl Pictures {
 }
 
 /// The points whose value is not the usual one.
-fn sparse(values: &[f64], usual: f64) -> Vec<(u32, f64)> {
+pub(crate) fn sparse(values: &[f64], usual: f64) -> Vec<(u32, f64)> {
     values.iter().enumerate().filter(|(_, value)| **value != usual).map(|(point, value)| (point as u32, *value)).collect()
 }
 
-fn dense(sparse: &[(u32, f64)], usual: f64, points: usize) -> Vec<f64> {
+/// All values from those that are not the usual one, each below `points`.
+pub(crate) fn dense(sparse: &[(u32, f64)], usual: f64, points: usize) -> Vec<f64> {
     let mut values = vec![usual; points];
     sparse.iter().for_each(|&(point, value)| values[point as usize] = value);
     values

@@ -1,5 +1,7 @@
 //! What a run gives and how it reports while it goes on.
 
+use serde::{Deserialize, Serialize};
+
 use super::checkpoint::Checkpoint;
 use super::memory;
 use crate::case::Case;
@@ -11,7 +13,7 @@ use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
 
 /// Picture of the damaged plate at one moment.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     /// Cycles since N = 0.
     pub cycles: f64,

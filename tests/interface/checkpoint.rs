@@ -102,19 +102,90 @@ fn a_killed_run_goes_on_to_the_same_curve() {
     assert!(!folder.join("run.ckpt").exists(), "it goes when the run is done");
 }
 
+/// A plate torn in time, taken down in every one of some hundred steps.
+const SCENE: &str = r#"
+[specimen]
+kind = "plate"
+width_mm = 20
+length_mm = 20
+thickness_mm = 1
+cracks = [{ from_mm = [-10, 0.3], to_mm = [0, 0.3] }]
+[material]
+youngs_modulus_gpa = 65
+poisson_ratio = 0.2
+density_kg_m3 = 2235
+fracture_energy_j_m2 = 204
+[model]
+bond_law = "one_bond_two_parameter"
+spacing_mm = 0.5
+[loading]
+kind = "velocity"
+velocity_mm_s = 5000
+edges = ["top", "bottom"]
+transverse = "held"
+duration_s = 3e-5
+[damage]
+law = "critical_energy"
+"#;
+
+#[test]
+fn a_killed_scene_goes_on_to_the_same_files() {
+    let dir = tempdir().unwrap();
+    let folder = dir.path();
+    fs::write(folder.join("torn.toml"), SCENE).unwrap();
+    let whole = perilife(folder, &["fracture", "torn.toml", "--out", "whole"]);
+    assert!(whole.status.success(), "{}", texts(&whole).1);
+
+    let call = [&["fracture", "torn.toml", "--out", "run"], &KEEP[..]].concat();
+    kill_midway(folder, &call);
+    kill_midway(folder, &call);
+    assert!(!folder.join("run").exists(), "no results of a run that was killed");
+    let kept = fs::read(folder.join("run.ckpt")).unwrap();
+    let mut damaged = kept.clone();
+    damaged[kept.len() / 2] ^= 1;
+    let mut older = kept.clone();
+    let at = older.windows(5).position(|window| window == env!("CARGO_PKG_VERSION").as_bytes()).unwrap();
+    older[at] = b'9';
+    let refused: [(&[u8], &str, &str); 5] = [
+        (&kept, "loading.velocity_mm_s=5001", "run.ckpt: belongs to another scene"),
+        (&damaged, "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
+        (&kept[..kept.len() - 1], "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
+        (&older, "loading.velocity_mm_s=5000", "another version than this"),
+        (b"perilife checkpoint\n", "loading.velocity_mm_s=5000", "run.ckpt: is no checkpoint of a scene of this program"),
+    ];
+    for (bytes, set, words) in refused {
+        fs::write(folder.join("run.ckpt"), bytes).unwrap();
+        assert_refused(&perilife(folder, &[&call[..], &["--set", set]].concat()), 2, &[words, "remove it"]);
+        assert_eq!(fs::read(folder.join("run.ckpt")).unwrap(), bytes, "what is refused is left");
+    }
+
+    fs::write(folder.join("run.ckpt"), &kept).unwrap();
+    let rest = perilife(folder, &[&["fracture", "torn.toml", "--out", "run"], &KEEP[..2]].concat());
+    let (_, stderr) = texts(&rest);
+    assert!(rest.status.success(), "{stderr}");
+    assert!(stderr.contains("torn: goes on from run.ckpt: step "), "{stderr}");
+    for file in ["history.csv", "crack_path.csv", "damage.png"] {
+        let [run, whole] = ["run", "whole"].map(|out| fs::read(folder.join(out).join(file)).unwrap());
+        assert!(run == whole, "{file} differs");
+    }
+    assert!(!folder.join("run.ckpt").exists(), "it goes when the run is done");
+}
+
 #[test]
 fn places_and_times_for_a_checkpoint_are_checked_first() {
-    let dir = tempdir().unwrap();
-    fs::write(dir.path().join("case.toml"), CASE).unwrap();
-    fs::create_dir(dir.path().join("folder")).unwrap();
-    let call = |more: &[&str]| perilife(dir.path(), &[&["predict", "case.toml", "--out", "run"], more].concat());
-    assert_refused(&call(&["--checkpoint", "folder"]), 4, &["folder: cannot read"]);
-    assert_refused(&call(&["--checkpoint", "no/run.ckpt"]), 4, &["no/run.ckpt: cannot write"]);
-    for time in ["-1", "nan", "soon"] {
-        let output = call(&["--checkpoint", "run.ckpt", &format!("--checkpoint-every={time}")]);
-        assert_eq!(output.status.code(), Some(2), "{time}");
-        assert!(texts(&output).1.contains("is no time in seconds"), "{}", texts(&output).1);
+    for (command, input) in [("predict", CASE), ("fracture", SCENE)] {
+        let dir = tempdir().unwrap();
+        fs::write(dir.path().join("case.toml"), input).unwrap();
+        fs::create_dir(dir.path().join("folder")).unwrap();
+        let call = |more: &[&str]| perilife(dir.path(), &[&[command, "case.toml", "--out", "run"], more].concat());
+        assert_refused(&call(&["--checkpoint", "folder"]), 4, &["folder: cannot read"]);
+        assert_refused(&call(&["--checkpoint", "no/run.ckpt"]), 4, &["no/run.ckpt: cannot write"]);
+        for time in ["-1", "nan", "soon"] {
+            let output = call(&["--checkpoint", "run.ckpt", &format!("--checkpoint-every={time}")]);
+            assert_eq!(output.status.code(), Some(2), "{command}, {time}");
+            assert!(texts(&output).1.contains("is no time in seconds"), "{}", texts(&output).1);
+        }
+        assert_eq!(call(&["--checkpoint-every", "1"]).status.code(), Some(2), "{command}");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2, "{command}: nothing new stands there");
     }
-    assert_eq!(call(&["--checkpoint-every", "1"]).status.code(), Some(2));
-    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2, "nothing new stands there");
 }

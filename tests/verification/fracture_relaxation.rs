@@ -5,7 +5,7 @@ use perilife::bond_law::{BondLaw, BondLawKind, Rotation};
 use perilife::fracture::bonds::BondState;
 use perilife::fracture::boundary::{Boundary, Motion};
 use perilife::fracture::failure::Failure;
-use perilife::fracture::interaction::{Damaging, Interaction, Reaction};
+use perilife::fracture::interaction::{Damaging, Interaction, Memory, Reaction};
 use perilife::fracture::quasi_static::relaxation::{Breaking, Loads, Relaxation, RestEnd, Rested};
 use perilife::fracture::scene::{Scene, SceneLaw};
 use perilife::fracture::springs::Springs;
@@ -94,6 +94,14 @@ impl Interaction for Understated<'_> {
 
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {
         self.0.stiffness_bound(bonds).into_iter().map(|bound| bound.map(|b| self.1 * b)).collect()
+    }
+
+    fn memory(&self) -> Memory {
+        self.0.memory()
+    }
+
+    fn restore(&mut self, memory: &Memory, bonds: &BondState) -> bool {
+        self.0.restore(memory, bonds)
     }
 }
 

@@ -4,18 +4,20 @@
 //! it is exact. What is neither strain nor fracture energy has become motion that a scene without time does not follow: the
 //! excess over a jump.
 
-use super::super::SceneObserver;
-use super::super::SceneProgress;
+use serde::{Deserialize, Serialize};
+
 use super::super::bonds::BondState;
 use super::super::boundary::Boundary;
+use super::super::checkpoint::Place;
+use super::super::course::Course;
 use super::super::interaction::Driven;
 use super::super::log::Log;
 use super::super::outcome::HistoryRow;
 use super::full_load::FullLoad;
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// A state of equilibrium.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct State {
     /// Share of the full load.
     pub level: f64,
@@ -50,7 +52,7 @@ impl State {
 }
 
 /// Sums of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Account {
     /// Where the run is.
     pub state: State,
@@ -112,11 +114,7 @@ impl Account {
             ..HistoryRow::default()
         };
         to.log.row(row, u, bonds);
-        to.share = to.share.max(self.state.level);
-        if to.observer.step_done(&SceneProgress { share: to.share }) {
-            return Ok(());
-        }
-        Err(Error::Mechanics("the run was cancelled".to_owned()))
+        to.course.step_done(self.state.level)
     }
 }
 
@@ -125,11 +123,24 @@ pub struct Recorder<'r, 'n> {
     /// Log of the run.
     pub log: &'r mut Log<'n>,
     /// Hears of every row.
-    pub observer: &'r dyn SceneObserver,
+    pub course: Course<'r>,
     /// Loads whose displacement and force a row holds.
     pub boundary: &'r Boundary,
     /// Unknowns of a point.
     pub unknowns: usize,
-    /// Largest share of the full load so far.
-    pub share: f64,
+}
+
+impl Recorder<'_, '_> {
+    /// Puts log and bonds where the run is taken up ([`Course::take_up`]).
+    ///
+    /// # Errors
+    /// A checkpoint of another plate.
+    pub fn take_up(&mut self, bonds: &mut BondState) -> Result<Option<Place>> {
+        self.course.take_up(self.log, bonds)
+    }
+
+    /// Offers what it takes to go on from here.
+    pub fn may_keep(&self, bonds: &BondState, place: &dyn Fn() -> Place) {
+        self.course.may_keep(self.log, bonds, place);
+    }
 }

@@ -1,5 +1,7 @@
 //! Equilibrium of the springs of a scene at full load with the damage they have, and with its flanks in contact.
 
+use serde::{Deserialize, Serialize};
+
 use super::super::bonds::BondState;
 use super::super::contact::{Contact, Touching};
 use super::super::failure::Failure;
@@ -23,6 +25,14 @@ pub struct Equilibrium<'n> {
     springs: Springs<'n>,
     contact: Contact<'n>,
     inner: equilibrium::Equilibrium,
+}
+
+/// What a solver keeps where it is renewed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Kept {
+    /// Pressed columns of the contact.
+    pressed: Option<Vec<u32>>,
+    spent: Spent,
 }
 
 /// Springs whose damage stays as it is.
@@ -66,6 +76,19 @@ impl<'n> Equilibrium<'n> {
     #[must_use]
     pub fn spent(&self) -> Spent {
         self.inner.spent
+    }
+
+    /// What it keeps where it is renewed.
+    #[must_use]
+    pub fn kept(&self) -> Kept {
+        Kept { pressed: self.contact.pressed(), spent: self.spent() }
+    }
+
+    /// Begins anew from these bonds and what a solver kept: what follows depends on both alone.
+    pub fn renew(&mut self, kept: &Kept, bonds: &BondState) {
+        self.contact.renew(kept.pressed.as_deref(), bonds);
+        self.inner.spent = kept.spent;
+        self.inner.renew();
     }
 
     /// How its flanks stand at the last equilibrium.

@@ -7,13 +7,16 @@
 //! not equilibrium: load and onset depend on how fast the load grows against the swing, and approach the path of equilibrium
 //! only as the increments shrink. Springs without platens only.
 
+use serde::{Deserialize, Serialize};
+
 use super::super::bonds::BondState;
+use super::super::checkpoint::{Place, of_another};
 use super::super::interaction::{Damaging, Interaction};
 use super::super::outcome::SceneEnd;
 use super::account::{Account, Recorder, State};
 use super::full_load::FullLoad;
-use super::path::Walked;
 use super::relaxation::{Loads, Swing, mobility};
+use super::walk::Walked;
 use crate::error::Result;
 
 /// Rows at the most; with more steps every so many-th is kept, and only there is separation looked for.
@@ -31,30 +34,44 @@ pub struct March<'a> {
     pub iterations: usize,
 }
 
+/// Where a march stands after a row: all that its next steps depend on beside bonds and interaction.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
+    step: usize,
+    u: Vec<f64>,
+    swing: Swing,
+    account: Account,
+    evaluations: usize,
+}
+
 impl March<'_> {
-    /// Follows the load to its full value, or until the plate is in two.
+    /// Follows the load to its full value, or until the plate is in two, from rest or from where the run is taken up.
     ///
     /// # Errors
-    /// A run that was cancelled.
+    /// A run that was cancelled, a checkpoint of another one.
     pub fn follow(
         &self,
         interaction: &mut dyn Interaction,
         bonds: &mut BondState,
         mut recorder: Recorder<'_, '_>,
     ) -> Result<Walked> {
-        let full = self.full;
-        let mut u = vec![0.0; full.held.len()];
-        let mut force = u.clone();
-        let mut swing = Swing::at_rest(u.len());
+        let (full, size) = (self.full, self.full.held.len());
         // Damage only softens the plate: what is stable for it whole stays so.
         let mobility = mobility(interaction, bonds, &full.held);
-        let mut account = Account::default();
+        let mut at = match recorder.take_up(bonds)? {
+            None => {
+                Standing { step: 0, u: vec![0.0; size], swing: Swing::at_rest(size), account: Account::default(), evaluations: 0 }
+            }
+            Some(Place::March(at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
+            Some(_) => return Err(of_another()),
+        };
+        let mut force = vec![0.0; size];
         let mut end = SceneEnd::Done;
-        let mut evaluations = 0;
         let stride = self.steps.div_ceil(ROWS);
-        'march: for step in 1..=self.steps {
+        'march: for step in at.step + 1..=self.steps {
             let level = step as f64 / self.steps as f64;
-            u.iter_mut()
+            at.step = step;
+            at.u.iter_mut()
                 .zip(&full.motion)
                 .zip(&full.held)
                 .filter(|(_, held)| **held)
@@ -62,28 +79,37 @@ impl March<'_> {
             let external: Vec<f64> = full.external.iter().map(|force| level * force).collect();
             let loads = Loads { held: &full.held, external: &external };
             for _ in 0..self.iterations {
-                let reaction = interaction.internal_force(&u, bonds, Damaging::Allowed, &mut force);
-                account.fracture += reaction.released;
+                let reaction = interaction.internal_force(&at.u, bonds, Damaging::Allowed, &mut force);
+                at.account.fracture += reaction.released;
                 recorder.log.broke(step, reaction.broken);
-                account.go(State::new(full, level, &u, &force, reaction.strain));
-                let sums = swing.take(loads, &mobility, &force);
-                if account.is_impossible(BLOWN_UP) {
+                at.account.go(State::new(full, level, &at.u, &force, reaction.strain));
+                let sums = at.swing.take(loads, &mobility, &force);
+                if at.account.is_impossible(BLOWN_UP) {
                     end = SceneEnd::Unstable;
                     break 'march;
                 }
-                swing.step(&mobility, (evaluations > 0).then(|| sums.damping()), &mut u);
-                evaluations += 1;
+                at.swing.step(&mobility, (at.evaluations > 0).then(|| sums.damping()), &mut at.u);
+                at.evaluations += 1;
             }
             if step % stride != 0 && step != self.steps {
                 continue;
             }
-            account.rows = step - 1;
-            account.row(&mut recorder, &u, &force, None, bonds)?;
+            at.account.rows = step - 1;
+            at.account.row(&mut recorder, &at.u, &force, None, bonds)?;
             if recorder.log.is_separated() {
                 end = SceneEnd::Separated;
                 break;
             }
+            recorder.may_keep(bonds, &|| Place::March(at.clone(), interaction.memory()));
         }
+        let Standing { u, account, evaluations, .. } = at;
         Ok(Walked { end, u, account, evaluations, touching: None })
+    }
+}
+
+impl Standing {
+    /// Whether it is that of so many unknowns.
+    fn has(&self, unknowns: usize) -> bool {
+        self.u.len() == unknowns && self.swing.has(unknowns)
     }
 }

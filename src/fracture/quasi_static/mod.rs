@@ -11,10 +11,11 @@ pub mod marching;
 pub mod path;
 pub mod relaxation;
 pub mod steps;
+pub mod walk;
 
-use super::SceneObserver;
 use super::bonds::BondState;
 use super::boundary::Boundary;
+use super::course::Course;
 use super::failure::Failure;
 use super::interaction::Interaction;
 use super::log::Log;
@@ -25,8 +26,9 @@ use crate::levels::Net;
 use account::Recorder;
 use full_load::FullLoad;
 use marching::March;
-use path::{Path, Settings, Walked};
+use path::{Path, Settings};
 use relaxation::Relaxation;
+use walk::Walked;
 
 /// Rows between two pictures of a run, times those of a run with `SNAPSHOTS` of them.
 const ROWS_EXPECTED: usize = 1000;
@@ -44,7 +46,7 @@ pub fn run(
     interaction: &mut dyn Interaction,
     failure: Option<&Failure>,
     bonds: &mut BondState,
-    observer: &dyn SceneObserver,
+    course: Course<'_>,
 ) -> Result<Fracture> {
     let mut full = FullLoad::of(net, boundary)?;
     if interaction.driven().is_some() {
@@ -57,7 +59,7 @@ pub fn run(
     // Relaxation to rest and the path have rows between the nominal steps.
     let rows = if iterations.is_some() || steps == 1 { steps } else { steps.max(ROWS_EXPECTED) };
     let mut log = Log::new(scene, net, boundary, rows);
-    let recorder = Recorder { log: &mut log, observer, boundary, unknowns: net.unknowns, share: 0.0 };
+    let recorder = Recorder { log: &mut log, course, boundary, unknowns: net.unknowns };
     let walked = match scene.model.solver {
         SceneSolver::AdaptiveDynamicRelaxation => match iterations {
             Some(iterations) => March { full: &full, steps, iterations }.follow(interaction, bonds, recorder)?,

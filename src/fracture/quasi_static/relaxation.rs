@@ -16,6 +16,8 @@
 //! would break bonds that no load breaks. What is damaged at rest disturbs the rest, so relaxation and damage alternate until
 //! nothing is damaged any more.
 
+use serde::{Deserialize, Serialize};
+
 use super::super::bonds::BondState;
 use super::super::interaction::{Damaging, Interaction, Reaction};
 
@@ -202,6 +204,7 @@ pub(super) fn mobility(interaction: &dyn Interaction, bonds: &BondState, held: &
 }
 
 /// The motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Swing {
     /// u̇(n-½), m.
     velocity: Vec<f64>,
@@ -236,6 +239,11 @@ impl Swing {
     /// No motion yet, of so many unknowns.
     pub(super) fn at_rest(unknowns: usize) -> Self {
         Swing { velocity: vec![0.0; unknowns], residual: vec![0.0; unknowns] }
+    }
+
+    /// Whether it is that of so many unknowns.
+    pub(super) fn has(&self, unknowns: usize) -> bool {
+        self.velocity.len() == unknowns && self.residual.len() == unknowns
     }
 
     /// Takes the new residual, and what the step towards it shows.

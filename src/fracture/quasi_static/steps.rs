@@ -4,13 +4,16 @@
 //! A step is taken back and halved when it damages too much or finds no rest, down to a sixteenth of the nominal step, and grown
 //! again after calm ones. Where the smallest step still breaks more, rows are taken down while bonds break at one load. Over a jump energy is released that no step can share out: it is reported as excess.
 
+use serde::{Deserialize, Serialize};
+
 use super::super::bonds::BondState;
+use super::super::checkpoint::{Place, of_another};
 use super::super::interaction::Interaction;
 use super::super::outcome::SceneEnd;
 use super::account::{Account, Recorder, State};
 use super::full_load::FullLoad;
-use super::path::Walked;
 use super::relaxation::{Loads, Relaxation, RestEnd, Rested};
+use super::walk::Walked;
 use crate::error::Result;
 
 /// Smallest step over the nominal one.
@@ -22,10 +25,24 @@ const DAMAGED: f64 = 0.1;
 /// Load of platens over its peak at which the body has failed.
 const FAILED: f64 = 0.9;
 
-/// Works through load steps.
+/// Where a run stands after a row: all that its next steps depend on beside bonds and interaction.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
+    u: Vec<f64>,
+    account: Account,
+    /// The next load step, share of the full load.
+    step: f64,
+    evaluations: usize,
+    /// Largest load of platens so far, N.
+    peak: f64,
+    /// Whether the last row was taken down while bonds went on breaking at one load.
+    breaking: bool,
+}
+
+/// Works through load steps, from rest or from where the run is taken up.
 ///
 /// # Errors
-/// A run that was cancelled.
+/// A run that was cancelled, a checkpoint of another one.
 pub fn follow(
     full: &FullLoad,
     steps: usize,
@@ -35,53 +52,62 @@ pub fn follow(
     mut recorder: Recorder<'_, '_>,
 ) -> Result<Walked> {
     let relaxation = &Relaxation { broken: BROKEN, ..*relaxation };
-    let mut u = vec![0.0; full.held.len()];
-    let mut account = Account::default();
-    let (nominal, mut step) = (1.0 / steps as f64, 1.0 / steps as f64);
-    let mut evaluations = 0;
+    let (nominal, size) = (1.0 / steps as f64, full.held.len());
+    let mut at = match recorder.take_up(bonds)? {
+        None => Standing {
+            u: vec![0.0; size],
+            account: Account::default(),
+            step: nominal,
+            evaluations: 0,
+            peak: 0.0,
+            breaking: false,
+        },
+        Some(Place::Rest(at, memory)) if at.u.len() == size && interaction.restore(&memory, bonds) => at,
+        Some(_) => return Err(of_another()),
+    };
     let mut end = SceneEnd::Done;
-    let mut peak = 0.0;
-    // Whether the last row was taken down while bonds went on breaking at one load.
-    let mut breaking = false;
-    while breaking || account.state.level < 1.0 - 1e-12 {
-        let level = if breaking { account.state.level } else { (account.state.level + step).min(1.0) };
-        let before = (u.clone(), bonds.clone());
-        let rested = advance(full, account.state.level, level, relaxation, interaction, bonds, &mut u);
-        evaluations += rested.evaluations;
+    while at.breaking || at.account.state.level < 1.0 - 1e-12 {
+        let from = at.account.state.level;
+        let level = if at.breaking { from } else { (from + at.step).min(1.0) };
+        let before = (at.u.clone(), bonds.clone());
+        let rested = advance(full, from, level, relaxation, interaction, bonds, &mut at.u);
+        at.evaluations += rested.evaluations;
         let failed = !matches!(rested.end, RestEnd::AtRest | RestEnd::Breaking);
         let reaction = rested.reaction;
         let too_much =
             rested.end == RestEnd::Breaking || reaction.broken > BROKEN || (reaction.broken == 0 && reaction.damaged > DAMAGED);
-        if (failed || too_much) && !breaking && step > LEAST * nominal {
-            (u, *bonds) = before;
-            step *= 0.5;
+        if (failed || too_much) && !at.breaking && at.step > LEAST * nominal {
+            (at.u, *bonds) = before;
+            at.step *= 0.5;
             continue;
         }
         if failed {
-            u = before.0;
+            at.u = before.0;
             end = if rested.end == RestEnd::BlownUp { SceneEnd::Unstable } else { SceneEnd::NoConvergence };
             break;
         }
-        account.fracture += reaction.released;
-        recorder.log.broke(account.rows + 1, reaction.broken);
-        breaking = rested.end == RestEnd::Breaking;
+        at.account.fracture += reaction.released;
+        recorder.log.broke(at.account.rows + 1, reaction.broken);
+        at.breaking = rested.end == RestEnd::Breaking;
         let driven = interaction.driven();
-        account.go(State::new(full, level, &u, &rested.force, reaction.strain).with_driven(driven));
-        account.row(&mut recorder, &u, &rested.force, driven, bonds)?;
+        at.account.go(State::new(full, level, &at.u, &rested.force, reaction.strain).with_driven(driven));
+        at.account.row(&mut recorder, &at.u, &rested.force, driven, bonds)?;
         if recorder.log.is_separated() {
             end = SceneEnd::Separated;
             break;
         }
         // What is split between platens goes on touching them: its failure shows in the load.
-        peak = driven.map_or(0.0, |driven| driven.load.max(peak));
-        if driven.is_some_and(|driven| driven.load < FAILED * peak) {
+        at.peak = driven.map_or(0.0, |driven| driven.load.max(at.peak));
+        if driven.is_some_and(|driven| driven.load < FAILED * at.peak) {
             end = SceneEnd::LoadFallen;
             break;
         }
         if reaction.broken == 0 && 2.0 * reaction.damaged < DAMAGED {
-            step = (2.0 * step).min(nominal);
+            at.step = (2.0 * at.step).min(nominal);
         }
+        recorder.may_keep(bonds, &|| Place::Rest(at.clone(), interaction.memory()));
     }
+    let Standing { u, account, evaluations, .. } = at;
     Ok(Walked { end, u, account, evaluations, touching: None })
 }
 

@@ -1,0 +1,257 @@
+//! One walk along a path of equilibrium, state by state.
+//!
+//! The solver remembers earlier states: its factor is that of one of them, and its conjugate gradients end within a tolerance that
+//! shows it. After every so many states it begins anew from the bonds, whether anyone keeps the run or not, so that all that
+//! follows depends on what a checkpoint holds.
+
+use serde::{Deserialize, Serialize};
+
+use super::super::bonds::BondState;
+use super::super::checkpoint::{Place, of_another};
+use super::super::contact::Touching;
+use super::super::outcome::SceneEnd;
+use super::super::pieces::is_separated;
+use super::account::{Account, Recorder, State};
+use super::control::Control;
+use super::equilibrium::Equilibrium;
+use super::path::{Path, Settings};
+use crate::error::{Error, Result};
+use crate::levels::equilibrium::Shape;
+
+/// States after which the solver begins anew. That takes one factorisation, as much as some twelve iterations, and a state takes
+/// three to some hundred of them.
+const STATES_PER_SOLVER: usize = 40;
+/// Change of load over the peak, or of displacement over a nominal step, from which a state gets a row.
+const ROW_LOAD: f64 = 0.01;
+/// Broken bonds from which a state gets a row.
+const ROW_BROKEN: usize = 10;
+
+/// A path on its way.
+pub(super) struct Walk<'a, 'r, 'n> {
+    path: &'a Path<'a>,
+    equilibrium: Equilibrium<'a>,
+    control: Control<'a>,
+    recorder: Recorder<'r, 'n>,
+    at: Standing,
+}
+
+/// Where a walk stands between two states: all that the next one depends on beside bonds and solver.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
+    shape: Shape,
+    account: Account,
+    /// States so far.
+    states: usize,
+    /// Whether the way to the next state is elastic.
+    elastic: bool,
+    /// Growth of the largest damage in the next step.
+    growth: f64,
+    broken: usize,
+    broken_at_row: usize,
+    load_at_row: f64,
+    level_at_row: f64,
+    load_peak: f64,
+}
+
+/// Where a path ended.
+pub struct Walked {
+    /// Why.
+    pub end: SceneEnd,
+    /// Last displacement, m.
+    pub u: Vec<f64>,
+    /// Energies.
+    pub account: Account,
+    /// Evaluations of the forces.
+    pub evaluations: usize,
+    /// How flanks stand at the end, where they are kept apart.
+    pub touching: Option<Touching>,
+}
+
+impl<'a, 'r, 'n> Walk<'a, 'r, 'n> {
+    /// At rest, or where the run is taken up.
+    ///
+    /// # Errors
+    /// No equilibrium, loads that do not balance, a checkpoint of another run.
+    pub(super) fn start(path: &'a Path<'a>, bonds: &mut BondState, mut recorder: Recorder<'r, 'n>) -> Result<Self> {
+        let size = path.full.held.len();
+        let mut equilibrium = Equilibrium::new(path.net, path.cracks, path.full)?;
+        let at = match recorder.take_up(bonds)? {
+            None => {
+                let mut shape = Shape::at_rest(size);
+                equilibrium.solve(bonds, &mut shape)?;
+                path.full.check_balance(path.net, &shape.force)?;
+                Standing::first(shape, path.settings.growth)
+            }
+            Some(Place::Path(at, kept)) if at.shape.u.len() == size && at.shape.force.len() == size => {
+                equilibrium.renew(&kept, bonds);
+                at
+            }
+            Some(_) => return Err(of_another()),
+        };
+        Ok(Walk { path, equilibrium, control: Control::new(path.net, path.failure), recorder, at })
+    }
+
+    /// The walk as it ended.
+    pub(super) fn close(self, end: SceneEnd) -> Walked {
+        let Walk { equilibrium, at, .. } = self;
+        let spent = equilibrium.spent();
+        tracing::info!(solves = spent.solves, iterations = spent.iterations, factorisations = spent.factorisations, "path");
+        let level = at.account.state.level;
+        Walked {
+            end,
+            u: at.shape.u.iter().map(|u| level * u).collect(),
+            account: at.account,
+            evaluations: spent.iterations + spent.solves,
+            touching: Some(equilibrium.touching()),
+        }
+    }
+
+    /// Goes from state to state, up to the last.
+    ///
+    /// # Errors
+    /// A run that was cancelled.
+    pub(super) fn run(&mut self, bonds: &mut BondState) -> Result<SceneEnd> {
+        while self.at.states < self.path.settings.steps {
+            if let Some(end) = self.next_state(bonds)? {
+                return Ok(end);
+            }
+            self.at.states += 1;
+            if self.at.states.is_multiple_of(STATES_PER_SOLVER) {
+                let kept = self.equilibrium.kept();
+                self.equilibrium.renew(&kept, bonds);
+                self.recorder.may_keep(bonds, &|| Place::Path(self.at.clone(), kept.clone()));
+            }
+        }
+        Ok(SceneEnd::NoConvergence)
+    }
+
+    /// Takes the present state to the next damage; why there is no next one.
+    fn next_state(&mut self, bonds: &mut BondState) -> Result<Option<SceneEnd>> {
+        self.control.look(&self.at.shape.u, bonds);
+        let next = self.control.next(bonds);
+        // On an elastic way no further than the next nominal step.
+        let nominal = if self.at.elastic { self.nominal_level() } else { f64::INFINITY };
+        let level = next.level.min(nominal).min(1.0);
+        self.at.account.go(self.state(level));
+        self.row(level == nominal || level >= 1.0, bonds)?;
+        let (torn, energy) = self.control.break_overlong(&self.at.shape.u, level, bonds);
+        if torn == 0 && level >= 1.0 {
+            return Ok(Some(SceneEnd::Done));
+        }
+        if torn == 0 && level < next.level {
+            return Ok(None);
+        }
+        let found = if torn > 0 {
+            self.tear(torn, energy, bonds)
+        } else {
+            let start = bonds.share.clone();
+            if next.breaks { self.break_bonds(level, &start, bonds) } else { self.damage(&start, bonds) }
+        };
+        if found.is_err() {
+            return Ok(Some(SceneEnd::NoConvergence));
+        }
+        self.at.elastic = torn > 0 || next.breaks;
+        if self.at.elastic && is_separated(self.path.net, self.recorder.boundary, bonds) {
+            self.row(true, bonds)?;
+            return Ok(Some(SceneEnd::Separated));
+        }
+        Ok(None)
+    }
+
+    /// State on the ray of the present shape.
+    fn state(&self, level: f64) -> State {
+        State::new(self.path.full, 1.0, &self.at.shape.u, &self.at.shape.force, self.at.shape.strain).at(level)
+    }
+
+    /// Breaks the bonds whose limit is reached at this level, and goes to where their last force is gone.
+    fn break_bonds(&mut self, level: f64, start: &[f64], bonds: &mut BondState) -> Result<()> {
+        if self.at.broken == 0 {
+            // The onset is the state in which the first bond breaks, and has a row.
+            self.row(true, bonds)?;
+        }
+        let broken = self.control.break_at(level, bonds);
+        self.at.account.fracture += self.control.taken(start, bonds, &self.at.shape.u, level);
+        self.recorder.log.broke(self.at.account.rows + usize::from(self.at.broken > 0), broken.len());
+        self.at.broken += broken.len();
+        self.equilibrium.solve(bonds, &mut self.at.shape)?;
+        let gone = self.control.level_of(&broken, &self.at.shape.u);
+        self.at.account.go(self.state(if gone.is_finite() { gone.min(level) } else { level }));
+        Ok(())
+    }
+
+    /// Goes on at the same displacement without bonds that slid apart.
+    fn tear(&mut self, torn: usize, energy: f64, bonds: &mut BondState) -> Result<()> {
+        self.at.account.fracture += energy;
+        self.at.broken += torn;
+        self.recorder.log.broke(self.at.account.rows + 1, torn);
+        self.equilibrium.solve(bonds, &mut self.at.shape)?;
+        self.at.account.go(self.state(self.at.account.state.level));
+        Ok(())
+    }
+
+    /// Lets the largest damage grow by τ.
+    fn damage(&mut self, start: &[f64], bonds: &mut BondState) -> Result<()> {
+        let Settings { growth, quiet, solutions, .. } = self.path.settings;
+        for solution in 1.. {
+            let level = self.control.level_of_growth(start, self.at.growth);
+            let change = self.control.damage(start, level, bonds);
+            let is_quiet = solution > 1 && change <= quiet;
+            if is_quiet || solution > 4 * solutions {
+                if !is_quiet || solution > solutions {
+                    self.at.growth *= 0.5;
+                } else if 2 * solution <= solutions {
+                    self.at.growth = (2.0 * self.at.growth).min(growth);
+                }
+            }
+            self.equilibrium.solve(bonds, &mut self.at.shape)?;
+            if is_quiet || solution > 4 * solutions {
+                self.at.account.fracture += self.control.taken(start, bonds, &self.at.shape.u, level);
+                return Ok(());
+            }
+            self.control.look(&self.at.shape.u, bonds);
+        }
+        Err(Error::Mechanics("a step found no quiet damage".to_owned()))
+    }
+
+    /// The next nominal load step.
+    fn nominal_level(&self) -> f64 {
+        let steps = self.path.steps as f64;
+        ((self.at.account.state.level * steps * (1.0 + 1e-12)).floor() + 1.0) / steps
+    }
+
+    /// A row for the present state if it differs enough from the last, or must have one.
+    fn row(&mut self, must: bool, bonds: &BondState) -> Result<()> {
+        let level = self.at.account.state.level;
+        // Generalised load of the driven and the pushed together.
+        let load = if level > 0.0 { 2.0 * self.at.account.state.strain / level } else { 0.0 };
+        self.at.load_peak = self.at.load_peak.max(load);
+        let moved = (level - self.at.level_at_row).abs() * self.path.steps as f64 >= 0.5
+            || (load - self.at.load_at_row).abs() >= ROW_LOAD * self.at.load_peak;
+        let is_onset = self.at.broken > 0 && self.at.broken_at_row == 0;
+        if !(must || moved || is_onset || self.at.broken >= self.at.broken_at_row + ROW_BROKEN) {
+            return Ok(());
+        }
+        (self.at.broken_at_row, self.at.level_at_row, self.at.load_at_row) = (self.at.broken, level, load);
+        let on_ray = |values: &[f64]| values.iter().map(|v| level * v).collect::<Vec<f64>>();
+        let (u, force) = (on_ray(&self.at.shape.u), on_ray(&self.at.shape.force));
+        self.at.account.row(&mut self.recorder, &u, &force, None, bonds)
+    }
+}
+
+impl Standing {
+    /// Before the first damage.
+    fn first(shape: Shape, growth: f64) -> Self {
+        Standing {
+            shape,
+            account: Account::default(),
+            states: 0,
+            elastic: true,
+            growth,
+            broken: 0,
+            broken_at_row: 0,
+            load_at_row: 0.0,
+            level_at_row: 0.0,
+            load_peak: 0.0,
+        }
+    }
+}
