@@ -1,10 +1,17 @@
 //! The calibration on one page: from measured curves and K of a growing crack to A, p and how sure they are.
 
+use std::borrow::Cow;
+
+use crate::calibration::case_load::at_case_load;
 use crate::calibration::confidence::{Confidence, Lives, confidence};
 use crate::calibration::criterion::Criterion;
+use crate::calibration::estimate::{ERRORS_APART, Estimate, Robust, apart, robust_constants};
+use crate::calibration::lack_of_fit::{LackOfFit, lack_of_fit};
+use crate::calibration::level_shift;
 use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::pointwise_median;
 use crate::calibration::misfit::rms_life_error;
+use crate::calibration::outliers::{self, readings_apart, robust_line, runs, step_rates};
 use crate::calibration::paris::{self, Paris};
 use crate::calibration::power_law::PowerLaw;
 use crate::calibration::rates::STEP_MIN;
@@ -15,6 +22,9 @@ use crate::units::MM;
 
 /// Below this ratio of the largest to the smallest ΔK a curve does not say what p is.
 pub const DELTA_K_RATIO_MIN: f64 = 2.0;
+
+/// Most remarks on readings that a fit repeats.
+const DOUBTS_SHOWN: usize = 6;
 
 /// What is fitted to what.
 pub struct FitTask<'a> {
@@ -41,6 +51,8 @@ pub struct FittedCurve {
     pub cycles_measured: Vec<f64>,
     /// Fitted cycles at the same lengths.
     pub cycles_fitted: Vec<f64>,
+    /// Range of load of the growth up to each reading over that of the case.
+    pub load_factor: Vec<f64>,
 }
 
 /// Result of a calibration.
@@ -54,6 +66,12 @@ pub struct Fit {
     pub confidence: Confidence,
     /// Paris equivalents of the record.
     pub paris: Paris,
+    /// Which estimate the record holds.
+    pub estimate: Estimate,
+    /// C and m by the repeated median of the rates of the record's curve, where p was fitted.
+    pub robust: Option<Robust>,
+    /// By how much the law misses measured rates at the ends of its range.
+    pub lack_of_fit: Option<LackOfFit>,
     /// β of the record's exponent ([`crate::fatigue::rate_constant`]), where A is that of bonds.
     pub rate_constant: Option<f64>,
     /// Horizon that A belongs to, m; NaN where K is that of a handbook.
@@ -71,20 +89,22 @@ pub struct Fit {
 /// lies at an end of the exponents searched.
 pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let fixed_p = task.fixed_p.map(checked_p).transpose()?;
-    let mut median = pointwise_median(task.curves)?;
-    median.cycles = since_first(&median);
-    let record = fit_one(&median, task.criterion, fixed_p, law)?;
-    let Constants { a, p } = record.constants;
     let is_fitted = fixed_p.is_none();
-    if is_fitted && is_at_end(p) {
+    let median = match task.curves {
+        curves if curves.len() == 1 || curves.iter().all(MeasuredCurve::is_plain) => pointwise_median(curves)?,
+        curves => pointwise_median(&at_case_load(curves, task.criterion, fixed_p, law)?)?,
+    };
+    let mut record = fit_one(&median, task.criterion, fixed_p, law)?;
+    let mut warnings = doubts(task);
+    if is_fitted && is_at_end(record.constants.p) {
         return Err(Error::Mechanics(format!(
             "{}: {}; check the units of the readings and the load, narrow the window (measured.from_crack_length_mm and \
-             to_crack_length_mm), or fix p by [fit] parameters = [\"a\"] and p = ...",
+             to_crack_length_mm), or fix p by [fit] parameters = [\"a\"] and p = ...{}",
             record.name,
-            at_end(p)
+            at_end(record.constants.p),
+            warnings.iter().map(|line| format!("\n  {line}")).collect::<String>()
         )));
     }
-    let mut warnings = Vec::new();
     let specimens: Vec<FittedCurve> = match task.curves.len() {
         1 => vec![record.clone()],
         _ => task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?,
@@ -93,16 +113,20 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     warnings.extend(at_ends.map(|curve| format!("specimen {}: {}", curve.name, at_end(curve.constants.p))));
     warnings.extend(short_steps_warning(&median.crack_length));
 
-    let per_p = |lengths: &[f64]| is_fitted.then(|| law.cycles_per_p(p, lengths)).transpose();
-    let apart = readings_apart(&median.crack_length);
-    let lengths: Vec<f64> = apart.iter().map(|&i| median.crack_length[i]).collect();
-    let measured: Vec<f64> = apart.iter().map(|&i| median.cycles[i]).collect();
-    let (model, model_per_p) = (law.cycles(p, &lengths)?, per_p(&lengths)?);
-    let lives = Lives { model: &model, model_per_p: model_per_p.as_deref(), measured: &measured };
-    let confidence = confidence(task.criterion, &lives, 1.0 / a);
-    let lengths = paris::lengths(median.crack_length[0], longest(&median));
-    let (model, model_per_p) = (law.cycles(p, &lengths)?, per_p(&lengths)?);
-    let paris = paris::equivalents(&lengths, &model, model_per_p.as_deref(), a, confidence.covariance, task.delta_k)?;
+    let (mut confidence, mut paris) = assess(task, law, &median, &record, is_fitted)?;
+    let mut estimate = Estimate::LeastSquares;
+    let robust = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted).map(Robust::of);
+    if let Some(robust) = robust
+        && (robust.m - paris.m).abs() > ERRORS_APART * paris.m_error
+    {
+        let least_squares = paris;
+        if let Some(constants) = robust_constants(&median, law) {
+            estimate = Estimate::Robust;
+            record = fitted_curve(&median, constants, law)?;
+            (confidence, paris) = assess(task, law, &median, &record, is_fitted)?;
+        }
+        warnings.push(apart(&least_squares, &robust, estimate));
+    }
     let ratio = paris.delta_k_max / paris.delta_k_min;
     if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
@@ -111,21 +135,79 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         ));
     }
     let (rate_constant, horizon, spacing) = (None, f64::NAN, f64::NAN);
-    Ok(Fit { record, specimens, confidence, paris, rate_constant, horizon, spacing, warnings })
+    let lack_of_fit = lack_of_fit(task.curves, &paris, task.delta_k);
+    Ok(Fit { record, specimens, confidence, paris, estimate, robust, lack_of_fit, rate_constant, horizon, spacing, warnings })
+}
+
+/// How sure A and p of a curve are, and what they mean as C and m.
+fn assess(
+    task: &FitTask<'_>,
+    law: &PowerLaw,
+    curve: &MeasuredCurve,
+    record: &FittedCurve,
+    is_fitted: bool,
+) -> Result<(Confidence, Paris)> {
+    let Constants { a, p } = record.constants;
+    let own = own_law(law, curve);
+    let per_p = |lengths: &[f64]| is_fitted.then(|| own.cycles_per_p(p, lengths)).transpose();
+    let apart = readings_apart(&curve.crack_length);
+    let lengths: Vec<f64> = apart.iter().map(|&i| curve.crack_length[i]).collect();
+    let measured: Vec<f64> = apart.iter().map(|&i| record.cycles_measured[i]).collect();
+    let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
+    let lives = Lives { model: &model, model_per_p: model_per_p.as_deref(), measured: &measured };
+    let confidence = confidence(task.criterion, &lives, 1.0 / a);
+    // Under changing loads an interval must not reach over two of them.
+    let lengths = match curve.is_plain() {
+        true => paris::lengths(curve.crack_length[0], longest(curve)),
+        false => curve.lengths_reached(),
+    };
+    let delta_k = |length: f64| (task.delta_k)(length) * curve.load_factor_at(length);
+    let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
+    let paris = paris::equivalents(&lengths, &model, model_per_p.as_deref(), a, confidence.covariance, &delta_k)?;
+    Ok((confidence, paris))
+}
+
+/// What speaks against the readings of the specimens.
+fn doubts(task: &FitTask<'_>) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for curve in task.curves {
+        let rates = step_rates(curve, task.delta_k);
+        lines.extend(level_shift::warning(curve, &rates));
+        if let Some(line) = robust_line(&rates) {
+            lines.extend(outliers::warnings(curve, &runs(&rates, line)));
+        }
+    }
+    if lines.len() > DOUBTS_SHOWN {
+        let more = lines.len() - DOUBTS_SHOWN;
+        lines.truncate(DOUBTS_SHOWN);
+        lines.push(format!("{more} more remarks of this kind on other readings: `perilife rates` names all"));
+    }
+    lines
+}
+
+/// The law under the loads of a curve.
+fn own_law<'l>(law: &'l PowerLaw, curve: &MeasuredCurve) -> Cow<'l, PowerLaw> {
+    if curve.is_plain() { Cow::Borrowed(law) } else { Cow::Owned(law.under(curve)) }
 }
 
 /// Fits one curve: A and p, or A at a fixed p.
-fn fit_one(curve: &MeasuredCurve, criterion: Criterion, fixed_p: Option<f64>, law: &PowerLaw) -> Result<FittedCurve> {
-    let cycles_measured = since_first(curve);
-    let target = Target { cycles: &cycles_measured, lengths: &curve.crack_length, criterion };
-    let constants = fixed_p.map_or_else(|| search(law, target), |p| search_a(law, target, p))?;
-    let model = law.cycles(constants.p, target.lengths)?;
+pub(super) fn fit_one(curve: &MeasuredCurve, criterion: Criterion, fixed_p: Option<f64>, law: &PowerLaw) -> Result<FittedCurve> {
+    let cycles = curve.cycles_counted();
+    let target = Target { cycles: &cycles, lengths: &curve.crack_length, criterion };
+    let own = own_law(law, curve);
+    let constants = fixed_p.map_or_else(|| search(&own, target), |p| search_a(&own, target, p))?;
+    fitted_curve(curve, constants, law)
+}
+
+fn fitted_curve(curve: &MeasuredCurve, constants: Constants, law: &PowerLaw) -> Result<FittedCurve> {
+    let model = own_law(law, curve).cycles(constants.p, &curve.crack_length)?;
     Ok(FittedCurve {
         name: curve.specimen.clone(),
         constants,
         crack_length: curve.crack_length.clone(),
         cycles_fitted: model.iter().map(|n| n / constants.a).collect(),
-        cycles_measured,
+        cycles_measured: curve.cycles_counted(),
+        load_factor: curve.step_factors().into_iter().map(|(start, end)| 0.5 * (start + end)).collect(),
     })
 }
 
@@ -145,18 +227,6 @@ fn checked_p(p: f64) -> Result<f64> {
     Err(input("fit.p", p, format!("is outside {low} to {high}"), "give the exponent of the growth law, usually 2 to 4"))
 }
 
-/// Readings at least [`STEP_MIN`] of growth apart, the first among them. Shorter increments say nothing about the scatter of growth: in
-/// them the reading error of the laboratory shows.
-fn readings_apart(lengths: &[f64]) -> Vec<usize> {
-    let mut apart: Vec<usize> = Vec::new();
-    for (i, &length) in lengths.iter().enumerate() {
-        if apart.last().is_none_or(|&last| length >= lengths[last] + STEP_MIN * (1.0 - 1e-9)) {
-            apart.push(i);
-        }
-    }
-    apart
-}
-
 /// Readings nearer together than a laboratory reads.
 fn short_steps_warning(lengths: &[f64]) -> Option<String> {
     let short = lengths.windows(2).filter(|pair| pair[1] - pair[0] < STEP_MIN * (1.0 - 1e-9)).count();
@@ -168,10 +238,6 @@ fn short_steps_warning(lengths: &[f64]) -> Option<String> {
             STEP_MIN / MM
         )
     })
-}
-
-fn since_first(curve: &MeasuredCurve) -> Vec<f64> {
-    curve.cycles.iter().map(|n| n - curve.cycles[0]).collect()
 }
 
 fn longest(curve: &MeasuredCurve) -> f64 {

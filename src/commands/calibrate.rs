@@ -154,6 +154,7 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
         format!("  Paris          da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m)", report.paris_c_mm_per_cycle, report.paris_m),
         format!("  m              {:.4}{}{source}", report.paris_m, error(report.paris_m_error)),
         "  ±              one standard error".to_owned(),
+        format!("  estimate       {}", report.estimate.replace('_', " ")),
         format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", report.delta_k_min_mpa_sqrt_m, report.delta_k_max_mpa_sqrt_m),
         format!(
             "  life           measured {:.0}, fitted {:.0} cycles ({life:+.2} %), rms life error {:.2} %",
@@ -161,6 +162,13 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
             report.life_fitted,
             100.0 * report.rms_life_error
         ),
+    ]);
+    lines.extend(report.lack_of_fit.map(|lack| format!("  lack of fit    {}", lack.words())));
+    lines.extend(report.left_out.iter().map(|window| {
+        let specimen = window.specimen.as_ref().map_or_else(String::new, |name| format!("specimen {name}, "));
+        format!("  left out       {specimen}{} to {} cycles: {}", window.from_cycles, window.to_cycles, window.reason)
+    }));
+    lines.extend([
         format!("  specimens      {}, in {:.1} s", report.specimens.len(), report.wall_s),
         format!("  results        {}", out.display()),
     ]);

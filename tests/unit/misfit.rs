@@ -3,7 +3,7 @@
 use perilife::Result;
 use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::measured::{MeasuredCurve, Source};
+use perilife::calibration::measured::MeasuredCurve;
 use perilife::calibration::misfit::{inverse_a, misfit, rms_life_error};
 use perilife::calibration::model::cycles_since_first;
 use perilife::calibration::power_law::PowerLaw;
@@ -28,7 +28,7 @@ pub fn paris_model() -> PowerLaw {
 pub fn exact_curve(name: &str, a: f64, p: f64) -> MeasuredCurve {
     let crack_length = lengths();
     let cycles = paris_model().cycles(p, &crack_length).unwrap().iter().map(|n| n / a).collect();
-    MeasuredCurve { specimen: name.to_owned(), cycles, crack_length, source: Source::default() }
+    MeasuredCurve::new(name, cycles, crack_length)
 }
 
 pub fn fit_to(curves: &[MeasuredCurve], fixed_p: Option<f64>, law: &PowerLaw) -> Result<Fit> {
