@@ -12,7 +12,10 @@ use crate::fatigue::STEADY_EXPONENTS;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Standard errors by which two estimates differ in earnest.
-pub const ERRORS_APART: f64 = 2.0;
+const ERRORS_APART: f64 = 2.0;
+
+/// Smallest difference of exponents worth a word: computed curves have hardly any error.
+const APART_MIN: f64 = 0.05;
 
 crate::kinds! {
     /// Estimates of the constants of a law.
@@ -47,13 +50,17 @@ pub(super) fn robust_constants(curve: &MeasuredCurve, law: &PowerLaw) -> Option<
     some.then(|| Constants { a: line.intercept.exp(), p: line.m })
 }
 
-/// Both estimates in words, and which is written.
-pub(super) fn apart(least_squares: &Paris, robust: &Robust, written: Estimate) -> String {
+/// Whether exponents differ by more than the error of one explains.
+pub(super) fn are_apart(robust: f64, least_squares: f64, error: f64) -> bool {
+    (robust - least_squares).abs() > (ERRORS_APART * error).max(APART_MIN)
+}
+
+/// Both estimates in words, and which is written; `error` is that of m without the readings that do not belong.
+pub(super) fn apart(least_squares: &Paris, error: f64, robust: &Robust, written: Estimate) -> String {
     format!(
-        "least squares give m = {:.3} ± {:.3}, C = {:.3e}, the repeated median of the rates m = {:.3}, C = {:.3e} (mm/cycle, MPa√m): they \
-         differ by more than two standard errors; written are the {} constants",
+        "least squares give m = {:.3}, C = {:.3e}, the repeated median of the rates m = {:.3}, C = {:.3e} (mm/cycle, MPa√m): they differ by \
+         more than two standard errors of {error:.3}; written are the {} constants",
         least_squares.m,
-        least_squares.m_error,
         least_squares.c,
         robust.m,
         robust.c,

@@ -5,13 +5,12 @@ use std::borrow::Cow;
 use crate::calibration::case_load::at_case_load;
 use crate::calibration::confidence::{Confidence, Lives, confidence};
 use crate::calibration::criterion::Criterion;
-use crate::calibration::estimate::{ERRORS_APART, Estimate, Robust, apart, robust_constants};
+use crate::calibration::estimate::{Estimate, Robust, apart, are_apart, robust_constants};
 use crate::calibration::lack_of_fit::{LackOfFit, lack_of_fit};
-use crate::calibration::level_shift;
 use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::pointwise_median;
 use crate::calibration::misfit::rms_life_error;
-use crate::calibration::outliers::{self, readings_apart, robust_line, runs, step_rates};
+use crate::calibration::outliers::{doubts, readings_apart, robust_line, runs, step_rates};
 use crate::calibration::paris::{self, Paris};
 use crate::calibration::power_law::PowerLaw;
 use crate::calibration::rates::STEP_MIN;
@@ -95,7 +94,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         curves => pointwise_median(&at_case_load(curves, task.criterion, fixed_p, law)?)?,
     };
     let mut record = fit_one(&median, task.criterion, fixed_p, law)?;
-    let mut warnings = doubts(task);
+    let mut warnings = remarks(task);
     if is_fitted && is_at_end(record.constants.p) {
         return Err(Error::Mechanics(format!(
             "{}: {}; check the units of the readings and the load, narrow the window (measured.from_crack_length_mm and \
@@ -115,18 +114,23 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
 
     let (mut confidence, mut paris) = assess(task, law, &median, &record, is_fitted)?;
     let mut estimate = Estimate::LeastSquares;
-    let robust = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted).map(Robust::of);
-    if let Some(robust) = robust
-        && (robust.m - paris.m).abs() > ERRORS_APART * paris.m_error
-    {
+    let line = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted);
+    if let Some(line) = line {
+        // Readings that do not belong must not widen the error by which they are judged.
+        let belonging = median.without(&runs(&step_rates(&median, task.delta_k), line));
+        let without = fit_one(&belonging, task.criterion, fixed_p, law)?;
+        let error = assess(task, law, &belonging, &without, is_fitted)?.1.m_error;
         let least_squares = paris;
-        if let Some(constants) = robust_constants(&median, law) {
-            estimate = Estimate::Robust;
-            record = fitted_curve(&median, constants, law)?;
-            (confidence, paris) = assess(task, law, &median, &record, is_fitted)?;
+        if are_apart(line.m, least_squares.m, error) {
+            if let Some(constants) = robust_constants(&median, law) {
+                estimate = Estimate::Robust;
+                record = fitted_curve(&median, constants, law)?;
+                (confidence, paris) = assess(task, law, &belonging, &record, is_fitted)?;
+            }
+            warnings.push(apart(&least_squares, error, &Robust::of(line), estimate));
         }
-        warnings.push(apart(&least_squares, &robust, estimate));
     }
+    let robust = line.map(Robust::of);
     let ratio = paris.delta_k_max / paris.delta_k_min;
     if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
@@ -135,7 +139,9 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         ));
     }
     let (rate_constant, horizon, spacing) = (None, f64::NAN, f64::NAN);
-    let lack_of_fit = lack_of_fit(task.curves, &paris, task.delta_k);
+    let fitted: Vec<MeasuredCurve> =
+        task.curves.iter().map(|curve| as_fitted(curve, record.constants, law)).collect::<Result<_>>()?;
+    let lack_of_fit = lack_of_fit(task.curves, &fitted, task.delta_k);
     Ok(Fit { record, specimens, confidence, paris, estimate, robust, lack_of_fit, rate_constant, horizon, spacing, warnings })
 }
 
@@ -152,7 +158,8 @@ fn assess(
     let per_p = |lengths: &[f64]| is_fitted.then(|| own.cycles_per_p(p, lengths)).transpose();
     let apart = readings_apart(&curve.crack_length);
     let lengths: Vec<f64> = apart.iter().map(|&i| curve.crack_length[i]).collect();
-    let measured: Vec<f64> = apart.iter().map(|&i| record.cycles_measured[i]).collect();
+    let counted = curve.cycles_counted();
+    let measured: Vec<f64> = apart.iter().map(|&i| counted[i]).collect();
     let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
     let lives = Lives { model: &model, model_per_p: model_per_p.as_deref(), measured: &measured };
     let confidence = confidence(task.criterion, &lives, 1.0 / a);
@@ -167,16 +174,15 @@ fn assess(
     Ok((confidence, paris))
 }
 
+/// The curve as the law would have it.
+fn as_fitted(curve: &MeasuredCurve, Constants { a, p }: Constants, law: &PowerLaw) -> Result<MeasuredCurve> {
+    let cycles = own_law(law, curve).cycles(p, &curve.crack_length)?;
+    Ok(MeasuredCurve { cycles: cycles.into_iter().map(|n| n / a).collect(), ..curve.clone() })
+}
+
 /// What speaks against the readings of the specimens.
-fn doubts(task: &FitTask<'_>) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for curve in task.curves {
-        let rates = step_rates(curve, task.delta_k);
-        lines.extend(level_shift::warning(curve, &rates));
-        if let Some(line) = robust_line(&rates) {
-            lines.extend(outliers::warnings(curve, &runs(&rates, line)));
-        }
-    }
+fn remarks(task: &FitTask<'_>) -> Vec<String> {
+    let mut lines: Vec<String> = task.curves.iter().flat_map(|curve| doubts(curve, task.delta_k)).collect();
     if lines.len() > DOUBTS_SHOWN {
         let more = lines.len() - DOUBTS_SHOWN;
         lines.truncate(DOUBTS_SHOWN);

@@ -5,9 +5,8 @@ use serde::Serialize;
 
 use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::median;
-use crate::calibration::paris::Paris;
-use crate::calibration::rates::{RateMethod, rates};
-use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use crate::calibration::rates::polynomial7;
+use crate::units::MPA_SQRT_M;
 
 /// Share of the range of ln ΔK that is an end of it.
 const END: f64 = 0.1;
@@ -37,16 +36,21 @@ pub struct LackOfFit {
     pub high: EndMiss,
 }
 
-/// Seven-point rates of all curves at the ends of their range against a law; `None` for fewer than six rates. `delta_k` is that of the
-/// case's load (Pa√m) at a length (m).
+/// Seven-point rates of all curves at the ends of their range against those of the same curves by the law, which have the same error of
+/// the parabola; `None` for fewer than six rates. `delta_k` is that of the case's load (Pa√m) at a length (m).
 #[must_use]
-pub fn lack_of_fit(curves: &[MeasuredCurve], paris: &Paris, delta_k: &dyn Fn(f64) -> f64) -> Option<LackOfFit> {
-    let points = curves.iter().flat_map(|curve| rates(curve, RateMethod::Polynomial7));
-    let growing = points.filter(|point| point.rate > 0.0).map(|point| {
-        let k = delta_k(point.crack_length) * point.load_factor / MPA_SQRT_M;
-        (k, (point.rate / MM_PER_CYCLE / (paris.c * k.powf(paris.m))).ln())
-    });
-    let mut misses: Vec<(f64, f64)> = growing.filter(|(k, miss)| k.is_finite() && miss.is_finite()).collect();
+pub fn lack_of_fit(measured: &[MeasuredCurve], fitted: &[MeasuredCurve], delta_k: &dyn Fn(f64) -> f64) -> Option<LackOfFit> {
+    let mut misses: Vec<(f64, f64)> = Vec::new();
+    for (measured, fitted) in measured.iter().zip(fitted) {
+        for middle in 0..measured.cycles.len() {
+            let (Some(point), Some(law)) = (polynomial7(measured, middle), polynomial7(fitted, middle)) else { continue };
+            let k = delta_k(point.crack_length) * point.load_factor / MPA_SQRT_M;
+            let miss = (point.rate / law.rate).ln();
+            if k.is_finite() && miss.is_finite() {
+                misses.push((k, miss));
+            }
+        }
+    }
     misses.sort_by(|a, b| a.0.total_cmp(&b.0));
     if misses.len() < 2 * RATES_MIN {
         return None;

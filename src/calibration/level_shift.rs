@@ -5,7 +5,7 @@
 //! `F = (S₁ - S₂) / (S₂ / (n - 3))` with the sums of squares S of both (Draper and Smith, Applied Regression Analysis, 1998, chapter 23).
 
 use crate::calibration::measured::{MeasuredCurve, round_off};
-use crate::calibration::outliers::{StepRate, place};
+use crate::calibration::outliers::{Run, StepRate, place};
 use crate::units::MM;
 
 /// F above which two levels are certain. The split is chosen among many, so that ordinary tables of F do not hold; of 34 panels of one
@@ -14,6 +14,9 @@ pub const F_MAX: f64 = 60.0;
 
 /// Smallest ratio of the levels worth a word: computed curves scatter so little that any bend is certain.
 const RATIO_MIN: f64 = 1.1;
+
+/// Share of rates that may be left to a warning of their own.
+const FEW: f64 = 0.1;
 
 /// Fewest rates on each side.
 const SIDE_MIN: usize = 3;
@@ -97,9 +100,13 @@ pub fn best_split(rates: &[StepRate]) -> Option<LevelShift> {
     best.map(|(_, shift)| shift)
 }
 
-/// A warning where the rates of a curve have two levels.
+/// Where the rates of a curve have two levels, and not because of the few of them that `runs` names: those have their own warning.
 #[must_use]
-pub fn warning(curve: &MeasuredCurve, rates: &[StepRate]) -> Option<String> {
+pub fn warning(curve: &MeasuredCurve, rates: &[StepRate], runs: &[Run]) -> Option<String> {
+    let named = |rate: &StepRate| runs.iter().any(|run| rate.from >= run.from && rate.to <= run.to);
+    let rest: Vec<StepRate> = rates.iter().filter(|rate| !named(rate)).copied().collect();
+    let few = (rates.len() - rest.len()) as f64 <= FEW * rates.len() as f64;
+    let rates = if few { &rest } else { rates };
     let shift = best_split(rates)?;
     if shift.f <= F_MAX || shift.ratio.ln().abs() < RATIO_MIN.ln() {
         return None;
@@ -107,8 +114,8 @@ pub fn warning(curve: &MeasuredCurve, rates: &[StepRate]) -> Option<String> {
     let StepRate { from, to, .. } = rates[shift.rate];
     Some(format!(
         "{}no one power of ΔK can hold for specimen {}: from {} mm on the rate is {:.2} times that before at equal ΔK (F = {:.0}, common m \
-         {:.2}); if the load changed, give it for every reading (force_max_kn, force_min_kn), else leave the readings before or after out \
-         by measured.leave_out or the window",
+         {:.2}); if the load changed, give it for every reading (columns force_max_kn and force_min_kn), else leave the readings before or \
+         after it out (measured.leave_out or the window of crack lengths)",
         place(curve, from, to),
         curve.specimen,
         round_off(curve.crack_length[from] / MM),

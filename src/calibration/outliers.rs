@@ -5,6 +5,7 @@
 //! Biometrika 69:242), stays until half of the rates are wrong. Rates are those over growth of at least 0.25 mm, below which reading
 //! errors show.
 
+use crate::calibration::level_shift;
 use crate::calibration::measured::{MeasuredCurve, round_off};
 use crate::calibration::median::median;
 use crate::calibration::rates::STEP_MIN;
@@ -118,9 +119,27 @@ pub fn runs(rates: &[StepRate], line: RobustLine) -> Vec<Run> {
     runs
 }
 
-/// Warnings that name the runs of a curve by line, with the window that leaves them out.
+impl MeasuredCurve {
+    /// The curve with the growth of some runs left out.
+    #[must_use]
+    pub fn without(&self, runs: &[Run]) -> MeasuredCurve {
+        let in_run = |step: usize| runs.iter().any(|run| step > run.from && step <= run.to);
+        let left_out = (0..self.cycles.len()).map(|step| !self.counts(step) || in_run(step)).collect();
+        if runs.is_empty() { self.clone() } else { MeasuredCurve { left_out, ..self.clone() } }
+    }
+}
+
+/// What speaks against the readings of a curve: [`runs`] that do not belong, and a [shift of level](level_shift).
 #[must_use]
-pub fn warnings(curve: &MeasuredCurve, runs: &[Run]) -> Vec<String> {
+pub fn doubts(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<String> {
+    let rates = step_rates(curve, delta_k);
+    let runs = robust_line(&rates).map_or_else(Vec::new, |line| runs(&rates, line));
+    let shift = level_shift::warning(curve, &rates, &runs);
+    named(curve, &runs).into_iter().chain(shift).collect()
+}
+
+/// Warnings that name the runs of a curve by line, with the window that leaves them out.
+fn named(curve: &MeasuredCurve, runs: &[Run]) -> Vec<String> {
     let mut lines: Vec<String> = runs.iter().take(RUNS_NAMED).map(|run| warning(curve, *run)).collect();
     if runs.len() > RUNS_NAMED {
         lines.push(format!("specimen {}: {} more runs of readings do not belong", curve.specimen, runs.len() - RUNS_NAMED));

@@ -130,13 +130,17 @@ fn holds(curve: &MeasuredCurve, middle: usize) -> bool {
 }
 
 /// Seven-point incremental polynomial: `â = b0 + b1 x + b2 x²`, `x = (N - C1) / C2` scaled to -1..1 over the seven readings.
-fn polynomial7(curve: &MeasuredCurve, middle: usize) -> Option<RatePoint> {
+pub(super) fn polynomial7(curve: &MeasuredCurve, middle: usize) -> Option<RatePoint> {
     let (n, a) = (&curve.cycles, &curve.crack_length);
     if middle < HALF_SPAN || middle + HALF_SPAN >= n.len() || !holds(curve, middle) {
         return None;
     }
     let seven = middle - HALF_SPAN..=middle + HALF_SPAN;
     let (first, last) = (n[middle - HALF_SPAN], n[middle + HALF_SPAN]);
+    // Cycles of a computed curve stand still where noise lets a length fall.
+    if n[seven.clone()].windows(2).any(|pair| pair[1] <= pair[0]) {
+        return None;
+    }
     let (centre, half) = (0.5 * (first + last), 0.5 * (last - first));
     let basis = |n: f64| {
         let x = (n - centre) / half;

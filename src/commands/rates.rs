@@ -8,11 +8,10 @@ use serde_json::{Value, json};
 use super::console::Console;
 use super::unaged::case_without_law;
 use crate::calibration::decimal::Decimal;
-use crate::calibration::level_shift;
 use crate::calibration::measured::{
     ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, read,
 };
-use crate::calibration::outliers::{self, robust_line, runs, step_rates};
+use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt;
 use crate::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
 use crate::calibration::results::quoted;
@@ -133,21 +132,11 @@ fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) 
     let piece = TestPiece::of(case, &delta_k);
     for (specimen, curve) in specimens.iter_mut().zip(&measured.curves) {
         add_delta_k(&mut specimen.points, &piece);
-        specimen.warnings = doubts(curve, &specimen.points, &delta_k);
+        let law = paris_line(&specimen.points).and_then(|law| doubt(10_f64.powf(law.intercept), law.slope));
+        let of_law = law.map(|words| format!("specimen {}: {words}", curve.specimen));
+        specimen.warnings = doubts(curve, &delta_k).into_iter().chain(of_law).collect();
     }
     Ok(specimens)
-}
-
-/// What speaks against the readings of a curve and the law of its rates.
-fn doubts(curve: &MeasuredCurve, points: &[RatePoint], delta_k: &dyn Fn(f64) -> f64) -> Vec<String> {
-    let steps = step_rates(curve, delta_k);
-    let mut lines: Vec<String> = level_shift::warning(curve, &steps).into_iter().collect();
-    if let Some(line) = robust_line(&steps) {
-        lines.extend(outliers::warnings(curve, &runs(&steps, line)));
-    }
-    let of_law = |law: crate::line::Line| doubt(10_f64.powf(law.intercept), law.slope);
-    lines.extend(paris_line(points).and_then(of_law).map(|words| format!("specimen {}: {words}", curve.specimen)));
-    lines
 }
 
 /// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags`; ΔK is empty where it is not known.

@@ -7,6 +7,7 @@ use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::calibration::case::Parameter;
 use crate::calibration::criterion::Criterion;
 use crate::calibration::decimal::Decimal;
+use crate::calibration::estimate::Estimate;
 use crate::calibration::import::{CycleUnit, LengthUnit, LoadUnit};
 use crate::calibration::rates::RateMethod;
 use crate::case::growth_law::TableEnds;
@@ -72,6 +73,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         CycleUnit::lines(),
         LoadUnit::lines(),
         Decimal::lines(),
+        Estimate::lines(),
         RateMethod::lines(),
         SolverUsed::lines(),
         StopReason::lines(),

@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::calibration::estimate::Estimate;
 use perilife::calibration::record::FittedRecord;
 use perilife::case::{Case, fitted_record};
 use perilife::input::{Document, Folder};

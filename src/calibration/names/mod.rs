@@ -84,7 +84,10 @@ fn unit_of<'w, U>(words: &'w [&'w str], bracket: &[&str], known: fn(&[&str]) -> 
     let mut readings = vec![(words, Named::No)];
     for cut in (1..words.len()).rev().take(4) {
         if let Some(unit) = known(&words[cut..]) {
-            readings.push((&words[..cut], Named::Is(unit)));
+            // `crack length in mm`.
+            let name = &words[..cut];
+            let name = name.strip_suffix(&["in"]).filter(|name| !name.is_empty()).unwrap_or(name);
+            readings.push((name, Named::Is(unit)));
         }
     }
     readings
@@ -212,6 +215,18 @@ pub(crate) fn units_of(name: &str) -> (Named<CycleUnit>, Named<LengthUnit>, Name
         unit_of(words, bracket, known).iter().map(ends).next_back().unwrap_or(Named::No)
     }
     (last(&words, &bracket, cycle_unit), last(&words, &bracket, length_unit), last(&words, &bracket, load_unit))
+}
+
+/// A name with the unit of the row below it, unless it has one itself.
+pub(crate) fn with_unit(name: &str, unit: &str) -> String {
+    let has_unit = match meaning(name) {
+        Meaning::Cycles(unit) => unit != Named::No,
+        Meaning::Length(unit) | Meaning::Side(unit) | Meaning::Double(unit) => unit != Named::No,
+        Meaning::Load(_, unit) => unit != Named::No,
+        _ => false,
+    };
+    let unit = unit.trim_matches(['(', ')', '[', ']', '{', '}', ' ']);
+    if has_unit || unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") }
 }
 
 /// Whether a cell of a row below the header is a unit, or blank.

@@ -12,7 +12,7 @@ use super::{Fault, Row, Table, whole_file};
 use crate::calibration::columns::names_a_test;
 use crate::calibration::decimal::is_number;
 use crate::calibration::import::Import;
-use crate::calibration::names::is_unit_or_blank;
+use crate::calibration::names::{is_unit_or_blank, with_unit};
 use crate::error::Result;
 
 /// Lines that separators are compared on.
@@ -169,8 +169,10 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Resu
         None => (1..=place.columns).map(|column| format!("column {column}")).collect(),
     };
     let units = place.header.filter(|header| header + 1 < place.body).map(|header| cells(&rows[header + 1]));
-    let with_unit = |(name, unit): (&String, &String)| if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") };
-    let names = units.as_ref().map_or_else(|| header.clone(), |units| header.iter().zip(units).map(with_unit).collect());
+    let names = units.as_ref().map_or_else(
+        || header.clone(),
+        |units| header.iter().zip(units).map(|(name, unit)| with_unit(name, unit)).collect(),
+    );
     let header_line = place.header.map_or(0, |header| rows[header].line);
     rows.drain(..place.body);
     // Programs that test in blocks repeat the header over each.
