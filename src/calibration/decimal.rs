@@ -76,6 +76,14 @@ fn are_groups(text: &str, separator: impl Fn(char) -> bool) -> bool {
 }
 
 fn evidence(cell: &str) -> Evidence {
+    match simple(cell) {
+        Some((digits, None)) if digits > 0 => return Evidence::Whole,
+        Some((digits, Some((place, decimal)))) if digits > 0 => {
+            let open = cell.len() - place == 4 && (1..=3).contains(&place) && !cell.starts_with('0');
+            return if open { Evidence::Open(decimal) } else { Evidence::Proves(decimal) };
+        }
+        _ => {}
+    }
     let unsigned = cell.strip_prefix(['+', '-', '\u{2212}']).unwrap_or(cell);
     let (mantissa, has_exponent) = match unsigned.split_once(['e', 'E']) {
         None => (unsigned, false),
@@ -119,15 +127,32 @@ fn evidence(cell: &str) -> Evidence {
     if open { Evidence::Open(decimal) } else { Evidence::Proves(decimal) }
 }
 
+/// Digits with at most one sign between them, as most cells are: number of digits, place of the sign. A million readings are to be read
+/// in a second or two.
+fn simple(cell: &str) -> Option<(usize, Option<(usize, Decimal)>)> {
+    let mut sign = None;
+    for (place, byte) in cell.bytes().enumerate() {
+        match byte {
+            b'0'..=b'9' => {}
+            b'.' if sign.is_none() => sign = Some((place, Decimal::Point)),
+            b',' if sign.is_none() => sign = Some((place, Decimal::Comma)),
+            _ => return None,
+        }
+    }
+    Some((cell.len() - usize::from(sign.is_some()), sign))
+}
+
 fn is_grouping(character: char) -> bool {
     GROUPING.contains(&character)
 }
 
 /// The number in a cell; `None` if it is none in this writing.
 pub(crate) fn number(cell: &str, decimal: Decimal) -> Option<f64> {
-    let plain = |byte: &u8| byte.is_ascii_digit() || *byte == b'.' || *byte == b'-';
-    if decimal == Decimal::Point && cell.bytes().all(|byte| plain(&byte)) {
-        return cell.parse().ok();
+    match simple(cell) {
+        Some((_, None)) => return cell.parse().ok(),
+        Some((_, Some((_, Decimal::Point)))) if decimal == Decimal::Point => return cell.parse().ok(),
+        Some((_, Some((_, Decimal::Comma)))) if decimal == Decimal::Comma => return cell.replace(',', ".").parse().ok(),
+        _ => {}
     }
     match evidence(cell) {
         Evidence::Proves(proved) if proved != decimal => return None,

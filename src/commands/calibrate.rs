@@ -10,6 +10,7 @@ use super::console::Console;
 use super::predict;
 use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::{CalibrationCase, remove_law};
+use crate::calibration::estimate::Estimate;
 use crate::calibration::record::FittedRecord;
 use crate::calibration::results::{FitReport, record};
 use crate::case::Case;
@@ -154,7 +155,6 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
         format!("  Paris          da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m)", report.paris_c_mm_per_cycle, report.paris_m),
         format!("  m              {:.4}{}{source}", report.paris_m, error(report.paris_m_error)),
         "  ±              one standard error".to_owned(),
-        format!("  estimate       {}", report.estimate.replace('_', " ")),
         format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", report.delta_k_min_mpa_sqrt_m, report.delta_k_max_mpa_sqrt_m),
         format!(
             "  life           measured {:.0}, fitted {:.0} cycles ({life:+.2} %), rms life error {:.2} %",
@@ -163,6 +163,9 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
             100.0 * report.rms_life_error
         ),
     ]);
+    if report.estimate == Estimate::Robust.name() {
+        lines.push("  estimate       robust: repeated median of the rates".to_owned());
+    }
     lines.extend(report.lack_of_fit.map(|lack| format!("  lack of fit    {}", lack.words())));
     lines.extend(report.left_out.iter().map(|window| {
         let specimen = window.specimen.as_ref().map_or_else(String::new, |name| format!("specimen {name}, "));

@@ -212,6 +212,9 @@ fn check(writing: &Writing, readings: &Readings, damage: &Damage) -> Result<bool
             prop_assert_eq!(error.exit_code(), 2);
             let words = error.to_string();
             prop_assert!(words.contains("chance.csv") && words.contains(": "), "{}", words);
+            // A whole file is refused for what it leaves open alone, or for lengths that its few decimals make equal... never for its form.
+            let is_open = words.contains("is the decimal sign and") || words.contains("does not grow");
+            prop_assert!(is_open || !matches!(damage, Damage::None), "{}\n{}", words, shown);
             Ok(false)
         }
         Ok(measured) => {
