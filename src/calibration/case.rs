@@ -7,12 +7,10 @@ use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 
 use crate::calibration::criterion::Criterion;
-use crate::calibration::exponent::Exponent;
 use crate::calibration::decimal::Decimal;
+use crate::calibration::exponent::Exponent;
 use crate::calibration::leave_out::LeaveOut;
-use crate::calibration::measured::{
-    ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse,
-};
+use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::calibration::record::SourceFile;
 use crate::case::{Case, LAW_KEYS, LawSource, Method};
 use crate::error::{input, input_missing};

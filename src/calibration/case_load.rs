@@ -47,7 +47,8 @@ fn reduced(curve: &MeasuredCurve, own: Constants, p: f64, law: &PowerLaw) -> Res
         return Ok(curve.clone());
     }
     let lengths = &curve.crack_length;
-    let (at_case, as_run, by_own_fit) = (law.cycles(p, lengths)?, law.under(curve).cycles(p, lengths)?, law.cycles(own.p, lengths)?);
+    let (at_case, as_run, by_own_fit) =
+        (law.cycles(p, lengths)?, law.under(curve).cycles(p, lengths)?, law.cycles(own.p, lengths)?);
     let mut cycles = vec![0.0; lengths.len()];
     for i in 1..lengths.len() {
         let step = |of: &[f64]| of[i] - of[i - 1];

@@ -1,7 +1,7 @@
 //! What the columns of a measured file are: one row a reading, or one column a specimen; and in which units.
 
-use crate::calibration::decimal::{Decimal, Holds, decide};
 use crate::calibration::column_units::{cycle_unit, length_column, load_unit, wide_length_unit};
+use crate::calibration::decimal::{Decimal, Holds, decide};
 use crate::calibration::import::{CycleUnit, Import};
 use crate::calibration::names::{LoadRole, Meaning};
 pub(crate) use crate::calibration::roles::names_a_test;
@@ -115,6 +115,25 @@ pub(crate) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
 }
 
 impl Shape {
+    /// The key of `measured.columns` that each of some columns has; empty for one that is not read or is a specimen of a wide table.
+    #[must_use]
+    pub fn keys(&self, columns: usize) -> Vec<&'static str> {
+        let mut keys = vec![""; columns];
+        let mut give = |column: usize, key| keys[column] = key;
+        match self {
+            Shape::Long { specimen, cycles, lengths, loads, .. } => {
+                give(cycles.index, "cycles");
+                lengths.iter().for_each(|length| give(length.index, "length"));
+                specimen.iter().for_each(|column| give(*column, "specimen"));
+                let loads = [(loads.maximum, "force_max"), (loads.minimum, "force_min"), (loads.ratio, "stress_ratio")];
+                loads.into_iter().for_each(|(column, key)| column.iter().for_each(|column| give(column.index, key)));
+            }
+            Shape::WideCycles(length, _) => give(length.index, "length"),
+            Shape::WideLengths(cycles, _) => give(cycles.index, "cycles"),
+        }
+        keys
+    }
+
     /// Columns of numbers and what they hold.
     fn numbers(&self) -> Vec<(usize, Holds)> {
         let cycles = |column: &Column| (column.index, if column.factor == 1.0 { Holds::Counts } else { Holds::Measures });

@@ -143,7 +143,8 @@ impl ColumnNames {
     /// A text without `=`, an unknown key, or a key given twice (crack length may be).
     pub fn put(&mut self, text: &str) -> Result<()> {
         let refuse = |problem: &str| {
-            let remedy = format!("write --column key=name with one of {}, e.g. --column length=\"a [in]\"", Self::KEYS.join(", "));
+            let remedy =
+                format!("write --column key=name with one of {}, e.g. --column length=\"a [in]\"", Self::KEYS.join(", "));
             input("--column", format!("\"{text}\""), problem, remedy)
         };
         let (key, name) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;

@@ -9,7 +9,7 @@ use crate::calibration::rates::polynomial7;
 use crate::units::MPA_SQRT_M;
 
 /// Share of the range of ln ΔK that is an end of it.
-const END: f64 = 0.1;
+const END: f64 = 0.05;
 
 /// Fewest rates at an end.
 const RATES_MIN: usize = 3;

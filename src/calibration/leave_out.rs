@@ -31,7 +31,8 @@ impl Measured {
             self.leave_one_out(&format!("measured.leave_out[{index}]"), window)?;
         }
         for (index, window) in windows.iter().enumerate() {
-            let Some(curve) = self.curves.iter_mut().find(|curve| window.specimen.as_ref().is_none_or(|name| *name == curve.specimen))
+            let Some(curve) =
+                self.curves.iter_mut().find(|curve| window.specimen.as_ref().is_none_or(|name| *name == curve.specimen))
             else {
                 continue;
             };
@@ -61,7 +62,12 @@ impl Measured {
         let known = || self.curves.iter().map(|curve| format!("\"{}\"", curve.specimen)).collect::<Vec<_>>().join(", ");
         let place = match specimen {
             Some(name) => self.curves.iter().position(|curve| curve.specimen == *name).ok_or_else(|| {
-                input(&format!("{key}.specimen"), format!("\"{name}\""), "is no specimen of the files", format!("use one of {}", known()))
+                input(
+                    &format!("{key}.specimen"),
+                    format!("\"{name}\""),
+                    "is no specimen of the files",
+                    format!("use one of {}", known()),
+                )
             })?,
             None if self.curves.len() == 1 => 0,
             None => {

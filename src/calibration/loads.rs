@@ -51,7 +51,8 @@ impl Measured {
                 (own, of_case) if own == of_case => 1.0,
                 (LoadMeasure::Force, _) => 1.0 / (specimen.width * specimen.thickness),
                 (LoadMeasure::Stress, _) => {
-                    let fault = Fault { file: &curve.source.file, line: curve.source.lines.first().copied(), key: None, value: None };
+                    let fault =
+                        Fault { file: &curve.source.file, line: curve.source.lines.first().copied(), key: None, value: None };
                     let problem = format!("has loads as stresses, but a {} is loaded by a force on its pins", specimen.kind);
                     return Err(fault.error(problem, "give columns of force_max and force_min"));
                 }
@@ -132,7 +133,8 @@ impl MeasuredCurve {
     #[must_use]
     pub fn holds_load(&self, readings: std::ops::RangeInclusive<usize>) -> bool {
         let Some(factors) = self.load_factor.get(readings) else { return true };
-        let (low, high) = factors.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &factor| (low.min(factor), high.max(factor)));
+        let (low, high) =
+            factors.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &factor| (low.min(factor), high.max(factor)));
         high <= low * (1.0 + SAME_LOAD)
     }
 }

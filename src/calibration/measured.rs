@@ -90,6 +90,8 @@ pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
 pub struct Survey {
     /// Column names as written.
     pub header: Vec<String>,
+    /// Cells of the first rows below them.
+    pub first_rows: Vec<Vec<String>>,
     /// What its columns are.
     pub layout: Option<Layout>,
     /// Curves of the good rows.
@@ -116,6 +118,7 @@ pub fn survey(bytes: &[u8], file: &Path, import: &Import) -> Survey {
     let mut look = || {
         let table = Table::read(bytes, file, import)?;
         survey.header.clone_from(&table.header);
+        survey.first_rows = table.first_cells();
         let layout = columns::recognise(&table, import)?;
         survey.measured = curves_of(&table, &layout, &mut note)?;
         survey.layout = Some(layout);
@@ -281,7 +284,12 @@ impl MeasuredCurve {
         }
         let mut sum = 0.0;
         let step = |i: usize| if i > 0 && self.counts(i) { self.cycles[i] - self.cycles[i - 1] } else { 0.0 };
-        (0..self.cycles.len()).map(|i| { sum += step(i); sum }).collect()
+        (0..self.cycles.len())
+            .map(|i| {
+                sum += step(i);
+                sum
+            })
+            .collect()
     }
 
     /// Where a reading stands, for messages: its line, or its number where there is no file.

@@ -71,8 +71,7 @@ pub fn step_rates(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<St
     let factors = curve.step_factors();
     let rate = |pair: &[usize]| {
         let (from, to) = (pair[0], pair[1]);
-        let (growth, cycles) =
-            (curve.crack_length[to] - curve.crack_length[from], curve.cycles[to] - curve.cycles[from]);
+        let (growth, cycles) = (curve.crack_length[to] - curve.crack_length[from], curve.cycles[to] - curve.cycles[from]);
         let inner = &factors[from + 1..=to];
         let factor = inner.iter().map(|(start, end)| 0.5 * (start + end)).sum::<f64>() / inner.len() as f64;
         let k = delta_k(curve.crack_length[from] + 0.5 * growth) * factor / MPA_SQRT_M;

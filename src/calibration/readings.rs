@@ -1,7 +1,7 @@
 //! From the cells of a table to the readings of every specimen, each checked by itself and against the one before.
 
 use crate::calibration::columns::{Column, Layout, LoadColumns, Shape};
-use crate::calibration::decimal::{Decimal, number};
+use crate::calibration::decimal::{Decimal, is_number, number};
 use crate::calibration::loads::Loads;
 use crate::calibration::measured::{Measured, MeasuredCurve, READINGS_MIN, Source};
 use crate::calibration::table::{Fault, Row, Table, whole_file};
@@ -138,6 +138,9 @@ fn value(table: &Table, row: &Row, column: Column, decimal: Decimal) -> Result<f
         None if cell.parse::<f64>().is_ok_and(|number| !number.is_finite()) => {
             Err(fault().error("is not a finite number", "give the reading, or leave the whole row out"))
         }
+        None if !is_number(cell) => {
+            Err(fault().error("is not a number", "give a plain number such as 1234.5 or 1.2345e3, thousands in groups of three"))
+        }
         None => Err(fault().error(
             format!("is not a number whose decimal sign is the {} of this file", decimal.words()),
             "give a plain number such as 1234.5 or 1.2345e3, the same decimal sign in the whole file, thousands in groups of three",
@@ -212,7 +215,9 @@ fn load(table: &Table, row: &Row, decimal: Decimal, columns: &LoadColumns) -> Re
     let Some(column) = columns.maximum else { return Ok(None) };
     let maximum = value(table, row, column, decimal)?;
     if maximum <= 0.0 {
-        return Err(table.cell_fault(row, column.index).error("is not above 0", "give the largest load of a cycle, tension positive"));
+        return Err(table
+            .cell_fault(row, column.index)
+            .error("is not above 0", "give the largest load of a cycle, tension positive"));
     }
     let ratio = match (columns.minimum, columns.ratio) {
         (Some(column), _) => value(table, row, column, decimal)? / maximum,
@@ -221,7 +226,9 @@ fn load(table: &Table, row: &Row, decimal: Decimal, columns: &LoadColumns) -> Re
     };
     if ratio >= 1.0 {
         let column = columns.minimum.or(columns.ratio).unwrap_or(column);
-        return Err(table.cell_fault(row, column.index).error("leaves no range of load", "give the smallest load below the largest"));
+        return Err(table
+            .cell_fault(row, column.index)
+            .error("leaves no range of load", "give the smallest load below the largest"));
     }
     Ok(Some((maximum, ratio)))
 }

@@ -8,9 +8,7 @@ use serde_json::{Value, json};
 use super::console::Console;
 use super::unaged::case_without_law;
 use crate::calibration::decimal::Decimal;
-use crate::calibration::measured::{
-    ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, read,
-};
+use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, read};
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt;
 use crate::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};

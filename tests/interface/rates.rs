@@ -27,10 +27,14 @@ fn law(output: &std::process::Output) -> (f64, f64) {
 #[test]
 fn columns_decimal_sign_and_units_are_options() {
     // Whole thousands alone, in names that nobody knows.
-    let dir = folder("A;B;C", |_| 5.4, |n, a| {
-        let n = format!("{:.0}", n + 1000.0);
-        format!("x;{}.{};{}", &n[..n.len() - 3], &n[n.len() - 3..], (a * 4.0).round() / 4.0)
-    });
+    let dir = folder(
+        "A;B;C",
+        |_| 5.4,
+        |n, a| {
+            let n = format!("{:.0}", n + 1000.0);
+            format!("x;{}.{};{}", &n[..n.len() - 3], &n[n.len() - 3..], (a * 4.0).round() / 4.0)
+        },
+    );
     let run = |options: &[&str]| {
         perilife(dir.path(), &[&["rates", "lab.txt", "--specimen", "ct.toml", "--method", "secant", "--json"], options].concat())
     };
@@ -38,7 +42,11 @@ fn columns_decimal_sign_and_units_are_options() {
     let columns = ["--column", "cycles=B", "--column", "length=C"];
     assert_refused(&run(&columns), 2, &["header = C", "does not say its unit", "--length-unit"]);
     let with_unit = [&columns[..], &["--length-unit", "mm"]].concat();
-    assert_refused(&run(&with_unit), 2, &["lab.txt:2", "B = 1.000", "is 1 if the point is the decimal sign and 1000 if the comma is", "--decimal"]);
+    assert_refused(
+        &run(&with_unit),
+        2,
+        &["lab.txt:2", "B = 1.000", "is 1 if the point is the decimal sign and 1000 if the comma is", "--decimal"],
+    );
     let (c, m) = law(&run(&[&with_unit[..], &["--decimal", ","]].concat()));
     assert!((m - 3.0).abs() < 0.01 && (c / 1e-8 - 1.0).abs() < 0.03, "{c:e} {m}");
     // The same words in a calibration file.
@@ -54,7 +62,10 @@ fn columns_decimal_sign_and_units_are_options() {
     let wrong = [
         ("columns = { cycels = \"B\" }", "measured.columns.cycels = \"B\": is not a known key; known here: cycles"),
         ("columns = { cycles = 1.5 }", "measured.columns.cycles = 1.5: is not the name of a column or its number"),
-        ("columns = { length = [] , cycles = \"Q\" }", "measured.columns.cycles = Q: names no column of this file; its columns are A | B | C"),
+        (
+            "columns = { length = [] , cycles = \"Q\" }",
+            "measured.columns.cycles = Q: names no column of this file; its columns are A | B | C",
+        ),
         ("decimal = \";\"", "measured.decimal = \";\": is not a known kind; use one of ., ,"),
         ("sheet = true", "measured.sheet = true: is not the name of a sheet or its number"),
         ("load_unit = \"t\"", "use one of N, kN, lbf, kip, kgf, MPa, ksi"),
@@ -89,7 +100,11 @@ fn a_law_that_no_metal_has_is_marked() {
     assert!(stderr.contains("specimen lab: the rate at ΔK = 10 MPa√m is"), "{stderr}");
     let object: serde_json::Value = serde_json::from_str(&stdout).unwrap();
     assert!(object["specimens"][0]["warnings"].to_string().contains("where metals lie"), "{object}");
-    assert_refused(&perilife(dir.path(), &["calibrate", "ct.toml", "--out", "out"]), 2, &["measured.files: give a law that no metal has"]);
+    assert_refused(
+        &perilife(dir.path(), &["calibrate", "ct.toml", "--out", "out"]),
+        2,
+        &["measured.files: give a law that no metal has"],
+    );
     assert!(!dir.path().join("out").exists());
 }
 

@@ -43,13 +43,23 @@ fn is_the_law(name: &str, fit: &Fit, m: f64) {
 fn k_of_every_reading_is_that_of_its_own_load() {
     let lengths = lengths(12.0, 30.0, 0.5);
     let step = |a: f64| if a > 21.0 { 6.48 } else { 5.4 };
-    let two_steps = |a: f64| if a > 24.0 { 4.5 } else if a > 17.0 { 6.3 } else { 5.4 };
+    let two_steps = |a: f64| {
+        if a > 24.0 {
+            4.5
+        } else if a > 17.0 {
+            6.3
+        } else {
+            5.4
+        }
+    };
     let shed = |a: f64| 5.4 * (-0.06 * (a - 12.0)).exp();
-    let force: [(&str, &dyn Fn(f64) -> f64); 4] = [("constant", &|_| 6.0), ("a step", &step), ("two steps", &two_steps), ("shed", &shed)];
+    let force: [(&str, &dyn Fn(f64) -> f64); 4] =
+        [("constant", &|_| 6.0), ("a step", &step), ("two steps", &two_steps), ("shed", &shed)];
     for (name, force) in force {
         let made = readings(C, M, &lengths, force, |_| 1.0);
         let with = |unit: &str, per_kn: f64| {
-            let load = |i: usize| format!(",{:.9},{:.9}", force(lengths[i]) / 0.9 * per_kn, force(lengths[i]) / 0.9 * 0.1 * per_kn);
+            let load =
+                |i: usize| format!(",{:.9},{:.9}", force(lengths[i]) / 0.9 * per_kn, force(lengths[i]) / 0.9 * 0.1 * per_kn);
             format!("cycles,crack_length_mm,force max ({unit}),force min ({unit})\n{}", rows(&made, load))
         };
         for (unit, per_kn) in [("kN", 1.0), ("N", 1e3), ("lbf", 1e3 / 4.448_221_615_260_5), ("kgf", 1e3 / 9.806_65)] {
@@ -102,7 +112,8 @@ fn readings_that_do_not_belong_are_named_and_the_robust_law_is_written() {
         let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |_| 5.4, slow);
         let csv = format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new()));
         let fit = fitted(&csv, "");
-        let warning = fit.warnings.iter().find(|line| line.contains("readings do not belong")).unwrap_or_else(|| panic!("{name}"));
+        let warning =
+            fit.warnings.iter().find(|line| line.contains("readings do not belong")).unwrap_or_else(|| panic!("{name}"));
         assert!(warning.contains(lines), "{name}: {lines} in {warning}");
         let both = fit.warnings.iter().find(|line| line.contains("written are the"));
         if fit.estimate == Estimate::Robust {
@@ -140,7 +151,11 @@ fn broken_windows_are_refused() {
     let csv = format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new()));
     let window = |keys: &str| format!("leave_out = [{{ {keys} }}]");
     let broken = [
-        ("another specimen", window("specimen = \"B\", from_cycles = 0, to_cycles = 1e4, reason = \"x\""), "specimen = \"B\": is no specimen"),
+        (
+            "another specimen",
+            window("specimen = \"B\", from_cycles = 0, to_cycles = 1e4, reason = \"x\""),
+            "specimen = \"B\": is no specimen",
+        ),
         ("no reason", window("from_cycles = 0, to_cycles = 1e4"), "reason: is missing"),
         ("an empty reason", window("from_cycles = 0, to_cycles = 1e4, reason = \" \""), "says nothing"),
         ("the wrong way", window("from_cycles = 1e4, to_cycles = 0, reason = \"x\""), "is not above from_cycles = 10000"),
@@ -151,7 +166,10 @@ fn broken_windows_are_refused() {
     for (name, keys, words) in broken {
         let error = case(&csv, &keys).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{name}");
-        assert!(error.to_string().contains(words) && error.to_string().contains("measured.leave_out"), "{name}: {words} in {error}");
+        assert!(
+            error.to_string().contains(words) && error.to_string().contains("measured.leave_out"),
+            "{name}: {words} in {error}"
+        );
     }
 }
 
@@ -179,10 +197,8 @@ fn lack_of_fit_is_told_at_both_ends() {
 #[test]
 fn a_law_that_no_metal_has_is_refused_by_name() {
     let csv = format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new()));
-    let slips = [
-        ("as it was", csv.clone(), true),
-        ("single cycles called millions", csv.replace("cycles,", "megacycles,"), false),
-    ];
+    let slips =
+        [("as it was", csv.clone(), true), ("single cycles called millions", csv.replace("cycles,", "megacycles,"), false)];
     for (name, csv, is_metal) in slips {
         let outcome = calibrate(&case(&csv, "").unwrap(), &Silent);
         match (outcome, is_metal) {

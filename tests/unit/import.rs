@@ -51,13 +51,28 @@ fn thousands_and_decimals_are_told_apart_by_the_whole_file() {
     let dresses = [
         ("points and commas", format!("Cycles;Crack length (mm)\n{}", lines(|n, a| format!("{};{}", grouped(n, "."), comma(a))))),
         ("commas between tabs", format!("Cycles\tCrack length (mm)\n{}", lines(|n, a| format!("{}\t{a:.2}", grouped(n, ","))))),
-        ("commas between semicolons", format!("Cycles;Crack length (mm)\n{}", lines(|n, a| format!("{};{a:.2}", grouped(n, ","))))),
+        (
+            "commas between semicolons",
+            format!("Cycles;Crack length (mm)\n{}", lines(|n, a| format!("{};{a:.2}", grouped(n, ",")))),
+        ),
         ("commas in quotes", format!("Cycles,Crack length (mm)\n{}", lines(|n, a| format!("\"{}\",{a:.2}", grouped(n, ","))))),
         ("blanks", format!("Cycles;Crack length (mm)\n{}", lines(|n, a| format!("{};{}", grouped(n, " "), comma(a))))),
-        ("narrow blanks", format!("Cycles;Crack length (mm)\n{}", lines(|n, a| format!("{};{}", grouped(n, "\u{202f}"), comma(a))))),
+        (
+            "narrow blanks",
+            format!("Cycles;Crack length (mm)\n{}", lines(|n, a| format!("{};{}", grouped(n, "\u{202f}"), comma(a)))),
+        ),
         ("apostrophes", format!("Cycles;Crack length (mm)\n{}", lines(|n, a| format!("{};{a:.2}", grouped(n, "'"))))),
-        ("curly apostrophes", format!("Cycles\tCrack length (mm)\n{}", lines(|n, a| format!("{}\t{a:.2}", grouped(n, "\u{2019}"))))),
-        ("exponents", format!("Cycles;Crack length (mm)\n{}", lines(|n, a| format!("{};{}E+01", comma(n) , format!("{:.4}", a / 10.0).replace('.', ","))))),
+        (
+            "curly apostrophes",
+            format!("Cycles\tCrack length (mm)\n{}", lines(|n, a| format!("{}\t{a:.2}", grouped(n, "\u{2019}")))),
+        ),
+        (
+            "exponents",
+            format!(
+                "Cycles;Crack length (mm)\n{}",
+                lines(|n, a| format!("{};{}E+01", comma(n), format!("{:.4}", a / 10.0).replace('.', ",")))
+            ),
+        ),
         ("three decimals of lengths", format!("Cycles;Crack length (mm)\n{}", lines(|n, a| format!("{n:.0};{a:.3}")))),
         ("three decimals between commas", format!("cycles,a (mm)\n{}", lines(|n, a| format!("{n:.0},{a:.3}")))),
     ];
@@ -65,7 +80,8 @@ fn thousands_and_decimals_are_told_apart_by_the_whole_file() {
         is_the_curve(name, text.as_bytes(), &Import::default());
     }
     // A column that is not read decides for one that leaves it open.
-    let whole = "Zeit (s);Zyklen;a (mm)\n500.5;5,000;12\n5852.5;58,528;13\n10786.5;107,862;14\n15337.5;153,379;15\n19541.5;195,413;16\n";
+    let whole =
+        "Zeit (s);Zyklen;a (mm)\n500.5;5,000;12\n5852.5;58,528;13\n10786.5;107,862;14\n15337.5;153,379;15\n19541.5;195,413;16\n";
     let curve = parse(whole.as_bytes(), Path::new("whole.csv"), &Import::default()).unwrap().curves.remove(0);
     assert_eq!(curve.cycles, [5000.0, 58_528.0, 107_862.0, 153_379.0, 195_413.0]);
 }
@@ -80,12 +96,15 @@ fn what_the_file_leaves_open_is_refused_unless_the_decimal_sign_is_given() {
     for (name, text) in open {
         let read = |decimal| parse(text.as_bytes(), Path::new("open.csv"), &Import { decimal, ..Import::default() });
         let error = read(None).unwrap_err().to_string();
-        for words in ["open.csv:2: N = 5.000: ", "is 5 if the point is the decimal sign and 5000 if the comma is", "measured.decimal"] {
+        for words in
+            ["open.csv:2: N = 5.000: ", "is 5 if the point is the decimal sign and 5000 if the comma is", "measured.decimal"]
+        {
             assert!(error.contains(words), "{name}: {words} in {error}");
         }
         assert_eq!(read(Some(Decimal::Point)).unwrap().curves[0].cycles[1], 58.528, "{name}");
     }
-    let read = |decimal| parse(open[0].1.as_bytes(), Path::new("open.csv"), &Import { decimal: Some(decimal), ..Import::default() });
+    let read =
+        |decimal| parse(open[0].1.as_bytes(), Path::new("open.csv"), &Import { decimal: Some(decimal), ..Import::default() });
     assert_eq!(read(Decimal::Comma).unwrap().curves[0].cycles[1], 58_528.0);
     // Kilocycles have three decimals as a matter of course.
     let kilo = open[1].1.replace("N;", "N (kcycles);");
@@ -98,7 +117,11 @@ fn one_decimal_sign_holds_for_every_cell() {
     let broken = [
         ("another sign", "N;a [mm]\n0;10,5\n10;11.25\n20;12,5\n30;13,5\n40;14,5\n", "decimal"),
         ("groups of two", "N;a [mm]\n5.00.000;10,5\n60.00.000;11,5\n", "not a number"),
-        ("a length of thousands", "N;a [mm]\n0.5;10,500\n10.5;11,500\n20.5;12,500\n30.5;13,500\n40.5;14,500\n", "the decimal sign and"),
+        (
+            "a length of thousands",
+            "N;a [mm]\n0.5;10,500\n10.5;11,500\n20.5;12,500\n30.5;13,500\n40.5;14,500\n",
+            "the decimal sign and",
+        ),
     ];
     for (name, text, words) in broken {
         let error = parse(text.as_bytes(), Path::new("signs.csv"), &Import::default()).unwrap_err().to_string();
@@ -118,7 +141,10 @@ fn separators_and_headers_are_found_below_a_preamble() {
         ("framed bars", table("cycles | a (mm)", " | ")),
         ("blanks", table("N a_mm", "  ")),
         ("one blank", table("N a_mm", " ")),
-        ("columns of fixed width", format!("Cycle Count      Crack size (mm)\n{}", lines(|n, a| format!("{n:>10}       {a:>8.2}")))),
+        (
+            "columns of fixed width",
+            format!("Cycle Count      Crack size (mm)\n{}", lines(|n, a| format!("{n:>10}       {a:>8.2}"))),
+        ),
         ("a preamble", preamble.to_owned() + &table("Cycles;Crack length [mm]", ";")),
         ("a sign for the spreadsheet", "sep=;\n".to_owned() + &table("Cycles;Crack length [mm]", ";")),
         ("a row of units", table("Cycles;Crack length\n-;mm", ";")),
@@ -127,7 +153,10 @@ fn separators_and_headers_are_found_below_a_preamble() {
         ("other comments", "% exported\n// twice\n".to_owned() + &table("cycles,a_mm", ",")),
         ("trailing separators", table("Cycles;Crack length [mm];;", ";").replace(".00\n", ".00;;\n").replace(".50\n", ".50;\n")),
         ("empty rows", table("Cycles;Crack length [mm]", ";") + ";\n;;\n\n"),
-        ("a header over every block", table("Cycles,Crack length [mm]", ",").replace("153379", "Cycles,Crack length [mm]\n153379")),
+        (
+            "a header over every block",
+            table("Cycles,Crack length [mm]", ",").replace("153379", "Cycles,Crack length [mm]\n153379"),
+        ),
         ("columns the other way round", format!("a [mm];N\n{}", lines(|n, a| format!("{a:.2};{n}")))),
         ("carriage returns", table("Cycles;Crack length [mm]", ";").replace('\n', "\r")),
     ];
@@ -209,13 +238,18 @@ fn columns_may_be_named_by_the_user() {
     // The user's word goes before that of the names.
     let both = format!("N,a (mm),a corrected (mm)\n{}", lines(|n, a| format!("{n},{},{a}", a + 1.0)));
     let error = parse(both.as_bytes(), Path::new("b.csv"), &Import::default()).unwrap_err().to_string();
-    assert!(error.contains("says the same as an earlier column; say which one counts by measured.columns = { length ="), "{error}");
+    assert!(
+        error.contains("says the same as an earlier column; say which one counts by measured.columns = { length ="),
+        "{error}"
+    );
     is_the_curve("the corrected one", both.as_bytes(), &names("N", "a corrected (mm)"));
     let error = parse(both.as_bytes(), Path::new("b.csv"), &names("N", "b")).unwrap_err().to_string();
     assert!(error.contains("measured.columns.length = b: names no column of this file; its columns are N | a (mm)"), "{error}");
     let mut columns = ColumnNames::default();
     columns.put("cycles=N").unwrap();
-    for (text, words) in [("N", "has no ="), ("depth=a", "has a key that is not known"), ("cycles=M", "twice"), ("length=", "names no column")] {
+    for (text, words) in
+        [("N", "has no ="), ("depth=a", "has a key that is not known"), ("cycles=M", "twice"), ("length=", "names no column")]
+    {
         let error = columns.put(text).unwrap_err().to_string();
         assert!(error.contains("--column = ") && error.contains(words), "{error}");
     }
@@ -225,8 +259,15 @@ fn columns_may_be_named_by_the_user() {
 fn a_shape_that_is_not_known_is_shown_as_it_was_understood() {
     let text = "Probe A;;\nfoo;bar;Pmax (kN)\n1;2;3\n4;5;6\n7;8;9\n10;11;12\n13;14;15\n16;17;18\n";
     let error = parse(text.as_bytes(), Path::new("odd.csv"), &Import::default()).unwrap_err().to_string();
-    for words in ["odd.csv:2: ", "columns separated by semicolons", "line 2: foo | bar | Pmax (kN)", "line 3: 1 | 2 | 3", "line 7: 13 | 14 | 15",
-        "measured.columns = { cycles", "--column cycles="] {
+    for words in [
+        "odd.csv:2: ",
+        "columns separated by semicolons",
+        "line 2: foo | bar | Pmax (kN)",
+        "line 3: 1 | 2 | 3",
+        "line 7: 13 | 14 | 15",
+        "measured.columns = { cycles",
+        "--column cycles=",
+    ] {
         assert!(error.contains(words), "{words} in {error}");
     }
     assert!(!error.contains("line 8"), "{error}");
@@ -236,7 +277,8 @@ fn a_shape_that_is_not_known_is_shown_as_it_was_understood() {
 fn a_wide_table_holds_lengths_alone() {
     let import = Import { length: Some(LengthUnit::Millimetre), ..Import::default() };
     let rows = "0;12.8;11.2;6\n10;13.3;11.7;6\n20;13.8;12.2;6\n30;14.3;12.7;6\n40;14.8;13.2;6\n";
-    for other in ["Pmax", "Pmax (kN)", "K (MPa√m)", "COD (mm)", "Time (s)", "Temperature", "B", "W (mm)", "Load", "R", "da/dN"] {
+    for other in ["Pmax", "Pmax (kN)", "K (MPa√m)", "COD (mm)", "Time (s)", "Temperature", "B", "W (mm)", "Load", "R", "da/dN"]
+    {
         let text = format!("Cycles;S1;S2;{other}\n{rows}");
         let error = parse(text.as_bytes(), Path::new("wide.csv"), &import).unwrap_err().to_string();
         assert!(error.contains("wide.csv:1: header = S1") && error.contains("measured.columns"), "{other}: {error}");
@@ -247,16 +289,21 @@ fn a_wide_table_holds_lengths_alone() {
         assert!((measured.curves[0].crack_length[0] - 12.0 * MM).abs() < 1e-12, "{other}");
         assert!((measured.curves[0].side_difference[0] - 1.6 * MM).abs() < 1e-12, "{other}");
     }
-    for sides in ["front;back", "a front (mm);a back (mm)", "Left;Right", "a_L;a_R", "Vorderseite;R\u{fc}ckseite", "Crack length (front);Crack length (back)"] {
+    for sides in [
+        "front;back",
+        "a front (mm);a back (mm)",
+        "Left;Right",
+        "a_L;a_R",
+        "Vorderseite;R\u{fc}ckseite",
+        "Crack length (front);Crack length (back)",
+    ] {
         let text = format!("N;{sides}\n0;12.8;11.2\n10;13.3;11.7\n20;13.8;12.2\n30;14.3;12.7\n40;14.8;13.2\n");
         let curves = parse(text.as_bytes(), Path::new("s.csv"), &import).unwrap().curves;
         assert_eq!(curves.len(), 1, "{sides}");
         assert!((curves[0].crack_length[4] - 14.0 * MM).abs() < 1e-12, "{sides}");
     }
-    let named = Import {
-        columns: ColumnNames { length: vec![column("S1"), column("S2")], ..ColumnNames::default() },
-        ..import.clone()
-    };
+    let named =
+        Import { columns: ColumnNames { length: vec![column("S1"), column("S2")], ..ColumnNames::default() }, ..import.clone() };
     let text = "Cycles;S1;S2\n0;12.8;11.2\n10;13.3;11.7\n20;13.8;12.2\n30;14.3;12.7\n40;14.8;13.2\n";
     assert_eq!(parse(text.as_bytes(), Path::new("w.csv"), &import).unwrap().curves.len(), 2);
     assert_eq!(parse(text.as_bytes(), Path::new("w.csv"), &named).unwrap().curves.len(), 1);
@@ -289,16 +336,40 @@ fn workbook(sheets: &[(&str, Vec<Vec<String>>)]) -> Vec<u8> {
         zip.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
         zip.write_all(text.as_bytes()).unwrap();
     };
-    let each = |of: &dyn Fn(usize, &str) -> String| -> String { sheets.iter().enumerate().map(|(i, (name, _))| of(i + 1, name)).collect() };
+    let each = |of: &dyn Fn(usize, &str) -> String| -> String {
+        sheets.iter().enumerate().map(|(i, (name, _))| of(i + 1, name)).collect()
+    };
     let head = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>";
     let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
     let relations = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
-    put("[Content_Types].xml", format!("{head}<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"><Default Extension=\"xml\" ContentType=\"application/xml\"/></Types>"));
-    put("_rels/.rels", format!("{head}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship Id=\"rId1\" Type=\"{relations}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"));
-    put("xl/workbook.xml", format!("{head}<workbook xmlns=\"{main}\" xmlns:r=\"{relations}\"><sheets>{}</sheets></workbook>",
-        each(&|i, name| format!("<sheet name=\"{name}\" sheetId=\"{i}\" r:id=\"rId{i}\"/>"))));
-    put("xl/_rels/workbook.xml.rels", format!("{head}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">{}</Relationships>",
-        each(&|i, _| format!("<Relationship Id=\"rId{i}\" Type=\"{relations}/worksheet\" Target=\"worksheets/sheet{i}.xml\"/>"))));
+    put(
+        "[Content_Types].xml",
+        format!(
+            "{head}<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"><Default Extension=\"xml\" ContentType=\"application/xml\"/></Types>"
+        ),
+    );
+    put(
+        "_rels/.rels",
+        format!(
+            "{head}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship Id=\"rId1\" Type=\"{relations}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"
+        ),
+    );
+    put(
+        "xl/workbook.xml",
+        format!(
+            "{head}<workbook xmlns=\"{main}\" xmlns:r=\"{relations}\"><sheets>{}</sheets></workbook>",
+            each(&|i, name| format!("<sheet name=\"{name}\" sheetId=\"{i}\" r:id=\"rId{i}\"/>"))
+        ),
+    );
+    put(
+        "xl/_rels/workbook.xml.rels",
+        format!(
+            "{head}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">{}</Relationships>",
+            each(&|i, _| format!(
+                "<Relationship Id=\"rId{i}\" Type=\"{relations}/worksheet\" Target=\"worksheets/sheet{i}.xml\"/>"
+            ))
+        ),
+    );
     for (i, (_, rows)) in sheets.iter().enumerate() {
         let cell = |row: usize, column: usize, text: &str| {
             let place = format!("{}{}", char::from(b'A' + column as u8), row + 1);
@@ -312,7 +383,10 @@ fn workbook(sheets: &[(&str, Vec<Vec<String>>)]) -> Vec<u8> {
             format!("<row r=\"{}\">{cells}</row>", row + 1)
         };
         let rows: String = rows.iter().enumerate().map(row).collect();
-        put(&format!("xl/worksheets/sheet{}.xml", i + 1), format!("{head}<worksheet xmlns=\"{main}\"><sheetData>{rows}</sheetData></worksheet>"));
+        put(
+            &format!("xl/worksheets/sheet{}.xml", i + 1),
+            format!("{head}<worksheet xmlns=\"{main}\"><sheetData>{rows}</sheetData></worksheet>"),
+        );
     }
     zip.finish().unwrap().into_inner()
 }
@@ -351,7 +425,9 @@ fn workbooks_are_read_by_sheet() {
 
 #[test]
 fn loads_are_read_in_every_unit() {
-    let text = |header: &str, largest: f64, smallest: f64| format!("N;a (mm);{header}\n{}", lines(|n, a| format!("{n};{a:.2};{largest};{smallest}")));
+    let text = |header: &str, largest: f64, smallest: f64| {
+        format!("N;a (mm);{header}\n{}", lines(|n, a| format!("{n};{a:.2};{largest};{smallest}")))
+    };
     let newtons = [
         ("force_max_kn;force_min_kn", 6.0, 0.6),
         ("Maximum Axial Force (kN);Minimum Axial Force (kN)", 6.0, 0.6),
@@ -363,11 +439,13 @@ fn loads_are_read_in_every_unit() {
         ("Pmax kN;stress ratio", 6.0, 0.1),
     ];
     for (header, largest, smallest) in newtons {
-        let curve = parse(text(header, largest, smallest).as_bytes(), Path::new("l.csv"), &Import::default()).unwrap().curves.remove(0);
+        let curve =
+            parse(text(header, largest, smallest).as_bytes(), Path::new("l.csv"), &Import::default()).unwrap().curves.remove(0);
         let loads = curve.loads.unwrap_or_else(|| panic!("{header}"));
         assert!((loads.maximum[3] / 6000.0 - 1.0).abs() < 1e-9 && (loads.ratio[3] - 0.1).abs() < 1e-9, "{header}: {loads:?}");
     }
-    let stress = parse(text("stress_max_mpa;stress_min_mpa", 60.0, 6.0).as_bytes(), Path::new("s.csv"), &Import::default()).unwrap();
+    let stress =
+        parse(text("stress_max_mpa;stress_min_mpa", 60.0, 6.0).as_bytes(), Path::new("s.csv"), &Import::default()).unwrap();
     assert!((stress.curves[0].loads.as_ref().unwrap().maximum[0] / 60e6 - 1.0).abs() < 1e-12);
     // Without a unit: no load where it does not change, a refusal where it does, and the user's word for both.
     let still = text("Pmax;Pmin", 6.0, 0.6);

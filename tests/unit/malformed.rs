@@ -45,8 +45,13 @@ enum Damage {
 /// Readings: cycles, and crack length in units of its last decimal.
 type Readings = Vec<(u64, u64)>;
 
-const HEADERS: [[&str; 2]; 5] =
-    [["Cycles", "Crack length (mm)"], ["N", "a [mm]"], ["Cycle Count", "Length, mm"], ["cycles", "crack_length_mm"], ["Zyklen", "a/mm"]];
+const HEADERS: [[&str; 2]; 5] = [
+    ["Cycles", "Crack length (mm)"],
+    ["N", "a [mm]"],
+    ["Cycle Count", "Length, mm"],
+    ["cycles", "crack_length_mm"],
+    ["Zyklen", "a/mm"],
+];
 
 fn writings() -> impl Strategy<Value = Writing> {
     let signs = (
@@ -62,7 +67,18 @@ fn writings() -> impl Strategy<Value = Writing> {
         let (header, preamble, units_row, mark, trailing, others) = form;
         let thousands = thousands.filter(|sign| *sign != decimal);
         Writing {
-            separator, decimal, thousands, decimals, cycle_decimals, header, preamble, units_row, mark, trailing, line_end, others,
+            separator,
+            decimal,
+            thousands,
+            decimals,
+            cycle_decimals,
+            header,
+            preamble,
+            units_row,
+            mark,
+            trailing,
+            line_end,
+            others,
         }
     })
 }
@@ -232,7 +248,13 @@ fn check(writing: &Writing, readings: &Readings, damage: &Damage) -> Result<bool
                     (thousand(curve.cycles[i], *n) && (curve.crack_length[i] / a - 1.0).abs() < 1e-9)
                         || (thousand(curve.crack_length[i], *a) && (curve.cycles[i] - n).abs() <= 1e-9 * n)
                 });
-                prop_assert!(known || (may_differ && !mistaken), "reading {}: {:?}\n{}", i, (curve.cycles[i], curve.crack_length[i]), shown);
+                prop_assert!(
+                    known || (may_differ && !mistaken),
+                    "reading {}: {:?}\n{}",
+                    i,
+                    (curve.cycles[i], curve.crack_length[i]),
+                    shown
+                );
             }
             let wrong = (0..curve.cycles.len()).filter(|&i| !truths.iter().any(|truth| is(i, *truth))).count();
             prop_assert!(wrong <= 1, "{} readings are wrong:\n{}", wrong, shown);
@@ -276,7 +298,8 @@ fn many_files_by_chance_are_read_or_refused() {
 #[test]
 #[ignore = "long: measures time on an idle machine"]
 fn a_million_readings_are_read_in_two_seconds() {
-    let rows: String = (0..1_000_000).map(|i| format!("{};{:.4}\n", 10 * i, 10.0 + 1e-5 * f64::from(i)).replace('.', ",")).collect();
+    let rows: String =
+        (0..1_000_000).map(|i| format!("{};{:.4}\n", 10 * i, 10.0 + 1e-5 * f64::from(i)).replace('.', ",")).collect();
     let bytes = format!("Cycles;Crack length (mm)\n{rows}").into_bytes();
     let started = std::time::Instant::now();
     let measured = parse(&bytes, Path::new("million.csv"), &Import::default()).unwrap();

@@ -62,7 +62,9 @@ const DOUBTS: [(&str, &str, &str); 3] = [
 fn tests_that_no_law_can_hold_say_so() {
     for (readings, specimen, words) in DOUBTS {
         let outcome = match specimen.ends_with("case.toml") {
-            true => practice(specimen).map(|case| CalibrationCase::from_file(&case, &[]).and_then(|case| calibrate(&case, &Silent))),
+            true => {
+                practice(specimen).map(|case| CalibrationCase::from_file(&case, &[]).and_then(|case| calibrate(&case, &Silent)))
+            }
             false => fitted(readings, specimen),
         };
         let said = match outcome {

@@ -97,7 +97,15 @@ fn cycles(words: &[&str], bracket: &[&str]) -> Option<Meaning> {
     let in_word = |words: &[&str]| {
         words.iter().find_map(|word| {
             let ends = word.ends_with("cycles") || word.ends_with("cycle");
-            if !ends { None } else if KILO.contains(word) { Some(CycleUnit::Kilocycles) } else if MEGA.contains(word) { Some(CycleUnit::Megacycles) } else { None }
+            if !ends {
+                None
+            } else if KILO.contains(word) {
+                Some(CycleUnit::Kilocycles)
+            } else if MEGA.contains(word) {
+                Some(CycleUnit::Megacycles)
+            } else {
+                None
+            }
         })
     };
     let of_count = |words: &[&str]| words.last().is_some_and(|word| COUNTS.contains(word));
@@ -114,7 +122,8 @@ fn cycles(words: &[&str], bracket: &[&str]) -> Option<Meaning> {
 }
 
 fn cycle_unit(words: &[&str]) -> Option<CycleUnit> {
-    let words: Vec<&str> = words.iter().map(|word| word.trim_start_matches('x')).filter(|word| !["", "in", "of"].contains(word)).collect();
+    let words: Vec<&str> =
+        words.iter().map(|word| word.trim_start_matches('x')).filter(|word| !["", "in", "of"].contains(word)).collect();
     match words.as_slice() {
         ["cycles" | "cycle" | "cyc" | "1" | "zyklen" | "count" | "counts" | "lw" | "n"] => Some(CycleUnit::Cycles),
         [one] | [one, "cycles" | "cycle" | "zyklen"] if KILO.contains(one) => Some(CycleUnit::Kilocycles),
@@ -151,7 +160,8 @@ fn length_unit(words: &[&str]) -> Option<LengthUnit> {
 }
 
 fn load(words: &[&str], bracket: &[&str]) -> Option<Meaning> {
-    let ratio = matches!(words, ["r"] | ["r", "ratio"] | ["stress" | "load" | "force", "ratio"] | ["stress" | "load", "ratio", "r"]);
+    let ratio =
+        matches!(words, ["r"] | ["r", "ratio"] | ["stress" | "load" | "force", "ratio"] | ["stress" | "load", "ratio", "r"]);
     if ratio && (bracket.is_empty() || bracket == ["-"]) {
         return Some(Meaning::Load(LoadRole::Ratio, Named::No));
     }
@@ -231,9 +241,8 @@ pub(crate) fn with_unit(name: &str, unit: &str) -> String {
 
 /// Whether a cell of a row below the header is a unit, or blank.
 pub(crate) fn is_unit_or_blank(cell: &str) -> bool {
-    const MORE: [&[&str]; 12] = [
-        &["s"], &["sec"], &["h"], &["hz"], &["c"], &["f"], &["k"], &["v"], &["mm", "cycle"], &["cm"], &["um"], &["gpa"],
-    ];
+    const MORE: [&[&str]; 12] =
+        [&["s"], &["sec"], &["h"], &["hz"], &["c"], &["f"], &["k"], &["v"], &["mm", "cycle"], &["cm"], &["um"], &["gpa"]];
     let text = cell.trim_matches(['(', ')', '[', ']', '{', '}', ' ', '.']);
     if text.is_empty() || text.chars().all(|c| "-–—/%°1".contains(c)) {
         return true;
@@ -247,4 +256,3 @@ pub(crate) fn is_unit_or_blank(cell: &str) -> bool {
         || MORE.contains(&words.as_slice())
         || (k_or_stress && words.len() <= 4)
 }
-

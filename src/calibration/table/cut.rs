@@ -127,10 +127,10 @@ fn is_row_of_units(row: &Row) -> bool {
 fn merit(rows: &[Row], place: Place) -> Merit {
     let body = || rows[place.body..].iter().filter(|row| !row.is_blank());
     let fits = body().all(|row| width(row) <= place.columns && row.cells.len() >= place.columns);
-    let (numbers, cells) = body().flat_map(|row| row.cells.iter()).filter(|cell| !cell.is_empty()).fold(
-        (0_usize, 0_usize),
-        |(numbers, cells), cell| (numbers + usize::from(is_number(cell)), cells + 1),
-    );
+    let (numbers, cells) = body()
+        .flat_map(|row| row.cells.iter())
+        .filter(|cell| !cell.is_empty())
+        .fold((0_usize, 0_usize), |(numbers, cells), cell| (numbers + usize::from(is_number(cell)), cells + 1));
     Merit(place.named, fits, numbers as f64 / cells.max(1) as f64)
 }
 
@@ -169,10 +169,9 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Resu
         None => (1..=place.columns).map(|column| format!("column {column}")).collect(),
     };
     let units = place.header.filter(|header| header + 1 < place.body).map(|header| cells(&rows[header + 1]));
-    let names = units.as_ref().map_or_else(
-        || header.clone(),
-        |units| header.iter().zip(units).map(|(name, unit)| with_unit(name, unit)).collect(),
-    );
+    let names = units
+        .as_ref()
+        .map_or_else(|| header.clone(), |units| header.iter().zip(units).map(|(name, unit)| with_unit(name, unit)).collect());
     let header_line = place.header.map_or(0, |header| rows[header].line);
     rows.drain(..place.body);
     // Programs that test in blocks repeat the header over each.

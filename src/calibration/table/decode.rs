@@ -24,7 +24,8 @@ pub(super) fn text<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>> {
             Err(_) => WINDOWS_1252.decode(bytes).0,
         },
     };
-    let strange = |c: char| (c.is_control() && !matches!(c, '\t' | '\n' | '\r' | '\u{b}' | '\u{c}' | '\u{85}')) || c == '\u{fffd}';
+    let strange =
+        |c: char| (c.is_control() && !matches!(c, '\t' | '\n' | '\r' | '\u{b}' | '\u{c}' | '\u{85}')) || c == '\u{fffd}';
     if let Some(place) = text.find(strange) {
         let line = 1 + text[..place].matches('\n').count();
         return Err(Fault { line: Some(line), ..whole_file(file) }

@@ -116,6 +116,11 @@ impl Table {
         Fault { file: &self.file, line: Some(row.line), key: Some(&self.header[column]), value: Some(value) }
     }
 
+    /// Cells of the first rows.
+    pub(crate) fn first_cells(&self) -> Vec<Vec<String>> {
+        self.rows.iter().take(ROWS_SHOWN).map(|row| row.cells.iter().map(shown).collect()).collect()
+    }
+
     /// The first rows as they were cut, one a line, for a message about a shape that is not known.
     pub(crate) fn first_rows(&self) -> String {
         let mut text = match self.separator {

@@ -86,7 +86,9 @@ fn sheet_table(book: &mut Xlsx<Cursor<&[u8]>>, name: &str, file: &Path, import: 
         }
         cells += 1;
         if cells > CELLS_MAX || column >= COLUMNS_MAX {
-            return Err(whole_file(file).error(format!("sheet {name:?} is larger than any table of readings"), "give the readings alone"));
+            return Err(
+                whole_file(file).error(format!("sheet {name:?} is larger than any table of readings"), "give the readings alone")
+            );
         }
         if rows.last().is_none_or(|(last, _)| *last != row) {
             rows.push((row, Vec::new()));

@@ -12,9 +12,7 @@ use super::App;
 use super::documents::{self, JobRequest, check_points, submission};
 use crate::calibration::columns::Shape;
 use crate::calibration::decimal::Decimal;
-use crate::calibration::measured::{
-    ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, MeasuredCurve, Sheet, Survey, survey,
-};
+use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, MeasuredCurve, Sheet, Survey, survey};
 use crate::case::Case;
 use crate::check;
 use crate::error::input;
@@ -35,6 +33,8 @@ pub struct FoundFile {
     file: String,
     /// Column names as written; empty where no table was found.
     header: Vec<String>,
+    /// Cells of the first rows.
+    first_rows: Vec<Vec<String>>,
     /// What its columns are; null where that cannot be told.
     columns: Option<Columns>,
     /// Curves of the good rows.
@@ -55,6 +55,8 @@ pub struct Columns {
     decimal_comma: bool,
     /// What separates columns; empty for stored cells.
     separator: &'static str,
+    /// The key of `measured.columns` of every column; empty for one that is not read or is a specimen of a wide table.
+    keys: Vec<&'static str>,
 }
 
 /// Readings of a specimen.
@@ -139,13 +141,14 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
 }
 
 fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
-    let Survey { header, layout, measured, problems } = survey(content, Path::new(&file), import);
+    let Survey { header, first_rows, layout, measured, problems } = survey(content, Path::new(&file), import);
     let columns = layout.map(|layout| Columns {
         layout: if matches!(layout.shape, Shape::Long { .. }) { "long" } else { "wide" },
         length_unit: LengthUnit::ALL.iter().find(|unit| unit.metres() == layout.length_unit).map_or("mm", |unit| unit.name()),
         cycle_unit: CycleUnit::ALL.iter().find(|unit| unit.cycles() == layout.cycle_unit).map_or("cycles", |unit| unit.name()),
         decimal_comma: layout.decimal == Decimal::Comma,
         separator: layout.separator,
+        keys: layout.shape.keys(header.len()),
     });
     let curve = |curve: MeasuredCurve| FoundCurve {
         specimen: curve.specimen,
@@ -156,6 +159,7 @@ fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
     FoundFile {
         file,
         header,
+        first_rows,
         columns,
         curves: measured.curves.into_iter().map(curve).collect(),
         warnings: measured.warnings,
