@@ -4,7 +4,7 @@
 //! the specimen's own fit. p is that of the median itself, which a few rounds find.
 
 use crate::calibration::criterion::Criterion;
-use crate::calibration::fit::fit_one;
+use crate::calibration::fitted_curve::fit_one;
 use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::{median, pointwise_median};
 use crate::calibration::power_law::PowerLaw;

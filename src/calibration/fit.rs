@@ -1,20 +1,19 @@
 //! The calibration on one page: from measured curves and K of a growing crack to A, p and how sure they are.
 
-use std::borrow::Cow;
-
 use crate::calibration::case_load::at_case_load;
 use crate::calibration::confidence::{Confidence, Lives, confidence};
 use crate::calibration::criterion::Criterion;
 use crate::calibration::estimate::{Estimate, Robust, apart, are_apart, robust_constants};
+pub use crate::calibration::fitted_curve::FittedCurve;
+use crate::calibration::fitted_curve::{as_fitted, fit_one, fitted_curve, own_law};
 use crate::calibration::lack_of_fit::{LackOfFit, lack_of_fit};
 use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::pointwise_median;
-use crate::calibration::misfit::rms_life_error;
 use crate::calibration::outliers::{doubts, readings_apart, robust_line, runs, step_rates};
 use crate::calibration::paris::{self, Paris};
 use crate::calibration::power_law::PowerLaw;
 use crate::calibration::rates::STEP_MIN;
-use crate::calibration::search::{Constants, Target, is_at_end, search, search_a};
+use crate::calibration::search::{Constants, is_at_end};
 use crate::error::{Error, Result, input};
 use crate::fatigue::STEADY_EXPONENTS;
 use crate::units::MM;
@@ -35,23 +34,6 @@ pub struct FitTask<'a> {
     pub criterion: Criterion,
     /// ΔK of the handbook (Pa√m) at a crack length (m).
     pub delta_k: &'a dyn Fn(f64) -> f64,
-}
-
-/// A curve with its fit, cycles counted from the first reading.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FittedCurve {
-    /// Name of the specimen.
-    pub name: String,
-    /// A and p.
-    pub constants: Constants,
-    /// Crack lengths, m.
-    pub crack_length: Vec<f64>,
-    /// Measured cycles.
-    pub cycles_measured: Vec<f64>,
-    /// Fitted cycles at the same lengths.
-    pub cycles_fitted: Vec<f64>,
-    /// Range of load of the growth up to each reading over that of the case.
-    pub load_factor: Vec<f64>,
 }
 
 /// Result of a calibration.
@@ -164,20 +146,15 @@ fn assess(
     let lives = Lives { model: &model, model_per_p: model_per_p.as_deref(), measured: &measured };
     let confidence = confidence(task.criterion, &lives, 1.0 / a);
     // Under changing loads an interval must not reach over two of them.
+    let loads = curve.load_history();
     let lengths = match curve.is_plain() {
         true => paris::lengths(curve.crack_length[0], longest(curve)),
-        false => curve.lengths_reached(),
+        false => loads.lengths.clone(),
     };
-    let delta_k = |length: f64| (task.delta_k)(length) * curve.load_factor_at(length);
+    let delta_k = |length: f64| (task.delta_k)(length) * loads.at(length);
     let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
     let paris = paris::equivalents(&lengths, &model, model_per_p.as_deref(), a, confidence.covariance, &delta_k)?;
     Ok((confidence, paris))
-}
-
-/// The curve as the law would have it.
-fn as_fitted(curve: &MeasuredCurve, Constants { a, p }: Constants, law: &PowerLaw) -> Result<MeasuredCurve> {
-    let cycles = own_law(law, curve).cycles(p, &curve.crack_length)?;
-    Ok(MeasuredCurve { cycles: cycles.into_iter().map(|n| n / a).collect(), ..curve.clone() })
 }
 
 /// What speaks against the readings of the specimens.
@@ -189,32 +166,6 @@ fn remarks(task: &FitTask<'_>) -> Vec<String> {
         lines.push(format!("{more} more remarks of this kind on other readings: `perilife rates` names all"));
     }
     lines
-}
-
-/// The law under the loads of a curve.
-fn own_law<'l>(law: &'l PowerLaw, curve: &MeasuredCurve) -> Cow<'l, PowerLaw> {
-    if curve.is_plain() { Cow::Borrowed(law) } else { Cow::Owned(law.under(curve)) }
-}
-
-/// Fits one curve: A and p, or A at a fixed p.
-pub(super) fn fit_one(curve: &MeasuredCurve, criterion: Criterion, fixed_p: Option<f64>, law: &PowerLaw) -> Result<FittedCurve> {
-    let cycles = curve.cycles_counted();
-    let target = Target { cycles: &cycles, lengths: &curve.crack_length, criterion };
-    let own = own_law(law, curve);
-    let constants = fixed_p.map_or_else(|| search(&own, target), |p| search_a(&own, target, p))?;
-    fitted_curve(curve, constants, law)
-}
-
-fn fitted_curve(curve: &MeasuredCurve, constants: Constants, law: &PowerLaw) -> Result<FittedCurve> {
-    let model = own_law(law, curve).cycles(constants.p, &curve.crack_length)?;
-    Ok(FittedCurve {
-        name: curve.specimen.clone(),
-        constants,
-        crack_length: curve.crack_length.clone(),
-        cycles_fitted: model.iter().map(|n| n / constants.a).collect(),
-        cycles_measured: curve.cycles_counted(),
-        load_factor: curve.step_factors().into_iter().map(|(start, end)| 0.5 * (start + end)).collect(),
-    })
 }
 
 /// What it means that a searched p is an end of its range.
@@ -255,25 +206,5 @@ impl Fit {
     #[must_use]
     pub fn p_error(&self) -> f64 {
         self.confidence.covariance[1][1].max(0.0).sqrt()
-    }
-}
-
-impl FittedCurve {
-    /// Measured cycles at the last reading.
-    #[must_use]
-    pub fn life_measured(&self) -> f64 {
-        self.cycles_measured.last().copied().unwrap_or(f64::NAN)
-    }
-
-    /// Fitted cycles at the length of the last reading.
-    #[must_use]
-    pub fn life_fitted(&self) -> f64 {
-        self.cycles_fitted.last().copied().unwrap_or(f64::NAN)
-    }
-
-    /// Rms life error, see [`rms_life_error`].
-    #[must_use]
-    pub fn rms_life_error(&self) -> f64 {
-        rms_life_error(&self.cycles_fitted, &self.cycles_measured)
     }
 }

@@ -69,6 +69,29 @@ impl Measured {
     }
 }
 
+/// Range of load over that of the case along a crack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadHistory {
+    /// Lengths reached, rising, m.
+    pub lengths: Vec<f64>,
+    /// At the start and the end of the growth up to each of them.
+    factors: Vec<(f64, f64)>,
+}
+
+impl LoadHistory {
+    /// That at which the crack passed a length.
+    #[must_use]
+    pub fn at(&self, length: f64) -> f64 {
+        let to = self.lengths.partition_point(|&reached| reached < length).min(self.lengths.len().saturating_sub(1));
+        let Some(&(start, end)) = self.factors.get(to) else { return 1.0 };
+        if to == 0 {
+            return end;
+        }
+        let share = (length - self.lengths[to - 1]) / (self.lengths[to] - self.lengths[to - 1]);
+        start + share.clamp(0.0, 1.0) * (end - start)
+    }
+}
+
 /// A law belongs to one stress ratio.
 fn ratio_warning(curve: &MeasuredCurve, loads: &Loads, case: &Case) -> Option<String> {
     let given = || loads.ratio.iter().copied().filter(|ratio| !ratio.is_nan());
@@ -99,34 +122,19 @@ impl MeasuredCurve {
         (0..self.cycles.len()).map(of_step).collect()
     }
 
-    /// Lengths at which readings were taken, those left out that noise puts behind an earlier one.
+    /// Loads over the growth of the crack.
     #[must_use]
-    pub fn lengths_reached(&self) -> Vec<f64> {
-        let mut reached: Vec<f64> = Vec::with_capacity(self.crack_length.len());
-        for &length in &self.crack_length {
-            if reached.last().is_none_or(|&last| length > last) {
-                reached.push(length);
+    pub fn load_history(&self) -> LoadHistory {
+        let mut history =
+            LoadHistory { lengths: Vec::with_capacity(self.cycles.len()), factors: Vec::with_capacity(self.cycles.len()) };
+        for (&length, factors) in self.crack_length.iter().zip(self.step_factors()) {
+            // Noise in a reading does not heal a crack.
+            if history.lengths.last().is_none_or(|&last| length > last) {
+                history.lengths.push(length);
+                history.factors.push(factors);
             }
         }
-        reached
-    }
-
-    /// Range of load over that of the case at which the crack passed a length.
-    #[must_use]
-    pub fn load_factor_at(&self, length: f64) -> f64 {
-        if self.load_factor.is_empty() {
-            return 1.0;
-        }
-        let factors = self.step_factors();
-        let mut reached = self.crack_length[0];
-        for (i, &to) in self.crack_length.iter().enumerate().skip(1) {
-            if to > reached && length <= to {
-                let share = ((length - reached) / (to - reached)).max(0.0);
-                return factors[i].0 + share * (factors[i].1 - factors[i].0);
-            }
-            reached = reached.max(to);
-        }
-        factors.last().map_or(1.0, |(_, end)| *end)
+        history
     }
 
     /// Whether the load is the same over some neighbouring readings.

@@ -1,9 +1,10 @@
 //! From the cells of a table to the readings of every specimen, each checked by itself and against the one before.
 
 use crate::calibration::columns::{Column, Layout, LoadColumns, Shape};
-use crate::calibration::decimal::{Decimal, is_number, number};
+use crate::calibration::decimal::Decimal;
 use crate::calibration::loads::Loads;
 use crate::calibration::measured::{Measured, MeasuredCurve, READINGS_MIN, Source};
+use crate::calibration::numerals::{is_number, number};
 use crate::calibration::table::{Fault, Row, Table, whole_file};
 use crate::error::{Error, Result};
 use crate::specimen::LoadMeasure;

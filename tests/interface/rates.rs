@@ -7,10 +7,10 @@ use tempfile::tempdir;
 use crate::cli::{assert_refused, perilife, texts};
 use crate::fatigue_test::{calibration, lengths, readings};
 
-/// Writes a test of 24 readings by `row` of cycles and length in mm, and its specimen.
-fn folder(header: &str, force: impl Fn(f64) -> f64, row: impl Fn(f64, f64) -> String) -> tempfile::TempDir {
+/// Writes a test by `row` of cycles and length in mm, read every `step` mm, and its specimen.
+fn folder(step: f64, header: &str, force: impl Fn(f64) -> f64, row: impl Fn(f64, f64) -> String) -> tempfile::TempDir {
     let dir = tempdir().unwrap();
-    let made = readings(1e-8, 3.0, &lengths(12.0, 30.0, 0.75), force, |_| 1.0);
+    let made = readings(1e-8, 3.0, &lengths(12.0, 30.0, step), force, |_| 1.0);
     let rows: String = made.iter().map(|&(n, a)| row(n, a) + "\n").collect();
     fs::write(dir.path().join("lab.txt"), format!("{header}\n{rows}")).unwrap();
     fs::write(dir.path().join("ct.toml"), calibration("lab.txt", "")).unwrap();
@@ -28,11 +28,12 @@ fn law(output: &std::process::Output) -> (f64, f64) {
 fn columns_decimal_sign_and_units_are_options() {
     // Whole thousands alone, in names that nobody knows.
     let dir = folder(
+        1.0,
         "A;B;C",
         |_| 5.4,
         |n, a| {
             let n = format!("{:.0}", n + 1000.0);
-            format!("x;{}.{};{}", &n[..n.len() - 3], &n[n.len() - 3..], (a * 4.0).round() / 4.0)
+            format!("x;{}.{};{}", &n[..n.len() - 3], &n[n.len() - 3..], a)
         },
     );
     let run = |options: &[&str]| {
@@ -80,11 +81,12 @@ fn columns_decimal_sign_and_units_are_options() {
 #[test]
 fn loads_of_readings_are_used_and_missed_ones_told() {
     let force = |a: f64| if a > 21.0 { 6.48 } else { 5.4 };
-    let with = folder("N;a (mm);Pmax (kN);Pmin (kN)", force, |n, a| format!("{n};{a};{};{}", force(a) / 0.9, force(a) / 9.0));
+    let with =
+        folder(0.75, "N;a (mm);Pmax (kN);Pmin (kN)", force, |n, a| format!("{n};{a};{};{}", force(a) / 0.9, force(a) / 9.0));
     let rates = ["rates", "lab.txt", "--specimen", "ct.toml", "--json"];
     let (c, m) = law(&perilife(with.path(), &rates));
     assert!((m - 3.0).abs() < 0.05 && (c * 1e3_f64 / 1e-5 - 1.0).abs() < 0.2, "{c:e} {m}");
-    let without = folder("N;a (mm)", force, |n, a| format!("{n};{a}"));
+    let without = folder(0.75, "N;a (mm)", force, |n, a| format!("{n};{a}"));
     let output = perilife(without.path(), &rates);
     let (_, stderr) = texts(&output);
     assert!(stderr.contains("lab.txt: lines 14 to 15: no one power of ΔK can hold"), "{stderr}");
@@ -93,7 +95,7 @@ fn loads_of_readings_are_used_and_missed_ones_told() {
 
 #[test]
 fn a_law_that_no_metal_has_is_marked() {
-    let dir = folder("megacycles;a (mm)", |_| 5.4, |n, a| format!("{n};{a}"));
+    let dir = folder(0.75, "megacycles;a (mm)", |_| 5.4, |n, a| format!("{n};{a}"));
     let output = perilife(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml", "--json"]);
     assert_eq!(output.status.code(), Some(0));
     let (stdout, stderr) = texts(&output);
@@ -112,7 +114,7 @@ fn a_law_that_no_metal_has_is_marked() {
 fn sides_that_differ_too_much_are_flagged() {
     // 0.25 B is 3 mm.
     for (apart, uneven) in [(2.9, false), (3.1, true)] {
-        let dir = folder("N;front (mm);back (mm)", |_| 5.4, |n, a| format!("{n};{};{}", a + apart / 2.0, a - apart / 2.0));
+        let dir = folder(0.75, "N;front (mm);back (mm)", |_| 5.4, |n, a| format!("{n};{};{}", a + apart / 2.0, a - apart / 2.0));
         let output = perilife(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml"]);
         let (stdout, stderr) = texts(&output);
         assert_eq!(output.status.code(), Some(0), "{stderr}");

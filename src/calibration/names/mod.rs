@@ -61,18 +61,18 @@ pub(crate) fn meaning(name: &str) -> Meaning {
         ["a"] if bracket.is_empty() && name.trim() == "A" => return Meaning::Unknown,
         _ => {}
     }
-    if words.iter().any(|word| SPECIMEN.contains(word)) && all_of(&words, &[SPECIMEN, SPECIMEN_MORE]) {
+    if words.iter().any(|word| is_in(SPECIMEN, word)) && all_of(&words, &[SPECIMEN, SPECIMEN_MORE]) {
         return Meaning::Specimen;
     }
     cycles(&words, &bracket).or_else(|| load(&words, &bracket)).or_else(|| length(&words, &bracket)).unwrap_or_else(|| {
-        let known = words.iter().any(|word| OTHER.contains(word) || MAX.contains(word) || MIN.contains(word));
+        let known = words.iter().any(|word| is_in(OTHER, word) || is_in(MAX, word) || is_in(MIN, word));
         if known || load(&words, &[]).is_some() { Meaning::Other } else { Meaning::Unknown }
     })
 }
 
 /// Whether every word is one of the lists.
-fn all_of(words: &[&str], lists: &[&[&str]]) -> bool {
-    words.iter().all(|word| lists.iter().any(|list| list.contains(word)))
+fn all_of(words: &[&str], lists: &[&str]) -> bool {
+    words.iter().all(|word| lists.iter().any(|list| is_in(list, word)))
 }
 
 /// A unit at the end: of the bracket if there is one, else of the words. Gives the words without it.
@@ -99,18 +99,18 @@ fn cycles(words: &[&str], bracket: &[&str]) -> Option<Meaning> {
             let ends = word.ends_with("cycles") || word.ends_with("cycle");
             if !ends {
                 None
-            } else if KILO.contains(word) {
+            } else if is_in(KILO, word) {
                 Some(CycleUnit::Kilocycles)
-            } else if MEGA.contains(word) {
+            } else if is_in(MEGA, word) {
                 Some(CycleUnit::Megacycles)
             } else {
                 None
             }
         })
     };
-    let of_count = |words: &[&str]| words.last().is_some_and(|word| COUNTS.contains(word));
+    let of_count = |words: &[&str]| words.last().is_some_and(|word| is_in(COUNTS, word));
     unit_of(words, bracket, cycle_unit).into_iter().find_map(|(words, unit)| {
-        let core = words.iter().any(|word| CYCLES.contains(word)) || of_count(words);
+        let core = words.iter().any(|word| is_in(CYCLES, word)) || of_count(words);
         if !core || !all_of(words, &[CYCLES, CYCLES_MORE]) {
             return None;
         }
@@ -126,8 +126,8 @@ fn cycle_unit(words: &[&str]) -> Option<CycleUnit> {
         words.iter().map(|word| word.trim_start_matches('x')).filter(|word| !["", "in", "of"].contains(word)).collect();
     match words.as_slice() {
         ["cycles" | "cycle" | "cyc" | "1" | "zyklen" | "count" | "counts" | "lw" | "n"] => Some(CycleUnit::Cycles),
-        [one] | [one, "cycles" | "cycle" | "zyklen"] if KILO.contains(one) => Some(CycleUnit::Kilocycles),
-        [one] | [one, "cycles" | "cycle" | "zyklen"] if MEGA.contains(one) => Some(CycleUnit::Megacycles),
+        [one] | [one, "cycles" | "cycle" | "zyklen"] if is_in(KILO, one) => Some(CycleUnit::Kilocycles),
+        [one] | [one, "cycles" | "cycle" | "zyklen"] if is_in(MEGA, one) => Some(CycleUnit::Megacycles),
         ["10", "3"] | ["10", "3", "cycles"] => Some(CycleUnit::Kilocycles),
         ["10", "6"] | ["10", "6", "cycles"] => Some(CycleUnit::Megacycles),
         _ => None,
@@ -136,9 +136,9 @@ fn cycle_unit(words: &[&str]) -> Option<CycleUnit> {
 
 fn length(words: &[&str], bracket: &[&str]) -> Option<Meaning> {
     unit_of(words, bracket, length_unit).into_iter().find_map(|(words, unit)| {
-        let has = |list: &[&str]| words.iter().any(|word| list.contains(word));
+        let has = |list: &str| words.iter().any(|word| is_in(list, word));
         let core = has(LENGTH) || words == ["crack", "size"];
-        if words == ["2a"] || (words.contains(&"2a") && all_of(words, &[&["2a"], LENGTH, LENGTH_MORE])) {
+        if words == ["2a"] || (words.contains(&"2a") && all_of(words, &["2a", LENGTH, LENGTH_MORE])) {
             return Some(Meaning::Double(unit));
         }
         if core && all_of(words, &[LENGTH, LENGTH_MORE]) {
@@ -166,7 +166,7 @@ fn load(words: &[&str], bracket: &[&str]) -> Option<Meaning> {
         return Some(Meaning::Load(LoadRole::Ratio, Named::No));
     }
     unit_of(words, bracket, load_unit).into_iter().find_map(|(words, unit)| {
-        let has = |list: &[&str]| words.iter().any(|word| list.contains(word));
+        let has = |list: &str| words.iter().any(|word| is_in(list, word));
         let whole = [MAX_WORDS, MIN_WORDS, MAX_STRESS, MIN_STRESS];
         let core = has(FORCE) || has(STRESS) || whole.iter().any(|list| has(list));
         let stress = has(STRESS) || has(MAX_STRESS) || has(MIN_STRESS);

@@ -8,11 +8,11 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use super::separator::{Line, Separator};
-use super::{Fault, Row, Table, whole_file};
+use super::{COLUMNS_MAX, Fault, Row, Table, whole_file};
 use crate::calibration::columns::names_a_test;
-use crate::calibration::decimal::is_number;
 use crate::calibration::import::Import;
 use crate::calibration::names::{is_unit_or_blank, with_unit};
+use crate::calibration::numerals::is_number;
 use crate::error::Result;
 
 /// Lines that separators are compared on.
@@ -61,7 +61,7 @@ pub(super) fn text(text: &str, file: &Path, import: &Import) -> Result<Table> {
     candidates.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(std::cmp::Ordering::Equal));
     let Some(&(_, best)) = candidates.first() else {
         return Err(Fault { line: Some(lines[0].0), value: Some(lines[0].1), ..whole_file(file) }.error(
-            "is no table of two columns or more, separated by tabs, semicolons, commas, vertical bars or blanks",
+            "is no table of 2 to 4096 columns, separated by tabs, semicolons, commas, vertical bars or blanks",
             "give at least the columns cycles and crack_length_mm",
         ));
     };
@@ -100,8 +100,11 @@ pub(super) fn place(rows: &[Row], import: &Import) -> Option<Place> {
     let head = &rows[..rows.len().min(PREAMBLE_MAX)];
     let below = |header: usize| header + 1 + usize::from(rows.get(header + 1).is_some_and(is_row_of_units));
     let names = |row: &Row| row.cells.iter().map(str::to_owned).collect::<Vec<String>>();
-    let named: Vec<usize> =
-        (0..head.len()).filter(|&row| !has_numbers(&rows[row]) && names_a_test(&names(&rows[row]), import)).collect();
+    let named: Vec<usize> = (0..head.len())
+        .filter(|&row| {
+            rows[row].cells.len() <= COLUMNS_MAX && !has_numbers(&rows[row]) && names_a_test(&names(&rows[row]), import)
+        })
+        .collect();
     // A line of the preamble may speak of cycles and crack length too; below the header stand numbers.
     let above_numbers = named.iter().find(|&&row| rows.get(below(row)).is_some_and(has_numbers));
     let header = above_numbers.or(named.first()).copied();
@@ -116,7 +119,7 @@ pub(super) fn place(rows: &[Row], import: &Import) -> Option<Place> {
         (None, None) => (Some(0), 1.min(rows.len()), 0),
     };
     let columns = width(rows.get(width_of)?);
-    (columns >= 2).then_some(Place { header, body, columns, named: !named.is_empty() })
+    (2..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: !named.is_empty() })
 }
 
 /// A row below the header of nothing but units.
@@ -161,7 +164,7 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
 /// Less than two columns.
 pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Result<Table> {
     let Some(place) = place(&rows, import) else {
-        return Err(whole_file(file).error("is no table of two columns or more", "give at least cycles and crack length"));
+        return Err(whole_file(file).error("is no table of 2 to 4096 columns", "give at least cycles and crack length"));
     };
     let cells = |row: &Row| (0..place.columns).map(|column| row.cell(column).to_owned()).collect::<Vec<String>>();
     let header = match place.header {

@@ -20,6 +20,9 @@ use crate::error::{Error, InputError, Result};
 /// Longest cell or row repeated in a message.
 const SHOWN: usize = 40;
 
+/// Most columns of a table of readings.
+const COLUMNS_MAX: usize = 4096;
+
 /// Rows that a message about a table of unknown shape shows.
 const ROWS_SHOWN: usize = 5;
 

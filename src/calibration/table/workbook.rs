@@ -8,7 +8,7 @@ use std::path::Path;
 use calamine::{Data, DataRef, Reader, Xlsx, XlsxError};
 use csv::StringRecord;
 
-use super::{Fault, Row, Table, cut, whole_file};
+use super::{COLUMNS_MAX, Fault, Row, Table, cut, whole_file};
 use crate::calibration::columns::names_a_test;
 use crate::calibration::import::{Import, Sheet};
 use crate::error::{Error, Result};
@@ -18,8 +18,6 @@ use crate::units::unmistakable;
 const UNPACKED_MAX: u64 = 1 << 30;
 /// Most cells read of a sheet.
 const CELLS_MAX: usize = 20_000_000;
-/// Most columns of a sheet of readings.
-const COLUMNS_MAX: u32 = 4096;
 
 /// Whether the bytes are those of a workbook.
 pub(super) fn is_workbook(bytes: &[u8], file: &Path) -> bool {
@@ -85,7 +83,7 @@ fn sheet_table(book: &mut Xlsx<Cursor<&[u8]>>, name: &str, file: &Path, import: 
             continue;
         }
         cells += 1;
-        if cells > CELLS_MAX || column >= COLUMNS_MAX {
+        if cells > CELLS_MAX || column as usize >= COLUMNS_MAX {
             return Err(
                 whole_file(file).error(format!("sheet {name:?} is larger than any table of readings"), "give the readings alone")
             );
