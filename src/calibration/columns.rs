@@ -89,13 +89,14 @@ fn lengths_and_sides(table: &Table, roles: &Roles, import: &Import) -> Result<(V
 fn loads(table: &Table, roles: &Roles, import: &Import, warnings: &mut Vec<String>) -> Result<LoadColumns> {
     let mut found = LoadColumns::default();
     let mut stress: Option<(bool, usize)> = None;
-    for role in [LoadRole::Max, LoadRole::Min, LoadRole::Ratio] {
+    for role in [LoadRole::Max, LoadRole::Min, LoadRole::Range, LoadRole::Ratio] {
         let places = roles.places(|meaning| matches!(meaning, Meaning::Load(own, _) if *own == role));
         let Some(&index) = places.first() else { continue };
         if let Some(&second) = places.get(1) {
             let key = match role {
                 LoadRole::Max => "force_max",
                 LoadRole::Min => "force_min",
+                LoadRole::Range => "force_range",
                 _ => "stress_ratio",
             };
             return Err(says_the_same(table, second, key));
@@ -112,10 +113,14 @@ fn loads(table: &Table, roles: &Roles, import: &Import, warnings: &mut Vec<Strin
         }
         stress = Some((unit.is_stress(), index));
         let column = Some(Column { index, factor: unit.si() });
-        if role == LoadRole::Max { found.maximum = column } else { found.minimum = column }
+        match role {
+            LoadRole::Max => found.maximum = column,
+            LoadRole::Min => found.minimum = column,
+            _ => found.range = column,
+        }
     }
     found.is_stress = stress.is_some_and(|(is_stress, _)| is_stress);
-    if found.maximum.is_none() {
+    if found.maximum.is_none() && found.range.is_none() {
         // Neither a minimum nor a ratio alone says how large a cycle is.
         return Ok(LoadColumns::default());
     }

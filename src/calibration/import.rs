@@ -124,6 +124,8 @@ pub struct ColumnNames {
     pub force_max: Option<ColumnName>,
     /// Smallest force, or stress, of a cycle.
     pub force_min: Option<ColumnName>,
+    /// Largest less smallest force, or stress, of a cycle.
+    pub force_range: Option<ColumnName>,
     /// Largest gross stress of a cycle.
     pub stress_max: Option<ColumnName>,
     /// Smallest gross stress of a cycle.
@@ -134,8 +136,8 @@ pub struct ColumnNames {
 
 impl ColumnNames {
     /// Keys, in the order of the fields.
-    pub const KEYS: [&'static str; 8] =
-        ["cycles", "length", "specimen", "force_max", "force_min", "stress_max", "stress_min", "stress_ratio"];
+    pub const KEYS: [&'static str; 9] =
+        ["cycles", "length", "specimen", "force_max", "force_min", "force_range", "stress_max", "stress_min", "stress_ratio"];
 
     /// Names a column as `key=name` of the option `--column` does.
     ///
@@ -161,6 +163,7 @@ impl ColumnNames {
             "specimen" => &mut self.specimen,
             "force_max" => &mut self.force_max,
             "force_min" => &mut self.force_min,
+            "force_range" => &mut self.force_range,
             "stress_max" => &mut self.stress_max,
             "stress_min" => &mut self.stress_min,
             "stress_ratio" => &mut self.stress_ratio,

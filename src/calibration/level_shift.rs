@@ -2,7 +2,7 @@
 //!
 //! A load that was stepped or shed, or a counter that jumped, shows as two levels of rate at equal ΔK. Compared are one line
 //! `ln da/dN = ln C + m ln ΔK` and two with a common m, the second beginning at the split that fits best:
-//! `F = (S₁ - S₂) / (S₂ / (n - 3))` with the sums of squares S of both (Draper and Smith, Applied Regression Analysis, 1998, chapter 23).
+//! `F = (S₁ - S₂) / (S₂ / (n - 3))` with the sums of squares S of both (test of nested models; Draper and Smith, Applied Regression Analysis, 1998).
 
 use crate::calibration::measured::{MeasuredCurve, round_off};
 use crate::calibration::outliers::{Run, StepRate, place};

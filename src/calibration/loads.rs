@@ -20,6 +20,8 @@ const SAME_RATIO: f64 = 0.02;
 pub struct Loads {
     /// Force (N) or gross stress (Pa).
     pub measure: LoadMeasure,
+    /// Whether `maximum` holds ranges.
+    pub is_range: bool,
     /// Largest load of a cycle.
     pub maximum: Vec<f64>,
     /// Smallest over largest load; NaN where the file does not say it, and that of the case holds.
@@ -28,12 +30,12 @@ pub struct Loads {
 
 impl Loads {
     pub(crate) fn empty(measure: LoadMeasure) -> Self {
-        Loads { measure, maximum: Vec::new(), ratio: Vec::new() }
+        Loads { measure, is_range: false, maximum: Vec::new(), ratio: Vec::new() }
     }
 
     pub(crate) fn of_readings(&self, readings: &[usize]) -> Self {
         let some = |of: &[f64]| readings.iter().filter_map(|&reading| of.get(reading).copied()).collect();
-        Loads { measure: self.measure, maximum: some(&self.maximum), ratio: some(&self.ratio) }
+        Loads { maximum: some(&self.maximum), ratio: some(&self.ratio), ..*self }
     }
 }
 
@@ -57,8 +59,12 @@ impl Measured {
                     return Err(fault.error(problem, "give columns of force_max and force_min"));
                 }
             };
-            let share = |ratio: f64| 1.0 - if ratio.is_nan() { case.loading.ratio } else { ratio }.max(0.0);
-            let factor = |(maximum, ratio): (&f64, &f64)| maximum * per_load * share(*ratio) / case_range;
+            let factor = |(&load, &ratio): (&f64, &f64)| {
+                let ratio = if ratio.is_nan() { case.loading.ratio } else { ratio };
+                let maximum = if loads.is_range { load / (1.0 - ratio) } else { load };
+                // As for the case, compression does not open a crack.
+                maximum * per_load * (1.0 - ratio.max(0.0)) / case_range
+            };
             let factors: Vec<f64> = loads.maximum.iter().zip(&loads.ratio).map(factor).collect();
             self.warnings.extend(ratio_warning(curve, loads, case));
             // Loads of the case as a machine keeps them are those of the case.

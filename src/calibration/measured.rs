@@ -187,7 +187,7 @@ impl Measured {
             let Some(&first) = uneven.first() else { continue };
             self.warnings.push(format!(
                 "{}:{}: specimen {}: crack lengths on its sides differ by {:.2} mm; at {} of {} readings by more than the {:.2} mm that \
-                 ASTM E647 (8.6.3) accepts",
+                 ASTM E647 accepts",
                 curve.source.file.display(),
                 curve.line(first),
                 curve.specimen,

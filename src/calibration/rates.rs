@@ -3,7 +3,7 @@
 //! - **secant**: `da/dN = Δa / ΔN` between neighbouring readings, at their mean length;
 //! - **seven-point incremental polynomial** (appendix X1): a parabola in N through seven neighbouring readings by least
 //!   squares; rate and crack length are those of the parabola at the middle reading. The first and last three readings get
-//!   no rate. Seven readings have to have one load (E647, 8.8): where it changes, the rates are secants.
+//!   no rate. Seven readings have to have one load: where it changes, the rates are secants.
 
 use std::ops::RangeInclusive;
 
@@ -57,7 +57,7 @@ pub struct Flags {
     pub not_growing: bool,
     /// The ligament is too small for its plastic zone.
     pub yielding: bool,
-    /// The crack front is too uneven: the lengths on the sides differ by more than E647 (8.6.3) accepts.
+    /// The crack front is too uneven: the lengths on the sides differ by more than E647 accepts.
     pub uneven_front: bool,
     /// The rate is a secant, since the load changes within seven readings; nothing speaks against it.
     pub load_changes: bool,
@@ -211,7 +211,7 @@ impl<'a> TestPiece<'a> {
     }
 }
 
-/// Largest difference between the crack lengths on the sides of a specimen that E647 (8.6.3) accepts, m: 0.025 W of a central crack or two
+/// Largest difference between the crack lengths on the sides of a specimen that E647 accepts, m: 0.025 W of a central crack or two
 /// edge cracks, 0.25 B of one edge crack.
 #[must_use]
 pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f64 {

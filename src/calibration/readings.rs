@@ -201,7 +201,8 @@ fn add_reading(
     }
     if let Some((maximum, ratio)) = load {
         let measure = if columns.loads.is_stress { LoadMeasure::Stress } else { LoadMeasure::Force };
-        let loads = curve.loads.get_or_insert_with(|| Loads::empty(measure));
+        let loads =
+            curve.loads.get_or_insert_with(|| Loads { is_range: columns.loads.maximum.is_none(), ..Loads::empty(measure) });
         loads.maximum.push(maximum);
         loads.ratio.push(ratio);
     }
@@ -211,25 +212,31 @@ fn add_reading(
     Ok(())
 }
 
-/// Largest load and stress ratio of a reading, the latter NaN where the file does not say it.
+/// Largest load and stress ratio of a reading, the latter NaN where the file does not say it; of a file that has ranges alone, the range
+/// in the place of the largest load.
 fn load(table: &Table, row: &Row, decimal: Decimal, columns: &LoadColumns) -> Result<Option<(f64, f64)>> {
-    let Some(column) = columns.maximum else { return Ok(None) };
-    let maximum = value(table, row, column, decimal)?;
-    if maximum <= 0.0 {
+    let Some(column) = columns.maximum.or(columns.range) else { return Ok(None) };
+    let largest = value(table, row, column, decimal)?;
+    if largest <= 0.0 {
         return Err(table
             .cell_fault(row, column.index)
             .error("is not above 0", "give the largest load of a cycle, tension positive"));
     }
-    let ratio = match (columns.minimum, columns.ratio) {
-        (Some(column), _) => value(table, row, column, decimal)? / maximum,
-        (None, Some(column)) => value(table, row, column, decimal)?,
-        (None, None) => f64::NAN,
+    let of = |column: Option<Column>| column.map(|column| value(table, row, column, decimal)).transpose();
+    let range = if columns.maximum.is_some() { of(columns.range)? } else { None };
+    let ratio = match (of(columns.minimum)?, of(columns.ratio)?, range) {
+        (Some(smallest), ..) if columns.maximum.is_some() => smallest / largest,
+        // The largest is the smallest and the range.
+        (Some(smallest), ..) => smallest / (smallest + largest),
+        (None, Some(ratio), _) => ratio,
+        (None, None, Some(range)) => 1.0 - range / largest,
+        (None, None, None) => f64::NAN,
     };
     if ratio >= 1.0 {
-        let column = columns.minimum.or(columns.ratio).unwrap_or(column);
+        let column = columns.minimum.or(columns.ratio).or(columns.range).unwrap_or(column);
         return Err(table
             .cell_fault(row, column.index)
             .error("leaves no range of load", "give the smallest load below the largest"));
     }
-    Ok(Some((maximum, ratio)))
+    Ok(Some((largest, ratio)))
 }

@@ -29,6 +29,7 @@ fn given(import: &Import) -> Vec<(&'static str, &ColumnName)> {
         ("specimen", &columns.specimen),
         ("force_max", &columns.force_max),
         ("force_min", &columns.force_min),
+        ("force_range", &columns.force_range),
         ("stress_max", &columns.stress_max),
         ("stress_min", &columns.stress_min),
         ("stress_ratio", &columns.stress_ratio),
@@ -45,6 +46,7 @@ fn is_of(key: &str, meaning: &Meaning) -> bool {
         "specimen" => *meaning == Meaning::Specimen,
         "force_max" | "stress_max" => matches!(meaning, Meaning::Load(LoadRole::Max, _)),
         "force_min" | "stress_min" => matches!(meaning, Meaning::Load(LoadRole::Min, _)),
+        "force_range" => matches!(meaning, Meaning::Load(LoadRole::Range, _)),
         _ => matches!(meaning, Meaning::Load(LoadRole::Ratio, _)),
     }
 }
@@ -62,6 +64,7 @@ fn as_given(key: &str, name: &str, several: bool) -> Meaning {
         "specimen" => Meaning::Specimen,
         "force_max" | "stress_max" => Meaning::Load(LoadRole::Max, load),
         "force_min" | "stress_min" => Meaning::Load(LoadRole::Min, load),
+        "force_range" => Meaning::Load(LoadRole::Range, load),
         _ => Meaning::Load(LoadRole::Ratio, Named::No),
     }
 }

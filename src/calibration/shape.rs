@@ -18,6 +18,8 @@ pub struct LoadColumns {
     pub maximum: Option<Column>,
     /// Smallest load of a cycle.
     pub minimum: Option<Column>,
+    /// Largest less smallest load of a cycle.
+    pub range: Option<Column>,
     /// Smallest over largest.
     pub ratio: Option<Column>,
     /// Whether they are gross stresses, else forces.
@@ -57,7 +59,12 @@ impl Shape {
                 give(cycles.index, "cycles");
                 lengths.iter().for_each(|length| give(length.index, "length"));
                 specimen.iter().for_each(|column| give(*column, "specimen"));
-                let loads = [(loads.maximum, "force_max"), (loads.minimum, "force_min"), (loads.ratio, "stress_ratio")];
+                let loads = [
+                    (loads.maximum, "force_max"),
+                    (loads.minimum, "force_min"),
+                    (loads.range, "force_range"),
+                    (loads.ratio, "stress_ratio"),
+                ];
                 loads.into_iter().for_each(|(column, key)| column.iter().for_each(|column| give(column.index, key)));
             }
             Shape::WideCycles(length, _) => give(length.index, "length"),
@@ -77,7 +84,7 @@ impl Shape {
                     let small = loads.is_stress || column.factor >= 1e3;
                     (column.index, if small { Holds::Measures } else { Holds::Counts })
                 };
-                let loads_of = [loads.maximum, loads.minimum];
+                let loads_of = [loads.maximum, loads.minimum, loads.range];
                 let all = lengths.iter().chain(sides).map(measure).chain(loads_of.iter().flatten().map(load));
                 std::iter::once(cycles(counted)).chain(all).chain(loads.ratio.iter().map(measure)).collect()
             }

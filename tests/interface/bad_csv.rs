@@ -178,7 +178,9 @@ fn every_broken_curve_is_refused_with_place_value_and_remedy() {
         assert_refused(&output, 2, &[&file]);
         assert_refused(&output, 2, &words);
         let (_, stderr) = texts(&output);
-        assert_eq!(stderr.trim_end().lines().count(), 1, "{name}: one message: {stderr}");
+        // A table of unknown shape shows its first rows.
+        let lines = stderr.trim_end().lines().filter(|line| !line.starts_with("  line "));
+        assert_eq!(lines.count(), 1, "{name}: one message: {stderr}");
         assert!(!folder.path().join("rates.csv").exists(), "{name}: nothing half-written");
     }
 }

@@ -62,6 +62,8 @@ fn k_of_every_reading_is_that_of_its_own_load() {
                 |i: usize| format!(",{:.9},{:.9}", force(lengths[i]) / 0.9 * per_kn, force(lengths[i]) / 0.9 * 0.1 * per_kn);
             format!("cycles,crack_length_mm,force max ({unit}),force min ({unit})\n{}", rows(&made, load))
         };
+        let ranges = format!("cycles,crack_length_mm,force_range_kn\n{}", rows(&made, |i| format!(",{:.9}", force(lengths[i]))));
+        is_the_law(&format!("{name}, ranges"), &fitted(&ranges, ""), M);
         for (unit, per_kn) in [("kN", 1.0), ("N", 1e3), ("lbf", 1e3 / 4.448_221_615_260_5), ("kgf", 1e3 / 9.806_65)] {
             let fit = fitted(&with(unit, per_kn), "");
             is_the_law(&format!("{name}, {unit}"), &fit, M);

@@ -313,6 +313,14 @@ fn a_wide_table_holds_lengths_alone() {
 }
 
 #[test]
+fn specimens_of_a_wide_table_may_be_numbers() {
+    let text = "crack_length_mm,1,2,3\n10,0,0,0\n11,100,110,90\n12,200,210,190\n13,300,310,290\n14,400,410,390\n";
+    let curves = parse(text.as_bytes(), Path::new("w.csv"), &Import::default()).unwrap().curves;
+    assert_eq!(curves.iter().map(|curve| curve.specimen.as_str()).collect::<Vec<_>>(), ["1", "2", "3"]);
+    assert_eq!(curves[2].cycles[4], 390.0);
+}
+
+#[test]
 fn tables_of_this_program_are_read() {
     let own = [
         "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle",
@@ -437,6 +445,7 @@ fn loads_are_read_in_every_unit() {
         ("peak load (kgf);valley load (kgf)", 6000.0 / 9.806_65, 600.0 / 9.806_65),
         ("Oberlast [kN];R", 6.0, 0.1),
         ("Pmax kN;stress ratio", 6.0, 0.1),
+        ("Pmax kN;load range (kN)", 6.0, 5.4),
     ];
     for (header, largest, smallest) in newtons {
         let curve =
@@ -447,6 +456,15 @@ fn loads_are_read_in_every_unit() {
     let stress =
         parse(text("stress_max_mpa;stress_min_mpa", 60.0, 6.0).as_bytes(), Path::new("s.csv"), &Import::default()).unwrap();
     assert!((stress.curves[0].loads.as_ref().unwrap().maximum[0] / 60e6 - 1.0).abs() < 1e-12);
+    for (header, range, other) in [("force_range_kn;R", 5.4, 0.1), ("\u{394}P (kN);Pmin (kN)", 5.4, 0.6)] {
+        let loads =
+            parse(text(header, range, other).as_bytes(), Path::new("r.csv"), &Import::default()).unwrap().curves.remove(0).loads;
+        let loads = loads.unwrap_or_else(|| panic!("{header}"));
+        assert!(
+            loads.is_range && (loads.maximum[2] - 5400.0).abs() < 1e-6 && (loads.ratio[2] - 0.1).abs() < 1e-9,
+            "{header}: {loads:?}"
+        );
+    }
     // Without a unit: no load where it does not change, a refusal where it does, and the user's word for both.
     let still = text("Pmax;Pmin", 6.0, 0.6);
     let measured = parse(still.as_bytes(), Path::new("p.csv"), &Import::default()).unwrap();

@@ -30,6 +30,8 @@ pub(crate) enum LoadRole {
     Min,
     /// Smallest over largest.
     Ratio,
+    /// Largest less smallest.
+    Range,
     /// A load, but the name does not say which.
     Bare,
 }
@@ -170,7 +172,7 @@ fn load(words: &[&str], bracket: &[&str]) -> Option<Meaning> {
         let whole = [MAX_WORDS, MIN_WORDS, MAX_STRESS, MIN_STRESS];
         let core = has(FORCE) || has(STRESS) || whole.iter().any(|list| has(list));
         let stress = has(STRESS) || has(MAX_STRESS) || has(MIN_STRESS);
-        let lists = [FORCE, STRESS, LOAD_MORE, MAX, MIN, MAX_WORDS, MIN_WORDS, MAX_STRESS, MIN_STRESS];
+        let lists = [FORCE, STRESS, LOAD_MORE, RANGE, PART, MAX, MIN, MAX_WORDS, MIN_WORDS, MAX_STRESS, MIN_STRESS];
         if !core || !all_of(words, &lists) {
             return None;
         }
@@ -179,9 +181,13 @@ fn load(words: &[&str], bracket: &[&str]) -> Option<Meaning> {
             Named::Is(unit) if unit.is_stress() != stress => Named::Strange,
             unit => unit,
         };
-        let role = match (has(MAX) || has(MAX_WORDS) || has(MAX_STRESS), has(MIN) || has(MIN_WORDS) || has(MIN_STRESS)) {
-            (true, false) => LoadRole::Max,
-            (false, true) => LoadRole::Min,
+        let [largest, smallest] =
+            [[MAX, MAX_WORDS, MAX_STRESS], [MIN, MIN_WORDS, MIN_STRESS]].map(|lists| lists.into_iter().any(has));
+        let role = match (largest, smallest, has(RANGE)) {
+            _ if has(PART) => LoadRole::Bare,
+            (true, false, false) => LoadRole::Max,
+            (false, true, false) => LoadRole::Min,
+            (false, false, true) => LoadRole::Range,
             _ => LoadRole::Bare,
         };
         Some(Meaning::Load(role, unit))

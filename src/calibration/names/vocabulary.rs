@@ -25,6 +25,9 @@ pub(super) const SIDE_MORE: &str = "side face surface seite tip cote";
 pub(super) const FORCE: &str = "force load p f kraft last charge fuerza carga forza carico";
 pub(super) const STRESS: &str = "stress sigma s spannung contrainte tension tensione";
 pub(super) const LOAD_MORE: &str = "axial applied cyclic nominal gross remote test cell far field of cycle the";
+pub(super) const RANGE: &str = "range delta schwingbreite";
+/// Loads from which nothing follows.
+pub(super) const PART: &str = "amplitude mean mittel average";
 pub(super) const MAX: &str = "max maximum maximal maximale peak upper ober obere maxi maximo massimo";
 pub(super) const MIN: &str = "min minimum minimal minimale valley lower unter untere mini minimo trough";
 /// A load and its extreme in one word.

@@ -102,7 +102,7 @@ pub(super) fn place(rows: &[Row], import: &Import) -> Option<Place> {
     let names = |row: &Row| row.cells.iter().map(str::to_owned).collect::<Vec<String>>();
     let named: Vec<usize> = (0..head.len())
         .filter(|&row| {
-            rows[row].cells.len() <= COLUMNS_MAX && !has_numbers(&rows[row]) && names_a_test(&names(&rows[row]), import)
+            rows[row].cells.len() <= COLUMNS_MAX && !is_number(rows[row].cell(0)) && names_a_test(&names(&rows[row]), import)
         })
         .collect();
     // A line of the preamble may speak of cycles and crack length too; below the header stand numbers.

@@ -58,7 +58,9 @@ impl Separator {
     /// The lines cut into cells, quotes respected.
     pub(super) fn cut(self, lines: &[Line<'_>], file: &Path) -> Result<Vec<Row>> {
         match self.character() {
-            Some(character) => records(lines, character as u8, file),
+            // Quotes may hold the separator and line ends.
+            Some(character) if lines.iter().any(|(_, text)| text.contains('"')) => records(lines, character as u8, file),
+            Some(character) => Ok(lines.iter().map(|&(line, text)| Row { line, cells: at_character(text, character) }).collect()),
             None => Ok(lines.iter().map(|&(line, text)| Row { line, cells: self.at_blanks(text) }).collect()),
         }
     }
@@ -70,6 +72,12 @@ impl Separator {
             _ => whole.split_whitespace().collect(),
         }
     }
+}
+
+fn at_character(text: &str, character: char) -> StringRecord {
+    let mut cells = StringRecord::with_capacity(text.len(), text.matches(character).count() + 1);
+    text.split(character).for_each(|cell| cells.push_field(cell.trim()));
+    cells
 }
 
 /// Records of the lines. The CSV reader counts lines of what it is given, `lines` maps them to lines of the file.

@@ -5,7 +5,7 @@ import { element, table, uniqueId } from "./dom.js";
 
 const KEYS = [
   ["", "not read"], ["cycles", "cycles"], ["length", "crack length"], ["specimen", "specimen"],
-  ["force_max", "largest load"], ["force_min", "smallest load"], ["stress_ratio", "stress ratio"],
+  ["force_max", "largest load"], ["force_min", "smallest load"], ["force_range", "range of load"], ["stress_ratio", "stress ratio"],
 ];
 
 /** `onChange` is told when another choice was made. Gives {names(), clear(), show(file)}. */
