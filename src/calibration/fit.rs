@@ -86,8 +86,8 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
             warnings.iter().map(|line| format!("\n  {line}")).collect::<String>()
         )));
     }
-    let specimens: Vec<FittedCurve> = match task.curves.len() {
-        1 => vec![record.clone()],
+    let mut specimens: Vec<FittedCurve> = match task.curves.len() {
+        1 => Vec::new(),
         _ => task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?,
     };
     let at_ends = specimens.iter().filter(|curve| is_fitted && is_at_end(curve.constants.p));
@@ -113,6 +113,9 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         }
     }
     let robust = line.map(Robust::of);
+    if task.curves.len() == 1 {
+        specimens.push(record.clone());
+    }
     let ratio = paris.delta_k_max / paris.delta_k_min;
     if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(

@@ -1,6 +1,6 @@
 //! Measured a-N curves: readings of crack length against cycles, and the loads between them.
 //!
-//! A file is a table of readings in any usual dress ([`super::table`]): CSV in the units and names of laboratories, a workbook, with the
+//! A file is a table of readings in any usual dress: CSV in the units and names of laboratories, a workbook, with the
 //! feature `tables` also Parquet. Every complaint names file, line, column and value. A crack length that falls from one reading to the
 //! next is reading noise and accepted; cycles that fall or repeat are a mistake of the file and refused.
 

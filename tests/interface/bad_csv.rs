@@ -129,12 +129,12 @@ fn broken() -> Vec<(&'static str, Vec<u8>, [&'static str; 4])> {
         (
             "no length",
             text("specimen,cycles\nS1,0\n"),
-            [":1: ", "header = specimen", "without a column of crack length", "known are"],
+            [":1: ", "header = cycles", "without a column of crack length", "known are"],
         ),
         (
             "no cycles",
             text("specimen,crack_length_mm\nS1,9\n"),
-            [":1: ", "header = specimen", "without a column of cycles", "known are"],
+            [":1: ", "header = crack_length_mm", "without a column of cycles", "known are"],
         ),
         (
             "two columns of a name",
