@@ -16,9 +16,9 @@
 
 pub mod error;
 pub mod kinds;
+pub mod units;
 #[cfg(feature = "tables")]
 pub mod tables;
-pub mod units;
 pub mod parallel;
 pub mod monotone;
 pub mod quadrature;

@@ -9,6 +9,7 @@ use std::path::Path;
 use polars::prelude::*;
 
 use crate::error::{Error, InputError, Result};
+use crate::units::unmistakable;
 
 pub use polars::prelude::DataFrame;
 
@@ -153,8 +154,8 @@ fn cell(value: &AnyValue<'_>) -> String {
         AnyValue::Null => String::new(),
         AnyValue::String(text) => (*text).to_owned(),
         AnyValue::StringOwned(text) => text.to_string(),
-        AnyValue::Float64(number) => number.to_string(),
-        AnyValue::Float32(number) => number.to_string(),
+        AnyValue::Float64(number) => unmistakable(&number.to_string()),
+        AnyValue::Float32(number) => unmistakable(&number.to_string()),
         other => other.to_string(),
     }
 }

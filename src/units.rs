@@ -11,7 +11,22 @@ pub const MPA: f64 = 1e6;
 pub const GPA: f64 = 1e9;
 /// Newtons in a kilonewton.
 pub const KN: f64 = 1e3;
+/// Newtons in a pound-force.
+pub const LBF: f64 = 4.448_221_615_260_5;
+/// Newtons in a kilogram-force.
+pub const KGF: f64 = 9.806_65;
+/// Pascals in a thousand pounds-force per square inch.
+pub const KSI: f64 = 1e3 * LBF / (INCH * INCH);
 /// Pa√m in a MPa√m.
 pub const MPA_SQRT_M: f64 = 1e6;
 /// m/cycle in a mm/cycle.
 pub const MM_PER_CYCLE: f64 = 1e-3;
+
+/// A number in writing that nobody takes its decimal point for a separator of thousands in: 12.345 becomes 12.3450.
+#[must_use]
+pub fn unmistakable(number: &str) -> String {
+    match number.split_once('.') {
+        Some((_, digits)) if digits.len() == 3 => format!("{number}0"),
+        _ => number.to_owned(),
+    }
+}

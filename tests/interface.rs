@@ -2,6 +2,8 @@
 
 #[path = "support/browser.rs"]
 mod browser;
+#[path = "support/fatigue_test.rs"]
+mod fatigue_test;
 #[path = "support/made_up_run.rs"]
 mod made_up_run;
 #[path = "support/noise.rs"]
@@ -41,6 +43,8 @@ mod fracture;
 mod ends;
 #[path = "interface/hand_calculation.rs"]
 mod hand_calculation;
+#[path = "interface/rates.rs"]
+mod rates;
 #[path = "interface/service.rs"]
 mod service;
 #[path = "interface/sif.rs"]

@@ -1,5 +1,7 @@
 //! Does each part do its job?
 
+#[path = "support/fatigue_test.rs"]
+mod fatigue_test;
 #[path = "support/hand_cases.rs"]
 mod hand_cases;
 #[path = "support/made_up_case.rs"]
@@ -31,8 +33,16 @@ mod cross_check;
 mod guard;
 #[path = "unit/layering.rs"]
 mod layering;
+#[path = "unit/belonging.rs"]
+mod belonging;
+#[path = "unit/import.rs"]
+mod import;
+#[path = "unit/malformed.rs"]
+mod malformed;
 #[path = "unit/measured.rs"]
 mod measured;
+#[path = "unit/practice.rs"]
+mod practice;
 #[path = "unit/misfit.rs"]
 mod misfit;
 #[path = "unit/monotone.rs"]

@@ -3,9 +3,10 @@
 use crate::calibration::bond_constants::in_terms_of_bonds;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::{Fit, FitTask, fit};
+use crate::calibration::paris;
 use crate::calibration::power_law::PowerLaw;
 use crate::case::Method;
-use crate::error::Result;
+use crate::error::{Result, input_missing};
 use crate::predict::Observer;
 use crate::predict::factor_curve::FactorCurve;
 
@@ -15,7 +16,7 @@ use crate::predict::factor_curve::FactorCurve;
 /// stand for them.
 ///
 /// # Errors
-/// Mechanics without a result, or a window in which the handbook has no K.
+/// Mechanics without a result, a window in which the handbook has no K, or a law that no metal has.
 pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Result<Fit> {
     let delta_k = |length: f64| calibration.delta_k(length);
     let task = FitTask {
@@ -24,20 +25,36 @@ pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
         criterion: calibration.criterion,
         delta_k: &delta_k,
     };
+    let fit = fit_by_method(calibration, &task, &delta_k, observer)?;
+    match paris::doubt(fit.paris.c, fit.paris.m) {
+        None => Ok(fit),
+        Some(doubt) => {
+            let doubts: String = fit.warnings.iter().map(|line| format!("\n  {line}")).collect();
+            Err(input_missing("measured.files", format!("give a law that no metal has: {doubt}{doubts}"), ""))
+        }
+    }
+}
+
+fn fit_by_method(
+    calibration: &CalibrationCase,
+    task: &FitTask<'_>,
+    delta_k: &dyn Fn(f64) -> f64,
+    observer: &dyn Observer,
+) -> Result<Fit> {
     let case = &calibration.case;
     let (from, to) = (case.specimen.crack_length, case.stop.crack_length);
     match case.model.method {
         Method::Peridynamics => {
             let factors = FactorCurve::of(case, observer)?;
             let of_field = |length: f64| case.loading.range_share() * factors.at(length);
-            let mut fit = fit(&task, &PowerLaw::new(from, to, &of_field)?)?;
+            let mut fit = fit(task, &PowerLaw::new(from, to, &of_field)?)?;
             in_terms_of_bonds(&mut fit, case, factors.figures.horizon)?;
             fit.spacing = factors.figures.spacing;
             fit.warnings.extend(factors.warnings);
             Ok(fit)
         }
         Method::Handbook => {
-            let mut fit = fit(&task, &PowerLaw::new(from, to, &delta_k)?)?;
+            let mut fit = fit(task, &PowerLaw::new(from, to, delta_k)?)?;
             // The fitted constants are C and m themselves; no line has to be drawn through rates.
             fit.paris = fit.paris.of_power_law(fit.record.constants, fit.p_error());
             Ok(fit)

@@ -7,8 +7,10 @@ use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 
 use crate::calibration::criterion::Criterion;
+use crate::calibration::decimal::Decimal;
 use crate::calibration::exponent::Exponent;
-use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, MeasuredCurve, Units, parse};
+use crate::calibration::leave_out::LeaveOut;
+use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::calibration::record::SourceFile;
 use crate::case::{Case, LAW_KEYS, LawSource, Method};
 use crate::error::{input, input_missing};
@@ -43,6 +45,8 @@ pub struct CalibrationCase {
     pub criterion: Criterion,
     /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
+    /// Readings that do not count, with the reasons.
+    pub left_out: Vec<LeaveOut>,
     /// What the user should know.
     pub warnings: Vec<String>,
     formula: HandbookFormula,
@@ -57,11 +61,25 @@ struct MeasuredSlice {
     to_crack_length_mm: Option<f64>,
     length_unit: Option<LengthUnit>,
     cycle_unit: Option<CycleUnit>,
+    load_unit: Option<LoadUnit>,
+    #[serde(default)]
+    columns: ColumnNames,
+    decimal: Option<Decimal>,
+    sheet: Option<Sheet>,
+    #[serde(default)]
+    leave_out: Vec<LeaveOut>,
 }
 
 impl MeasuredSlice {
-    fn units(&self) -> Units {
-        Units { length: self.length_unit, cycles: self.cycle_unit }
+    fn import(&self) -> Import {
+        Import {
+            length: self.length_unit,
+            cycles: self.cycle_unit,
+            load: self.load_unit,
+            columns: self.columns.clone(),
+            decimal: self.decimal,
+            sheet: self.sheet.clone(),
+        }
     }
 }
 
@@ -116,18 +134,20 @@ impl CalibrationCase {
                 "calibrate on a standard specimen (length at least 1.5 widths), then predict the plate with the fit",
             )
         })?;
-        let (measured, sources) = readings(&keys, folder)?;
+        let (mut measured, sources) = readings(&keys, folder)?;
         let (limit, limit_name) = case.specimen.length_limit();
         measured.check_lengths(limit, limit_name)?;
+        measured.resolve_loads(&case)?;
+        measured.check_sides(&case.specimen);
+        measured.leave_out(&keys.leave_out)?;
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;
-        let shortest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(f64::INFINITY, f64::min);
         let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
         if !formula.holds_at(case.specimen.crack_length) || !formula.holds_at(longest) {
             warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
         }
-        let delta_k = |length: f64| formula.k_i(length, case.loading.maximum);
-        let exponent = exponent(&fit, folder, case.model.method, delta_k(longest) / delta_k(shortest))?;
+        let delta_k_ratio = delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum));
+        let exponent = exponent(&fit, folder, case.model.method, delta_k_ratio)?;
         warnings.extend(exponent.warning.clone());
         let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
         case.stop.crack_length = longest;
@@ -135,7 +155,7 @@ impl CalibrationCase {
         case.material.yield_strength = None;
         warnings.extend(unrecorded(&case));
         warnings.extend(case.warnings.iter().cloned());
-        Ok(CalibrationCase { case, curves, exponent, criterion, sources, warnings, formula })
+        Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out: keys.leave_out, warnings, formula })
     }
 
     /// ΔK of the handbook (Pa√m) at a crack length (m).
@@ -143,6 +163,17 @@ impl CalibrationCase {
     pub fn delta_k(&self, crack_length: f64) -> f64 {
         self.formula.delta_k(crack_length, self.case.loading.maximum, self.case.loading.range_share())
     }
+}
+
+/// Largest over smallest ΔK of all readings.
+fn delta_k_ratio(curves: &[MeasuredCurve], k_i: &dyn Fn(f64) -> f64) -> f64 {
+    let of_curve = |curve: &MeasuredCurve| -> Vec<f64> {
+        let factor = |i: usize| curve.load_factor.get(i).copied().unwrap_or(1.0);
+        curve.crack_length.iter().enumerate().map(|(i, &length)| k_i(length) * factor(i)).collect()
+    };
+    let all = curves.iter().flat_map(of_curve);
+    let (low, high) = all.fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(k), high.max(k)));
+    high / low
 }
 
 /// Takes the law out of the sections of a case that is to get another one, or needs none.
@@ -218,11 +249,12 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> crate::Result<(Measured, V
     if keys.files.is_empty() {
         return Err(input("measured.files", "[]", "names no file", "name at least one measured a-N curve"));
     }
+    let import = keys.import();
     let mut measured = Measured::default();
     let mut sources = Vec::with_capacity(keys.files.len());
     for file in &keys.files {
         let bytes = folder.read(file)?;
-        measured.add(parse(&bytes, &folder.path(file), keys.units())?)?;
+        measured.add(parse(&bytes, &folder.path(file), &import)?)?;
         sources.push(source(file, &bytes));
     }
     Ok((measured, sources))

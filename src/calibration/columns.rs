@@ -1,231 +1,177 @@
-//! What the columns of a measured file mean: long or wide layout, and in which units.
+//! What the columns of a measured file are: one row a reading, or one column a specimen; and in which units.
 
-use crate::calibration::text_table::{Fault, TextTable};
-use crate::units::{INCH, MM};
-
-crate::kinds! {
-    /// Units of crack length in measured files.
-    pub enum LengthUnit for "measured.length_unit" {
-        Millimetre = "mm": "millimetres",
-        Inch = "inch": "inches of 25.4 mm",
-        Metre = "m": "metres",
-    }
-}
-
-crate::kinds! {
-    /// Units of cycles in measured files.
-    pub enum CycleUnit for "measured.cycle_unit" {
-        Cycles = "cycles": "single cycles",
-        Kilocycles = "kilocycles": "thousands of cycles",
-        Megacycles = "megacycles": "millions of cycles",
-    }
-}
-
-impl LengthUnit {
-    /// Metres in the unit.
-    #[must_use]
-    pub fn metres(self) -> f64 {
-        match self {
-            LengthUnit::Millimetre => MM,
-            LengthUnit::Inch => INCH,
-            LengthUnit::Metre => 1.0,
-        }
-    }
-
-    /// Ending of column names in this unit, with aliases.
-    fn endings(self) -> &'static [&'static str] {
-        match self {
-            LengthUnit::Millimetre => &["mm", "millimetre", "millimeter"],
-            LengthUnit::Inch => &["inch", "in", "inches"],
-            LengthUnit::Metre => &["m", "metre", "meter"],
-        }
-    }
-}
-
-impl CycleUnit {
-    /// Cycles in the unit.
-    #[must_use]
-    pub fn cycles(self) -> f64 {
-        match self {
-            CycleUnit::Cycles => 1.0,
-            CycleUnit::Kilocycles => 1e3,
-            CycleUnit::Megacycles => 1e6,
-        }
-    }
-}
-
-/// Units that the calibration file names (`[measured] length_unit`, `cycle_unit`); a header that names its own must agree.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Units {
-    /// Unit of crack length.
-    pub length: Option<LengthUnit>,
-    /// Unit of cycles.
-    pub cycles: Option<CycleUnit>,
-}
+use crate::calibration::column_units::{cycle_unit, length_column, load_unit, wide_length_unit};
+use crate::calibration::decimal::{Decimal, decide};
+use crate::calibration::import::{CycleUnit, Import};
+use crate::calibration::names::{LoadRole, Meaning};
+pub(crate) use crate::calibration::roles::names_a_test;
+use crate::calibration::roles::{self, Roles};
+pub use crate::calibration::shape::{Column, LoadColumns, Shape};
+use crate::calibration::table::Table;
+use crate::error::{Error, Result};
 
 /// What the columns of one file are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     /// How specimens are laid out.
     pub shape: Shape,
+    /// The decimal sign.
+    pub decimal: Decimal,
     /// Metres per unit of a length cell.
     pub length_unit: f64,
     /// Cycles per unit of a cycles cell.
     pub cycle_unit: f64,
-    /// Whether `7,5` is a number.
-    pub decimal_comma: bool,
+    /// What separates columns; empty where cells are stored, not written.
+    pub separator: &'static str,
+    /// What the user should know.
+    pub warnings: Vec<String>,
 }
 
-/// How specimens are laid out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
-    /// One row a reading.
-    Long {
-        /// Column of the specimen's name.
-        specimen: Option<usize>,
-        /// Column of cycles.
-        cycles: usize,
-        /// Column of crack length.
-        length: usize,
-    },
-    /// First column crack length, then one column of cycles per specimen.
-    WideCycles,
-    /// First column cycles, then one column of crack length per specimen.
-    WideLengths,
-}
+const KNOWN: &str = "known are specimen, cycles (N, kilocycles, megacycles), crack_length_mm (a [mm], crack_length_inch, crack_length_m), \
+                     front and back, force_max_kn and force_min_kn; a wide table starts with cycles or crack length and has at least two \
+                     more columns, all of them specimens";
 
-const KNOWN: &str = "known are specimen, cycles (kilocycles, megacycles) and crack_length_mm (crack_length_inch, crack_length_m); \
-                     a wide table starts with one of the two and has at least two columns of specimens";
-
-/// Meaning of one column name; a unit is `None` where the name does not say it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Meaning {
-    Specimen,
-    Cycles(Option<CycleUnit>),
-    Length(Option<LengthUnit>),
-    Unknown,
-}
-
-/// Recognises the layout of a table by its header.
-pub(crate) fn recognise(table: &TextTable, units: Units) -> crate::Result<Layout> {
-    let meanings: Vec<Meaning> = table.header.iter().map(|name| meaning(name)).collect();
-    let place = |wanted: fn(&Meaning) -> bool| meanings.iter().position(wanted);
-    let cycles = place(|meaning| matches!(meaning, Meaning::Cycles(_)));
-    let length = place(|meaning| matches!(meaning, Meaning::Length(_)));
-    let specimen = place(|meaning| matches!(meaning, Meaning::Specimen));
-    let unknown = place(|meaning| matches!(meaning, Meaning::Unknown));
-    let decimal_comma = table.decimal_comma;
-    refuse_repeated(table)?;
-    match (cycles, length) {
-        (Some(cycles), Some(length)) => {
-            if let Some(column) = unknown {
-                return Err(unknown_column(table, column));
-            }
-            let twice = (0..meanings.len()).find(|&column| column != cycles && column != length && Some(column) != specimen);
-            if let Some(column) = twice {
-                return Err(header_fault(table, column)
-                    .error("says the same as an earlier column", "keep one column of cycles and one of crack length"));
-            }
-            let length_unit = length_unit(table, length, meanings[length], units)?;
-            let cycle_unit = cycle_unit(table, cycles, meanings[cycles], units)?;
-            Ok(Layout { shape: Shape::Long { specimen, cycles, length }, length_unit, cycle_unit, decimal_comma })
+/// Recognises the layout of a table by its header and by what the user says.
+///
+/// # Errors
+/// Columns that are not there, that say the same, or that do not make up a test; cells that leave the decimal sign open.
+pub(crate) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
+    roles::check_given(table, import)?;
+    let roles = Roles::of(&table.header, &table.names, import);
+    let (cycles, lengths) = (roles.cycles(), roles.lengths());
+    let specimen = roles.places(|meaning| *meaning == Meaning::Specimen);
+    let mut warnings = Vec::new();
+    let wide = table.header.len() >= 3 && specimen.is_empty() && roles.rest_unknown();
+    let rest = 1..table.header.len();
+    let shape = match (cycles.as_slice(), lengths.as_slice()) {
+        ([cycles], [_, ..]) => {
+            let (lengths, sides) = lengths_and_sides(table, &roles, import)?;
+            let cycles = Column { index: *cycles, factor: cycle_unit(table, *cycles, &roles, import)? };
+            let loads = loads(table, &roles, import, &mut warnings)?;
+            refuse_second(table, &specimen)?;
+            warnings.extend(not_read(table, &roles));
+            Shape::Long { specimen: specimen.first().copied(), cycles, lengths, sides, loads }
         }
-        (None, Some(0)) if meanings.len() >= 3 && specimen.is_none() => {
-            let length_unit = length_unit(table, 0, meanings[0], units)?;
-            let cycle_unit = units.cycles.unwrap_or(CycleUnit::Cycles).cycles();
-            Ok(Layout { shape: Shape::WideCycles, length_unit, cycle_unit, decimal_comma })
+        ([_, second, ..], _) => return Err(says_the_same(table, *second, "cycles")),
+        ([], [0]) if wide => {
+            let factor = import.cycles.unwrap_or(CycleUnit::Cycles).cycles();
+            let length = length_column(table, 0, &roles, import)?;
+            Shape::WideCycles(length, rest.map(|index| Column { index, factor }).collect())
         }
-        (Some(0), None) if meanings.len() >= 3 && specimen.is_none() => {
-            let cycle_unit = cycle_unit(table, 0, meanings[0], units)?;
-            let Some(unit) = units.length else {
-                return Err(header_fault(table, 1).error(
-                    "does not say the unit of its crack lengths",
-                    "set measured.length_unit = \"mm\", \"inch\" or \"m\"",
-                ));
+        ([0], []) if wide => {
+            let cycles = Column { index: 0, factor: cycle_unit(table, 0, &roles, import)? };
+            let columns = rest.map(|index| Ok(Column { index, factor: wide_length_unit(table, index, import)? }));
+            Shape::WideLengths(cycles, columns.collect::<Result<_>>()?)
+        }
+        _ => return Err(unknown_shape(table, &roles)),
+    };
+    let decimal = decide(table, &shape.numbers(), import.decimal)?;
+    let (length_unit, cycle_unit) = shape.units();
+    let separator = table.separator.map_or("", |separator| separator.name());
+    Ok(Layout { shape, decimal, length_unit, cycle_unit, separator, warnings })
+}
+
+/// Columns of crack length, and those of single sides beside them: where no column has the mean, the sides have it.
+fn lengths_and_sides(table: &Table, roles: &Roles, import: &Import) -> Result<(Vec<Column>, Vec<Column>)> {
+    let of = |wanted: fn(&Meaning) -> bool| -> Result<Vec<Column>> {
+        roles.places(wanted).into_iter().map(|column| length_column(table, column, roles, import)).collect()
+    };
+    let whole = roles.places(|meaning| matches!(meaning, Meaning::Length(_) | Meaning::Double(_)));
+    if let [_, second, ..] = whole.as_slice() {
+        return Err(says_the_same(table, *second, "length"));
+    }
+    let sides = of(|meaning| matches!(meaning, Meaning::Side(_)))?;
+    let lengths = of(|meaning| matches!(meaning, Meaning::Length(_) | Meaning::Double(_)))?;
+    Ok(if lengths.is_empty() { (sides.clone(), sides) } else { (lengths, sides) })
+}
+
+/// Columns of loads whose unit is known; for the others a warning, or an error where the loads change.
+fn loads(table: &Table, roles: &Roles, import: &Import, warnings: &mut Vec<String>) -> Result<LoadColumns> {
+    let mut found = LoadColumns::default();
+    let mut stress: Option<(bool, usize)> = None;
+    for role in [LoadRole::Max, LoadRole::Min, LoadRole::Range, LoadRole::Ratio] {
+        let places = roles.places(|meaning| matches!(meaning, Meaning::Load(own, _) if *own == role));
+        let Some(&index) = places.first() else { continue };
+        if let Some(&second) = places.get(1) {
+            let key = match role {
+                LoadRole::Max => "force_max",
+                LoadRole::Min => "force_min",
+                LoadRole::Range => "force_range",
+                _ => "stress_ratio",
             };
-            Ok(Layout { shape: Shape::WideLengths, length_unit: unit.metres(), cycle_unit, decimal_comma })
+            return Err(says_the_same(table, second, key));
         }
-        _ => Err(match unknown {
-            Some(column) => unknown_column(table, column),
-            None => header_fault(table, 0).error(
-                if cycles.is_none() {
-                    "stands in a header without a column of cycles"
-                } else {
-                    "stands in a header without a column of crack length"
-                },
-                KNOWN,
-            ),
-        }),
-    }
-}
-
-/// Meaning of a column name, whatever its case, blanks and brackets.
-fn meaning(name: &str) -> Meaning {
-    let lower = name.to_lowercase();
-    let words: Vec<&str> = lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
-    match words.as_slice() {
-        ["specimen"] | ["specimen", "id" | "name"] => Meaning::Specimen,
-        ["cycles"] | ["n", "cycles"] => Meaning::Cycles(None),
-        ["kilocycles" | "kcycles"] | ["n" | "cycles", "kilocycles" | "kcycles"] => Meaning::Cycles(Some(CycleUnit::Kilocycles)),
-        ["megacycles" | "mcycles"] | ["n" | "cycles", "megacycles" | "mcycles"] => Meaning::Cycles(Some(CycleUnit::Megacycles)),
-        ["crack", "length"] => Meaning::Length(None),
-        ["crack", "length", unit] | ["a", unit] => {
-            match LengthUnit::ALL.iter().copied().find(|known| known.endings().contains(unit)) {
-                Some(unit) => Meaning::Length(Some(unit)),
-                None => Meaning::Unknown,
-            }
+        if role == LoadRole::Ratio {
+            found.ratio = Some(Column { index, factor: 1.0 });
+            continue;
         }
-        _ => Meaning::Unknown,
-    }
-}
-
-/// Two columns of the same name cannot be told apart.
-fn refuse_repeated(table: &TextTable) -> crate::Result<()> {
-    for (column, name) in table.header.iter().enumerate() {
-        if table.header[..column].iter().any(|earlier| earlier.eq_ignore_ascii_case(name)) {
-            return Err(header_fault(table, column).error("names two columns", "give every column its own name"));
+        let Meaning::Load(_, named) = roles.meanings[index] else { continue };
+        let Some(unit) = load_unit(table, index, named, import, warnings)? else { continue };
+        if let Some((_, earlier)) = stress.filter(|(is_stress, _)| *is_stress != unit.is_stress()) {
+            let problem = format!("is not of the quantity of {}", table.header[earlier]);
+            return Err(table.header_fault(index).error(problem, "give both as forces or both as stresses"));
+        }
+        stress = Some((unit.is_stress(), index));
+        let column = Some(Column { index, factor: unit.si() });
+        match role {
+            LoadRole::Max => found.maximum = column,
+            LoadRole::Min => found.minimum = column,
+            _ => found.range = column,
         }
     }
-    Ok(())
-}
-
-fn length_unit(table: &TextTable, column: usize, meaning: Meaning, units: Units) -> crate::Result<f64> {
-    let Meaning::Length(named) = meaning else { return Err(unknown_column(table, column)) };
-    match (named, units.length) {
-        (Some(named), Some(given)) if named != given => Err(header_fault(table, column).error(
-            format!("is in {named}, but measured.length_unit says {given}"),
-            "name the unit in one place, or the same in both",
-        )),
-        (Some(unit), _) | (None, Some(unit)) => Ok(unit.metres()),
-        (None, None) => Err(header_fault(table, column).error(
-            "does not say its unit",
-            "name it crack_length_mm, crack_length_inch or crack_length_m, or set measured.length_unit",
-        )),
+    found.is_stress = stress.is_some_and(|(is_stress, _)| is_stress);
+    if found.maximum.is_none() && found.range.is_none() {
+        // Neither a minimum nor a ratio alone says how large a cycle is.
+        return Ok(LoadColumns::default());
     }
+    Ok(found)
 }
 
-fn cycle_unit(table: &TextTable, column: usize, meaning: Meaning, units: Units) -> crate::Result<f64> {
-    let Meaning::Cycles(named) = meaning else { return Err(unknown_column(table, column)) };
-    match (named, units.cycles) {
-        (Some(named), Some(given)) if named != given => Err(header_fault(table, column).error(
-            format!("is in {named}, but measured.cycle_unit says {given}"),
-            "name the unit in one place, or the same in both",
-        )),
-        (Some(unit), _) | (None, Some(unit)) => Ok(unit.cycles()),
-        (None, None) => Ok(CycleUnit::Cycles.cycles()),
+/// A line about columns that nobody asked for and whose names say nothing.
+fn not_read(table: &Table, roles: &Roles) -> Option<String> {
+    let strange = |meaning: &Meaning| matches!(meaning, Meaning::Unknown | Meaning::Load(LoadRole::Bare, _));
+    let names: Vec<&str> = roles.places(strange).into_iter().map(|column| table.header[column].as_str()).collect();
+    let names: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{}: not read, since the name does not say what it is: {}; where one is the load of every reading, say so by \
+             measured.columns = {{ force_max = \"...\" }} (--column force_max=...)",
+            table.file.display(),
+            names.join(", ")
+        )
+    })
+}
+
+fn refuse_second(table: &Table, columns: &[usize]) -> Result<()> {
+    columns.get(1).map_or(Ok(()), |&second| Err(says_the_same(table, second, "specimen")))
+}
+
+fn says_the_same(table: &Table, column: usize, key: &str) -> Error {
+    let name = &table.header[column];
+    let fault = table.header_fault(column);
+    if table.header[..column].iter().any(|earlier| earlier.eq_ignore_ascii_case(name)) {
+        return fault.error("names two columns", "give every column its own name");
     }
+    let remedy = format!("say which one counts by measured.columns = {{ {key} = \"{name}\" }} (--column {key}=\"{name}\")");
+    fault.error("says the same as an earlier column", remedy)
 }
 
-fn unknown_column(table: &TextTable, column: usize) -> crate::Error {
-    header_fault(table, column).error("is not a known column", KNOWN)
-}
-
-fn header_fault(table: &TextTable, column: usize) -> Fault<'_> {
-    let name = table.header[column].as_str();
-    Fault {
-        file: &table.file,
-        line: Some(table.header_line),
-        key: Some("header"),
-        value: Some(if name.is_empty() { "\"\"" } else { name }),
-    }
+/// A header that does not make up a test: what is missing, the first rows, and the key that settles it.
+pub(super) fn unknown_shape(table: &Table, roles: &Roles) -> Error {
+    let (cycles, lengths) = (roles.cycles(), roles.lengths());
+    let unknown = roles.places(|meaning| matches!(meaning, Meaning::Unknown)).first().copied();
+    let (column, problem) = match (cycles.first(), lengths.first(), unknown) {
+        (None, None, Some(column)) => (column, "is not a known column"),
+        (Some(&column), None, None) => (column, "stands in a header without a column of crack length"),
+        (None, Some(&column), None) => (column, "stands in a header without a column of cycles"),
+        (Some(_), None, Some(column)) => (column, "is not a known column, and none is crack length"),
+        (None, Some(_), Some(column)) => (column, "is not a known column, and none is cycles"),
+        _ => (0, "stands in a header without cycles and crack length"),
+    };
+    let remedy = format!(
+        "{KNOWN}; or say which is which by measured.columns = {{ cycles = \"...\", length = \"...\" }} (--column cycles=... --column \
+         length=...); {}",
+        table.first_rows()
+    );
+    table.header_fault(column).error(problem, remedy)
 }

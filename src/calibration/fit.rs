@@ -1,20 +1,28 @@
 //! The calibration on one page: from measured curves and K of a growing crack to A, p and how sure they are.
 
+use crate::calibration::case_load::at_case_load;
 use crate::calibration::confidence::{Confidence, Lives, confidence};
 use crate::calibration::criterion::Criterion;
+use crate::calibration::estimate::{Estimate, Robust, apart, are_apart, robust_constants};
+pub use crate::calibration::fitted_curve::FittedCurve;
+use crate::calibration::fitted_curve::{as_fitted, fit_one, fitted_curve, own_law};
+use crate::calibration::lack_of_fit::{LackOfFit, lack_of_fit};
 use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::pointwise_median;
-use crate::calibration::misfit::rms_life_error;
+use crate::calibration::outliers::{doubts, readings_apart, robust_line, runs, step_rates};
 use crate::calibration::paris::{self, Paris};
 use crate::calibration::power_law::PowerLaw;
 use crate::calibration::rates::STEP_MIN;
-use crate::calibration::search::{Constants, Target, is_at_end, search, search_a};
+use crate::calibration::search::{Constants, is_at_end};
 use crate::error::{Error, Result, input};
 use crate::fatigue::STEADY_EXPONENTS;
 use crate::units::MM;
 
 /// Below this ratio of the largest to the smallest ΔK a curve does not say what p is.
 pub const DELTA_K_RATIO_MIN: f64 = 2.0;
+
+/// Most remarks on readings that a fit repeats.
+const DOUBTS_SHOWN: usize = 6;
 
 /// What is fitted to what.
 pub struct FitTask<'a> {
@@ -28,21 +36,6 @@ pub struct FitTask<'a> {
     pub delta_k: &'a dyn Fn(f64) -> f64,
 }
 
-/// A curve with its fit, cycles counted from the first reading.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FittedCurve {
-    /// Name of the specimen.
-    pub name: String,
-    /// A and p.
-    pub constants: Constants,
-    /// Crack lengths, m.
-    pub crack_length: Vec<f64>,
-    /// Measured cycles.
-    pub cycles_measured: Vec<f64>,
-    /// Fitted cycles at the same lengths.
-    pub cycles_fitted: Vec<f64>,
-}
-
 /// Result of a calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
@@ -54,6 +47,12 @@ pub struct Fit {
     pub confidence: Confidence,
     /// Paris equivalents of the record.
     pub paris: Paris,
+    /// Which estimate the record holds.
+    pub estimate: Estimate,
+    /// C and m by the repeated median of the rates of the record's curve, where p was fitted.
+    pub robust: Option<Robust>,
+    /// By how much the law misses measured rates at the ends of its range.
+    pub lack_of_fit: Option<LackOfFit>,
     /// β of the record's exponent ([`crate::fatigue::rate_constant`]), where A is that of bonds.
     pub rate_constant: Option<f64>,
     /// Horizon that A belongs to, m; NaN where K is that of a handbook.
@@ -71,38 +70,52 @@ pub struct Fit {
 /// lies at an end of the exponents searched.
 pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let fixed_p = task.fixed_p.map(checked_p).transpose()?;
-    let mut median = pointwise_median(task.curves)?;
-    median.cycles = since_first(&median);
-    let record = fit_one(&median, task.criterion, fixed_p, law)?;
-    let Constants { a, p } = record.constants;
     let is_fitted = fixed_p.is_none();
-    if is_fitted && is_at_end(p) {
+    let median = match task.curves {
+        curves if curves.len() == 1 || curves.iter().all(MeasuredCurve::is_plain) => pointwise_median(curves)?,
+        curves => pointwise_median(&at_case_load(curves, task.criterion, fixed_p, law)?)?,
+    };
+    let mut record = fit_one(&median, task.criterion, fixed_p, law)?;
+    let mut warnings = remarks(task);
+    if is_fitted && is_at_end(record.constants.p) {
         return Err(Error::Mechanics(format!(
             "{}: {}; check the units of the readings and the load, narrow the window (measured.from_crack_length_mm and \
-             to_crack_length_mm), or fix p by [fit] parameters = [\"a\"] and p = ...",
+             to_crack_length_mm), or fix p by [fit] parameters = [\"a\"] and p = ...{}",
             record.name,
-            at_end(p)
+            at_end(record.constants.p),
+            warnings.iter().map(|line| format!("\n  {line}")).collect::<String>()
         )));
     }
-    let mut warnings = Vec::new();
-    let specimens: Vec<FittedCurve> = match task.curves.len() {
-        1 => vec![record.clone()],
+    let mut specimens: Vec<FittedCurve> = match task.curves.len() {
+        1 => Vec::new(),
         _ => task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?,
     };
     let at_ends = specimens.iter().filter(|curve| is_fitted && is_at_end(curve.constants.p));
     warnings.extend(at_ends.map(|curve| format!("specimen {}: {}", curve.name, at_end(curve.constants.p))));
     warnings.extend(short_steps_warning(&median.crack_length));
 
-    let per_p = |lengths: &[f64]| is_fitted.then(|| law.cycles_per_p(p, lengths)).transpose();
-    let apart = readings_apart(&median.crack_length);
-    let lengths: Vec<f64> = apart.iter().map(|&i| median.crack_length[i]).collect();
-    let measured: Vec<f64> = apart.iter().map(|&i| median.cycles[i]).collect();
-    let (model, model_per_p) = (law.cycles(p, &lengths)?, per_p(&lengths)?);
-    let lives = Lives { model: &model, model_per_p: model_per_p.as_deref(), measured: &measured };
-    let confidence = confidence(task.criterion, &lives, 1.0 / a);
-    let lengths = paris::lengths(median.crack_length[0], longest(&median));
-    let (model, model_per_p) = (law.cycles(p, &lengths)?, per_p(&lengths)?);
-    let paris = paris::equivalents(&lengths, &model, model_per_p.as_deref(), a, confidence.covariance, task.delta_k)?;
+    let (mut confidence, mut paris) = assess(task, law, &median, &record, is_fitted)?;
+    let mut estimate = Estimate::LeastSquares;
+    let line = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted);
+    if let Some(line) = line {
+        // Readings that do not belong must not widen the error by which they are judged.
+        let belonging = median.without(&runs(&step_rates(&median, task.delta_k), line));
+        let without = fit_one(&belonging, task.criterion, fixed_p, law)?;
+        let error = assess(task, law, &belonging, &without, is_fitted)?.1.m_error;
+        let least_squares = paris;
+        if are_apart(line.m, least_squares.m, error) {
+            if let Some(constants) = robust_constants(&median, law) {
+                estimate = Estimate::Robust;
+                record = fitted_curve(&median, constants, law)?;
+                (confidence, paris) = assess(task, law, &belonging, &record, is_fitted)?;
+            }
+            warnings.push(apart(&least_squares, error, &Robust::of(line), estimate));
+        }
+    }
+    let robust = line.map(Robust::of);
+    if task.curves.len() == 1 {
+        specimens.push(record.clone());
+    }
     let ratio = paris.delta_k_max / paris.delta_k_min;
     if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
@@ -111,22 +124,51 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         ));
     }
     let (rate_constant, horizon, spacing) = (None, f64::NAN, f64::NAN);
-    Ok(Fit { record, specimens, confidence, paris, rate_constant, horizon, spacing, warnings })
+    let fitted: Vec<MeasuredCurve> =
+        task.curves.iter().map(|curve| as_fitted(curve, record.constants, law)).collect::<Result<_>>()?;
+    let lack_of_fit = lack_of_fit(task.curves, &fitted, task.delta_k);
+    Ok(Fit { record, specimens, confidence, paris, estimate, robust, lack_of_fit, rate_constant, horizon, spacing, warnings })
 }
 
-/// Fits one curve: A and p, or A at a fixed p.
-fn fit_one(curve: &MeasuredCurve, criterion: Criterion, fixed_p: Option<f64>, law: &PowerLaw) -> Result<FittedCurve> {
-    let cycles_measured = since_first(curve);
-    let target = Target { cycles: &cycles_measured, lengths: &curve.crack_length, criterion };
-    let constants = fixed_p.map_or_else(|| search(law, target), |p| search_a(law, target, p))?;
-    let model = law.cycles(constants.p, target.lengths)?;
-    Ok(FittedCurve {
-        name: curve.specimen.clone(),
-        constants,
-        crack_length: curve.crack_length.clone(),
-        cycles_fitted: model.iter().map(|n| n / constants.a).collect(),
-        cycles_measured,
-    })
+/// How sure A and p of a curve are, and what they mean as C and m.
+fn assess(
+    task: &FitTask<'_>,
+    law: &PowerLaw,
+    curve: &MeasuredCurve,
+    record: &FittedCurve,
+    is_fitted: bool,
+) -> Result<(Confidence, Paris)> {
+    let Constants { a, p } = record.constants;
+    let own = own_law(law, curve);
+    let per_p = |lengths: &[f64]| is_fitted.then(|| own.cycles_per_p(p, lengths)).transpose();
+    let apart = readings_apart(&curve.crack_length);
+    let lengths: Vec<f64> = apart.iter().map(|&i| curve.crack_length[i]).collect();
+    let counted = curve.cycles_counted();
+    let measured: Vec<f64> = apart.iter().map(|&i| counted[i]).collect();
+    let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
+    let lives = Lives { model: &model, model_per_p: model_per_p.as_deref(), measured: &measured };
+    let confidence = confidence(task.criterion, &lives, 1.0 / a);
+    // Under changing loads an interval must not reach over two of them.
+    let loads = curve.load_history();
+    let lengths = match curve.is_plain() {
+        true => paris::lengths(curve.crack_length[0], longest(curve)),
+        false => loads.lengths.clone(),
+    };
+    let delta_k = |length: f64| (task.delta_k)(length) * loads.at(length);
+    let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
+    let paris = paris::equivalents(&lengths, &model, model_per_p.as_deref(), a, confidence.covariance, &delta_k)?;
+    Ok((confidence, paris))
+}
+
+/// What speaks against the readings of the specimens.
+fn remarks(task: &FitTask<'_>) -> Vec<String> {
+    let mut lines: Vec<String> = task.curves.iter().flat_map(|curve| doubts(curve, task.delta_k)).collect();
+    if lines.len() > DOUBTS_SHOWN {
+        let more = lines.len() - DOUBTS_SHOWN;
+        lines.truncate(DOUBTS_SHOWN);
+        lines.push(format!("{more} more remarks of this kind on other readings: `perilife rates` names all"));
+    }
+    lines
 }
 
 /// What it means that a searched p is an end of its range.
@@ -145,18 +187,6 @@ fn checked_p(p: f64) -> Result<f64> {
     Err(input("fit.p", p, format!("is outside {low} to {high}"), "give the exponent of the growth law, usually 2 to 4"))
 }
 
-/// Readings at least [`STEP_MIN`] of growth apart, the first among them. Shorter increments say nothing about the scatter of growth: in
-/// them the reading error of the laboratory shows.
-fn readings_apart(lengths: &[f64]) -> Vec<usize> {
-    let mut apart: Vec<usize> = Vec::new();
-    for (i, &length) in lengths.iter().enumerate() {
-        if apart.last().is_none_or(|&last| length >= lengths[last] + STEP_MIN * (1.0 - 1e-9)) {
-            apart.push(i);
-        }
-    }
-    apart
-}
-
 /// Readings nearer together than a laboratory reads.
 fn short_steps_warning(lengths: &[f64]) -> Option<String> {
     let short = lengths.windows(2).filter(|pair| pair[1] - pair[0] < STEP_MIN * (1.0 - 1e-9)).count();
@@ -170,10 +200,6 @@ fn short_steps_warning(lengths: &[f64]) -> Option<String> {
     })
 }
 
-fn since_first(curve: &MeasuredCurve) -> Vec<f64> {
-    curve.cycles.iter().map(|n| n - curve.cycles[0]).collect()
-}
-
 fn longest(curve: &MeasuredCurve) -> f64 {
     curve.crack_length.iter().copied().fold(0.0, f64::max)
 }
@@ -183,25 +209,5 @@ impl Fit {
     #[must_use]
     pub fn p_error(&self) -> f64 {
         self.confidence.covariance[1][1].max(0.0).sqrt()
-    }
-}
-
-impl FittedCurve {
-    /// Measured cycles at the last reading.
-    #[must_use]
-    pub fn life_measured(&self) -> f64 {
-        self.cycles_measured.last().copied().unwrap_or(f64::NAN)
-    }
-
-    /// Fitted cycles at the length of the last reading.
-    #[must_use]
-    pub fn life_fitted(&self) -> f64 {
-        self.cycles_fitted.last().copied().unwrap_or(f64::NAN)
-    }
-
-    /// Rms life error, see [`rms_life_error`].
-    #[must_use]
-    pub fn rms_life_error(&self) -> f64 {
-        rms_life_error(&self.cycles_fitted, &self.cycles_measured)
     }
 }

@@ -1,32 +1,29 @@
-//! Measured a-N curves: readings of crack length against cycles, checked one by one.
+//! Measured a-N curves: readings of crack length against cycles, and the loads between them.
 //!
-//! A file is a CSV table `specimen,cycles,crack_length_mm` (or wide, in other units, with semicolons; see
-//! [`Units`]), with the feature `tables` also a Parquet table of the same columns. Every complaint names file, line,
-//! column and value. A crack length that falls from one reading to the next is reading noise and accepted; cycles that
-//! fall or repeat are a mistake of the file and refused.
+//! A file is a table of readings in any usual dress: CSV in the units and names of laboratories, a workbook, with the
+//! feature `tables` also Parquet. Every complaint names file, line, column and value. A crack length that falls from one reading to the
+//! next is reading noise and accepted; cycles that fall or repeat are a mistake of the file and refused.
 
 use std::path::{Path, PathBuf};
 
-use crate::calibration::columns;
-pub use crate::calibration::columns::{CycleUnit, Layout, LengthUnit, Shape, Units};
-use crate::calibration::text_table::{Fault, TextRow, TextTable, whole_file};
+use crate::calibration::columns::{self, Layout};
+pub use crate::calibration::import::{ColumnName, ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Sheet};
+use crate::calibration::loads::Loads;
+use crate::calibration::rates::side_difference_max;
+use crate::calibration::readings::curves_of;
+use crate::calibration::table::{Fault, Table};
 use crate::error::{Error, InputError, Result, input};
+use crate::specimen::Specimen;
 use crate::units::MM;
 
 /// Fewest readings a curve can have.
 pub const READINGS_MIN: usize = 5;
 
-/// More cycles than any test has run: beyond it the unit is wrong.
-const CYCLES_MAX: f64 = 1e15;
-
-/// Longer than any specimen, m: beyond it the unit is wrong.
-const LENGTH_MAX: f64 = 100.0;
-
 /// Slack of window ends against readings, m: `9.0 mm` in a file and in a key need not be the same binary number.
 const LENGTH_SLACK: f64 = 1e-9;
 
 /// Readings of one specimen, in the order of the test.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeasuredCurve {
     /// Name of the specimen.
     pub specimen: String,
@@ -34,6 +31,14 @@ pub struct MeasuredCurve {
     pub cycles: Vec<f64>,
     /// Crack length in the convention of the specimen, m.
     pub crack_length: Vec<f64>,
+    /// Largest difference between the sides of the specimen at each reading, m; empty where one length was read.
+    pub side_difference: Vec<f64>,
+    /// Loads of each reading as read; `None` where the file has none.
+    pub loads: Option<Loads>,
+    /// Range of load at each reading over that of the case ([`Measured::resolve_loads`]); empty where it is that of the case.
+    pub load_factor: Vec<f64>,
+    /// Whether the growth up to each reading is left out ([`crate::calibration::leave_out`]); empty where none is.
+    pub left_out: Vec<bool>,
     /// Where the readings stand.
     pub source: Source,
 }
@@ -49,6 +54,8 @@ pub struct Source {
     pub length_column: String,
     /// Metres per unit of that column.
     pub length_unit: f64,
+    /// Cycles of the file at the first reading of a window, which counts them from 0.
+    pub cycles_before: f64,
 }
 
 /// Curves of one or many files.
@@ -61,25 +68,30 @@ pub struct Measured {
 }
 
 /// Reads one or many files.
-pub fn read(files: &[PathBuf], units: Units) -> Result<Measured> {
+pub fn read(files: &[PathBuf], import: &Import) -> Result<Measured> {
     let mut all = Measured::default();
     for file in files {
         let bytes = std::fs::read(file).map_err(|error| Error::file(file, "cannot read", error))?;
-        all.add(parse(&bytes, file, units)?)?;
+        all.add(parse(&bytes, file, import)?)?;
     }
     Ok(all)
 }
 
 /// Reads the bytes of one file; `file` is only named in messages and, where there is no specimen column, in the curve. Its ending
 /// tells Parquet from CSV.
-pub fn parse(bytes: &[u8], file: &Path, units: Units) -> Result<Measured> {
-    let table = if is_parquet(file) { parquet_table(bytes, file) } else { TextTable::parse(bytes, file) };
-    Ok(curves_of(&table?, units, &mut Err)?.0)
+pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
+    let table = Table::read(bytes, file, import)?;
+    let layout = columns::recognise(&table, import)?;
+    curves_of(&table, &layout, &mut Err)
 }
 
 /// What a file holds although some of it is wrong.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Survey {
+    /// Column names as written.
+    pub header: Vec<String>,
+    /// Cells of the first rows below them.
+    pub first_rows: Vec<Vec<String>>,
     /// What its columns are.
     pub layout: Option<Layout>,
     /// Curves of the good rows.
@@ -93,7 +105,8 @@ pub const PROBLEMS_MAX: usize = 100;
 
 /// Reads the bytes of one file as [`parse`] does, but goes on behind a bad row.
 #[must_use]
-pub fn survey(bytes: &[u8], file: &Path, units: Units) -> Survey {
+pub fn survey(bytes: &[u8], file: &Path, import: &Import) -> Survey {
+    let mut survey = Survey::default();
     let mut problems: Vec<InputError> = Vec::new();
     let mut note = |error: Error| match error {
         Error::Input(problem) if problems.len() < PROBLEMS_MAX => {
@@ -102,175 +115,26 @@ pub fn survey(bytes: &[u8], file: &Path, units: Units) -> Survey {
         }
         other => Err(other),
     };
-    let table = if is_parquet(file) { parquet_table(bytes, file) } else { TextTable::parse(bytes, file) };
-    let read = table.and_then(|table| curves_of(&table, units, &mut note));
-    match read {
-        Ok((measured, layout)) => Survey { layout: Some(layout), measured, problems },
+    let mut look = || {
+        let table = Table::read(bytes, file, import)?;
+        survey.header.clone_from(&table.header);
+        survey.first_rows = table.first_cells();
+        let layout = columns::recognise(&table, import)?;
+        survey.measured = curves_of(&table, &layout, &mut note)?;
+        survey.layout = Some(layout);
+        Ok(())
+    };
+    match look() {
+        Ok(()) => {}
         // Too many, or one that leaves no table.
-        Err(Error::Input(problem)) => {
-            problems.push(*problem);
-            Survey { problems, ..Survey::default() }
-        }
+        Err(Error::Input(problem)) => problems.push(*problem),
         Err(other) => {
-            problems.push(InputError { file: Some(file.to_path_buf()), problem: other.to_string(), ..InputError::default() });
-            Survey { problems, ..Survey::default() }
+            let file = Some(file.to_path_buf());
+            problems.push(InputError { file, problem: other.to_string(), ..InputError::default() });
         }
     }
-}
-
-/// What is done about a bad row: an error ends the reading.
-type Fate<'a> = &'a mut dyn FnMut(Error) -> Result<()>;
-
-fn is_parquet(file: &Path) -> bool {
-    file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"))
-}
-
-#[cfg(feature = "tables")]
-fn parquet_table(bytes: &[u8], file: &Path) -> Result<TextTable> {
-    let cells = crate::tables::read_parquet(bytes, file)?;
-    let rows = cells.rows.into_iter().enumerate().map(|(index, cells)| TextRow { line: index + 1, cells }).collect();
-    // Row n counts as line n, and so it passes the same checks as a CSV file.
-    Ok(TextTable { file: file.to_path_buf(), header: cells.header, header_line: 0, rows, decimal_comma: false })
-}
-
-#[cfg(not(feature = "tables"))]
-fn parquet_table(_bytes: &[u8], file: &Path) -> Result<TextTable> {
-    Err(whole_file(file)
-        .error("is a Parquet table, which this build cannot read", "give CSV, or build with the feature `tables`"))
-}
-
-/// Curves of a table of cells.
-fn curves_of(table: &TextTable, units: Units, fate: Fate<'_>) -> Result<(Measured, Layout)> {
-    let layout = columns::recognise(table, units)?;
-    let mut curves = match layout.shape {
-        Shape::Long { specimen, cycles, length } => long_curves(table, &layout, (specimen, cycles, length), fate)?,
-        Shape::WideCycles | Shape::WideLengths => wide_curves(table, &layout, fate)?,
-    };
-    let mut measured = Measured::default();
-    for curve in &mut curves {
-        if curve.cycles.len() < READINGS_MIN {
-            let fault = Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
-            fate(fault.error(
-                format!("has {} readings", curve.cycles.len()),
-                format!("give at least {READINGS_MIN} readings for every specimen"),
-            ))?;
-        }
-        let falls = curve.crack_length.windows(2).filter(|pair| pair[1] < pair[0]).count();
-        if falls > 0 {
-            measured.warnings.push(format!(
-                "{}: specimen {}: crack length falls at {falls} of {} readings (taken as reading noise)",
-                table.file.display(),
-                curve.specimen,
-                curve.cycles.len()
-            ));
-        }
-    }
-    measured.curves = curves;
-    Ok((measured, layout))
-}
-
-/// One row a reading; specimens in the order of their first rows.
-fn long_curves(
-    table: &TextTable,
-    layout: &Layout,
-    (specimen, cycles, length): (Option<usize>, usize, usize),
-    fate: Fate<'_>,
-) -> Result<Vec<MeasuredCurve>> {
-    let alone = table.file.file_stem().map_or_else(|| "specimen".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let mut curves: Vec<MeasuredCurve> = Vec::new();
-    for row in &table.rows {
-        let name = specimen.map_or(alone.as_str(), |column| row.cells[column].as_str());
-        if name.is_empty() {
-            let fault = Fault { line: Some(row.line), key: Some("specimen"), value: Some("\"\""), ..whole_file(&table.file) };
-            fate(fault.error("is empty", "name the specimen in every row, or leave the column out"))?;
-            continue;
-        }
-        // The last curve is the one of the row in all files but interleaved ones.
-        let place = match curves.iter().rposition(|curve| curve.specimen == name) {
-            Some(place) => place,
-            None => {
-                curves.push(empty_curve(name, table, length, layout));
-                curves.len() - 1
-            }
-        };
-        add_reading(&mut curves[place], table, row, layout, cycles, length).or_else(&mut *fate)?;
-    }
-    Ok(curves)
-}
-
-/// One column a specimen; an empty cell means that the specimen was not read there.
-fn wide_curves(table: &TextTable, layout: &Layout, fate: Fate<'_>) -> Result<Vec<MeasuredCurve>> {
-    let mut curves = Vec::with_capacity(table.header.len() - 1);
-    for column in 1..table.header.len() {
-        let (cycles, length) = if layout.shape == Shape::WideCycles { (column, 0) } else { (0, column) };
-        let mut curve = empty_curve(&table.header[column], table, length, layout);
-        for row in table.rows.iter().filter(|row| !row.cells[column].is_empty()) {
-            add_reading(&mut curve, table, row, layout, cycles, length).or_else(&mut *fate)?;
-        }
-        curves.push(curve);
-    }
-    Ok(curves)
-}
-
-fn empty_curve(name: &str, table: &TextTable, length: usize, layout: &Layout) -> MeasuredCurve {
-    let source = Source {
-        file: table.file.clone(),
-        lines: Vec::new(),
-        length_column: table.header[length].clone(),
-        length_unit: layout.length_unit,
-    };
-    MeasuredCurve { specimen: name.to_owned(), cycles: Vec::new(), crack_length: Vec::new(), source }
-}
-
-/// Adds the reading of a row after checking it by itself and against the reading before.
-fn add_reading(
-    curve: &mut MeasuredCurve,
-    table: &TextTable,
-    row: &TextRow,
-    layout: &Layout,
-    cycles: usize,
-    length: usize,
-) -> Result<()> {
-    let fault = |column: usize| Fault {
-        file: &table.file,
-        line: Some(row.line),
-        key: Some(&table.header[column]),
-        value: Some(&row.cells[column]),
-    };
-    let n = table.number(row, cycles)? * layout.cycle_unit;
-    let a = table.number(row, length)? * layout.length_unit;
-    if n < 0.0 {
-        return Err(fault(cycles).error("is negative", "count cycles from 0 upwards"));
-    }
-    if n > CYCLES_MAX {
-        return Err(fault(cycles).error("is more than 1e15 cycles", "check the number and its unit"));
-    }
-    if let Some(&before) = curve.cycles.last() {
-        let shown = before / layout.cycle_unit;
-        if n == before {
-            return Err(
-                fault(cycles).error("repeats the cycles of the reading before", "keep one reading for each number of cycles")
-            );
-        }
-        if n < before {
-            return Err(fault(cycles).error(
-                format!("is below the reading before ({shown})"),
-                "sort the readings of each specimen by cycles, or correct the number",
-            ));
-        }
-    }
-    if a <= 0.0 {
-        return Err(
-            fault(length).error("is not above 0", "give the crack length as the test standard of the specimen defines it")
-        );
-    }
-    if a > LENGTH_MAX {
-        return Err(fault(length).error("is more than 100 m", "check the number and its unit"));
-    }
-    curve.cycles.push(n);
-    curve.crack_length.push(a);
-    curve.source.lines.push(row.line);
-    Ok(())
+    survey.problems = problems;
+    survey
 }
 
 impl Measured {
@@ -315,6 +179,26 @@ impl Measured {
         Ok(())
     }
 
+    /// Warns of crack fronts that are more uneven than E647 accepts.
+    pub fn check_sides(&mut self, specimen: &Specimen) {
+        let limit = side_difference_max(specimen.kind, specimen.width, specimen.thickness);
+        for curve in &self.curves {
+            let uneven: Vec<usize> = (0..curve.side_difference.len()).filter(|&i| curve.side_difference[i] > limit).collect();
+            let Some(&first) = uneven.first() else { continue };
+            self.warnings.push(format!(
+                "{}:{}: specimen {}: crack lengths on its sides differ by {:.2} mm; at {} of {} readings by more than the {:.2} mm that \
+                 ASTM E647 accepts",
+                curve.source.file.display(),
+                curve.line(first),
+                curve.specimen,
+                curve.side_difference[first] / MM,
+                uneven.len(),
+                curve.cycles.len(),
+                limit / MM
+            ));
+        }
+    }
+
     /// Readings between two crack lengths (m). Cycles are counted from the first reading kept; readings of that specimen
     /// that noise puts before this first one in length are left out, because a model that starts there has no cycles for them.
     pub fn window(&self, from: Option<f64>, to: Option<f64>) -> Result<Measured> {
@@ -337,32 +221,7 @@ impl Measured {
     }
 }
 
-impl MeasuredCurve {
-    fn window(&self, from: f64, to: f64) -> MeasuredCurve {
-        let inside = |&reading: &usize| self.crack_length[reading] >= from && self.crack_length[reading] <= to;
-        let first = (0..self.cycles.len()).find(inside);
-        let start = first.map_or((0.0, from), |first| (self.cycles[first], self.crack_length[first]));
-        let readings: Vec<usize> =
-            (0..self.cycles.len()).filter(inside).filter(|&reading| self.crack_length[reading] >= start.1).collect();
-        MeasuredCurve {
-            specimen: self.specimen.clone(),
-            cycles: readings.iter().map(|&reading| self.cycles[reading] - start.0).collect(),
-            crack_length: readings.iter().map(|&reading| self.crack_length[reading]).collect(),
-            source: Source {
-                lines: readings.iter().filter_map(|&reading| self.source.lines.get(reading).copied()).collect(),
-                ..self.source.clone()
-            },
-        }
-    }
-
-    /// Cycles from the first reading to the last.
-    #[must_use]
-    pub fn life(&self) -> f64 {
-        self.cycles.last().unwrap_or(&0.0) - self.cycles.first().unwrap_or(&0.0)
-    }
-}
-
 /// Nine significant digits for messages: hides the last bits that unit conversion leaves.
-fn round_off(value: f64) -> f64 {
+pub(crate) fn round_off(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }

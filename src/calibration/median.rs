@@ -1,6 +1,6 @@
 //! Several specimens as one curve: pointwise median of cycles at equal crack length.
 
-use crate::calibration::measured::{MeasuredCurve, READINGS_MIN, Source};
+use crate::calibration::measured::{MeasuredCurve, READINGS_MIN};
 use crate::error::{Result, input_missing};
 
 /// Two lengths that differ by less are the same grid point, m.
@@ -96,7 +96,7 @@ pub fn pointwise_median_at(curves: &[MeasuredCurve], lengths: &[f64]) -> Result<
         }
         cycles.push(median(&since_start));
     }
-    Ok(MeasuredCurve { specimen: "median".to_owned(), cycles, crack_length: lengths.to_vec(), source: Source::default() })
+    Ok(MeasuredCurve::new("median", cycles, lengths.to_vec()))
 }
 
 /// Pointwise median at the common lengths; of one curve, the curve itself.

@@ -1,6 +1,8 @@
 //! From measured curves to the constants of the fatigue law.
 //!
-//! In the order data flows: [`measured`] readings, their [`median`] and [`rates`]; the [`power_law`] over K(a) that is fitted;
+//! In the order data flows: what a user says of files ([`import`]), cells of a table, its [`columns`] and the [`decimal`] sign;
+//! [`measured`] readings with their [`loads`], those that are [left out](leave_out), their [`median`] and [`rates`]; [`outliers`] and
+//! [shifts of level](level_shift) among them; the [`power_law`] over K(a) that is fitted;
 //! [`criterion`], [`misfit`], [`search`] and [`confidence`]; [`fit`], the page that calls them in turn; what it means as C and m
 //! ([`paris`]) and as A and p of bonds ([`bond_constants`]); [`results`] as they are written and the [`record`] that predictions
 //! read. [`case`] reads the input file, and [`mod@calibrate`] goes the whole way.
@@ -8,21 +10,38 @@
 pub mod bond_constants;
 pub mod calibrate;
 pub mod case;
+mod case_load;
+mod column_units;
 pub mod columns;
 pub mod confidence;
 pub mod criterion;
+mod curve;
+pub mod decimal;
+pub mod estimate;
 pub mod exponent;
 pub mod fit;
+mod fitted_curve;
 #[cfg(feature = "tables")]
 pub mod frames;
+pub mod import;
+pub mod lack_of_fit;
+pub mod leave_out;
+pub mod level_shift;
+pub mod loads;
 pub mod measured;
 pub mod median;
 pub mod misfit;
 pub mod model;
+mod names;
+mod numerals;
+pub mod outliers;
 pub mod paris;
 pub mod power_law;
 pub mod rates;
+mod readings;
 pub mod record;
 pub mod results;
+mod roles;
 pub mod search;
-pub(crate) mod text_table;
+mod shape;
+pub(crate) mod table;

@@ -42,6 +42,24 @@ impl Paris {
     }
 }
 
+/// Exponents and rates at ΔK = 10 MPa√m (mm/cycle) that a metal may have.
+const EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=10.0;
+const RATES_AT_TEN: std::ops::RangeInclusive<f64> = 1e-8..=1e-2;
+
+/// What is wrong with `da/dN = C ΔK^m` (mm/cycle, MPa√m) as the law of a metal: a unit that slipped shows here.
+#[must_use]
+pub fn doubt(c: f64, m: f64) -> Option<String> {
+    let rate = c * 10_f64.powf(m);
+    let words = "check the units of crack length, cycles and load";
+    if !EXPONENTS.contains(&m) {
+        return Some(format!("m = {m:.3} is outside {} to {}, where metals lie: {words}", EXPONENTS.start(), EXPONENTS.end()));
+    }
+    (!RATES_AT_TEN.contains(&rate)).then(|| {
+        let (low, high) = (RATES_AT_TEN.start(), RATES_AT_TEN.end());
+        format!("the rate at ΔK = 10 MPa√m is {rate:.2e} mm/cycle, outside {low:e} to {high:e}, where metals lie: {words}")
+    })
+}
+
 /// Equally spaced lengths of the window at which rates are taken.
 #[must_use]
 pub fn lengths(from: f64, to: f64) -> Vec<f64> {
@@ -80,7 +98,8 @@ pub fn equivalents(
     // m follows p: its slope over p is that of the sensitivities over ln ΔK.
     let m_per_p = line(&log_k, &sensitivity).map_or(0.0, |law| law.slope);
     let (log_pivot, error) = pivot(&log_k, &sensitivity, &weight, covariance);
-    let ends = [at(lengths[0]), at(lengths[lengths.len() - 1])];
+    let ends = lengths.iter().map(|&length| at(length));
+    let (low, high) = ends.fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(k), high.max(k)));
     Ok(Paris {
         c: law.intercept.exp(),
         m: law.slope,
@@ -88,8 +107,8 @@ pub fn equivalents(
         pivot: log_pivot.exp(),
         rate_at_pivot: law.at(log_pivot).exp(),
         rate_at_pivot_error: error,
-        delta_k_min: ends[0].min(ends[1]),
-        delta_k_max: ends[0].max(ends[1]),
+        delta_k_min: low,
+        delta_k_max: high,
     })
 }
 

@@ -1,6 +1,7 @@
 //! What is fitted: growth at `da/dN = A (ΔK / ΔK₀)^p` (Paris and Erdogan 1963) with a known ΔK(a), so that
 //! `A N(a) = ∫ (ΔK₀ / ΔK)^p da`. Cycles are proportional to 1/A, so that only p takes a search.
 
+use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::model::cycles_since_first;
 use crate::error::{Result, input};
 use crate::units::MPA_SQRT_M;
@@ -8,12 +9,23 @@ use crate::units::MPA_SQRT_M;
 /// Lengths at which ΔK is tabulated; Simpson's rule on them integrates the Virkler panel to 1e-9.
 const INTERVALS: usize = 400;
 
+/// Pieces of Simpson's rule between two readings of different loads.
+const PIECES_OF_STEP: usize = 2;
+
 /// Paris growth between two crack lengths. A is in m/cycle at ΔK₀ = 1 MPa√m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PowerLaw {
-    lengths: Vec<f64>,
+    pieces: Vec<Piece>,
+}
+
+/// Two equal intervals of crack length with ΔK at their ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Piece {
+    lengths: [f64; 3],
     /// ΔK in MPa√m at `lengths`.
-    delta_k: Vec<f64>,
+    delta_k: [f64; 3],
+    /// Whether its growth counts; where it does not, it takes no cycles.
+    counts: bool,
 }
 
 impl PowerLaw {
@@ -24,15 +36,56 @@ impl PowerLaw {
     pub fn new(from: f64, to: f64, delta_k: &dyn Fn(f64) -> f64) -> Result<Self> {
         let lengths: Vec<f64> = (0..=INTERVALS).map(|i| from + (to - from) * i as f64 / INTERVALS as f64).collect();
         let delta_k: Vec<f64> = lengths.iter().map(|&a| delta_k(a) / MPA_SQRT_M).collect();
-        match delta_k.iter().position(|k| !(k.is_finite() && *k > 0.0)) {
-            None => Ok(PowerLaw { lengths, delta_k }),
-            Some(i) => Err(input(
+        if let Some(i) = delta_k.iter().position(|k| !(k.is_finite() && *k > 0.0)) {
+            return Err(input(
                 "measured.crack_length_mm",
                 lengths[i] / crate::units::MM,
                 "has no stress intensity range above 0 in the handbook formula of the specimen",
                 "narrow the window to lengths the formula covers",
-            )),
+            ));
         }
+        let piece = |i: usize| Piece {
+            lengths: [lengths[i], lengths[i + 1], lengths[i + 2]],
+            delta_k: [delta_k[i], delta_k[i + 1], delta_k[i + 2]],
+            counts: true,
+        };
+        Ok(PowerLaw { pieces: (0..INTERVALS).step_by(2).map(piece).collect() })
+    }
+
+    /// ΔK (MPa√m) at a length (m): a parabola through ln ΔK of the piece it lies in.
+    #[must_use]
+    pub fn delta_k(&self, length: f64) -> f64 {
+        let place = self.pieces.partition_point(|piece| piece.lengths[2] < length).min(self.pieces.len() - 1);
+        let Piece { lengths: [a, b, c], delta_k, .. } = self.pieces[place];
+        let [at_a, at_b, at_c] = delta_k.map(f64::ln);
+        let shares = [
+            (length - b) * (length - c) / ((a - b) * (a - c)),
+            (length - a) * (length - c) / ((b - a) * (b - c)),
+            (length - a) * (length - b) / ((c - a) * (c - b)),
+        ];
+        (shares[0] * at_a + shares[1] * at_b + shares[2] * at_c).exp()
+    }
+
+    /// The law under the loads of a curve, steps that are left out taking no cycles.
+    #[must_use]
+    pub fn under(&self, curve: &MeasuredCurve) -> PowerLaw {
+        let mut pieces = Vec::with_capacity(PIECES_OF_STEP * curve.cycles.len());
+        let mut reached = curve.crack_length.first().copied().unwrap_or(f64::NAN);
+        for (i, (start, end)) in curve.step_factors().into_iter().enumerate().skip(1) {
+            let (from, to) = (reached, curve.crack_length[i]);
+            // Noise in a reading does not heal a crack.
+            if to <= from {
+                continue;
+            }
+            for piece in 0..PIECES_OF_STEP {
+                let share = |point: usize| (2 * piece + point) as f64 / (2 * PIECES_OF_STEP) as f64;
+                let lengths = [0, 1, 2].map(|point| from + (to - from) * share(point));
+                let delta_k = [0, 1, 2].map(|point| self.delta_k(lengths[point]) * (start + (end - start) * share(point)));
+                pieces.push(Piece { lengths, delta_k, counts: curve.counts(i) });
+            }
+            reached = to;
+        }
+        PowerLaw { pieces }
     }
 
     /// A x cycles from the first of `lengths` (m) to each of them.
@@ -54,17 +107,20 @@ impl PowerLaw {
     /// Integral over the crack length of a function of ΔK in MPa√m, with the lengths to which it goes: Simpson's rule over pairs of
     /// intervals.
     fn integral(&self, of: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        let values: Vec<f64> = self.delta_k.iter().map(|&k| of(k)).collect();
         let mut sum = 0.0;
-        let mut curve = vec![(0.0, self.lengths[0])];
-        for i in (2..self.lengths.len()).step_by(2) {
-            let step = self.lengths[i] - self.lengths[i - 2];
-            let whole = step / 6.0 * (values[i - 2] + 4.0 * values[i - 1] + values[i]);
-            // Parabola through the three values, integrated over its first half.
-            let half = step / 24.0 * (5.0 * values[i - 2] + 8.0 * values[i - 1] - values[i]);
-            curve.push((sum + half, self.lengths[i - 1]));
+        let mut curve = vec![(0.0, self.pieces.first().map_or(f64::NAN, |piece| piece.lengths[0]))];
+        for piece in &self.pieces {
+            let (mut half, mut whole) = (0.0, 0.0);
+            if piece.counts {
+                let values = piece.delta_k.map(&of);
+                let step = piece.lengths[2] - piece.lengths[0];
+                whole = step / 6.0 * (values[0] + 4.0 * values[1] + values[2]);
+                // Parabola through the three values, integrated over its first half.
+                half = step / 24.0 * (5.0 * values[0] + 8.0 * values[1] - values[2]);
+            }
+            curve.push((sum + half, piece.lengths[1]));
             sum += whole;
-            curve.push((sum, self.lengths[i]));
+            curve.push((sum, piece.lengths[2]));
         }
         curve
     }

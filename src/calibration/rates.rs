@@ -3,7 +3,9 @@
 //! - **secant**: `da/dN = Δa / ΔN` between neighbouring readings, at their mean length;
 //! - **seven-point incremental polynomial** (appendix X1): a parabola in N through seven neighbouring readings by least
 //!   squares; rate and crack length are those of the parabola at the middle reading. The first and last three readings get
-//!   no rate.
+//!   no rate. Seven readings have to have one load: where it changes, the rates are secants.
+
+use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -38,6 +40,10 @@ pub struct RatePoint {
     pub rate: f64,
     /// ΔK, Pa√m; NaN where the specimen is not known.
     pub delta_k: f64,
+    /// Range of load over that of the case.
+    pub load_factor: f64,
+    /// Largest difference of crack length between sides at the readings of the point, m.
+    pub side_difference: f64,
     /// What speaks against the point.
     pub flags: Flags,
 }
@@ -51,70 +57,118 @@ pub struct Flags {
     pub not_growing: bool,
     /// The ligament is too small for its plastic zone.
     pub yielding: bool,
+    /// The crack front is too uneven: the lengths on the sides differ by more than E647 accepts.
+    pub uneven_front: bool,
+    /// The rate is a secant, since the load changes within seven readings; nothing speaks against it.
+    pub load_changes: bool,
 }
 
 impl Flags {
-    /// Words of the result files, separated by blanks; empty where nothing speaks against the point.
+    /// Whether anything speaks against the point.
+    #[must_use]
+    pub fn any(self) -> bool {
+        Flags { load_changes: false, ..self } != Flags::default()
+    }
+
+    /// Words of the result files, separated by blanks; empty where there is nothing to say about the point.
     #[must_use]
     pub fn words(self) -> String {
-        let words =
-            [(self.short_step, "step_under_0.25_mm"), (self.not_growing, "not_growing"), (self.yielding, "ligament_yields")];
+        let words = [
+            (self.short_step, "step_under_0.25_mm"),
+            (self.not_growing, "not_growing"),
+            (self.yielding, "ligament_yields"),
+            (self.uneven_front, "uneven_front"),
+            (self.load_changes, "load_changes"),
+        ];
         words.into_iter().filter(|(set, _)| *set).map(|(_, word)| word).collect::<Vec<_>>().join(" ")
     }
 }
 
-/// Rates of a curve by one method; ΔK is NaN until [`add_delta_k`].
+/// Rates of a curve by one method, without steps that are left out; ΔK is NaN until [`add_delta_k`].
 #[must_use]
 pub fn rates(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {
+    let factors = curve.step_factors();
     match method {
-        RateMethod::Secant => secant(&curve.cycles, &curve.crack_length),
-        RateMethod::Polynomial7 => polynomial7(&curve.cycles, &curve.crack_length),
+        RateMethod::Secant => (1..curve.cycles.len()).filter_map(|i| secant(curve, &factors, i)).collect(),
+        RateMethod::Polynomial7 => {
+            // A step gets a secant of its own where a change of load spoils every parabola around it.
+            let by_polynomial = (0..curve.cycles.len()).filter_map(|i| polynomial7(curve, i));
+            let mut points: Vec<RatePoint> = by_polynomial.collect();
+            let by_secant = (1..curve.cycles.len()).filter(|&i| in_changing_load(curve, i));
+            points.extend(by_secant.filter_map(|i| secant(curve, &factors, i)).map(|mut point| {
+                point.flags.load_changes = true;
+                point
+            }));
+            points.sort_by(|a, b| a.cycles.total_cmp(&b.cycles));
+            points
+        }
     }
 }
 
-/// Slope between neighbouring readings.
-fn secant(n: &[f64], a: &[f64]) -> Vec<RatePoint> {
-    (1..n.len())
-        .map(|i| point(0.5 * (n[i] + n[i - 1]), 0.5 * (a[i] + a[i - 1]), (a[i] - a[i - 1]) / (n[i] - n[i - 1]), &a[i - 1..=i]))
-        .collect()
+/// Slope between a reading and the one before.
+fn secant(curve: &MeasuredCurve, factors: &[(f64, f64)], i: usize) -> Option<RatePoint> {
+    let (n, a) = (&curve.cycles, &curve.crack_length);
+    curve.counts(i).then(|| RatePoint {
+        load_factor: 0.5 * (factors[i].0 + factors[i].1),
+        ..point(curve, 0.5 * (n[i] + n[i - 1]), 0.5 * (a[i] + a[i - 1]), (a[i] - a[i - 1]) / (n[i] - n[i - 1]), i - 1..=i)
+    })
+}
+
+/// Whether the load changes near the growth up to a reading, so that neither it nor the reading before is the middle of seven readings of
+/// one load.
+fn in_changing_load(curve: &MeasuredCurve, i: usize) -> bool {
+    let last = curve.cycles.len() - 1;
+    let around = i.saturating_sub(HALF_SPAN + 1)..=(i + HALF_SPAN).min(last);
+    let has_window = |middle: usize| middle >= HALF_SPAN && middle + HALF_SPAN <= last && holds(curve, middle);
+    !curve.holds_load(around) && !has_window(i) && !has_window(i - 1)
+}
+
+/// Whether seven readings have one load and none of their steps is left out.
+fn holds(curve: &MeasuredCurve, middle: usize) -> bool {
+    let seven = middle - HALF_SPAN..=middle + HALF_SPAN;
+    curve.holds_load(seven.clone()) && seven.skip(1).all(|step| curve.counts(step))
 }
 
 /// Seven-point incremental polynomial: `â = b0 + b1 x + b2 x²`, `x = (N - C1) / C2` scaled to -1..1 over the seven readings.
-fn polynomial7(n: &[f64], a: &[f64]) -> Vec<RatePoint> {
-    let mut points = Vec::new();
-    for middle in HALF_SPAN..n.len().saturating_sub(HALF_SPAN) {
-        let seven = middle - HALF_SPAN..=middle + HALF_SPAN;
-        let (first, last) = (n[middle - HALF_SPAN], n[middle + HALF_SPAN]);
-        let (centre, half) = (0.5 * (first + last), 0.5 * (last - first));
-        let basis = |n: f64| {
-            let x = (n - centre) / half;
-            Vector3::new(1.0, x, x * x)
-        };
-        let normal: Matrix3<f64> = n[seven.clone()].iter().map(|&n| basis(n) * basis(n).transpose()).sum();
-        let right: Vector3<f64> = seven.clone().map(|i| basis(n[i]) * a[i]).sum();
-        // Cycles rise strictly, so the seven x differ; only readings crowded at one end could still be singular.
-        let Some(b) = normal.try_inverse().map(|inverse| inverse * right) else { continue };
-        let x = (n[middle] - centre) / half;
-        points.push(point(
-            n[middle],
-            b[0] + b[1] * x + b[2] * x * x,
-            (b[1] + 2.0 * b[2] * x) / half,
-            &a[middle - 1..=middle + 1],
-        ));
+pub(super) fn polynomial7(curve: &MeasuredCurve, middle: usize) -> Option<RatePoint> {
+    let (n, a) = (&curve.cycles, &curve.crack_length);
+    if middle < HALF_SPAN || middle + HALF_SPAN >= n.len() || !holds(curve, middle) {
+        return None;
     }
-    points
+    let seven = middle - HALF_SPAN..=middle + HALF_SPAN;
+    let (first, last) = (n[middle - HALF_SPAN], n[middle + HALF_SPAN]);
+    // Cycles of a computed curve stand still where noise lets a length fall.
+    if n[seven.clone()].windows(2).any(|pair| pair[1] <= pair[0]) {
+        return None;
+    }
+    let (centre, half) = (0.5 * (first + last), 0.5 * (last - first));
+    let basis = |n: f64| {
+        let x = (n - centre) / half;
+        Vector3::new(1.0, x, x * x)
+    };
+    let normal: Matrix3<f64> = n[seven.clone()].iter().map(|&n| basis(n) * basis(n).transpose()).sum();
+    let right: Vector3<f64> = seven.clone().map(|i| basis(n[i]) * a[i]).sum();
+    // Cycles rise strictly, so the seven x differ; only readings crowded at one end could still be singular.
+    let b = normal.try_inverse().map(|inverse| inverse * right)?;
+    let x = (n[middle] - centre) / half;
+    let (length, rate) = (b[0] + b[1] * x + b[2] * x * x, (b[1] + 2.0 * b[2] * x) / half);
+    let mean_factor = curve.load_factor.get(seven).map_or(1.0, |factors| factors.iter().sum::<f64>() / factors.len() as f64);
+    Some(RatePoint { load_factor: mean_factor, ..point(curve, n[middle], length, rate, middle - 1..=middle + 1) })
 }
 
-/// A point with the flags that need no specimen; `steps` are the readings whose distances count.
-fn point(cycles: f64, crack_length: f64, rate: f64, steps: &[f64]) -> RatePoint {
+/// A point with the flags that need no specimen; `readings` are those whose distances count.
+fn point(curve: &MeasuredCurve, cycles: f64, crack_length: f64, rate: f64, readings: RangeInclusive<usize>) -> RatePoint {
     // A step of exactly 0.25 mm is long enough, also after its conversion to metres.
-    let short_step = steps.windows(2).any(|pair| (pair[1] - pair[0]).abs() < STEP_MIN * (1.0 - 1e-6));
+    let steps = curve.crack_length[readings.clone()].windows(2);
+    let short_step = steps.into_iter().any(|pair| (pair[1] - pair[0]).abs() < STEP_MIN * (1.0 - 1e-6));
     RatePoint {
         cycles,
         crack_length,
         rate,
         delta_k: f64::NAN,
-        flags: Flags { short_step, not_growing: rate <= 0.0, yielding: false },
+        load_factor: 1.0,
+        side_difference: curve.side_difference.get(readings).map_or(0.0, |of| of.iter().copied().fold(0.0, f64::max)),
+        flags: Flags { short_step, not_growing: rate <= 0.0, ..Flags::default() },
     }
 }
 
@@ -157,11 +211,25 @@ impl<'a> TestPiece<'a> {
     }
 }
 
-/// Fills in ΔK and the flag of small-scale yielding.
+/// Largest difference between the crack lengths on the sides of a specimen that E647 accepts, m: 0.025 W of a central crack or two
+/// edge cracks, 0.25 B of one edge crack.
+#[must_use]
+pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f64 {
+    let limit = match kind {
+        SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => 0.025 * width,
+        _ => 0.25 * thickness,
+    };
+    // Lengths of 12.8 and 11.2 mm differ by 1.6 mm and a rounding.
+    limit * (1.0 + 1e-9)
+}
+
+/// Fills in ΔK and the flags that depend on the specimen.
 pub fn add_delta_k(points: &mut [RatePoint], piece: &TestPiece<'_>) {
     for point in points {
-        point.delta_k = (piece.delta_k)(point.crack_length);
-        point.flags.yielding = !piece.small_scale_yielding(point.crack_length, point.delta_k * piece.k_max_over_range);
+        point.delta_k = (piece.delta_k)(point.crack_length) * point.load_factor;
+        let k_max = point.delta_k * piece.k_max_over_range;
+        point.flags.yielding = !piece.small_scale_yielding(point.crack_length, k_max, point.load_factor);
+        point.flags.uneven_front = point.side_difference > side_difference_max(piece.kind, piece.width, piece.thickness);
     }
 }
 
@@ -169,9 +237,9 @@ impl TestPiece<'_> {
     /// Whether the ligament is large enough, see [`net_section::small_scale_yielding`]. True where the yield strength is not
     /// known.
     #[must_use]
-    pub fn small_scale_yielding(&self, crack_length: f64, k_max: f64) -> bool {
+    pub fn small_scale_yielding(&self, crack_length: f64, k_max: f64, load_factor: f64) -> bool {
         let Some(yield_strength) = self.yield_strength else { return true };
-        let force = self.force_max / self.thickness;
+        let force = self.force_max * load_factor / self.thickness;
         net_section::small_scale_yielding(self.kind, self.width, crack_length, force, k_max, yield_strength)
     }
 }

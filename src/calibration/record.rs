@@ -3,6 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::calibration::estimate::Estimate;
+use crate::calibration::leave_out::LeaveOut;
+
 /// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -71,8 +74,18 @@ pub struct FittedRecord {
     pub material: String,
     /// Program version.
     pub version: String,
+    /// Which estimate of the constants it holds.
+    #[serde(default = "least_squares")]
+    pub estimate: Estimate,
     /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
+    /// Readings that were left out, with the reasons.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeaveOut>,
+}
+
+fn least_squares() -> Estimate {
+    Estimate::LeastSquares
 }
 
 /// A measured file a record was fitted to.

@@ -6,6 +6,8 @@ use serde::Serialize;
 
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::{Fit, FittedCurve};
+use crate::calibration::lack_of_fit::LackOfFit;
+use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::record::{FittedRecord, SourceFile};
 use crate::case::Method;
 use crate::units::{GPA, MM};
@@ -61,6 +63,16 @@ pub struct FitReport {
     pub delta_k_max_mpa_sqrt_m: f64,
     /// Each specimen with its own fit.
     pub specimens: Vec<SpecimenReport>,
+    /// Which estimate of C and m is written: `least_squares` or `robust`.
+    pub estimate: String,
+    /// m by the repeated median of rates; null where p was given or there are too few.
+    pub robust_paris_m: f64,
+    /// C of the same.
+    pub robust_paris_c_mm_per_cycle: f64,
+    /// By how much the law misses measured rates at both ends of its range; null for fewer than six rates.
+    pub lack_of_fit: Option<LackOfFit>,
+    /// Readings that were left out.
+    pub left_out: Vec<LeaveOut>,
     /// How often K(a) was computed: once, whatever is fitted to it.
     pub evaluations: usize,
     /// Wall time.
@@ -120,6 +132,11 @@ impl FitReport {
             delta_k_min_mpa_sqrt_m: fit.paris.delta_k_min,
             delta_k_max_mpa_sqrt_m: fit.paris.delta_k_max,
             specimens: fit.specimens.iter().map(SpecimenReport::new).collect(),
+            estimate: fit.estimate.name().to_owned(),
+            robust_paris_m: fit.robust.map_or(f64::NAN, |robust| robust.m),
+            robust_paris_c_mm_per_cycle: fit.robust.map_or(f64::NAN, |robust| robust.c),
+            lack_of_fit: fit.lack_of_fit,
+            left_out: calibration.left_out.clone(),
             evaluations: 1,
             wall_s,
             warnings: calibration.warnings.iter().chain(&fit.warnings).cloned().collect(),
@@ -192,6 +209,8 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         material: case.material.name.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         sources: calibration.sources.clone(),
+        estimate: fit.estimate,
+        left_out: calibration.left_out.clone(),
     }
 }
 

@@ -10,6 +10,7 @@ use super::console::Console;
 use super::predict;
 use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::{CalibrationCase, remove_law};
+use crate::calibration::estimate::Estimate;
 use crate::calibration::record::FittedRecord;
 use crate::calibration::results::{FitReport, record};
 use crate::case::Case;
@@ -161,6 +162,16 @@ fn summary(report: &FitReport, out: &Path) -> Vec<String> {
             report.life_fitted,
             100.0 * report.rms_life_error
         ),
+    ]);
+    if report.estimate == Estimate::Robust.name() {
+        lines.push("  estimate       robust: repeated median of the rates".to_owned());
+    }
+    lines.extend(report.lack_of_fit.map(|lack| format!("  lack of fit    {}", lack.words())));
+    lines.extend(report.left_out.iter().map(|window| {
+        let specimen = window.specimen.as_ref().map_or_else(String::new, |name| format!("specimen {name}, "));
+        format!("  left out       {specimen}{} to {} cycles: {}", window.from_cycles, window.to_cycles, window.reason)
+    }));
+    lines.extend([
         format!("  specimens      {}, in {:.1} s", report.specimens.len(), report.wall_s),
         format!("  results        {}", out.display()),
     ]);

@@ -7,7 +7,10 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::unaged::case_without_law;
-use crate::calibration::measured::{CycleUnit, LengthUnit, Measured, Units, read};
+use crate::calibration::decimal::Decimal;
+use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, read};
+use crate::calibration::outliers::doubts;
+use crate::calibration::paris::doubt;
 use crate::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
 use crate::calibration::results::quoted;
 use crate::case::Case;
@@ -34,6 +37,19 @@ pub struct Args {
     /// Unit of cycles where the header does not name it: cycles, kilocycles or megacycles
     #[arg(long, value_name = "UNIT", help_heading = "Input")]
     pub cycle_unit: Option<String>,
+    /// Unit of loads where the header does not name it: N, kN, lbf, kip, kgf, MPa or ksi
+    #[arg(long, value_name = "UNIT", help_heading = "Input")]
+    pub load_unit: Option<String>,
+    /// Which column is which (repeatable): cycles, length, specimen, force_max, force_min, stress_max, stress_min or stress_ratio by name
+    /// or number, e.g. length="a [in]"; several lengths are sides of one crack
+    #[arg(long = "column", value_name = "KEY=NAME", help_heading = "Input")]
+    pub columns: Vec<String>,
+    /// Decimal sign where the file leaves it open: . or ,
+    #[arg(long, value_name = "SIGN", help_heading = "Input")]
+    pub decimal: Option<String>,
+    /// Sheet of a workbook, by name or number
+    #[arg(long, value_name = "SHEET", help_heading = "Input")]
+    pub sheet: Option<String>,
     /// How rates are taken: secant, or polynomial7 (seven-point incremental polynomial of ASTM E647)
     #[arg(long, value_name = "METHOD", default_value = "polynomial7", help_heading = "Method")]
     pub method: String,
@@ -49,6 +65,24 @@ pub struct Args {
 struct SpecimenRates {
     name: String,
     points: Vec<RatePoint>,
+    /// What speaks against its readings, and its law.
+    warnings: Vec<String>,
+}
+
+impl Args {
+    /// What the options say of the files.
+    fn import(&self) -> Result<Import> {
+        let mut columns = ColumnNames::default();
+        self.columns.iter().try_for_each(|column| columns.put(column))?;
+        Ok(Import {
+            length: self.length_unit.as_deref().map(str::parse::<LengthUnit>).transpose()?,
+            cycles: self.cycle_unit.as_deref().map(str::parse::<CycleUnit>).transpose()?,
+            load: self.load_unit.as_deref().map(str::parse::<LoadUnit>).transpose()?,
+            columns,
+            decimal: self.decimal.as_deref().map(str::parse::<Decimal>).transpose()?,
+            sheet: self.sheet.clone().map(Sheet),
+        })
+    }
 }
 
 /// Runs `perilife rates`.
@@ -57,16 +91,18 @@ struct SpecimenRates {
 /// Wrong input, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let method: RateMethod = args.method.parse()?;
-    let units = Units {
-        length: args.length_unit.as_deref().map(str::parse::<LengthUnit>).transpose()?,
-        cycles: args.cycle_unit.as_deref().map(str::parse::<CycleUnit>).transpose()?,
-    };
-    let measured = read(&args.measured, units)?;
+    let mut measured = read(&args.measured, &args.import()?)?;
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
-    for warning in &measured.warnings {
-        args.console.warn(warning);
+    if let Some(case) = &case {
+        let (limit, limit_name) = case.specimen.length_limit();
+        measured.check_lengths(limit, limit_name)?;
+        measured.resolve_loads(case)?;
+        measured.check_sides(&case.specimen);
     }
     let specimens = specimen_rates(&measured, method, case.as_ref())?;
+    for warning in measured.warnings.iter().chain(specimens.iter().flat_map(|specimen| &specimen.warnings)) {
+        args.console.warn(warning);
+    }
     let table = table(&specimens);
     match &args.out {
         Some(path) => write_file(path, table.as_bytes())?,
@@ -79,20 +115,25 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) -> Result<Vec<SpecimenRates>> {
-    let mut specimens: Vec<SpecimenRates> = Vec::with_capacity(measured.curves.len());
-    for curve in &measured.curves {
-        specimens.push(SpecimenRates { name: curve.specimen.clone(), points: rates(curve, method) });
-    }
+    let of_curve = |curve: &MeasuredCurve| SpecimenRates {
+        name: curve.specimen.clone(),
+        points: rates(curve, method),
+        warnings: Vec::new(),
+    };
+    let mut specimens: Vec<SpecimenRates> = measured.curves.iter().map(of_curve).collect();
     let Some(case) = case else { return Ok(specimens) };
-    let (limit, limit_name) = case.specimen.length_limit();
-    measured.check_lengths(limit, limit_name)?;
     let Some(formula) = handbook(&case.specimen) else {
         let remedy = "give a standard specimen whose length is at least 1.5 widths, or leave --specimen out";
         return Err(input("specimen.kind", case.specimen.kind, "has no handbook K(a) in this shape", remedy));
     };
     let delta_k = |length: f64| formula.delta_k(length, case.loading.maximum, case.loading.range_share());
     let piece = TestPiece::of(case, &delta_k);
-    specimens.iter_mut().for_each(|specimen| add_delta_k(&mut specimen.points, &piece));
+    for (specimen, curve) in specimens.iter_mut().zip(&measured.curves) {
+        add_delta_k(&mut specimen.points, &piece);
+        let law = paris_line(&specimen.points).and_then(|law| doubt(10_f64.powf(law.intercept), law.slope));
+        let of_law = law.map(|words| format!("specimen {}: {words}", curve.specimen));
+        specimen.warnings = doubts(curve, &delta_k).into_iter().chain(of_law).collect();
+    }
     Ok(specimens)
 }
 
@@ -138,6 +179,7 @@ fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {
             "paris_m": law.map(|law| law.slope),
             "scatter_decades": law.map(|law| law.scatter),
             "flagged": specimen.flagged(),
+            "warnings": specimen.warnings,
             "points": points(specimen),
         })
     };
@@ -146,7 +188,7 @@ fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {
 
 impl SpecimenRates {
     fn flagged(&self) -> usize {
-        self.points.iter().filter(|point| !point.flags.words().is_empty()).count()
+        self.points.iter().filter(|point| point.flags.any()).count()
     }
 
     fn summary(&self) -> String {

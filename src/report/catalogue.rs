@@ -5,8 +5,10 @@ use serde_json::{Value, json};
 use crate::bench::GROUPS;
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::calibration::case::Parameter;
-use crate::calibration::columns::{CycleUnit, LengthUnit};
 use crate::calibration::criterion::Criterion;
+use crate::calibration::decimal::Decimal;
+use crate::calibration::estimate::Estimate;
+use crate::calibration::import::{CycleUnit, LengthUnit, LoadUnit};
 use crate::calibration::rates::RateMethod;
 use crate::case::growth_law::TableEnds;
 use crate::case::{Failure, Method};
@@ -69,6 +71,9 @@ pub fn lines() -> Vec<(String, String, String)> {
         Criterion::lines(),
         LengthUnit::lines(),
         CycleUnit::lines(),
+        LoadUnit::lines(),
+        Decimal::lines(),
+        Estimate::lines(),
         RateMethod::lines(),
         SolverUsed::lines(),
         StopReason::lines(),

@@ -42,7 +42,7 @@ fn band(calibration: &CalibrationCase, fit: &Fit, report: &FitReport) -> String 
     let mut weighted = 0.0;
     for (i, (&length, &n)) in lengths.iter().zip(cycles).enumerate() {
         if i > 0 {
-            let delta_k = calibration.delta_k(0.5 * (length + lengths[i - 1])) / MPA_SQRT_M;
+            let delta_k = calibration.delta_k(0.5 * (length + lengths[i - 1])) * fit.record.load_factor[i] / MPA_SQRT_M;
             weighted += (n - cycles[i - 1]) * (delta_k / report.pivot_delta_k_mpa_sqrt_m).ln();
         }
         let w = if n > 0.0 { weighted / n } else { 0.0 };
@@ -108,8 +108,9 @@ fn draw_rates(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result
         (1..cycles.len())
             .map(|i| {
                 let (a, before) = (record.crack_length[i], record.crack_length[i - 1]);
-                (delta_k(0.5 * (a + before)), (a - before) / (cycles[i] - cycles[i - 1]) / MM_PER_CYCLE)
+                (delta_k(0.5 * (a + before)) * record.load_factor[i], (a - before) / (cycles[i] - cycles[i - 1]) / MM_PER_CYCLE)
             })
+            .filter(|(_, rate): &(f64, f64)| rate.is_finite())
             .collect()
     };
     let line = [fit.paris.delta_k_min, fit.paris.delta_k_max].map(|k| (k, fit.paris.c * k.powf(fit.paris.m))).to_vec();

@@ -4,7 +4,7 @@
 
 use super::scene::case;
 use super::table::Table;
-use crate::calibration::measured::{MeasuredCurve, Source};
+use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::rates::{RateMethod, rates};
 use crate::error::{Error, Result};
 use crate::predict::{Prediction, Silent, StopReason, predict};
@@ -185,12 +185,8 @@ const READINGS: [(f64, f64); 7] = [
 
 /// Rates at these readings, computed by an independent script.
 fn measured_rates(table: &mut Table) {
-    let curve = MeasuredCurve {
-        specimen: "median".to_owned(),
-        cycles: READINGS.iter().map(|reading| reading.0).collect(),
-        crack_length: READINGS.iter().map(|reading| reading.1 * MM).collect(),
-        source: Source::default(),
-    };
+    let cycles = READINGS.iter().map(|reading| reading.0).collect();
+    let curve = MeasuredCurve::new("median", cycles, READINGS.iter().map(|reading| reading.1 * MM).collect());
     for (method, length, rate) in [(RateMethod::Polynomial7, 19.997, 1.64009e-4), (RateMethod::Secant, 20.1, 1.67574e-4)] {
         let points = rates(&curve, method);
         let point = points.iter().find(|point| (point.crack_length / MM - length).abs() < 1e-3);

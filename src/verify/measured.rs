@@ -11,7 +11,7 @@ use super::table::Table;
 use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::FittedCurve;
-use crate::calibration::measured::{MeasuredCurve, Source};
+use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::cycles_at;
 use crate::calibration::paris::Paris;
 use crate::calibration::record::FittedRecord;
@@ -106,12 +106,7 @@ pub fn all(table: &mut Table) -> Result<()> {
 
 /// Cycles that remain to the end of the fit.
 fn remaining_lives(table: &mut Table, record: &FittedCurve) {
-    let curve = |cycles: &[f64]| MeasuredCurve {
-        specimen: record.name.clone(),
-        cycles: cycles.to_vec(),
-        crack_length: record.crack_length.clone(),
-        source: Source::default(),
-    };
+    let curve = |cycles: &[f64]| MeasuredCurve::new(record.name.clone(), cycles.to_vec(), record.crack_length.clone());
     let (fitted, measured) = (curve(&record.cycles_fitted), curve(&record.cycles_measured));
     for (from, bound) in REMAINING {
         let remaining = |curve: &MeasuredCurve| cycles_at(curve, from * MM).map_or(f64::NAN, |n| curve.life() - n);

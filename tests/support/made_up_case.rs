@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use perilife::calibration::estimate::Estimate;
 use perilife::calibration::record::FittedRecord;
 use perilife::case::{Case, LawSource};
 
@@ -76,5 +77,7 @@ pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
         material: "inline".to_owned(),
         version: "0.0.0".to_owned(),
         sources: Vec::new(),
+        estimate: Estimate::LeastSquares,
+        left_out: Vec::new(),
     }))
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use perilife::Error;
 use perilife::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife::calibration::estimate::Estimate;
 use perilife::calibration::record::FittedRecord;
 use perilife::case::{Case, LawSource};
 use perilife::input::Folder;
@@ -52,6 +53,8 @@ fn record() -> FittedRecord {
         material: "al2024-t3".into(),
         version: "0".into(),
         sources: vec![],
+        estimate: Estimate::LeastSquares,
+        left_out: Vec::new(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Growth rates of curves whose rate is known.
 
-use perilife::calibration::measured::{MeasuredCurve, Source};
+use perilife::calibration::measured::MeasuredCurve;
 use perilife::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
 use perilife::specimen::SpecimenKind;
 use perilife::units::{MM, MPA};
@@ -9,7 +9,7 @@ use super::misfit::{delta_k, exact_curve};
 
 fn curve(cycles: Vec<f64>, lengths_mm: &[f64]) -> MeasuredCurve {
     let crack_length = lengths_mm.iter().map(|a| a * MM).collect();
-    MeasuredCurve { specimen: "S".to_owned(), cycles, crack_length, source: Source::default() }
+    MeasuredCurve::new("S", cycles, crack_length)
 }
 
 fn piece(kind: SpecimenKind, yield_strength: Option<f64>) -> TestPiece<'static> {
@@ -76,12 +76,12 @@ fn short_steps_and_falling_readings_are_flagged() {
 #[test]
 fn the_ligament_must_hold_its_plastic_zone() {
     let middle = piece(SpecimenKind::MiddleTension, Some(345.0 * MPA));
-    assert!(middle.small_scale_yielding(59.5 * MM, 0.0));
-    assert!(!middle.small_scale_yielding(59.7 * MM, 0.0));
-    assert!(piece(SpecimenKind::MiddleTension, None).small_scale_yielding(70.0 * MM, 0.0));
+    assert!(middle.small_scale_yielding(59.5 * MM, 0.0, 1.0));
+    assert!(!middle.small_scale_yielding(59.7 * MM, 0.0, 1.0));
+    assert!(piece(SpecimenKind::MiddleTension, None).small_scale_yielding(70.0 * MM, 0.0, 1.0));
     let compact = piece(SpecimenKind::CompactTension, Some(345.0 * MPA));
     let ligament = 152.4 * MM - 100.0 * MM;
     let limit = 345.0 * MPA * (ligament * std::f64::consts::PI / 4.0).sqrt();
-    assert!(compact.small_scale_yielding(100.0 * MM, 0.999 * limit));
-    assert!(!compact.small_scale_yielding(100.0 * MM, 1.001 * limit));
+    assert!(compact.small_scale_yielding(100.0 * MM, 0.999 * limit, 1.0));
+    assert!(!compact.small_scale_yielding(100.0 * MM, 1.001 * limit, 1.0));
 }

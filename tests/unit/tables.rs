@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use perilife::calibration::frames::{SHARES, cycle_quantiles, fit_curves, long, specimens, wide};
-use perilife::calibration::measured::{MeasuredCurve, Units, read};
+use perilife::calibration::measured::{Import, MeasuredCurve, read};
 use perilife::calibration::median::pointwise_median_at;
 use perilife::tables::{DataFrame, csv, join_by_specimen, numbers, parquet, read_parquet, wide_to_long};
 use perilife::units::MM;
@@ -64,7 +64,7 @@ fn parquet_and_csv_give_back_the_same_curves() {
     let check = |name: &str, bytes: Vec<u8>| {
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
-        let back = read(&[path], Units::default()).unwrap().curves;
+        let back = read(&[path], &Import::default()).unwrap().curves;
         assert_eq!(back.len(), curves.len(), "{name}");
         for (back, curve) in back.iter().zip(&curves) {
             assert_eq!(back.specimen, curve.specimen, "{name}");
@@ -86,7 +86,7 @@ fn a_file_that_only_claims_to_be_parquet_is_refused_with_words() {
     for bytes in [&b""[..], b"PAR1", b"PAR1 nothing of the kind PAR1", b"specimen,cycles\n"] {
         let path = folder.path().join("claims.parquet");
         std::fs::write(&path, bytes).unwrap();
-        let error = read(&[path], Units::default()).unwrap_err();
+        let error = read(&[path], &Import::default()).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("claims.parquet: is not a Parquet table"), "{error}");
     }

@@ -3,7 +3,7 @@
 
 use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::measured::{Measured, Units, read};
+use perilife::calibration::measured::{Import, Measured, read};
 use perilife::calibration::power_law::PowerLaw;
 use perilife::units::{MM, MPA};
 
@@ -15,7 +15,7 @@ pub fn delta_k(a: f64) -> f64 {
 }
 
 fn fit_to(file: &str, criterion: Criterion) -> Option<Fit> {
-    let measured = read(&[shared(file)?], Units::default()).unwrap();
+    let measured = read(&[shared(file)?], &Import::default()).unwrap();
     measured.check_lengths(76.2 * MM, "half width").unwrap();
     let Measured { curves, .. } = measured.window(Some(9.0 * MM), Some(49.8 * MM)).unwrap();
     let model = PowerLaw::new(9.0 * MM, 49.8 * MM, &delta_k).unwrap();

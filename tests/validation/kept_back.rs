@@ -6,7 +6,7 @@
 
 use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, FittedCurve, fit};
-use perilife::calibration::measured::{MeasuredCurve, Units, read};
+use perilife::calibration::measured::{Import, MeasuredCurve, read};
 use perilife::calibration::median::{cycles_at, pointwise_median};
 use perilife::calibration::power_law::PowerLaw;
 use perilife::units::MM;
@@ -89,7 +89,7 @@ fn check_mean(comparisons: &[Comparison]) {
 #[test]
 fn hand_calculation_gives_the_mean_of_panels_kept_back() {
     let Some(file) = shared("virkler/virkler.csv") else { return };
-    let panels = read(&[file], Units::default()).unwrap().window(Some(9.0 * MM), Some(49.8 * MM)).unwrap().curves;
+    let panels = read(&[file], &Import::default()).unwrap().window(Some(9.0 * MM), Some(49.8 * MM)).unwrap().curves;
     let model = PowerLaw::new(9.0 * MM, 49.8 * MM, &delta_k).unwrap();
     let comparisons: Vec<Comparison> = (1..=8)
         .flat_map(|run| {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use perilife::calibration::measured::{MeasuredCurve, Units, read};
+use perilife::calibration::measured::{Import, MeasuredCurve, read};
 use perilife::calibration::median::{pointwise_median, pointwise_median_at};
 use perilife::units::MM;
 
@@ -13,7 +13,7 @@ const TABLE: &str = "calibration/al2024-t3/measured/virkler_median.csv";
 
 fn measured() -> Option<Vec<MeasuredCurve>> {
     let path = shared("virkler/virkler.csv")?;
-    let measured = read(&[path], Units::default()).unwrap();
+    let measured = read(&[path], &Import::default()).unwrap();
     assert!(measured.warnings.is_empty(), "{:?}", measured.warnings);
     assert_eq!(measured.curves.len(), 34);
     Some(measured.curves)
@@ -36,7 +36,7 @@ fn the_committed_table_is_the_median_every_0_8_mm() {
 #[test]
 fn the_median_at_every_reading_is_the_shared_one() {
     let (Some(curves), Some(path)) = (measured(), shared("virkler/median.csv")) else { return };
-    let theirs = &read(&[path], Units::default()).unwrap().curves[0];
+    let theirs = &read(&[path], &Import::default()).unwrap().curves[0];
     let ours = pointwise_median(&curves).unwrap();
     assert_eq!(ours.cycles.len(), 164);
     assert_eq!(ours.cycles, theirs.cycles);

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use perilife::calibration::measured::{MeasuredCurve, Units, read};
+use perilife::calibration::measured::{Import, MeasuredCurve, read};
 use perilife::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
 use perilife::specimen::SpecimenKind;
 use perilife::units::{MM, MM_PER_CYCLE, MPA};
@@ -35,7 +35,7 @@ fn rates_with_delta_k(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoin
 #[test]
 fn rates_of_the_median_curve_match_the_reference() {
     let Some(path) = shared("virkler/median.csv") else { return };
-    let curve = &read(&[path], Units::default()).unwrap().curves[0];
+    let curve = &read(&[path], &Import::default()).unwrap().curves[0];
     for (method, length, rate) in [(RateMethod::Polynomial7, 19.997, 1.64009e-4), (RateMethod::Secant, 20.1, 1.67574e-4)] {
         let points = rates_with_delta_k(curve, method);
         let near = points.iter().find(|point| (point.crack_length / MM - length).abs() < 5e-4).unwrap();
@@ -58,7 +58,7 @@ fn paris_lines_of_every_specimen_match_the_reference() {
         .map(|row| row.unwrap())
         .map(|row| (row["specimen"].clone(), row))
         .collect();
-    let curves = read(&[curves], Units::default()).unwrap().curves;
+    let curves = read(&[curves], &Import::default()).unwrap().curves;
     assert_eq!(curves.len(), fits.len());
     for curve in &curves {
         let reference = |column: &str| fits[&curve.specimen][column].parse::<f64>().unwrap();

@@ -4,7 +4,7 @@ use perilife::calibration::bond_constants::in_terms_of_bonds;
 use perilife::calibration::confidence::distance_squared;
 use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::measured::{MeasuredCurve, Source};
+use perilife::calibration::measured::MeasuredCurve;
 use perilife::calibration::power_law::PowerLaw;
 use perilife::calibration::search::Constants;
 use perilife::case::Case;
@@ -38,7 +38,7 @@ fn curve(spacing: f64, exact: &[(f64, f64)], scatter: f64, seed: u64) -> Measure
             before = row;
         }
     }
-    MeasuredCurve { specimen: format!("seed {seed} at {spacing} mm"), crack_length, cycles, source: Source::default() }
+    MeasuredCurve::new(format!("seed {seed} at {spacing} mm"), cycles, crack_length)
 }
 
 /// The panel, its actual horizon (m), and fits of C and m to curves of several seeds, all from one run with the known constants.

@@ -10,7 +10,9 @@ use utoipa::ToSchema;
 
 use super::App;
 use super::documents::{self, JobRequest, check_points, submission};
-use crate::calibration::measured::{CycleUnit, LengthUnit, MeasuredCurve, Shape, Survey, Units, survey};
+use crate::calibration::columns::Shape;
+use crate::calibration::decimal::Decimal;
+use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, MeasuredCurve, Sheet, Survey, survey};
 use crate::case::Case;
 use crate::check;
 use crate::error::input;
@@ -29,6 +31,10 @@ pub struct Found {
 pub struct FoundFile {
     /// Its name.
     file: String,
+    /// Column names as written; empty where no table was found.
+    header: Vec<String>,
+    /// Cells of the first rows.
+    first_rows: Vec<Vec<String>>,
     /// What its columns are; null where that cannot be told.
     columns: Option<Columns>,
     /// Curves of the good rows.
@@ -47,6 +53,10 @@ pub struct Columns {
     cycle_unit: &'static str,
     /// Whether `7,5` was taken for a number.
     decimal_comma: bool,
+    /// What separates columns; empty for stored cells.
+    separator: &'static str,
+    /// The key of `measured.columns` of every column; empty for one that is not read or is a specimen of a wide table.
+    keys: Vec<&'static str>,
 }
 
 /// Readings of a specimen.
@@ -70,7 +80,18 @@ struct Readings {
     length_unit: Option<String>,
     /// `cycles`, `kilocycles` or `megacycles`, where the header does not say it.
     cycle_unit: Option<String>,
+    /// Unit of loads, where the header does not say it.
+    load_unit: Option<String>,
+    /// `.` or `,`, where the file leaves it open.
+    decimal: Option<String>,
+    /// Sheet of a workbook, by name or number.
+    sheet: Option<String>,
+    /// JSON object of columns by name, as `columns` of `[measured]`.
+    columns: Option<String>,
 }
+
+/// Fields of the form beside the files: what the user says of them.
+const FIELDS: [&str; 6] = ["length_unit", "cycle_unit", "load_unit", "decimal", "sheet", "columns"];
 
 /// Reads measured a-N curves: what was understood, and every row that is wrong.
 #[utoipa::path(post, path = "/v1/measured", tag = "inputs",
@@ -79,24 +100,35 @@ struct Readings {
 pub async fn measured(State(app): State<App>, request: Request) -> Answer<Json<Found>> {
     let room = documents::room(&app).await?;
     let (fields, files) = documents::form(&app, request).await?;
-    if let Some(name) = fields.keys().find(|name| !["length_unit", "cycle_unit"].contains(&name.as_str())) {
-        return Err(Problem::bad_request(format!("the form has a field `{name}`; known are file, length_unit and cycle_unit")));
+    if let Some(name) = fields.keys().find(|name| !FIELDS.contains(&name.as_str())) {
+        return Err(Problem::bad_request(format!("the form has a field `{name}`; known are file, {}", FIELDS.join(", "))));
     }
     if files.is_empty() {
         return Err(Problem::bad_request("the form has no `file`: send at least one"));
     }
-    let length = fields.get("length_unit").filter(|name| !name.is_empty());
-    let cycles = fields.get("cycle_unit").filter(|name| !name.is_empty());
-    let units = Units {
-        length: length.map(|name| named(LengthUnit::ALL, LengthUnit::name, "length_unit", name)).transpose()?,
-        cycles: cycles.map(|name| named(CycleUnit::ALL, CycleUnit::name, "cycle_unit", name)).transpose()?,
+    let field = |name: &str| fields.get(name).filter(|text| !text.is_empty());
+    let import = Import {
+        length: field("length_unit").map(|name| named(LengthUnit::ALL, LengthUnit::name, "length_unit", name)).transpose()?,
+        cycles: field("cycle_unit").map(|name| named(CycleUnit::ALL, CycleUnit::name, "cycle_unit", name)).transpose()?,
+        load: field("load_unit").map(|name| named(LoadUnit::ALL, LoadUnit::name, "load_unit", name)).transpose()?,
+        columns: field("columns").map(|text| columns(text)).transpose()?.unwrap_or_default(),
+        decimal: field("decimal").map(|name| named(Decimal::ALL, Decimal::name, "decimal", name)).transpose()?,
+        sheet: field("sheet").map(|name| Sheet(name.clone())),
     };
     let look = move || {
         // Taken up until the work is done, even if nobody waits for it any more.
         let _room = room;
-        Found { files: files.into_iter().map(|(file, content)| found(file, &content, units)).collect() }
+        Found { files: files.into_iter().map(|(file, content)| found(file, &content, &import)).collect() }
     };
     tokio::task::spawn_blocking(look).await.map(Json).map_err(|_| Problem::internal())
+}
+
+/// Columns by name of a JSON object.
+fn columns(text: &str) -> Answer<ColumnNames> {
+    serde_json::from_str(text).map_err(|error| {
+        let remedy = format!("give a JSON object with keys of {}", ColumnNames::KEYS.join(", "));
+        input("columns", text, format!("names no columns: {error}"), remedy).into()
+    })
 }
 
 /// The kind of this name.
@@ -108,13 +140,15 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
     })
 }
 
-fn found(file: String, content: &[u8], units: Units) -> FoundFile {
-    let Survey { layout, measured, problems } = survey(content, Path::new(&file), units);
+fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
+    let Survey { header, first_rows, layout, measured, problems } = survey(content, Path::new(&file), import);
     let columns = layout.map(|layout| Columns {
         layout: if matches!(layout.shape, Shape::Long { .. }) { "long" } else { "wide" },
         length_unit: LengthUnit::ALL.iter().find(|unit| unit.metres() == layout.length_unit).map_or("mm", |unit| unit.name()),
         cycle_unit: CycleUnit::ALL.iter().find(|unit| unit.cycles() == layout.cycle_unit).map_or("cycles", |unit| unit.name()),
-        decimal_comma: layout.decimal_comma,
+        decimal_comma: layout.decimal == Decimal::Comma,
+        separator: layout.separator,
+        keys: layout.shape.keys(header.len()),
     });
     let curve = |curve: MeasuredCurve| FoundCurve {
         specimen: curve.specimen,
@@ -124,6 +158,8 @@ fn found(file: String, content: &[u8], units: Units) -> FoundFile {
     };
     FoundFile {
         file,
+        header,
+        first_rows,
         columns,
         curves: measured.curves.into_iter().map(curve).collect(),
         warnings: measured.warnings,

@@ -42,7 +42,7 @@ export function createCalibrateView() {
   function collect() {
     const fitted = parameters.input.value.split(",");
     return {
-      measured: compact({ files: measured.names(), from_crack_length_mm: numberIn(from), to_crack_length_mm: numberIn(to), ...measured.units() }),
+      measured: compact({ files: measured.names(), from_crack_length_mm: numberIn(from), to_crack_length_mm: numberIn(to), ...measured.said() }),
       specimen: specimen.collect(),
       material: material.collect(),
       loading: loading.collect(),

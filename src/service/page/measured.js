@@ -2,22 +2,25 @@
 
 import { postForm } from "./api.js";
 import { createChart } from "./chart.js";
+import { createColumns } from "./columns.js";
 import { button, byId, element, show, table } from "./dom.js";
 import { excerpt } from "./excerpt.js";
 import { count, cycles, fixed, plain } from "./format.js";
 import { problemBox } from "./notices.js";
 
-const SEPARATORS = { ",": "commas", ";": "semicolons", "\t": "tabs", " ": "blanks" };
 const LENGTHS = { mm: "millimetres", inch: "inches", m: "metres" };
 const CYCLES = { cycles: "single cycles", kilocycles: "thousands of cycles", megacycles: "millions of cycles" };
 const LAYOUTS = { long: "one reading a row", wide: "one column of cycles for every specimen" };
 
-/** `onChange` is told whenever other curves stand there. Gives {files(), units(), window(), load(files)}. */
+/** `onChange` is told whenever other curves stand there. Gives {files(), said(), window(), load(files)}. */
 export function createMeasured(onChange) {
   const root = byId("measured");
   const input = byId("measured-input");
   const drop = byId("measured-drop");
-  const [lengthUnit, cycleUnit] = [byId("length-unit"), byId("cycle-unit")];
+  // What is said of the files, by the name of the key in [measured].
+  const said = { length_unit: byId("length-unit"), cycle_unit: byId("cycle-unit"), load_unit: byId("load-unit"),
+    decimal: byId("decimal"), sheet: byId("sheet") };
+  const columns = createColumns(() => read());
   const [result, chartPlace] = [byId("measured-result"), byId("measured-chart")];
   let files = []; // {name, file, text}
   let answer = []; // the files as the service read them
@@ -37,7 +40,7 @@ export function createMeasured(onChange) {
     const bytes = await file.arrayBuffer();
     // Quotation marks and line ends do not come through a form as they are.
     const name = file.name.replace(/["\r\n]/g, "'");
-    const isTable = /\.parquet$/i.test(name);
+    const isTable = /\.(parquet|xlsx|xlsm)$/i.test(name);
     return { name, file: new Blob([bytes]), text: isTable ? null : new TextDecoder().decode(bytes) };
   }
 
@@ -53,8 +56,8 @@ export function createMeasured(onChange) {
     }
     const form = new FormData();
     for (const { name, file } of files) form.append("file", file, name);
-    if (lengthUnit.value) form.append("length_unit", lengthUnit.value);
-    if (cycleUnit.value) form.append("cycle_unit", cycleUnit.value);
+    for (const [key, input] of Object.entries(said)) if (input.value) form.append(key, input.value);
+    if (columns.names()) form.append("columns", JSON.stringify(columns.names()));
     if (answer.length === 0) show(result, element("p", { class: "quiet", role: "status" }, "Reading …"));
     try {
       const found = await postForm("/v1/measured", form, { signal: own.signal });
@@ -82,24 +85,27 @@ export function createMeasured(onChange) {
     onChange();
   }
 
-  function describe({ file, columns, curves: found }) {
+  function describe(answered) {
+    const { file, columns: understood, curves: found } = answered;
     const readings = found.reduce((sum, curve) => sum + curve.cycles.length, 0);
     const names = found.map((curve) => curve.specimen);
     const list = names.length > 6 ? `${names.slice(0, 6).join(", ")} …` : names.join(", ");
-    const words = columns && [
-      LAYOUTS[columns.layout] ?? columns.layout,
-      columns.separator && `columns separated by ${SEPARATORS[columns.separator] ?? columns.separator}`,
-      columns.decimal_comma !== undefined && (columns.decimal_comma ? "decimal commas" : "decimal points"),
-      `crack length in ${LENGTHS[columns.length_unit] ?? columns.length_unit}`,
-      `cycles counted in ${CYCLES[columns.cycle_unit] ?? columns.cycle_unit}`,
+    const words = understood && [
+      LAYOUTS[understood.layout] ?? understood.layout,
+      understood.separator && `columns separated by ${understood.separator}`,
+      understood.decimal_comma ? "decimal commas" : "decimal points",
+      `crack length in ${LENGTHS[understood.length_unit] ?? understood.length_unit}`,
+      `cycles counted in ${CYCLES[understood.cycle_unit] ?? understood.cycle_unit}`,
     ].filter(Boolean).join(", ");
     const summary = `${count(found.length, "specimen")} (${list}), ${count(readings, "reading")}`;
     return element("div", { class: "file-card", "data-file": file },
       element("div", null, element("h3", null, file),
         element("p", null, found.length > 0 ? `${summary}: ${ranges(found)}.` : "No curve could be read."),
-        words && element("p", { class: "quiet" }, `Recognised: ${words}.`)),
+        words && element("p", { class: "quiet" }, `Recognised: ${words}.`),
+        columns.show(answered)),
       button("Remove", () => {
         files = files.filter((one) => one.name !== file);
+        if (files.length === 0) columns.clear();
         read();
       }, { class: "button small", "aria-label": `Remove ${file}` }));
   }
@@ -172,15 +178,15 @@ export function createMeasured(onChange) {
   });
   // A file dropped beside the field must not replace the page.
   for (const name of ["dragover", "drop"]) window.addEventListener(name, (event) => event.preventDefault());
-  lengthUnit.addEventListener("change", read);
-  cycleUnit.addEventListener("change", read);
+  for (const input of Object.values(said)) input.addEventListener("change", read);
   root.dataset.measured = "empty";
 
   return {
     /** The files {name, file, text}, as a calibration takes them; null before anything is there. */
     files: () => (curves().length === 0 ? null : files),
     names: () => files.map((file) => file.name),
-    units: () => ({ length_unit: lengthUnit.value || undefined, cycle_unit: cycleUnit.value || undefined }),
+    /** What is said of them, as keys of [measured]. */
+    said: () => ({ ...Object.fromEntries(Object.entries(said).map(([key, input]) => [key, input.value || undefined])), columns: columns.names() }),
     /** Crack lengths that every curve covers. */
     window() {
       const given = curves().map((curve) => curve.crack_length_mm).filter((lengths) => lengths.length > 0);
@@ -194,8 +200,8 @@ export function createMeasured(onChange) {
     specimens: () => curves().length,
     loadExample(name, text) {
       files = [{ name, text, file: new Blob([text], { type: "text/csv" }), example: true }];
-      lengthUnit.value = "";
-      cycleUnit.value = "";
+      for (const input of Object.values(said)) input.value = "";
+      columns.clear();
       return read();
     },
   };

@@ -241,10 +241,46 @@ fn inputs_are_looked_at_as_by_the_command() {
     let found = service.send("POST", "/v1/measured", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes());
     let found = found.expect(200).json();
     let [a, b] = [&found["files"][0], &found["files"][1]];
-    assert_eq!(a["columns"], json!({ "layout": "long", "length_unit": "mm", "cycle_unit": "cycles", "decimal_comma": true }));
+    assert_eq!(
+        a["columns"],
+        json!({ "layout": "long", "length_unit": "mm", "cycle_unit": "cycles", "decimal_comma": true, "separator": "semicolons",
+        "keys": ["cycles", "length"] })
+    );
+    assert_eq!((&a["header"], &a["first_rows"][1]), (&json!(["cycles", "a_mm"]), &json!(["1000", "9,5"])));
     assert_eq!(a["curves"][0]["lines"], json!([2, 3, 5, 7, 8]));
     let problems: Vec<(i64, &str)> =
         a["problems"].as_array().unwrap().iter().map(|p| (p["line"].as_i64().unwrap(), p["problem"].as_str().unwrap())).collect();
     assert_eq!(problems, [(4, "is not a number"), (6, "is below the reading before (3000)")]);
     assert!(b["columns"].is_null() && b["curves"] == json!([]) && b["problems"][0]["problem"] == "is not a known column");
+    assert_eq!((&b["header"], &b["first_rows"]), (&json!(["what", "is"]), &json!([["1", "2"]])));
+
+    // What the user says: as in [measured].
+    let odd = "what;is;P\n1.000;9;6\n2.000;10;6\n3.000;11;6\n4.000;12;7\n5.000;13;7\n";
+    let said = [
+        ("columns", "{\"cycles\":\"what\",\"length\":[\"2\"],\"force_max\":\"P\"}"),
+        ("length_unit", "mm"),
+        ("load_unit", "kN"),
+        ("decimal", ","),
+    ];
+    let form = |said: &[(&str, &str)]| {
+        let fields = said.iter().map(|(name, value)| (*name, None, *value));
+        multipart(&fields.chain([("file", Some("odd.csv"), odd)]).collect::<Vec<_>>())
+    };
+    let send = |form: String| {
+        service.send("POST", "/v1/measured", &[("content-type", "multipart/form-data; boundary=XX")], form.as_bytes())
+    };
+    let found = send(form(&said)).expect(200).json();
+    let file = &found["files"][0];
+    assert_eq!(file["columns"]["keys"], json!(["cycles", "length", "force_max"]), "{file}");
+    assert_eq!(file["curves"][0]["cycles"], json!([1000.0, 2000.0, 3000.0, 4000.0, 5000.0]));
+    let open = send(form(&said[..3])).expect(200).json();
+    assert!(open["files"][0]["problems"][0]["problem"].as_str().unwrap().contains("is the decimal sign and"), "{open}");
+    for (field, value, words) in [
+        ("columns", "[1]", "names no columns"),
+        ("decimal", ";", "is not a known unit"),
+        ("colums", "x", "known are file, length_unit"),
+    ] {
+        let answer = send(form(&[(field, value)]));
+        assert!(answer.text().contains(words), "{field}: {}", answer.text());
+    }
 }

@@ -1,0 +1,103 @@
+//! `[measured] leave_out`: growth over some cycles that does not count, with the reason, which stands in every result.
+
+use serde::{Deserialize, Serialize};
+
+use crate::calibration::measured::{Measured, READINGS_MIN};
+use crate::error::{Error, Result, input, input_missing};
+
+/// Cycles of a specimen that do not count.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeaveOut {
+    /// Name of the specimen; may be left out where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specimen: Option<String>,
+    /// First cycles, as the file counts them.
+    pub from_cycles: f64,
+    /// Last cycles.
+    pub to_cycles: f64,
+    /// Why.
+    pub reason: String,
+}
+
+impl Measured {
+    /// Leaves out the growth between all readings that a window of cycles covers or cuts. At the start and the end of a curve the
+    /// readings go with it.
+    ///
+    /// # Errors
+    /// A window without specimen, reason or readings, or one that leaves fewer than [`READINGS_MIN`] readings.
+    pub fn leave_out(&mut self, windows: &[LeaveOut]) -> Result<()> {
+        for (index, window) in windows.iter().enumerate() {
+            self.leave_one_out(&format!("measured.leave_out[{index}]"), window)?;
+        }
+        for (index, window) in windows.iter().enumerate() {
+            let Some(curve) =
+                self.curves.iter_mut().find(|curve| window.specimen.as_ref().is_none_or(|name| *name == curve.specimen))
+            else {
+                continue;
+            };
+            let counted = |step: &usize| curve.counts(*step);
+            let steps = 1..curve.cycles.len();
+            let (Some(first), Some(last)) = (steps.clone().find(counted), steps.rev().find(counted)) else {
+                return Err(too_few(&format!("measured.leave_out[{index}]"), 0));
+            };
+            let kept: Vec<usize> = (first - 1..=last).collect();
+            if kept.len() < curve.cycles.len() {
+                *curve = curve.of_readings(&kept);
+                // The first reading of a curve ends no step.
+                if let Some(first) = curve.left_out.first_mut() {
+                    *first = false;
+                }
+            }
+            let steps = (1..curve.cycles.len()).filter(|&step| curve.counts(step)).count();
+            if steps + 1 < READINGS_MIN {
+                return Err(too_few(&format!("measured.leave_out[{index}]"), steps + 1));
+            }
+        }
+        Ok(())
+    }
+
+    fn leave_one_out(&mut self, key: &str, window: &LeaveOut) -> Result<()> {
+        let LeaveOut { specimen, from_cycles, to_cycles, reason } = window;
+        let known = || self.curves.iter().map(|curve| format!("\"{}\"", curve.specimen)).collect::<Vec<_>>().join(", ");
+        let place = match specimen {
+            Some(name) => self.curves.iter().position(|curve| curve.specimen == *name).ok_or_else(|| {
+                input(
+                    &format!("{key}.specimen"),
+                    format!("\"{name}\""),
+                    "is no specimen of the files",
+                    format!("use one of {}", known()),
+                )
+            })?,
+            None if self.curves.len() == 1 => 0,
+            None => {
+                let remedy = format!("name one of {}", known());
+                return Err(input_missing(&format!("{key}.specimen"), "is missing, and there are several", remedy));
+            }
+        };
+        if reason.trim().is_empty() {
+            return Err(input(&format!("{key}.reason"), "\"\"", "says nothing", "say why the readings do not count"));
+        }
+        if !(from_cycles.is_finite() && to_cycles.is_finite() && from_cycles < to_cycles) {
+            let problem = format!("is not above from_cycles = {from_cycles}");
+            return Err(input(&format!("{key}.to_cycles"), to_cycles, problem, "give the window of cycles that does not count"));
+        }
+        let curve = &mut self.curves[place];
+        let count = curve.cycles.len();
+        let slack = 1e-9 * to_cycles.abs();
+        let covered = |step: usize| curve.cycles[step - 1] < to_cycles - slack && curve.cycles[step] > from_cycles + slack;
+        let steps: Vec<usize> = (1..count).filter(|&step| covered(step)).collect();
+        if steps.is_empty() {
+            let problem = format!("covers no growth of specimen {}", curve.specimen);
+            let remedy = format!("its readings go from {} to {} cycles", curve.cycles[0], curve.cycles[count - 1]);
+            return Err(input(&format!("{key}.from_cycles"), from_cycles, problem, remedy));
+        }
+        curve.left_out.resize(count, false);
+        steps.into_iter().for_each(|step| curve.left_out[step] = true);
+        Ok(())
+    }
+}
+
+fn too_few(key: &str, kept: usize) -> Error {
+    input_missing(key, format!("leaves {kept} readings"), format!("leave out less: at least {READINGS_MIN} readings are needed"))
+}

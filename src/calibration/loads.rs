@@ -1,0 +1,154 @@
+//! Loads of every reading, and what they are to the load of the case.
+//!
+//! The load at a reading is the one under which the crack grew there. Where it changes once between readings of equal loads (a step), the
+//! growth up to the reading had the new load; where it changes from reading to reading (shedding), it went from one to the other.
+
+use crate::calibration::measured::{Measured, MeasuredCurve};
+use crate::calibration::table::Fault;
+use crate::case::Case;
+use crate::error::Result;
+use crate::specimen::LoadMeasure;
+
+/// Loads within this share of each other are equal: machines hold theirs to one percent.
+pub const SAME_LOAD: f64 = 0.01;
+
+/// Stress ratios that differ by less are the same.
+const SAME_RATIO: f64 = 0.02;
+
+/// Loads of the readings of a curve as a file has them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loads {
+    /// Force (N) or gross stress (Pa).
+    pub measure: LoadMeasure,
+    /// Whether `maximum` holds ranges.
+    pub is_range: bool,
+    /// Largest load of a cycle.
+    pub maximum: Vec<f64>,
+    /// Smallest over largest load; NaN where the file does not say it, and that of the case holds.
+    pub ratio: Vec<f64>,
+}
+
+impl Loads {
+    pub(crate) fn empty(measure: LoadMeasure) -> Self {
+        Loads { measure, is_range: false, maximum: Vec::new(), ratio: Vec::new() }
+    }
+
+    pub(crate) fn of_readings(&self, readings: &[usize]) -> Self {
+        let some = |of: &[f64]| readings.iter().filter_map(|&reading| of.get(reading).copied()).collect();
+        Loads { maximum: some(&self.maximum), ratio: some(&self.ratio), ..*self }
+    }
+}
+
+impl Measured {
+    /// Sets the load of every reading against that of the case: [`MeasuredCurve::load_factor`].
+    ///
+    /// # Errors
+    /// Stresses for a specimen that is loaded by a force on pins.
+    pub fn resolve_loads(&mut self, case: &Case) -> Result<()> {
+        let specimen = &case.specimen;
+        let case_range = case.loading.maximum * case.loading.range_share();
+        for curve in &mut self.curves {
+            let Some(loads) = &curve.loads else { continue };
+            let per_load = match (loads.measure, specimen.load_measure) {
+                (own, of_case) if own == of_case => 1.0,
+                (LoadMeasure::Force, _) => 1.0 / (specimen.width * specimen.thickness),
+                (LoadMeasure::Stress, _) => {
+                    let fault =
+                        Fault { file: &curve.source.file, line: curve.source.lines.first().copied(), key: None, value: None };
+                    let problem = format!("has loads as stresses, but a {} is loaded by a force on its pins", specimen.kind);
+                    return Err(fault.error(problem, "give columns of force_max and force_min"));
+                }
+            };
+            let factor = |(&load, &ratio): (&f64, &f64)| {
+                let ratio = if ratio.is_nan() { case.loading.ratio } else { ratio };
+                let maximum = if loads.is_range { load / (1.0 - ratio) } else { load };
+                // As for the case, compression does not open a crack.
+                maximum * per_load * (1.0 - ratio.max(0.0)) / case_range
+            };
+            let factors: Vec<f64> = loads.maximum.iter().zip(&loads.ratio).map(factor).collect();
+            self.warnings.extend(ratio_warning(curve, loads, case));
+            // Loads of the case as a machine keeps them are those of the case.
+            let is_case = factors.iter().all(|factor| (factor - 1.0).abs() < 1e-6);
+            curve.load_factor = if is_case { Vec::new() } else { factors };
+        }
+        Ok(())
+    }
+}
+
+/// Range of load over that of the case along a crack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadHistory {
+    /// Lengths reached, rising, m.
+    pub lengths: Vec<f64>,
+    /// At the start and the end of the growth up to each of them.
+    factors: Vec<(f64, f64)>,
+}
+
+impl LoadHistory {
+    /// That at which the crack passed a length.
+    #[must_use]
+    pub fn at(&self, length: f64) -> f64 {
+        let to = self.lengths.partition_point(|&reached| reached < length).min(self.lengths.len().saturating_sub(1));
+        let Some(&(start, end)) = self.factors.get(to) else { return 1.0 };
+        if to == 0 {
+            return end;
+        }
+        let share = (length - self.lengths[to - 1]) / (self.lengths[to] - self.lengths[to - 1]);
+        start + share.clamp(0.0, 1.0) * (end - start)
+    }
+}
+
+/// A law belongs to one stress ratio.
+fn ratio_warning(curve: &MeasuredCurve, loads: &Loads, case: &Case) -> Option<String> {
+    let given = || loads.ratio.iter().copied().filter(|ratio| !ratio.is_nan());
+    let (low, high) = (given().fold(f64::INFINITY, f64::min), given().fold(f64::NEG_INFINITY, f64::max));
+    let apart = low - case.loading.ratio < -SAME_RATIO || high - case.loading.ratio > SAME_RATIO;
+    (low <= high && apart).then(|| {
+        format!(
+            "specimen {}: stress ratios of the readings go from {low:.3} to {high:.3}, loading.stress_ratio is {}: ΔK is that of each \
+             reading, the law is said to be of the latter",
+            curve.specimen, case.loading.ratio
+        )
+    })
+}
+
+impl MeasuredCurve {
+    /// Range of load over that of the case at the start and the end of the growth up to each reading; the first reading has its own.
+    #[must_use]
+    pub fn step_factors(&self) -> Vec<(f64, f64)> {
+        let factor = |i: usize| self.load_factor.get(i).copied().unwrap_or(1.0);
+        let same = |i: usize, j: usize| (factor(i) / factor(j) - 1.0).abs() <= SAME_LOAD;
+        let last = self.cycles.len().saturating_sub(1);
+        let of_step = |i: usize| {
+            let held_before = i < 2 || same(i - 2, i - 1);
+            let held_after = i == last || same(i, i + 1);
+            let is_step = i > 0 && !same(i - 1, i) && held_before && held_after;
+            if i == 0 || is_step { (factor(i), factor(i)) } else { (factor(i - 1), factor(i)) }
+        };
+        (0..self.cycles.len()).map(of_step).collect()
+    }
+
+    /// Loads over the growth of the crack.
+    #[must_use]
+    pub fn load_history(&self) -> LoadHistory {
+        let mut history =
+            LoadHistory { lengths: Vec::with_capacity(self.cycles.len()), factors: Vec::with_capacity(self.cycles.len()) };
+        for (&length, factors) in self.crack_length.iter().zip(self.step_factors()) {
+            // Noise in a reading does not heal a crack.
+            if history.lengths.last().is_none_or(|&last| length > last) {
+                history.lengths.push(length);
+                history.factors.push(factors);
+            }
+        }
+        history
+    }
+
+    /// Whether the load is the same over some neighbouring readings.
+    #[must_use]
+    pub fn holds_load(&self, readings: std::ops::RangeInclusive<usize>) -> bool {
+        let Some(factors) = self.load_factor.get(readings) else { return true };
+        let (low, high) =
+            factors.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &factor| (low.min(factor), high.max(factor)));
+        high <= low * (1.0 + SAME_LOAD)
+    }
+}

@@ -1,0 +1,96 @@
+//! Words of column names in English, and the commonest in German, French, Spanish and Italian; accents and capitals taken off.
+
+pub(super) const SPECIMEN: &str = "specimen specimens sample coupon probe eprouvette probeta provino panel";
+pub(super) const SPECIMEN_MORE: &str = "specimen id name no nr number nummer label";
+
+pub(super) const CYCLES: &str = "cycle cycles cyc n ncycles zyklen zyklus zykluszahl zyklenzahl lastwechsel lastwechselzahl lastspiele lastspielzahl \
+    schwingspiele schwingspielzahl ciclos ciclo cicli cyclecount kilocycles kcycles megacycles mcycles kilocycle megacycle";
+pub(super) const CYCLES_MORE: &str = "elapsed total number num no nr of count counts counter cumulative cumulated cum accumulated fatigue axial load loading \
+    test the anzahl der nombre de numero di running machine applied";
+/// `Axial Count` has no other word for cycles.
+pub(super) const COUNTS: &str = "count counts";
+
+pub(super) const KILO: &str = "kilocycles kilocycle kcycles kcycle kcyc kc k thousand thousands 1000 1e3 e3 tausend";
+pub(super) const MEGA: &str = "megacycles megacycle mcycles mcycle mcyc million millions millionen 1000000 1e6 e6";
+
+pub(super) const LENGTH: &str = "a length len risslaenge risslange rissl fissure grieta cricca cracklength cracksize crack";
+pub(super) const LENGTH_MORE: &str = "crack size average avg ave av mean mittlere mittel mittelwert visual optical measured current corrected physical \
+    fatigue the of length longueur longitud lunghezza de la della moyenne media flaw a";
+pub(super) const SIDES: &str =
+    "front back rear left right vorne hinten links rechts vorderseite rueckseite vorn avant arriere gauche droite near far";
+/// Letters of sides, beside a word of length only.
+pub(super) const SIDE_LETTERS: &str = "f b l r fl fr bl br lf rf lb rb";
+pub(super) const SIDE_MORE: &str = "side face surface seite tip cote";
+
+pub(super) const FORCE: &str = "force load p f kraft last charge fuerza carga forza carico";
+pub(super) const STRESS: &str = "stress sigma s spannung contrainte tension tensione";
+pub(super) const LOAD_MORE: &str = "axial applied cyclic nominal gross remote test cell far field of cycle the";
+pub(super) const RANGE: &str = "range delta schwingbreite";
+/// Loads from which nothing follows.
+pub(super) const PART: &str = "amplitude mean mittel average";
+pub(super) const MAX: &str = "max maximum maximal maximale peak upper ober obere maxi maximo massimo";
+pub(super) const MIN: &str = "min minimum minimal minimale valley lower unter untere mini minimo trough";
+/// A load and its extreme in one word.
+pub(super) const MAX_WORDS: &str = "pmax fmax loadmax maxload forcemax maxforce oberlast oberkraft maximallast hoechstlast";
+pub(super) const MIN_WORDS: &str = "pmin fmin loadmin minload forcemin minforce unterlast unterkraft minimallast";
+pub(super) const MAX_STRESS: &str = "smax sigmamax maxstress stressmax oberspannung";
+pub(super) const MIN_STRESS: &str = "smin sigmamin minstress stressmin unterspannung";
+
+/// Words of other quantities of a test, of results of this program and of remarks.
+pub(super) const OTHER: &str = "k kmax kmin ki kii dk deltak keff kop kcl dkeff intensity sif j da dn dadn rate growth extension increment cod cmod \
+    ctod clip gauge gage displacement disp stroke opening position strain bfs compliance stiffness time date zeit datum \
+    temps elapsed seconds hours temperature temp temperatur humidity frequency freq frequenz b w h e thickness width \
+    height dicke breite modulus area r2 flag flags valid validity comment comments note notes remark remarks bemerkung \
+    closure voltage potential pd dcpd acpd line point index row file block broken bonds work x y t tip beta error residual \
+    fit fitted p f force load stress range amplitude segment segments gain phase waveform u v pop pcl energy ratio delta \
+    step method operator q cross check remaining band measured dp df uneven";
+
+/// Whether a word is one of a list.
+pub(super) fn is_in(list: &str, word: &str) -> bool {
+    list.split_whitespace().any(|known| known == word)
+}
+
+/// Lower-case words of a name, and those of a last bracket that does not hold its first word.
+pub(super) fn words(name: &str) -> (Vec<String>, Vec<String>) {
+    let mut plain = String::with_capacity(name.len());
+    for c in name.chars().flat_map(char::to_lowercase) {
+        match c {
+            'ä' => plain.push_str("ae"),
+            'ö' => plain.push_str("oe"),
+            'ü' => plain.push_str("ue"),
+            'ß' => plain.push_str("ss"),
+            'é' | 'è' | 'ê' => plain.push('e'),
+            'ó' | 'ô' => plain.push('o'),
+            'ú' => plain.push('u'),
+            'σ' => plain.push_str("sigma"),
+            'δ' | '∆' => plain.push_str("delta "),
+            'µ' | 'μ' => plain.push('u'),
+            '²' if plain.ends_with("mm") => plain.push('2'),
+            '³' => plain.push_str(" 3"),
+            '⁶' => plain.push_str(" 6"),
+            '"' | '″' | '”' => plain.push_str(" inch"),
+            other => plain.push(other),
+        }
+    }
+    let cut = |text: &str| -> Vec<String> {
+        text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_owned).collect()
+    };
+    let trimmed = plain.trim_end();
+    let open = trimmed.rfind(['(', '[', '{']).filter(|_| trimmed.ends_with([')', ']', '}']));
+    match open {
+        Some(open) if !cut(&trimmed[..open]).is_empty() => {
+            let (before, inside) = (cut(&trimmed[..open]), cut(&trimmed[open..]));
+            // `Crack length (front)`, `Crack length (a)`: a bracket of words is part of the name.
+            let is_word = |word: &String| {
+                let word = word.as_str();
+                is_in(SIDES, word) || is_in(SIDE_MORE, word) || word == "a" || is_in(MAX, word) || is_in(MIN, word)
+            };
+            match inside.as_slice() {
+                [] => (before, Vec::new()),
+                words if words.iter().all(is_word) => ([before, inside].concat(), Vec::new()),
+                _ => (before, inside),
+            }
+        }
+        _ => (cut(&plain), Vec::new()),
+    }
+}

@@ -1,0 +1,220 @@
+//! Text into header and rows: which character separates columns, and where below a preamble the table starts.
+//!
+//! Neither can be told from one line: a name holds the other separator (`Length, mm` between tabs), a number a decimal comma. So every
+//! separator cuts the file, and the one counts whose header names what a test has, whose rows are as wide as the header, and whose
+//! cells are numbers.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use super::separator::{Line, Separator};
+use super::{COLUMNS_MAX, Fault, Row, Table, whole_file};
+use crate::calibration::columns::names_a_test;
+use crate::calibration::import::Import;
+use crate::calibration::names::{is_unit_or_blank, with_unit};
+use crate::calibration::numerals::is_number;
+use crate::error::Result;
+
+/// Lines that separators are compared on.
+const SAMPLE: usize = 400;
+
+/// Lines among which the header is looked for.
+const PREAMBLE_MAX: usize = 200;
+
+/// Where the table stands among the rows of a cut.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// The header; `None` where the table has none.
+    header: Option<usize>,
+    /// First row of readings.
+    body: usize,
+    /// Columns.
+    columns: usize,
+    /// Whether the header names what a test has.
+    named: bool,
+}
+
+/// How well a separator cuts the sample, better ones larger.
+#[derive(Debug, PartialEq, PartialOrd)]
+struct Merit(bool, bool, f64);
+
+/// Cuts a text into a table.
+///
+/// # Errors
+/// No table, or rows that are not as wide as its header.
+pub(super) fn text(text: &str, file: &Path, import: &Import) -> Result<Table> {
+    let (lines, comments) = kept_lines(text);
+    if lines.is_empty() {
+        return Err(
+            whole_file(file).error("is empty", "give a header line `specimen,cycles,crack_length_mm` and at least 5 rows")
+        );
+    }
+    let sample = &lines[..lines.len().min(SAMPLE)];
+    let mut candidates: Vec<(Merit, Separator)> = Vec::new();
+    for separator in Separator::ALL {
+        let rows = separator.cut(sample, file)?;
+        if let Some(place) = place(&rows, import) {
+            candidates.push((merit(&rows, place), separator));
+        }
+    }
+    // Stable: of equals the one that stands in numbers least.
+    candidates.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(std::cmp::Ordering::Equal));
+    let Some(&(_, best)) = candidates.first() else {
+        return Err(Fault { line: Some(lines[0].0), value: Some(lines[0].1), ..whole_file(file) }.error(
+            "is no table of 2 to 4096 columns, separated by tabs, semicolons, commas, vertical bars or blanks",
+            "give at least the columns cycles and crack_length_mm",
+        ));
+    };
+    let first_try = whole(best, &lines, &comments, file, import);
+    if first_try.is_ok() {
+        return first_try;
+    }
+    // What the sample did not show: another separator may cut all of it.
+    let others = candidates.iter().skip(1).filter(|(merit, _)| merit.0 && merit.1);
+    let second_try = others.filter_map(|&(_, other)| whole(other, &lines, &comments, file, import).ok()).next();
+    second_try.map_or(first_try, Ok)
+}
+
+/// Lines that are neither blank nor comments, and the comments; line ends may be LF, CRLF or CR.
+fn kept_lines(text: &str) -> (Vec<Line<'_>>, Vec<Line<'_>>) {
+    let end = if text.contains('\n') { '\n' } else { '\r' };
+    let lines = text.split(end).enumerate().map(|(index, line)| (index + 1, line.trim_end_matches('\r')));
+    lines.filter(|(_, line)| !line.trim().is_empty()).partition(|(_, line)| !is_comment(line))
+}
+
+fn is_comment(line: &str) -> bool {
+    ["#", "%", "//"].iter().any(|sign| line.trim_start().starts_with(sign))
+}
+
+fn has_numbers(row: &Row) -> bool {
+    row.cells.iter().filter(|cell| is_number(cell)).take(2).count() == 2
+}
+
+/// Number of columns of a header: spreadsheets end rows with empty columns, which are none.
+fn width(row: &Row) -> usize {
+    (0..row.cells.len()).rev().find(|&column| !row.cell(column).is_empty()).map_or(0, |last| last + 1)
+}
+
+/// Where header and readings stand; `None` for less than two columns.
+pub(super) fn place(rows: &[Row], import: &Import) -> Option<Place> {
+    let head = &rows[..rows.len().min(PREAMBLE_MAX)];
+    let below = |header: usize| header + 1 + usize::from(rows.get(header + 1).is_some_and(is_row_of_units));
+    let names = |row: &Row| row.cells.iter().map(str::to_owned).collect::<Vec<String>>();
+    let named: Vec<usize> = (0..head.len())
+        .filter(|&row| {
+            rows[row].cells.len() <= COLUMNS_MAX && !is_number(rows[row].cell(0)) && names_a_test(&names(&rows[row]), import)
+        })
+        .collect();
+    // A line of the preamble may speak of cycles and crack length too; below the header stand numbers.
+    let above_numbers = named.iter().find(|&&row| rows.get(below(row)).is_some_and(has_numbers));
+    let header = above_numbers.or(named.first()).copied();
+    let (header, body, width_of) = match (header, head.iter().position(has_numbers)) {
+        (Some(header), _) => (Some(header), below(header), header),
+        (None, Some(0)) => (None, 0, 0),
+        (None, Some(first)) => {
+            let over_units = first > 1 && is_row_of_units(&rows[first - 1]) && width(&rows[first - 2]) > 1;
+            let header = first - 1 - usize::from(over_units);
+            (Some(header), first, header)
+        }
+        (None, None) => (Some(0), 1.min(rows.len()), 0),
+    };
+    let columns = width(rows.get(width_of)?);
+    (2..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: !named.is_empty() })
+}
+
+/// A row below the header of nothing but units.
+fn is_row_of_units(row: &Row) -> bool {
+    !row.is_blank() && row.cells.iter().all(is_unit_or_blank)
+}
+
+fn merit(rows: &[Row], place: Place) -> Merit {
+    let body = || rows[place.body..].iter().filter(|row| !row.is_blank());
+    let fits = body().all(|row| width(row) <= place.columns && row.cells.len() >= place.columns);
+    let (numbers, cells) = body()
+        .flat_map(|row| row.cells.iter())
+        .filter(|cell| !cell.is_empty())
+        .fold((0_usize, 0_usize), |(numbers, cells), cell| (numbers + usize::from(is_number(cell)), cells + 1));
+    Merit(place.named, fits, numbers as f64 / cells.max(1) as f64)
+}
+
+/// The whole file by one separator.
+fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: &Path, import: &Import) -> Result<Table> {
+    let rows = separator.cut(lines, file)?;
+    let mut table = assemble(rows, file, import)?;
+    table.separator = Some(separator);
+    if table.header_line == 0 {
+        header_in_comment(&mut table, comments, separator, import);
+    }
+    let columns = table.header.len();
+    for row in &mut table.rows {
+        if row.cells.len() > columns && width(row) <= columns {
+            row.cells.truncate(columns);
+        }
+        check_width(row, columns, lines, separator, file)?;
+    }
+    if table.rows.is_empty() {
+        return Err(whole_file(file).error("has a header but no rows", "give at least 5 readings below the header"));
+    }
+    Ok(table)
+}
+
+/// Header and readings of rows that may have a preamble.
+///
+/// # Errors
+/// Less than two columns.
+pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Result<Table> {
+    let Some(place) = place(&rows, import) else {
+        return Err(whole_file(file).error("is no table of 2 to 4096 columns", "give at least cycles and crack length"));
+    };
+    let cells = |row: &Row| (0..place.columns).map(|column| row.cell(column).to_owned()).collect::<Vec<String>>();
+    let header = match place.header {
+        Some(header) => cells(&rows[header]),
+        None => (1..=place.columns).map(|column| format!("column {column}")).collect(),
+    };
+    let units = place.header.filter(|header| header + 1 < place.body).map(|header| cells(&rows[header + 1]));
+    let names = units
+        .as_ref()
+        .map_or_else(|| header.clone(), |units| header.iter().zip(units).map(|(name, unit)| with_unit(name, unit)).collect());
+    let header_line = place.header.map_or(0, |header| rows[header].line);
+    rows.drain(..place.body);
+    // Programs that test in blocks repeat the header over each.
+    let repeats = |row: &Row, of: &[String]| of.iter().enumerate().all(|(column, name)| row.cell(column) == name);
+    rows.retain(|row| !row.is_blank() && !repeats(row, &header) && !units.as_ref().is_some_and(|units| repeats(row, units)));
+    Ok(Table { file: file.to_path_buf(), header, names, header_line, rows, separator: None })
+}
+
+/// A header behind the sign of a comment, as programs for arrays write it.
+fn header_in_comment(table: &mut Table, comments: &[Line<'_>], separator: Separator, import: &Import) {
+    let Some(first) = table.rows.first().map(|row| row.line) else { return };
+    let Some(&(line, text)) = comments.iter().rev().find(|(line, _)| *line < first) else { return };
+    let text = Cow::Borrowed(text.trim_start().trim_start_matches(['#', '%', '/']));
+    let Ok(rows) = separator.cut(&[(line, &text)], &table.file) else { return };
+    let Some(names) = rows.first().map(|row| row.cells.iter().map(str::to_owned).collect::<Vec<String>>()) else { return };
+    if names.len() == table.header.len() && names_a_test(&names, import) {
+        (table.header, table.names, table.header_line) = (names.clone(), names, line);
+    }
+}
+
+/// Complains about a row that is shorter or longer than the header.
+fn check_width(row: &Row, columns: usize, lines: &[Line<'_>], separator: Separator, file: &Path) -> Result<()> {
+    if row.cells.len() == columns {
+        return Ok(());
+    }
+    let text = lines.iter().find(|(line, _)| *line == row.line).map_or("", |(_, text)| *text);
+    let fault = Fault { file, line: Some(row.line), key: None, value: Some(text) };
+    let other = Separator::ALL.iter().filter(|other| **other != separator).filter_map(|other| other.character());
+    let mixes = other.into_iter().any(|character| character != ',' && text.contains(character));
+    let problem = format!(
+        "has {} {} where the header has {columns}, cut at {}",
+        row.cells.len(),
+        if row.cells.len() == 1 { "column" } else { "columns" },
+        separator.name()
+    );
+    Err(if mixes {
+        fault.error(format!("{problem}, and mixes separators"), "separate every row as the header is separated")
+    } else if separator == Separator::Comma && row.cells.len() > columns {
+        fault.error(problem, "give one value a column; with decimal commas separate the columns by semicolons")
+    } else {
+        fault.error(problem, "give one value a column")
+    })
+}

@@ -1,0 +1,124 @@
+//! `perilife rates` on files that the user has to say something of, and on tests that no law holds.
+
+use std::fs;
+
+use tempfile::tempdir;
+
+use crate::cli::{assert_refused, perilife, texts};
+use crate::fatigue_test::{calibration, lengths, readings};
+
+/// Writes a test by `row` of cycles and length in mm, read every `step` mm, and its specimen.
+fn folder(step: f64, header: &str, force: impl Fn(f64) -> f64, row: impl Fn(f64, f64) -> String) -> tempfile::TempDir {
+    let dir = tempdir().unwrap();
+    let made = readings(1e-8, 3.0, &lengths(12.0, 30.0, step), force, |_| 1.0);
+    let rows: String = made.iter().map(|&(n, a)| row(n, a) + "\n").collect();
+    fs::write(dir.path().join("lab.txt"), format!("{header}\n{rows}")).unwrap();
+    fs::write(dir.path().join("ct.toml"), calibration("lab.txt", "")).unwrap();
+    dir
+}
+
+fn law(output: &std::process::Output) -> (f64, f64) {
+    assert_eq!(output.status.code(), Some(0), "{}", texts(output).1);
+    let object: serde_json::Value = serde_json::from_str(&texts(output).0).unwrap();
+    let of = |key: &str| object["specimens"][0][key].as_f64().unwrap();
+    (of("paris_c_mm_per_cycle"), of("paris_m"))
+}
+
+#[test]
+fn columns_decimal_sign_and_units_are_options() {
+    // Whole thousands alone, in names that nobody knows.
+    let dir = folder(
+        1.0,
+        "A;B;C",
+        |_| 5.4,
+        |n, a| {
+            let n = format!("{:.0}", n + 1000.0);
+            format!("x;{}.{};{}", &n[..n.len() - 3], &n[n.len() - 3..], a)
+        },
+    );
+    let run = |options: &[&str]| {
+        perilife(dir.path(), &[&["rates", "lab.txt", "--specimen", "ct.toml", "--method", "secant", "--json"], options].concat())
+    };
+    assert_refused(&run(&[]), 2, &["lab.txt:1", "header = A", "line 2: x | 1.000 | 12", "--column cycles="]);
+    let columns = ["--column", "cycles=B", "--column", "length=C"];
+    assert_refused(&run(&columns), 2, &["header = C", "does not say its unit", "--length-unit"]);
+    let with_unit = [&columns[..], &["--length-unit", "mm"]].concat();
+    assert_refused(
+        &run(&with_unit),
+        2,
+        &["lab.txt:2", "B = 1.000", "is 1 if the point is the decimal sign and 1000 if the comma is", "--decimal"],
+    );
+    let (c, m) = law(&run(&[&with_unit[..], &["--decimal", ","]].concat()));
+    assert!((m - 3.0).abs() < 0.01 && (c / 1e-8 - 1.0).abs() < 0.03, "{c:e} {m}");
+    // The same words in a calibration file.
+    let keys = "length_unit = \"mm\"\ndecimal = \",\"\ncolumns = { cycles = \"B\", length = \"C\" }";
+    fs::write(dir.path().join("fit.toml"), calibration("lab.txt", keys)).unwrap();
+    let output = perilife(dir.path(), &["calibrate", "fit.toml", "--out", "out", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+    let object: serde_json::Value = serde_json::from_str(&texts(&output).0).unwrap();
+    assert!((object["paris_m"].as_f64().unwrap() - 3.0).abs() < 0.01, "{object}");
+    for key in ["estimate", "robust_paris_m", "lack_of_fit", "left_out"] {
+        assert!(object.get(key).is_some(), "{key} in {object}");
+    }
+    let wrong = [
+        ("columns = { cycels = \"B\" }", "measured.columns.cycels = \"B\": is not a known key; known here: cycles"),
+        ("columns = { cycles = 1.5 }", "measured.columns.cycles = 1.5: is not the name of a column or its number"),
+        (
+            "columns = { length = [] , cycles = \"Q\" }",
+            "measured.columns.cycles = Q: names no column of this file; its columns are A | B | C",
+        ),
+        ("decimal = \";\"", "measured.decimal = \";\": is not a known kind; use one of ., ,"),
+        ("sheet = true", "measured.sheet = true: is not the name of a sheet or its number"),
+        ("load_unit = \"t\"", "use one of N, kN, lbf, kip, kgf, MPa, ksi"),
+        ("leave_out = [{ from_cycles = 0 }]", "measured.leave_out"),
+    ];
+    for (keys, words) in wrong {
+        fs::write(dir.path().join("wrong.toml"), calibration("lab.txt", keys)).unwrap();
+        assert_refused(&perilife(dir.path(), &["calibrate", "wrong.toml", "--out", "no"]), 2, &[words]);
+    }
+}
+
+#[test]
+fn loads_of_readings_are_used_and_missed_ones_told() {
+    let force = |a: f64| if a > 21.0 { 6.48 } else { 5.4 };
+    let with =
+        folder(0.75, "N;a (mm);Pmax (kN);Pmin (kN)", force, |n, a| format!("{n};{a};{};{}", force(a) / 0.9, force(a) / 9.0));
+    let rates = ["rates", "lab.txt", "--specimen", "ct.toml", "--json"];
+    let (c, m) = law(&perilife(with.path(), &rates));
+    assert!((m - 3.0).abs() < 0.05 && (c * 1e3_f64 / 1e-5 - 1.0).abs() < 0.2, "{c:e} {m}");
+    let without = folder(0.75, "N;a (mm)", force, |n, a| format!("{n};{a}"));
+    let output = perilife(without.path(), &rates);
+    let (_, stderr) = texts(&output);
+    assert!(stderr.contains("lab.txt: lines 14 to 15: no one power of ΔK can hold"), "{stderr}");
+    assert!((law(&output).1 - 3.0).abs() > 0.3);
+}
+
+#[test]
+fn a_law_that_no_metal_has_is_marked() {
+    let dir = folder(0.75, "megacycles;a (mm)", |_| 5.4, |n, a| format!("{n};{a}"));
+    let output = perilife(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml", "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    let (stdout, stderr) = texts(&output);
+    assert!(stderr.contains("specimen lab: the rate at ΔK = 10 MPa√m is"), "{stderr}");
+    let object: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert!(object["specimens"][0]["warnings"].to_string().contains("where metals lie"), "{object}");
+    assert_refused(
+        &perilife(dir.path(), &["calibrate", "ct.toml", "--out", "out"]),
+        2,
+        &["measured.files: give a law that no metal has"],
+    );
+    assert!(!dir.path().join("out").exists());
+}
+
+#[test]
+fn sides_that_differ_too_much_are_flagged() {
+    // 0.25 B is 3 mm.
+    for (apart, uneven) in [(2.9, false), (3.1, true)] {
+        let dir = folder(0.75, "N;front (mm);back (mm)", |_| 5.4, |n, a| format!("{n};{};{}", a + apart / 2.0, a - apart / 2.0));
+        let output = perilife(dir.path(), &["rates", "lab.txt", "--specimen", "ct.toml"]);
+        let (stdout, stderr) = texts(&output);
+        assert_eq!(output.status.code(), Some(0), "{stderr}");
+        assert_eq!(stdout.contains("uneven_front"), uneven, "{apart}: {stdout}");
+        assert_eq!(stderr.contains("by more than the 3.00 mm that ASTM E647 accepts"), uneven, "{apart}: {stderr}");
+    }
+}

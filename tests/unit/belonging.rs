@@ -1,0 +1,216 @@
+//! Loads of every reading, readings that do not belong, and what a fit says of both: made tests whose law is known.
+
+use std::collections::BTreeMap;
+
+use perilife::calibration::calibrate::calibrate;
+use perilife::calibration::case::CalibrationCase;
+use perilife::calibration::estimate::Estimate;
+use perilife::calibration::fit::Fit;
+use perilife::calibration::lack_of_fit::EndMiss;
+use perilife::calibration::results::{FitReport, record};
+use perilife::input::Folder;
+use perilife::predict::Silent;
+
+use crate::fatigue_test::{calibration, lengths, readings};
+
+const C: f64 = 1e-8;
+const M: f64 = 3.0;
+
+/// A test that grows by C and m under 5.4 kN.
+fn plain(step: f64) -> Vec<(f64, f64)> {
+    readings(C, M, &lengths(12.0, 30.0, step), |_| 5.4, |_| 1.0)
+}
+
+fn rows(readings: &[(f64, f64)], more: impl Fn(usize) -> String) -> String {
+    readings.iter().enumerate().map(|(i, (n, a))| format!("{n},{a:.4}{}\n", more(i))).collect()
+}
+
+fn case(csv: &str, keys: &str) -> perilife::Result<CalibrationCase> {
+    let files = BTreeMap::from([("test.csv".to_owned(), csv.as_bytes().to_vec())]);
+    CalibrationCase::from_text(&calibration("test.csv", keys), "case", Folder::AtHand(files.into()))
+}
+
+fn fitted(csv: &str, keys: &str) -> Fit {
+    calibrate(&case(csv, keys).unwrap(), &Silent).unwrap()
+}
+
+fn is_the_law(name: &str, fit: &Fit, m: f64) {
+    assert!((fit.paris.m - m).abs() < 0.003, "{name}: m {}", fit.paris.m);
+    assert!((fit.paris.c / C - 1.0).abs() < 0.005, "{name}: C {:e}", fit.paris.c);
+}
+
+#[test]
+fn k_of_every_reading_is_that_of_its_own_load() {
+    let lengths = lengths(12.0, 30.0, 0.5);
+    let step = |a: f64| if a > 21.0 { 6.48 } else { 5.4 };
+    let two_steps = |a: f64| {
+        if a > 24.0 {
+            4.5
+        } else if a > 17.0 {
+            6.3
+        } else {
+            5.4
+        }
+    };
+    let shed = |a: f64| 5.4 * (-0.06 * (a - 12.0)).exp();
+    let force: [(&str, &dyn Fn(f64) -> f64); 4] =
+        [("constant", &|_| 6.0), ("a step", &step), ("two steps", &two_steps), ("shed", &shed)];
+    for (name, force) in force {
+        let made = readings(C, M, &lengths, force, |_| 1.0);
+        let with = |unit: &str, per_kn: f64| {
+            let load =
+                |i: usize| format!(",{:.9},{:.9}", force(lengths[i]) / 0.9 * per_kn, force(lengths[i]) / 0.9 * 0.1 * per_kn);
+            format!("cycles,crack_length_mm,force max ({unit}),force min ({unit})\n{}", rows(&made, load))
+        };
+        let ranges = format!("cycles,crack_length_mm,force_range_kn\n{}", rows(&made, |i| format!(",{:.9}", force(lengths[i]))));
+        is_the_law(&format!("{name}, ranges"), &fitted(&ranges, ""), M);
+        for (unit, per_kn) in [("kN", 1.0), ("N", 1e3), ("lbf", 1e3 / 4.448_221_615_260_5), ("kgf", 1e3 / 9.806_65)] {
+            let fit = fitted(&with(unit, per_kn), "");
+            is_the_law(&format!("{name}, {unit}"), &fit, M);
+            assert!(!fit.warnings.iter().any(|line| line.contains("no one power")), "{name}: {:?}", fit.warnings);
+        }
+    }
+}
+
+#[test]
+fn specimens_of_different_loads_have_one_law() {
+    let lengths = lengths(12.0, 30.0, 0.5);
+    let of = |name: &str, force: f64| {
+        let made = readings(C, M, &lengths, |_| force, |_| 1.0);
+        made.iter().map(|(n, a)| format!("{name},{n},{a:.4},{:.9}\n", force / 0.9)).collect::<String>()
+    };
+    let csv = format!("specimen,cycles,crack_length_mm,force_max_kn\n{}{}{}", of("A", 5.4), of("B", 4.2), of("C", 6.6));
+    is_the_law("three loads", &fitted(&csv, ""), M);
+    // Without loads the median mixes them.
+    let bare: String = csv.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n").collect();
+    assert!((fitted(&bare, "").specimens[1].constants.a / C * 1e3 - 1.0).abs() > 0.3);
+}
+
+#[test]
+fn loads_without_columns_are_told_by_the_rates() {
+    let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |a| if a > 21.0 { 6.48 } else { 5.4 }, |_| 1.0);
+    let fit = fitted(&format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new())), "");
+    let warning = fit.warnings.iter().find(|line| line.contains("no one power of ΔK can hold")).unwrap();
+    // 21 mm is the 19th reading, on line 20; a fifth more force is 1.728 times the rate.
+    for words in ["test.csv: lines 20 to 21: ", "from 21 mm on the rate is 1.73 times", "force_max_kn"] {
+        assert!(warning.contains(words), "{words} in {warning}");
+    }
+    let clean = fitted(&format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new())), "");
+    assert!(clean.warnings.is_empty(), "{:?}", clean.warnings);
+}
+
+/// Name, slowing of growth, lines named.
+type Stall = (&'static str, fn(f64) -> f64, &'static str);
+
+const STALLS: [Stall; 3] = [
+    ("a stalled start", |a| if a < 12.5 { 4.0 } else { 1.0 }, "lines 2 to 3: "),
+    ("an overload", |a| if (20.0..21.0).contains(&a) { 12.0 } else { 1.0 }, "lines 18 to 20: "),
+    ("a counter that jumped", |a| if (15.0..15.5).contains(&a) { 0.1 } else { 1.0 }, "lines 8 to 9: "),
+];
+
+#[test]
+fn readings_that_do_not_belong_are_named_and_the_robust_law_is_written() {
+    for (name, slow, lines) in STALLS {
+        let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |_| 5.4, slow);
+        let csv = format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new()));
+        let fit = fitted(&csv, "");
+        let warning =
+            fit.warnings.iter().find(|line| line.contains("readings do not belong")).unwrap_or_else(|| panic!("{name}"));
+        assert!(warning.contains(lines), "{name}: {lines} in {warning}");
+        let both = fit.warnings.iter().find(|line| line.contains("written are the"));
+        if fit.estimate == Estimate::Robust {
+            assert!(both.unwrap().contains("written are the robust constants"), "{name}: {both:?}");
+        }
+        assert!((fit.paris.m - M).abs() < 0.06, "{name}: m {}", fit.paris.m);
+        assert_eq!(fit.specimens, [fit.record.clone()], "{name}: one specimen, one law");
+        assert!((fit.robust.unwrap().m - M).abs() < 0.01, "{name}: {:?}", fit.robust);
+        // The window of the message, as it stands there, leaves them out.
+        let window = warning.split_once("leave_out = ").unwrap().1.replace("\"...\"", "\"seen\"");
+        let out = fitted(&csv, &format!("leave_out = {window}"));
+        is_the_law(name, &out, M);
+        assert!(out.warnings.is_empty(), "{name}: {:?}", out.warnings);
+    }
+}
+
+#[test]
+fn what_is_left_out_stands_in_every_result() {
+    let made = readings(C, M, &lengths(12.0, 30.0, 0.5), |_| 5.4, STALLS[1].1);
+    let csv = format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new()));
+    let (from, to) = (made[16].0, made[18].0);
+    let keys = format!("leave_out = [{{ specimen = \"test\", from_cycles = {from}, to_cycles = {to}, reason = \"overload\" }}]");
+    let case = case(&csv, &keys).unwrap();
+    let fit = calibrate(&case, &Silent).unwrap();
+    let report = serde_json::to_value(FitReport::new(&case, &fit, 0.0)).unwrap();
+    assert_eq!(report["left_out"][0]["reason"], "overload", "{report}");
+    let text = toml::to_string(&record(&case, &fit)).unwrap();
+    assert!(text.contains("[[left_out]]") && text.contains("reason = \"overload\""), "{text}");
+    // The cycles of the window are no life.
+    let lost = made[18].0 - made[16].0;
+    assert!((fit.record.life_measured() - (made[36].0 - lost)).abs() < 1e-6, "{}", fit.record.life_measured());
+}
+
+#[test]
+fn broken_windows_are_refused() {
+    let csv = format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new()));
+    let window = |keys: &str| format!("leave_out = [{{ {keys} }}]");
+    let broken = [
+        (
+            "another specimen",
+            window("specimen = \"B\", from_cycles = 0, to_cycles = 1e4, reason = \"x\""),
+            "specimen = \"B\": is no specimen",
+        ),
+        ("no reason", window("from_cycles = 0, to_cycles = 1e4"), "reason: is missing"),
+        ("an empty reason", window("from_cycles = 0, to_cycles = 1e4, reason = \" \""), "says nothing"),
+        ("the wrong way", window("from_cycles = 1e4, to_cycles = 0, reason = \"x\""), "is not above from_cycles = 10000"),
+        ("beyond the test", window("from_cycles = 1e8, to_cycles = 2e8, reason = \"x\""), "covers no growth of specimen test"),
+        ("everything", window("from_cycles = 0, to_cycles = 1e9, reason = \"x\""), "leaves 0 readings"),
+        ("nearly everything", window("from_cycles = 1e5, to_cycles = 1e9, reason = \"x\""), "leaves 2 readings"),
+    ];
+    for (name, keys, words) in broken {
+        let error = case(&csv, &keys).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{name}");
+        assert!(
+            error.to_string().contains(words) && error.to_string().contains("measured.leave_out"),
+            "{name}: {words} in {error}"
+        );
+    }
+}
+
+/// With m = 3 given for a metal of 3.5, the rates lie below the law where ΔK is small and above it where it is large.
+#[test]
+fn lack_of_fit_is_told_at_both_ends() {
+    let lack = |m: f64| {
+        let made = readings(C * 10_f64.powf(M - m), m, &lengths(12.0, 30.0, 0.5), |_| 5.4, |_| 1.0);
+        let csv = format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new()));
+        let files = BTreeMap::from([("test.csv".to_owned(), csv.into_bytes())]);
+        let text = calibration("test.csv", "") + "[fit]\nparameters = [\"a\"]\np = 3.0\n";
+        let case = CalibrationCase::from_text(&text, "case", Folder::AtHand(files.into())).unwrap();
+        calibrate(&case, &Silent).unwrap().lack_of_fit.unwrap()
+    };
+    let [low, high] = [lack(3.5).low, lack(3.5).high];
+    assert!(low.rate_over_law_percent < -3.0 && high.rate_over_law_percent > 15.0, "{low:?} {high:?}");
+    // Rates go as ΔK^0.5 against the law: what lies between the ends is known.
+    let middle = |end: EndMiss| (end.delta_k_from_mpa_sqrt_m * end.delta_k_to_mpa_sqrt_m).sqrt();
+    let between = (1.0 + high.rate_over_law_percent / 100.0) / (1.0 + low.rate_over_law_percent / 100.0);
+    assert!((between / (middle(high) / middle(low)).sqrt() - 1.0).abs() < 0.02, "{between}");
+    let [low, high] = [lack(3.0).low, lack(3.0).high];
+    assert!(low.rate_over_law_percent.abs() < 0.05 && high.rate_over_law_percent.abs() < 0.05, "{low:?} {high:?}");
+}
+
+#[test]
+fn a_law_that_no_metal_has_is_refused_by_name() {
+    let csv = format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new()));
+    let slips =
+        [("as it was", csv.clone(), true), ("single cycles called millions", csv.replace("cycles,", "megacycles,"), false)];
+    for (name, csv, is_metal) in slips {
+        let outcome = calibrate(&case(&csv, "").unwrap(), &Silent);
+        match (outcome, is_metal) {
+            (Ok(_), true) => {}
+            (Err(error), false) => {
+                assert_eq!(error.exit_code(), 2, "{name}");
+                assert!(error.to_string().contains("the rate at ΔK = 10 MPa√m is"), "{name}: {error}");
+            }
+            (outcome, _) => panic!("{name}: {outcome:?}"),
+        }
+    }
+}
