@@ -122,7 +122,7 @@ fn readings_that_do_not_belong_are_named_and_the_robust_law_is_written() {
             assert!(both.unwrap().contains("written are the robust constants"), "{name}: {both:?}");
         }
         assert!((fit.paris.m - M).abs() < 0.06, "{name}: m {}", fit.paris.m);
-        assert_eq!(fit.specimens, [fit.record.clone()], "{name}: one specimen, one law");
+        assert_eq!(fit.specimens, std::slice::from_ref(&fit.record), "{name}: one specimen, one law");
         assert!((fit.robust.unwrap().m - M).abs() < 0.01, "{name}: {:?}", fit.robust);
         // The window of the message, as it stands there, leaves them out.
         let window = warning.split_once("leave_out = ").unwrap().1.replace("\"...\"", "\"seen\"");
