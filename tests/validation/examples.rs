@@ -29,7 +29,7 @@ const OWN: [(&str, f64, StopReason); 6] = [
     ("hand_calculation", 247_247.1, StopReason::CrackLengthReached),
     ("notched_plate", 54_525.6, StopReason::Severed),
     ("plate_with_hole", 33_452.2, StopReason::Severed),
-    ("two_cracks_plate", 39_028.7, StopReason::EnteredHole),
+    ("two_cracks_plate", 39_028.7, StopReason::CracksJoined),
 ];
 const SLANT: &str = "slant_crack_plate";
 

@@ -116,7 +116,11 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
         ("tips, slant", SLANT, vec![TIPS, SHORT, FINE]),
         ("tips, two cracks, state-based", TWO, vec![TIPS, SHORT, FINE, "model.bond_law=state_based"]),
         ("tips, hole, window", HOLE, vec![TIPS, SHORT, "model.spacing_mm=0.8", "model.solver=window"]),
-        ("tips, levels", BROAD, vec![TIPS, "fatigue.step_error_percent=0.01", LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=45"]),
+        (
+            "tips, levels",
+            BROAD,
+            vec![TIPS, "fatigue.step_error_percent=0.01", LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=45"],
+        ),
         ("relaxation, hole", HOLE, vec!["model.spacing_mm=2", "model.solver=adaptive_dynamic_relaxation"]),
     ]
 }
