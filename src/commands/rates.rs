@@ -41,7 +41,7 @@ pub struct Args {
     #[arg(long, value_name = "UNIT", help_heading = "Input")]
     pub load_unit: Option<String>,
     /// Which column is which (repeatable): cycles, length, specimen, force_max, force_min, stress_max, stress_min or stress_ratio by name
-    /// or number, e.g. length="a [in]"; several lengths are sides of one crack
+    /// or number, e.g. length="a (in)"; several lengths are sides of one crack
     #[arg(long = "column", value_name = "KEY=NAME", help_heading = "Input")]
     pub columns: Vec<String>,
     /// Decimal sign where the file leaves it open: . or ,

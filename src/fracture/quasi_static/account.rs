@@ -131,7 +131,7 @@ pub struct Recorder<'r, 'n> {
 }
 
 impl Recorder<'_, '_> {
-    /// Puts log and bonds where the run is taken up ([`Course::take_up`]).
+    /// Puts log and bonds where the run is taken up (`Course::take_up`).
     ///
     /// # Errors
     /// A checkpoint of another plate.

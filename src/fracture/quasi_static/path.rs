@@ -1,7 +1,7 @@
 //! The equilibrium path of springs with damage, controlled by damage itself: load and displacement rise and fall as the path
 //! asks.
 //!
-//! Every state on the path is exact equilibrium at the load where the next bond is damaged ([`Control::next`]). From there
+//! Every state on the path is exact equilibrium at the load where the next bond is damaged (`Control::next`). From there
 //!
 //! - where bonds are damaged gradually, the largest damage grows by τ: `D(n+1)` from the law at the load of that growth, with
 //!   the displacements of D(n+1), found by repeated secant solutions until no damage changes by more than a tolerance; τ is
