@@ -226,17 +226,23 @@ impl RingGeometry {
         }
         let pressed = || plate.pressures.iter().filter(|flank| near(flank.facet.at));
         let nearest = pressed().map(|flank| distance(flank.facet.at, frame.origin)).fold(f64::INFINITY, f64::min);
-        let (mut of_pressure, mut at_tip) = (0.0, 0.0);
+        let mut of_pressure = 0.0;
         for flank in pressed() {
             // The last piece reaches up to the tip of the ring.
             let is_last = nearest < spacing && distance(flank.facet.at, frame.origin) < (1.0 + EQUAL) * nearest;
             let part = around.pressure(flank, is_last);
             of_pressure += 0.5 * self.elasticity.plane_modulus * part[0];
-            if is_last {
-                at_tip = flank.pressure;
-            }
             add(part);
         }
+        // That of the places nearest to a tip is not: a pressed crack ends in a soft core.
+        let beside = |flank: &&FlankPressure| {
+            let away = distance(flank.facet.at, frame.origin) / body.horizon();
+            (CORE_HORIZONS..2.0 * CORE_HORIZONS).contains(&away)
+        };
+        let count = pressed().filter(beside).count();
+        let is_pressed = nearest < spacing && count > 0;
+        let at_tip =
+            if is_pressed { pressed().filter(beside).map(|flank| flank.pressure).sum::<f64>() / count as f64 } else { 0.0 };
         let [k_i, k_ii, shifted_i, shifted_ii, half_t] = sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum);
         let tip_offset = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
         RingFactors {

@@ -7,6 +7,7 @@ use std::path::Path;
 use perilife::case::Case;
 use perilife::fatigue::crack_tip::TipState;
 use perilife::growth::record::CurvePoint;
+use perilife::growth::tip_field::initial_tips;
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::solver::{SolverKind, Symmetry};
 use perilife::stress_intensity::{StressIntensityMethod, stress_intensity};
@@ -102,5 +103,16 @@ fn sif_reads_what_predict_reads() {
             );
             assert_eq!(result.is_closed, row.state == TipState::Closed, "{}", case.name);
         }
+    }
+}
+
+/// A crack along a pull of 50 MPa that a pressure of 50 MPa holds shut: faces in contact carry that pressure, K_I is zero, and T is the pull.
+#[test]
+fn t_along_a_pressed_crack() {
+    let Some(case) = pressed("closed_tilted") else { return };
+    for tip in initial_tips(&case).unwrap().tips {
+        let (factors, t_stress) = (tip.factors.unwrap(), tip.t_stress.unwrap());
+        println!("K {factors:?}, T {t_stress:.4e}");
+        assert!(factors[0] == 0.0 && (t_stress / 50e6 - 1.0).abs() < 0.01, "{factors:?}, {t_stress}");
     }
 }

@@ -21,8 +21,9 @@ const AHEAD_HORIZONS: f64 = 0.15;
 /// How far ahead of its line a tip may stand in mode II, in horizons: 0.21 to 0.22 on lattices of 0.25 to 1.4 mm, where the crack is
 /// straight in all of its ring. Where it is not, or where the ring is smaller, K_II is better as it is read.
 const SLIDING_AHEAD_HORIZONS: f64 = 0.4;
-/// One of K_I and K_II over the other from which it is read where the field has its tip in that mode.
-const MIXED: f64 = 0.05;
+/// One of K_I and K_II over the other from which it is read where the field has its tip in that mode. A smaller K_II is made by what is
+/// near, other cracks for one, and the opening of these says more of it than the tip's own place.
+const MIXED: f64 = 0.1;
 /// Growth after a corner, in horizons, below which points do not resolve the kink: K would be read up to 5 % low.
 const KINK_HORIZONS: f64 = 0.5;
 /// Relative difference within which factors are those of mirror twins: far above what solver and tie breaks make of equal ones, far
