@@ -4,6 +4,7 @@
 use std::collections::HashSet;
 
 use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::LltError;
 use faer::sparse::{SparseColMat, Triplet};
 
 use super::assembly::{Assembly, MIXED, Mixed, Springs, for_joints};
@@ -81,9 +82,11 @@ fn factorise_and_solve<const N: usize, const M: usize>(
         if c < N { f[layout.index(place) + c * layout.stride] } else { 0.0 }
     });
     let solution = if definite {
-        let factor = matrix
-            .sp_cholesky(faer::Side::Lower)
-            .map_err(|e| Error::Mechanics(format!("the stiffness matrix is not positive definite: {e:?}")))?;
+        let factor = matrix.sp_cholesky(faer::Side::Lower).map_err(|error| match error {
+            // A pivot that is none: some part moves freely.
+            LltError::Numeric(_) => Error::LossOfStiffness,
+            LltError::Generic(_) => Error::Mechanics(format!("the stiffness matrix could not be factorised: {error:?}")),
+        })?;
         factor.solve(&rhs)
     } else {
         let factor =

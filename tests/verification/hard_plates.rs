@@ -19,12 +19,12 @@ type Plate = (&'static str, f64, f64);
 
 const QUICK: [Plate; 4] =
     [("hole_crack_43", 1.5, 0.15), ("hole_crack_45", 1.5, 0.15), ("short_slant_45", 1.5, 0.2), ("short_slant_68", 2.0, 0.3)];
-/// The last three miss 1.5 %: a sliver between crack and edge, a rim passed within a horizon, a tip 1.2 horizons from an edge.
+/// Two miss 1.5 %: a sliver between crack and edge, and a rim passed within a horizon (2.7 % and 0.02 mm with points of 0.33 mm).
 const LONG: [Plate; 4] = [
     ("three_parallel", 1.5, 0.15),
     ("slant_edge_75", 2.6, 0.33),
     ("between_holes_4mm", 5.4, 0.25),
-    ("beside_edge_2mm", 2.1, 0.05),
+    ("beside_edge_2mm", 1.5, 0.05),
 ];
 
 fn reference(path: &Path) -> BTreeMap<usize, Vec<Row>> {

@@ -70,6 +70,14 @@ fn pressure_adds_to_a_stress_and_follows_the_crack() {
     assert_eq!(pressed.stop, StopReason::Severed);
 }
 
+/// A piece of plate that crossing cracks and the edge between them cut off moves freely under the pressure: the plate is severed.
+#[test]
+fn pressure_parts_a_plate() {
+    let cracks = "{ from_mm = [-30, 0], to_mm = [-10, 0] }, { from_mm = [-25, -10], to_mm = [-25, 10] }";
+    let parted = run(&plate(cracks, "stress_max_mpa = 40\ncrack_pressure_mpa = 40", 1.0));
+    assert_eq!(parted.stop, StopReason::Severed, "{:?}", parted.warnings);
+}
+
 /// Edge crack in a plate held at the bottom, sheared at the top: finite elements 34.04 and 4.537 MPa√m; 34.0 and 4.55 by Yau, Wang and
 /// Corten (1980). K_II does not depend on the points.
 #[test]
