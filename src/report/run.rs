@@ -86,7 +86,9 @@ fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
     let [row] = prediction.curve.as_slice() else { return None };
     let load = case.loading.share(row.work) * case.loading.maximum;
     let k_max = row.delta_k / case.loading.range_share();
-    prediction.stop.is_strength().then(|| first_load::words(case, load, Some(k_max).filter(|k| *k > 0.0)))?
+    // A limit that is reached but for round-off has no words of its own.
+    let words = || first_load::words(case, load, Some(k_max).filter(|k| *k > 0.0));
+    prediction.stop.is_strength().then(|| words().unwrap_or_else(|| format!("{} at the first load", prediction.stop.meaning())))
 }
 
 /// Why a run does not count though it came to an end: more than a quarter of its life lies outside the fitted range of ΔK, and the

@@ -8,6 +8,7 @@
 //! Signs, in the frame of a tip (x₁ ahead of the tip, x₂ a quarter turn counter-clockwise from it): K_I > 0 opens the
 //! crack, K_II > 0 slides the face on the side of x₂ > 0 towards x₁ > 0.
 
+mod crack_faces;
 mod cracked_plate;
 mod cut_cells;
 mod energy_release;

@@ -9,7 +9,7 @@ use tempfile::{TempDir, tempdir};
 use crate::cli::{assert_refused, perilife, texts};
 
 /// A plate torn apart in time, small enough for a tenth of a second.
-const SCENE: &str = r#"[specimen]
+pub const SCENE: &str = r#"[specimen]
 kind = "plate"
 width_mm = 20
 length_mm = 20

@@ -152,10 +152,12 @@ impl TipField<'_> {
             let slides = is_mixed
                 && first.radius >= (1.0 - ROUND_OFF) * RING_HORIZONS * horizon
                 && lines[end.line].last_piece(end.at_last) > first.radius;
-            let offset = match is_mixed {
-                true if k_i > MIXED * k_ii => first.tip_offsets[0],
-                true if slides => 0.0,
-                _ => first.tip_offset,
+            let offset = if is_mixed && k_i > MIXED * k_ii {
+                first.tip_offsets[0]
+            } else if slides {
+                0.0
+            } else {
+                first.tip_offset
             };
             // Beside a rim what is read as a shift may be something else.
             let ahead = if offset.abs() < AHEAD_HORIZONS * horizon { offset } else { 0.0 };
