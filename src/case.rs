@@ -7,6 +7,7 @@ pub mod growth_law;
 mod law;
 mod law_source;
 pub mod model;
+mod nodes;
 mod read;
 
 pub use choices::{Choices, Failure, Method};
@@ -16,6 +17,7 @@ pub use read::SECTIONS;
 use crate::body::lattice::fitting_spacing;
 use crate::bond_law::{BondLaw, SurfaceCorrection};
 use crate::calibration::record::FittedRecord;
+use crate::element_free::resolution::ElementFreeSettings;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
@@ -56,6 +58,8 @@ pub struct Model {
     pub solver: SolverKind,
     /// Use of mirror symmetry.
     pub symmetry: Symmetry,
+    /// Nodes of the element-free Galerkin method.
+    pub element_free: ElementFreeSettings,
     /// Residual over load at which an equilibrium ends whose K drives a crack ([`RESIDUAL`]); no key of a case.
     pub residual: f64,
 }

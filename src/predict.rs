@@ -24,7 +24,9 @@ pub use crate::levels::PointGrid;
 use crate::case::{Case, Method};
 use crate::error::Result;
 use crate::fatigue::Driver;
+use crate::growth::TipGrowth;
 use crate::growth::bond_strain::BondStrain;
+use crate::growth::element_free::ElementFree;
 use crate::growth::hand_calculation::HandCalculation;
 use crate::growth::tip_field::TipField;
 use crate::parallel::in_pool;
@@ -59,6 +61,9 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
         (Method::Peridynamics, Driver::TipField) => {
             record.follow(&mut TipField::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks)))
         }
+        (Method::ElementFreeGalerkin, _) => {
+            record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks)))
+        }
         (Method::Peridynamics, Driver::BondStrain) => {
             let rates = |horizon| laws::bond_rates(case, horizon);
             record.follow(&mut BondStrain::start(case, rates)?, |bonds| bonds.next_break())
@@ -70,7 +75,7 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
 ///
 /// Before the first increment the plate with its initial cracks is in equilibrium and K of its tips is known.
 /// Mechanics that fail end the run with the rows that stand.
-pub fn increment(cracks: &mut TipField<'_>) -> Option<StopReason> {
+pub fn increment<C: TipGrowth>(cracks: &mut C) -> Option<StopReason> {
     if let Some(reason) = cracks.reason_to_stop() {
         return Some(reason);
     }
@@ -78,9 +83,10 @@ pub fn increment(cracks: &mut TipField<'_>) -> Option<StopReason> {
     let mut step = cracks.increments();
     // x_i ← x_i + Δa_i (cos θ_i, sin θ_i), up to the first edge, hole or other crack; cracks that meet are one.
     cracks.extend_lines(&mut step);
-    // μ = 0 for every bond that a new segment crosses; fragments without load go, bonds beside the flanks get those of an edge.
-    cracks.cut_bonds(&mut step);
-    // Σ_j μ f(u_j - u_i) V_j + b_i = 0 at maximum load.
+    // μ = 0 for every bond that a new segment crosses, fragments without load go, bonds beside the flanks get those of an edge;
+    // or Φ_i(x) = 0 behind a crack, with nodes placed anew where tips are now.
+    cracks.part_plate(&mut step);
+    // Σ_j μ f(u_j - u_i) V_j + b_i = 0 at maximum load; or ∫ ε(Φ_i)ᵀ D ε(u) dA = ∫ Φ_i t ds.
     cracks.solve_equilibrium(&mut step);
     // K_I, K_II = ½ E' M(u; Williams' field of unit K), T likewise, on a ring around every tip (interaction integral).
     cracks.read_factors(&step);

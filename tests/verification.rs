@@ -51,6 +51,8 @@ mod pressed_cracks;
 mod mirror_images;
 #[path = "verification/loads.rs"]
 mod loads;
+#[path = "verification/element_free.rs"]
+mod element_free;
 #[path = "verification/hard_plates.rs"]
 mod hard_plates;
 #[path = "verification/joined_cracks.rs"]

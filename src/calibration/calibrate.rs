@@ -53,6 +53,14 @@ fn fit_by_method(
             fit.warnings.extend(factors.warnings);
             Ok(fit)
         }
+        Method::ElementFreeGalerkin => {
+            let factors = FactorCurve::of(case, observer)?;
+            let of_nodes = |length: f64| case.loading.range_share() * factors.at(length);
+            let mut fit = fit(task, &PowerLaw::new(from, to, &of_nodes)?)?;
+            fit.paris = fit.paris.of_power_law(fit.record.constants, fit.p_error());
+            fit.warnings.extend(factors.warnings);
+            Ok(fit)
+        }
         Method::Handbook => {
             let mut fit = fit(task, &PowerLaw::new(from, to, delta_k)?)?;
             // The fitted constants are C and m themselves; no line has to be drawn through rates.

@@ -40,7 +40,7 @@ impl Exponent {
         let record = fitted_record(file, folder)?;
         let (p, error) = match method {
             Method::Peridynamics => (record.p, record.p_error),
-            Method::Handbook => (record.paris_m, record.paris_m_error),
+            Method::Handbook | Method::ElementFreeGalerkin => (record.paris_m, record.paris_m_error),
         };
         Ok(Exponent { fixed: Some(p), error, source: file.to_owned(), warning: None })
     }

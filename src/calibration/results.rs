@@ -163,7 +163,7 @@ impl SpecimenReport {
 fn bond_constant(calibration: &CalibrationCase, fit: &Fit) -> f64 {
     match calibration.case.model.method {
         Method::Peridynamics => fit.record.constants.a,
-        Method::Handbook => f64::NAN,
+        Method::Handbook | Method::ElementFreeGalerkin => f64::NAN,
     }
 }
 

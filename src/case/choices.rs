@@ -7,6 +7,7 @@ crate::kinds! {
     /// Numerical methods.
     pub enum Method for "model.method" {
         Peridynamics = "peridynamics": "points and bonds",
+        ElementFreeGalerkin = "element_free_galerkin": "nodes without elements, near-tip fields as unknowns; cracks driven by the K of their tips",
         Handbook = "handbook": "hand calculation: handbook K(a) of a standard specimen, Paris law, quadrature",
     }
 }

@@ -144,6 +144,20 @@ fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Dri
         ("growth_rate", input.growth_rate.is_some()),
     ];
     let of_bonds = of_bonds.iter().find(|(_, given)| *given);
+    if method == Method::ElementFreeGalerkin {
+        let remedy = "leave it out, or use model.method = \"peridynamics\"";
+        return match (input.driver, of_bonds) {
+            (Some(Driver::BondStrain), _) => {
+                let problem = "needs bonds, and model.method = \"element_free_galerkin\" has none";
+                Err(crate::error::input("fatigue.driver", "\"bond_strain\"", problem, remedy))
+            }
+            (_, Some((key, _))) => {
+                let problem = "belongs to fatigue bonds, and model.method is \"element_free_galerkin\"";
+                Err(input_missing(&format!("fatigue.{key}"), problem, remedy))
+            }
+            _ => Ok(Driver::TipField),
+        };
+    }
     match (input.driver, of_bonds) {
         (Some(Driver::TipField), Some((key, _))) if method == Method::Peridynamics => {
             let problem = "belongs to fatigue bonds, and fatigue.driver is \"tip_field\"";

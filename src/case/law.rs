@@ -36,7 +36,7 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
 pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
     check_record(&record)?;
     let by_hand = Method::from_str(&record.method)? == Method::Handbook;
-    if case.model.method == Method::Handbook || by_hand && case.is_driven_by_tips() {
+    if case.model.method != Method::Peridynamics || by_hand && case.is_driven_by_tips() {
         // C and m belong to ΔK, whatever bonds they were fitted with.
         check_stress_ratio(case, &record)?;
         case.law = LawSource::Fitted(Box::new(record));
@@ -168,10 +168,14 @@ impl Case {
         self.is_driven_by_tips() || self.spends_bond_life() && self.fatigue.growth_rate == GrowthRate::StressIntensity
     }
 
-    /// Whether its crack grows by the K of its tips on a lattice of points.
+    /// Whether its crack grows by the K of its tips, on points or nodes.
     #[must_use]
     pub fn is_driven_by_tips(&self) -> bool {
-        self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::TipField
+        match self.model.method {
+            Method::Peridynamics => self.fatigue.driver == Driver::TipField,
+            Method::ElementFreeGalerkin => true,
+            Method::Handbook => false,
+        }
     }
 
     /// A and p at the body's actual horizon (m).
@@ -226,7 +230,7 @@ pub(super) fn missing(method: Method, path: &Path) -> Error {
     }
     let constants = match method {
         Method::Peridynamics => "a, p and horizon_mm",
-        Method::Handbook => "paris_c_mm_per_cycle and paris_m",
+        Method::Handbook | Method::ElementFreeGalerkin => "paris_c_mm_per_cycle and paris_m",
     };
     let remedy = format!("give fitted = \"fitted.toml\" from `perilife calibrate`, or {constants}");
     input_missing("fatigue.fitted", "is missing: the case has no fatigue law", remedy)

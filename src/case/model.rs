@@ -4,8 +4,10 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::choices::{Choices, Method};
+use super::nodes::{NodeKeys, refuse_keys_of_points};
 use super::{Case, HORIZON_RATIO, Model, RESIDUAL};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
+use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::error::{Result, input};
 use crate::fatigue::Ageing;
 use crate::input::{LENGTH, number, slice};
@@ -37,6 +39,11 @@ struct Input {
     horizon_ratio: Option<f64>,
     lattice_angle_deg: Option<f64>,
     solver: Option<SolverKind>,
+    nodes: Option<f64>,
+    tolerance_percent: Option<f64>,
+    basis: Option<BasisKind>,
+    enrichment: Option<Enrichment>,
+    influence_radius: Option<f64>,
 }
 
 /// Reads `[model]` and, if there is one, `[refinement]`; what is left out gets the program's choice. Explicit choices go into
@@ -50,21 +57,37 @@ pub(super) fn from_values(
     warnings: &mut Vec<String>,
 ) -> Result<Model> {
     let input: Input = slice(value, "model")?;
+    let method = input.method.unwrap_or(Method::Peridynamics);
+    let of_nodes = NodeKeys {
+        // Of points, where it is another method's.
+        spacing_mm: input.spacing_mm.filter(|_| method == Method::ElementFreeGalerkin),
+        nodes: input.nodes,
+        tolerance_percent: input.tolerance_percent,
+        basis: input.basis,
+        enrichment: input.enrichment,
+        influence_radius: input.influence_radius,
+    };
+    if method == Method::ElementFreeGalerkin {
+        refuse_keys_of_points(value, refinement)?;
+    } else {
+        of_nodes.refuse(method)?;
+    }
     let arrangement = input.discretisation.unwrap_or(Discretisation::Lattice);
     let refinement = refinement.map(|value| read::from_value(value, specimen)).transpose()?;
     check_arrangement(arrangement, refinement.is_some(), input.solver)?;
-    let method = input.method.unwrap_or(Method::Peridynamics);
     choices.bond_law = input.bond_law;
     choices.kernel = input.kernel;
     choices.rotation = input.rotation;
     choices.surface_correction = input.surface_correction;
     choices.horizon_ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
     let levels = refinement.as_ref().map_or(0, Refinement::deepest);
-    let spacing = match LENGTH.read_optional("model.spacing_mm", input.spacing_mm)? {
+    let element_free = of_nodes.read(specimen)?;
+    let of_points = input.spacing_mm.filter(|_| method != Method::ElementFreeGalerkin);
+    let spacing = match LENGTH.read_optional("model.spacing_mm", of_points)? {
         Some(coarsest) => coarsest / 2.0_f64.powi(levels as i32),
         None => {
             let (spacing, warning) = default_spacing(specimen);
-            warnings.extend(warning);
+            warnings.extend(warning.filter(|_| method == Method::Peridynamics));
             spacing
         }
     };
@@ -83,6 +106,7 @@ pub(super) fn from_values(
         lattice_angle: angle.to_radians(),
         solver: input.solver.unwrap_or(SolverKind::Window),
         symmetry: input.symmetry.unwrap_or(Symmetry::Auto),
+        element_free,
         residual: RESIDUAL,
         arrangement,
         refinement,
@@ -92,6 +116,7 @@ pub(super) fn from_values(
             check_spacing(spacing, levels, specimen)?;
             check_columns(model.coarsest_spacing(), specimen)?;
         }
+        Method::ElementFreeGalerkin => {}
         Method::Handbook => check_formula(specimen)?,
     }
     Ok(model)
@@ -220,7 +245,7 @@ pub fn round_mm(metres: f64) -> f64 {
 /// The bond law can represent the material, and its choices go together; levels of points go with law, horizon and ageing.
 pub(super) fn check_law(case: &Case) -> Result<()> {
     let (model, law) = (&case.model, &case.model.bond_law);
-    if model.method == Method::Handbook {
+    if model.method != Method::Peridynamics {
         return Ok(());
     }
     if model.arrangement != Discretisation::Lattice {

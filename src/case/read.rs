@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use super::choices::Choices;
+use super::choices::{Choices, Method};
 use super::{Case, LAW_KEYS, LawSource, fatigue, first_load, law, model};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
@@ -100,7 +100,7 @@ impl Case {
             allow_extrapolation: fatigue.allow_extrapolation,
             choices,
         };
-        if case.is_driven_by_factors() && case.choices.surface_correction.is_none() {
+        if case.is_driven_by_factors() && case.model.method == Method::Peridynamics && case.choices.surface_correction.is_none() {
             case.model.take_most_accurate_rim();
         }
         match fatigue.law {
@@ -199,7 +199,7 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
         }
     }
     lines.extend(compression_line(case));
-    if case.is_driven_by_factors() {
+    if case.is_driven_by_factors() && case.model.method == Method::Peridynamics {
         lines.extend(short_line(case));
         lines.extend(small_hole_line(case));
         lines.extend(incompressible_line(case));

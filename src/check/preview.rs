@@ -7,6 +7,7 @@ use crate::error::{Error, InputError, Result};
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::no_fail::stuck;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
+use crate::growth::element_free::initial_plate;
 use crate::growth::plate::Plate;
 use crate::report::model_words;
 use crate::state::Bonds;
@@ -22,10 +23,29 @@ pub(super) struct Preview {
     pub warnings: Vec<String>,
 }
 
+/// Places the nodes.
+fn of_nodes(case: &Case) -> Result<Preview> {
+    let plate = initial_plate(case).map_err(as_input)?;
+    let finest = plate.nodes.spacing.iter().copied().fold(f64::INFINITY, f64::min);
+    let resolution = &case.model.element_free.resolution;
+    let points = format!(
+        "{} nodes, {} unknowns; spacing {} mm, {} mm at the finest, radius of influence {} spacings",
+        plate.nodes.at.len(),
+        plate.unknowns(),
+        mm(resolution.far),
+        mm(finest),
+        resolution.support
+    );
+    Ok(Preview { points, warnings: Vec::new() })
+}
+
 /// Lays the lattice and, where that is quick, builds the body.
 pub(super) fn preview(case: &Case) -> Result<Preview> {
     if case.model.method == Method::Handbook {
         return Ok(Preview { points: "none: hand calculation".to_owned(), warnings: Vec::new() });
+    }
+    if case.model.method == Method::ElementFreeGalerkin {
+        return of_nodes(case);
     }
     let (model, specimen) = (&case.model, &case.specimen);
     let about = specimen.area() / model.spacing.powi(2);

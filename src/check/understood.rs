@@ -173,7 +173,7 @@ fn law_words(case: &Case) -> String {
             let law = fit_use::law_line(case).unwrap_or_default();
             let of_bonds = match case.model.method {
                 Method::Peridynamics => format!("; a = {:e} per cycle at horizon {} mm", record.a, record.horizon_mm),
-                Method::Handbook => String::new(),
+                Method::Handbook | Method::ElementFreeGalerkin => String::new(),
             };
             format!("{law}{of_bonds}")
         }

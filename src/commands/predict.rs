@@ -159,6 +159,10 @@ fn computed(case: &Case, prediction: &Prediction) -> String {
             "{} points, {} cycle blocks, {} solves, {:.1} s",
             figures.points, figures.blocks, figures.solves, figures.wall_s
         ),
+        Method::ElementFreeGalerkin => format!(
+            "up to {} nodes, {} increments, {} solves, {:.2} s",
+            figures.points, figures.blocks, figures.solves, figures.wall_s
+        ),
         Method::Handbook => {
             let formula = handbook(&case.specimen).map_or("", |formula| formula.name);
             format!("by hand calculation: {formula}, {} rows, {:.2} ms", figures.blocks + 1, 1e3 * figures.wall_s)

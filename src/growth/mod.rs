@@ -1,14 +1,17 @@
 //! What drives a crack: from the plate as it stands to the plate an increment later.
 //!
-//! [`crate::predict::predict`] advances one [`CrackGrowth`] until there is a reason to stop: K of every tip ([`tip_field`]), fatigue
+//! [`crate::predict::predict`] advances one [`CrackGrowth`] until there is a reason to stop: K of every tip, on points
+//! and bonds ([`tip_field`]) or on nodes ([`element_free`]), fatigue
 //! bonds that fail by their own strain ([`bond_strain`]), or K of a handbook without any plate ([`hand_calculation`]).
 
 pub mod bond_strain;
 pub mod cross_check;
+pub mod element_free;
 mod end_of_life;
 pub mod hand_calculation;
 pub mod plate;
 pub mod record;
+mod rows;
 pub mod tip_field;
 mod tip_ring;
 
@@ -18,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::fatigue::growth_law::GrowthLaw;
+use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
 use cross_check::CrossCheck;
 use plate::Plate;
@@ -50,6 +54,11 @@ pub trait CrackGrowth {
     /// The discretised plate, where there is one.
     fn plate(&self) -> Option<Arc<Plate>> {
         None
+    }
+
+    /// The points that pictures show, where there are any.
+    fn grid(&self) -> Option<PointGrid> {
+        self.plate().map(|plate| plate.grid())
     }
 
     /// Displacement and damage of its points as they stand.
@@ -101,6 +110,40 @@ pub trait CrackGrowth {
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }
+}
+
+/// Cracks that grow by the K of their tips, an increment in eight steps. [`crate::predict::increment`] is their order.
+pub trait TipGrowth {
+    /// An increment in the making.
+    type Increment;
+
+    /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or grows.
+    fn reason_to_stop(&self) -> Option<StopReason>;
+
+    /// Growth of every tip over the same cycles, the fastest by one step. To be asked while a tip grows
+    /// ([`TipGrowth::reason_to_stop`]).
+    fn increments(&self) -> Self::Increment;
+
+    /// Extends the lines of the cracks by a straight segment each, up to a rim or another crack; cracks that meet are joined.
+    fn extend_lines(&mut self, step: &mut Self::Increment);
+
+    /// Parts the plate along the new segments: bonds that cross them are cut, or nodes placed anew.
+    fn part_plate(&mut self, step: &mut Self::Increment);
+
+    /// Finds the displacement in equilibrium with the maximum load.
+    fn solve_equilibrium(&mut self, step: &mut Self::Increment);
+
+    /// Reads K_I, K_II and T of every active tip at the place where its field stands.
+    fn read_factors(&mut self, step: &Self::Increment);
+
+    /// Turns every active tip by what was read.
+    fn turn(&mut self, step: &Self::Increment);
+
+    /// Takes da/dN of the K of every active tip.
+    fn set_rates(&mut self, step: &Self::Increment);
+
+    /// Adds the row after an increment, and says why there is no next one.
+    fn add_row(&mut self, step: Self::Increment) -> Option<StopReason>;
 }
 
 /// Where a run stands.
@@ -159,6 +202,8 @@ pub enum State {
     Bonds(bond_strain::BondStrainState),
     /// Of tips driven by their K.
     Tips(tip_field::TipsState),
+    /// Of tips on a plate of nodes.
+    Nodes(element_free::FrontsState),
     /// Of a hand calculation: its rows.
     Rows(Vec<CurvePoint>),
 }

@@ -8,7 +8,7 @@
 //! A tip that meets another crack joins both: it is no tip any more, nor is the tip that it meets head-on, and the tips that are left
 //! begin anew with the K that the joined crack gives them.
 
-mod ahead;
+pub(in crate::growth) mod ahead;
 mod coalescence;
 mod contact;
 mod factors;
@@ -19,7 +19,7 @@ mod remaining_life;
 mod run;
 mod state;
 pub mod steering;
-pub(super) mod step;
+pub(in crate::growth) mod step;
 
 pub use state::{Tip, TipFieldState, TipsState};
 

@@ -60,7 +60,7 @@ impl RunFigures {
         let (plate, statistics) = (growth.plate(), growth.statistics());
         let plate = plate.as_deref();
         RunFigures {
-            points: plate.map_or(0, Plate::points),
+            points: plate.map_or(statistics.points_solved, Plate::points),
             points_solved: statistics.points_solved,
             bonds: plate.map_or(0, Plate::bonds),
             blocks,

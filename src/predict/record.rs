@@ -113,7 +113,7 @@ impl<'a> Record<'a> {
             stop,
             figures: RunFigures::of(growth, curve.len() - 1, wall_s),
             snapshots: snapshots.taken,
-            grid: growth.plate().map_or_else(PointGrid::none, |plate| plate.grid()),
+            grid: growth.grid().unwrap_or_else(PointGrid::none),
             curve,
             cross_check,
             warnings,

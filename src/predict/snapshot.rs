@@ -20,19 +20,18 @@ pub struct Snapshots {
 impl Snapshots {
     /// Takes the plate at N = 0, and then whenever the cracks have grown enough; shows it to who watches the run.
     pub fn follow(&mut self, growth: &mut dyn CrackGrowth, observer: &dyn Observer) {
-        let Some(plate) = growth.plate() else { return };
         let now = growth.now();
         let is_first = self.taken.is_empty();
         if !now.is_counting || !is_first && now.growth() < self.next {
             return;
         }
+        let Some(grid) = growth.grid() else { return };
         if is_first {
-            let lattice = &plate.body.lattice;
-            self.step = lattice.columns.min(lattice.rows) as f64 * lattice.spacing / BETWEEN;
+            self.step = grid.columns.min(grid.rows) as f64 * grid.spacing / BETWEEN;
         }
         self.next = now.growth() + self.step;
         if let Some(snapshot) = self.take(growth) {
-            observer.looked(snapshot, &plate.grid());
+            observer.looked(snapshot, &grid);
         }
     }
 

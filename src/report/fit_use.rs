@@ -52,7 +52,7 @@ pub fn law_line(case: &Case) -> Option<String> {
     let m_error = record.paris_m_error;
     let exponent = match case.model.method {
         Method::Peridynamics => format!("p = {:.4} ± {:.4}, m", record.p, record.p_error),
-        Method::Handbook => "m".to_owned(),
+        Method::Handbook | Method::ElementFreeGalerkin => "m".to_owned(),
     };
     Some(format!(
         "{:.4e} mm/cycle ± {:.1} % at ΔK = {:.2} MPa√m, {exponent} = {:.4} ± {m_error:.4} ({}, R = {})",

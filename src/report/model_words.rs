@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use super::json::clean;
 use crate::bond_law::BondLawKind;
 use crate::case::{Case, LawSource, Method};
+use crate::element_free::resolution::ElementFreeSettings;
 use crate::fracture::scene::{Scene, SceneLaw};
 use crate::levels::Refinement;
 use crate::predict::RunFigures;
@@ -55,6 +56,9 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
     let (model, law) = (&case.model, case.model.bond_law);
     if model.method == Method::Handbook {
         return hand_calculation(case);
+    }
+    if model.method == Method::ElementFreeGalerkin {
+        return of_nodes(case);
     }
     let (spacing, horizon) =
         figures.map_or((model.spacing, model.spacing * model.horizon_ratio), |run| (run.spacing, run.horizon));
@@ -142,6 +146,26 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
         choice("formula", formula.map(|formula| formula.name), Some("that of the kind of specimen")),
         choice("source", formula.map(|formula| formula.source), None),
         choice("range", formula.map(|formula| formula.range), None),
+    ]
+}
+
+/// The nodes of a case.
+fn of_nodes(case: &Case) -> Vec<Choice> {
+    let ElementFreeSettings { resolution, step_share } = case.model.element_free;
+    let why = |key: &str| Some(if given(&case.echo, key) { "given in the case" } else { "chosen by the program" }.to_owned());
+    let choice = |key, value: Value, why| Choice { key, value, why };
+    vec![
+        choice("method", case.model.method.name().into(), Some("given in the case".to_owned())),
+        choice("spacing_mm", (resolution.far / MM).into(), why("spacing_mm")),
+        choice("basis", resolution.basis.name().into(), why("basis")),
+        choice("enrichment", resolution.enrichment.name().into(), why("enrichment")),
+        choice("influence_radius", resolution.support.into(), why("influence_radius")),
+        choice(
+            "spacings_in_room",
+            resolution.hold.into(),
+            Some("spacing at a tip: that part of its distance from rims and cracks".to_owned()),
+        ),
+        choice("step_share", step_share.into(), why("tolerance_percent")),
     ]
 }
 

@@ -1,8 +1,8 @@
 //! Stress intensity factors K_I and K_II of every crack tip, from equilibrium at maximum load.
 //!
-//! Two methods that are independent of each other but for the equilibrium itself: an integral over a ring around the tip, as
-//! [`crate::growth::tip_field`] reads it for every row of a prediction, and the energy that crack growth releases, which tells K_I of
-//! cracks that open only. A crack cut into bonds reaches up to half a spacing farther or less far than asked
+//! An integral over a ring around the tip, as [`crate::growth::tip_field`] reads it for every row of a prediction; the same on a plate of
+//! nodes, which shares nothing with points and bonds ([`crate::element_free`]); and the energy that crack growth releases, which tells
+//! K_I of cracks that open only. A crack cut into bonds reaches up to half a spacing farther or less far than asked
 //! ([`crate::body::severed`]); both therefore look at other lengths, too: K belongs to the requested one.
 //!
 //! Signs, in the frame of a tip (x₁ ahead of the tip, x₂ a quarter turn counter-clockwise from it): K_I > 0 opens the
@@ -15,13 +15,13 @@ mod energy_release;
 mod gradient;
 pub mod ring;
 mod tip_frame;
-pub mod williams;
 
 use std::time::Instant;
 
 use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::crack_tip::TipState;
+use crate::growth::element_free;
 use crate::growth::record::TipRecord;
 use crate::growth::tip_field::{InitialTips, initial_tips};
 use crate::specimen::TipSeed;
@@ -33,6 +33,7 @@ crate::kinds! {
     /// Ways to the stress intensity factors.
     pub enum StressIntensityMethod for "sif --method" {
         Ring = "ring": "interaction integral over a ring around the tip, as predict reads it",
+        ElementFreeGalerkin = "element_free_galerkin": "interaction integral on a plate of nodes without elements: K_I and K_II independent of points and bonds",
         EnergyRelease = "energy_release": "energy released between slightly different crack lengths: K_I where the plate is symmetric about the crack, an independent check",
     }
 }
@@ -75,6 +76,27 @@ fn by_ring(case: &Case) -> Result<Vec<MethodResult>> {
         note: warnings.take(),
         is_closed: tip.state == TipState::Closed,
         wall_s,
+    };
+    Ok(tips.into_iter().map(result).collect())
+}
+
+/// K of every sharp tip and T on a plate of nodes.
+fn by_nodes(case: &Case) -> Result<Vec<MethodResult>> {
+    let started = Instant::now();
+    let mut sharp = case.clone();
+    sharp.specimen.tips.retain(|tip| !tip.from_slot);
+    let tips = element_free::initial_tips(&sharp)?;
+    let wall_s = started.elapsed().as_secs_f64() / tips.len().max(1) as f64;
+    let result = |tip: TipRecord| {
+        let is_closed = tip.state == TipState::Closed;
+        MethodResult {
+            method: StressIntensityMethod::ElementFreeGalerkin,
+            intensity: tip.factors.map(Intensity::both).unwrap_or_default(),
+            t_stress: tip.t_stress,
+            note: is_closed.then(|| "faces overlap: nodes know no contact".to_owned()),
+            is_closed,
+            wall_s,
+        }
     };
     Ok(tips.into_iter().map(result).collect())
 }
@@ -153,7 +175,11 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
     for &method in methods {
         let columns = match method {
             StressIntensityMethod::Ring => by_ring(case)?,
-            // A second look at K_I: what it cannot tell does not hide the first.
+            // Other looks at K: what they cannot tell does not hide the first.
+            StressIntensityMethod::ElementFreeGalerkin => by_nodes(case).or_else(|error| match methods {
+                [StressIntensityMethod::ElementFreeGalerkin] => Err(error),
+                _ => Ok(vec![MethodResult::nothing(method, &error); tips.len()]),
+            })?,
             StressIntensityMethod::EnergyRelease => by_energy(case, &tips).or_else(|error| match methods {
                 [StressIntensityMethod::EnergyRelease] => Err(error),
                 _ => Ok(vec![MethodResult::nothing(method, &error); tips.len()]),

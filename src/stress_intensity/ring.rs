@@ -33,7 +33,6 @@ use super::TipFrame;
 use super::crack_faces::{CrackFaces, continued, faces};
 use super::cut_cells::{Part, cells_along, cells_at, parts};
 use super::gradient::{Derivatives, derivatives_at};
-use super::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
 use crate::body::Body;
 use crate::body::boundary::{LoadPiece, load_pieces};
 use crate::body::facets::{Facet, facets};
@@ -43,6 +42,7 @@ use crate::solver::field::Layout;
 use crate::specimen::geometry::{distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen, Support};
 use crate::state::Bonds;
+use crate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
 
 /// Inner radius over outer radius. With these and the smooth weight an exact field on rows at 0, 22.5 and 45° is read 0.1 % low on a
 /// ring of three horizons, wherever its tip lies between the points, within 0.02 %.

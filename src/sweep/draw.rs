@@ -84,7 +84,7 @@ impl Sweep {
     fn is_by_hand(&self) -> bool {
         let method = value_at(&Value::Table(self.base.table.clone()), "model.method")
             .and_then(|method| method.as_str().map(str::to_owned));
-        method.as_deref() == Some(Method::Handbook.name())
+        [Method::Handbook, Method::ElementFreeGalerkin].iter().any(|known| method.as_deref() == Some(known.name()))
     }
 
     /// All cases, in order, each of them read and found right.

@@ -10,6 +10,7 @@ mod bond_strain;
 pub mod collinear;
 pub mod disc;
 pub mod dual_horizon;
+pub mod element_free;
 pub mod golden;
 pub mod golden_peridynamics;
 pub mod lives;
@@ -62,6 +63,12 @@ const TOPICS: &[Topic] = &[
         about: "K_I and K_II of standard specimens, slanted cracks and two cracks, by every method",
         misses: 0,
         fill: stress_intensity::all,
+    },
+    Topic {
+        name: "element_free",
+        about: "K, kinks, lives and paths on nodes without elements",
+        misses: 0,
+        fill: element_free::all,
     },
     Topic { name: "golden", about: "golden lives by hand calculation, rates of readings", misses: 0, fill: golden::by_hand },
     Topic {

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::table::Table;
-use crate::case::Case;
+use crate::case::{Case, Method};
 use crate::error::{Error, Result};
 use crate::monotone::Monotone;
 use crate::predict::{Prediction, Silent, StopReason, predict};
@@ -190,7 +190,8 @@ impl Reference {
     /// # Errors
     /// As [`Case::from_toml`].
     pub fn case(&self, set: &[&str]) -> Result<Case> {
-        let spacing = self.spacing.map(|mm| format!("model.spacing_mm={mm}"));
+        let has_nodes = set.iter().any(|key| key.contains(Method::ElementFreeGalerkin.name()));
+        let spacing = self.spacing.filter(|_| !has_nodes).map(|mm| format!("model.spacing_mm={mm}"));
         let set: Vec<String> = spacing.into_iter().chain(set.iter().map(|key| (*key).to_owned())).collect();
         Case::from_toml(self.files[0], self.name, Path::new("."), &set)
     }

@@ -6,7 +6,7 @@ use perilife::body::severed::represented_end;
 use perilife::material::{Material, Plane};
 use perilife::specimen::Crack;
 use perilife::stress_intensity::TipFrame;
-use perilife::stress_intensity::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
 
 use crate::plates::{PANEL, case};
 use crate::statics::body;

@@ -21,7 +21,7 @@ use perilife::specimen::{CrackLine, LineEnd, Point};
 use perilife::state::Bonds;
 use perilife::stress_intensity::TipFrame;
 use perilife::stress_intensity::ring::{Balanced, RingGeometry};
-use perilife::stress_intensity::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
 
 const REST: &str = r#"
 [material]

@@ -6,10 +6,10 @@ use crate::specimen::{CrackLine, Point, Specimen};
 
 /// What a tip meets, and what it becomes by that.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Encounter {
-    pub(super) state: TipState,
+pub(in crate::growth) struct Encounter {
+    pub(in crate::growth) state: TipState,
     /// The crack that it meets.
-    pub(super) crack: Option<usize>,
+    pub(in crate::growth) crack: Option<usize>,
 }
 
 impl Encounter {
@@ -22,7 +22,7 @@ impl Encounter {
 }
 
 /// Way from `from` straight to `to` up to the first rim or crack, as share of it, and what the tip becomes there.
-pub(super) fn first_rim(
+pub(in crate::growth) fn first_rim(
     specimen: &Specimen,
     lines: &[CrackLine],
     own: usize,
@@ -52,7 +52,13 @@ pub(super) fn first_rim(
 }
 
 /// The nearest point of a hole, slot, edge or other crack within `reach` of a place, and what a tip there becomes by it.
-pub(super) fn beside(specimen: &Specimen, lines: &[CrackLine], own: usize, at: Point, reach: f64) -> Option<(Point, Encounter)> {
+pub(in crate::growth) fn beside(
+    specimen: &Specimen,
+    lines: &[CrackLine],
+    own: usize,
+    at: Point,
+    reach: f64,
+) -> Option<(Point, Encounter)> {
     let of_segment = |a: Point, b: Point, encounter: Encounter| (nearest_of_segment(at, a, b), encounter);
     let outline = edges(&specimen.outline).map(|(a, b)| of_segment(a, b, Encounter::EDGE));
     let corners: Vec<[Point; 4]> = specimen.slots.iter().map(|slot| slot.corners()).collect();

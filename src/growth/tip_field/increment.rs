@@ -9,8 +9,10 @@ use crate::bond_law::SurfaceCorrection;
 use crate::error::{Error, Result};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
+use crate::growth::TipGrowth;
 use crate::growth::cross_check::ReleasedEnergy;
 use crate::growth::record::StopReason;
+use crate::growth::rows::gone;
 use crate::growth::tip_ring::DIRECTION_SPACINGS;
 use crate::solver::field::Layout;
 use crate::specimen::geometry::{along, distance};
@@ -92,11 +94,14 @@ impl Increment {
     }
 }
 
-impl TipField<'_> {
-    /// Growth of every tip over the same cycles, the fastest by one step. To be asked while a tip grows
-    /// ([`TipField::reason_to_stop`]).
-    #[must_use]
-    pub fn increments(&self) -> Increment {
+impl TipGrowth for TipField<'_> {
+    type Increment = Increment;
+
+    fn reason_to_stop(&self) -> Option<StopReason> {
+        self.reason_before()
+    }
+
+    fn increments(&self) -> Increment {
         let lead = self.fastest().unwrap_or(0);
         let until = self.end.map_or(f64::INFINITY, |end| end.crack_length);
         let Tip { rate, past, .. } = self.state.tips[lead];
@@ -115,8 +120,7 @@ impl TipField<'_> {
         }
     }
 
-    /// Extends the lines of the cracks by a straight segment each, up to a rim or another crack; cracks that meet are joined.
-    pub fn extend_lines(&mut self, step: &mut Increment) {
+    fn extend_lines(&mut self, step: &mut Increment) {
         let segment = |(tip, length): (&Tip, &f64)| (*length > 0.0).then(|| self.segment(tip, *length));
         step.segments = self.state.tips.iter().zip(&step.lengths).map(segment).collect();
         let growth = step.growth();
@@ -133,9 +137,7 @@ impl TipField<'_> {
         }
     }
 
-    /// Cuts the bonds that the new segments cross and removes fragments that carry no load; bonds beside the flanks get the correction
-    /// of those at an edge.
-    pub fn cut_bonds(&mut self, step: &mut Increment) {
+    fn part_plate(&mut self, step: &mut Increment) {
         let plate = self.plate.clone();
         let body = &plate.body;
         let tips = self.state.tips.iter().zip(&step.segments);
@@ -158,8 +160,7 @@ impl TipField<'_> {
         }
     }
 
-    /// Finds the displacement in equilibrium with the maximum load.
-    pub fn solve_equilibrium(&mut self, step: &mut Increment) {
+    fn solve_equilibrium(&mut self, step: &mut Increment) {
         if step.end.is_some() {
             return;
         }
@@ -182,30 +183,25 @@ impl TipField<'_> {
         }
     }
 
-    /// Reads K_I, K_II and T of every active tip at the place where its field stands.
-    pub fn read_factors(&mut self, step: &Increment) {
+    fn read_factors(&mut self, step: &Increment) {
         if step.is_settled {
             self.read_fields();
         }
     }
 
-    /// Turns every active tip by what was read.
-    pub fn turn(&mut self, step: &Increment) {
+    fn turn(&mut self, step: &Increment) {
         if step.is_settled {
             self.choose_directions();
         }
     }
 
-    /// Brings K to the length of every line and takes da/dN of it.
-    pub fn set_rates(&mut self, step: &Increment) {
+    fn set_rates(&mut self, step: &Increment) {
         if step.is_settled {
             self.choose_rates();
         }
     }
 
-    /// Adds the row after an increment, and says why there is no next one. The length of the next increment follows from how straight
-    /// ln r was over this one.
-    pub fn add_row(&mut self, mut step: Increment) -> Option<StopReason> {
+    fn add_row(&mut self, mut step: Increment) -> Option<StopReason> {
         if step.is_settled && self.state.tips.iter().any(|tip| !tip.equivalent().is_finite()) {
             return Some(StopReason::NoConvergence);
         }
@@ -253,7 +249,9 @@ impl TipField<'_> {
         }
         reason
     }
+}
 
+impl TipField<'_> {
     /// Of every tip `K_eq²/E'`, J/m², and the length that its cut bonds stand for beyond that of its line, m; work of the loads, J.
     fn energies(&self) -> (Vec<[f64; 2]>, f64) {
         let modulus = self.case.material.plane_modulus();
@@ -394,16 +392,6 @@ impl TipField<'_> {
 
     pub(super) fn layout(&self) -> Layout {
         Layout::of(&self.plate.body.lattice, self.plate.body.stencil.unknowns)
-    }
-}
-
-/// Why growth ends where no tip is left, by what became of the last ones.
-pub(super) fn gone(last: &[TipState]) -> StopReason {
-    let any = |state: TipState| last.contains(&state);
-    match (any(TipState::EnteredHole), any(TipState::LinkedUp)) {
-        (true, _) => StopReason::EnteredHole,
-        (_, true) => StopReason::CracksJoined,
-        _ => StopReason::LeftPlate,
     }
 }
 

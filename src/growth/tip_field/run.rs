@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::contact::Contact;
-use super::increment::gone;
 use super::{PROBE_HORIZONS, RING_HORIZONS_IN_LEVELS, Tip, TipField, TipsState, solver};
 use crate::body::balanced::flanks::FlankRange;
 use crate::error::{Error, Result};
@@ -13,14 +12,13 @@ use crate::fatigue::pieces::remove_fragments;
 use crate::growth::cross_check::CrossCheck;
 use crate::growth::plate::Plate;
 use crate::growth::record::{CurvePoint, StopReason, TipRecord};
+use crate::growth::rows;
 use crate::growth::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
 use crate::units::MM;
 
 /// Increments after which the solver is built anew from the bonds, so that a run can be resumed there. That takes as long as three to
 /// four increments.
 const INCREMENTS_PER_SOLVER: usize = 32;
-/// Relative difference between lengths that are equal but for round-off.
-const ROUND_OFF: f64 = 1e-12;
 
 impl TipField<'_> {
     pub(super) fn last(&self) -> &CurvePoint {
@@ -52,29 +50,14 @@ impl TipField<'_> {
         }
     }
 
-    /// Range of K at which its maximum is the toughness, Pa√m.
-    fn delta_k_most(&self) -> Option<f64> {
-        self.case.material.toughness.map(|toughness| self.case.loading.range_share() * toughness)
-    }
-
     /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or grows, or
     /// one has come to the rim of the finest points.
-    #[must_use]
-    pub fn reason_to_stop(&self) -> Option<StopReason> {
-        let last = self.last();
-        if let Some(end) = self.end.filter(|end| last.crack_length >= end.crack_length * (1.0 - ROUND_OFF)) {
-            return Some(end.reason);
-        }
-        if self.delta_k_most().is_some_and(|most| last.delta_k >= most) {
-            return Some(StopReason::Toughness);
+    pub(super) fn reason_before(&self) -> Option<StopReason> {
+        let states: Vec<TipState> = self.state.tips.iter().map(|tip| tip.state).collect();
+        if let Some(reason) = rows::reason_to_stop(self.case, self.end, self.last(), &states, self.fastest().is_some()) {
+            return Some(reason);
         }
         let active = || self.state.tips.iter().filter(|tip| tip.state == TipState::Active);
-        if active().next().is_none() {
-            return Some(gone(&self.state.tips.iter().map(|tip| tip.state).collect::<Vec<_>>()));
-        }
-        if self.fastest().is_none() {
-            return Some(StopReason::NothingAges);
-        }
         let body = &self.plate.body;
         let reach = RING_HORIZONS_IN_LEVELS * body.horizon();
         active().any(|tip| body.is_near_rim(self.position(tip), reach)).then_some(StopReason::LeftRefinement)
@@ -90,17 +73,8 @@ impl TipField<'_> {
         end: Option<StopReason>,
     ) -> (CurvePoint, Option<StopReason>) {
         let last = self.last();
-        let cycles_then = last.cycles + cycles;
-        let next = self.row(cycles_then, work, last.broken_bonds + broken_bonds);
-        let cycles_max = self.case.stop.cycles_max;
-        if cycles_then > cycles_max {
-            return (next.between(last, (cycles_max - last.cycles) / cycles), Some(StopReason::RunOut));
-        }
-        if let Some(most) = self.delta_k_most().filter(|most| next.delta_k > *most && last.delta_k < *most) {
-            let fraction = (most - last.delta_k) / (next.delta_k - last.delta_k);
-            return (next.between(last, fraction), Some(StopReason::Toughness));
-        }
-        (next, end)
+        let next = self.row(last.cycles + cycles, work, last.broken_bonds + broken_bonds);
+        rows::row_after(self.case, last, next, end)
     }
 }
 

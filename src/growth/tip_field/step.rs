@@ -129,7 +129,7 @@ impl TipField<'_> {
 
 /// Cycles of a step of the fastest tip: its rates at the start of the step before, where known, with that step's length, at the
 /// start and at the end of this one, m/cycle, whose length is `grown`, m. Gives the share that the parabola adds, too.
-pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f64) -> (f64, f64) {
+pub(in crate::growth) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f64) -> (f64, f64) {
     let curvature_share = past.map_or(0.0, |[before, way]| curvature_share([before, rate, rate_then], [way, grown]));
     let counted = if curvature_share.abs() < CURVATURE_SHARE_MOST { curvature_share } else { 0.0 };
     (grown * mean_inverse(rate, rate_then) * (1.0 + counted), curvature_share)

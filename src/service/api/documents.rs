@@ -318,7 +318,7 @@ pub fn check_points(case: &Case, most: f64) -> Answer<()> {
     let model = &case.model;
     // The spacing is that of the finest level, so that of refined plates is an upper bound; their levels are few.
     let points = case.specimen.area() / model.spacing.powi(2);
-    if model.method == Method::Handbook || model.refinement.is_some() || points <= most {
+    if model.method != Method::Peridynamics || model.refinement.is_some() || points <= most {
         return Ok(());
     }
     let problem = format!("gives the plate {points:.3e} points, more than the {most:.3e} this server takes");

@@ -1,0 +1,120 @@
+//! Keys of `[model]` that belong to the element-free Galerkin method: what is left out the program chooses.
+
+use toml::Value;
+
+use super::Method;
+use crate::element_free::basis::{BasisKind, Enrichment};
+use crate::element_free::resolution::{ElementFreeSettings, Resolution};
+use crate::error::{Result, input, input_missing};
+use crate::input::{LENGTH, number};
+use crate::specimen::Specimen;
+use crate::specimen::geometry::bounding_box;
+
+/// Far spacings across the smaller side of the plate and largest step of a tip over its crack and room, by the error asked for in
+/// percent of life. K of 27 plates errs by 0.1 to 0.3 % with fourteen and hold 3, by half of that with twenty.
+const RUNGS: [(f64, f64, f64); 3] = [(1.0, 20.0, 0.15), (2.0, 14.0, 0.25), (f64::INFINITY, 10.0, 0.35)];
+/// Error that is asked for where the case does not say.
+const TOLERANCE_PERCENT: f64 = 2.0;
+/// Spacings in the room of a tip.
+const HOLD: f64 = 3.0;
+/// Radius of influence of a node in its spacings, of linear and quadratic polynomials.
+const INFLUENCE: [f64; 2] = [2.5, 3.5];
+
+/// The keys as given.
+pub(super) struct NodeKeys {
+    pub(super) spacing_mm: Option<f64>,
+    pub(super) nodes: Option<f64>,
+    pub(super) tolerance_percent: Option<f64>,
+    pub(super) basis: Option<BasisKind>,
+    pub(super) enrichment: Option<Enrichment>,
+    pub(super) influence_radius: Option<f64>,
+}
+
+impl NodeKeys {
+    /// None of them goes with another method.
+    pub(super) fn refuse(&self, method: Method) -> Result<()> {
+        let given = [
+            ("nodes", self.nodes.is_some()),
+            ("tolerance_percent", self.tolerance_percent.is_some()),
+            ("basis", self.basis.is_some()),
+            ("enrichment", self.enrichment.is_some()),
+            ("influence_radius", self.influence_radius.is_some()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            None => Ok(()),
+            Some((key, _)) => {
+                let problem = format!("belongs to model.method = \"element_free_galerkin\", and the method is \"{method}\"");
+                Err(input_missing(&format!("model.{key}"), problem, "leave it out, or choose that method"))
+            }
+        }
+    }
+
+    /// What the keys say, and the choice of the program where they say nothing.
+    pub(super) fn read(&self, specimen: &Specimen) -> Result<ElementFreeSettings> {
+        let tolerance = number("an error in percent", 0.5, 20.0)
+            .read("model.tolerance_percent", self.tolerance_percent.unwrap_or(TOLERANCE_PERCENT))?;
+        let (_, across, step_share) =
+            RUNGS.into_iter().find(|(percent, ..)| tolerance <= *percent).unwrap_or(RUNGS[RUNGS.len() - 1]);
+        let [low, high] = bounding_box(&specimen.outline);
+        let [width, height] = [0, 1].map(|i| high[i] - low[i]);
+        let far = match (self.spacing_mm, self.nodes) {
+            (Some(_), Some(nodes)) => {
+                let problem = "stands beside model.spacing_mm, which says the same in other words";
+                return Err(input("model.nodes", nodes, problem, "leave one of them out"));
+            }
+            (Some(spacing), None) => {
+                let spacing = LENGTH.read("model.spacing_mm", spacing)?;
+                let most = width.min(height) / 4.0;
+                if spacing > most {
+                    let problem = format!("leaves fewer than four spacings across the plate ({} mm)", 1e3 * width.min(height));
+                    return Err(input("model.spacing_mm", 1e3 * spacing, problem, format!("give {:.4} mm or less", 1e3 * most)));
+                }
+                spacing
+            }
+            (None, Some(nodes)) => {
+                let nodes = number("a number of nodes", 50.0, 1e5).read("model.nodes", nodes)?;
+                (specimen.area() / nodes).sqrt()
+            }
+            (None, None) => width.min(height) / across,
+        };
+        let basis = self.basis.unwrap_or(BasisKind::Linear);
+        let influence = number("a radius of influence in spacings", 1.5, 6.0)
+            .read_optional("model.influence_radius", self.influence_radius)?;
+        Ok(ElementFreeSettings {
+            resolution: Resolution {
+                far,
+                hold: HOLD,
+                support: influence.unwrap_or(INFLUENCE[usize::from(basis == BasisKind::Quadratic)]),
+                basis,
+                enrichment: self.enrichment.unwrap_or(Enrichment::Tip),
+            },
+            step_share,
+        })
+    }
+}
+
+/// Keys of points and bonds do not go with nodes.
+pub(super) fn refuse_keys_of_points(value: &Value, refinement: Option<&Value>) -> Result<()> {
+    const OF_POINTS: [&str; 9] = [
+        "discretisation",
+        "symmetry",
+        "bond_law",
+        "kernel",
+        "rotation",
+        "surface_correction",
+        "horizon_ratio",
+        "lattice_angle_deg",
+        "solver",
+    ];
+    let remedy = "leave it out, or use model.method = \"peridynamics\"";
+    if refinement.is_some() {
+        return Err(input_missing("refinement", "belongs to peridynamics: nodes are refined by themselves", remedy));
+    }
+    match OF_POINTS.iter().find(|key| value.get(**key).is_some()) {
+        None => Ok(()),
+        Some(key) => {
+            let problem = "belongs to peridynamics, and model.method is \"element_free_galerkin\"";
+            Err(input_missing(&format!("model.{key}"), problem, remedy))
+        }
+    }
+}

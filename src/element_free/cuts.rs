@@ -1,0 +1,167 @@
+//! What parts a node from a point: cracks, slots, holes, re-entrant corners, and the way around them.
+//!
+//! A crack parts a node from a point where the segment between them crosses it an odd number of times. The way round its tip counts in
+//! place of the distance, `s = |x_i - x_tip| + |x_tip - x|` (diffraction: Organ, Fleming, Terry and Belytschko 1996, Comput. Mech.
+//! 18:225, with exponent 1), which leaves shape functions continuous ahead of the tip. An even number leaves both on one side of a
+//! crack that bends. A crack that starts at a hole is cut on to the middle of it, one at an edge on beyond it: supports would reach
+//! round its mouth through what is no material. A slot is parted along its middle line like a crack.
+
+use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges, segments_touch, turn};
+use crate::specimen::{Hole, Point, Specimen};
+
+/// Distance of a segment from the middle of a hole, in radii, within which the hole parts its ends.
+const HOLE_SHARE: f64 = 0.6;
+/// Share of a segment left out at its ends, which may lie on a rim.
+const ENDS: f64 = 1e-6;
+
+/// A line along which the plate is cut.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cut {
+    /// Corners, m.
+    pub points: Vec<Point>,
+    /// Ends round which the way leads.
+    pub free: Vec<Point>,
+}
+
+/// Everything that parts nodes from points.
+#[derive(Debug, Clone, Default)]
+pub struct Obstacles {
+    /// Cracks and slots.
+    pub cuts: Vec<Cut>,
+    holes: Vec<Hole>,
+    /// Sides of an outline that is not convex.
+    edges: Vec<[Point; 2]>,
+    /// Its re-entrant corners.
+    corners: Vec<Point>,
+}
+
+/// Those near a cell.
+#[derive(Debug, Clone, Default)]
+pub struct Near {
+    cuts: Vec<(Vec<[Point; 2]>, Vec<Point>)>,
+    holes: Vec<Hole>,
+    edges: Vec<[Point; 2]>,
+    corners: Vec<Point>,
+}
+
+/// Length of the way from a node to a point, m, and its gradient at the point.
+pub type Way = (f64, Point);
+
+impl Obstacles {
+    /// Of a plate with these cuts.
+    #[must_use]
+    pub fn new(specimen: &Specimen, cuts: Vec<Cut>) -> Self {
+        let outline = &specimen.outline;
+        let n = outline.len();
+        let before = |i: usize| outline[(i + n - 1) % n];
+        let is_reentrant = |i: &usize| turn(before(*i), outline[*i], outline[(i + 1) % n]) < 0.0;
+        let corners: Vec<Point> = (0..n).filter(is_reentrant).map(|i| outline[i]).collect();
+        let edges = if corners.is_empty() { Vec::new() } else { edges(outline).map(|(a, b)| [a, b]).collect() };
+        Obstacles { cuts, holes: specimen.holes.clone(), edges, corners }
+    }
+
+    /// Those within `reach`, m, of a point.
+    #[must_use]
+    pub fn near(&self, at: Point, reach: f64) -> Near {
+        let of_cut = |cut: &Cut| {
+            let pieces: Vec<[Point; 2]> = cut.points.windows(2).map(|piece| [piece[0], piece[1]]).collect();
+            let is_near = |piece: &[Point; 2]| distance_to_segment(at, piece[0], piece[1]) <= reach;
+            let near: Vec<[Point; 2]> = pieces.into_iter().filter(is_near).collect();
+            (!near.is_empty()).then(|| (near, cut.free.clone()))
+        };
+        Near {
+            cuts: self.cuts.iter().filter_map(of_cut).collect(),
+            holes: self.holes.iter().filter(|hole| distance(at, hole.centre) - hole.radius <= reach).copied().collect(),
+            edges: self.edges.iter().filter(|[a, b]| distance_to_segment(at, *a, *b) <= reach).copied().collect(),
+            corners: self.corners.iter().filter(|corner| distance(at, **corner) <= reach).copied().collect(),
+        }
+    }
+}
+
+/// Length and gradient of the straight way.
+fn straight(node: Point, at: Point) -> Way {
+    let [x, y] = [at[0] - node[0], at[1] - node[1]];
+    // Not `hypot`, which guards against an overflow that there cannot be: this is asked for every node and point.
+    let length = (x * x + y * y).sqrt();
+    if length > 0.0 { (length, [x / length, y / length]) } else { (0.0, [0.0; 2]) }
+}
+
+/// Length and gradient of the way round a place.
+fn round(node: Point, place: Point, at: Point) -> Way {
+    let (last, gradient) = straight(place, at);
+    (distance(node, place) + last, gradient)
+}
+
+impl Near {
+    /// Whether nothing is near.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.cuts.is_empty() && self.holes.is_empty() && self.edges.is_empty()
+    }
+
+    /// The way from a node to a point; `None` where both do not see each other.
+    #[must_use]
+    pub fn way(&self, node: Point, at: Point) -> Option<Way> {
+        let mut way = straight(node, at);
+        let in_hole = |hole: &Hole| distance_to_segment(hole.centre, node, at) < HOLE_SHARE * hole.radius;
+        if self.holes.iter().any(in_hole) {
+            return None;
+        }
+        if self.leaves_outline(node, at) {
+            let clear = |corner: &&Point| !self.leaves_outline(node, **corner) && !self.leaves_outline(**corner, at);
+            let ways = self.corners.iter().filter(clear).map(|corner| round(node, *corner, at));
+            way = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        }
+        for (pieces, free) in &self.cuts {
+            let crossings = pieces.iter().filter(|[a, b]| crosses(node, at, *a, *b)).count();
+            if crossings % 2 == 1 {
+                let ways = free.iter().map(|end| round(node, *end, at));
+                let detour = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
+                if detour.0 > way.0 {
+                    way = detour;
+                }
+            }
+        }
+        Some(way)
+    }
+
+    fn leaves_outline(&self, a: Point, b: Point) -> bool {
+        if self.edges.is_empty() {
+            return false;
+        }
+        let (from, to) = (along(a, b, ENDS), along(a, b, 1.0 - ENDS));
+        self.edges.iter().any(|[c, d]| segments_touch(from, to, *c, *d) && crosses(from, to, *c, *d))
+    }
+}
+
+/// Whether two segments cross. A corner between two pieces of a line is on one side for both, so that it is counted once.
+fn crosses(a: Point, b: Point, c: Point, d: Point) -> bool {
+    (turn(a, b, c) > 0.0) != (turn(a, b, d) > 0.0) && (turn(c, d, a) > 0.0) != (turn(c, d, b) > 0.0)
+}
+
+/// A line without the corners that lie within `tolerance`, m, of the straight line between those that stay (Douglas and Peucker 1973).
+#[must_use]
+pub fn simplified(points: &[Point], tolerance: f64) -> Vec<Point> {
+    let [first, .., last] = points else { return points.to_vec() };
+    let away = |k: &usize| distance_to_segment(points[*k], *first, *last);
+    let farthest = (1..points.len() - 1).max_by(|a, b| away(a).total_cmp(&away(b)));
+    match farthest.filter(|k| away(k) > tolerance) {
+        None => vec![*first, *last],
+        Some(k) => {
+            let mut line = simplified(&points[..=k], tolerance);
+            line.pop();
+            line.extend(simplified(&points[k..], tolerance));
+            line
+        }
+    }
+}
+
+/// A line with one more corner beyond its last one, `by` m on.
+#[must_use]
+pub fn lengthened(mut points: Vec<Point>, by: f64) -> Vec<Point> {
+    if let [.., before, last] = points[..] {
+        let [x, y] = direction(before, last);
+        points.push([last[0] + by * x, last[1] + by * y]);
+    }
+    points
+}

@@ -1,0 +1,225 @@
+//! The discretised plate: cells, nodes, what parts them, and the unknowns.
+//!
+//! `u(x) = Σ_i Φ_i(x) (u_i + Σ_t [a_it Q_I(x - x_t) + b_it Q_II(x - x_t)])`: the near-tip fields of every tip are unknowns of the nodes
+//! around it (partition of unity: Melenk and Babuška 1996, CMAME 139:289; Belytschko and Black 1999, IJNME 45:601). Without them K is
+//! 4 % wrong with 900 nodes, with them 0.1 %.
+
+use super::basis::{AnyBasis, Enrichment};
+use super::crack::{TipAxes, cracks};
+use super::cuts::{Near, Obstacles};
+use super::grid::Grid;
+use super::nodes::Nodes;
+use super::resolution::Resolution;
+use super::rims::{Side, sides};
+use super::shape::Value;
+use crate::error::{Error, Result};
+use crate::specimen::geometry::{bounding_box, distance};
+use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
+use crate::williams::Elasticity;
+
+/// Distance from a tip, in its spacings, within which nodes carry its fields.
+pub const ENRICHED_SPACINGS: f64 = 3.0;
+
+/// What a leaf sees.
+#[derive(Debug, Clone, Default)]
+struct Neighbourhood {
+    nodes: Vec<u32>,
+    near: Near,
+}
+
+/// A plate of nodes.
+#[derive(Debug, Clone)]
+pub struct Discretisation {
+    /// Cells.
+    pub grid: Grid,
+    /// Nodes.
+    pub nodes: Nodes,
+    /// Radius of influence of every node, m.
+    pub supports: Vec<f64>,
+    /// Sides of rims.
+    pub sides: Vec<Side>,
+    /// What parts nodes from points.
+    pub obstacles: Obstacles,
+    /// Axes of the tips.
+    pub axes: Vec<TipAxes>,
+    /// First unknown of every node, and the number of all.
+    pub first: Vec<u32>,
+    /// Tips whose fields a node carries.
+    pub enriched: Vec<Vec<u32>>,
+    elasticity: Elasticity,
+    basis: AnyBasis,
+    leaves: Vec<Neighbourhood>,
+}
+
+/// Q_I and Q_II of a tip with their gradients ∂u_i/∂x_j.
+pub type TipFields = [(Point, [[f64; 2]; 2]); 2];
+
+/// Shape functions at a point, and near-tip fields there.
+#[derive(Debug, Clone, Default)]
+pub struct Local {
+    /// Φ_i of the nodes in reach.
+    pub values: Vec<Value>,
+    /// Q_I and Q_II of every tip that a node in reach carries, with gradients; by tip.
+    pub fields: Vec<Option<TipFields>>,
+}
+
+impl Discretisation {
+    /// Nodes for these cracks; `tips` are the ends of lines that lie in the material.
+    ///
+    /// # Errors
+    /// [`Error::Mechanics`] where more nodes would be needed than are allowed.
+    pub fn new(
+        specimen: &Specimen,
+        elasticity: Elasticity,
+        lines: &[CrackLine],
+        tips: &[Tip],
+        resolution: &Resolution,
+    ) -> Result<Self> {
+        let (grid, spacings) = resolution.grid(specimen, lines, tips)?;
+        let ends: Vec<(LineEnd, f64)> = tips.iter().map(|tip| tip.end).zip(spacings).collect();
+        let (cuts, axes) = cracks(specimen, lines, &ends, resolution.far);
+        let sides = sides(specimen, &grid);
+        let nodes = Nodes::place(specimen, &grid, &sides, &cuts, &axes);
+        let supports: Vec<f64> = nodes.spacing.iter().map(|spacing| resolution.support * spacing).collect();
+        let obstacles = Obstacles::new(specimen, cuts);
+        let enriched: Vec<Vec<u32>> = nodes
+            .at
+            .iter()
+            .map(|&at| {
+                let carries = |axes: &TipAxes| distance(at, axes.at) < ENRICHED_SPACINGS * axes.spacing;
+                let has_fields = resolution.enrichment == Enrichment::Tip;
+                axes.iter().enumerate().filter(|(_, axes)| has_fields && carries(axes)).map(|(tip, _)| tip as u32).collect()
+            })
+            .collect();
+        let mut first = vec![0];
+        enriched.iter().for_each(|tips| first.push(first[first.len() - 1] + 2 + 2 * tips.len() as u32));
+        let mut plate = Discretisation {
+            leaves: vec![Neighbourhood::default(); grid.len()],
+            basis: AnyBasis::new(resolution, &axes),
+            grid,
+            nodes,
+            supports,
+            sides,
+            obstacles,
+            axes,
+            first,
+            enriched,
+            elasticity,
+        };
+        plate.find_neighbours();
+        Ok(plate)
+    }
+
+    fn find_neighbours(&mut self) {
+        for (node, (&at, &support)) in self.nodes.at.iter().zip(&self.supports).enumerate() {
+            let (low, high) = (at.map(|x| x - support), at.map(|x| x + support));
+            let (grid, leaves) = (&self.grid, &mut self.leaves);
+            grid.visit(low, high, &mut |leaf| {
+                let [from, to] = grid.bounds(leaf);
+                let outside = [0, 1].map(|i| (from[i] - at[i]).max(at[i] - to[i]).max(0.0));
+                if outside[0].hypot(outside[1]) < support {
+                    leaves[leaf].nodes.push(node as u32);
+                }
+            });
+        }
+        for leaf in 0..self.leaves.len() {
+            let reach = self.leaves[leaf].nodes.iter().map(|&node| self.supports[node as usize]).fold(0.0, f64::max);
+            if reach > 0.0 {
+                let [low, high] = self.grid.bounds(leaf);
+                self.leaves[leaf].near = self.obstacles.near(self.grid.middle(leaf), reach + distance(low, high));
+            }
+        }
+    }
+
+    /// Number of unknowns.
+    #[must_use]
+    pub fn unknowns(&self) -> usize {
+        self.first[self.first.len() - 1] as usize
+    }
+
+    /// Elastic constants.
+    #[must_use]
+    pub fn elasticity(&self) -> Elasticity {
+        self.elasticity
+    }
+
+    /// Shape functions and near-tip fields at a point of a leaf; whether the nodes in reach span the basis.
+    pub fn at(&self, leaf: usize, at: Point, local: &mut Local) -> bool {
+        let Neighbourhood { nodes, near } = &self.leaves[leaf];
+        let scale = self.grid.spacing(leaf);
+        local.fields.clear();
+        local.fields.resize(self.axes.len(), None);
+        if !self.basis.shape_functions(at, (nodes, &self.nodes.at, &self.supports), near, scale, &mut local.values) {
+            return false;
+        }
+        for value in &local.values {
+            for &tip in &self.enriched[value.node as usize] {
+                let field = &mut local.fields[tip as usize];
+                if field.is_none() {
+                    *field = Some(self.axes[tip as usize].near_tip(self.elasticity, at));
+                }
+            }
+        }
+        true
+    }
+
+    /// Displacement, m, and its gradient ∂u_i/∂x_j at a point, of the unknowns `u`; `None` where nodes in reach do not span the basis.
+    #[must_use]
+    pub fn displacement(&self, u: &[f64], at: Point, local: &mut Local) -> Option<(Point, [[f64; 2]; 2])> {
+        if !self.at(self.grid.leaf(at), at, local) {
+            return None;
+        }
+        let (mut sum, mut slope) = ([0.0; 2], [[0.0; 2]; 2]);
+        for value in &local.values {
+            let first = self.first[value.node as usize] as usize;
+            let mut of_node = [u[first], u[first + 1]];
+            for (k, &tip) in self.enriched[value.node as usize].iter().enumerate() {
+                let Some(fields) = &local.fields[tip as usize] else { continue };
+                for (mode, (field, gradient)) in fields.iter().enumerate() {
+                    let size = u[first + 2 + 2 * k + mode];
+                    for i in 0..2 {
+                        of_node[i] += size * field[i];
+                        for j in 0..2 {
+                            slope[i][j] += value.value * size * gradient[i][j];
+                        }
+                    }
+                }
+            }
+            for i in 0..2 {
+                sum[i] += value.value * of_node[i];
+                for j in 0..2 {
+                    slope[i][j] += value.gradient[j] * of_node[i];
+                }
+            }
+        }
+        Some((sum, slope))
+    }
+
+    /// Larger side of the box around a plate, m.
+    #[must_use]
+    pub fn size(specimen: &Specimen) -> f64 {
+        let [low, high] = bounding_box(&specimen.outline);
+        (high[0] - low[0]).max(high[1] - low[1])
+    }
+}
+
+/// A tip as nodes see it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tip {
+    /// Which end of which crack.
+    pub end: LineEnd,
+    /// Length of its crack, half of it with two tips, or growth since the last kink if that is less, m.
+    pub length: f64,
+}
+
+/// What is said where nodes in reach of points do not span the basis.
+#[must_use]
+pub fn singular(at: Point, radius: f64) -> Error {
+    Error::Mechanics(format!(
+        "too few nodes are in reach of ({:.4}, {:.4}) mm within {:.4} mm to span the basis; give a larger model.influence_radius, or more \
+         model.nodes",
+        at[0] * 1e3,
+        at[1] * 1e3,
+        radius * 1e3
+    ))
+}

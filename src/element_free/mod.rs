@@ -1,0 +1,21 @@
+//! Element-free Galerkin method (Belytschko, Lu and Gu 1994, IJNME 37:229) for plates with cracks.
+//!
+//! Nodes without elements: shape functions are moving least squares over the nodes in reach of a point, parted by cracks; around tips
+//! the near-tip fields are unknowns of the nodes. Cells serve for integration only. Nodes lie as fine as tips, rims and ligaments ask and
+//! are placed anew for every equilibrium, since cracks have grown.
+
+mod assembly;
+pub mod basis;
+mod boundary;
+mod cells;
+pub mod crack;
+pub mod cuts;
+pub mod factors;
+pub mod field;
+pub mod grid;
+pub mod nodes;
+pub mod raster;
+pub mod resolution;
+pub mod rims;
+pub mod shape;
+pub mod solve;

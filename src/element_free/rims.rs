@@ -1,0 +1,137 @@
+//! Rims of a plate as straight sides: the outline, holes, slots; holes in sides a quarter of the local spacing long.
+
+use super::grid::Grid;
+use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges};
+use crate::specimen::{Hole, Point, Specimen};
+
+/// Sides of a hole in its local spacing.
+const SIDES_IN_SPACING: f64 = 4.0;
+/// Sides of a hole at the least.
+const SIDES_LEAST: usize = 32;
+
+/// A straight side of a rim.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Side {
+    /// Its ends, m.
+    pub ends: [Point; 2],
+    /// Number of the rim: sides of the outline by themselves, then holes, then slots.
+    pub rim: usize,
+}
+
+/// A stretch of rim that nodes are spread on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stretch {
+    /// Straight, between two corners.
+    Straight([Point; 2]),
+    /// A circle.
+    Circle(Hole),
+}
+
+impl Stretch {
+    /// The point at a share of its length, m.
+    #[must_use]
+    pub fn at(&self, share: f64) -> Point {
+        match self {
+            Stretch::Straight([a, b]) => along(*a, *b, share),
+            Stretch::Circle(hole) => {
+                let (sin, cos) = (std::f64::consts::TAU * share).sin_cos();
+                [hole.centre[0] + hole.radius * cos, hole.centre[1] + hole.radius * sin]
+            }
+        }
+    }
+
+    /// Its length, m.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        match self {
+            Stretch::Straight([a, b]) => distance(*a, *b),
+            Stretch::Circle(hole) => std::f64::consts::TAU * hole.radius,
+        }
+    }
+
+    /// Distance of a point from it, m.
+    #[must_use]
+    pub fn distance(&self, at: Point) -> f64 {
+        match self {
+            Stretch::Straight([a, b]) => distance_to_segment(at, *a, *b),
+            Stretch::Circle(hole) => (distance(at, hole.centre) - hole.radius).abs(),
+        }
+    }
+
+    /// Unit vector into the material.
+    #[must_use]
+    pub fn inward(&self, share: f64) -> Point {
+        match self {
+            Stretch::Straight([a, b]) => {
+                let [x, y] = direction(*a, *b);
+                [-y, x]
+            }
+            Stretch::Circle(_) => {
+                let (sin, cos) = (std::f64::consts::TAU * share).sin_cos();
+                [cos, sin]
+            }
+        }
+    }
+
+    /// Shares at which it is divided into pieces no longer than `share_of_spacing` local spacings, first and last included.
+    #[must_use]
+    pub fn divided(&self, grid: &Grid, pieces_least: usize, share_of_spacing: f64) -> Vec<f64> {
+        let mut shares = vec![0.0];
+        let whole = self.length();
+        let mut first = pieces_least.max(1);
+        let largest = |first: usize| {
+            let of_piece = |k: usize| self.spacing(grid, k as f64 / first as f64);
+            (0..=first).map(of_piece).fold(0.0, f64::max)
+        };
+        first = first.max((whole / (share_of_spacing * largest(first)) - 1e-6).ceil() as usize);
+        for k in 0..first {
+            self.divide(grid, [k, k + 1].map(|k| k as f64 / first as f64), share_of_spacing, &mut shares);
+        }
+        shares
+    }
+
+    fn spacing(&self, grid: &Grid, share: f64) -> f64 {
+        grid.spacing(grid.leaf(self.at(share)))
+    }
+
+    fn divide(&self, grid: &Grid, [from, to]: [f64; 2], share_of_spacing: f64, shares: &mut Vec<f64>) {
+        let middle = 0.5 * (from + to);
+        let wanted = self.spacing(grid, middle).min(self.spacing(grid, 0.5 * (from + middle)));
+        if (to - from) * self.length() > 1.5 * share_of_spacing * wanted {
+            self.divide(grid, [from, middle], share_of_spacing, shares);
+            self.divide(grid, [middle, to], share_of_spacing, shares);
+        } else {
+            shares.push(to);
+        }
+    }
+}
+
+/// All stretches of rim with their numbers; slots lose what lies outside the outline.
+#[must_use]
+pub fn stretches(specimen: &Specimen) -> Vec<(usize, Stretch)> {
+    let outline = edges(&specimen.outline).map(|(a, b)| Stretch::Straight([a, b]));
+    let holes = specimen.holes.iter().map(|hole| Stretch::Circle(*hole));
+    let mut all: Vec<(usize, Stretch)> = outline.chain(holes).enumerate().collect();
+    let first = all.len();
+    for (k, slot) in specimen.slots.iter().enumerate() {
+        // Counter-clockwise around the slot, so that the material is on the right: turned over.
+        all.extend(edges(&slot.corners()).map(|(a, b)| (first + k, Stretch::Straight([b, a]))));
+    }
+    all
+}
+
+/// Sides that cells are cut along.
+#[must_use]
+pub fn sides(specimen: &Specimen, grid: &Grid) -> Vec<Side> {
+    let mut sides = Vec::new();
+    for (rim, stretch) in stretches(specimen) {
+        match stretch {
+            Stretch::Straight(ends) => sides.push(Side { ends, rim }),
+            Stretch::Circle(_) => {
+                let shares = stretch.divided(grid, SIDES_LEAST, 1.0 / SIDES_IN_SPACING);
+                sides.extend(shares.windows(2).map(|pair| Side { ends: [stretch.at(pair[0]), stretch.at(pair[1])], rim }));
+            }
+        }
+    }
+    sides
+}

@@ -1,0 +1,313 @@
+//! One increment of all cracks, call by call ([`crate::predict::increment`]).
+
+use super::ElementFree;
+use super::front::Front;
+use super::step::{Move, unit};
+use crate::element_free::factors;
+use crate::element_free::field::{Discretisation, Tip};
+use crate::element_free::resolution::room;
+use crate::element_free::solve::solve;
+use crate::error::Error;
+use crate::fatigue::crack_tip::TipState;
+use crate::growth::cross_check::ReleasedEnergy;
+use crate::growth::record::StopReason;
+use crate::growth::rows::gone;
+use crate::growth::tip_field::ahead;
+use crate::growth::tip_field::kink::coefficients;
+use crate::growth::tip_field::steering::kink_angle;
+use crate::growth::tip_field::step::cycles;
+use crate::growth::{TipGrowth, rows};
+use crate::specimen::Point;
+use crate::specimen::geometry::{along, distance};
+
+/// Compliance over that at the start from which a plate is as good as severed.
+const MECHANISM: f64 = 20.0;
+/// Share of the way to what it meets from which a step goes all of it.
+const ALL_OF_WAY: f64 = 0.999;
+
+/// An increment in the making.
+pub struct Increment {
+    lead: usize,
+    moves: Vec<Move>,
+    /// Rate of every tip at the start, m/cycle.
+    rates: Vec<f64>,
+    /// Rate of the lead before the last increment, and its growth in that, where no corner lies between.
+    past: Option<[f64; 2]>,
+    /// K_eq²/E' of every tip, J/m², and work of the loads, J.
+    before: (Vec<f64>, f64),
+    /// Whether the lead begins a kink.
+    is_kink: bool,
+    /// Tips that have met something, with what they have become.
+    ended: Vec<TipState>,
+    is_settled: bool,
+    end: Option<StopReason>,
+}
+
+impl ElementFree<'_> {
+    /// Nodes for the cracks as they are, and their equilibrium.
+    pub(super) fn settle(&mut self) -> crate::error::Result<()> {
+        let specimen = &self.case.specimen;
+        let active = || self.state.fronts.iter().filter(|front| front.state == TipState::Active);
+        let tips: Vec<Tip> = active().map(|front| Tip { end: front.end, length: front.own_length() }).collect();
+        let resolution = &self.settings.resolution;
+        let plate = Discretisation::new(specimen, self.elasticity, &self.state.lines, &tips, resolution)?;
+        let load = self.case.loading.maximum;
+        let solution = solve(specimen, &plate, resolution.far, load, &mut self.workspace)?;
+        self.solves += 1;
+        self.unknowns = self.unknowns.max(plate.unknowns());
+        self.nodes = self.nodes.max(plate.nodes.at.len());
+        self.work = solution.work;
+        self.plate = Some((plate, solution));
+        Ok(())
+    }
+
+    /// Reads every active tip.
+    pub(super) fn read(&mut self) -> crate::error::Result<()> {
+        let Some((plate, solution)) = &self.plate else { return Ok(()) };
+        let share = self.case.loading.share(self.work);
+        let pressure = self.case.specimen.crack_pressure * self.case.loading.maximum;
+        let lines = &self.state.lines;
+        let active = self.state.fronts.iter_mut().filter(|front| front.state == TipState::Active);
+        for (index, front) in active.enumerate() {
+            let room = room(&self.case.specimen, lines, &Tip { end: front.end, length: front.own_length() });
+            let read = factors::read(plate, &solution.u, index, room, pressure)?;
+            front.factors = read.factors.map(|factor| share * factor);
+            front.t_stress = share * read.t_stress;
+            front.spacing = plate.axes[index].spacing;
+        }
+        Ok(())
+    }
+
+    /// Lets every active tip aim.
+    pub(super) fn aim(&mut self) {
+        let axes = self.plate.iter().flat_map(|(plate, _)| &plate.axes);
+        let active = self.state.fronts.iter_mut().filter(|front| front.state == TipState::Active);
+        for (front, axes) in active.zip(axes) {
+            front.age += 1;
+            // K_II is that of the axes in which it was read: the crack without corners that nodes do not see.
+            let [x, y] = axes.ahead;
+            front.aim_at(y.atan2(x));
+            self.was_closed |= front.factors[0] < 0.0;
+        }
+    }
+
+    /// Takes the rate of every active tip; where it begins a kink, that of the kink (Amestoy and Leblond 1992).
+    pub(super) fn rate(&mut self) {
+        let before: Vec<f64> = self.state.fronts.iter().map(|front| front.rate).collect();
+        for front in &mut self.state.fronts {
+            let factor = if front.begins_kink() { kinked(front) } else { front.equivalent() };
+            front.rate = if front.state == TipState::Active { self.law.rate(factor, self.case.loading.ratio) } else { 0.0 };
+        }
+        let fastest = self.state.fronts.iter().map(|front| front.rate).fold(0.0, f64::max);
+        self.state.fronts.iter_mut().zip(before).for_each(|(front, before)| front.grow_at(before, fastest));
+    }
+
+    fn energies(&self) -> (Vec<f64>, f64) {
+        let modulus = self.case.material.plane_modulus();
+        let of_front = |front: &Front| {
+            let factor = if front.begins_kink() { kinked(front) } else { front.equivalent() };
+            factor.powi(2) / modulus
+        };
+        (self.state.fronts.iter().map(of_front).collect(), self.load_work())
+    }
+
+    /// Compares the energy that the new segments released by their K with what the plate did.
+    fn compare_energies(&mut self, step: &Increment, cycles: f64) {
+        let ((now, work_now), (before, work)) = (self.energies(), &step.before);
+        let growths: Vec<f64> = step.moves.iter().map(|step| step.0).collect();
+        let released: f64 = growths.iter().zip(before).zip(now).map(|((growth, then), now)| 0.5 * (then + now) * growth).sum();
+        let length_less = |growths: &[f64]| {
+            let growths: Vec<f64> = self.state.fronts.iter().zip(growths).map(|(front, growth)| front.growth - growth).collect();
+            self.case.specimen.crack_length_after(&growths)
+        };
+        let length = length_less(&vec![0.0; growths.len()]);
+        let sign = if self.case.loading.displacement().is_some() { -1.0 } else { 1.0 };
+        let block = ReleasedEnergy {
+            of_tips: self.case.specimen.thickness * released,
+            of_plate: sign * 0.5 * (work_now - work),
+            growth: growths.iter().sum(),
+            lengthening: length - length_less(&growths),
+            cycles,
+        };
+        self.state.balance.take(block, length, 0.2 * self.settings.resolution.far);
+    }
+
+    /// Where a tip goes with its move, what becomes of it, and the tip that it meets, which comes as well.
+    fn target(&self, index: usize, (length, aim): Move) -> (Point, TipState, Option<usize>) {
+        let front = &self.state.fronts[index];
+        let (from, [x, y]) = (self.position(front), unit(aim));
+        let straight = [from[0] + length * x, from[1] + length * y];
+        let way = self.way(index);
+        let goes_all = way.is_last && length >= ALL_OF_WAY * way.most;
+        if let (true, (_, true), Some((other, _))) = (goes_all, self.gap(index), self.faced(index)) {
+            return (straight, TipState::LinkedUp, Some(other));
+        }
+        let reach = [from[0] + length / ALL_OF_WAY * x, from[1] + length / ALL_OF_WAY * y];
+        let (specimen, lines, own) = (&self.case.specimen, &self.state.lines, front.end.line);
+        if let Some((share, what)) = ahead::first_rim(specimen, lines, own, from, reach) {
+            return (along(from, reach, share), what.state, None);
+        }
+        let beside = if goes_all { ahead::beside(specimen, lines, own, from, 1.01 * self.room(index)) } else { None };
+        beside.map_or((straight, TipState::Active, None), |(at, what)| (at, what.state, None))
+    }
+
+    /// Where all tips go, and what becomes of them; tips that face each other meet between them.
+    fn targets(&self, moves: &[Move]) -> Vec<(Point, TipState)> {
+        let targets: Vec<_> = moves.iter().enumerate().map(|(index, step)| self.target(index, *step)).collect();
+        let mut found: Vec<(Point, TipState)> = targets.iter().map(|target| (target.0, target.1)).collect();
+        for (index, target) in targets.iter().enumerate() {
+            let Some(other) = target.2 else { continue };
+            let [here, there] = [index, other].map(|tip| self.position(&self.state.fronts[tip]));
+            let [own, towards] = [moves[index].0, moves[other].0];
+            // The same place for both, whichever is asked first.
+            let share = own / (own + towards).max(f64::MIN_POSITIVE);
+            let meeting = if index < other { along(here, there, share) } else { along(there, here, 1.0 - share) };
+            (found[index], found[other]) = ((meeting, TipState::LinkedUp), (meeting, TipState::LinkedUp));
+        }
+        found
+    }
+}
+
+impl TipGrowth for ElementFree<'_> {
+    type Increment = Increment;
+
+    fn reason_to_stop(&self) -> Option<StopReason> {
+        let states: Vec<TipState> = self.state.fronts.iter().map(|front| front.state).collect();
+        let last = &self.curve[self.curve.len() - 1];
+        rows::reason_to_stop(self.case, self.end, last, &states, self.fastest().is_some())
+    }
+
+    fn increments(&self) -> Increment {
+        let lead = self.fastest().unwrap_or(0);
+        let until = self.end.map_or(f64::INFINITY, |end| end.crack_length);
+        let front = &self.state.fronts[lead];
+        Increment {
+            lead,
+            moves: self.moves(lead, until),
+            rates: self.state.fronts.iter().map(|front| front.rate).collect(),
+            past: self.past,
+            before: self.energies(),
+            is_kink: front.begins_kink(),
+            ended: Vec::new(),
+            is_settled: false,
+            end: None,
+        }
+    }
+
+    fn extend_lines(&mut self, step: &mut Increment) {
+        for (index, (to, state)) in self.targets(&step.moves).into_iter().enumerate() {
+            let front = &self.state.fronts[index];
+            let is_moved = step.moves[index].0 > 0.0 || state == TipState::LinkedUp;
+            let length = if is_moved { distance(self.position(front), to) } else { 0.0 };
+            let front = &mut self.state.fronts[index];
+            (front.advance, step.moves[index].0) = (length, length);
+            if length <= 0.0 {
+                continue;
+            }
+            self.state.lines[front.end.line].grow(front.end.at_last, to);
+            front.growth += length;
+            front.state = state;
+            if state != TipState::Active {
+                front.rate = 0.0;
+                step.ended.push(state);
+            }
+        }
+        if !step.ended.is_empty() {
+            self.state.fronts.iter_mut().for_each(Front::forget);
+        }
+    }
+
+    fn part_plate(&mut self, _step: &mut Increment) {
+        // Nodes are placed by `settle`, which needs the cracks alone.
+        self.plate = None;
+    }
+
+    fn solve_equilibrium(&mut self, step: &mut Increment) {
+        if !self.state.fronts.iter().any(|front| front.state == TipState::Active) {
+            step.end = Some(gone(&step.ended));
+            return;
+        }
+        match self.settle() {
+            Ok(())
+                if self.load_work().abs() > MECHANISM * self.curve[0].work.abs()
+                    && self.case.loading.displacement().is_none() =>
+            {
+                step.end = Some(StopReason::Severed);
+            }
+            Ok(()) => step.is_settled = true,
+            Err(Error::LossOfStiffness) => step.end = Some(StopReason::Severed),
+            Err(error) => {
+                self.warnings.push(format!("the run ends here: {error}"));
+                step.end = Some(StopReason::NoConvergence);
+            }
+        }
+    }
+
+    fn read_factors(&mut self, step: &Increment) {
+        if step.is_settled
+            && let Err(error) = self.read()
+        {
+            self.warnings.push(format!("the run ends here: {error}"));
+            self.state.fronts.iter_mut().for_each(|front| front.factors = [f64::NAN; 2]);
+        }
+    }
+
+    fn turn(&mut self, step: &Increment) {
+        if step.is_settled {
+            self.aim();
+        }
+    }
+
+    fn set_rates(&mut self, step: &Increment) {
+        if step.is_settled {
+            self.rate();
+        }
+    }
+
+    fn add_row(&mut self, step: Increment) -> Option<StopReason> {
+        let is_active = |front: &&Front| front.state == TipState::Active;
+        if step.is_settled && self.state.fronts.iter().filter(is_active).any(|front| front.factors[0].is_nan()) {
+            return Some(StopReason::NoConvergence);
+        }
+        let (grown, has_ended) = (step.moves[step.lead].0, !step.ended.is_empty());
+        let (rate, is_over) = (step.rates[step.lead], step.end.is_some());
+        let lead = &self.state.fronts[step.lead];
+        // Of a tip that turns a corner the rate is that of its new kink.
+        let rate_then = if lead.is_growing() && !is_over && !has_ended { self.rate_behind(lead) } else { rate };
+        let (cycles, curvature) =
+            if step.is_kink { (cycles_of_kink(grown, rate, rate_then), 0.0) } else { cycles(step.past, rate, rate_then, grown) };
+        self.past = (!step.is_kink && !has_ended && !lead.begins_kink() && grown > 0.0).then_some([rate, grown]);
+        if has_ended || self.state.fronts.iter().any(Front::begins_kink) {
+            self.state.step = if self.fastest().is_some() { self.first_step() } else { 0.0 };
+        } else if grown > 0.0 && !is_over {
+            self.state.step = self.next_step(grown, curvature);
+        }
+        if has_ended || is_over {
+            self.state.balance.forget();
+        } else {
+            self.compare_energies(&step, cycles);
+        }
+        let work = if is_over { f64::NAN } else { self.load_work() };
+        let (row, reason) = rows::row_after(self.case, &self.curve[self.curve.len() - 1], self.row(cycles, work), step.end);
+        if cycles > 0.0 {
+            self.curve.push(row);
+        }
+        reason
+    }
+}
+
+/// K of the kink that a tip begins, Pa√m, of none of its length.
+fn kinked(front: &Front) -> f64 {
+    let factors = [front.factors[0].max(0.0), front.factors[1]];
+    let [f11, f12, _] = coefficients(kink_angle(factors));
+    (f11 * factors[0] + f12 * factors[1]).max(0.0)
+}
+
+/// Cycles of the first step of a kink, with ln of the rate linear in the root of its length: `∫ da/r = (2 s/r₀) [1 - e^-g (1 + g)]/g²`,
+/// g = ln(r/r₀).
+fn cycles_of_kink(grown: f64, rate: f64, rate_then: f64) -> f64 {
+    let gain = (rate_then / rate).ln();
+    let mean =
+        if gain.abs() < 1e-4 { 1.0 - 2.0 / 3.0 * gain } else { 2.0 * (1.0 - (-gain).exp() * (1.0 + gain)) / (gain * gain) };
+    grown / rate * mean
+}

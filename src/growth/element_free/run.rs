@@ -1,0 +1,159 @@
+//! The rows of a run on a plate of nodes, and from where it can be resumed.
+
+use serde::{Deserialize, Serialize};
+
+use super::ElementFree;
+use super::front::Front;
+use crate::element_free::raster;
+use crate::error::{Error, Result};
+use crate::fatigue::crack_tip::TipState;
+use crate::fatigue::growth_law::GrowthLaw;
+use crate::growth::cross_check::{CrossCheck, EnergyBalance};
+use crate::growth::record::{CurvePoint, StopReason, TipRecord};
+use crate::growth::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
+use crate::levels::PointGrid;
+use crate::solver::SolverUsed;
+use crate::specimen::CrackLine;
+
+/// Rows after which a run can be resumed. Nothing is built anew for that.
+const ROWS_PER_CHECKPOINT: usize = 8;
+
+/// All that an increment depends on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Fronts {
+    /// Cracks.
+    pub lines: Vec<CrackLine>,
+    /// Their tips.
+    pub fronts: Vec<Front>,
+    /// Growth of the fastest tip in the next increment at the most, m.
+    pub step: f64,
+    /// K against the energy that the plate releases.
+    pub balance: EnergyBalance,
+}
+
+/// State of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FrontsState {
+    state: Fronts,
+    past: Option<[f64; 2]>,
+    work: f64,
+    curve: Vec<CurvePoint>,
+    figures: [usize; 3],
+    was_closed: bool,
+}
+
+impl ElementFree<'_> {
+    /// The plate as it stands, as a row `cycles` after the last one; ΔK and da/dN are those of the fastest tip.
+    pub(super) fn row(&self, cycles: f64, work: f64) -> CurvePoint {
+        let now = |front: &Front| TipRecord {
+            state: if front.state == TipState::Active && front.factors[0] < 0.0 { TipState::Closed } else { front.state },
+            position: self.position(front),
+            growth: front.growth,
+            factors: Some(front.factors),
+            t_stress: Some(front.t_stress),
+        };
+        let tips: Vec<TipRecord> = self.state.fronts.iter().map(now).collect();
+        let growths: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
+        let lead = self.fastest().map(|tip| &self.state.fronts[tip]);
+        let (k_max, growth_rate) = lead.map_or((f64::NAN, f64::NAN), |front| (front.equivalent(), front.rate));
+        CurvePoint {
+            cycles: self.curve.last().map_or(0.0, |row| row.cycles) + cycles,
+            crack_length: self.case.specimen.crack_length_after(&growths),
+            delta_k: self.case.loading.range_share() * k_max,
+            growth_rate,
+            work,
+            broken_bonds: 0,
+            tips,
+        }
+    }
+}
+
+impl CrackGrowth for ElementFree<'_> {
+    fn open(&mut self) -> Result<()> {
+        self.settle().map_err(|error| match error {
+            Error::LossOfStiffness => Error::Mechanics(format!("{}: the initial cracks cut the plate in two", self.case.name)),
+            other => other,
+        })?;
+        self.read()?;
+        self.aim();
+        self.rate();
+        self.state.step = self.first_step();
+        self.curve = vec![self.row(0.0, self.load_work())];
+        Ok(())
+    }
+
+    fn now(&self) -> GrowthStatus<'_> {
+        let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = self.curve[self.curve.len() - 1];
+        GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true }
+    }
+
+    fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
+        (std::mem::take(&mut self.curve), 0.0)
+    }
+
+    fn state(&self) -> State {
+        State::Nodes(FrontsState {
+            state: self.state.clone(),
+            past: self.past,
+            work: self.work,
+            curve: self.curve.clone(),
+            figures: [self.solves, self.nodes, self.unknowns],
+            was_closed: self.was_closed,
+        })
+    }
+
+    fn restore(&mut self, state: State) -> Result<bool> {
+        let State::Nodes(FrontsState { state, past, work, curve, figures, was_closed }) = state else { return Ok(false) };
+        let ends = |fronts: &[Front]| fronts.iter().map(|front| front.end).collect::<Vec<_>>();
+        if curve.is_empty() || ends(&state.fronts) != ends(&self.state.fronts) || state.lines.len() != self.state.lines.len() {
+            return Ok(false);
+        }
+        (self.state, self.past, self.work, self.curve, self.was_closed) = (state, past, work, curve, was_closed);
+        [self.solves, self.nodes, self.unknowns] = figures;
+        Ok(true)
+    }
+
+    fn grid(&self) -> Option<PointGrid> {
+        Some(raster::grid(&self.case.specimen, self.settings.resolution.far))
+    }
+
+    fn fields(&mut self) -> Result<Option<Fields>> {
+        if self.plate.is_none() {
+            self.settle()?;
+        }
+        let Some((plate, solution)) = &self.plate else { return Ok(None) };
+        let share = self.case.loading.share(self.work);
+        let displacement = raster::displacement(&self.case.specimen, plate, &solution.u, self.settings.resolution.far, share);
+        let none = vec![0.0; displacement.len()];
+        Ok(Some(Fields { remaining_life: vec![1.0; displacement.len()], damage: none, displacement }))
+    }
+
+    fn law(&self) -> Option<&dyn GrowthLaw> {
+        Some(&*self.law)
+    }
+
+    fn should_rebuild_solver(&self) -> bool {
+        self.curve.len() % ROWS_PER_CHECKPOINT == 0
+    }
+
+    fn statistics(&self) -> SolverStatistics {
+        SolverStatistics { points_solved: self.nodes, solves: self.solves, iterations: 0, solver: Some(SolverUsed::Direct) }
+    }
+
+    fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {
+        self.state.balance.check(cycles)
+    }
+
+    fn close(&mut self, stop: StopReason) -> Result<StopReason> {
+        Ok(stop)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let closed = self.was_closed.then(|| {
+            "the load presses a crack shut: faces may overlap, and the tip does not grow; model.method = \"peridynamics\" knows faces in \
+             contact"
+                .to_owned()
+        });
+        self.warnings.iter().cloned().chain(closed).collect()
+    }
+}

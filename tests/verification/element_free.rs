@@ -1,0 +1,185 @@
+//! The element-free Galerkin method: shape functions, patch, interaction integral, bases, growth on hard plates.
+
+use std::f64::consts::PI;
+
+use perilife::case::Case;
+use perilife::element_free::basis::{BasisKind, Enrichment};
+use perilife::element_free::crack::TipAxes;
+use perilife::element_free::factors::integral;
+use perilife::element_free::field::{Discretisation, Local, Tip};
+use perilife::element_free::resolution::Resolution;
+use perilife::element_free::solve::{Workspace, solve};
+use perilife::growth::element_free::initial_tips;
+use perilife::material::{Material, Plane};
+use perilife::specimen::{CrackLine, Specimen};
+use perilife::verify::scene::{case, pulled_plate};
+use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+
+const METHOD: &str = "model.method=element_free_galerkin";
+const BASES: [(BasisKind, Enrichment, f64); 4] = [
+    (BasisKind::Linear, Enrichment::Tip, 2.5),
+    (BasisKind::Linear, Enrichment::None, 2.5),
+    (BasisKind::Quadratic, Enrichment::None, 3.5),
+    (BasisKind::Linear, Enrichment::Intrinsic, 3.0),
+];
+
+/// Lengths of crack that belong to the tips of a specimen.
+fn tips(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
+    let lines = specimen.crack_lines();
+    let tip = |tip: usize| {
+        let end = specimen.line_end(tip).unwrap();
+        let line = &lines[end.line];
+        Tip { end, length: line.length() / specimen.tips_of(line) as f64 }
+    };
+    let tips = (0..specimen.tips.len()).map(tip).collect();
+    (lines, tips)
+}
+
+/// Nodes of a case with `across` spacings over its width.
+fn nodes(case: &Case, across: f64, (basis, enrichment, support): (BasisKind, Enrichment, f64)) -> (Discretisation, f64) {
+    let (lines, tips) = tips(&case.specimen);
+    let far = case.specimen.width / across;
+    let resolution = Resolution { far, hold: 3.0, support, basis, enrichment };
+    let elasticity = Elasticity::of(&case.material);
+    (Discretisation::new(&case.specimen, elasticity, &lines, &tips, &resolution).unwrap(), far)
+}
+
+/// A plate with a crack that bends, one at a hole, a slot and a re-entrant corner.
+fn crowded_plate() -> Case {
+    let text = pulled_plate(
+        "outline_mm = [[-50, -100], [50, -100], [50, 100], [0, 100], [0, 60], [-50, 60]]\n\
+         holes = [{ x_mm = 20, y_mm = -30, diameter_mm = 16 }]\n\
+         notches = [{ from_mm = [-50, -60], to_mm = [-35, -60], width_mm = 3 }]\n\
+         cracks = [{ path_mm = [[-50, 0], [-40, 0], [-34, 5], [-30, 10.5]] }, { from_mm = [28, -30], to_mm = [35, -27] }]",
+    );
+    let edges = ["loading.edges=[\"bottom\"]", "supports.top.fix=[\"x\", \"y\"]", METHOD];
+    case(&text, &edges).unwrap()
+}
+
+#[test]
+fn shape_functions_reproduce_linear_fields_beside_cracks_holes_and_corners() {
+    let case = crowded_plate();
+    for choice in BASES {
+        let (plate, far) = nodes(&case, 12.0, choice);
+        let mut local = Local::default();
+        let mut seen = 0;
+        for place in 0..4000 {
+            let at = [-0.05 + 0.1 * ((place * 37) % 4001) as f64 / 4001.0, -0.1 + 0.2 * ((place * 1009) % 4003) as f64 / 4003.0];
+            if !case.specimen.contains(at) || !plate.at(plate.grid.leaf(at), at, &mut local) {
+                continue;
+            }
+            seen += 1;
+            let sum = |f: &dyn Fn([f64; 2]) -> f64, of: &dyn Fn(f64, [f64; 2]) -> f64| -> f64 {
+                local.values.iter().map(|value| of(value.value, value.gradient) * f(plate.nodes.at[value.node as usize])).sum()
+            };
+            let ([one, x, y], [value, slope]): ([&dyn Fn([f64; 2]) -> f64; 3], [&dyn Fn(f64, [f64; 2]) -> f64; 2]) =
+                ([&|_| 1.0, &|p| p[0], &|p| p[1]], [&|value, _| value, &|_, gradient| gradient[0]]);
+            // Of the enriched basis both moments are far from unit.
+            let bound = if choice.1 == Enrichment::Intrinsic { 1e-7 } else { 1e-10 };
+            for (found, wanted, size) in [
+                (sum(one, value), 1.0, 1.0),
+                (sum(x, value), at[0], far),
+                (sum(y, value), at[1], far),
+                (sum(one, slope), 0.0, 1.0 / far),
+                (sum(x, slope), 1.0, 1.0),
+                (sum(y, slope), 0.0, 1.0),
+            ] {
+                // Sums of slopes cancel over the finest spacing.
+                let finest = plate.nodes.spacing.iter().copied().fold(f64::INFINITY, f64::min);
+                assert!((found - wanted).abs() < bound * size * (far / finest), "{choice:?} at {at:?}: {found} for {wanted}");
+            }
+        }
+        assert!(seen > 2500, "{seen} points see enough nodes");
+    }
+}
+
+#[test]
+fn a_patch_in_uniform_tension_is_in_equilibrium_within_a_thousandth() {
+    let text = pulled_plate("width_mm = 50\nlength_mm = 100\ncracks = []");
+    let case = case(&text, &[]).unwrap();
+    let (plate, far) = nodes(&case, 10.0, BASES[0]);
+    let solution = solve(&case.specimen, &plate, far, case.loading.maximum, &mut Workspace::default()).unwrap();
+    assert!((solution.area - case.specimen.area()).abs() < 1e-12 * solution.area, "the cells cover the plate");
+    let (strain, nu) = (case.loading.maximum / case.material.youngs_modulus, case.material.poisson_ratio);
+    let mut local = Local::default();
+    for at in [[0.0, 0.0], [0.0201, 0.0402], [-0.013, 0.0317], [0.024, -0.049]] {
+        let (_, [[xx, xy], [yx, yy]]) = plate.displacement(&solution.u, at, &mut local).unwrap();
+        for (found, wanted) in [(xx, -nu * strain), (yy, strain), (xy + yx, 0.0)] {
+            assert!((found - wanted).abs() < 1e-3 * strain, "{found} for {wanted} at {at:?}");
+        }
+    }
+    let work = case.loading.maximum.powi(2) / case.material.youngs_modulus * case.specimen.area() * case.specimen.thickness;
+    assert!((solution.work / work - 1.0).abs() < 1e-3, "{} for {work}", solution.work);
+}
+
+#[test]
+fn the_integral_reads_the_fields_of_williams() {
+    for plane in [Plane::Stress, Plane::Strain] {
+        let elasticity = Elasticity::of(&Material::elastic(72e9, 0.3, plane));
+        let axes = TipAxes { at: [0.3, -0.2], ahead: [0.8, 0.6], back: vec![[0.3, -0.2], [-0.5, -0.8]], spacing: 0.01 };
+        let (k, t) = ([3e6, -2e6], 5e6);
+        let field = |at: [f64; 2]| {
+            let (r, theta) = axes.polar(at);
+            let mut sum = [[0.0; 2]; 2];
+            let mut add = |order: i32, symmetry: Symmetry, size: f64| {
+                let gradient = Eigenfunction { order, symmetry }.gradient(elasticity.kappa, r, theta);
+                for i in 0..2 {
+                    for j in 0..2 {
+                        sum[i][j] += size * gradient[i][j] / (2.0 * elasticity.shear_modulus);
+                    }
+                }
+            };
+            add(1, Symmetry::Opening, k[0] * coefficient_of_unit_factor(Symmetry::Opening));
+            add(1, Symmetry::Sliding, k[1] * coefficient_of_unit_factor(Symmetry::Sliding));
+            // The first function of order 2 has σ_xx = 4 a.
+            add(2, Symmetry::Opening, t / 4.0);
+            add(3, Symmetry::Opening, 1e7);
+            add(4, Symmetry::Sliding, 2e7);
+            Ok(sum)
+        };
+        let read = integral(&axes, elasticity, 0.05, 0.0, field).unwrap();
+        for (found, wanted) in [(read.factors[0], k[0]), (read.factors[1], k[1]), (read.t_stress, t)] {
+            assert!((found / wanted - 1.0).abs() < 1e-3, "{plane}: {found} for {wanted}");
+        }
+    }
+}
+
+/// Stress ahead of an edge crack at some distances, over K/√(2πr) with K of finite elements (F = 1.488, square plate, a/W 0.2).
+/// That of the continuum is 1.005, 1.015 and 1.074 at 0.1, 1 and 5 mm (quarter-point elements).
+#[test]
+fn near_tip_fields_bring_the_stress_ahead_of_a_tip_that_polynomials_miss() {
+    let text = pulled_plate("width_mm = 50\nlength_mm = 50\ncracks = [{ from_mm = [-25, 0], to_mm = [-15, 0] }]");
+    let case = case(&text, &[METHOD]).unwrap();
+    let k = 1.488 * case.loading.maximum * (PI * 0.01).sqrt();
+    let error = |choice| {
+        let (plate, far) = nodes(&case, 20.0, choice);
+        let solution = solve(&case.specimen, &plate, far, case.loading.maximum, &mut Workspace::default()).unwrap();
+        let mut local = Local::default();
+        let ahead = [(1e-4, 1.005), (1e-3, 1.015), (5e-3, 1.074)].map(|(r, share): (f64, f64)| {
+            let (_, gradient) = plate.displacement(&solution.u, [-0.015 + r, 0.0], &mut local).unwrap();
+            let [_, stress, _] = Elasticity::of(&case.material).stress(&gradient);
+            stress * (2.0 * PI * r).sqrt() / k / share - 1.0
+        });
+        (ahead.iter().map(|error| error * error).sum::<f64>() / 3.0).sqrt()
+    };
+    let [fields, linear, quadratic, intrinsic] = BASES.map(error);
+    assert!(fields < 0.03 && intrinsic < 0.03, "{fields} with fields as unknowns, {intrinsic} with those in the basis");
+    assert!(linear > 5.0 * fields && quadratic > 5.0 * fields, "{linear}, {quadratic} with polynomials alone");
+}
+
+#[test]
+fn cracks_under_pressure_have_the_factors_of_the_same_stress_far_away() {
+    let plate = "width_mm = 100\nlength_mm = 200\ncracks = [{ from_mm = [-15, -6], to_mm = [15, 6] }]";
+    let pulled = initial_tips(&case(&pulled_plate(plate), &[METHOD]).unwrap()).unwrap();
+    // Tension along y alone opens and shears a slanted crack: superposed with pressure from all sides, which presses it flat.
+    let all = ["loading.edges=[\"top\", \"bottom\", \"left\", \"right\"]", METHOD];
+    let all_round = initial_tips(&case(&pulled_plate(plate), &all).unwrap()).unwrap();
+    let pressed = pulled_plate(plate).replace("stress_max_mpa = 60", "crack_pressure_mpa = 60");
+    let pressed = initial_tips(&case(&pressed, &[METHOD]).unwrap()).unwrap();
+    let [k_i, k_ii] = pressed[0].factors.unwrap();
+    let [wanted, sliding] = all_round[0].factors.unwrap();
+    assert!((k_i / wanted - 1.0).abs() < 2e-3 && (k_ii - sliding).abs() < 2e-3 * wanted, "{k_i} {k_ii} for {wanted} {sliding}");
+    assert!(pulled[0].factors.unwrap()[1].abs() > 0.2 * wanted, "the pulled one slides");
+    let t = [&pressed, &all_round].map(|tips| tips[0].t_stress.unwrap());
+    assert!((t[0] - (t[1] - 60e6)).abs() < 0.01 * 60e6, "T {} for {}", t[0], t[1] - 60e6);
+}
