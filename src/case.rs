@@ -5,6 +5,7 @@ mod fatigue;
 pub mod first_load;
 pub mod growth_law;
 mod law;
+mod law_record;
 mod law_source;
 pub mod model;
 mod read;
@@ -16,6 +17,7 @@ pub use read::SECTIONS;
 use crate::body::lattice::fitting_spacing;
 use crate::bond_law::{BondLaw, SurfaceCorrection};
 use crate::calibration::record::FittedRecord;
+use crate::calibration::record::law::LawRecord;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
@@ -139,4 +141,6 @@ pub struct Case {
     pub allow_extrapolation: bool,
     /// What the file chose explicitly; a fitted record must agree with it.
     pub choices: Choices,
+    /// The record that its law over K comes from.
+    pub law_record: Option<Box<LawRecord>>,
 }

@@ -37,6 +37,8 @@ mod layering;
 mod belonging;
 #[path = "unit/import.rs"]
 mod import;
+#[path = "unit/laws.rs"]
+mod laws;
 #[path = "unit/malformed.rs"]
 mod malformed;
 #[path = "unit/measured.rs"]

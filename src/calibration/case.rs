@@ -9,6 +9,7 @@ use toml::{Table, Value};
 use crate::calibration::criterion::Criterion;
 use crate::calibration::decimal::Decimal;
 use crate::calibration::exponent::Exponent;
+use crate::calibration::laws::FitLaw;
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::calibration::record::SourceFile;
@@ -49,7 +50,7 @@ pub struct CalibrationCase {
     pub left_out: Vec<LeaveOut>,
     /// What the user should know.
     pub warnings: Vec<String>,
-    formula: HandbookFormula,
+    formula: Option<HandbookFormula>,
 }
 
 /// `[measured]`.
@@ -91,6 +92,9 @@ struct FitSlice {
     p: Option<f64>,
     record: Option<String>,
     criterion: Option<Criterion>,
+    /// Looked at before ([`crate::calibration::laws::case::is_law_fit`]): no other law comes here.
+    #[serde(rename = "law")]
+    _law: Option<FitLaw>,
 }
 
 impl CalibrationCase {
@@ -126,14 +130,7 @@ impl CalibrationCase {
         }
         check_walker(&case)?;
         check_growth_rate(&case)?;
-        let formula = handbook(&case.specimen).ok_or_else(|| {
-            input(
-                "specimen.kind",
-                format!("\"{}\"", case.specimen.kind),
-                "has no handbook K(a) in this shape, and a calibration gives its growth rates against ΔK",
-                "calibrate on a standard specimen (length at least 1.5 widths), then predict the plate with the fit",
-            )
-        })?;
+        let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
         let (limit, limit_name) = case.specimen.length_limit();
         measured.check_lengths(limit, limit_name)?;
@@ -143,10 +140,10 @@ impl CalibrationCase {
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;
         let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
-        if !formula.holds_at(case.specimen.crack_length) || !formula.holds_at(longest) {
+        if let Some(formula) = formula.filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a))) {
             warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
         }
-        let delta_k_ratio = delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum));
+        let delta_k_ratio = formula.map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
         let exponent = exponent(&fit, folder, case.model.method, delta_k_ratio)?;
         warnings.extend(exponent.warning.clone());
         let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
@@ -158,10 +155,11 @@ impl CalibrationCase {
         Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out: keys.leave_out, warnings, formula })
     }
 
-    /// ΔK of the handbook (Pa√m) at a crack length (m).
+    /// ΔK of the handbook (Pa√m) at a crack length (m); `None` where no handbook has the specimen, as a drawn plate.
     #[must_use]
-    pub fn delta_k(&self, crack_length: f64) -> f64 {
-        self.formula.delta_k(crack_length, self.case.loading.maximum, self.case.loading.range_share())
+    pub fn delta_k(&self, crack_length: f64) -> Option<f64> {
+        let loading = &self.case.loading;
+        self.formula.map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
     }
 }
 
@@ -221,8 +219,8 @@ fn unrecorded(case: &Case) -> Option<String> {
     (case.fatigue.threshold > 0.0).then(|| line.to_owned())
 }
 
-/// The exponent of `[fit]` for a window with this ratio of the largest to the smallest ΔK.
-fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_ratio: f64) -> crate::Result<Exponent> {
+/// The exponent of `[fit]` for a window with this ratio of the largest to the smallest ΔK; `None` where a run has to tell it.
+fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_ratio: Option<f64>) -> crate::Result<Exponent> {
     let parameters = fit.parameters.clone().unwrap_or_else(|| vec![Parameter::A, Parameter::P]);
     let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
     if !parameters.contains(&Parameter::A) {
@@ -232,8 +230,15 @@ fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_ratio: f64)
     match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
         (_, Some(p), Some(_)) => Err(input("fit.p", p, "stands beside record: p is given twice", "give p or record")),
         (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
-        (true, None, None) => Ok(Exponent::fitted(delta_k_ratio)),
-        (true, None, Some(file)) => Exponent::record_if_needed(file, folder, method, delta_k_ratio),
+        (true, None, None) => Ok(Exponent::fitted(delta_k_ratio.unwrap_or(f64::INFINITY))),
+        (true, None, Some(file)) => match delta_k_ratio {
+            Some(ratio) => Exponent::record_if_needed(file, folder, method, ratio),
+            None => {
+                let problem = "stands in for p where ΔK varies too little, which on this plate only a run shows";
+                let remedy = "leave it out, or take its p by parameters = [\"a\"]";
+                Err(input("fit.record", format!("\"{file}\""), problem, remedy))
+            }
+        },
         (false, Some(p), None) => Ok(Exponent::given(p)),
         (false, None, Some(file)) => Exponent::of_record(file, folder, method),
         (false, None, None) => Err(input_missing(
@@ -261,7 +266,7 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> crate::Result<(Measured, V
 }
 
 /// What the record says about a measured file.
-fn source(file: &str, bytes: &[u8]) -> SourceFile {
+pub(crate) fn source(file: &str, bytes: &[u8]) -> SourceFile {
     let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     SourceFile { file: file.to_owned(), sha256 }
 }

@@ -1,5 +1,6 @@
 //! The calibration on one page: from measured curves and K of a growing crack to A, p and how sure they are.
 
+use crate::calibration::case::CalibrationCase;
 use crate::calibration::case_load::at_case_load;
 use crate::calibration::confidence::{Confidence, Lives, confidence};
 use crate::calibration::criterion::Criterion;
@@ -16,7 +17,7 @@ use crate::calibration::rates::STEP_MIN;
 use crate::calibration::search::{Constants, is_at_end};
 use crate::error::{Error, Result, input};
 use crate::fatigue::STEADY_EXPONENTS;
-use crate::units::MM;
+use crate::units::{MM, MPA_SQRT_M};
 
 /// Below this ratio of the largest to the smallest ΔK a curve does not say what p is.
 pub const DELTA_K_RATIO_MIN: f64 = 2.0;
@@ -59,6 +60,10 @@ pub struct Fit {
     pub horizon: f64,
     /// Actual lattice spacing, m; NaN where K is that of a handbook.
     pub spacing: f64,
+    /// ΔK along the crack's own path, where no handbook has it.
+    pub own_factors: Option<PowerLaw>,
+    /// How often K(a) was computed.
+    pub evaluations: usize,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -104,7 +109,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         let error = assess(task, law, &belonging, &without, is_fitted)?.1.m_error;
         let least_squares = paris;
         if are_apart(line.m, least_squares.m, error) {
-            if let Some(constants) = robust_constants(&median, law) {
+            if let Some(constants) = robust_constants(&median, law, record.constants.p) {
                 estimate = Estimate::Robust;
                 record = fitted_curve(&median, constants, law)?;
                 (confidence, paris) = assess(task, law, &belonging, &record, is_fitted)?;
@@ -127,7 +132,22 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let fitted: Vec<MeasuredCurve> =
         task.curves.iter().map(|curve| as_fitted(curve, record.constants, law)).collect::<Result<_>>()?;
     let lack_of_fit = lack_of_fit(task.curves, &fitted, task.delta_k);
-    Ok(Fit { record, specimens, confidence, paris, estimate, robust, lack_of_fit, rate_constant, horizon, spacing, warnings })
+    let (own_factors, evaluations) = (None, 1);
+    Ok(Fit {
+        record,
+        specimens,
+        confidence,
+        paris,
+        estimate,
+        robust,
+        lack_of_fit,
+        rate_constant,
+        horizon,
+        spacing,
+        own_factors,
+        evaluations,
+        warnings,
+    })
 }
 
 /// How sure A and p of a curve are, and what they mean as C and m.
@@ -205,6 +225,13 @@ fn longest(curve: &MeasuredCurve) -> f64 {
 }
 
 impl Fit {
+    /// ΔK, Pa√m, at a crack length, m: of the handbook, or of the crack's own path.
+    #[must_use]
+    pub fn delta_k(&self, calibration: &CalibrationCase, length: f64) -> f64 {
+        let own = || Some(self.own_factors.as_ref()?.delta_k(length, self.record.constants.p) * MPA_SQRT_M);
+        calibration.delta_k(length).or_else(own).unwrap_or(f64::NAN)
+    }
+
     /// Standard error of p; 0 where it was given.
     #[must_use]
     pub fn p_error(&self) -> f64 {

@@ -25,6 +25,7 @@ mod fitted_curve;
 pub mod frames;
 pub mod import;
 pub mod lack_of_fit;
+pub mod laws;
 pub mod leave_out;
 pub mod level_shift;
 pub mod loads;

@@ -42,6 +42,8 @@ pub struct RatePoint {
     pub delta_k: f64,
     /// Range of load over that of the case.
     pub load_factor: f64,
+    /// Stress ratio R; NaN where the readings do not say it ([`add_delta_k`]).
+    pub ratio: f64,
     /// Largest difference of crack length between sides at the readings of the point, m.
     pub side_difference: f64,
     /// What speaks against the point.
@@ -167,9 +169,15 @@ fn point(curve: &MeasuredCurve, cycles: f64, crack_length: f64, rate: f64, readi
         rate,
         delta_k: f64::NAN,
         load_factor: 1.0,
+        ratio: mean_ratio(curve, readings.clone()),
         side_difference: curve.side_difference.get(readings).map_or(0.0, |of| of.iter().copied().fold(0.0, f64::max)),
         flags: Flags { short_step, not_growing: rate <= 0.0, ..Flags::default() },
     }
+}
+
+fn mean_ratio(curve: &MeasuredCurve, readings: RangeInclusive<usize>) -> f64 {
+    let of = curve.loads.as_ref().and_then(|loads| loads.ratio.get(readings));
+    of.map_or(f64::NAN, |ratios| ratios.iter().sum::<f64>() / ratios.len() as f64)
 }
 
 /// What ΔK and the validity of a rate depend on; SI.
@@ -184,6 +192,8 @@ pub struct TestPiece<'a> {
     pub force_max: f64,
     /// K_max over ΔK.
     pub k_max_over_range: f64,
+    /// Stress ratio of the case.
+    pub ratio: f64,
     /// Yield strength, where known.
     pub yield_strength: Option<f64>,
     /// ΔK at a crack length.
@@ -205,6 +215,7 @@ impl<'a> TestPiece<'a> {
             thickness: specimen.thickness,
             force_max: case.loading.maximum * force_per_load,
             k_max_over_range: 1.0 / case.loading.range_share(),
+            ratio: case.loading.ratio,
             yield_strength: case.material.yield_strength,
             delta_k,
         }
@@ -227,6 +238,7 @@ pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f6
 pub fn add_delta_k(points: &mut [RatePoint], piece: &TestPiece<'_>) {
     for point in points {
         point.delta_k = (piece.delta_k)(point.crack_length) * point.load_factor;
+        point.ratio = if point.ratio.is_nan() { piece.ratio } else { point.ratio };
         let k_max = point.delta_k * piece.k_max_over_range;
         point.flags.yielding = !piece.small_scale_yielding(point.crack_length, k_max, point.load_factor);
         point.flags.uneven_front = point.side_difference > side_difference_max(piece.kind, piece.width, piece.thickness);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::calibration::case::CalibrationCase;
-use crate::calibration::fit::{Fit, FittedCurve};
+use crate::calibration::fit::{DELTA_K_RATIO_MIN, Fit, FittedCurve};
 use crate::calibration::lack_of_fit::LackOfFit;
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::record::{FittedRecord, SourceFile};
@@ -73,7 +73,8 @@ pub struct FitReport {
     pub lack_of_fit: Option<LackOfFit>,
     /// Readings that were left out.
     pub left_out: Vec<LeaveOut>,
-    /// How often K(a) was computed: once, whatever is fitted to it.
+    /// How often K(a) was computed: once, whatever is fitted to it; again where several tips share the growth by an exponent that is not
+    /// known before.
     pub evaluations: usize,
     /// Wall time.
     pub wall_s: f64,
@@ -119,7 +120,7 @@ impl FitReport {
             rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
             rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
             p_error: p_error(calibration, fit),
-            p_source: calibration.exponent.source.clone(),
+            p_source: p_source(calibration, fit),
             criterion: calibration.criterion.name().to_owned(),
             covariance: fit.confidence.covariance,
             increment_scatter: fit.confidence.increment_scatter,
@@ -137,7 +138,7 @@ impl FitReport {
             robust_paris_c_mm_per_cycle: fit.robust.map_or(f64::NAN, |robust| robust.c),
             lack_of_fit: fit.lack_of_fit,
             left_out: calibration.left_out.clone(),
-            evaluations: 1,
+            evaluations: fit.evaluations,
             wall_s,
             warnings: calibration.warnings.iter().chain(&fit.warnings).cloned().collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -156,6 +157,15 @@ impl SpecimenReport {
             life_fitted: curve.life_fitted(),
             rms_life_error: curve.rms_life_error(),
         }
+    }
+}
+
+/// Where p comes from; a drawn plate shows only by its run how far ΔK goes.
+fn p_source(calibration: &CalibrationCase, fit: &Fit) -> String {
+    let is_short = fit.paris.delta_k_max < DELTA_K_RATIO_MIN * fit.paris.delta_k_min;
+    match calibration.exponent.fixed {
+        None if is_short => "not_identified".to_owned(),
+        _ => calibration.exponent.source.clone(),
     }
 }
 

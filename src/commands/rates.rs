@@ -137,16 +137,17 @@ fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) 
     Ok(specimens)
 }
 
-/// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags`; ΔK is empty where it is not known.
+/// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio`; ΔK and R are empty where they are not known.
 fn table(specimens: &[SpecimenRates]) -> String {
-    let mut text = String::from("specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags\n");
+    let mut text = String::from("specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio\n");
     for specimen in specimens {
         for point in &specimen.points {
             let delta_k = known(point.delta_k / MPA_SQRT_M).map_or_else(String::new, |k| format!("{k:.10}"));
+            let ratio = known(point.ratio).map_or_else(String::new, |ratio| ratio.to_string());
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "{},{},{:.10},{delta_k},{:.10e},{}",
+                "{},{},{:.10},{delta_k},{:.10e},{},{ratio}",
                 quoted(&specimen.name),
                 point.cycles,
                 point.crack_length / MM,
@@ -166,6 +167,7 @@ fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {
                 "crack_length_mm": point.crack_length / MM,
                 "delta_k_mpa_sqrt_m": known(point.delta_k / MPA_SQRT_M),
                 "da_dn_mm_per_cycle": point.rate / MM_PER_CYCLE,
+                "stress_ratio": known(point.ratio),
                 "flags": point.flags.words().split_whitespace().collect::<Vec<_>>(),
             })
         };

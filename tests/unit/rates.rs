@@ -19,6 +19,7 @@ fn piece(kind: SpecimenKind, yield_strength: Option<f64>) -> TestPiece<'static> 
         thickness: 2.54 * MM,
         force_max: 60.35 * MPA * 152.4 * MM * 2.54 * MM,
         k_max_over_range: 1.25,
+        ratio: 0.2,
         yield_strength,
         delta_k: &delta_k,
     }

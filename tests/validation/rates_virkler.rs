@@ -23,6 +23,7 @@ fn rates_with_delta_k(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoin
         thickness: 2.54 * MM,
         force_max: 60.35 * MPA * 152.4 * MM * 2.54 * MM,
         k_max_over_range: 1.25,
+        ratio: 0.2,
         yield_strength: Some(345.0 * MPA),
         delta_k: &delta_k,
     };
