@@ -9,25 +9,18 @@ use toml::{Table, Value};
 use crate::calibration::criterion::Criterion;
 use crate::calibration::decimal::Decimal;
 use crate::calibration::exponent::Exponent;
-use crate::calibration::laws::FitLaw;
+use crate::calibration::fit_keys::{FitSlice, exponent};
+pub use crate::calibration::fit_keys::Parameter;
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::calibration::record::SourceFile;
-use crate::case::{Case, LAW_KEYS, LawSource, Method};
+use crate::case::{Case, LAW_KEYS, LawSource};
 use crate::error::{input, input_missing};
 use crate::fatigue::{Ageing, GrowthRate};
 use crate::input::{Document, Folder, LENGTH, slice};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::MM;
-
-crate::kinds! {
-    /// Constants a calibration can fit.
-    pub enum Parameter for "fit.parameters" {
-        A = "a": "the constant A",
-        P = "p": "the exponent p",
-    }
-}
 
 /// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
 const LENGTH_SLACK: f64 = 1e-9;
@@ -82,19 +75,6 @@ impl MeasuredSlice {
             sheet: self.sheet.clone(),
         }
     }
-}
-
-/// `[fit]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FitSlice {
-    parameters: Option<Vec<Parameter>>,
-    p: Option<f64>,
-    record: Option<String>,
-    criterion: Option<Criterion>,
-    /// Looked at before ([`crate::calibration::laws::case::is_law_fit`]): no other law comes here.
-    #[serde(rename = "law")]
-    _law: Option<FitLaw>,
 }
 
 impl CalibrationCase {
@@ -217,36 +197,6 @@ fn unrecorded(case: &Case) -> Option<String> {
     let line =
         "fatigue.delta_k_threshold_mpa_sqrt_m does not shape the fit and stands in no record: give it in cases that use the fit";
     (case.fatigue.threshold > 0.0).then(|| line.to_owned())
-}
-
-/// The exponent of `[fit]` for a window with this ratio of the largest to the smallest ΔK; `None` where a run has to tell it.
-fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_ratio: Option<f64>) -> crate::Result<Exponent> {
-    let parameters = fit.parameters.clone().unwrap_or_else(|| vec![Parameter::A, Parameter::P]);
-    let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
-    if !parameters.contains(&Parameter::A) {
-        let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
-        return Err(input("fit.parameters", format!("[{}]", names.join(", ")), "leaves a out, which is always fitted", remedy));
-    }
-    match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
-        (_, Some(p), Some(_)) => Err(input("fit.p", p, "stands beside record: p is given twice", "give p or record")),
-        (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
-        (true, None, None) => Ok(Exponent::fitted(delta_k_ratio.unwrap_or(f64::INFINITY))),
-        (true, None, Some(file)) => match delta_k_ratio {
-            Some(ratio) => Exponent::record_if_needed(file, folder, method, ratio),
-            None => {
-                let problem = "stands in for p where ΔK varies too little, which on this plate only a run shows";
-                let remedy = "leave it out, or take its p by parameters = [\"a\"]";
-                Err(input("fit.record", format!("\"{file}\""), problem, remedy))
-            }
-        },
-        (false, Some(p), None) => Ok(Exponent::given(p)),
-        (false, None, Some(file)) => Exponent::of_record(file, folder, method),
-        (false, None, None) => Err(input_missing(
-            "fit.p",
-            "is missing",
-            "give the exponent p, or record = \"fitted.toml\", or fit it too: parameters = [\"a\", \"p\"]",
-        )),
-    }
 }
 
 /// Curves of the measured files, and what the record says about the files.

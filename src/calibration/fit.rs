@@ -22,6 +22,9 @@ use crate::units::{MM, MPA_SQRT_M};
 /// Below this ratio of the largest to the smallest ΔK a curve does not say what p is.
 pub const DELTA_K_RATIO_MIN: f64 = 2.0;
 
+/// Below this ratio rates of every exponent are alike.
+const DELTA_K_RATIO_NONE: f64 = 1.01;
+
 /// Most remarks on readings that a fit repeats.
 const DOUBTS_SHOWN: usize = 6;
 
@@ -100,6 +103,9 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     warnings.extend(short_steps_warning(&median.crack_length));
 
     let (mut confidence, mut paris) = assess(task, law, &median, &record, is_fitted)?;
+    if is_fitted {
+        check_told(&record.name, &confidence, &paris)?;
+    }
     let mut estimate = Estimate::LeastSquares;
     let line = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted);
     if let Some(line) = line {
@@ -189,6 +195,20 @@ fn remarks(task: &FitTask<'_>) -> Vec<String> {
         lines.push(format!("{more} more remarks of this kind on other readings: `perilife rates` names all"));
     }
     lines
+}
+
+/// Refuses a p that the readings do not tell at all: its error is that of a p of which only the ends of the search are known.
+fn check_told(name: &str, confidence: &Confidence, paris: &Paris) -> Result<()> {
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    let (error, ratio) = (confidence.covariance[1][1].sqrt(), paris.delta_k_max / paris.delta_k_min);
+    if error < (high - low) / 12.0_f64.sqrt() && ratio > DELTA_K_RATIO_NONE {
+        return Ok(());
+    }
+    Err(Error::Mechanics(format!(
+        "{name}: the misfit has no smallest value that tells p: its standard error is {error:.2} where {low} to {high} are searched, and ΔK \
+         varies by a factor {ratio:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] \
+         parameters = [\"a\"] and p = ..."
+    )))
 }
 
 /// What it means that a searched p is an end of its range.

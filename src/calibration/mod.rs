@@ -20,6 +20,7 @@ pub mod decimal;
 pub mod estimate;
 pub mod exponent;
 pub mod fit;
+mod fit_keys;
 mod fitted_curve;
 #[cfg(feature = "tables")]
 pub mod frames;
@@ -46,3 +47,4 @@ mod roles;
 pub mod search;
 mod shape;
 pub(crate) mod table;
+pub mod test_piece;

@@ -29,3 +29,4 @@ mod colour;
 mod glyphs;
 pub mod labels;
 mod raster;
+mod sweep_warnings;

@@ -1,7 +1,8 @@
 //! Growth rates of curves whose rate is known.
 
 use perilife::calibration::measured::MeasuredCurve;
-use perilife::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
+use perilife::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
+use perilife::calibration::test_piece::{TestPiece, add_delta_k};
 use perilife::specimen::SpecimenKind;
 use perilife::units::{MM, MPA};
 
