@@ -57,12 +57,7 @@ fn fit_by_method(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
 }
 
 fn task<'a>(calibration: &'a CalibrationCase, delta_k: &'a dyn Fn(f64) -> f64) -> FitTask<'a> {
-    FitTask {
-        curves: &calibration.curves,
-        fixed_p: calibration.exponent.fixed,
-        criterion: calibration.criterion,
-        delta_k,
-    }
+    FitTask { curves: &calibration.curves, fixed_p: calibration.exponent.fixed, criterion: calibration.criterion, delta_k }
 }
 
 /// The fit to K of the tips of a plate that no handbook has, along their own paths.

@@ -9,8 +9,8 @@ use toml::{Table, Value};
 use crate::calibration::criterion::Criterion;
 use crate::calibration::decimal::Decimal;
 use crate::calibration::exponent::Exponent;
-use crate::calibration::fit_keys::{FitSlice, exponent};
 pub use crate::calibration::fit_keys::Parameter;
+use crate::calibration::fit_keys::{FitSlice, exponent};
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::calibration::record::SourceFile;
@@ -120,7 +120,9 @@ impl CalibrationCase {
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;
         let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
-        if let Some(formula) = formula.filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a))) {
+        if let Some(formula) =
+            formula.filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a)))
+        {
             warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
         }
         let delta_k_ratio = formula.map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));

@@ -4,7 +4,7 @@ use toml::Value;
 
 use super::law_source::LAW_KEYS;
 use crate::calibration::record::law::LawRecord;
-use crate::error::{Error, Result, input, input_missing};
+use crate::error::{Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::input::{Folder, slice, value_at};
 
@@ -18,10 +18,8 @@ const RATIO_SLACK: f64 = 0.02;
 /// A record that cannot be read, beside constants of a law.
 pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value, Box<LawRecord>)>> {
     let Some(name) = value_at(fatigue, "fitted").and_then(Value::as_str) else { return Ok(None) };
-    let document = match folder.document(name) {
-        Err(Error::File { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        document => document?,
-    };
+    // One that cannot be read is refused, or not missed, where records of A and p are.
+    let Ok(document) = folder.document(name) else { return Ok(None) };
     if !LawRecord::is_of(&document.table) {
         return Ok(None);
     }
@@ -49,7 +47,9 @@ pub(super) fn ratio_line(record: &LawRecord, ratio: f64) -> Result<Option<String
         return Ok(None);
     }
     if record.kind() == GrowthLawKind::Paris.name() {
-        let problem = format!("is outside the stress ratios that the law was fitted to, {low} to {high}, and ΔK alone says nothing about R");
+        let problem = format!(
+            "is outside the stress ratios that the law was fitted to, {low} to {high}, and ΔK alone says nothing about R"
+        );
         return Err(input("loading.stress_ratio", ratio, problem, "fit walker, forman or nasgro to rates at several ratios"));
     }
     Ok(Some(format!("the law {} was fitted to stress ratios from {low} to {high} and is used at {ratio}", record.kind())))

@@ -12,8 +12,8 @@ use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, L
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt;
 use crate::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
-use crate::calibration::test_piece::{TestPiece, add_delta_k};
 use crate::calibration::results::quoted;
+use crate::calibration::test_piece::{TestPiece, add_delta_k};
 use crate::case::Case;
 use crate::error::{Result, input};
 use crate::report::output::write_file;

@@ -170,9 +170,14 @@ fn broken_calibration_files_say_what_would_be_right() {
             "fatigue.ageing = \"everywhere\": cannot be given to a calibration",
         ),
         (
-            "short panel",
-            swap("length_mm = 300.0", "length_mm = 152.4"),
-            "specimen.kind = \"middle_tension\": has no handbook K(a) in this shape",
+            "short panel by hand calculation",
+            format!("{}[model]\nmethod = \"handbook\"\n", swap("length_mm = 300.0", "length_mm = 152.4")),
+            "model.method = \"handbook\": has no K(a) for this specimen",
+        ),
+        (
+            "short panel, whose range of K only a run shows",
+            swap("length_mm = 300.0", "length_mm = 152.4").replace("[fit]\n", "[fit]\nrecord = \"other.toml\"\n"),
+            "fit.record = \"other.toml\": stands in for p where ΔK varies too little, which on this plate only a run shows",
         ),
         ("unknown unit", swap("[specimen]", "length_unit = \"furlong\"\n[specimen]"), "use one of mm, inch, m"),
         (

@@ -141,7 +141,11 @@ fn what_rates_do_not_tell_is_named() {
         (&one_ratio, FitLaw::Walker, "walker_gamma not identified: all rates are of one stress ratio, R = 0.100"),
         (&one_ratio, FitLaw::Nasgro, "nasgro_alpha, nasgro_c_th not identified: all rates are of one stress ratio"),
         (&one_ratio, FitLaw::Forman, "k_c_mpa_sqrt_m not identified"),
-        (&straight, FitLaw::Forman, "k_c_mpa_sqrt_m not identified: the optimum lies at an end of its range, 19 times the largest K_max"),
+        (
+            &straight,
+            FitLaw::Forman,
+            "k_c_mpa_sqrt_m not identified: the optimum lies at an end of its range, 19 times the largest K_max",
+        ),
         (&middle, FitLaw::Nasgro, "not identified"),
     ];
     for (text, law, words) in cases {
@@ -247,7 +251,9 @@ fn case(text: &str, tables: &[(&str, String)]) -> perilife::Result<LawCase> {
 fn tables_come_in_one_file_or_one_a_ratio() {
     let law = &truths()[1].1;
     let all = table(&**law, &[0.1, 0.5], [5.0, 40.0], 12, 0.0, 1);
-    let alone = |ratio: f64| table(&**law, &[ratio], [5.0, 40.0], 12, 0.0, 1).replace(&format!(",{ratio}\n"), "\n").replace(",stress_ratio", "");
+    let alone = |ratio: f64| {
+        table(&**law, &[ratio], [5.0, 40.0], 12, 0.0, 1).replace(&format!(",{ratio}\n"), "\n").replace(",stress_ratio", "")
+    };
     let one = case("[measured]\nrates = [\"all.csv\"]\n[fit]\nlaw = \"walker\"\n", &[("all.csv", all.clone())]).unwrap();
     let text = "[measured]\nrates = [{ file = \"a.csv\", stress_ratio = 0.1 }, { file = \"b.csv\", stress_ratio = 0.5 }]\n[fit]\nlaw = \"walker\"\n";
     let two = case(text, &[("a.csv", alone(0.1)), ("b.csv", alone(0.5))]).unwrap();
@@ -275,7 +281,11 @@ fn wrong_files_say_what_would_be_right() {
         (all.to_owned(), good.replace(",stress_ratio", ",r"), "is no column, and no stress_ratio is given for the file"),
         (all.to_owned(), good.replace("delta_k_mpa", "dk_mpa"), "lacks the columns delta_k_mpa_sqrt_m and da_dn_mm_per_cycle"),
         (all.to_owned(), good.replace("12,", ","), "`perilife rates --specimen CASE.toml` knows it"),
-        ("[measured]\nrates = [{ file = \"r.csv\", stress_ratio = 0.1 }]\n".to_owned(), good.to_owned(), "is a column, and stress_ratio = 0.1"),
+        (
+            "[measured]\nrates = [{ file = \"r.csv\", stress_ratio = 0.1 }]\n".to_owned(),
+            good.to_owned(),
+            "is a column, and stress_ratio = 0.1",
+        ),
         (format!("{all}[fit]\nlaw = \"pariss\"\n"), good.to_owned(), "is not a known kind"),
         (format!("{all}[fit]\ngiven = {{ nasgro_c = 1 }}\n"), good.to_owned(), "fit.given.nasgro_c = 1: is no constant"),
         (format!("{all}[fit]\ngiven = {{ nasgro_alpha = 4 }}\n"), good.to_owned(), "fit.given.nasgro_alpha = 4"),

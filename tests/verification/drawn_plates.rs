@@ -14,7 +14,8 @@ use perilife::units::{GPA, MM, MPA_SQRT_M};
 const C: f64 = 4e-9;
 const M: f64 = 3.4;
 
-const REST: &str = "[material]\nyoungs_modulus_gpa = 72.0\npoisson_ratio = 0.3\n[loading]\nstress_max_mpa = 70.0\nstress_ratio = 0.1\n";
+const REST: &str =
+    "[material]\nyoungs_modulus_gpa = 72.0\npoisson_ratio = 0.3\n[loading]\nstress_max_mpa = 70.0\nstress_ratio = 0.1\n";
 const PLATE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 100.0\nlength_mm = 200.0\nthickness_mm = 2.0\n";
 
 /// Name, cracks and holes, spacing and last length in mm.
@@ -82,7 +83,12 @@ fn known_constants_are_found_on_drawn_plates() {
         // The record makes the same life on the same plate.
         let law = record(&calibration, &fit);
         let stop = format!("[stop]\ncrack_length_mm = {to}\n");
-        let case = Case::from_toml(&format!("{specimen}{REST}{}{stop}[fatigue]\nparis_c_mm_per_cycle = 1e-9\nparis_m = 3\n", model(spacing)), "life", Folder::none(), &[]);
+        let case = Case::from_toml(
+            &format!("{specimen}{REST}{}{stop}[fatigue]\nparis_c_mm_per_cycle = 1e-9\nparis_m = 3\n", model(spacing)),
+            "life",
+            Folder::none(),
+            &[],
+        );
         let run = predict(&case.unwrap().with_law(law).unwrap(), &Silent).unwrap();
         let measured = fit.record.life_measured();
         assert!((run.life_cycles() / measured - 1.0).abs() < 0.02, "{name}: {} for {measured}", run.life_cycles());
@@ -122,7 +128,9 @@ fn a_drawn_panel_is_fitted_as_the_standard_one() {
 
 #[test]
 fn a_plate_that_ends_before_its_readings_is_no_fit() {
-    let specimen = format!("{PLATE}cracks = [{{ from_mm = [-50, 0], to_mm = [-30, 0] }}]\nholes = [{{ x_mm = -15, y_mm = 0, diameter_mm = 10 }}]\n");
+    let specimen = format!(
+        "{PLATE}cracks = [{{ from_mm = [-50, 0], to_mm = [-30, 0] }}]\nholes = [{{ x_mm = -15, y_mm = 0, diameter_mm = 10 }}]\n"
+    );
     let lengths = [20.0, 24.0, 28.0, 32.0, 40.0];
     let text: String = lengths.iter().enumerate().map(|(i, a)| format!("{},{a}\n", 1000 * i)).collect();
     let calibration = calibration(&specimen, REST, 2.0, format!("cycles,crack_length_mm\n{text}"));

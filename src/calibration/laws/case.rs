@@ -134,7 +134,11 @@ impl LawCase {
         let found = read(&bytes, &path, ratio)?;
         if found.flagged > 0 {
             let of = found.flagged + found.rows.len();
-            self.warnings.push(format!("{}: {} of {of} rates are left out, since they are flagged", path.display(), found.flagged));
+            self.warnings.push(format!(
+                "{}: {} of {of} rates are left out, since they are flagged",
+                path.display(),
+                found.flagged
+            ));
         }
         self.rows.extend(found.rows);
         self.sources.push(source(name, &bytes));
@@ -226,7 +230,12 @@ fn alone(table: &Table) -> Result<String> {
             }
         }
     }
-    Ok(table.get("material").and_then(|material| value_at(material, "name")).and_then(Value::as_str).unwrap_or_default().to_owned())
+    Ok(table
+        .get("material")
+        .and_then(|material| value_at(material, "name"))
+        .and_then(Value::as_str)
+        .unwrap_or_default()
+        .to_owned())
 }
 
 /// The same from a file on disk.

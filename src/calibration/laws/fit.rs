@@ -64,7 +64,10 @@ impl LawFit {
             let parameter = own.iter().find(|parameter| parameter.key == constant.key)?;
             let size = if parameter.key.contains("alpha") || parameter.key.contains("c_th") { 1.0 } else { constant.value.abs() };
             let error = constant.error.filter(|error| *error > parameter.error_max * size)?;
-            Some(format!("{} not identified: {:.3e} ± {error:.1e}; {}, or give it by fit.given", constant.key, constant.value, parameter.told_by))
+            Some(format!(
+                "{} not identified: {:.3e} ± {error:.1e}; {}, or give it by fit.given",
+                constant.key, constant.value, parameter.told_by
+            ))
         });
         self.left_out = self.left_out.take().or(unknown);
     }
@@ -144,7 +147,10 @@ fn trade(free: &[Parameter], slopes: &DMatrix<f64>) -> Option<String> {
     for (i, parameter) in free.iter().enumerate() {
         let size = scaled.column(i).norm();
         if size <= f64::EPSILON {
-            return Some(format!("{} not identified: no rate depends on it; {}, or give it by fit.given", parameter.key, parameter.told_by));
+            return Some(format!(
+                "{} not identified: no rate depends on it; {}, or give it by fit.given",
+                parameter.key, parameter.told_by
+            ));
         }
         scaled.column_mut(i).scale_mut(1.0 / size);
     }
@@ -155,7 +161,10 @@ fn trade(free: &[Parameter], slopes: &DMatrix<f64>) -> Option<String> {
     let (least, most) = (eigen.eigenvalues.imin(), eigen.eigenvalues.max());
     (eigen.eigenvalues[least] < SINGULAR * most).then(|| {
         let parameter = &free[eigen.eigenvectors.column(least).icamax()];
-        format!("{} not identified: other constants make up for it; {}, or give it by fit.given", parameter.key, parameter.told_by)
+        format!(
+            "{} not identified: other constants make up for it; {}, or give it by fit.given",
+            parameter.key, parameter.told_by
+        )
     })
 }
 

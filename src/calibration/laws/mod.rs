@@ -110,7 +110,8 @@ fn choose(candidates: &[LawFit], wanted: FitLaw) -> Result<usize> {
     }
     let left = candidates.iter().enumerate().filter(|(_, candidate)| candidate.left_out.is_none());
     left.min_by(|a, b| a.1.aicc.total_cmp(&b.1.aicc)).map(|(place, _)| place).ok_or_else(|| {
-        let reasons = candidates.iter().filter_map(|candidate| Some(format!("\n  {}: {}", candidate.kind, candidate.left_out.as_ref()?)));
+        let reasons =
+            candidates.iter().filter_map(|candidate| Some(format!("\n  {}: {}", candidate.kind, candidate.left_out.as_ref()?)));
         Error::Mechanics(format!("the rates tell no law:{}", reasons.collect::<String>()))
     })
 }

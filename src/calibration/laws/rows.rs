@@ -82,13 +82,21 @@ fn read_rows(bytes: &[u8], file: &Path, given: Option<f64>) -> Result<RateTable>
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(bytes);
     let broken = |error: csv::Error| {
         let line = error.position().map_or(1, csv::Position::line);
-        wrong(line, "row", "", format!("cannot be read as CSV: {error}"), "separate columns by commas, numbers with a decimal point")
+        wrong(
+            line,
+            "row",
+            "",
+            format!("cannot be read as CSV: {error}"),
+            "separate columns by commas, numbers with a decimal point",
+        )
     };
     let header = reader.headers().map_err(broken)?.clone();
     let column = |name: &str| header.iter().position(|column| column == name);
     let [Some(delta_k), Some(rate)] = [DELTA_K, GROWTH_RATE].map(column) else {
         let names = header.iter().collect::<Vec<_>>().join(",");
-        let remedy = format!("name the columns {DELTA_K}, {GROWTH_RATE} and {RATIO}; `perilife rates` writes such a table from a-N readings");
+        let remedy = format!(
+            "name the columns {DELTA_K}, {GROWTH_RATE} and {RATIO}; `perilife rates` writes such a table from a-N readings"
+        );
         return Err(wrong(1, "header", &names, format!("lacks the columns {DELTA_K} and {GROWTH_RATE}"), remedy));
     };
     let ratio = column(RATIO);
