@@ -13,6 +13,9 @@ use crate::units::MPA_SQRT_M;
 
 /// Change of the exponent below which the path of several tips needs no other run.
 const EXPONENT_SAME: f64 = 0.05;
+/// Error of a block, percent, of a run whose K stands for a plate that no handbook has: what lies between its rows is interpolated. Curves
+/// made with m = 3.4 on a lattice of ten spacings in the crack give 3.60 with the 0.2 of a life, 3.395 with 0.05 and 3.399 with 0.0125.
+const STEP_ERROR_PERCENT: f64 = 0.05;
 /// Most runs of a plate whose tips share the growth by the exponent that is sought.
 const RUNS_MAX: usize = 4;
 
@@ -62,11 +65,12 @@ fn task<'a>(calibration: &'a CalibrationCase, delta_k: &'a dyn Fn(f64) -> f64) -
 
 /// The fit to K of the tips of a plate that no handbook has, along their own paths.
 fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Result<Fit> {
-    let case = &calibration.case;
+    let mut case = calibration.case.clone();
+    case.fatigue.step_error_percent = case.fatigue.step_error_percent.min(STEP_ERROR_PERCENT);
     let mut m = calibration.exponent.fixed.unwrap_or(EXPONENT_USUAL);
     let mut run = 1;
     loop {
-        let factors = FactorCurve::at_exponent(case, m, observer)?;
+        let factors = FactorCurve::at_exponent(&case, m, observer)?;
         let share = case.loading.range_share();
         let of_tips = |length: f64| factors.of_tips(length).into_iter().map(|k| share * k).collect();
         let law = PowerLaw::of_tips(case.specimen.crack_length, case.stop.crack_length, &of_tips)?;

@@ -41,7 +41,9 @@ fn model(spacing: f64) -> String {
 
 /// A curve of the engine with known constants as a file of readings at least 0.5 mm apart.
 fn readings(specimen: &str, spacing: f64, to: f64) -> String {
-    let law = format!("[fatigue]\nparis_c_mm_per_cycle = {C:e}\nparis_m = {M}\n[stop]\ncrack_length_mm = {to}\n");
+    let law = format!(
+        "[fatigue]\nstep_error_percent = 0.05\nparis_c_mm_per_cycle = {C:e}\nparis_m = {M}\n[stop]\ncrack_length_mm = {to}\n"
+    );
     let case = Case::from_toml(&format!("{specimen}{REST}{}{law}", model(spacing)), "made", Folder::none(), &[]).unwrap();
     let run = predict(&case, &Silent).unwrap();
     let mut text = "cycles,crack_length_mm\n".to_owned();
