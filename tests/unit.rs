@@ -43,6 +43,8 @@ mod laws;
 mod malformed;
 #[path = "unit/measured.rs"]
 mod measured;
+#[path = "unit/pairs.rs"]
+mod pairs;
 #[path = "unit/practice.rs"]
 mod practice;
 #[path = "unit/misfit.rs"]

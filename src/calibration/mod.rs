@@ -37,6 +37,7 @@ pub mod model;
 mod names;
 mod numerals;
 pub mod outliers;
+pub mod pairs;
 pub mod paris;
 pub mod power_law;
 pub mod rates;

@@ -5,6 +5,7 @@ use crate::calibration::decimal::Decimal;
 use crate::calibration::loads::Loads;
 use crate::calibration::measured::{Measured, MeasuredCurve, READINGS_MIN, Source};
 use crate::calibration::numerals::{is_number, number};
+use crate::calibration::pairs::Pair;
 use crate::calibration::table::{Fault, Row, Table, whole_file};
 use crate::error::{Error, Result};
 use crate::specimen::LoadMeasure;
@@ -32,6 +33,7 @@ pub(crate) fn curves_of(table: &Table, layout: &Layout, fate: Fate<'_>) -> Resul
         Shape::WideLengths(cycles, specimens) => {
             wide_curves(table, layout.decimal, specimens.iter().map(|length| (*cycles, *length, length.index)), fate)?
         }
+        Shape::Paired(pairs) => paired_curves(table, layout.decimal, pairs, fate)?,
     };
     for curve in &measured.curves {
         let specimen = || Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
@@ -109,6 +111,20 @@ fn wide_curves(
         let mut curve = empty_curve(&table.header[own], table, length);
         let columns = ReadingColumns { cycles, lengths: &[length], sides: &[], loads: LoadColumns::default() };
         for row in table.rows.iter().filter(|row| !row.cell(own).is_empty()) {
+            add_reading(&mut curve, table, row, decimal, &columns).or_else(&mut *fate)?;
+        }
+        curves.push(curve);
+    }
+    Ok(curves)
+}
+
+/// Two columns a specimen, each as long as its test; a row in which both are empty is none of its readings.
+fn paired_curves(table: &Table, decimal: Decimal, pairs: &[Pair], fate: Fate<'_>) -> Result<Vec<MeasuredCurve>> {
+    let mut curves = Vec::new();
+    for Pair { specimen, cycles, length } in pairs {
+        let mut curve = empty_curve(specimen, table, *length);
+        let columns = ReadingColumns { cycles: *cycles, lengths: &[*length], sides: &[], loads: LoadColumns::default() };
+        for row in table.rows.iter().filter(|row| !row.cell(cycles.index).is_empty() || !row.cell(length.index).is_empty()) {
             add_reading(&mut curve, table, row, decimal, &columns).or_else(&mut *fate)?;
         }
         curves.push(curve);

@@ -36,14 +36,12 @@ const PLATES: [(&str, &str, f64, f64); 3] = [
 ];
 
 fn model(spacing: f64) -> String {
-    format!("[model]\nspacing_mm = {spacing}\n")
+    format!("[model]\nspacing_mm = {spacing}\n[fatigue]\nstep_error_percent = 0.05\n")
 }
 
 /// A curve of the engine with known constants as a file of readings at least 0.5 mm apart.
 fn readings(specimen: &str, spacing: f64, to: f64) -> String {
-    let law = format!(
-        "[fatigue]\nstep_error_percent = 0.05\nparis_c_mm_per_cycle = {C:e}\nparis_m = {M}\n[stop]\ncrack_length_mm = {to}\n"
-    );
+    let law = format!("paris_c_mm_per_cycle = {C:e}\nparis_m = {M}\n[stop]\ncrack_length_mm = {to}\n");
     let case = Case::from_toml(&format!("{specimen}{REST}{}{law}", model(spacing)), "made", Folder::none(), &[]).unwrap();
     let run = predict(&case, &Silent).unwrap();
     let mut text = "cycles,crack_length_mm\n".to_owned();
@@ -79,14 +77,15 @@ fn known_constants_are_found_on_drawn_plates() {
         assert!((fit.paris.m / M - 1.0).abs() < 0.005, "{name}: m {}", fit.paris.m);
         assert!((report.rate_at_pivot_mm_per_cycle / (C * fit.paris.pivot.powf(M)) - 1.0).abs() < 0.01, "{name}");
         assert!(report.rms_life_error < 2e-3, "{name}: {}", report.rms_life_error);
-        assert_eq!(report.p_source, "fitted", "{name}");
+        let is_wide = fit.paris.delta_k_max > 2.0 * fit.paris.delta_k_min;
+        assert_eq!(report.p_source, if is_wide { "fitted" } else { "not_identified" }, "{name}");
         // Tips of unlike K share the growth by m, and one tip, or twins, do not.
         assert_eq!(fit.evaluations > 1, name == "unlike cracks", "{name}: {} runs", fit.evaluations);
         // The record makes the same life on the same plate.
         let law = record(&calibration, &fit);
         let stop = format!("[stop]\ncrack_length_mm = {to}\n");
         let case = Case::from_toml(
-            &format!("{specimen}{REST}{}{stop}[fatigue]\nparis_c_mm_per_cycle = 1e-9\nparis_m = 3\n", model(spacing)),
+            &format!("{specimen}{REST}{stop}{}paris_c_mm_per_cycle = 1e-9\nparis_m = 3\n", model(spacing)),
             "life",
             Folder::none(),
             &[],

@@ -1,6 +1,6 @@
 //! Laws over K fitted to rates at several stress ratios, and which of them the rates are for.
 //!
-//! Each law is fitted by [least squares](least_squares) on ln da/dN. Of those whose constants the rates tell the one counts whose
+//! Each law is fitted by least squares on ln da/dN. Of those whose constants the rates tell the one counts whose
 //! criterion of Akaike (1974, IEEE Trans. Autom. Control 19:716) for small samples (Hurvich and Tsai 1989, Biometrika 76:297) is least,
 //!
 //! `AICc = n ln(S/n) + 2 k + 2 k (k + 1) / (n - k - 1)`,

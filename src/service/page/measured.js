@@ -10,7 +10,8 @@ import { problemBox } from "./notices.js";
 
 const LENGTHS = { mm: "millimetres", inch: "inches", m: "metres" };
 const CYCLES = { cycles: "single cycles", kilocycles: "thousands of cycles", megacycles: "millions of cycles" };
-const LAYOUTS = { long: "one reading a row", wide: "one column of cycles for every specimen" };
+const LAYOUTS = { long: "one reading a row", wide: "one column of cycles for every specimen",
+  paired: "two columns for every specimen" };
 
 /** `onChange` is told whenever other curves stand there. Gives {files(), said(), window(), load(files)}. */
 export function createMeasured(onChange) {
@@ -149,7 +150,9 @@ export function createMeasured(onChange) {
   }
 
   function warnings() {
-    const list = answer.flatMap((file) => file.warnings.map((line) => `${file.file}: ${line}`));
+    // Most of them begin with the file themselves.
+    const named = (file, line) => (line.startsWith(`${file}:`) ? line : `${file}: ${line}`);
+    const list = answer.flatMap((file) => file.warnings.map((line) => named(file.file, line)));
     return list.length > 0 && element("div", { class: "notice warn" }, element("ul", null, list.map((line) => element("li", null, line))));
   }
 

@@ -51,6 +51,10 @@ fn columns_that_nobody_knows_are_chosen_on_the_page() {
     page.until("document.querySelector('#measured').dataset.measured === 'ok'");
     let read = page.text("[data-file='unknown.csv']");
     assert!(read.contains("6 readings: 9 to 18.4 mm"), "{read}");
+    let warnings = page.text("#measured-result .warn");
+    assert!(warnings.contains("kraft") && warnings.matches("unknown.csv").count() == 1, "{warnings}");
+    // The test is checked together with them.
+    page.until("!document.querySelector('.side').innerText.includes('Load measured data first')");
     picture(&page, "unknown_columns_chosen");
 }
 
@@ -85,7 +89,7 @@ fn a_fit_of_laws_has_a_page() {
     page.open(&format!("{}/#/{}", service.url, job.trim_start_matches("/v1/")));
     page.see("[data-table=candidates]");
     let laws = page.text("[data-table=candidates]");
-    assert!(["paris", "walker", "k_c_mpa_sqrt_m not identified"].iter().all(|words| laws.contains(words)), "{laws}");
+    assert!(["paris", "walker", "nasgro_alpha not identified"].iter().all(|words| laws.contains(words)), "{laws}");
     assert!(page.text("[data-table=constants]").contains("walker_gamma"));
     picture(&page, "laws");
     let complaints = page.complaints();
