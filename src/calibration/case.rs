@@ -10,7 +10,7 @@ use crate::calibration::criterion::Criterion;
 use crate::calibration::decimal::Decimal;
 use crate::calibration::exponent::Exponent;
 pub use crate::calibration::fit_keys::Parameter;
-use crate::calibration::fit_keys::{FitSlice, exponent};
+use crate::calibration::fit_keys::{FitSlice, delta_k_ratio, exponent};
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::calibration::record::SourceFile;
@@ -143,17 +143,6 @@ impl CalibrationCase {
         let loading = &self.case.loading;
         self.formula.map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
     }
-}
-
-/// Largest over smallest ΔK of all readings.
-fn delta_k_ratio(curves: &[MeasuredCurve], k_i: &dyn Fn(f64) -> f64) -> f64 {
-    let of_curve = |curve: &MeasuredCurve| -> Vec<f64> {
-        let factor = |i: usize| curve.load_factor.get(i).copied().unwrap_or(1.0);
-        curve.crack_length.iter().enumerate().map(|(i, &length)| k_i(length) * factor(i)).collect()
-    };
-    let all = curves.iter().flat_map(of_curve);
-    let (low, high) = all.fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(k), high.max(k)));
-    high / low
 }
 
 /// Takes the law out of the sections of a case that is to get another one, or needs none.

@@ -5,6 +5,7 @@ use serde::Deserialize;
 use crate::calibration::criterion::Criterion;
 use crate::calibration::exponent::Exponent;
 use crate::calibration::laws::FitLaw;
+use crate::calibration::measured::MeasuredCurve;
 use crate::case::Method;
 use crate::error::{Result, input, input_missing};
 use crate::input::Folder;
@@ -58,4 +59,15 @@ pub(super) fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_
             "give the exponent p, or record = \"fitted.toml\", or fit it too: parameters = [\"a\", \"p\"]",
         )),
     }
+}
+
+/// Largest over smallest ΔK of all readings.
+pub(super) fn delta_k_ratio(curves: &[MeasuredCurve], k_i: &dyn Fn(f64) -> f64) -> f64 {
+    let of_curve = |curve: &MeasuredCurve| -> Vec<f64> {
+        let factor = |i: usize| curve.load_factor.get(i).copied().unwrap_or(1.0);
+        curve.crack_length.iter().enumerate().map(|(i, &length)| k_i(length) * factor(i)).collect()
+    };
+    let all = curves.iter().flat_map(of_curve);
+    let (low, high) = all.fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(k), high.max(k)));
+    high / low
 }

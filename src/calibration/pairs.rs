@@ -45,7 +45,7 @@ pub(super) fn meanings_of_pairs(names: &[String]) -> Option<(Vec<Meaning>, Vec<O
     let numbers: Vec<Option<&str>> = (0..count).map(|pair| names[2 * pair].1).collect();
     let is_own = |i: usize| numbers[i].is_some() && !numbers[..i].contains(&numbers[i]);
     let are_told = numbers.iter().all(Option::is_none) || (0..count).all(is_own);
-    let are_pairs = count > 1 && names.len() % 2 == 0 && (0..count).all(is_pair) && are_told;
+    let are_pairs = count > 1 && names.len().is_multiple_of(2) && (0..count).all(is_pair) && are_told;
     are_pairs.then_some((meanings, numbers))
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::calibration::case::CalibrationCase;
-use crate::calibration::fit::{DELTA_K_RATIO_MIN, Fit, FittedCurve};
+use crate::calibration::fit::{Fit, FittedCurve};
 use crate::calibration::lack_of_fit::LackOfFit;
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::record::{FittedRecord, SourceFile};
@@ -120,7 +120,7 @@ impl FitReport {
             rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
             rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
             p_error: p_error(calibration, fit),
-            p_source: p_source(calibration, fit),
+            p_source: calibration.exponent.source_over(fit.paris.delta_k_max / fit.paris.delta_k_min),
             criterion: calibration.criterion.name().to_owned(),
             covariance: fit.confidence.covariance,
             increment_scatter: fit.confidence.increment_scatter,
@@ -157,15 +157,6 @@ impl SpecimenReport {
             life_fitted: curve.life_fitted(),
             rms_life_error: curve.rms_life_error(),
         }
-    }
-}
-
-/// Where p comes from; a drawn plate shows only by its run how far ΔK goes.
-fn p_source(calibration: &CalibrationCase, fit: &Fit) -> String {
-    let is_short = fit.paris.delta_k_max < DELTA_K_RATIO_MIN * fit.paris.delta_k_min;
-    match calibration.exponent.fixed {
-        None if is_short => "not_identified".to_owned(),
-        _ => calibration.exponent.source.clone(),
     }
 }
 

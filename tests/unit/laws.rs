@@ -35,8 +35,10 @@ const NASGRO: [(&str, f64); 9] = [
     ("k_c_mpa_sqrt_m", 70.0),
 ];
 
-/// Laws with their constants, and largest K_max of the rates in MPa√m.
-fn truths() -> Vec<(GrowthLawKind, Box<dyn GrowthLaw>, Vec<(&'static str, f64)>, f64)> {
+/// A law with its constants, and largest K_max of the rates in MPa√m.
+type Truth = (GrowthLawKind, Box<dyn GrowthLaw>, Vec<(&'static str, f64)>, f64);
+
+fn truths() -> Vec<Truth> {
     let paris = ParisLaw { c: 1e-8 * MM_PER_CYCLE, m: 3.1 };
     let of = |gamma| Box::new(Walker { paris, gamma, threshold: 0.0 });
     let forman = Forman { c: 6e-6 * MM_PER_CYCLE, m: 2.7, k_c: 62.0 * MPA_SQRT_M };
