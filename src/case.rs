@@ -5,6 +5,7 @@ mod fatigue;
 pub mod first_load;
 pub mod growth_law;
 mod law;
+mod law_record;
 mod law_source;
 pub mod model;
 mod nodes;
@@ -18,6 +19,7 @@ use crate::body::lattice::fitting_spacing;
 use crate::bond_law::{BondLaw, SurfaceCorrection};
 use crate::calibration::record::FittedRecord;
 use crate::element_free::resolution::ElementFreeSettings;
+use crate::calibration::record::law::LawRecord;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
@@ -143,4 +145,6 @@ pub struct Case {
     pub allow_extrapolation: bool,
     /// What the file chose explicitly; a fitted record must agree with it.
     pub choices: Choices,
+    /// The record that its law over K comes from.
+    pub law_record: Option<Box<LawRecord>>,
 }

@@ -43,6 +43,8 @@ mod fracture;
 mod ends;
 #[path = "interface/hand_calculation.rs"]
 mod hand_calculation;
+#[path = "interface/laws.rs"]
+mod laws;
 #[path = "interface/rates.rs"]
 mod rates;
 #[path = "interface/service.rs"]

@@ -37,10 +37,14 @@ mod layering;
 mod belonging;
 #[path = "unit/import.rs"]
 mod import;
+#[path = "unit/laws.rs"]
+mod laws;
 #[path = "unit/malformed.rs"]
 mod malformed;
 #[path = "unit/measured.rs"]
 mod measured;
+#[path = "unit/pairs.rs"]
+mod pairs;
 #[path = "unit/practice.rs"]
 mod practice;
 #[path = "unit/misfit.rs"]

@@ -71,6 +71,8 @@ mod stability;
 mod fatigue;
 #[path = "verification/checkpoint.rs"]
 mod checkpoint;
+#[path = "verification/drawn_plates.rs"]
+mod drawn_plates;
 #[path = "verification/round_trip.rs"]
 mod round_trip;
 #[path = "verification/crack_length.rs"]

@@ -9,24 +9,18 @@ use toml::{Table, Value};
 use crate::calibration::criterion::Criterion;
 use crate::calibration::decimal::Decimal;
 use crate::calibration::exponent::Exponent;
+pub use crate::calibration::fit_keys::Parameter;
+use crate::calibration::fit_keys::{FitSlice, delta_k_ratio, exponent};
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::calibration::record::SourceFile;
-use crate::case::{Case, LAW_KEYS, LawSource, Method};
+use crate::case::{Case, LAW_KEYS, LawSource};
 use crate::error::{input, input_missing};
 use crate::fatigue::{Ageing, GrowthRate};
 use crate::input::{Document, Folder, LENGTH, slice};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::MM;
-
-crate::kinds! {
-    /// Constants a calibration can fit.
-    pub enum Parameter for "fit.parameters" {
-        A = "a": "the constant A",
-        P = "p": "the exponent p",
-    }
-}
 
 /// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
 const LENGTH_SLACK: f64 = 1e-9;
@@ -49,7 +43,7 @@ pub struct CalibrationCase {
     pub left_out: Vec<LeaveOut>,
     /// What the user should know.
     pub warnings: Vec<String>,
-    formula: HandbookFormula,
+    formula: Option<HandbookFormula>,
 }
 
 /// `[measured]`.
@@ -81,16 +75,6 @@ impl MeasuredSlice {
             sheet: self.sheet.clone(),
         }
     }
-}
-
-/// `[fit]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FitSlice {
-    parameters: Option<Vec<Parameter>>,
-    p: Option<f64>,
-    record: Option<String>,
-    criterion: Option<Criterion>,
 }
 
 impl CalibrationCase {
@@ -126,14 +110,7 @@ impl CalibrationCase {
         }
         check_walker(&case)?;
         check_growth_rate(&case)?;
-        let formula = handbook(&case.specimen).ok_or_else(|| {
-            input(
-                "specimen.kind",
-                format!("\"{}\"", case.specimen.kind),
-                "has no handbook K(a) in this shape, and a calibration gives its growth rates against ΔK",
-                "calibrate on a standard specimen (length at least 1.5 widths), then predict the plate with the fit",
-            )
-        })?;
+        let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
         let (limit, limit_name) = case.specimen.length_limit();
         measured.check_lengths(limit, limit_name)?;
@@ -143,10 +120,12 @@ impl CalibrationCase {
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;
         let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
-        if !formula.holds_at(case.specimen.crack_length) || !formula.holds_at(longest) {
+        if let Some(formula) =
+            formula.filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a)))
+        {
             warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
         }
-        let delta_k_ratio = delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum));
+        let delta_k_ratio = formula.map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
         let exponent = exponent(&fit, folder, case.model.method, delta_k_ratio)?;
         warnings.extend(exponent.warning.clone());
         let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
@@ -158,22 +137,12 @@ impl CalibrationCase {
         Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out: keys.leave_out, warnings, formula })
     }
 
-    /// ΔK of the handbook (Pa√m) at a crack length (m).
+    /// ΔK of the handbook (Pa√m) at a crack length (m); `None` where no handbook has the specimen, as a drawn plate.
     #[must_use]
-    pub fn delta_k(&self, crack_length: f64) -> f64 {
-        self.formula.delta_k(crack_length, self.case.loading.maximum, self.case.loading.range_share())
+    pub fn delta_k(&self, crack_length: f64) -> Option<f64> {
+        let loading = &self.case.loading;
+        self.formula.map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
     }
-}
-
-/// Largest over smallest ΔK of all readings.
-fn delta_k_ratio(curves: &[MeasuredCurve], k_i: &dyn Fn(f64) -> f64) -> f64 {
-    let of_curve = |curve: &MeasuredCurve| -> Vec<f64> {
-        let factor = |i: usize| curve.load_factor.get(i).copied().unwrap_or(1.0);
-        curve.crack_length.iter().enumerate().map(|(i, &length)| k_i(length) * factor(i)).collect()
-    };
-    let all = curves.iter().flat_map(of_curve);
-    let (low, high) = all.fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(k), high.max(k)));
-    high / low
 }
 
 /// Takes the law out of the sections of a case that is to get another one, or needs none.
@@ -221,29 +190,6 @@ fn unrecorded(case: &Case) -> Option<String> {
     (case.fatigue.threshold > 0.0).then(|| line.to_owned())
 }
 
-/// The exponent of `[fit]` for a window with this ratio of the largest to the smallest ΔK.
-fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_ratio: f64) -> crate::Result<Exponent> {
-    let parameters = fit.parameters.clone().unwrap_or_else(|| vec![Parameter::A, Parameter::P]);
-    let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
-    if !parameters.contains(&Parameter::A) {
-        let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
-        return Err(input("fit.parameters", format!("[{}]", names.join(", ")), "leaves a out, which is always fitted", remedy));
-    }
-    match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
-        (_, Some(p), Some(_)) => Err(input("fit.p", p, "stands beside record: p is given twice", "give p or record")),
-        (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
-        (true, None, None) => Ok(Exponent::fitted(delta_k_ratio)),
-        (true, None, Some(file)) => Exponent::record_if_needed(file, folder, method, delta_k_ratio),
-        (false, Some(p), None) => Ok(Exponent::given(p)),
-        (false, None, Some(file)) => Exponent::of_record(file, folder, method),
-        (false, None, None) => Err(input_missing(
-            "fit.p",
-            "is missing",
-            "give the exponent p, or record = \"fitted.toml\", or fit it too: parameters = [\"a\", \"p\"]",
-        )),
-    }
-}
-
 /// Curves of the measured files, and what the record says about the files.
 fn readings(keys: &MeasuredSlice, folder: &Folder) -> crate::Result<(Measured, Vec<SourceFile>)> {
     if keys.files.is_empty() {
@@ -261,7 +207,7 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> crate::Result<(Measured, V
 }
 
 /// What the record says about a measured file.
-fn source(file: &str, bytes: &[u8]) -> SourceFile {
+pub(crate) fn source(file: &str, bytes: &[u8]) -> SourceFile {
     let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     SourceFile { file: file.to_owned(), sha256 }
 }

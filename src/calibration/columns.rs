@@ -2,8 +2,9 @@
 
 use crate::calibration::column_units::{cycle_unit, length_column, load_unit, wide_length_unit};
 use crate::calibration::decimal::{Decimal, decide};
-use crate::calibration::import::{CycleUnit, Import};
+use crate::calibration::import::{ColumnNames, CycleUnit, Import};
 use crate::calibration::names::{LoadRole, Meaning};
+use crate::calibration::pairs::pairs;
 pub(crate) use crate::calibration::roles::names_a_test;
 use crate::calibration::roles::{self, Roles};
 pub use crate::calibration::shape::{Column, LoadColumns, Shape};
@@ -37,10 +38,14 @@ const KNOWN: &str = "known are specimen, cycles (N, kilocycles, megacycles), cra
 /// Columns that are not there, that say the same, or that do not make up a test; cells that leave the decimal sign open.
 pub(crate) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
     roles::check_given(table, import)?;
+    let given = import.columns != ColumnNames::default();
+    if let Some(pairs) = if given { None } else { pairs(table, import)? } {
+        return layout(table, import, Shape::Paired(pairs), table.warnings());
+    }
     let roles = Roles::of(&table.header, &table.names, import);
     let (cycles, lengths) = (roles.cycles(), roles.lengths());
     let specimen = roles.places(|meaning| *meaning == Meaning::Specimen);
-    let mut warnings = Vec::new();
+    let mut warnings = table.warnings();
     let wide = table.header.len() >= 3 && specimen.is_empty() && roles.rest_unknown();
     let rest = 1..table.header.len();
     let shape = match (cycles.as_slice(), lengths.as_slice()) {
@@ -65,6 +70,11 @@ pub(crate) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
         }
         _ => return Err(unknown_shape(table, &roles)),
     };
+    layout(table, import, shape, warnings)
+}
+
+/// What the shape of a table leaves open.
+fn layout(table: &Table, import: &Import, shape: Shape, warnings: Vec<String>) -> Result<Layout> {
     let decimal = decide(table, &shape.numbers(), import.decimal)?;
     let (length_unit, cycle_unit) = shape.units();
     let separator = table.separator.map_or("", |separator| separator.name());

@@ -43,8 +43,9 @@ impl Robust {
 }
 
 /// A and p by the repeated median over ΔK of the law that is fitted; `None` where all readings belong, or the law has no such p.
-pub(super) fn robust_constants(curve: &MeasuredCurve, law: &PowerLaw) -> Option<Constants> {
-    let rates = step_rates(curve, &|length| law.delta_k(length) * MPA_SQRT_M);
+/// `p` is the exponent of least squares, which several tips count together by.
+pub(super) fn robust_constants(curve: &MeasuredCurve, law: &PowerLaw, p: f64) -> Option<Constants> {
+    let rates = step_rates(curve, &|length| law.delta_k(length, p) * MPA_SQRT_M);
     let line = robust_line(&rates)?;
     let some = !runs(&rates, line).is_empty() && STEADY_EXPONENTS.contains(&line.m);
     some.then(|| Constants { a: line.intercept.exp(), p: line.m })

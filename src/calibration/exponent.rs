@@ -26,6 +26,15 @@ impl Exponent {
         Exponent { fixed: None, error: 0.0, source: source.to_owned(), warning: None }
     }
 
+    /// Its source once a fit has shown by which factor ΔK varies, as a drawn plate does only then.
+    #[must_use]
+    pub fn source_over(&self, delta_k_ratio: f64) -> String {
+        match self.fixed {
+            None => Self::fitted(delta_k_ratio).source,
+            Some(_) => self.source.clone(),
+        }
+    }
+
     /// As the file gives it.
     #[must_use]
     pub fn given(p: f64) -> Self {

@@ -1,5 +1,6 @@
 //! The calibration on one page: from measured curves and K of a growing crack to A, p and how sure they are.
 
+use crate::calibration::case::CalibrationCase;
 use crate::calibration::case_load::at_case_load;
 use crate::calibration::confidence::{Confidence, Lives, confidence};
 use crate::calibration::criterion::Criterion;
@@ -14,9 +15,10 @@ use crate::calibration::paris::{self, Paris};
 use crate::calibration::power_law::PowerLaw;
 use crate::calibration::rates::STEP_MIN;
 use crate::calibration::search::{Constants, is_at_end};
+use crate::calibration::told::{at_end, check_told};
 use crate::error::{Error, Result, input};
 use crate::fatigue::STEADY_EXPONENTS;
-use crate::units::MM;
+use crate::units::{MM, MPA_SQRT_M};
 
 /// Below this ratio of the largest to the smallest ΔK a curve does not say what p is.
 pub const DELTA_K_RATIO_MIN: f64 = 2.0;
@@ -59,6 +61,10 @@ pub struct Fit {
     pub horizon: f64,
     /// Actual lattice spacing, m; NaN where K is that of a handbook.
     pub spacing: f64,
+    /// ΔK along the crack's own path, where no handbook has it.
+    pub own_factors: Option<PowerLaw>,
+    /// How often K(a) was computed.
+    pub evaluations: usize,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -95,6 +101,9 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     warnings.extend(short_steps_warning(&median.crack_length));
 
     let (mut confidence, mut paris) = assess(task, law, &median, &record, is_fitted)?;
+    if is_fitted {
+        check_told(&record.name, &confidence, &paris)?;
+    }
     let mut estimate = Estimate::LeastSquares;
     let line = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted);
     if let Some(line) = line {
@@ -104,7 +113,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         let error = assess(task, law, &belonging, &without, is_fitted)?.1.m_error;
         let least_squares = paris;
         if are_apart(line.m, least_squares.m, error) {
-            if let Some(constants) = robust_constants(&median, law) {
+            if let Some(constants) = robust_constants(&median, law, record.constants.p) {
                 estimate = Estimate::Robust;
                 record = fitted_curve(&median, constants, law)?;
                 (confidence, paris) = assess(task, law, &belonging, &record, is_fitted)?;
@@ -127,7 +136,22 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let fitted: Vec<MeasuredCurve> =
         task.curves.iter().map(|curve| as_fitted(curve, record.constants, law)).collect::<Result<_>>()?;
     let lack_of_fit = lack_of_fit(task.curves, &fitted, task.delta_k);
-    Ok(Fit { record, specimens, confidence, paris, estimate, robust, lack_of_fit, rate_constant, horizon, spacing, warnings })
+    let (own_factors, evaluations) = (None, 1);
+    Ok(Fit {
+        record,
+        specimens,
+        confidence,
+        paris,
+        estimate,
+        robust,
+        lack_of_fit,
+        rate_constant,
+        horizon,
+        spacing,
+        own_factors,
+        evaluations,
+        warnings,
+    })
 }
 
 /// How sure A and p of a curve are, and what they mean as C and m.
@@ -171,14 +195,6 @@ fn remarks(task: &FitTask<'_>) -> Vec<String> {
     lines
 }
 
-/// What it means that a searched p is an end of its range.
-fn at_end(p: f64) -> String {
-    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
-    format!(
-        "the misfit is smallest at p = {p:.3}, an end of the range searched, {low} to {high}: the curve does not follow the law"
-    )
-}
-
 fn checked_p(p: f64) -> Result<f64> {
     if STEADY_EXPONENTS.contains(&p) {
         return Ok(p);
@@ -205,6 +221,13 @@ fn longest(curve: &MeasuredCurve) -> f64 {
 }
 
 impl Fit {
+    /// ΔK, Pa√m, at a crack length, m: of the handbook, or of the crack's own path.
+    #[must_use]
+    pub fn delta_k(&self, calibration: &CalibrationCase, length: f64) -> f64 {
+        let own = || Some(self.own_factors.as_ref()?.delta_k(length, self.record.constants.p) * MPA_SQRT_M);
+        calibration.delta_k(length).or_else(own).unwrap_or(f64::NAN)
+    }
+
     /// Standard error of p; 0 where it was given.
     #[must_use]
     pub fn p_error(&self) -> f64 {

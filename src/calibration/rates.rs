@@ -10,9 +10,7 @@ use std::ops::RangeInclusive;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::calibration::measured::MeasuredCurve;
-use crate::case::Case;
 use crate::line::{Line, line};
-use crate::specimen::{LoadMeasure, SpecimenKind, net_section};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Smallest increment of crack length between readings that E647 (8.6.2) asks for, m.
@@ -42,6 +40,8 @@ pub struct RatePoint {
     pub delta_k: f64,
     /// Range of load over that of the case.
     pub load_factor: f64,
+    /// Stress ratio R; NaN where the readings do not say it ([`add_delta_k`](crate::calibration::test_piece::add_delta_k)).
+    pub ratio: f64,
     /// Largest difference of crack length between sides at the readings of the point, m.
     pub side_difference: f64,
     /// What speaks against the point.
@@ -84,7 +84,8 @@ impl Flags {
     }
 }
 
-/// Rates of a curve by one method, without steps that are left out; ΔK is NaN until [`add_delta_k`].
+/// Rates of a curve by one method, without steps that are left out; ΔK is NaN until
+/// [`add_delta_k`](crate::calibration::test_piece::add_delta_k).
 #[must_use]
 pub fn rates(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {
     let factors = curve.step_factors();
@@ -167,81 +168,15 @@ fn point(curve: &MeasuredCurve, cycles: f64, crack_length: f64, rate: f64, readi
         rate,
         delta_k: f64::NAN,
         load_factor: 1.0,
+        ratio: mean_ratio(curve, readings.clone()),
         side_difference: curve.side_difference.get(readings).map_or(0.0, |of| of.iter().copied().fold(0.0, f64::max)),
         flags: Flags { short_step, not_growing: rate <= 0.0, ..Flags::default() },
     }
 }
 
-/// What ΔK and the validity of a rate depend on; SI.
-pub struct TestPiece<'a> {
-    /// Shape.
-    pub kind: SpecimenKind,
-    /// Width W of its test standard.
-    pub width: f64,
-    /// Thickness B.
-    pub thickness: f64,
-    /// Largest force of a cycle.
-    pub force_max: f64,
-    /// K_max over ΔK.
-    pub k_max_over_range: f64,
-    /// Yield strength, where known.
-    pub yield_strength: Option<f64>,
-    /// ΔK at a crack length.
-    pub delta_k: &'a dyn Fn(f64) -> f64,
-}
-
-impl<'a> TestPiece<'a> {
-    /// The specimen of a case, with ΔK from `delta_k`.
-    #[must_use]
-    pub fn of(case: &Case, delta_k: &'a dyn Fn(f64) -> f64) -> Self {
-        let specimen = &case.specimen;
-        let force_per_load = match specimen.load_measure {
-            LoadMeasure::Stress => specimen.width * specimen.thickness,
-            LoadMeasure::Force => 1.0,
-        };
-        TestPiece {
-            kind: specimen.kind,
-            width: specimen.width,
-            thickness: specimen.thickness,
-            force_max: case.loading.maximum * force_per_load,
-            k_max_over_range: 1.0 / case.loading.range_share(),
-            yield_strength: case.material.yield_strength,
-            delta_k,
-        }
-    }
-}
-
-/// Largest difference between the crack lengths on the sides of a specimen that E647 accepts, m: 0.025 W of a central crack or two
-/// edge cracks, 0.25 B of one edge crack.
-#[must_use]
-pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f64 {
-    let limit = match kind {
-        SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => 0.025 * width,
-        _ => 0.25 * thickness,
-    };
-    // Lengths of 12.8 and 11.2 mm differ by 1.6 mm and a rounding.
-    limit * (1.0 + 1e-9)
-}
-
-/// Fills in ΔK and the flags that depend on the specimen.
-pub fn add_delta_k(points: &mut [RatePoint], piece: &TestPiece<'_>) {
-    for point in points {
-        point.delta_k = (piece.delta_k)(point.crack_length) * point.load_factor;
-        let k_max = point.delta_k * piece.k_max_over_range;
-        point.flags.yielding = !piece.small_scale_yielding(point.crack_length, k_max, point.load_factor);
-        point.flags.uneven_front = point.side_difference > side_difference_max(piece.kind, piece.width, piece.thickness);
-    }
-}
-
-impl TestPiece<'_> {
-    /// Whether the ligament is large enough, see [`net_section::small_scale_yielding`]. True where the yield strength is not
-    /// known.
-    #[must_use]
-    pub fn small_scale_yielding(&self, crack_length: f64, k_max: f64, load_factor: f64) -> bool {
-        let Some(yield_strength) = self.yield_strength else { return true };
-        let force = self.force_max * load_factor / self.thickness;
-        net_section::small_scale_yielding(self.kind, self.width, crack_length, force, k_max, yield_strength)
-    }
+fn mean_ratio(curve: &MeasuredCurve, readings: RangeInclusive<usize>) -> f64 {
+    let of = curve.loads.as_ref().and_then(|loads| loads.ratio.get(readings));
+    of.map_or(f64::NAN, |ratios| ratios.iter().sum::<f64>() / ratios.len() as f64)
 }
 
 /// Line through log10 da/dN (mm/cycle) over log10 ΔK (MPa√m), points that do not grow left out: `intercept` is log10 C, `slope` m.

@@ -1,10 +1,11 @@
 //! From the cells of a table to the readings of every specimen, each checked by itself and against the one before.
 
+use crate::calibration::cells::{load, value};
 use crate::calibration::columns::{Column, Layout, LoadColumns, Shape};
 use crate::calibration::decimal::Decimal;
 use crate::calibration::loads::Loads;
 use crate::calibration::measured::{Measured, MeasuredCurve, READINGS_MIN, Source};
-use crate::calibration::numerals::{is_number, number};
+use crate::calibration::pairs::Pair;
 use crate::calibration::table::{Fault, Row, Table, whole_file};
 use crate::error::{Error, Result};
 use crate::specimen::LoadMeasure;
@@ -32,6 +33,7 @@ pub(crate) fn curves_of(table: &Table, layout: &Layout, fate: Fate<'_>) -> Resul
         Shape::WideLengths(cycles, specimens) => {
             wide_curves(table, layout.decimal, specimens.iter().map(|length| (*cycles, *length, length.index)), fate)?
         }
+        Shape::Paired(pairs) => paired_curves(table, layout.decimal, pairs, fate)?,
     };
     for curve in &measured.curves {
         let specimen = || Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
@@ -116,6 +118,20 @@ fn wide_curves(
     Ok(curves)
 }
 
+/// Two columns a specimen, each as long as its test; a row in which both are empty is none of its readings.
+fn paired_curves(table: &Table, decimal: Decimal, pairs: &[Pair], fate: Fate<'_>) -> Result<Vec<MeasuredCurve>> {
+    let mut curves = Vec::new();
+    for Pair { specimen, cycles, length } in pairs {
+        let mut curve = empty_curve(specimen, table, *length);
+        let columns = ReadingColumns { cycles: *cycles, lengths: &[*length], sides: &[], loads: LoadColumns::default() };
+        for row in table.rows.iter().filter(|row| !row.cell(cycles.index).is_empty() || !row.cell(length.index).is_empty()) {
+            add_reading(&mut curve, table, row, decimal, &columns).or_else(&mut *fate)?;
+        }
+        curves.push(curve);
+    }
+    Ok(curves)
+}
+
 fn empty_curve(name: &str, table: &Table, length: Column) -> MeasuredCurve {
     let source = Source {
         file: table.file.clone(),
@@ -124,29 +140,6 @@ fn empty_curve(name: &str, table: &Table, length: Column) -> MeasuredCurve {
         ..Source::default()
     };
     MeasuredCurve { specimen: name.to_owned(), source, ..MeasuredCurve::default() }
-}
-
-/// The number in a cell in SI units.
-fn value(table: &Table, row: &Row, column: Column, decimal: Decimal) -> Result<f64> {
-    let cell = row.cell(column.index);
-    let fault = || table.cell_fault(row, column.index);
-    if cell.is_empty() {
-        return Err(fault().error("is empty", "give a number or leave the whole row out"));
-    }
-    match number(cell, decimal) {
-        Some(number) if number.is_finite() => Ok(number * column.factor),
-        Some(_) => Err(fault().error("is not a finite number", "give the reading, or leave the whole row out")),
-        None if cell.parse::<f64>().is_ok_and(|number| !number.is_finite()) => {
-            Err(fault().error("is not a finite number", "give the reading, or leave the whole row out"))
-        }
-        None if !is_number(cell) => {
-            Err(fault().error("is not a number", "give a plain number such as 1234.5 or 1.2345e3, thousands in groups of three"))
-        }
-        None => Err(fault().error(
-            format!("is not a number whose decimal sign is the {} of this file", decimal.words()),
-            "give a plain number such as 1234.5 or 1.2345e3, the same decimal sign in the whole file, thousands in groups of three",
-        )),
-    }
 }
 
 /// Adds the reading of a row after checking it by itself and against the reading before.
@@ -210,33 +203,4 @@ fn add_reading(
     curve.crack_length.push(a);
     curve.source.lines.push(row.line);
     Ok(())
-}
-
-/// Largest load and stress ratio of a reading, the latter NaN where the file does not say it; of a file that has ranges alone, the range
-/// in the place of the largest load.
-fn load(table: &Table, row: &Row, decimal: Decimal, columns: &LoadColumns) -> Result<Option<(f64, f64)>> {
-    let Some(column) = columns.maximum.or(columns.range) else { return Ok(None) };
-    let largest = value(table, row, column, decimal)?;
-    if largest <= 0.0 {
-        return Err(table
-            .cell_fault(row, column.index)
-            .error("is not above 0", "give the largest load of a cycle, tension positive"));
-    }
-    let of = |column: Option<Column>| column.map(|column| value(table, row, column, decimal)).transpose();
-    let range = if columns.maximum.is_some() { of(columns.range)? } else { None };
-    let ratio = match (of(columns.minimum)?, of(columns.ratio)?, range) {
-        (Some(smallest), ..) if columns.maximum.is_some() => smallest / largest,
-        // The largest is the smallest and the range.
-        (Some(smallest), ..) => smallest / (smallest + largest),
-        (None, Some(ratio), _) => ratio,
-        (None, None, Some(range)) => 1.0 - range / largest,
-        (None, None, None) => f64::NAN,
-    };
-    if ratio >= 1.0 {
-        let column = columns.minimum.or(columns.ratio).or(columns.range).unwrap_or(column);
-        return Err(table
-            .cell_fault(row, column.index)
-            .error("leaves no range of load", "give the smallest load below the largest"));
-    }
-    Ok(Some((largest, ratio)))
 }

@@ -1,6 +1,8 @@
 //! `fitted.toml`: the calibrated law with all it depends on. One record is one whole: constants are meaningless
 //! without horizon, law, kernel, corrections and zone they were fitted with.
 
+pub mod law;
+
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::estimate::Estimate;

@@ -73,7 +73,8 @@ pub struct FitReport {
     pub lack_of_fit: Option<LackOfFit>,
     /// Readings that were left out.
     pub left_out: Vec<LeaveOut>,
-    /// How often K(a) was computed: once, whatever is fitted to it.
+    /// How often K(a) was computed: once, whatever is fitted to it; again where several tips share the growth by an exponent that is not
+    /// known before.
     pub evaluations: usize,
     /// Wall time.
     pub wall_s: f64,
@@ -119,7 +120,7 @@ impl FitReport {
             rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
             rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
             p_error: p_error(calibration, fit),
-            p_source: calibration.exponent.source.clone(),
+            p_source: calibration.exponent.source_over(fit.paris.delta_k_max / fit.paris.delta_k_min),
             criterion: calibration.criterion.name().to_owned(),
             covariance: fit.confidence.covariance,
             increment_scatter: fit.confidence.increment_scatter,
@@ -137,7 +138,7 @@ impl FitReport {
             robust_paris_c_mm_per_cycle: fit.robust.map_or(f64::NAN, |robust| robust.c),
             lack_of_fit: fit.lack_of_fit,
             left_out: calibration.left_out.clone(),
-            evaluations: 1,
+            evaluations: fit.evaluations,
             wall_s,
             warnings: calibration.warnings.iter().chain(&fit.warnings).cloned().collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),

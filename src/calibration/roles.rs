@@ -2,6 +2,7 @@
 
 use crate::calibration::import::{ColumnName, Import};
 use crate::calibration::names::{LoadRole, Meaning, Named, meaning, units_of};
+use crate::calibration::pairs::meanings_of_pairs;
 use crate::calibration::table::{Fault, Table};
 use crate::error::Result;
 
@@ -10,8 +11,11 @@ pub(crate) struct Roles {
     pub meanings: Vec<Meaning>,
 }
 
-/// Whether a row of names, with what the user says, names cycles and crack length, or starts a wide table.
+/// Whether a row of names, with what the user says, names cycles and crack length, starts a wide table or is one of pairs.
 pub(crate) fn names_a_test(names: &[String], import: &Import) -> bool {
+    if meanings_of_pairs(names).is_some() {
+        return true;
+    }
     let roles = Roles::of(names, names, import);
     let wide = || names.len() >= 3 && roles.rest_unknown() && names.iter().all(|name| !name.is_empty());
     match (roles.cycles().first(), roles.lengths().first()) {

@@ -1,6 +1,7 @@
 //! How the specimens of a table are laid out, column by column.
 
 use crate::calibration::decimal::Holds;
+use crate::calibration::pairs::Pair;
 
 /// A column with what its numbers are multiplied by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,6 +47,8 @@ pub enum Shape {
     WideCycles(Column, Vec<Column>),
     /// First column cycles, then one column of crack length per specimen.
     WideLengths(Column, Vec<Column>),
+    /// Two columns per specimen.
+    Paired(Vec<Pair>),
 }
 
 impl Shape {
@@ -69,6 +72,10 @@ impl Shape {
             }
             Shape::WideCycles(length, _) => give(length.index, "length"),
             Shape::WideLengths(cycles, _) => give(cycles.index, "cycles"),
+            Shape::Paired(pairs) => pairs.iter().for_each(|pair| {
+                give(pair.cycles.index, "cycles");
+                give(pair.length.index, "length");
+            }),
         }
         keys
     }
@@ -94,6 +101,7 @@ impl Shape {
             Shape::WideLengths(counted, specimens) => {
                 std::iter::once(cycles(counted)).chain(specimens.iter().map(measure)).collect()
             }
+            Shape::Paired(pairs) => pairs.iter().flat_map(|pair| [cycles(&pair.cycles), measure(&pair.length)]).collect(),
         }
     }
 
@@ -104,6 +112,7 @@ impl Shape {
             Shape::Long { cycles, lengths, .. } => (first(lengths), cycles.factor),
             Shape::WideCycles(length, specimens) => (length.factor, first(specimens)),
             Shape::WideLengths(cycles, specimens) => (first(specimens), cycles.factor),
+            Shape::Paired(pairs) => (pairs[0].length.factor, pairs[0].cycles.factor),
         }
     }
 }

@@ -9,6 +9,7 @@ use super::choices::Method;
 use super::growth_law::{FactorKeys, Setting};
 use super::{LawSource, law};
 use crate::calibration::record::FittedRecord;
+use crate::calibration::record::law::LawRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
@@ -212,6 +213,10 @@ fn read_record(name: &str, folder: &Folder) -> Result<LawSource> {
 /// A file that cannot be read, or is no such record.
 pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
     let document = folder.document(name)?;
+    if LawRecord::is_of(&document.table) {
+        let problem = "holds a law over K that was fitted to rates, not A and p";
+        return Err(input("fitted", format!("\"{name}\""), problem, "give a record of a fit to a-N readings"));
+    }
     let record = slice::<FittedRecord>(&Value::Table(document.table.clone()), "record").and_then(|record| {
         law::check_record(&record)?;
         Ok(record)

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::choices::{Choices, Method};
-use super::{Case, LAW_KEYS, LawSource, fatigue, first_load, law, model};
+use super::{Case, LAW_KEYS, LawSource, fatigue, first_load, law, law_record, model};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
@@ -78,8 +78,9 @@ impl Case {
         let refinement = sections.given("refinement");
         let model = sections.optional("model");
         let model = model::from_values(model, refinement, &specimen, &material, &mut choices, &mut warnings)?;
+        let (with_law, law_record) = law_record::expanded(sections.optional("fatigue"), folder)?.unzip();
         let fatigue = fatigue::from_value(
-            sections.optional("fatigue"),
+            with_law.as_ref().unwrap_or(sections.optional("fatigue")),
             model.method,
             (&specimen, &material, &loading),
             folder,
@@ -99,6 +100,7 @@ impl Case {
             echo,
             allow_extrapolation: fatigue.allow_extrapolation,
             choices,
+            law_record,
         };
         if case.is_driven_by_factors() && case.model.method == Method::Peridynamics && case.choices.surface_correction.is_none() {
             case.model.take_most_accurate_rim();
@@ -134,6 +136,7 @@ impl Case {
             }
             keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
         }
+        self.law_record = None;
         law::adopt(&mut self, record)?;
         model::check_law(&self)?;
         let lines = law_lines(&self)?;
@@ -187,7 +190,8 @@ fn check_load(case: &Case) -> Result<()> {
 
 /// What the user should know about law and horizon of this case.
 fn law_lines(case: &Case) -> Result<Vec<String>> {
-    let mut lines = Vec::new();
+    let of_record = case.law_record.as_ref().map(|record| law_record::ratio_line(record, case.loading.ratio)).transpose()?;
+    let mut lines: Vec<String> = of_record.flatten().into_iter().collect();
     match &case.law {
         LawSource::Inline(_) => lines.extend(inline_line(case)),
         LawSource::Paris(law) => lines.extend(units_line(law)),

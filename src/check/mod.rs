@@ -11,8 +11,9 @@ use serde_json::{Map, Value, json};
 
 use self::preview::preview;
 use self::scene::{scene_drawing, scene_lines};
-use self::understood::{case_lines, curves_line, sweep_lines};
+use self::understood::{case_lines, curves_line, rates_line, sweep_lines};
 use crate::calibration::case::CalibrationCase;
+use crate::calibration::laws::case::{LawCase, is_law_fit};
 use crate::case::Case;
 use crate::error::Result;
 use crate::fracture::Scene;
@@ -72,6 +73,9 @@ pub fn check(document: Document) -> Result<Checked> {
     if is_scene(&document.table) {
         return checked_scene(&document);
     }
+    if is_law_fit(&document.table) {
+        return checked_laws(&document);
+    }
     if is_calibration(&document.table) {
         let calibration = CalibrationCase::from_document(document.clone())?;
         let mut checked = checked_case(&document, "calibration", &calibration.case, calibration.warnings)?;
@@ -117,6 +121,18 @@ pub fn checked_case(document: &Document, kind: &'static str, case: &Case, mut wa
     warnings.extend(preview.warnings);
     let lines = case_lines(case, preview.points);
     Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing: specimen_svg(case), echo: case.echo.clone() })
+}
+
+/// A fit of laws has a plate only where its rates come from readings.
+fn checked_laws(document: &Document) -> Result<Checked> {
+    let case = LawCase::from_document(document)?;
+    let mut lines = vec![rates_line(&case)];
+    let mut drawing = String::new();
+    if let Some(test) = &case.test {
+        lines.extend(case_lines(&test.case, "none: rates over handbook K".to_owned()));
+        drawing = specimen_svg(&test.case);
+    }
+    Ok(Checked { kind: "calibration", name: case.name, lines, warnings: case.warnings, drawing, echo: case.echo })
 }
 
 fn checked_scene(document: &Document) -> Result<Checked> {

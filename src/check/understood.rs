@@ -2,6 +2,7 @@
 
 use toml::Value;
 
+use crate::calibration::laws::case::LawCase;
 use crate::calibration::measured::MeasuredCurve;
 use crate::case::{Case, LawSource, Method};
 use crate::material::Material;
@@ -33,6 +34,14 @@ pub(super) fn curves_line(curves: &[MeasuredCurve]) -> Line {
         if curves.len() == 1 { format!("specimen {}", curves[0].specimen) } else { format!("{} specimens", curves.len()) };
     let value = format!("{specimens}: {readings} readings from {} to {} mm in {lives} cycles", short(shortest), short(longest));
     line("measured", value)
+}
+
+/// The rates that laws are fitted to.
+pub(super) fn rates_line(case: &LawCase) -> Line {
+    let [low, high] = case.delta_k_range();
+    let ratios = case.ratios().iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    let (rates, of) = (count(case.rows.len(), "rate"), case.law);
+    line("measured", format!("{rates} at R = {ratios}, ΔK {} to {} MPa√m, law {of}", short(low), short(high)))
 }
 
 /// The design of a sweep, and what its cases have for each key that varies; that of the first case follows.
@@ -165,6 +174,15 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
 }
 
 fn law_words(case: &Case) -> String {
+    if let Some(record) = &case.law_record {
+        let constants = record.fatigue.iter().filter(|(key, _)| *key != "growth_law");
+        let constants = constants.map(|(key, value)| match value.as_float() {
+            Some(number) if number != 0.0 && number.abs() < 1e-3 => format!("{key} {number:.4e}"),
+            Some(number) => format!("{key} {number:.4}"),
+            None => format!("{key} {value}"),
+        });
+        return format!("{}, fitted to {} rates: {}", record.kind(), record.rates, constants.collect::<Vec<_>>().join(", "));
+    }
     match &case.law {
         LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
         LawSource::Paris(law) => format!("da/dN = {:e} ΔK^{} (mm/cycle, MPa√m)", law.c / MM_PER_CYCLE, law.m),

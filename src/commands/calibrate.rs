@@ -7,11 +7,11 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::console::Console;
-use super::predict;
+use super::{calibrate_laws, predict};
 use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::{CalibrationCase, remove_law};
 use crate::calibration::estimate::Estimate;
-use crate::calibration::record::FittedRecord;
+use crate::calibration::laws::case::is_law_fit;
 use crate::calibration::results::{FitReport, record};
 use crate::case::Case;
 use crate::error::{Result, input};
@@ -50,7 +50,11 @@ pub struct Args {
 /// Wrong input, mechanics without a result, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let console = &args.console;
-    let calibration = CalibrationCase::from_file(&args.calibration, &args.set)?;
+    let document = Document::read(&args.calibration, &args.set)?;
+    if is_law_fit(&document.table) {
+        return calibrate_laws::run(args, &document);
+    }
+    let calibration = CalibrationCase::from_document(document)?;
     // Read before the fit: a slip in the last case should not cost a calibration.
     let cases = cases_to_predict(&args.predict)?;
     let folder = OutputFolder::create(&args.out)?;
@@ -70,31 +74,20 @@ pub fn run(args: &Args) -> Result<()> {
         console.say(&line);
     }
 
-    let predictions = predict_each(&cases, &law, &args.out, console)?;
-    let mut object = json!(report);
-    if let Some(fields) = object.as_object_mut()
-        && !predictions.is_empty()
-    {
-        fields.insert("predictions".to_owned(), Value::Object(predictions));
-    }
-    console.object(&object)
-}
-
-/// The predictions: each case with the fit, as the command `predict` does it, into its own folder below `out`. They run side by
-/// side; what they say comes in their order.
-fn predict_each(
-    documents: &[Document],
-    law: &FittedRecord,
-    out: &Path,
-    console: &Console,
-) -> Result<serde_json::Map<String, Value>> {
     let with_law = |document: &Document| -> Result<Case> {
         case_of(document)?.with_law(law.clone()).map_err(|error| document.locate(error))
     };
-    let cases: Vec<Case> = documents.iter().map(with_law).collect::<Result<_>>()?;
+    let cases = cases.iter().map(with_law).collect::<Result<_>>()?;
+    predict_each(cases, json!(report), args)
+}
+
+/// Prints the report, with the predictions: each case with the fit, as the command `predict` does it, into its own folder. They run side by
+/// side; what they say comes in their order.
+pub(super) fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args) -> Result<()> {
+    let console = &args.console;
     // Claimed first: a folder that cannot be written should not cost a run.
     let folders: Vec<OutputFolder> =
-        cases.iter().map(|case| OutputFolder::create(&out.join(&case.name))).collect::<Result<_>>()?;
+        cases.iter().map(|case| OutputFolder::create(&args.out.join(&case.name))).collect::<Result<_>>()?;
     let bars = console.progress_of_each(cases.iter().map(|case| &*case.name));
     let runs: Vec<Result<Prediction>> =
         cases.par_iter().zip(bars).map(|(case, bar)| crate::predict::predict(case, &bar)).collect();
@@ -105,11 +98,16 @@ fn predict_each(
         }
         predictions.insert(case.name.clone(), predict::keep(case, run?, folder, console)?.result);
     }
-    Ok(predictions)
+    if let Some(fields) = report.as_object_mut()
+        && !predictions.is_empty()
+    {
+        fields.insert("predictions".to_owned(), Value::Object(predictions));
+    }
+    console.object(&report)
 }
 
 /// Cases for `--predict`, read and checked but for their fatigue law, which the fit will be.
-fn cases_to_predict(paths: &[PathBuf]) -> Result<Vec<Document>> {
+pub(super) fn cases_to_predict(paths: &[PathBuf]) -> Result<Vec<Document>> {
     let mut documents: Vec<Document> = Vec::with_capacity(paths.len());
     for path in paths {
         let mut document = Document::read(path, &[])?;
@@ -124,7 +122,7 @@ fn cases_to_predict(paths: &[PathBuf]) -> Result<Vec<Document>> {
     Ok(documents)
 }
 
-fn case_of(document: &Document) -> Result<Case> {
+pub(super) fn case_of(document: &Document) -> Result<Case> {
     Case::from_table(document.table.clone(), &document.name, &document.folder).map_err(|error| document.locate(error))
 }
 

@@ -30,8 +30,10 @@ pub struct Args {
 /// Wrong input, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let checked = check_file(&args.file, &args.set)?;
-    if let Some(path) = &args.picture {
-        write_file(path, checked.drawing.as_bytes())?;
+    match &args.picture {
+        Some(_) if checked.drawing.is_empty() => args.console.warn("no picture is written: tables of rates have no plate"),
+        Some(path) => write_file(path, checked.drawing.as_bytes())?,
+        None => {}
     }
     for warning in &checked.warnings {
         args.console.warn(warning);

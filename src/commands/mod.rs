@@ -4,6 +4,7 @@
 
 pub mod bench;
 pub mod calibrate;
+mod calibrate_laws;
 pub mod check;
 pub mod collect;
 pub mod export;

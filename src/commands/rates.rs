@@ -11,12 +11,13 @@ use crate::calibration::decimal::Decimal;
 use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, read};
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt;
-use crate::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
+use crate::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
 use crate::calibration::results::quoted;
+use crate::calibration::test_piece::{TestPiece, add_delta_k};
 use crate::case::Case;
 use crate::error::{Result, input};
 use crate::report::output::write_file;
-use crate::specimen::handbook::handbook;
+use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Arguments of `perilife rates`.
@@ -132,21 +133,40 @@ fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) 
         add_delta_k(&mut specimen.points, &piece);
         let law = paris_line(&specimen.points).and_then(|law| doubt(10_f64.powf(law.intercept), law.slope));
         let of_law = law.map(|words| format!("specimen {}: {words}", curve.specimen));
-        specimen.warnings = doubts(curve, &delta_k).into_iter().chain(of_law).collect();
+        let outside = outside_formula(&specimen.points, &formula).map(|words| format!("specimen {}: {words}", curve.specimen));
+        specimen.warnings = doubts(curve, &delta_k).into_iter().chain(of_law).chain(outside).collect();
     }
     Ok(specimens)
 }
 
-/// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags`; ΔK is empty where it is not known.
+/// What is to be said of rates at lengths that the formula for K is not made for.
+fn outside_formula(points: &[RatePoint], formula: &HandbookFormula) -> Option<String> {
+    let outside: Vec<f64> =
+        points.iter().map(|point| point.crack_length).filter(|length| !formula.holds_at(*length)).map(|a| a / MM).collect();
+    let (low, high) = (outside.iter().copied().fold(f64::INFINITY, f64::min), outside.iter().copied().fold(0.0, f64::max));
+    let share = 100.0 * outside.len() as f64 / points.len() as f64;
+    (!outside.is_empty()).then(|| {
+        format!(
+            "{} of {} rates ({share:.1} %), at crack lengths from {low:.3} to {high:.3} mm, lie outside the range of {} ({})",
+            outside.len(),
+            points.len(),
+            formula.name,
+            formula.range
+        )
+    })
+}
+
+/// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio`; ΔK and R are empty where they are not known.
 fn table(specimens: &[SpecimenRates]) -> String {
-    let mut text = String::from("specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags\n");
+    let mut text = String::from("specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio\n");
     for specimen in specimens {
         for point in &specimen.points {
             let delta_k = known(point.delta_k / MPA_SQRT_M).map_or_else(String::new, |k| format!("{k:.10}"));
+            let ratio = known(point.ratio).map_or_else(String::new, |ratio| ratio.to_string());
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "{},{},{:.10},{delta_k},{:.10e},{}",
+                "{},{},{:.10},{delta_k},{:.10e},{},{ratio}",
                 quoted(&specimen.name),
                 point.cycles,
                 point.crack_length / MM,
@@ -166,6 +186,7 @@ fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {
                 "crack_length_mm": point.crack_length / MM,
                 "delta_k_mpa_sqrt_m": known(point.delta_k / MPA_SQRT_M),
                 "da_dn_mm_per_cycle": point.rate / MM_PER_CYCLE,
+                "stress_ratio": known(point.ratio),
                 "flags": point.flags.words().split_whitespace().collect::<Vec<_>>(),
             })
         };

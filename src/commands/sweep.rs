@@ -184,7 +184,11 @@ pub fn finish(folder: &SweepFolder, begun: Instant, console: &Console) -> Result
         let [case, text] = ["first", "warning"].map(|key| warning[key].as_str().unwrap_or_default());
         let more = warning["cases"].as_u64().unwrap_or(1).saturating_sub(1);
         let others = if more > 0 { format!(" and {more} more") } else { String::new() };
-        console.warn(&format!("case {case}{others}: {text}"));
+        let largest = warning["largest_percent"].as_f64().filter(|_| more > 0 && warning["largest_in"] != warning["first"]);
+        let most = largest.map_or_else(String::new, |share| {
+            format!(" (case {}: {share} %)", warning["largest_in"].as_str().unwrap_or_default())
+        });
+        console.warn(&format!("case {case}{others}: {text}{most}"));
     }
     summary(&folder.path, &folder.plan, &figures).iter().for_each(|line| console.say(line));
     console.object(&figures)?;

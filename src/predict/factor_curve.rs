@@ -1,26 +1,41 @@
 //! K of a growing crack against its length, by the field of its tip: what a calibration integrates laws over, and what the
 //! constant of a law of bonds is measured against.
 //!
-//! A crack that no law can turn aside, as that of a standard specimen, has one K(a) whatever its growth law, so one run serves
-//! every pair of C and m.
+//! The path of a crack does not depend on C, and that of a single tip not on m either, so one run serves every pair of C and m. Of several
+//! tips the faster ones grow the farther ahead of the others the larger m is.
 
-use super::{Observer, RunFigures, StopReason, predict};
+use super::{CurvePoint, Observer, RunFigures, StopReason, predict};
 use crate::case::{Case, LawSource};
 use crate::error::{Error, Result};
 use crate::fatigue::Driver;
+use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::paris::ParisLaw;
+use crate::growth::tip_field::steering::equivalent_factor;
+use crate::specimen::LengthConvention;
 use crate::units::MM;
+
+/// Exponent of a run whose tips share its growth, where nothing better is known.
+pub const EXPONENT_USUAL: f64 = 3.0;
+/// Difference of ln K between tips that grow alike.
+const ALIKE: f64 = 0.01;
 
 /// K_eq at maximum load over crack length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FactorCurve {
-    lengths: Vec<f64>,
-    /// ln of K_eq, K in Pa√m.
-    logarithms: Vec<f64>,
+    /// Of every tip whose growth adds to the length; of a standard specimen the fastest stands for all.
+    tips: Vec<TipFactors>,
     /// Figures of the run that it comes from.
     pub figures: RunFigures,
     /// What the user should know about that run.
     pub warnings: Vec<String>,
+}
+
+/// K_eq of a tip while it grows.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct TipFactors {
+    lengths: Vec<f64>,
+    /// ln of K_eq, K in Pa√m.
+    logarithms: Vec<f64>,
 }
 
 impl FactorCurve {
@@ -29,9 +44,18 @@ impl FactorCurve {
     /// # Errors
     /// As [`super::predict`]; a run that ends before that length.
     pub fn of(case: &Case, observer: &dyn Observer) -> Result<Self> {
+        Self::at_exponent(case, EXPONENT_USUAL, observer)
+    }
+
+    /// The same, several tips growing by this exponent.
+    ///
+    /// # Errors
+    /// As [`FactorCurve::of`].
+    pub fn at_exponent(case: &Case, m: f64, observer: &dyn Observer) -> Result<Self> {
         let mut case = case.clone();
-        // Any law will do: a crack that goes straight takes the same steps with all of them.
-        case.law = LawSource::Paris(ParisLaw { c: 1.0, m: 1.0 });
+        // A crack that goes straight takes the same steps with all laws.
+        let m = if case.specimen.convention == LengthConvention::SumOfTips { m } else { 1.0 };
+        case.law = LawSource::Paris(ParisLaw { c: 1.0, m });
         case.fatigue.driver = Driver::TipField;
         (case.fatigue.threshold, case.fatigue.walker_gamma) = (0.0, 1.0);
         case.stop.cycles_max = f64::INFINITY;
@@ -45,15 +69,67 @@ impl FactorCurve {
                 case.stop.crack_length / MM
             )));
         }
-        let share = case.loading.range_share();
-        let (lengths, logarithms) = done.curve.iter().map(|row| (row.crack_length, (row.delta_k / share).ln())).unzip();
-        Ok(FactorCurve { lengths, logarithms, figures: done.figures, warnings: done.warnings })
+        let tips = match case.specimen.convention {
+            LengthConvention::MeanOfTips => {
+                let share = case.loading.range_share();
+                let (lengths, logarithms) = done.curve.iter().map(|row| (row.crack_length, (row.delta_k / share).ln())).unzip();
+                vec![TipFactors { lengths, logarithms }]
+            }
+            LengthConvention::SumOfTips => of_every_tip(&done.curve),
+        };
+        Ok(FactorCurve { tips, figures: done.figures, warnings: done.warnings })
     }
 
-    /// K_eq at maximum load, Pa√m, at a crack length, m: its logarithm on the parabolas through the two rows around it and the one
-    /// before or behind, the nearer row's taken the more, so that value and slope are continuous.
+    /// K_eq at maximum load, Pa√m, at a crack length, m, of the fastest tip.
     #[must_use]
     pub fn at(&self, length: f64) -> f64 {
+        self.of_tips(length).into_iter().fold(f64::NAN, f64::max)
+    }
+
+    /// K_eq at maximum load, Pa√m, at a crack length, m, of every tip that grows there.
+    #[must_use]
+    pub fn of_tips(&self, length: f64) -> Vec<f64> {
+        let last = self.tips.iter().filter_map(|tip| tip.lengths.last()).copied().fold(0.0, f64::max);
+        // Beyond the last row by a rounding, K goes on.
+        let grows = |tip: &&TipFactors| tip.grows_at(length.min(last));
+        self.tips.iter().filter(grows).map(|tip| tip.at(length)).collect()
+    }
+
+    /// Whether tips of unlike K share the growth, so that the path depends on the exponent.
+    #[must_use]
+    pub fn depends_on_exponent(&self) -> bool {
+        let rows = self.tips.iter().flat_map(|tip| &tip.lengths);
+        rows.map(|&length| self.of_tips(length)).any(|tips| {
+            let (low, high) = tips.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(*k), high.max(*k)));
+            tips.len() > 1 && (high / low).ln() > ALIKE
+        })
+    }
+}
+
+/// K of every tip over the rows in which it grows.
+fn of_every_tip(curve: &[CurvePoint]) -> Vec<TipFactors> {
+    let count = curve.first().map_or(0, |row| row.tips.len());
+    let of_tip = |tip: usize| {
+        let factor = |row: &CurvePoint| {
+            let record = &row.tips[tip];
+            let factor = equivalent_factor(record.factors.filter(|_| record.state == TipState::Active)?);
+            (factor > 0.0).then_some((row.crack_length, factor.ln()))
+        };
+        let (lengths, logarithms) = curve.iter().filter_map(factor).unzip();
+        TipFactors { lengths, logarithms }
+    };
+    (0..count).map(of_tip).filter(|tip| tip.lengths.len() > 1).collect()
+}
+
+impl TipFactors {
+    fn grows_at(&self, length: f64) -> bool {
+        let [first, last] = [self.lengths[0], self.lengths[self.lengths.len() - 1]];
+        (first * (1.0 - 1e-9)..=last * (1.0 + 1e-9)).contains(&length)
+    }
+
+    /// The logarithm on the parabolas through the two rows around it and the one before or behind, the nearer row's taken the more, so
+    /// that value and slope are continuous.
+    fn at(&self, length: f64) -> f64 {
         let last = self.lengths.len() - 1; // a run has its start and its end
         let before = self.lengths.partition_point(|&a| a < length).clamp(1, last) - 1;
         let share = (length - self.lengths[before]) / (self.lengths[before + 1] - self.lengths[before]);

@@ -9,6 +9,7 @@ use crate::calibration::criterion::Criterion;
 use crate::calibration::decimal::Decimal;
 use crate::calibration::estimate::Estimate;
 use crate::calibration::import::{CycleUnit, LengthUnit, LoadUnit};
+use crate::calibration::laws::FitLaw;
 use crate::calibration::rates::RateMethod;
 use crate::case::growth_law::TableEnds;
 use crate::case::{Failure, Method};
@@ -69,6 +70,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     let of_calibration = [
         Parameter::lines(),
         Criterion::lines(),
+        FitLaw::lines(),
         LengthUnit::lines(),
         CycleUnit::lines(),
         LoadUnit::lines(),

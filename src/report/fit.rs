@@ -42,7 +42,7 @@ fn band(calibration: &CalibrationCase, fit: &Fit, report: &FitReport) -> String 
     let mut weighted = 0.0;
     for (i, (&length, &n)) in lengths.iter().zip(cycles).enumerate() {
         if i > 0 {
-            let delta_k = calibration.delta_k(0.5 * (length + lengths[i - 1])) * fit.record.load_factor[i] / MPA_SQRT_M;
+            let delta_k = fit.delta_k(calibration, 0.5 * (length + lengths[i - 1])) * fit.record.load_factor[i] / MPA_SQRT_M;
             weighted += (n - cycles[i - 1]) * (delta_k / report.pivot_delta_k_mpa_sqrt_m).ln();
         }
         let w = if n > 0.0 { weighted / n } else { 0.0 };
@@ -103,7 +103,7 @@ fn draw(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
 /// `fit_rates.svg`: the fitted curve's rates against ΔK with the straight line through them.
 fn draw_rates(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
     let record = &fit.record;
-    let delta_k = |length: f64| calibration.delta_k(length) / MPA_SQRT_M;
+    let delta_k = |length: f64| fit.delta_k(calibration, length) / MPA_SQRT_M;
     let rates = |cycles: &[f64]| -> Vec<(f64, f64)> {
         (1..cycles.len())
             .map(|i| {

@@ -13,16 +13,15 @@ const NAMED: f64 = 0.01;
 /// within each block. `None` without a fitted record, without life, or without any known ΔK.
 #[must_use]
 pub fn life_share_extrapolated(case: &Case, prediction: &Prediction) -> Option<f64> {
-    let record = fitted(case)?;
-    life_share_outside(prediction, record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m)
+    let [low, high] = fitted_range(case)?;
+    life_share_outside(prediction, low, high)
 }
 
 /// What is to be said about life outside the fitted range of ΔK, the larger share first.
 #[must_use]
 pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
     let share = life_share_extrapolated(case, prediction).filter(|share| *share > WARNED);
-    let Some(record) = fitted(case).filter(|_| share.is_some()) else { return Vec::new() };
-    let (low, high) = (record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m);
+    let Some([low, high]) = fitted_range(case).filter(|_| share.is_some()) else { return Vec::new() };
     let threshold = if case.fatigue.threshold > 0.0 { "" } else { ", or give fatigue.delta_k_threshold_mpa_sqrt_m" };
     let below = (
         life_share_outside(prediction, low, f64::INFINITY),
@@ -63,6 +62,13 @@ pub fn law_line(case: &Case) -> Option<String> {
         record.material,
         record.stress_ratio
     ))
+}
+
+/// Smallest and largest ΔK that the law of a case was fitted to, MPa√m.
+pub(super) fn fitted_range(case: &Case) -> Option<[f64; 2]> {
+    let of_bonds = fitted(case).map(|record| [record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m]);
+    let over_k = case.law_record.as_ref().map(|record| [record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m]);
+    over_k.or(of_bonds)
 }
 
 fn fitted(case: &Case) -> Option<&FittedRecord> {

@@ -99,13 +99,14 @@ fn law(case: &Case, prediction: &Prediction) -> Value {
     let hand = !case.spends_bond_life();
     let used = case.fatigue_law(prediction.figures.horizon).ok().filter(|_| !hand).map(|law| law.a);
     let c_used = paris_law(case).ok().filter(|_| hand).map(|law| clean(law.c / MM_PER_CYCLE));
-    match &case.law {
+    let source = if case.law_record.is_some() { "fitted" } else { "inline" };
+    let mut law = match &case.law {
         LawSource::Inline(law) => {
             json!({ "source": "inline", "a": law.a, "p": law.p, "horizon_mm": clean(law.horizon / MM), "a_used": used,
                 "paris_c_used_mm_per_cycle": c_used })
         }
         LawSource::Paris(law) => json!({
-            "source": "inline", "paris_c_mm_per_cycle": clean(law.c / MM_PER_CYCLE), "paris_m": law.m,
+            "source": source, "paris_c_mm_per_cycle": clean(law.c / MM_PER_CYCLE), "paris_m": law.m,
             "paris_c_used_mm_per_cycle": c_used,
         }),
         LawSource::Fitted(record) => json!({
@@ -117,9 +118,13 @@ fn law(case: &Case, prediction: &Prediction) -> Value {
             "rate_at_pivot_relative_error": record.rate_at_pivot_relative_error,
             "delta_k_min_mpa_sqrt_m": record.delta_k_min_mpa_sqrt_m, "delta_k_max_mpa_sqrt_m": record.delta_k_max_mpa_sqrt_m,
         }),
-        LawSource::Factor(law) => json!({ "source": "inline", "constants_si": law }),
+        LawSource::Factor(law) => json!({ "source": source, "constants_si": law }),
         LawSource::Missing(path) => json!({ "source": "missing", "file": path }),
+    };
+    if let (Some(record), Some(object)) = (&case.law_record, law.as_object_mut()) {
+        object.insert("record".to_owned(), json!(record));
     }
+    law
 }
 
 /// Hides the last digits of a double, which a unit conversion may have disturbed.

@@ -9,8 +9,8 @@ use super::csv::{self, Row};
 use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
 use super::output::write_file;
 use super::{fit_use, json, vtk};
+use crate::case::Case;
 use crate::case::first_load;
-use crate::case::{Case, LawSource};
 use crate::error::{Error, Result, input};
 use crate::predict::guard::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::{Prediction, StopReason};
@@ -99,11 +99,10 @@ pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
         return Some(Error::Mechanics(format!("{}: {problem}", case.name)));
     }
     let share = json::life_share_extrapolated(case, prediction).unwrap_or(0.0);
-    let LawSource::Fitted(record) = &case.law else { return None };
+    let [low, high] = fit_use::fitted_range(case)?;
     if share <= EXTRAPOLATION_REFUSED || case.allow_extrapolation {
         return None;
     }
-    let (low, high) = (record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m);
     let text = format!("{:.1} % of the life lies outside the fitted range of ΔK, {low:.2} to {high:.2} MPa√m", 100.0 * share);
     let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
     Some(input("fatigue.allow_extrapolation", false, format!("{}: {text}; the results are marked as refused", case.name), remedy))

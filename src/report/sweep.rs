@@ -1,6 +1,5 @@
 //! Results of a sweep: plan, outcome of every case, `sweep.csv`, `sweep.json`, `life.svg`.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -10,6 +9,7 @@ use serde_json::{Value, json};
 use super::chart::{self, Mark, Series};
 use super::csv;
 use super::output::write_file;
+use super::sweep_warnings::warnings;
 use crate::calibration::results::quoted;
 use crate::error::{Error, Result, input_missing};
 use crate::predict::StopReason;
@@ -27,8 +27,6 @@ pub const TABLE_FILE: &str = "sweep.csv";
 pub const FIGURES_FILE: &str = "sweep.json";
 /// The picture.
 pub const CHART_FILE: &str = "life.svg";
-/// Warnings that the figures list at most.
-const WARNINGS_MAX: usize = 20;
 /// Failures that the figures list at most; the table has all.
 const FAILURES_MAX: usize = 100;
 
@@ -196,21 +194,6 @@ pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value 
         "wall_s": wall_s,
         "computing_s": there().map(|outcome| outcome.wall_s).sum::<f64>(),
     })
-}
-
-/// Warnings by number of cases; those that differ in their numbers only are one, told by the first case that has it.
-fn warnings(outcomes: &[Option<Outcome>]) -> Vec<Value> {
-    let mut found: BTreeMap<String, (usize, usize, &str)> = BTreeMap::new();
-    for (i, outcome) in outcomes.iter().enumerate() {
-        for warning in outcome.iter().flat_map(|outcome| &outcome.warnings) {
-            let words = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
-            found.entry(words).or_insert((0, i + 1, warning)).0 += 1;
-        }
-    }
-    let mut found: Vec<(usize, usize, &str)> = found.into_values().collect();
-    found.sort_by_key(|(cases, first, _)| (std::cmp::Reverse(*cases), *first));
-    let told = |(cases, first, text): (usize, usize, &str)| json!({ "cases": cases, "first": label(first), "warning": text });
-    found.into_iter().take(WARNINGS_MAX).map(told).collect()
 }
 
 /// Lives of the cases that have one, upwards.

@@ -10,6 +10,8 @@ pub mod jobs;
 mod page;
 #[path = "service/queue.rs"]
 mod queue;
+#[path = "service/reader.rs"]
+mod reader;
 #[path = "service/refusals.rs"]
 mod refusals;
 #[path = "service/results.rs"]

@@ -335,6 +335,9 @@ fn tables_of_this_program_are_read() {
         lines(|n, a| format!("S1,{n},{a},,1e-5,step_under_0.25_mm"))
     );
     is_the_curve("rates", rates.as_bytes(), &Import::default());
+    let with_ratio: String =
+        rates.lines().map(|line| format!("{line},{}\n", if line.starts_with('s') { "stress_ratio" } else { "0.1" })).collect();
+    is_the_curve("rates at a stress ratio", with_ratio.as_bytes(), &Import::default());
 }
 
 /// A workbook of one or more sheets; numbers as such, everything else as text.

@@ -1,7 +1,8 @@
 //! Growth rates of curves whose rate is known.
 
 use perilife::calibration::measured::MeasuredCurve;
-use perilife::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
+use perilife::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
+use perilife::calibration::test_piece::{TestPiece, add_delta_k};
 use perilife::specimen::SpecimenKind;
 use perilife::units::{MM, MPA};
 
@@ -19,6 +20,7 @@ fn piece(kind: SpecimenKind, yield_strength: Option<f64>) -> TestPiece<'static> 
         thickness: 2.54 * MM,
         force_max: 60.35 * MPA * 152.4 * MM * 2.54 * MM,
         k_max_over_range: 1.25,
+        ratio: 0.2,
         yield_strength,
         delta_k: &delta_k,
     }

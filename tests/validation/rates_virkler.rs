@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use perilife::calibration::measured::{Import, MeasuredCurve, read};
-use perilife::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
+use perilife::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
+use perilife::calibration::test_piece::{TestPiece, add_delta_k};
 use perilife::specimen::SpecimenKind;
 use perilife::units::{MM, MM_PER_CYCLE, MPA};
 
@@ -23,6 +24,7 @@ fn rates_with_delta_k(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoin
         thickness: 2.54 * MM,
         force_max: 60.35 * MPA * 152.4 * MM * 2.54 * MM,
         k_max_over_range: 1.25,
+        ratio: 0.2,
         yield_strength: Some(345.0 * MPA),
         delta_k: &delta_k,
     };

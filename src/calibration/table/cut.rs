@@ -32,6 +32,8 @@ pub(super) struct Place {
     columns: usize,
     /// Whether the header names what a test has.
     named: bool,
+    /// A row above the header whose cells begin the names.
+    above: Option<usize>,
 }
 
 /// How well a separator cuts the sample, better ones larger.
@@ -119,7 +121,24 @@ pub(super) fn place(rows: &[Row], import: &Import) -> Option<Place> {
         (None, None) => (Some(0), 1.min(rows.len()), 0),
     };
     let columns = width(rows.get(width_of)?);
-    (2..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: !named.is_empty() })
+    // A header of two lines, neither of which names a test by itself.
+    let above =
+        header.filter(|header| named.is_empty() && *header > 0 && width(&rows[header - 1]) == columns).map(|header| header - 1);
+    let above = above.filter(|&above| names_a_test(&joined(&rows[above], &rows[above + 1], columns), import));
+    let is_named = !named.is_empty() || above.is_some();
+    (2..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: is_named, above })
+}
+
+/// Names that stand in two lines.
+fn joined(above: &Row, below: &Row, columns: usize) -> Vec<String> {
+    (0..columns).map(|column| format!("{} {}", above.cell(column), below.cell(column)).trim().to_owned()).collect()
+}
+
+/// Rows up to the last one that has a number: what stands behind is text.
+fn without_footer(rows: &[Row]) -> usize {
+    // A row cut by another separator holds readings, and is no text.
+    let has_number = |row: &Row| row.cells.iter().flat_map(|cell| cell.split([',', ';', '\t', '|'])).any(is_number);
+    rows.iter().rposition(has_number).map_or(rows.len(), |last| last + 1)
 }
 
 /// A row below the header of nothing but units.
@@ -128,8 +147,9 @@ fn is_row_of_units(row: &Row) -> bool {
 }
 
 fn merit(rows: &[Row], place: Place) -> Merit {
-    let body = || rows[place.body..].iter().filter(|row| !row.is_blank());
-    let fits = body().all(|row| width(row) <= place.columns && row.cells.len() >= place.columns);
+    let end = without_footer(rows).max(place.body);
+    let body = || rows[place.body..end].iter().filter(|row| !row.is_blank());
+    let fits = body().next().is_some() && body().all(|row| width(row) <= place.columns && row.cells.len() >= place.columns);
     let (numbers, cells) = body()
         .flat_map(|row| row.cells.iter())
         .filter(|cell| !cell.is_empty())
@@ -167,20 +187,24 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Resu
         return Err(whole_file(file).error("is no table of 2 to 4096 columns", "give at least cycles and crack length"));
     };
     let cells = |row: &Row| (0..place.columns).map(|column| row.cell(column).to_owned()).collect::<Vec<String>>();
-    let header = match place.header {
-        Some(header) => cells(&rows[header]),
-        None => (1..=place.columns).map(|column| format!("column {column}")).collect(),
+    let header = match (place.header, place.above) {
+        (Some(header), Some(above)) => joined(&rows[above], &rows[header], place.columns),
+        (Some(header), None) => cells(&rows[header]),
+        (None, _) => (1..=place.columns).map(|column| format!("column {column}")).collect(),
     };
     let units = place.header.filter(|header| header + 1 < place.body).map(|header| cells(&rows[header + 1]));
     let names = units
         .as_ref()
         .map_or_else(|| header.clone(), |units| header.iter().zip(units).map(|(name, unit)| with_unit(name, unit)).collect());
     let header_line = place.header.map_or(0, |header| rows[header].line);
+    let end = without_footer(&rows).max(place.body);
+    let footer = rows.get(end).map(|first| [first.line, rows[rows.len() - 1].line]);
+    rows.truncate(end);
     rows.drain(..place.body);
     // Programs that test in blocks repeat the header over each.
     let repeats = |row: &Row, of: &[String]| of.iter().enumerate().all(|(column, name)| row.cell(column) == name);
     rows.retain(|row| !row.is_blank() && !repeats(row, &header) && !units.as_ref().is_some_and(|units| repeats(row, units)));
-    Ok(Table { file: file.to_path_buf(), header, names, header_line, rows, separator: None })
+    Ok(Table { file: file.to_path_buf(), header, names, header_line, rows, footer, separator: None })
 }
 
 /// A header behind the sign of a comment, as programs for arrays write it.

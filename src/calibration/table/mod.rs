@@ -39,6 +39,8 @@ pub(crate) struct Table {
     pub header_line: usize,
     /// Rows below the header.
     pub rows: Vec<Row>,
+    /// First and last line of text behind the readings, which holds none.
+    pub footer: Option<[usize; 2]>,
     /// What separates columns; `None` where the cells are stored, not written.
     pub separator: Option<Separator>,
 }
@@ -101,6 +103,15 @@ impl Table {
         cut::text(&decode::text(bytes, file)?, file, import)
     }
 
+    /// What the user should know of what was not read.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let line = |[first, last]: [usize; 2]| {
+            let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
+            format!("{}: {lines} behind the readings hold text and no number: not read", self.file.display())
+        };
+        self.footer.map(line).into_iter().collect()
+    }
+
     /// A complaint about a name in the header.
     pub(crate) fn header_fault(&self, column: usize) -> Fault<'_> {
         let name = self.header[column].as_str();
@@ -159,6 +170,7 @@ fn parquet(bytes: &[u8], file: &Path) -> Result<Table> {
             header: cells.header,
             header_line: 0,
             rows,
+            footer: None,
             separator: None,
         })
     }

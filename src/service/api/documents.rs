@@ -17,6 +17,7 @@ use utoipa::ToSchema;
 use super::App;
 use super::collections::is_id;
 use crate::calibration::case::CalibrationCase;
+use crate::calibration::laws::case::{LawCase, is_law_fit};
 use crate::case::{Case, Method};
 use crate::check::is_calibration;
 use crate::error::input;
@@ -275,7 +276,8 @@ fn text_of(given: Value) -> Answer<String> {
 }
 
 fn names_no_readings(table: &toml::Table) -> bool {
-    is_calibration(table) && table.get("measured").is_none_or(|measured| measured.get("files").is_none())
+    let names = |measured: &toml::Value| ["files", "rates"].iter().any(|key| measured.get(key).is_some());
+    is_calibration(table) && !table.get("measured").is_some_and(names)
 }
 
 /// A calibration that names no files uses all that came with it.
@@ -305,6 +307,7 @@ fn check(submission: &Submission, kind: Option<JobKind>, points: f64) -> Answer<
     let document = submission.document()?;
     match kind {
         Some(JobKind::Prediction) => check_points(&Case::from_document(&document)?, points),
+        Some(JobKind::Calibration) if is_law_fit(&document.table) => Ok(LawCase::from_document(&document).map(drop)?),
         Some(JobKind::Calibration) => check_points(&CalibrationCase::from_document(document)?.case, points),
         None => Ok(()),
     }

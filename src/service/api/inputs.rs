@@ -143,7 +143,11 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
 fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
     let Survey { header, first_rows, layout, measured, problems } = survey(content, Path::new(&file), import);
     let columns = layout.map(|layout| Columns {
-        layout: if matches!(layout.shape, Shape::Long { .. }) { "long" } else { "wide" },
+        layout: match layout.shape {
+            Shape::Long { .. } => "long",
+            Shape::Paired(_) => "paired",
+            Shape::WideCycles(..) | Shape::WideLengths(..) => "wide",
+        },
         length_unit: LengthUnit::ALL.iter().find(|unit| unit.metres() == layout.length_unit).map_or("mm", |unit| unit.name()),
         cycle_unit: CycleUnit::ALL.iter().find(|unit| unit.cycles() == layout.cycle_unit).map_or("cycles", |unit| unit.name()),
         decimal_comma: layout.decimal == Decimal::Comma,

@@ -7,6 +7,7 @@ import { follow } from "./events.js";
 import { cycles, deviation, fixed, percent, plain, scientific, significant, words } from "./format.js";
 import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
 import { warningList } from "./check.js";
+import { lawSections } from "./law_page.js";
 import { loadInto, problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
 
@@ -34,6 +35,18 @@ export async function openCalibration(root, id, signal) {
     const { node: rates, image } = createPicture("Growth rate against range of stress intensity, readings and fitted law, logarithmic axes");
     const files = whole.files ?? [];
     const has = (name) => files.some((file) => file.name === name);
+    const path = (name) => `${pathOf(whole)}/files/${name}`;
+    if (has("fit_rates.svg")) {
+      getBlob(path("fit_rates.svg"), signal).then((blob) => showBlob(image, blob))
+        .catch((error) => error.name === "AbortError" || rates.after(problemBox(error)));
+    }
+    // Laws over K, which were fitted to rates: there is no curve.
+    if (whole.summary.candidates) {
+      show(body,
+        whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings),
+        section("rates", "Growth rates", rates), lawSections(whole.summary), downloadList(whole), inputText(whole));
+      return;
+    }
     show(body,
       whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings),
       element("div", { class: "columns wide-left" },
@@ -42,16 +55,11 @@ export async function openCalibration(root, id, signal) {
         element("div", { class: "stack" }, section("constants", "Constants", constants(whole.summary)))),
       specimens(whole.summary),
       downloadList(whole), inputText(whole));
-    const path = (name) => `${pathOf(whole)}/files/${name}`;
     loadInto(curves, async () => {
       const names = ["fit_curves.csv", "fit_band.csv", "quantiles.csv"];
       const [fit, band, quantiles] = await Promise.all(names.map((name) => (has(name) ? getText(path(name), signal).then(readCsv) : null)));
       chart = drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band)]);
     });
-    if (has("fit_rates.svg")) {
-      getBlob(path("fit_rates.svg"), signal).then((blob) => showBlob(image, blob))
-        .catch((error) => error.name === "AbortError" || rates.after(problemBox(error)));
-    }
   }
 
   if (isFinal(job)) {

@@ -62,7 +62,9 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
     try {
       const result = await postInput("/v1/check", body, { signal: own.signal });
       if (own.signal.aborted) return false;
-      await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
+      // Tables of rates have no plate.
+      if (result.drawing) await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
+      else image.hidden = true;
       show(details, result.warnings.length > 0 && warningList(result.warnings),
         terms(Object.entries(result.understood).map(([key, value]) => [sentence(words(key)), String(value)]), "understood"));
       finish(result, "Checked: no errors.", "ok");

@@ -49,7 +49,7 @@ export function createColumns(onChange) {
     /** The first rows of a file as the service cut them. */
     show(file) {
       // A wide table has a specimen in every column.
-      if (file.header.length === 0 || file.columns?.layout === "wide") return null;
+      if (file.header.length === 0 || ["wide", "paired"].includes(file.columns?.layout)) return null;
       const selects = [];
       const columns = file.header.map((_, index) => ({ title: choice(file, index, selects) }));
       return element("details", { open: file.columns === null },

@@ -10,7 +10,8 @@ import { problemBox } from "./notices.js";
 
 const LENGTHS = { mm: "millimetres", inch: "inches", m: "metres" };
 const CYCLES = { cycles: "single cycles", kilocycles: "thousands of cycles", megacycles: "millions of cycles" };
-const LAYOUTS = { long: "one reading a row", wide: "one column of cycles for every specimen" };
+const LAYOUTS = { long: "one reading a row", wide: "one column of cycles for every specimen",
+  paired: "two columns for every specimen" };
 
 /** `onChange` is told whenever other curves stand there. Gives {files(), said(), window(), load(files)}. */
 export function createMeasured(onChange) {
@@ -116,16 +117,23 @@ export function createMeasured(onChange) {
     return `${plain(Math.min(...lengths))} to ${plain(Math.max(...lengths))} mm, up to ${cycles(last)} cycles`;
   }
 
+  /** Whether a problem is with what the columns are, which can be chosen here. */
+  const isOfColumns = (problem) => problem.key === "header" || (problem.key ?? "").startsWith("measured.columns");
+
+  /** The first rows, which messages elsewhere end with, stand above with the choices. */
+  const remedyOf = (problem) => (problem.remedy ?? "").replace(/;?\s*read so far[\s\S]*$/, "");
+
   function problemTable() {
     const list = problems();
     const rows = list.map((one) => [
       one.line ? button(`${one.file}:${one.line}`, () => jump(one), { class: "link" }) : one.file,
-      one.key ?? "", one.value ?? "", one.problem ?? "", one.remedy ?? "",
+      one.key ?? "", one.value ?? "", one.problem ?? "", remedyOf(one),
     ]);
     const columns = ["File and line", "Column", "Value", "Problem", "Remedy"].map((title) => ({ title }));
     return element("div", { class: "notice bad", role: "alert", "data-problems": list.length },
       element("h3", null, list.length >= 100 ? "The first 100 problems" : count(list.length, "problem")),
-      element("p", null, "Correct the file and drop it again under the same name. The chart shows the readings that are right."),
+      element("p", null, list.some(isOfColumns) && "Say above the columns what they are, and under “What the files leave open” which units hold; or correct the file. ",
+        !list.some(isOfColumns) && "Correct the file and drop it again under the same name.", curves().length > 0 && " The chart shows the readings that are right."),
       table("Problems of the measured files", columns, rows, { hidden: true, name: "problems" }));
   }
 
@@ -142,7 +150,9 @@ export function createMeasured(onChange) {
   }
 
   function warnings() {
-    const list = answer.flatMap((file) => file.warnings.map((line) => `${file.file}: ${line}`));
+    // Most of them begin with the file themselves.
+    const named = (file, line) => (line.startsWith(`${file}:`) ? line : `${file}: ${line}`);
+    const list = answer.flatMap((file) => file.warnings.map((line) => named(file.file, line)));
     return list.length > 0 && element("div", { class: "notice warn" }, element("ul", null, list.map((line) => element("li", null, line))));
   }
 

@@ -6,10 +6,11 @@ use std::time::Duration;
 
 use axum::http::StatusCode;
 
-use super::results::{Results, of_fit, of_run};
+use super::results::{Results, of_fit, of_laws, of_run};
 use super::watch::{Keep, Stop, Watch};
 use super::{Shared, TRY_EVERY, milliseconds};
 use crate::calibration::case::CalibrationCase;
+use crate::calibration::laws::case::{LawCase, is_law_fit};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::checkpoint::Checkpoint;
@@ -27,6 +28,7 @@ const LAST_TRIES: u32 = 3;
 enum Task {
     Prediction(Box<Case>, Option<Box<Checkpoint>>),
     Calibration(Box<CalibrationCase>),
+    Laws(Box<LawCase>),
 }
 
 /// Works on a claimed job until it has ended, or is not this worker's any more.
@@ -66,6 +68,7 @@ pub fn work(shared: &Shared, pool: &rayon::ThreadPool, claim: &Claim) {
     let (cracks, keep): (_, Option<Keep<'_>>) = match &task {
         Task::Prediction(case, _) => (case.specimen.cracks.clone(), Some(&keep)),
         Task::Calibration(calibration) => (calibration.case.specimen.cracks.clone(), None),
+        Task::Laws(_) => (Vec::new(), None),
     };
     let watch = Watch::new(&cracks, &growth, keep, shared.settings.checkpoint_every);
     let outcome = run_watched(shared, pool, claim, task, &watch);
@@ -76,6 +79,9 @@ pub fn work(shared: &Shared, pool: &rayon::ThreadPool, claim: &Claim) {
 fn task(kind: JobKind, submission: &Submission, checkpoint: Option<Vec<u8>>) -> Result<Task> {
     let document = submission.document()?;
     if kind == JobKind::Calibration {
+        if is_law_fit(&document.table) {
+            return Ok(Task::Laws(Box::new(LawCase::from_document(&document)?)));
+        }
         return Ok(Task::Calibration(Box::new(CalibrationCase::from_document(document)?)));
     }
     let case = Case::from_document(&document)?;
@@ -143,6 +149,7 @@ fn run(task: Task, watch: &Watch<'_>) -> Result<Results> {
         Task::Prediction(case, None) => of(&case, predict(&case, watch)),
         Task::Prediction(case, Some(checkpoint)) => of(&case, resume(&case, *checkpoint, watch)),
         Task::Calibration(calibration) => of_fit(&calibration, watch),
+        Task::Laws(case) => of_laws(&case),
     }
 }
 

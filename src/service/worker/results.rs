@@ -10,12 +10,14 @@ use zip::write::SimpleFileOptions;
 use super::watch::Watch;
 use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::CalibrationCase;
+use crate::calibration::laws::case::LawCase;
+use crate::calibration::laws::results::report;
 use crate::calibration::results::{FitReport, record};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::Prediction;
 use crate::report::run::PARAVIEW;
-use crate::report::{fit, run};
+use crate::report::{fit, law_fit, run};
 use crate::service::store::File;
 use crate::units::MM;
 
@@ -82,6 +84,19 @@ pub fn of_fit(calibration: &CalibrationCase, watch: &Watch<'_>) -> Result<Result
         figures.insert("thickness_mm".to_owned(), json!(case.specimen.thickness / MM));
     }
     Ok((summary, collected(folder.path())?))
+}
+
+/// Fits laws over K and writes their files.
+///
+/// # Errors
+/// As [`LawCase::fit`] and [`law_fit::write`].
+pub fn of_laws(case: &LawCase) -> Result<Results> {
+    let folder = temporary()?;
+    let started = Instant::now();
+    let fits = case.fit()?;
+    let report = report(case, &fits, started.elapsed().as_secs_f64());
+    law_fit::write(folder.path(), case, &fits, &report)?;
+    Ok((report, collected(folder.path())?))
 }
 
 fn temporary() -> Result<tempfile::TempDir> {

@@ -1,0 +1,247 @@
+//! A calibration file whose fit is a law over K: rates of tables, or of readings, and which law.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::candidate::Given;
+use super::rows::{RateRow, of_readings, read};
+use super::{FitLaw, LawFits, fit_laws};
+use crate::calibration::case::{CalibrationCase, source};
+use crate::calibration::record::SourceFile;
+use crate::error::{Result, input, input_missing};
+use crate::input::{Document, INTENSITY, number, slice, value_at};
+use crate::units::MPA_SQRT_M;
+
+/// Keys of `[measured]` that only tables of rates have.
+const OF_RATES: [&str; 3] = ["rates", "from_delta_k_mpa_sqrt_m", "to_delta_k_mpa_sqrt_m"];
+/// Keys of `[fit]` that only laws have.
+const OF_LAWS: [&str; 2] = ["law", "given"];
+
+/// A checked fit of laws.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawCase {
+    /// File stem.
+    pub name: String,
+    /// Rates inside the window.
+    pub rows: Vec<RateRow>,
+    /// The law asked for.
+    pub law: FitLaw,
+    /// Constants that are given.
+    pub given: Given,
+    /// Name of the material, if the file has one.
+    pub material: String,
+    /// Files with their hashes.
+    pub sources: Vec<SourceFile>,
+    /// The test, where rates are taken from readings.
+    pub test: Option<Box<CalibrationCase>>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// The input as given.
+    pub echo: serde_json::Value,
+}
+
+/// A table of rates: its file, or with the stress ratio that it has no column of.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum TableName {
+    File(String),
+    OneRatio(OneRatio),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OneRatio {
+    file: String,
+    stress_ratio: f64,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+struct RatesSlice {
+    rates: Vec<TableName>,
+    from_delta_k_mpa_sqrt_m: Option<f64>,
+    to_delta_k_mpa_sqrt_m: Option<f64>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+struct LawSlice {
+    law: Option<FitLaw>,
+    given: Given,
+}
+
+/// Whether a calibration file asks for a law over K: it names tables of rates, or another law than that of Paris.
+#[must_use]
+pub fn is_law_fit(table: &Table) -> bool {
+    let value = |section: &str, key: &str| table.get(section).and_then(|section| value_at(section, key));
+    let law = value("fit", "law").and_then(Value::as_str);
+    value("measured", "rates").is_some() || value("fit", "given").is_some() || law.is_some_and(|law| law != FitLaw::Paris.name())
+}
+
+impl LawCase {
+    /// Reads the file and the tables it names.
+    ///
+    /// # Errors
+    /// Wrong input, or files that cannot be read.
+    pub fn from_document(document: &Document) -> Result<Self> {
+        Self::build(document).map_err(|error| document.locate(error))
+    }
+
+    fn build(document: &Document) -> Result<Self> {
+        let mut rest = document.clone();
+        let rates: RatesSlice = slice(&taken(&mut rest.table, "measured", &OF_RATES)?, "measured")?;
+        let laws: LawSlice = slice(&taken(&mut rest.table, "fit", &OF_LAWS)?, "fit")?;
+        super::candidate::check_given(&laws.given)?;
+        let mut case = LawCase {
+            name: document.name.clone(),
+            rows: Vec::new(),
+            law: laws.law.unwrap_or(FitLaw::Paris),
+            given: laws.given,
+            material: String::new(),
+            sources: Vec::new(),
+            test: None,
+            warnings: Vec::new(),
+            echo: serde_json::to_value(&document.table).unwrap_or_default(),
+        };
+        for table in &rates.rates {
+            case.add_table(table, document)?;
+        }
+        if rest.table.get("measured").is_some_and(|measured| value_at(measured, "files").is_some()) {
+            case.add_readings(rest)?;
+        } else {
+            case.material = alone(&rest.table)?;
+        }
+        if case.sources.is_empty() {
+            let remedy = "name tables of da/dN over ΔK: rates = [\"...csv\"], or a-N readings: files = [\"...csv\"]";
+            return Err(input_missing("measured.rates", "is missing", remedy));
+        }
+        case.window(&rates)?;
+        Ok(case)
+    }
+
+    fn add_table(&mut self, table: &TableName, document: &Document) -> Result<()> {
+        let (name, ratio) = match table {
+            TableName::File(name) => (name, None),
+            TableName::OneRatio(table) => {
+                let ratio = number("a stress ratio below 1", -100.0, 0.999).read("measured.rates", table.stress_ratio)?;
+                (&table.file, Some(ratio))
+            }
+        };
+        let bytes = document.folder.read(name)?;
+        let path = document.folder.path(name);
+        let found = read(&bytes, &path, ratio)?;
+        if found.flagged > 0 {
+            let of = found.flagged + found.rows.len();
+            self.warnings.push(format!(
+                "{}: {} of {of} rates are left out, since they are flagged",
+                path.display(),
+                found.flagged
+            ));
+        }
+        self.rows.extend(found.rows);
+        self.sources.push(source(name, &bytes));
+        Ok(())
+    }
+
+    /// Rates of a-N readings, each reading with its own load and stress ratio where its file has them.
+    fn add_readings(&mut self, rest: Document) -> Result<()> {
+        let test = CalibrationCase::from_document(rest)?;
+        if test.delta_k(test.case.specimen.crack_length).is_none() {
+            let problem = "has no handbook K(a) in this shape, over which the rates of readings could stand";
+            let remedy = "fit the law paris, whose K is that of the crack's own path, or give tables of rates: measured.rates";
+            return Err(input("specimen.kind", format!("\"{}\"", test.case.specimen.kind), problem, remedy));
+        }
+        self.rows.extend(of_readings(&test, &|length| test.delta_k(length).unwrap_or(f64::NAN)));
+        // Stress ratios beside that of the case are what these laws are about.
+        self.warnings.extend(test.warnings.iter().filter(|line| !line.contains("stress ratios of the readings")).cloned());
+        self.sources.extend(test.sources.iter().cloned());
+        self.material.clone_from(&test.case.material.name);
+        self.test = Some(Box::new(test));
+        Ok(())
+    }
+
+    fn window(&mut self, keys: &RatesSlice) -> Result<()> {
+        let from = INTENSITY.read_optional("measured.from_delta_k_mpa_sqrt_m", keys.from_delta_k_mpa_sqrt_m)?.unwrap_or(0.0);
+        let to = INTENSITY.read_optional("measured.to_delta_k_mpa_sqrt_m", keys.to_delta_k_mpa_sqrt_m)?.unwrap_or(f64::INFINITY);
+        if from >= to {
+            let problem = format!("is not above from_delta_k_mpa_sqrt_m = {}", from / MPA_SQRT_M);
+            return Err(input("measured.to_delta_k_mpa_sqrt_m", to / MPA_SQRT_M, problem, "give a window that holds rates"));
+        }
+        self.rows.retain(|row| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(&row.delta_k));
+        let count = self.rows.len();
+        if count < 3 {
+            let remedy = "give three rates at least; widen the window in ΔK, and look whether rows are flagged";
+            return Err(input("measured.rates", count, "rates are left of the tables", remedy));
+        }
+        Ok(())
+    }
+
+    /// Fits all laws.
+    ///
+    /// # Errors
+    /// As [`fit_laws`].
+    pub fn fit(&self) -> Result<LawFits> {
+        fit_laws(&self.rows, self.law, &self.given)
+    }
+
+    /// Stress ratios of the rates, rising, those that agree to 0.005 as one.
+    #[must_use]
+    pub fn ratios(&self) -> Vec<f64> {
+        let mut ratios: Vec<f64> = self.rows.iter().map(|row| (row.ratio * 100.0).round() / 100.0).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios.dedup();
+        ratios
+    }
+
+    /// Smallest and largest ΔK, MPa√m.
+    #[must_use]
+    pub fn delta_k_range(&self) -> [f64; 2] {
+        let all = || self.rows.iter().map(|row| row.delta_k / MPA_SQRT_M);
+        [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)]
+    }
+}
+
+/// Some keys of a section, taken out of it.
+fn taken(table: &mut Table, section: &str, keys: &[&str]) -> Result<Value> {
+    let mut taken = Table::new();
+    if let Some(value) = table.get_mut(section) {
+        let of = value.as_table_mut().ok_or_else(|| input(section, "", "is not a table of keys", "write a section"))?;
+        taken.extend(keys.iter().filter_map(|key| Some(((*key).to_owned(), of.remove(*key)?))));
+    }
+    Ok(Value::Table(taken))
+}
+
+/// The name of the material of a file of tables alone, whose other sections have nothing to say.
+fn alone(table: &Table) -> Result<String> {
+    for (section, value) in table {
+        let keys = value.as_table().into_iter().flat_map(|table| table.keys()).next();
+        match (section.as_str(), keys) {
+            ("material", _) | ("measured" | "fit", None) => {}
+            ("measured" | "fit", Some(key)) => {
+                let known = if section == "measured" { OF_RATES.join(", ") } else { OF_LAWS.join(", ") };
+                let problem = "is no key of a fit to tables of rates";
+                return Err(input_missing(&format!("{section}.{key}"), problem, format!("known here: {known}")));
+            }
+            _ => {
+                let remedy = "leave the section out, or name a-N readings: measured.files = [\"...csv\"]";
+                return Err(input_missing(section, "says nothing about tables of rates, which have ΔK and R", remedy));
+            }
+        }
+    }
+    Ok(table
+        .get("material")
+        .and_then(|material| value_at(material, "name"))
+        .and_then(Value::as_str)
+        .unwrap_or_default()
+        .to_owned())
+}
+
+/// The same from a file on disk.
+///
+/// # Errors
+/// As [`LawCase::from_document`].
+pub fn from_file(path: &Path, overrides: &[String]) -> Result<LawCase> {
+    LawCase::from_document(&Document::read(path, overrides)?)
+}

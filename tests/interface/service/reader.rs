@@ -1,0 +1,97 @@
+//! What the page makes of a file whose columns it does not know, and of a fit of laws; pictures stand in `target/tmp/page/` afterwards.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use tempfile::tempdir;
+
+use crate::browser::Browser;
+use crate::server::{Server, in_folder};
+
+const UNKNOWN: &str = "Rig 7, sheet B12\nzeit,riss,kraft,temperatur\n0,9.0,6.1,21.2\n20000,10.2,6.1,21.3\n35000,11.9,6.1,21.4\n\
+                       47000,13.8,6.1,21.3\n56000,16.1,6.1,21.2\n62000,18.4,6.1,21.1\n";
+
+fn picture(page: &Browser, name: &str) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page");
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join(format!("{name}.png")), page.picture()).unwrap();
+}
+
+#[test]
+fn columns_that_nobody_knows_are_chosen_on_the_page() {
+    let Some(page) = Browser::start() else { return };
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    page.look(1280, 900, "light");
+    page.open(&service.url);
+    page.see("#measured-input, #example");
+    let file = dir.path().join("unknown.csv");
+    fs::write(&file, UNKNOWN).unwrap();
+    page.fill("#measured-input", file.to_str().unwrap());
+    page.see("[data-problems] table");
+    picture(&page, "unknown_columns");
+    // What to do is said in the terms of the page; the first rows stand in the table of columns once.
+    let told = page.text("[data-problems]");
+    assert!(told.contains("Say above the columns what they are") && told.contains("is not a known column"), "{told}");
+    assert!(!told.contains("read so far") && !told.contains("20000"), "{told}");
+    let rows = page.text("[data-file='unknown.csv'] [data-table=columns]");
+    assert!(["zeit", "riss", "20000", "21.4"].iter().all(|words| rows.contains(words)), "{rows}");
+    let choose = |column: &str, key: &str| {
+        page.run(&format!(
+            "const one = document.querySelector(\"[data-column='{column}']\"); one.value = '{key}'; one.dispatchEvent(new Event('change'))"
+        ));
+        page.until(&format!("document.querySelector(\"[data-column='{column}']\").value === '{key}'"));
+    };
+    choose("zeit", "cycles");
+    choose("riss", "length");
+    page.until("document.querySelector('[data-problems]')?.innerText.includes('does not say its unit')");
+    page.run("const unit = document.querySelector('#length-unit'); unit.value = 'mm'; unit.dispatchEvent(new Event('change'))");
+    page.until("document.querySelector('#measured').dataset.measured === 'ok'");
+    let read = page.text("[data-file='unknown.csv']");
+    assert!(read.contains("6 readings: 9 to 18.4 mm"), "{read}");
+    let warnings = page.text("#measured-result .warn");
+    assert!(warnings.contains("kraft") && warnings.matches("unknown.csv").count() == 1, "{warnings}");
+    // The test is checked together with them.
+    page.until("!document.querySelector('.side').innerText.includes('Load measured data first')");
+    picture(&page, "unknown_columns_chosen");
+}
+
+#[test]
+fn a_fit_of_laws_has_a_page() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let row = |k: u32, ratio: f64| {
+        let k = f64::from(k);
+        format!("{k},{:e},{ratio}\n", 1e-8 * (k / (1.0_f64 - ratio).powf(0.5)).powi(3))
+    };
+    let rows: String = [0.1, 0.5].iter().flat_map(|ratio| (6..30).map(|k| row(k, *ratio))).collect();
+    let table = format!("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n{rows}");
+    let input = "[measured]\nrates = [\"rates.csv\"]\n[fit]\nlaw = \"best\"\n";
+    let body = json!({ "name": "laws", "input": input, "files": { "rates.csv": table } });
+    let job = service.submit("calibrations", &body);
+    let done = service.succeeded(&job);
+    let summary: &Value = &done["summary"];
+    assert_eq!(summary["law"], "walker", "{summary}");
+    assert!((summary["constants"]["walker_gamma"].as_f64().unwrap() - 0.5).abs() < 1e-6, "{summary}");
+    // A prediction takes the law of the job.
+    let case = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\nthickness_mm = 2\ncrack_length_mm = 9\n[material]\n\
+                name = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.3\n[model]\nmethod = \"handbook\"\n[stop]\n\
+                crack_length_mm = 20\n";
+    let id = job.rsplit('/').next().unwrap();
+    let life = service.submit("predictions", &json!({ "name": "life", "input": case, "calibration": id }));
+    let life = service.succeeded(&life);
+    assert!(life["summary"]["life_cycles"].as_f64().unwrap() > 1e3, "{life}");
+    let Some(page) = Browser::start() else { return };
+    page.look(1280, 900, "light");
+    page.open(&format!("{}/#/{}", service.url, job.trim_start_matches("/v1/")));
+    page.see("[data-table=candidates]");
+    let laws = page.text("[data-table=candidates]");
+    assert!(["paris", "walker", "nasgro_alpha not identified"].iter().all(|words| laws.contains(words)), "{laws}");
+    assert!(page.text("[data-table=constants]").contains("walker_gamma"));
+    picture(&page, "laws");
+    let complaints = page.complaints();
+    assert!(complaints.is_empty(), "{complaints:?}");
+}

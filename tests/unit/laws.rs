@@ -1,0 +1,347 @@
+//! Laws over K fitted to tables of rates: known constants are found again, the right law wins, and what rates do not tell is named.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use perilife::calibration::laws::case::LawCase;
+use perilife::calibration::laws::fit::LawFit;
+use perilife::calibration::laws::results::{rates_csv, record, report, summary};
+use perilife::calibration::laws::rows::{RateRow, read};
+use perilife::calibration::laws::{FitLaw, Given, LawFits, fit_laws};
+use perilife::case::Case;
+use perilife::fatigue::growth_law::GrowthLaw;
+use perilife::fatigue::growth_law::GrowthLawKind;
+use perilife::fatigue::growth_law::Walker;
+use perilife::fatigue::growth_law::forman::Forman;
+use perilife::fatigue::growth_law::nasgro::Nasgro;
+use perilife::fatigue::paris::ParisLaw;
+use perilife::input::{Document, Folder};
+use perilife::predict::{Silent, predict};
+use perilife::units::{MM_PER_CYCLE, MPA_SQRT_M};
+
+use crate::noise::Noise;
+use crate::shared::shared;
+
+const RATIOS: [f64; 4] = [0.0, 0.3, 0.5, 0.7];
+const NASGRO: [(&str, f64); 9] = [
+    ("nasgro_c_mm_per_cycle", 1.5e-7),
+    ("nasgro_n", 3.2),
+    ("nasgro_p", 0.25),
+    ("nasgro_q", 0.8),
+    ("nasgro_alpha", 2.0),
+    ("nasgro_smax_over_flow", 0.3),
+    ("nasgro_delta_k_0_mpa_sqrt_m", 3.2),
+    ("nasgro_c_th", 1.2),
+    ("k_c_mpa_sqrt_m", 70.0),
+];
+
+/// A law with its constants, and largest K_max of the rates in MPa√m.
+type Truth = (GrowthLawKind, Box<dyn GrowthLaw>, Vec<(&'static str, f64)>, f64);
+
+fn truths() -> Vec<Truth> {
+    let paris = ParisLaw { c: 1e-8 * MM_PER_CYCLE, m: 3.1 };
+    let of = |gamma| Box::new(Walker { paris, gamma, threshold: 0.0 });
+    let forman = Forman { c: 6e-6 * MM_PER_CYCLE, m: 2.7, k_c: 62.0 * MPA_SQRT_M };
+    let [c, n, p, q, alpha, s, threshold, c_th, k_c] = NASGRO.map(|(_, value)| value);
+    let nasgro = Nasgro {
+        c: c * MM_PER_CYCLE,
+        n,
+        p,
+        q,
+        alpha,
+        stress_over_flow: s,
+        threshold: threshold * MPA_SQRT_M,
+        threshold_slopes: [0.0, c_th],
+        k_c: k_c * MPA_SQRT_M,
+    };
+    let c_m = [("paris_c_mm_per_cycle", 1e-8), ("paris_m", 3.1)];
+    vec![
+        (GrowthLawKind::Paris, of(1.0), c_m.to_vec(), 50.0),
+        (GrowthLawKind::Walker, of(0.45), [&c_m[..], &[("walker_gamma", 0.45)]].concat(), 50.0),
+        (
+            GrowthLawKind::Forman,
+            Box::new(forman),
+            vec![("forman_c_mm_per_cycle", 6e-6), ("forman_m", 2.7), ("k_c_mpa_sqrt_m", 62.0)],
+            59.0,
+        ),
+        (GrowthLawKind::Nasgro, Box::new(nasgro), NASGRO.to_vec(), 68.0),
+    ]
+}
+
+/// A table of rates of a law, those without growth left out; `scatter` is the standard deviation of ln da/dN.
+fn table(law: &dyn GrowthLaw, ratios: &[f64], k_max: [f64; 2], rows: usize, scatter: f64, seed: u64) -> String {
+    let mut noise = Noise::new(seed);
+    let mut text = "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n".to_owned();
+    for &ratio in ratios {
+        for i in 0..rows {
+            let k = k_max[0] * (k_max[1] / k_max[0]).powf(i as f64 / (rows - 1) as f64);
+            let rate = law.rate(k * MPA_SQRT_M, ratio) / MM_PER_CYCLE * (scatter * noise.normal()).exp();
+            if rate > 0.0 && rate.is_finite() {
+                writeln!(text, "{:.10},{rate:.10e},{ratio}", k * (1.0 - ratio)).unwrap();
+            }
+        }
+    }
+    text
+}
+
+fn rows(text: &str) -> Vec<RateRow> {
+    read(text.as_bytes(), Path::new("rates.csv"), None).unwrap().rows
+}
+
+fn of_kind(fits: &LawFits, kind: GrowthLawKind) -> &LawFit {
+    fits.candidates.iter().find(|law| law.kind == kind).unwrap()
+}
+
+fn constant(law: &LawFit, key: &str) -> (f64, f64) {
+    let found = law.constants.iter().find(|constant| constant.key == key).unwrap();
+    (found.value, found.error.unwrap_or(0.0))
+}
+
+#[test]
+fn known_constants_are_found_and_their_law_wins() {
+    for (kind, law, constants, k_max) in truths() {
+        let fits = fit_laws(&rows(&table(&*law, &RATIOS, [4.0, k_max], 30, 0.0, 1)), FitLaw::Best, &Given::new()).unwrap();
+        assert_eq!(fits.law().kind, kind, "{:#?}", fits.candidates);
+        for (key, truth) in constants {
+            let (value, _) = constant(fits.law(), key);
+            assert!((value / truth - 1.0).abs() < 1e-4, "{kind}: {key} {value} for {truth}");
+        }
+        assert!(fits.margin.is_none_or(|(_, margin)| margin > 2.0), "{kind}: {:?}", fits.margin);
+    }
+}
+
+/// Scatter of one laboratory, 10 % of the rate.
+#[test]
+fn scatter_moves_constants_by_no_more_than_their_errors() {
+    for (kind, law, constants, k_max) in truths() {
+        let (mut outside, mut all, mut wins) = (0, 0, 0);
+        for seed in 1..=12 {
+            let rows = rows(&table(&*law, &RATIOS, [4.0, k_max], 30, 0.1, seed));
+            let fits = fit_laws(&rows, FitLaw::Best, &Given::new()).unwrap();
+            wins += usize::from(fits.law().kind == kind);
+            let own = of_kind(&fits, kind);
+            for (key, truth) in constants.iter().filter(|_| own.left_out.is_none()) {
+                let (value, error) = constant(own, key);
+                all += usize::from(error > 0.0);
+                outside += usize::from(error > 0.0 && (value - truth).abs() > 2.5 * error);
+            }
+        }
+        // Curvature makes a linear error too small now and then.
+        assert!(outside * 8 <= all && all >= 12, "{kind}: {outside} of {all} constants are off by more than 2.5 errors");
+        assert!(wins >= 9, "{kind} wins {wins} of 12 times");
+    }
+}
+
+#[test]
+fn what_rates_do_not_tell_is_named() {
+    let laws = truths();
+    let (paris, walker, nasgro) = (&laws[0].1, &laws[1].1, &laws[3].1);
+    let one_ratio = table(&**walker, &[0.1], [5.0, 40.0], 25, 0.05, 3);
+    let middle = table(&**nasgro, &RATIOS, [12.0, 25.0], 25, 0.02, 4);
+    let straight = table(&**paris, &RATIOS, [5.0, 40.0], 25, 0.05, 5);
+    let cases = [
+        (&one_ratio, FitLaw::Walker, "walker_gamma not identified: all rates are of one stress ratio, R = 0.100"),
+        (&one_ratio, FitLaw::Nasgro, "nasgro_alpha, nasgro_c_th not identified: all rates are of one stress ratio"),
+        (&one_ratio, FitLaw::Forman, "k_c_mpa_sqrt_m not identified"),
+        (
+            &straight,
+            FitLaw::Forman,
+            "k_c_mpa_sqrt_m not identified: the optimum lies at an end of its range, 19 times the largest K_max",
+        ),
+        (&middle, FitLaw::Nasgro, "not identified"),
+    ];
+    for (text, law, words) in cases {
+        let error = fit_laws(&rows(text), law, &Given::new()).unwrap_err();
+        assert_eq!(error.exit_code(), 3, "{law}: {error}");
+        assert!(error.to_string().contains(words), "{law}: {words} in {error}");
+        // The best law is one of the others, with the reason beside it.
+        let best = fit_laws(&rows(text), FitLaw::Best, &Given::new()).unwrap();
+        let reasons: Vec<&String> = best.candidates.iter().filter_map(|law| law.left_out.as_ref()).collect();
+        assert!(reasons.iter().any(|reason| reason.contains(words)), "{law}: {reasons:?}");
+    }
+}
+
+/// What rates do not tell can be given, and then it is no constant of the fit.
+#[test]
+fn constants_can_be_given() {
+    let laws = truths();
+    let text = table(&*laws[3].1, &RATIOS, [12.0, 25.0], 25, 0.02, 4);
+    let given: Given = NASGRO[2..].iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
+    let fits = fit_laws(&rows(&text), FitLaw::Nasgro, &given).unwrap();
+    let (n, error) = constant(fits.law(), "nasgro_n");
+    assert!((n - 3.2).abs() < 3.0 * error && error < 0.05, "n {n} ± {error}");
+    assert_eq!(fits.law().fitted, 2);
+    let refused = fit_laws(&rows(&text), FitLaw::Nasgro, &Given::from([("k_c_mpa_sqrt_m".to_owned(), 20.0)])).unwrap_err();
+    assert!(refused.to_string().contains("a crack grew at K_max = 25.000"), "{refused}");
+}
+
+/// Neighbouring rates of a parabola share readings: they count as fewer, and errors grow.
+#[test]
+fn correlated_rates_count_as_fewer() {
+    let laws = truths();
+    let mut noise = Noise::new(8);
+    let mut rows = rows(&table(&*laws[0].1, &[0.1], [5.0, 40.0], 200, 0.0, 1));
+    let white: Vec<f64> = (0..rows.len() + 6).map(|_| 0.2 * noise.normal()).collect();
+    let mut errors = Vec::new();
+    for smooth in [1, 7] {
+        for (i, row) in rows.iter_mut().enumerate() {
+            let mean = white[i..i + smooth].iter().sum::<f64>() / smooth as f64;
+            row.rate = laws[0].1.rate(row.k_max(), 0.1) * mean.exp();
+        }
+        let fits = fit_laws(&rows, FitLaw::Paris, &Given::new()).unwrap();
+        errors.push((fits.effective_rates, constant(fits.law(), "paris_m").1 / fits.law().rms()));
+        assert_eq!(fits.warnings.iter().any(|line| line.contains("correlated")), smooth > 1, "{:?}", fits.warnings);
+    }
+    assert!(errors[0].0 == 200.0 && (10.0..40.0).contains(&errors[1].0), "{errors:?}");
+    assert!(errors[1].1 > 2.0 * errors[0].1, "{errors:?}");
+}
+
+/// Every record of the shared table of constants, computed as rates and fitted.
+#[test]
+fn the_shared_constants_are_found_from_their_rates() {
+    const KSI_SQRT_IN: f64 = 1.098_843_5;
+    let Some(file) = shared("growth_constants/nasgro_4.csv") else { return };
+    let mut reader = csv::Reader::from_path(file).unwrap();
+    let header = reader.headers().unwrap().clone();
+    let mut seen = 0;
+    for record in reader.records() {
+        let record = record.unwrap();
+        let at = |name: &str| record[header.iter().position(|column| column == name).unwrap()].parse::<f64>().unwrap();
+        let (k_1c, thick) = (at("k1c_ksi_sqrt_in"), 2.5 * (at("k1c_ksi_sqrt_in") / at("yield_ksi")).powi(2));
+        let k_c = k_1c * (1.0 + at("bk") * (-(at("ak") * 0.1 / thick).powi(2)).exp()) * KSI_SQRT_IN;
+        let mut law = Nasgro {
+            c: at("c_in_per_cycle") * 25.4 / KSI_SQRT_IN.powf(at("n")) * MM_PER_CYCLE,
+            n: at("n"),
+            p: at("p"),
+            q: at("q"),
+            alpha: at("alpha"),
+            stress_over_flow: at("smax_s0"),
+            threshold: 1.0,
+            threshold_slopes: [0.0, at("cth_plus")],
+            k_c: k_c * MPA_SQRT_M,
+        };
+        // DK1 is the threshold at R -> 1; that at R = 0 is larger by (1-A0)^-(1+Cth).
+        let (_, a0) = law.opening(0.0);
+        law.threshold = at("dk1_ksi_sqrt_in") * KSI_SQRT_IN * (1.0 - a0).powf(-1.0 - at("cth_plus")) * MPA_SQRT_M;
+        let lowest = law.threshold_at(0.7) / MPA_SQRT_M / 0.3;
+        let text = table(&law, &[0.0, 0.1, 0.4, 0.7], [lowest.min(4.0) * 1.02, 0.97 * k_c], 60, 0.0, 1);
+        let given = Given::from([("nasgro_smax_over_flow".to_owned(), at("smax_s0"))]);
+        let name = [&record[0], &record[1], &record[2], &record[3]].join(", ");
+        let rows = rows(&text);
+        match fit_laws(&rows, FitLaw::Nasgro, &given) {
+            Ok(fits) => {
+                assert!(fits.law().rms() < 1e-6, "{name}: rms {}", fits.law().rms());
+                let of = |key: &str| constant(fits.law(), key).0;
+                for (key, truth) in [("nasgro_n", law.n), ("nasgro_alpha", law.alpha), ("k_c_mpa_sqrt_m", k_c)] {
+                    assert!((of(key) / truth - 1.0).abs() < 1e-3, "{name}: {key} {} for {truth}", of(key));
+                }
+                seen += 1;
+            }
+            // A constraint factor that is an end of its range.
+            Err(error) => assert!(law.alpha >= 2.99 && error.to_string().contains("nasgro_alpha"), "{name}: {error}"),
+        }
+    }
+    assert!(seen >= 25, "{seen} records");
+}
+
+fn case(text: &str, tables: &[(&str, String)]) -> perilife::Result<LawCase> {
+    let files = tables.iter().map(|(name, text)| ((*name).to_owned(), text.clone().into_bytes()));
+    LawCase::from_document(&Document::parse(text, "laws", Folder::at_hand(files), &[]).unwrap())
+}
+
+#[test]
+fn tables_come_in_one_file_or_one_a_ratio() {
+    let law = &truths()[1].1;
+    let all = table(&**law, &[0.1, 0.5], [5.0, 40.0], 12, 0.0, 1);
+    let alone = |ratio: f64| {
+        table(&**law, &[ratio], [5.0, 40.0], 12, 0.0, 1).replace(&format!(",{ratio}\n"), "\n").replace(",stress_ratio", "")
+    };
+    let one = case("[measured]\nrates = [\"all.csv\"]\n[fit]\nlaw = \"walker\"\n", &[("all.csv", all.clone())]).unwrap();
+    let text = "[measured]\nrates = [{ file = \"a.csv\", stress_ratio = 0.1 }, { file = \"b.csv\", stress_ratio = 0.5 }]\n[fit]\nlaw = \"walker\"\n";
+    let two = case(text, &[("a.csv", alone(0.1)), ("b.csv", alone(0.5))]).unwrap();
+    let values = |case: &LawCase| case.fit().unwrap().law().constants.iter().map(|constant| constant.value).collect::<Vec<_>>();
+    assert!(values(&one).iter().zip(values(&two)).all(|(a, b)| (a / b - 1.0).abs() < 1e-9));
+    // A window takes rates of its ΔK; rows of `perilife rates` that are flagged do not count.
+    let narrow = "[measured]\nrates = [\"all.csv\"]\nfrom_delta_k_mpa_sqrt_m = 8\nto_delta_k_mpa_sqrt_m = 12\n";
+    let narrow = case(narrow, &[("all.csv", all.clone())]).unwrap();
+    assert!(narrow.rows.len() > 3 && narrow.rows.iter().all(|row| (8.0..=12.0).contains(&(row.delta_k / MPA_SQRT_M))));
+    let flagged = "specimen,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio\ns,10,1e-5,,0.1\ns,,1e-5,not_growing,0.1\n\
+                   s,11,1.4e-5,load_changes,0.1\ns,12,2e-5,,0.1\ns,13,2.4e-5,,0.1\n";
+    let flagged = case("[measured]\nrates = [\"f.csv\"]\n", &[("f.csv", flagged.to_owned())]).unwrap();
+    assert_eq!(flagged.rows.len(), 4);
+    assert!(flagged.warnings.iter().any(|line| line.contains("1 of 5 rates are left out")), "{:?}", flagged.warnings);
+}
+
+#[test]
+fn wrong_files_say_what_would_be_right() {
+    let good = "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n10,1e-5,0.1\n12,2e-5,0.1\n14,3e-5,0.5\n16,4e-5,0.5\n";
+    let all = "[measured]\nrates = [\"r.csv\"]\n";
+    let cases = [
+        (all.to_owned(), good.replace("12,", "x,"), "r.csv:3: delta_k_mpa_sqrt_m = x: is not a number"),
+        (all.to_owned(), good.replace("2e-5", "-2e-5"), "r.csv:3: da_dn_mm_per_cycle = -2e-5: is not above zero"),
+        (all.to_owned(), good.replace("16,4e-5,0.5", "16,4e-5,1.5"), "stress_ratio = 1.5: is no stress ratio below 1"),
+        (all.to_owned(), good.replace(",stress_ratio", ",r"), "is no column, and no stress_ratio is given for the file"),
+        (all.to_owned(), good.replace("delta_k_mpa", "dk_mpa"), "lacks the columns delta_k_mpa_sqrt_m and da_dn_mm_per_cycle"),
+        (all.to_owned(), good.replace("12,", ","), "`perilife rates --specimen CASE.toml` knows it"),
+        (
+            "[measured]\nrates = [{ file = \"r.csv\", stress_ratio = 0.1 }]\n".to_owned(),
+            good.to_owned(),
+            "is a column, and stress_ratio = 0.1",
+        ),
+        (format!("{all}[fit]\nlaw = \"pariss\"\n"), good.to_owned(), "is not a known kind"),
+        (format!("{all}[fit]\ngiven = {{ nasgro_c = 1 }}\n"), good.to_owned(), "fit.given.nasgro_c = 1: is no constant"),
+        (format!("{all}[fit]\ngiven = {{ nasgro_alpha = 4 }}\n"), good.to_owned(), "fit.given.nasgro_alpha = 4"),
+        (format!("{all}[fit]\np = 3\n"), good.to_owned(), "fit.p: is no key of a fit to tables of rates"),
+        (format!("{all}[loading]\nstress_ratio = 0.1\n"), good.to_owned(), "loading: says nothing about tables of rates"),
+        (format!("{all}from_delta_k_mpa_sqrt_m = 15\n"), good.to_owned(), "rates are left of the tables"),
+        ("[measured]\n[fit]\nlaw = \"best\"\n".to_owned(), good.to_owned(), "measured.rates: is missing"),
+    ];
+    for (text, rates, words) in cases {
+        let error = case(&text, &[("r.csv", rates)]).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{error}");
+        assert!(error.to_string().contains(words), "{words} in {error}");
+    }
+}
+
+const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 8\n\
+                     [material]\nyoungs_modulus_gpa = 71\npoisson_ratio = 0.33\n[loading]\nstress_max_mpa = 80\nstress_ratio = 0.3\n\
+                     [model]\nmethod = \"handbook\"\n[stop]\ncrack_length_mm = 30\n";
+
+/// The record makes the same life as the constants that the rates came from.
+#[test]
+fn predictions_read_the_fitted_law() {
+    for (kind, law, constants, k_max) in truths() {
+        let all = table(&*law, &RATIOS, [4.0, k_max], 30, 0.0, 1);
+        let text = format!("[measured]\nrates = [\"all.csv\"]\n[material]\nname = \"sheet\"\n[fit]\nlaw = \"{kind}\"\n");
+        let calibration = case(&text, &[("all.csv", all)]).unwrap();
+        let fits = calibration.fit().unwrap();
+        let report = report(&calibration, &fits, 0.1);
+        assert_eq!(report["candidates"].as_array().unwrap().len(), 4);
+        assert_eq!(report["law"], kind.name());
+        assert!(report["constants"].as_object().unwrap().len() >= 2 && report["material"] == "sheet", "{report}");
+        assert_eq!(rates_csv(&calibration, &fits).lines().count(), calibration.rows.len() + 1);
+        assert!(summary(&calibration, &fits).iter().any(|line| line.contains("delta AICc")));
+        let record = toml::to_string(&record(&calibration, &fits)).unwrap();
+        let folder = Folder::at_hand([("fitted.toml".to_owned(), record.into_bytes())]);
+        let life = |fatigue: &str, set: &[&str]| {
+            let set: Vec<String> = set.iter().map(|set| (*set).to_owned()).collect();
+            let case = Case::from_toml(&format!("{PANEL}[fatigue]\n{fatigue}\n"), "panel", folder.clone(), &set)?;
+            Ok::<_, perilife::Error>((predict(&case, &Silent)?.life_cycles(), case))
+        };
+        let inline: String = constants.iter().map(|(key, value)| format!("{key} = {value:e}\n")).collect();
+        let (truth, _) = life(&format!("growth_law = \"{kind}\"\n{inline}"), &[]).unwrap();
+        let (fitted, case) = life("fitted = \"fitted.toml\"", &[]).unwrap();
+        assert!((fitted / truth - 1.0).abs() < 1e-4, "{kind}: {fitted} for {truth}");
+        assert_eq!(case.law_record.as_ref().unwrap().kind(), kind.name());
+        // A stress ratio beyond the rates, and a law given twice.
+        let beyond = life("fitted = \"fitted.toml\"", &["loading.stress_ratio=0.9"]);
+        match kind {
+            GrowthLawKind::Paris => assert!(beyond.unwrap_err().to_string().contains("is outside the stress ratios"), "{kind}"),
+            _ => assert!(beyond.unwrap().1.warnings.iter().any(|line| line.contains("is used at 0.9")), "{kind}"),
+        }
+        let twice = life("fitted = \"fitted.toml\"\nparis_m = 3\n", &[]).unwrap_err();
+        assert!(twice.to_string().contains("fatigue.paris_m: stands beside fatigue.fitted"), "{twice}");
+        let other = life("fitted = \"fitted.toml\"\ngrowth_law = \"table\"\n", &[]).unwrap_err();
+        assert!(other.to_string().contains("is not the law that fitted.toml holds"), "{other}");
+    }
+}
