@@ -1,14 +1,15 @@
-//! The displacement of a plate of nodes on an even raster, for pictures.
+//! Displacement and stress of a plate of nodes on an even raster, for pictures.
 
 use rayon::prelude::*;
 
 use super::field::{Discretisation, Local};
 use crate::levels::PointGrid;
+use crate::material::Plane;
 use crate::specimen::geometry::bounding_box;
 use crate::specimen::{Point, Specimen};
 
 /// Points of the raster in a far spacing.
-const IN_SPACING: f64 = 6.0;
+const IN_SPACING: f64 = 10.0;
 
 /// The raster of a plate whose nodes have the spacing `far`, m, away from everything.
 #[must_use]
@@ -31,14 +32,27 @@ pub fn grid(specimen: &Specimen, far: f64) -> PointGrid {
     PointGrid { spacing, columns, rows, origin, angle: 0.0, point_at }
 }
 
-/// Displacement of the points of the raster, m, times `share`.
+/// Displacement, m, and von Mises stress, Pa, of the points of the raster, times `share`.
 #[must_use]
-pub fn displacement(specimen: &Specimen, plate: &Discretisation, u: &[f64], far: f64, share: f64) -> Vec<Point> {
+pub fn fields(
+    specimen: &Specimen,
+    plate: &Discretisation,
+    u: &[f64],
+    far: f64,
+    plane: Plane,
+    share: f64,
+) -> (Vec<Point>, Vec<f64>) {
     let PointGrid { spacing, columns, origin, point_at, .. } = grid(specimen, far);
     let at = |place: usize| [origin[0] + (place % columns) as f64 * spacing, origin[1] + (place / columns) as f64 * spacing];
     let places: Vec<usize> = (0..point_at.len()).filter(|&place| point_at[place].is_some()).collect();
+    let elasticity = plate.elasticity();
     let of_place = |local: &mut Local, &place: &usize| {
-        plate.displacement(u, at(place), local).map_or([0.0; 2], |(u, _)| u.map(|u| share * u))
+        let Some((u, gradient)) = plate.displacement(u, at(place), local) else { return ([0.0; 2], 0.0) };
+        let [x, y, xy] = elasticity.stress(&gradient);
+        // κ = 3 - 4ν in plane strain.
+        let across = if plane == Plane::Strain { 0.25 * (3.0 - elasticity.kappa) * (x + y) } else { 0.0 };
+        let squares = (x - y).powi(2) + (y - across).powi(2) + (across - x).powi(2) + 6.0 * xy * xy;
+        (u.map(|u| share * u), share * (0.5 * squares).sqrt())
     };
-    places.par_iter().map_init(Local::default, of_place).collect()
+    places.par_iter().map_init(Local::default, of_place).unzip()
 }

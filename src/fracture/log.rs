@@ -140,6 +140,7 @@ impl<'a> Log<'a> {
             displacement: u.chunks_exact(unknowns).map(|u| [u[0], u[1]]).collect(),
             damage,
             remaining_life: Vec::new(),
+            stress: Vec::new(),
         });
     }
 

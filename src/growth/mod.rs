@@ -178,8 +178,10 @@ pub struct Fields {
     pub displacement: Vec<[f64; 2]>,
     /// Fraction of a point's bonds that are broken.
     pub damage: Vec<f64>,
-    /// Least remaining life λ of a point's intact bonds, 0 to 1.
+    /// Least remaining life λ of a point's intact bonds, 0 to 1; empty where there are no bonds.
     pub remaining_life: Vec<f64>,
+    /// Von Mises stress of a point at maximum load, Pa; empty where it is not known.
+    pub stress: Vec<f64>,
 }
 
 /// What a run took.

@@ -164,6 +164,7 @@ fn of_body(body: &Body, bonds: &Bonds, displacement: &[f64], lives: &[(Bond, f64
         displacement: points().map(motion).collect(),
         damage: points().map(damage).collect(),
         remaining_life: points().map(life).collect(),
+        stress: Vec::new(),
     }
 }
 
@@ -190,6 +191,7 @@ fn of_levels(levels: &MultiLevelBody, body: &Body, bonds: &Bonds, displacement: 
         displacement: levels.ids.iter().map(motion).collect(),
         damage: net.damage(&share),
         remaining_life: levels.ids.iter().map(life).collect(),
+        stress: Vec::new(),
     }
 }
 

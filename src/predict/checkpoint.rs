@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::growth::{CrackGrowth, State};
 use crate::sealed::{Seal, refused};
 
-const SEAL: Seal = Seal { of: "this program", magic: b"perilife checkpoint\n", form: 4 };
+const SEAL: Seal = Seal { of: "this program", magic: b"perilife checkpoint\n", form: 5 };
 
 /// State of a run at one of the places where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -47,6 +47,7 @@ struct Picture {
     displacement: Vec<[f64; 2]>,
     damage: Vec<(u32, f64)>,
     remaining_life: Vec<(u32, f64)>,
+    stress: Vec<f64>,
 }
 
 impl Checkpoint {
@@ -114,6 +115,7 @@ impl Pictures {
             displacement: snapshot.displacement.clone(),
             damage: sparse(&snapshot.damage, 0.0),
             remaining_life: sparse(&snapshot.remaining_life, 1.0),
+            stress: snapshot.stress.clone(),
         };
         Pictures { step: snapshots.step, next: snapshots.next, all: snapshots.taken.iter().map(picture).collect() }
     }
@@ -126,6 +128,7 @@ impl Pictures {
                 crack_length: picture.crack_length,
                 damage: dense(&picture.damage, 0.0, points),
                 remaining_life: dense(&picture.remaining_life, 1.0, points),
+                stress: picture.stress,
                 displacement: picture.displacement,
             }
         };

@@ -25,6 +25,8 @@ pub struct Snapshot {
     pub damage: Vec<f64>,
     /// Least remaining life λ of the intact bonds of every point, 0 to 1; empty where no bonds have one.
     pub remaining_life: Vec<f64>,
+    /// Von Mises stress of every point at maximum load, Pa; empty where it is not known.
+    pub stress: Vec<f64>,
 }
 
 /// Figures of a run that users ask for.

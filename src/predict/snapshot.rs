@@ -49,9 +49,9 @@ impl Snapshots {
             tracing::warn!("a snapshot is left out: {error}");
             None
         });
-        let Fields { displacement, damage, remaining_life } = fields?;
+        let Fields { displacement, damage, remaining_life, stress } = fields?;
         let GrowthStatus { cycles_of_run: cycles, crack_length, .. } = growth.now();
-        self.taken.push(Snapshot { cycles, crack_length, displacement, damage, remaining_life });
+        self.taken.push(Snapshot { cycles, crack_length, displacement, damage, remaining_life, stress });
         self.taken.last()
     }
 

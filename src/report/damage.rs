@@ -1,6 +1,6 @@
 //! Picture of the damaged plate: one square a point, coloured by the fraction of its bonds that cracks of the start cut or
 //! that broke, or by the fraction of life that its
-//! bonds have spent; crack path, colour bar, scale.
+//! bonds have spent, or by stress on the deformed plate; crack path, colour bar, scale.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use super::raster::Canvas;
 use crate::error::{Error, Result};
 use crate::predict::{PointGrid, Snapshot};
 use crate::specimen::{Crack, Point};
-use crate::units::MM;
+use crate::units::{MM, MPA};
 
 /// The plate's longer side has at least so many pixels.
 const LONG_SIDE: f64 = 1000.0;
@@ -31,6 +31,8 @@ pub enum PointField {
     Damage,
     /// 1 - λ of the bond of a point that has the least remaining life.
     LifeSpent,
+    /// Von Mises stress, on the deformed plate.
+    VonMises,
 }
 
 impl PointField {
@@ -38,6 +40,7 @@ impl PointField {
         match self {
             PointField::Damage => snapshot.damage.get(point).copied().unwrap_or(0.0),
             PointField::LifeSpent => 1.0 - snapshot.remaining_life.get(point).copied().unwrap_or(1.0),
+            PointField::VonMises => snapshot.stress.get(point).copied().unwrap_or(0.0) / MPA,
         }
     }
 
@@ -45,6 +48,7 @@ impl PointField {
         match self {
             PointField::Damage => ["damage", "bonds cut or broken"],
             PointField::LifeSpent => ["1 - remaining life", "of the most used bond"],
+            PointField::VonMises => ["von Mises stress", "MPa, plate deformed"],
         }
     }
 
@@ -53,6 +57,7 @@ impl PointField {
         match self {
             PointField::Damage => full_scale(&snapshot.damage),
             PointField::LifeSpent => 1.0,
+            PointField::VonMises => high_end(&snapshot.stress) / MPA,
         }
     }
 }
@@ -127,12 +132,19 @@ impl DamagePicture<'_> {
         let height = view.height.max(COLUMN_HEIGHT) + 2 * MARGIN;
         let mut canvas = Canvas::new((view.width + COLUMN + 3 * MARGIN) as usize, height as usize);
         let full_scale = self.field.full_scale(self.snapshot);
-        self.draw_points(&mut canvas, &view, full_scale);
-        for path in self.paths {
+        let exaggeration = if self.field == PointField::VonMises { self.exaggeration() } else { 0.0 };
+        if exaggeration > 0.0 {
+            self.draw_deformed(&mut canvas, &view, full_scale, exaggeration);
+        } else {
+            self.draw_points(&mut canvas, &view, full_scale);
+        }
+        // On a deformed plate an open crack shows by itself.
+        let (paths, cracks) = if exaggeration > 0.0 { (&[][..], &[][..]) } else { (self.paths, self.cracks) };
+        for path in paths {
             let line: Vec<[f64; 2]> = path.iter().map(|point| view.pixel(*point)).collect();
             canvas.line(&line, 2.5, PATH);
         }
-        for crack in self.cracks {
+        for crack in cracks {
             canvas.line(&[view.pixel(crack.from), view.pixel(crack.to)], 5.0, INITIAL_CRACK);
         }
         self.draw_column(&mut canvas, &view, full_scale);
@@ -149,6 +161,30 @@ impl DamagePicture<'_> {
                 let value = self.field.value(self.snapshot, point);
                 canvas.set(x, y, if value == 0.0 { whole } else { of_share(value / full_scale) });
             }
+        }
+    }
+
+    /// By how much displacements are drawn larger: the largest as a twenty-fifth of the plate.
+    fn exaggeration(&self) -> f64 {
+        let displacement = &self.snapshot.displacement;
+        let middle = [0, 1].map(|i| displacement.iter().map(|u| u[i]).sum::<f64>() / displacement.len().max(1) as f64);
+        let largest = displacement.iter().map(|u| (u[0] - middle[0]).hypot(u[1] - middle[1])).fold(0.0, f64::max);
+        let size = self.grid.columns.max(self.grid.rows) as f64 * self.grid.spacing;
+        if largest > 0.0 { 0.04 * size / largest } else { 0.0 }
+    }
+
+    /// Every point as a square where it has moved to, relative to the mean, a little larger than its share: faces that part leave a gap.
+    fn draw_deformed(&self, canvas: &mut Canvas, view: &View, full_scale: f64, exaggeration: f64) {
+        let displacement = &self.snapshot.displacement;
+        let middle = [0, 1].map(|i| displacement.iter().map(|u| u[i]).sum::<f64>() / displacement.len().max(1) as f64);
+        let side = (1.3 * self.grid.spacing * view.pixels_per_metre).ceil() as i64;
+        for (place, point) in self.grid.point_at.iter().enumerate() {
+            let Some(point) = point.map(|point| point as usize) else { continue };
+            let Some(u) = displacement.get(point) else { continue };
+            let at = position_of(self.grid, place);
+            let [x, y] = view.pixel([0, 1].map(|i| at[i] + exaggeration * (u[i] - middle[i])));
+            let share = (self.field.value(self.snapshot, point) / full_scale).min(1.0);
+            canvas.fill([x.round() as i64 - side / 2, y.round() as i64 - side / 2], [side, side], of_share(share));
         }
     }
 
@@ -171,7 +207,9 @@ impl DamagePicture<'_> {
             say(canvas, &format!("{:.1$}", full_scale * tick as f64 / 5.0, 2), thick + 14, at - 7);
         }
         y += bar + 34;
-        for (name, colour, width) in [("initial crack", INITIAL_CRACK, 5.0), ("crack path", PATH, 2.5)] {
+        let is_deformed = self.field == PointField::VonMises;
+        let lines = [("initial crack", INITIAL_CRACK, 5.0), ("crack path", PATH, 2.5)];
+        for (name, colour, width) in lines.into_iter().filter(|_| !is_deformed) {
             canvas.line(&[[(left + 2) as f64, y as f64], [(left + 42) as f64, y as f64]], width, colour);
             say(canvas, name, 56, y - 7);
             y += 28;
@@ -252,6 +290,13 @@ fn place_at(grid: &PointGrid, position: Point) -> Option<usize> {
         return None;
     }
     grid.point_at.get(row as usize * grid.columns + column as usize).copied().flatten().map(|index| index as usize)
+}
+
+/// Upper end of a bar of stresses: what all but a hundredth of the points keep to, since it has no bound at a tip.
+fn high_end(stress: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = stress.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len().saturating_sub(1) * 99 / 100).copied().filter(|s| *s > 0.0).unwrap_or(MPA)
 }
 
 /// Upper end of the colour bar: half of the bonds, or all where a point has lost more. A straight crack through full

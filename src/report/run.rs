@@ -8,8 +8,10 @@ use super::chart::{self, Mark, Series};
 use super::csv::{self, Row};
 use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
 use super::output::write_file;
+use super::specimen_picture::nodes_svg;
 use super::{fit_use, json, vtk};
 use crate::case::Case;
+use crate::case::Method;
 use crate::case::first_load;
 use crate::error::{Error, Result, input};
 use crate::predict::guard::BLOCKS_WITHOUT_GROWTH;
@@ -127,8 +129,14 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
         .collect();
     if let Some(snapshot) = prediction.snapshots.last() {
         let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
-        DamagePicture { grid: &prediction.grid, snapshot, field: PointField::Damage, cracks, paths: &paths, caption: &caption }
-            .write(&folder.join("damage.png"))?;
+        // A plate of nodes has no bonds that are damaged, but a stress.
+        let (field, file) =
+            if snapshot.stress.is_empty() { (PointField::Damage, "damage.png") } else { (PointField::VonMises, "von_mises.png") };
+        DamagePicture { grid: &prediction.grid, snapshot, field, cracks, paths: &paths, caption: &caption }
+            .write(&folder.join(file))?;
+    }
+    if case.model.method == Method::ElementFreeGalerkin {
+        write_file(&folder.join("nodes.svg"), nodes_svg(case, &paths)?.as_bytes())?;
     }
     draw_remaining_life(&folder.join("remaining_life.png"), prediction, &paths)?;
     if !prediction.snapshots.is_empty() {

@@ -1,8 +1,10 @@
 //! The specimen of a case as a drawing to scale: outline, holes, slots, cracks, loads, supports, sizes in mm.
 
+mod nodes;
 mod scene;
 pub mod sketch;
 
+pub use nodes::nodes_svg;
 pub use scene::scene_svg;
 use sketch::{CRACK, EDGE, HELD, LOAD, PLATE, Sketch, WORDS};
 

@@ -11,7 +11,7 @@ use super::damage::position_of;
 use super::output::write_file;
 use crate::error::Result;
 use crate::predict::{PointGrid, Snapshot};
-use crate::units::MM;
+use crate::units::{MM, MPA};
 
 /// Writes all snapshots into `folder` (which must exist), with `run.pvd` as the file to open.
 ///
@@ -48,6 +48,10 @@ pub fn image(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
     if !snapshot.remaining_life.is_empty() {
         let lives = places.iter().map(|point| [point.map_or(1.0, |p| of(&snapshot.remaining_life, p))]);
         data.reals(&mut body, "remaining_life", 1, lives);
+    }
+    if !snapshot.stress.is_empty() {
+        let stresses = places.iter().map(|point| [point.map_or(0.0, |p| of(&snapshot.stress, p) / MPA)]);
+        data.reals(&mut body, "von_mises_mpa", 1, stresses);
     }
     data.reals(&mut body, "displacement_mm", 3, places.iter().map(|point| point.map_or([0.0; 3], |p| displacement(snapshot, p))));
     // 2 = hidden point: ParaView draws nothing there and filters leave it out.

@@ -113,5 +113,12 @@ fn snapshot(grid: &PointGrid, curve: &[CurvePoint], at: usize) -> Snapshot {
         damage.push((0.40 * shadow * (1.0 - near / 3.015e-3)).max(0.0));
         displacement.push([-3e-4 * x, 1e-3 * y]);
     }
-    Snapshot { cycles: curve[at].cycles, crack_length: curve[at].crack_length, displacement, damage, remaining_life: Vec::new() }
+    Snapshot {
+        cycles: curve[at].cycles,
+        crack_length: curve[at].crack_length,
+        displacement,
+        damage,
+        remaining_life: Vec::new(),
+        stress: Vec::new(),
+    }
 }

@@ -123,9 +123,9 @@ impl CrackGrowth for ElementFree<'_> {
         }
         let Some((plate, solution)) = &self.plate else { return Ok(None) };
         let share = self.case.loading.share(self.work);
-        let displacement = raster::displacement(&self.case.specimen, plate, &solution.u, self.settings.resolution.far, share);
-        let none = vec![0.0; displacement.len()];
-        Ok(Some(Fields { remaining_life: vec![1.0; displacement.len()], damage: none, displacement }))
+        let (specimen, far) = (&self.case.specimen, self.settings.resolution.far);
+        let (displacement, stress) = raster::fields(specimen, plate, &solution.u, far, self.case.material.plane, share);
+        Ok(Some(Fields { damage: vec![0.0; displacement.len()], remaining_life: Vec::new(), displacement, stress }))
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {
