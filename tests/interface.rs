@@ -39,6 +39,8 @@ mod export;
 mod bad_scenes;
 #[path = "interface/fracture.rs"]
 mod fracture;
+#[path = "interface/element_free.rs"]
+mod element_free;
 #[path = "interface/ends.rs"]
 mod ends;
 #[path = "interface/hand_calculation.rs"]

@@ -121,6 +121,11 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
             BROAD,
             vec![TIPS, "fatigue.step_error_percent=0.01", LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=45"],
         ),
+        (
+            "nodes, slant",
+            SLANT,
+            vec!["model.method=element_free_galerkin", TIPS, "model.spacing_mm=5", "stop.crack_length_mm=40"],
+        ),
         ("relaxation, hole", HOLE, vec!["model.spacing_mm=2", "model.solver=adaptive_dynamic_relaxation"]),
     ]
 }

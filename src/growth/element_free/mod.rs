@@ -45,6 +45,8 @@ pub struct ElementFree<'a> {
     nodes: usize,
     unknowns: usize,
     was_closed: bool,
+    /// Rows at the last place where the run could be taken up.
+    rows_at_checkpoint: usize,
     warnings: Vec<String>,
 }
 
@@ -90,6 +92,7 @@ impl<'a> ElementFree<'a> {
             nodes: 0,
             unknowns: 0,
             was_closed: false,
+            rows_at_checkpoint: 0,
             warnings: Vec::new(),
         })
     }

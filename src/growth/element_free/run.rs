@@ -79,6 +79,7 @@ impl CrackGrowth for ElementFree<'_> {
         self.rate();
         self.state.step = self.first_step();
         self.curve = vec![self.row(0.0, self.load_work())];
+        self.rows_at_checkpoint = 1;
         Ok(())
     }
 
@@ -110,6 +111,7 @@ impl CrackGrowth for ElementFree<'_> {
         }
         (self.state, self.past, self.work, self.curve, self.was_closed) = (state, past, work, curve, was_closed);
         [self.solves, self.nodes, self.unknowns] = figures;
+        self.rows_at_checkpoint = self.curve.len();
         Ok(true)
     }
 
@@ -119,7 +121,10 @@ impl CrackGrowth for ElementFree<'_> {
 
     fn fields(&mut self) -> Result<Option<Fields>> {
         if self.plate.is_none() {
+            // Of a resumed run: no solve of its increments.
+            let solves = self.solves;
             self.settle()?;
+            self.solves = solves;
         }
         let Some((plate, solution)) = &self.plate else { return Ok(None) };
         let share = self.case.loading.share(self.work);
@@ -133,7 +138,13 @@ impl CrackGrowth for ElementFree<'_> {
     }
 
     fn should_rebuild_solver(&self) -> bool {
-        self.curve.len() % ROWS_PER_CHECKPOINT == 0
+        self.curve.len() >= self.rows_at_checkpoint + ROWS_PER_CHECKPOINT
+    }
+
+    fn rebuild_solver(&mut self) -> Result<()> {
+        // Every equilibrium begins anew.
+        self.rows_at_checkpoint = self.curve.len();
+        Ok(())
     }
 
     fn statistics(&self) -> SolverStatistics {

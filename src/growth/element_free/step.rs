@@ -1,7 +1,7 @@
 //! How far every tip goes while the fastest goes a step.
 //!
 //! Direction and the ratio of rates are those at the middle of the step, extrapolated from the last two equilibria (second order, as Adams
-//! and Bashforth 1883). No tip goes farther than a share of its crack and of the room ahead of it. A kink begins with an eighth of the
+//! and Bashforth 1883). No tip goes farther than a share of its crack and of the room ahead of it. A kink begins with a thirteenth of the
 //! local spacing, since K changes with the root of its length.
 
 use super::ElementFree;
@@ -11,7 +11,7 @@ use crate::specimen::Point;
 use crate::specimen::geometry::distance;
 
 /// First step of a kink in spacings at the tip, over the share of crack and room that a step goes at the most.
-const FIRST_OF_KINK: f64 = 0.5;
+const FIRST_OF_KINK: f64 = 0.3;
 /// First step of a crack that goes straight on, over the step that is allowed at the most.
 const FIRST: f64 = 0.1;
 /// A step over the last one at the most, after a kink and without one.
@@ -21,12 +21,12 @@ const SHARE_LEFT: f64 = 2e-3;
 /// Way to a rim, in far spacings, that is gone in one step whatever it takes.
 const WAY_LEFT: f64 = 2e-3;
 /// Share of the room to another tip that both take together at the most: K rises fast between tips that join.
-const TO_JOINT: f64 = 0.1;
+const TO_JOINT: f64 = 0.08;
 /// Distance of a tip that another faces over the way to its crack, at the most.
 const ALIKE: f64 = 1.1;
-/// Error of the cycles of a step over the percentage asked for: twice that, since K of two node sets differs by 0.1 %, which would be
+/// Error of the cycles of a step over the percentage asked for: half as much again, since K of two node sets differs by 0.1 %, which would be
 /// taken for curvature.
-const ERROR_SHARE: f64 = 0.02;
+const ERROR_SHARE: f64 = 0.015;
 /// Cosine of the angle between a tip and the way to another within which they face each other.
 const FACING: f64 = 0.8;
 
