@@ -102,7 +102,7 @@ impl ElementFree<'_> {
             return Way { most: closing, is_last: true };
         }
         let to_gap = if is_facing { TO_JOINT * gap } else { share * gap };
-        let crack = share * front.own_length().max(if front.begins_kink() { front.length } else { 0.0 });
+        let crack = share * (front.length + front.growth);
         let most = crack.min(share * room).min(to_gap);
         let most = if front.begins_kink() { most.min(FIRST_OF_KINK * share * front.spacing) } else { most };
         Way { most, is_last: false }
