@@ -48,7 +48,7 @@ impl PointField {
         match self {
             PointField::Damage => ["damage", "bonds cut or broken"],
             PointField::LifeSpent => ["1 - remaining life", "of the most used bond"],
-            PointField::VonMises => ["von Mises stress", "MPa, plate deformed"],
+            PointField::VonMises => ["von Mises stress, MPa", "crack drawn open"],
         }
     }
 
@@ -132,14 +132,14 @@ impl DamagePicture<'_> {
         let height = view.height.max(COLUMN_HEIGHT) + 2 * MARGIN;
         let mut canvas = Canvas::new((view.width + COLUMN + 3 * MARGIN) as usize, height as usize);
         let full_scale = self.field.full_scale(self.snapshot);
-        let exaggeration = if self.field == PointField::VonMises { self.exaggeration() } else { 0.0 };
-        if exaggeration > 0.0 {
-            self.draw_deformed(&mut canvas, &view, full_scale, exaggeration);
+        let is_deformed = self.field == PointField::VonMises;
+        if is_deformed {
+            self.draw_deformed(&mut canvas, &view, full_scale);
         } else {
             self.draw_points(&mut canvas, &view, full_scale);
         }
         // On a deformed plate an open crack shows by itself.
-        let (paths, cracks) = if exaggeration > 0.0 { (&[][..], &[][..]) } else { (self.paths, self.cracks) };
+        let (paths, cracks) = if is_deformed { (&[][..], &[][..]) } else { (self.paths, self.cracks) };
         for path in paths {
             let line: Vec<[f64; 2]> = path.iter().map(|point| view.pixel(*point)).collect();
             canvas.line(&line, 2.5, PATH);
@@ -164,25 +164,45 @@ impl DamagePicture<'_> {
         }
     }
 
-    /// By how much displacements are drawn larger: the largest as a twenty-fifth of the plate.
-    fn exaggeration(&self) -> f64 {
+    /// What is left of the displacements without the rigid motion and the uniform strain nearest to them, drawn larger so that the
+    /// largest is a thirtieth of the plate: a crack shows by how it opens.
+    fn drawn_displacement(&self) -> Vec<Point> {
         let displacement = &self.snapshot.displacement;
-        let middle = [0, 1].map(|i| displacement.iter().map(|u| u[i]).sum::<f64>() / displacement.len().max(1) as f64);
-        let largest = displacement.iter().map(|u| (u[0] - middle[0]).hypot(u[1] - middle[1])).fold(0.0, f64::max);
+        let mut at = vec![[0.0; 2]; displacement.len()];
+        for (place, point) in self.grid.point_at.iter().enumerate() {
+            if let Some(point) = point.filter(|point| (*point as usize) < at.len()) {
+                at[point as usize] = position_of(self.grid, place);
+            }
+        }
+        let count = at.len().max(1) as f64;
+        let mean = |of: &dyn Fn(usize) -> f64| (0..at.len()).map(of).sum::<f64>() / count;
+        let [x0, y0] = [mean(&|k| at[k][0]), mean(&|k| at[k][1])];
+        let [xx, yy, xy] = [
+            mean(&|k| (at[k][0] - x0).powi(2)),
+            mean(&|k| (at[k][1] - y0).powi(2)),
+            mean(&|k| (at[k][0] - x0) * (at[k][1] - y0)),
+        ];
+        let determinant = (xx * yy - xy * xy).max(f64::MIN_POSITIVE);
+        let mut rest = displacement.clone();
+        for i in 0..2 {
+            let u0 = mean(&|k| displacement[k][i]);
+            let [ux, uy] = [0, 1].map(|j| mean(&|k| (displacement[k][i] - u0) * (at[k][j] - [x0, y0][j])));
+            let [gx, gy] = [(ux * yy - uy * xy) / determinant, (uy * xx - ux * xy) / determinant];
+            rest.iter_mut().zip(&at).for_each(|(u, at)| u[i] -= u0 + gx * (at[0] - x0) + gy * (at[1] - y0));
+        }
+        let largest = rest.iter().map(|u| u[0].hypot(u[1])).fold(f64::MIN_POSITIVE, f64::max);
         let size = self.grid.columns.max(self.grid.rows) as f64 * self.grid.spacing;
-        if largest > 0.0 { 0.04 * size / largest } else { 0.0 }
+        rest.iter().map(|u| u.map(|u| u * size / (30.0 * largest))).collect()
     }
 
-    /// Every point as a square where it has moved to, relative to the mean, a little larger than its share: faces that part leave a gap.
-    fn draw_deformed(&self, canvas: &mut Canvas, view: &View, full_scale: f64, exaggeration: f64) {
-        let displacement = &self.snapshot.displacement;
-        let middle = [0, 1].map(|i| displacement.iter().map(|u| u[i]).sum::<f64>() / displacement.len().max(1) as f64);
+    /// Every point as a square where it has moved to, a little larger than its share: faces that part leave a gap.
+    fn draw_deformed(&self, canvas: &mut Canvas, view: &View, full_scale: f64) {
+        let moved = self.drawn_displacement();
         let side = (1.3 * self.grid.spacing * view.pixels_per_metre).ceil() as i64;
         for (place, point) in self.grid.point_at.iter().enumerate() {
-            let Some(point) = point.map(|point| point as usize) else { continue };
-            let Some(u) = displacement.get(point) else { continue };
+            let Some((point, u)) = point.and_then(|point| Some((point as usize, moved.get(point as usize)?))) else { continue };
             let at = position_of(self.grid, place);
-            let [x, y] = view.pixel([0, 1].map(|i| at[i] + exaggeration * (u[i] - middle[i])));
+            let [x, y] = view.pixel([at[0] + u[0], at[1] + u[1]]);
             let share = (self.field.value(self.snapshot, point) / full_scale).min(1.0);
             canvas.fill([x.round() as i64 - side / 2, y.round() as i64 - side / 2], [side, side], of_share(share));
         }

@@ -8,7 +8,7 @@ use super::chart::{self, Mark, Series};
 use super::csv::{self, Row};
 use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
 use super::output::write_file;
-use super::specimen_picture::nodes_svg;
+use super::specimen_picture::{nodes_svg, tip_svg};
 use super::{fit_use, json, vtk};
 use crate::case::Case;
 use crate::case::Method;
@@ -137,6 +137,9 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
     }
     if case.model.method == Method::ElementFreeGalerkin {
         write_file(&folder.join("nodes.svg"), nodes_svg(case, &paths)?.as_bytes())?;
+        if let Some(around_tip) = tip_svg(case, &paths)? {
+            write_file(&folder.join("nodes_tip.svg"), around_tip.as_bytes())?;
+        }
     }
     draw_remaining_life(&folder.join("remaining_life.png"), prediction, &paths)?;
     if !prediction.snapshots.is_empty() {

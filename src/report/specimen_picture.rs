@@ -4,7 +4,7 @@ mod nodes;
 mod scene;
 pub mod sketch;
 
-pub use nodes::nodes_svg;
+pub use nodes::{nodes_svg, tip_svg};
 pub use scene::scene_svg;
 use sketch::{CRACK, EDGE, HELD, LOAD, PLATE, Sketch, WORDS};
 

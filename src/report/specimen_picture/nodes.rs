@@ -1,13 +1,13 @@
 //! The nodes of a plate without elements: cells of integration, radii of influence, path of the cracks.
 
 use super::drawing;
-use super::sketch::Sketch;
+use super::sketch::{CRACK, Sketch};
 use crate::case::Case;
 use crate::element_free::field::Discretisation;
 use crate::error::Result;
 use crate::growth::element_free::initial_plate;
-use crate::report::model_words::of_case;
 use crate::specimen::Point;
+use crate::units::MM;
 
 /// Colours of cells, nodes, nodes that carry near-tip fields, radii of influence, paths.
 const CELL: &str = "#b8bec6";
@@ -24,22 +24,38 @@ const RADII: usize = 3;
 /// As [`initial_plate`].
 pub fn nodes_svg(case: &Case, paths: &[Vec<Point>]) -> Result<String> {
     let plate = initial_plate(case)?;
-    let chosen: Vec<String> = of_case(case, None)
-        .iter()
-        .filter(|choice| matches!(choice.key, "spacing_mm" | "enrichment" | "influence_radius"))
-        .map(|choice| format!("{} {}", choice.key, choice.value))
-        .collect();
-    let title = format!(
-        "{} nodes, {} unknowns, for the cracks of the start; {}",
-        plate.nodes.at.len(),
-        plate.unknowns(),
-        chosen.join(", ")
-    );
+    let spacing = case.model.element_free.resolution.far / MM;
+    let title = format!("{} nodes, {} unknowns; spacing {spacing:.2} mm far from cracks", plate.nodes.at.len(), plate.unknowns());
     let lines = [
         "grey: cells of integration; dots: nodes, red with near-tip fields; blue: radius of influence of three nodes".to_owned(),
         "green: path of the tips".to_owned(),
     ];
     Ok(drawing(&case.name, &title, &case.specimen, &lines, |sketch| draw(sketch, case, &plate, paths)))
+}
+
+/// Side of the picture of a tip, pixels, and in spacings of the tip.
+const TIP_PIXELS: f64 = 640.0;
+const TIP_SPACINGS: f64 = 14.0;
+
+/// SVG text of the nodes around the first tip; `None` of a case without one.
+///
+/// # Errors
+/// As [`initial_plate`].
+pub fn tip_svg(case: &Case, paths: &[Vec<Point>]) -> Result<Option<String>> {
+    let plate = initial_plate(case)?;
+    let Some(axes) = plate.axes.first() else { return Ok(None) };
+    let scale = TIP_PIXELS / (TIP_SPACINGS * axes.spacing);
+    let origin = [0.5 * TIP_PIXELS - axes.at[0] * scale, 0.5 * TIP_PIXELS + axes.at[1] * scale];
+    let mut sketch = Sketch::new(scale, origin);
+    draw(&mut sketch, case, &plate, paths);
+    for cut in &plate.obstacles.cuts {
+        for pair in cut.points.windows(2) {
+            sketch.line(sketch.place(pair[0]), sketch.place(pair[1]), CRACK, 2.4);
+        }
+    }
+    let words = format!("{}: tip 0, spacing {:.3} mm; red: nodes with near-tip fields", case.name, axes.spacing / MM);
+    sketch.text([0.5 * TIP_PIXELS, 22.0], &words, "middle", 14, NODE);
+    Ok(Some(sketch.finish(TIP_PIXELS, TIP_PIXELS)))
 }
 
 fn draw(sketch: &mut Sketch, case: &Case, plate: &Discretisation, paths: &[Vec<Point>]) {
@@ -63,7 +79,8 @@ fn draw(sketch: &mut Sketch, case: &Case, plate: &Discretisation, paths: &[Vec<P
         }
     }
     for (node, &at) in plate.nodes.at.iter().enumerate() {
-        let (size, colour) = if plate.enriched[node].is_empty() { (1.1, NODE) } else { (1.3, ENRICHED) };
+        let size = (0.08 * plate.nodes.spacing[node] * sketch.scale).clamp(0.5, 3.0);
+        let colour = if plate.enriched[node].is_empty() { NODE } else { ENRICHED };
         sketch.dot(sketch.place(at), size, colour);
     }
     for pair in paths.iter().flat_map(|path| path.windows(2)) {
