@@ -82,6 +82,9 @@ pub(super) fn from_values(
     choices.horizon_ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
     let levels = refinement.as_ref().map_or(0, Refinement::deepest);
     let element_free = of_nodes.read(specimen)?;
+    if method == Method::ElementFreeGalerkin {
+        warnings.extend(of_nodes.too_fine(specimen, &element_free));
+    }
     let of_points = input.spacing_mm.filter(|_| method != Method::ElementFreeGalerkin);
     let spacing = match LENGTH.read_optional("model.spacing_mm", of_points)? {
         Some(coarsest) => coarsest / 2.0_f64.powi(levels as i32),

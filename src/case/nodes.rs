@@ -15,6 +15,8 @@ use crate::specimen::geometry::bounding_box;
 const RUNGS: [(f64, f64, f64); 3] = [(1.0, 20.0, 0.15), (2.0, 14.0, 0.25), (f64::INFINITY, 10.0, 0.35)];
 /// Error that is asked for where the case does not say.
 const TOLERANCE_PERCENT: f64 = 2.0;
+/// Nodes far from cracks beyond which a spacing was hardly meant for nodes.
+const NODES_USUAL: f64 = 5e3;
 /// Spacings in the room of a tip.
 const HOLD: f64 = 3.0;
 /// Radius of influence of a node in its spacings, of linear and quadratic polynomials.
@@ -47,6 +49,18 @@ impl NodeKeys {
                 Err(input_missing(&format!("model.{key}"), problem, "leave it out, or choose that method"))
             }
         }
+    }
+
+    /// What is to be said of a spacing that was meant for points: nodes are refined by themselves.
+    pub(super) fn too_fine(&self, specimen: &Specimen, settings: &ElementFreeSettings) -> Option<String> {
+        let spacing = self.spacing_mm?;
+        let nodes = specimen.area() / settings.resolution.far.powi(2);
+        (nodes > NODES_USUAL).then(|| {
+            format!(
+                "model.spacing_mm = {spacing} makes some {nodes:.0} nodes far from cracks: nodes are refined by themselves where tips, rims and \
+                 ligaments ask for it; leave the key out"
+            )
+        })
     }
 
     /// What the keys say, and the choice of the program where they say nothing.
