@@ -2,6 +2,8 @@
 
 #[path = "support/browser.rs"]
 mod browser;
+#[path = "support/daily.rs"]
+mod daily;
 #[path = "support/fatigue_test.rs"]
 mod fatigue_test;
 #[path = "support/made_up_run.rs"]
@@ -43,6 +45,8 @@ mod fracture;
 mod ends;
 #[path = "interface/hand_calculation.rs"]
 mod hand_calculation;
+#[path = "interface/nothing_lost.rs"]
+mod nothing_lost;
 #[path = "interface/rates.rs"]
 mod rates;
 #[path = "interface/service.rs"]

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 
 use crate::calibration::criterion::Criterion;
@@ -15,7 +14,7 @@ use crate::calibration::record::SourceFile;
 use crate::case::{Case, LAW_KEYS, LawSource, Method};
 use crate::error::{input, input_missing};
 use crate::fatigue::{Ageing, GrowthRate};
-use crate::input::{Document, Folder, LENGTH, slice};
+use crate::input::{Document, Folder, LENGTH, sha256, slice};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::MM;
@@ -49,6 +48,8 @@ pub struct CalibrationCase {
     pub left_out: Vec<LeaveOut>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// The whole file, overrides applied.
+    pub input: Table,
     formula: HandbookFormula,
 }
 
@@ -106,6 +107,7 @@ impl CalibrationCase {
 
     /// The same for a parsed document, which gives errors their line.
     pub fn from_document(mut document: Document) -> crate::Result<Self> {
+        let whole = document.table.clone();
         // Taken out of the table, but not of the text: errors still find their line.
         let measured = document.table.remove("measured");
         let fit = document.table.remove("fit").unwrap_or_else(|| Value::Table(Table::new()));
@@ -116,7 +118,10 @@ impl CalibrationCase {
             let case = Case::from_table(document.table.clone(), &document.name, &document.folder)?;
             Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.folder)
         };
-        build().map_err(|error| document.locate(error))
+        let mut calibration: Self = build().map_err(|error| document.locate(error))?;
+        calibration.input = whole;
+        calibration.case.provenance = document.folder.opened().so_far();
+        Ok(calibration)
     }
 
     fn build(mut case: Case, keys: MeasuredSlice, fit: FitSlice, folder: &Folder) -> crate::Result<Self> {
@@ -155,7 +160,8 @@ impl CalibrationCase {
         case.material.yield_strength = None;
         warnings.extend(unrecorded(&case));
         warnings.extend(case.warnings.iter().cloned());
-        Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out: keys.leave_out, warnings, formula })
+        let (input, left_out) = (Table::new(), keys.leave_out);
+        Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out, warnings, input, formula })
     }
 
     /// ΔK of the handbook (Pa√m) at a crack length (m).
@@ -262,8 +268,7 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> crate::Result<(Measured, V
 
 /// What the record says about a measured file.
 fn source(file: &str, bytes: &[u8]) -> SourceFile {
-    let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    SourceFile { file: file.to_owned(), sha256 }
+    SourceFile { file: file.to_owned(), sha256: sha256(bytes) }
 }
 
 fn window(measured: &Measured, keys: &MeasuredSlice) -> crate::Result<Measured> {

@@ -11,7 +11,7 @@ use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
-use crate::input::{Document, Folder, ForeignSections, OF_SCENES, Sections, value_at};
+use crate::input::{Document, Folder, ForeignSections, OF_SCENES, OpenedFile, Provenance, Sections, value_at};
 use crate::levels::Discretisation;
 use crate::loading::LoadingKind;
 use crate::material::Plane;
@@ -20,6 +20,8 @@ use crate::specimen::CrackLine;
 use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use crate::{loading, material, specimen};
 
+/// What a record is called that came with no file.
+pub const RECORD: &str = "fitted.toml";
 /// Sections of a case file.
 pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "refinement", "fatigue", "stop"];
 
@@ -50,15 +52,17 @@ impl Case {
 
     /// Reads a case from a parsed document, which gives errors their line. The case must have a fatigue law.
     pub fn from_document(document: &Document) -> Result<Self> {
-        let read = || {
-            let case = Self::from_table(document.table.clone(), &document.name, &document.folder)?;
-            if matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
-                // Says what is missing and what to give.
-                return Err(law::missing(case.model.method, Path::new("")));
-            }
-            Ok(case)
-        };
-        read().map_err(|error| document.locate(error))
+        Self::complete(document).map_err(|error| document.locate(error))
+    }
+
+    /// The same, with errors that do not know their line.
+    pub(crate) fn complete(document: &Document) -> Result<Self> {
+        let case = Self::from_table(document.table.clone(), &document.name, &document.folder)?;
+        if matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
+            // Says what is missing and what to give.
+            return Err(law::missing(case.model.method, Path::new("")));
+        }
+        Ok(case)
     }
 
     /// Builds a case from a table of sections. Errors name the key; file and line are named by who has the text
@@ -97,6 +101,7 @@ impl Case {
             stop,
             warnings,
             echo,
+            provenance: Provenance::default(),
             allow_extrapolation: fatigue.allow_extrapolation,
             choices,
         };
@@ -119,6 +124,7 @@ impl Case {
         case.warnings.extend(first_load::warning(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
+        case.provenance = folder.opened().so_far();
         Ok(case)
     }
 
@@ -133,6 +139,10 @@ impl Case {
                 keys.shift_remove(key);
             }
             keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
+        }
+        if let Ok(text) = toml::to_string(&record) {
+            let file = OpenedFile { name: RECORD.to_owned(), path: None, id: None, content: text.into_bytes().into() };
+            self.provenance.files.push(file);
         }
         law::adopt(&mut self, record)?;
         model::check_law(&self)?;

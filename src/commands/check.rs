@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use super::console::Console;
 use crate::check::check_file;
 use crate::error::Result;
-use crate::report::output::write_file;
+use crate::report::output::{OutputFile, Sort};
+use crate::report::specimen_picture::SIGN;
 
 /// Arguments of `perilife check`.
 #[derive(clap::Args, Debug)]
@@ -31,7 +32,8 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let checked = check_file(&args.file, &args.set)?;
     if let Some(path) = &args.picture {
-        write_file(path, checked.drawing.as_bytes())?;
+        let sort = Sort { option: "--picture", sign: SIGN.as_bytes() };
+        OutputFile::claim(path, sort, &checked.provenance)?.write(checked.drawing.as_bytes())?;
     }
     for warning in &checked.warnings {
         args.console.warn(warning);

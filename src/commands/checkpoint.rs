@@ -6,13 +6,15 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::console::{Console, RunProgress};
+use super::signals;
 use crate::case::Case;
-use crate::error::{Error, Result};
-use crate::fracture::checkpoint::SceneCheckpoint;
+use crate::error::{Error, Result, input};
+use crate::fracture::checkpoint::{SIGN as SCENE_SIGN, SceneCheckpoint};
 use crate::fracture::{self, Fracture, Scene, SceneObserver, SceneProgress};
-use crate::predict::checkpoint::Checkpoint;
+use crate::input::Provenance;
+use crate::predict::checkpoint::{Checkpoint, SIGN};
 use crate::predict::{Observer, Prediction, Progress, predict, resume};
-use crate::report::output::Replaced;
+use crate::report::output::{Replaced, Sort};
 use crate::units::MM;
 
 /// Time between two checkpoints over the time that writing one takes, at least: so they cost 5 % at most.
@@ -41,13 +43,13 @@ impl Args {
     ///
     /// # Errors
     /// As [`predict`] and [`resume`]; a file that cannot be read, or is no checkpoint of this case.
-    pub fn run(&self, case: &Case, console: &Console) -> Result<Prediction> {
+    pub fn run(&self, case: &Case, console: &Console) -> Result<(Prediction, Option<Replaced>)> {
         let progress = console.progress(&case.name);
-        let Some(path) = &self.checkpoint else { return predict(case, &progress) };
+        let Some(path) = &self.checkpoint else { return Ok((predict(case, &progress)?, None)) };
         let of_case = |bytes: Vec<u8>| Checkpoint::from_bytes(&bytes).and_then(|kept| kept.check(case).map(|()| kept));
         let checkpoint = read(path)?.map(of_case).transpose().map_err(|error| error.in_file(path))?;
-        let keeper = self.keeper(path, progress, console)?;
-        let Some(checkpoint) = checkpoint else { return predict(case, &keeper) };
+        let keeper = self.keeper((path, SIGN), progress, &case.provenance, console)?;
+        let Some(checkpoint) = checkpoint else { return Ok((predict(case, &keeper)?, Some(keeper.file))) };
         let Progress { cycles, crack_length, .. } = checkpoint.progress();
         console.note(&format!(
             "{}: goes on from {}: N = {cycles:.1}, a = {:.3} mm",
@@ -55,30 +57,53 @@ impl Args {
             path.display(),
             crack_length / MM
         ));
-        resume(case, checkpoint, &keeper)
+        Ok((resume(case, checkpoint, &keeper)?, Some(keeper.file)))
     }
 
     /// Runs a scene, from its checkpoint if there is one.
     ///
     /// # Errors
     /// As [`fracture::run`] and [`fracture::resume`]; a file that cannot be read, or is no checkpoint of this scene.
-    pub fn run_scene(&self, scene: &Scene, console: &Console) -> Result<Fracture> {
+    pub fn run_scene(&self, scene: &Scene, console: &Console) -> Result<(Fracture, Option<Replaced>)> {
         let progress = console.progress(&scene.name);
-        let Some(path) = &self.checkpoint else { return fracture::run(scene, &progress) };
+        let Some(path) = &self.checkpoint else { return Ok((fracture::run(scene, &progress)?, None)) };
         let of_scene = |bytes: Vec<u8>| SceneCheckpoint::from_bytes(&bytes).and_then(|kept| kept.check(scene).map(|()| kept));
         let checkpoint = read(path)?.map(of_scene).transpose().map_err(|error| error.in_file(path))?;
-        let keeper = self.keeper(path, progress, console)?;
-        let Some(checkpoint) = checkpoint else { return fracture::run(scene, &keeper) };
+        let keeper = self.keeper((path, SCENE_SIGN), progress, &scene.provenance, console)?;
+        let Some(checkpoint) = checkpoint else { return Ok((fracture::run(scene, &keeper)?, Some(keeper.file))) };
         let (step, share) = (checkpoint.step(), checkpoint.progress().share);
         console.note(&format!("{}: goes on from {}: step {step}, {:.1} % done", scene.name, path.display(), 100.0 * share));
-        fracture::resume(scene, checkpoint, &keeper)
+        Ok((fracture::resume(scene, checkpoint, &keeper)?, Some(keeper.file)))
     }
 
-    fn keeper<'a>(&self, path: &Path, progress: RunProgress, console: &'a Console) -> Result<Keeper<'a>> {
+    /// Refuses a checkpoint below the folder of the results, which it would make one that holds something else.
+    ///
+    /// # Errors
+    /// [`Error::Input`].
+    pub fn check_outside(&self, out: &Path) -> Result<()> {
+        let Some(path) = &self.checkpoint else { return Ok(()) };
+        let real = |path: &Path| std::path::absolute(fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf()));
+        match (real(path), real(out)) {
+            (Ok(file), Ok(folder)) if file.starts_with(&folder) => {
+                let problem = format!("lies below --out = {}, which has nothing but results", out.display());
+                Err(input("--checkpoint", path.display(), problem, "give a name beside it"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn keeper<'a>(
+        &self,
+        (path, sign): (&Path, &'static [u8]),
+        progress: RunProgress,
+        read: &Provenance,
+        console: &'a Console,
+    ) -> Result<Keeper<'a>> {
+        signals::go_on_from(path);
         Ok(Keeper {
             progress,
             console,
-            file: Replaced::claim(path)?,
+            file: Replaced::claim(path, Sort { option: "--checkpoint", sign }, read)?,
             // The parser let no other time through.
             every: Duration::try_from_secs_f64(self.checkpoint_every).unwrap_or_default(),
             last: Mutex::new(Last { at: Instant::now(), cost: Duration::ZERO, has_failed: false }),
@@ -92,18 +117,6 @@ fn read(path: &Path) -> Result<Option<Vec<u8>>> {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(Error::file(path, "cannot read", error)),
-    }
-}
-
-/// Removes the file, if one was given, of a run that is done.
-///
-/// # Errors
-/// [`Error::File`] if it is there and cannot be removed.
-pub fn remove(checkpoint: Option<&Path>) -> Result<()> {
-    let Some(path) = checkpoint else { return Ok(()) };
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::file(path, "cannot remove", error)),
-        _ => Ok(()),
     }
 }
 

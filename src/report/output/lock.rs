@@ -1,0 +1,95 @@
+//! One writer at a time: a lock file beside what is written, which says who has it.
+//!
+//! The lock is the system's, so that it ends with its process however that ends; the file is only where it is held.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Write as _};
+use std::path::{Path, PathBuf};
+
+use super::pending::Pending;
+use crate::input::FileId;
+
+/// A lock that was taken; given back when dropped.
+#[derive(Debug)]
+pub struct Lock {
+    file: File,
+    path: PathBuf,
+    _pending: Pending,
+}
+
+/// Why there is no lock.
+#[derive(Debug)]
+pub enum Refused {
+    /// Somebody else has it: who, in words.
+    Taken(String),
+    /// No lock file can be made there.
+    Impossible(io::Error),
+}
+
+/// Whether others may have it as well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Share {
+    /// One alone.
+    Alone,
+    /// Many, as parts of one sweep.
+    Parts,
+}
+
+impl Lock {
+    /// Takes the lock file at `path`.
+    ///
+    /// # Errors
+    /// [`Refused`].
+    pub fn take(path: &Path, share: Share) -> Result<Lock, Refused> {
+        loop {
+            let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path);
+            let mut file = opened.map_err(Refused::Impossible)?;
+            let locked = if share == Share::Alone { file.try_lock() } else { file.try_lock_shared() };
+            match locked {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => {
+                    let mut holder = String::new();
+                    let _ = file.read_to_string(&mut holder);
+                    let holder = holder.trim();
+                    let unnamed = "a process that has not said its name yet";
+                    return Err(Refused::Taken(if holder.is_empty() { unnamed.to_owned() } else { holder.to_owned() }));
+                }
+                // A file system without locks: better a result than none.
+                Err(TryLockError::Error(error)) => tracing::debug!("{}: no lock: {error}", path.display()),
+            }
+            // Whoever had it before may have removed the file after it was opened here.
+            let is_that = |there: fs::Metadata| file.metadata().is_ok_and(|own| FileId::of(&own) == FileId::of(&there));
+            if !fs::metadata(path).is_ok_and(is_that) {
+                continue;
+            }
+            let named = file.set_len(0).and_then(|()| file.write_all(holder().as_bytes()));
+            if let Err(error) = named {
+                tracing::debug!("{}: cannot say who has the lock: {error}", path.display());
+            }
+            return Ok(Lock { file, path: path.to_path_buf(), _pending: Pending::file(path) });
+        }
+    }
+
+    /// Whether a lock file is held by anybody who lives.
+    #[must_use]
+    pub fn is_held(path: &Path) -> bool {
+        File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Removed while it is held, and only if nobody shares it.
+        let _ = self.file.unlock();
+        if self.file.try_lock().is_ok() {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// This process in words.
+fn holder() -> String {
+    let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    let host = if host.trim().is_empty() { "this machine" } else { host.trim() };
+    format!("process {} on {host}, since {}\n", std::process::id(), crate::report::time::now())
+}
