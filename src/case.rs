@@ -10,7 +10,7 @@ pub mod model;
 mod read;
 
 pub use choices::{Choices, Failure, Method};
-pub use law_source::{LAW_KEYS, fitted_record};
+pub use law_source::{LAW_KEYS, fitted_record, remove_law};
 pub use read::{RECORD, SECTIONS};
 
 use crate::body::lattice::fitting_spacing;

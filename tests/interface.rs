@@ -35,6 +35,8 @@ mod check;
 mod checkpoint;
 #[path = "interface/cli.rs"]
 mod cli;
+#[path = "interface/doors.rs"]
+mod doors;
 #[path = "interface/export.rs"]
 mod export;
 #[path = "interface/bad_scenes.rs"]

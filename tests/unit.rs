@@ -65,6 +65,8 @@ mod case;
 mod exponent;
 #[path = "unit/fit_use.rs"]
 mod fit_use;
+#[path = "unit/floats.rs"]
+mod floats;
 #[path = "unit/growth_law.rs"]
 mod growth_law;
 #[path = "unit/growth_rate.rs"]

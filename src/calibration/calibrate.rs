@@ -9,6 +9,7 @@ use crate::case::Method;
 use crate::error::{Result, input_missing};
 use crate::predict::Observer;
 use crate::predict::factor_curve::FactorCurve;
+use crate::watch;
 
 /// Fits the constants of a calibration: A and p of bonds, or (method `handbook`) C and m of hand calculation.
 ///
@@ -25,7 +26,10 @@ pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
         criterion: calibration.criterion,
         delta_k: &delta_k,
     };
-    let fit = fit_by_method(calibration, &task, &delta_k, observer)?;
+    let fit = watch::with(observer.watch(), || {
+        let fit = fit_by_method(calibration, &task, &delta_k, observer);
+        watch::unless_cancelled(&calibration.case.name, fit)
+    })?;
     match paris::doubt(fit.paris.c, fit.paris.m) {
         None => Ok(fit),
         Some(doubt) => {

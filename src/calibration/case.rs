@@ -11,7 +11,8 @@ use crate::calibration::exponent::Exponent;
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::calibration::record::SourceFile;
-use crate::case::{Case, LAW_KEYS, LawSource, Method};
+pub use crate::case::remove_law;
+use crate::case::{Case, LawSource, Method};
 use crate::error::{input, input_missing};
 use crate::fatigue::{Ageing, GrowthRate};
 use crate::input::{Document, Folder, LENGTH, sha256, slice};
@@ -180,15 +181,6 @@ fn delta_k_ratio(curves: &[MeasuredCurve], k_i: &dyn Fn(f64) -> f64) -> f64 {
     let all = curves.iter().flat_map(of_curve);
     let (low, high) = all.fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(k), high.max(k)));
     high / low
-}
-
-/// Takes the law out of the sections of a case that is to get another one, or needs none.
-pub fn remove_law(sections: &mut Table) {
-    if let Some(fatigue) = sections.get_mut("fatigue").and_then(Value::as_table_mut) {
-        for key in LAW_KEYS {
-            fatigue.remove(key);
-        }
-    }
 }
 
 /// Curves of one stress ratio say nothing about its influence, and a record means ε = s_max (1-R): another Walker exponent

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::choices::Choices;
-use super::{Case, LAW_KEYS, LawSource, fatigue, first_load, law, model};
+use super::{Case, LAW_KEYS, LawSource, fatigue, first_load, law, model, remove_law};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
@@ -63,6 +63,17 @@ impl Case {
             return Err(law::missing(case.model.method, Path::new("")));
         }
         Ok(case)
+    }
+
+    /// Reads a case from text whose law is that of `record`, whatever its own says; files it names lie in `folder`.
+    ///
+    /// # Errors
+    /// As [`Case::from_toml`] and [`Case::with_law`].
+    pub fn from_toml_with_law(text: &str, name: &str, folder: impl Into<Folder>, record: FittedRecord) -> Result<Self> {
+        let mut document = Document::parse(text, name, folder, &[])?;
+        remove_law(&mut document.table);
+        let read = || Self::from_table(document.table.clone(), name, &document.folder)?.with_law(record);
+        read().map_err(|error| document.locate(error))
     }
 
     /// Builds a case from a table of sections. Errors name the key; file and line are named by who has the text

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::console::{Console, RunProgress};
@@ -16,6 +16,7 @@ use crate::predict::checkpoint::{Checkpoint, SIGN};
 use crate::predict::{Observer, Prediction, Progress, predict, resume};
 use crate::report::output::{Replaced, Sort};
 use crate::units::MM;
+use crate::watch::Watch;
 
 /// Time between two checkpoints over the time that writing one takes, at least: so they cost 5 % at most.
 const OVER_COST: u32 = 20;
@@ -30,6 +31,9 @@ pub struct Args {
     /// Least time between two writings; they wait for a place from which the run can go on
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = seconds, requires = "checkpoint")]
     pub checkpoint_every: f64,
+    /// Time after which the run is asked to end, building the plate included; with a checkpoint the same command goes on later
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub time_limit: Option<f64>,
 }
 
 /// A time that is not negative.
@@ -44,12 +48,16 @@ impl Args {
     /// # Errors
     /// As [`predict`] and [`resume`]; a file that cannot be read, or is no checkpoint of this case.
     pub fn run(&self, case: &Case, console: &Console) -> Result<(Prediction, Option<Replaced>)> {
-        let progress = console.progress(&case.name);
-        let Some(path) = &self.checkpoint else { return Ok((predict(case, &progress)?, None)) };
+        let progress = self.progress(&case.name, console);
+        let Some(path) = &self.checkpoint else {
+            return Ok((self.within_limit(&case.name, &progress, predict(case, &progress))?, None));
+        };
         let of_case = |bytes: Vec<u8>| Checkpoint::from_bytes(&bytes).and_then(|kept| kept.check(case).map(|()| kept));
         let checkpoint = read(path)?.map(of_case).transpose().map_err(|error| error.in_file(path))?;
         let keeper = self.keeper((path, SIGN), progress, &case.provenance, console)?;
-        let Some(checkpoint) = checkpoint else { return Ok((predict(case, &keeper)?, Some(keeper.file))) };
+        let Some(checkpoint) = checkpoint else {
+            return Ok((self.within_limit(&case.name, &keeper.progress, predict(case, &keeper))?, Some(keeper.file)));
+        };
         let Progress { cycles, crack_length, .. } = checkpoint.progress();
         console.note(&format!(
             "{}: goes on from {}: N = {cycles:.1}, a = {:.3} mm",
@@ -57,7 +65,8 @@ impl Args {
             path.display(),
             crack_length / MM
         ));
-        Ok((resume(case, checkpoint, &keeper)?, Some(keeper.file)))
+        let done = resume(case, checkpoint, &keeper);
+        Ok((self.within_limit(&case.name, &keeper.progress, done)?, Some(keeper.file)))
     }
 
     /// Runs a scene, from its checkpoint if there is one.
@@ -65,15 +74,40 @@ impl Args {
     /// # Errors
     /// As [`fracture::run`] and [`fracture::resume`]; a file that cannot be read, or is no checkpoint of this scene.
     pub fn run_scene(&self, scene: &Scene, console: &Console) -> Result<(Fracture, Option<Replaced>)> {
-        let progress = console.progress(&scene.name);
-        let Some(path) = &self.checkpoint else { return Ok((fracture::run(scene, &progress)?, None)) };
+        let progress = self.progress(&scene.name, console);
+        let Some(path) = &self.checkpoint else {
+            return Ok((self.within_limit(&scene.name, &progress, fracture::run(scene, &progress))?, None));
+        };
         let of_scene = |bytes: Vec<u8>| SceneCheckpoint::from_bytes(&bytes).and_then(|kept| kept.check(scene).map(|()| kept));
         let checkpoint = read(path)?.map(of_scene).transpose().map_err(|error| error.in_file(path))?;
         let keeper = self.keeper((path, SCENE_SIGN), progress, &scene.provenance, console)?;
-        let Some(checkpoint) = checkpoint else { return Ok((fracture::run(scene, &keeper)?, Some(keeper.file))) };
+        let Some(checkpoint) = checkpoint else {
+            return Ok((self.within_limit(&scene.name, &keeper.progress, fracture::run(scene, &keeper))?, Some(keeper.file)));
+        };
         let (step, share) = (checkpoint.step(), checkpoint.progress().share);
         console.note(&format!("{}: goes on from {}: step {step}, {:.1} % done", scene.name, path.display(), 100.0 * share));
-        Ok((fracture::resume(scene, checkpoint, &keeper)?, Some(keeper.file)))
+        let done = fracture::resume(scene, checkpoint, &keeper);
+        Ok((self.within_limit(&scene.name, &keeper.progress, done)?, Some(keeper.file)))
+    }
+
+    fn progress(&self, name: &str, console: &Console) -> RunProgress {
+        // The parser let no other time through.
+        let limit = self.time_limit.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        console.progress_within(name, limit)
+    }
+
+    /// What came of a run, with words for one whose time was over.
+    fn within_limit<T>(&self, name: &str, progress: &RunProgress, done: Result<T>) -> Result<T> {
+        if done.is_ok() || !progress.ran_out() {
+            return done;
+        }
+        let way = match &self.checkpoint {
+            Some(path) if path.is_file() => format!("the same command goes on from {}", path.display()),
+            Some(path) => format!("the same command begins anew: {} was not written yet", path.display()),
+            None => "give more, or keep the run with --checkpoint FILE".to_owned(),
+        };
+        let seconds = self.time_limit.unwrap_or_default();
+        Err(Error::Mechanics(format!("{name}: the time limit of {seconds} s is over before the run is; {way}")))
     }
 
     /// Refuses a checkpoint below the folder of the results, which it would make one that holds something else.
@@ -137,6 +171,10 @@ struct Last {
 }
 
 impl Observer for Keeper<'_> {
+    fn watch(&self) -> Option<Arc<Watch>> {
+        Observer::watch(&self.progress)
+    }
+
     fn block_done(&self, progress: &Progress) -> bool {
         self.progress.block_done(progress)
     }
@@ -147,6 +185,10 @@ impl Observer for Keeper<'_> {
 }
 
 impl SceneObserver for Keeper<'_> {
+    fn watch(&self) -> Option<Arc<Watch>> {
+        SceneObserver::watch(&self.progress)
+    }
+
     fn step_done(&self, progress: &SceneProgress) -> bool {
         self.progress.step_done(progress)
     }

@@ -24,6 +24,7 @@ pub mod worker;
 pub mod checkpoint;
 pub mod console;
 pub mod message;
+pub mod run_progress;
 pub mod signals;
 mod unaged;
 

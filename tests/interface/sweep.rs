@@ -279,6 +279,8 @@ fn a_service_hands_over_all_files() {
     let failing = design(&panel.display().to_string(), "loading.stress_range_mpa", "[48.28, 20.0]");
     fs::write(here.join("failing.toml"), failing).unwrap();
     let place = in_folder(&here.join("service"));
+    // The database is made by a service.
+    drop(Server::start(&[&place[0], &place[1]], &["--jobs", "0"]));
     let _worker = Server::worker(&[&place[0], &place[1]], &["--jobs", "1"]);
     for sweep in ["sweep", "failing"] {
         let file = format!("{sweep}.toml");

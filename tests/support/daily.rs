@@ -24,6 +24,7 @@ method = "handbook"
 [fatigue]
 paris_c_mm_per_cycle = 8.95422e-8
 paris_m = 2.874
+allow_extrapolation = true
 [stop]
 crack_length_mm = 49.8
 "#;

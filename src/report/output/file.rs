@@ -153,8 +153,9 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
         return fs::write(path, bytes).map_err(cannot);
     }
     let partial = temporary_beside(&target, PARTIAL);
-    let pending = Pending::file(&partial);
-    let written = fs::write(&partial, bytes);
+    let (pending, mut file) = Pending::file_by(&partial, || fs::File::create(&partial)).map_err(cannot)?;
+    let written = file.write_all(bytes);
+    drop(file);
     let held = pending::hold();
     let done = written.and_then(|()| fs::rename(&partial, &target));
     drop(held);

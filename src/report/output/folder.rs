@@ -96,8 +96,8 @@ impl OutputFolder {
         let target = folder_for(path, kind, read)?;
         leftovers::remove_of(&folder.within());
         folder.partial = temporary_beside(&folder.within(), PARTIAL);
-        fs::create_dir(&folder.partial).map_err(cannot)?;
-        folder._in_the_making.push(Pending::tree(&folder.partial));
+        let (pending, ()) = Pending::tree_by(&folder.partial, || fs::create_dir(&folder.partial)).map_err(cannot)?;
+        folder._in_the_making.push(pending);
         let marker = Marker { kind, files: Default::default() };
         fs::write(folder.partial.join(MARKER), marker.text())
             .map_err(|e| Error::file(path, "cannot write into the folder", e))?;
@@ -226,7 +226,7 @@ impl OutputFolder {
         }
         self.is_finished = true;
         // As the user writes it, unless links lead elsewhere.
-        let named = parent_of(&self.name).join(visible.file_name().unwrap_or_default());
+        let named = self.name.with_file_name(visible.file_name().unwrap_or_default());
         Ok(if named.exists() { named } else { visible })
     }
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::marker::MARKER;
+use super::marker::{MARKER, Marker};
 
 /// What a name begun is called until it is whole.
 pub(super) const PARTIAL: &str = "partial";
@@ -22,8 +22,14 @@ pub fn lock_of(target: &Path) -> PathBuf {
 #[must_use]
 pub fn is_temporary(name: &str) -> bool {
     let Some((stem, end)) = name.strip_prefix('.').and_then(|rest| rest.rsplit_once('.')) else { return false };
-    let is_numbered = |what: &str| end.strip_prefix(what).is_some_and(|rest| rest.starts_with('-'));
+    let is_numbered = |what: &str| end.strip_prefix(what).is_some_and(is_number);
     !stem.is_empty() && (end == LOCK || end == PARTIAL || is_numbered(PARTIAL) || is_numbered(OLD))
+}
+
+/// Whether this is what a name begun ends with: number of the process, and a count.
+fn is_number(end: &str) -> bool {
+    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    end.strip_prefix('-').and_then(|rest| rest.split_once('-')).is_some_and(|(a, b)| is_digits(a) && is_digits(b))
 }
 
 /// A name beside `target` that nobody else uses: hidden, with process number and a count.
@@ -51,16 +57,23 @@ pub(super) fn visible_beside(target: &Path) -> PathBuf {
 /// result that one of them had just moved aside goes back.
 pub(super) fn remove_of(target: &Path) {
     let parent = parent_of(target);
-    let (partial, old) = (format!(".{}.{PARTIAL}-", name_of(target)), format!(".{}.{OLD}-", name_of(target)));
+    let [partial, old] = [PARTIAL, OLD].map(|what| format!(".{}.{what}", name_of(target)));
     for entry in fs::read_dir(&parent).into_iter().flatten().flatten() {
         let (name, path) = (entry.file_name().to_string_lossy().into_owned(), entry.path());
-        let is_folder = path.is_dir();
-        // Folders of this name that are none of ours stay.
-        if !(name.starts_with(&partial) || name.starts_with(&old)) || is_folder && !path.join(MARKER).is_file() {
+        let is_of = |what: &String| name.strip_prefix(&**what).is_some_and(is_number);
+        let (is_folder, is_marked) = (path.is_dir(), path.join(MARKER).is_file());
+        if !(is_of(&partial) || is_of(&old)) {
             continue;
         }
-        if name.starts_with(&old) && fs::symlink_metadata(target).is_err() {
+        if is_of(&old) && is_marked && fs::symlink_metadata(target).is_err() {
             let _ = fs::rename(&path, target);
+        } else if is_folder && !is_marked {
+            // Begun and no more, or not ours.
+            let _ = fs::remove_dir(&path);
+        } else if is_folder && is_of(&old) {
+            // What is not of that run stays.
+            let _ = Marker::read(&path).map(|marker| marker.remove_from(&path));
+            let _ = fs::remove_dir(&path);
         } else if is_folder {
             let _ = fs::remove_dir_all(&path);
         } else {

@@ -41,6 +41,11 @@ impl Lock {
     /// # Errors
     /// [`Refused`].
     pub fn take(path: &Path, share: Share) -> Result<Lock, Refused> {
+        let (pending, file) = Pending::file_by(path, || Self::locked(path, share))?;
+        Ok(Lock { file, path: path.to_path_buf(), _pending: pending })
+    }
+
+    fn locked(path: &Path, share: Share) -> Result<File, Refused> {
         loop {
             let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path);
             let mut file = opened.map_err(Refused::Impossible)?;
@@ -66,7 +71,7 @@ impl Lock {
             if let Err(error) = named {
                 tracing::debug!("{}: cannot say who has the lock: {error}", path.display());
             }
-            return Ok(Lock { file, path: path.to_path_buf(), _pending: Pending::file(path) });
+            return Ok(file);
         }
     }
 

@@ -127,7 +127,13 @@ impl Marker {
     /// # Errors
     /// One that cannot be removed.
     pub fn remove_from(&self, folder: &Path) -> io::Result<()> {
-        for file in self.files.iter().map(String::as_str).chain([MARKER]) {
+        self.remove_files(folder)?;
+        gone(fs::remove_file(folder.join(MARKER)))
+    }
+
+    /// The same, but for the marker itself.
+    pub(super) fn remove_files(&self, folder: &Path) -> io::Result<()> {
+        for file in &self.files {
             let path = folder.join(file);
             if file.ends_with('/') {
                 remove_runs(&path)?;

@@ -27,18 +27,38 @@ impl Pending {
         Self::add(Thing::File(path.to_path_buf()))
     }
 
-    /// A folder likewise, with all that is in it.
-    pub fn tree(path: &Path) -> Self {
-        Self::add(Thing::Tree(path.to_path_buf()))
-    }
-
     /// A folder likewise, if nothing is in it.
     pub fn empty(path: &Path) -> Self {
         Self::add(Thing::Empty(path.to_path_buf()))
     }
 
-    fn add(thing: Thing) -> Self {
+    /// Makes a file and keeps it on the list, so that the process is folded up before or after, not in between.
+    ///
+    /// # Errors
+    /// As `make`.
+    pub(super) fn file_by<T, E>(path: &Path, make: impl FnOnce() -> Result<T, E>) -> Result<(Self, T), E> {
+        Self::by(Thing::File(path.to_path_buf()), make)
+    }
+
+    /// Likewise a folder.
+    ///
+    /// # Errors
+    /// As `make`.
+    pub(super) fn tree_by<T, E>(path: &Path, make: impl FnOnce() -> Result<T, E>) -> Result<(Self, T), E> {
+        Self::by(Thing::Tree(path.to_path_buf()), make)
+    }
+
+    fn by<T, E>(thing: Thing, make: impl FnOnce() -> Result<T, E>) -> Result<(Self, T), E> {
         let mut all = hold().0;
+        let made = make()?;
+        Ok((Self::add_to(&mut all, thing), made))
+    }
+
+    fn add(thing: Thing) -> Self {
+        Self::add_to(&mut hold().0, thing)
+    }
+
+    fn add_to(all: &mut Vec<(u64, Thing)>, thing: Thing) -> Self {
         let number = all.last().map_or(0, |(last, _)| last + 1);
         all.push((number, thing));
         Pending(number)

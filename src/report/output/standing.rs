@@ -82,8 +82,7 @@ fn begin(name: &Path, target: &Path, marker: &Marker, first: &[(&str, Vec<u8>)])
         return fill(target);
     }
     let partial = temporary_beside(target, PARTIAL);
-    let _pending = Pending::tree(&partial);
-    fs::create_dir(&partial).map_err(cannot)?;
+    let (_pending, ()) = Pending::tree_by(&partial, || fs::create_dir(&partial)).map_err(cannot)?;
     let done = fill(&partial).and_then(|()| match fs::rename(&partial, target) {
         // Another part was first.
         Err(error) if matches!(error.kind(), io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::AlreadyExists) => Ok(()),

@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use super::leftovers::visible_beside;
-use super::marker::{MARKER, Marker, gone};
+use super::marker::{MARKER, Marker};
 
 /// Renames `partial` to `target`, of whose earlier files none is left then. What appears there in the last moment stays.
 ///
@@ -41,9 +41,7 @@ pub(super) fn move_into(partial: &Path, target: &Path) -> io::Result<()> {
     let old = Marker::read(target).unwrap_or_else(|| Marker { files: Default::default(), ..new.clone() });
     let both = Marker { files: new.files.union(&old.files).cloned().collect(), ..new.clone() };
     fs::write(target.join(MARKER), both.text())?;
-    for file in old.files.difference(&new.files).filter(|file| !file.ends_with('/')) {
-        gone(fs::remove_file(target.join(file)))?;
-    }
+    Marker { files: old.files.difference(&new.files).cloned().collect(), ..old }.remove_files(target)?;
     for file in &new.files {
         let to = target.join(file);
         if let Some(folder) = to.parent() {

@@ -187,6 +187,8 @@ fn leftovers_of_the_dead_go() {
     let partial = |name: &&String| name.starts_with(".out.partial");
     assert_eq!(names(here).iter().filter(partial).count(), 1, "{:?}", names(here));
     fs::create_dir(here.join(".out.partial-of-a-user")).unwrap();
+    fs::create_dir(here.join(".out.partial-1-1")).unwrap();
+    fs::write(here.join(".out.partial-1-1/notes.txt"), "mine").unwrap();
     // An earlier result that was moved aside when the process died goes back.
     assert!(perilife(here, &["predict", "panel.toml", "--out", "kept", "-q"]).status.success());
     fs::rename(here.join("kept"), here.join(".kept.old-1-0")).unwrap();
@@ -197,7 +199,7 @@ fn leftovers_of_the_dead_go() {
     assert!(output.status.success() || texts(&output).1.contains("notes.txt"), "{}", texts(&output).1);
     assert_eq!(fs::read_to_string(here.join("kept/notes.txt")).unwrap(), "mine");
     let hidden: Vec<String> = names(here).into_iter().filter(|name| name.starts_with('.')).collect();
-    assert_eq!(hidden, [".out.partial-of-a-user"]);
+    assert_eq!(hidden, [".out.partial-1-1", ".out.partial-of-a-user"]);
 }
 
 /// A mounted folder is filled where it stands, again and again; a full one keeps what there is. Where nothing may be mounted there is
