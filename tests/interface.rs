@@ -43,6 +43,8 @@ mod export;
 mod bad_scenes;
 #[path = "interface/fracture.rs"]
 mod fracture;
+#[path = "interface/time_limit.rs"]
+mod time_limit;
 #[path = "interface/ends.rs"]
 mod ends;
 #[path = "interface/hand_calculation.rs"]
@@ -57,5 +59,7 @@ mod service;
 mod sif;
 #[path = "interface/sweep.rs"]
 mod sweep;
+#[path = "interface/traceable.rs"]
+mod traceable;
 #[path = "interface/verify.rs"]
 mod verify;

@@ -68,7 +68,7 @@ impl OutputFile {
             return Err(input(sort.option, path.display(), problem, "give a new name, or remove it yourself"));
         }
         let lock = lock(sort, path, &target)?;
-        leftovers::remove_of(&target);
+        leftovers::remove_beside(&target, &lock);
         claimed(Place::File { target, _lock: lock })
     }
 

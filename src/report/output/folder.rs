@@ -9,6 +9,7 @@ use super::lock::{Lock, Refused, Share};
 use super::marker::{MARKER, Marker, RunKind};
 use super::pending::{self, Pending};
 use super::place::{Room, folder_for, is_mounted, occupied, room};
+use super::rescue::{elsewhere, has_files};
 use super::{said, swap};
 use crate::error::{Error, Result, input};
 use crate::input::Provenance;
@@ -94,7 +95,7 @@ impl OutputFolder {
         })?;
         // It may have changed while it was not locked.
         let target = folder_for(path, kind, read)?;
-        leftovers::remove_of(&folder.within());
+        folder.lock.iter().for_each(|lock| leftovers::remove_beside(&folder.within(), lock));
         folder.partial = temporary_beside(&folder.within(), PARTIAL);
         let (pending, ()) = Pending::tree_by(&folder.partial, || fs::create_dir(&folder.partial)).map_err(cannot)?;
         folder._in_the_making.push(pending);
@@ -157,19 +158,10 @@ impl OutputFolder {
                 Err(trouble) => said(error, &format!("what there is cannot be kept: {trouble}")),
             });
         }
-        let name = self.target.file_name().unwrap_or_default().to_owned();
-        for place in [std::env::current_dir().ok(), Some(std::env::temp_dir())].into_iter().flatten() {
-            let other = visible_beside(&place.join(&name));
-            if fs::create_dir(&other).is_ok() {
-                let _ = write(&other);
-                if has_files(&other) {
-                    let _ = Marker::of(self.kind, &other).and_then(|marker| fs::write(other.join(MARKER), marker.text()));
-                    return Err(said(error, &format!("what there is stands in {}", other.display())));
-                }
-                let _ = fs::remove_dir_all(&other);
-            }
+        match elsewhere(self.kind, &self.target, &write) {
+            Some(other) => Err(said(error, &format!("what there is stands in {}", other.display()))),
+            None => Err(error),
         }
-        Err(error)
     }
 
     /// Puts the folder in its place; the files of an earlier run go, and nothing else.
@@ -235,11 +227,6 @@ impl OutputFolder {
 pub(super) fn taken(option: &str, path: &Path, holder: &str) -> Error {
     let problem = format!("is in use by another run: {holder}");
     input(option, path.display(), problem, "wait for its end, or give another name")
-}
-
-/// Whether a folder of results has more than its marker.
-fn has_files(folder: &Path) -> bool {
-    Marker::of(RunKind::Predict, folder).is_ok_and(|marker| !marker.files.is_empty())
 }
 
 impl Drop for OutputFolder {

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::lock::Lock;
 use super::marker::{MARKER, Marker};
 
 /// What a name begun is called until it is whole.
@@ -22,8 +23,7 @@ pub fn lock_of(target: &Path) -> PathBuf {
 #[must_use]
 pub fn is_temporary(name: &str) -> bool {
     let Some((stem, end)) = name.strip_prefix('.').and_then(|rest| rest.rsplit_once('.')) else { return false };
-    let is_numbered = |what: &str| end.strip_prefix(what).is_some_and(is_number);
-    !stem.is_empty() && (end == LOCK || end == PARTIAL || is_numbered(PARTIAL) || is_numbered(OLD))
+    !stem.is_empty() && (end == LOCK || end == PARTIAL) || stem_of(name).is_some()
 }
 
 /// Whether this is what a name begun ends with: number of the process, and a count.
@@ -53,33 +53,47 @@ pub(super) fn visible_beside(target: &Path) -> PathBuf {
     (1..).map(candidate).find(|path| fs::symlink_metadata(path).is_err()).unwrap_or_default()
 }
 
-/// Removes what processes left behind that were killed while they wrote `target`; its lock is held, so none of them lives. An earlier
-/// result that one of them had just moved aside goes back.
-pub(super) fn remove_of(target: &Path) {
+/// Removes what processes left beside `target` that were killed while they wrote it or something else there. An earlier result that one
+/// of them had just moved aside goes back.
+///
+/// `lock` is that of `target`; other names count as left behind where the system gives their locks away. Where it knows no locks nothing
+/// is removed.
+pub(super) fn remove_beside(target: &Path, lock: &Lock) {
     let parent = parent_of(target);
-    let [partial, old] = [PARTIAL, OLD].map(|what| format!(".{}.{what}", name_of(target)));
+    let own = name_of(target);
     for entry in fs::read_dir(&parent).into_iter().flatten().flatten() {
-        let (name, path) = (entry.file_name().to_string_lossy().into_owned(), entry.path());
-        let is_of = |what: &String| name.strip_prefix(&**what).is_some_and(is_number);
-        let (is_folder, is_marked) = (path.is_dir(), path.join(MARKER).is_file());
-        if !(is_of(&partial) || is_of(&old)) {
-            continue;
-        }
-        if is_of(&old) && is_marked && fs::symlink_metadata(target).is_err() {
-            let _ = fs::rename(&path, target);
-        } else if is_folder && !is_marked {
-            // Begun and no more, or not ours.
-            let _ = fs::remove_dir(&path);
-        } else if is_folder && is_of(&old) {
-            // What is not of that run stays.
-            let _ = Marker::read(&path).map(|marker| marker.remove_from(&path));
-            let _ = fs::remove_dir(&path);
-        } else if is_folder {
-            let _ = fs::remove_dir_all(&path);
-        } else {
-            let _ = fs::remove_file(&path);
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let Some((stem, is_old)) = stem_of(&name) else { continue };
+        let of = parent.join(stem);
+        let is_left = if stem == own { lock.is_real() } else { Lock::is_given_up(&lock_of(&of)) };
+        if is_left {
+            remove(&entry.path(), is_old.then_some(&*of));
         }
     }
+}
+
+/// The name that a temporary name stands for, and whether it is that of an earlier result.
+fn stem_of(name: &str) -> Option<(&str, bool)> {
+    let (stem, end) = name.strip_prefix('.')?.rsplit_once('.')?;
+    let is = |what: &str| end.strip_prefix(what).is_some_and(is_number);
+    (!stem.is_empty() && (is(PARTIAL) || is(OLD))).then(|| (stem, is(OLD)))
+}
+
+/// Removes one thing that was left; `place` is where it stood if it is an earlier result.
+fn remove(path: &Path, place: Option<&Path>) {
+    let marker = Marker::read(path);
+    let is_folder = path.is_dir();
+    let _ = match (place, marker) {
+        (Some(place), Some(_)) if fs::symlink_metadata(place).is_err() => fs::rename(path, place),
+        // What is not of that run stays.
+        (Some(_), Some(marker)) => marker.remove_from(path).and_then(|()| fs::remove_dir(path)),
+        (None, Some(_)) => fs::remove_dir_all(path),
+        // Of an earlier version, whose marker lists nothing.
+        (None, None) if path.join(MARKER).is_file() => fs::remove_dir_all(path),
+        // Begun and no more, or not ours.
+        (_, None) if is_folder => fs::remove_dir(path),
+        (_, None) => fs::remove_file(path),
+    };
 }
 
 fn name_of(path: &Path) -> String {

@@ -14,6 +14,7 @@ use crate::input::FileId;
 pub struct Lock {
     file: File,
     path: PathBuf,
+    is_real: bool,
     _pending: Pending,
 }
 
@@ -41,15 +42,17 @@ impl Lock {
     /// # Errors
     /// [`Refused`].
     pub fn take(path: &Path, share: Share) -> Result<Lock, Refused> {
-        let (pending, file) = Pending::file_by(path, || Self::locked(path, share))?;
-        Ok(Lock { file, path: path.to_path_buf(), _pending: pending })
+        let (pending, (file, is_real)) = Pending::file_by(path, || Self::locked(path, share))?;
+        Ok(Lock { file, path: path.to_path_buf(), is_real, _pending: pending })
     }
 
-    fn locked(path: &Path, share: Share) -> Result<File, Refused> {
+    /// The file, and whether the system locks it.
+    fn locked(path: &Path, share: Share) -> Result<(File, bool), Refused> {
         loop {
             let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path);
             let mut file = opened.map_err(Refused::Impossible)?;
             let locked = if share == Share::Alone { file.try_lock() } else { file.try_lock_shared() };
+            let is_real = locked.is_ok();
             match locked {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => {
@@ -71,14 +74,21 @@ impl Lock {
             if let Err(error) = named {
                 tracing::debug!("{}: cannot say who has the lock: {error}", path.display());
             }
-            return Ok(file);
+            return Ok((file, is_real));
         }
     }
 
-    /// Whether a lock file is held by anybody who lives.
+    /// Whether the system keeps others out, which not every file system does.
     #[must_use]
-    pub fn is_held(path: &Path) -> bool {
-        File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+    pub fn is_real(&self) -> bool {
+        self.is_real
+    }
+
+    /// Whether a lock file stands there whose holder is gone; it is removed then.
+    #[must_use]
+    pub fn is_given_up(path: &Path) -> bool {
+        let is_free = File::open(path).is_ok_and(|file| file.try_lock().is_ok());
+        is_free && Lock::take(path, Share::Alone).is_ok_and(|lock| lock.is_real())
     }
 }
 

@@ -14,6 +14,7 @@ pub mod lock;
 mod marker;
 pub mod pending;
 mod place;
+mod rescue;
 mod standing;
 mod swap;
 

@@ -40,7 +40,7 @@ impl StandingFolder {
             Refused::Taken(holder) => taken("--out", path, &holder),
         })?;
         if share == Share::Alone {
-            leftovers::remove_of(&target);
+            leftovers::remove_beside(&target, &lock);
         }
         if !target.join(MARKER).is_file() {
             begin(path, &target, marker, first)?;

@@ -305,7 +305,8 @@ fn text_of(given: Value) -> Answer<String> {
         Value::String(text) => Ok(text),
         Value::Object(_) => {
             if let Some(key) = null_in(&given, "") {
-                return Err(input(&key, "null", "has no value", "give one, or leave the key out").into());
+                let detail = format!("`input` has no form in TOML: {key} is null; give a value, or leave the key out");
+                return Err(Problem::bad_request(detail));
             }
             let refused = |error: &dyn std::fmt::Display| Problem::bad_request(format!("`input` has no form in TOML: {error}"));
             let table = toml::Table::try_from(given).map_err(|error| refused(&error))?;
