@@ -24,7 +24,7 @@ fn doubles() -> Vec<f64> {
         f64::from_bits(state)
     };
     let known =
-        [0.1 + 0.2, 2.2250738585072011e-308, 5e-324, f64::MAX, 8.41e21, 9007199254740993.0, 1.0 / 3.0, 6929495644600919.5];
+        [0.1 + 0.2, f64::MIN_POSITIVE.next_down(), 5e-324, f64::MAX, 8.41e21, 9007199254740994.0, 1.0 / 3.0, 6929495644600919.0];
     let random = std::iter::repeat_with(&mut next).filter(|x| x.is_finite()).take(1000);
     random.chain(known).collect()
 }

@@ -55,10 +55,13 @@ impl OutputFile {
         if path == Path::new(STREAM) {
             return claimed(Place::Stdout);
         }
+        // A pipe behind /dev/stdout has no path of its own.
+        if fs::metadata(path).is_ok_and(|there| !there.is_dir() && !there.is_file()) {
+            return claimed(Place::Device);
+        }
         let target = resolved(path).map_err(|error| Error::file(path, "cannot write", error))?;
         match fs::metadata(&target) {
             Ok(there) if there.is_dir() => return Err(is_folder(sort, path)),
-            Ok(there) if !there.is_file() => return claimed(Place::Device),
             Ok(there) if was_read(&there, read) => return Err(is_read(sort, path)),
             Err(_) if path.file_name().is_none() => return Err(is_folder(sort, path)),
             _ => {}

@@ -75,6 +75,8 @@ pub struct Watch<'a> {
     stop: AtomicU8,
     /// What the run does before it has rows to show, and where it looks whether it may go on.
     work: Arc<Work>,
+    /// Whether nobody has shown any of its curve yet.
+    is_fresh: bool,
     told: Mutex<Pending>,
 }
 
@@ -114,7 +116,8 @@ impl<'a> Watch<'a> {
             keep_cost: Duration::ZERO,
         };
         let (stop, work) = (AtomicU8::new(0), Arc::default());
-        Watch { cracks, keep, keep_every, started: Instant::now(), stop, work, told: Mutex::new(told) }
+        let is_fresh = growth.cycles.is_empty();
+        Watch { cracks, keep, keep_every, started: Instant::now(), stop, work, is_fresh, told: Mutex::new(told) }
     }
 
     /// Asks the run to end; the first reason counts.
@@ -147,7 +150,8 @@ impl<'a> Watch<'a> {
             stage: Some(format!("{} {:.0} %", stage.words(), 100.0 * share)),
             ..JobProgress::default()
         };
-        let progress = progress.or_else(|| self.work.now().map(before));
+        // One that is taken up is as far as it was until it has more to show.
+        let progress = progress.or_else(|| self.work.now().filter(|_| self.is_fresh).map(before));
         let growth = (!told.entries.cycles.is_empty()).then(|| {
             let next = told.entries.from + told.entries.cycles.len();
             std::mem::replace(&mut told.entries, Growth { from: next, ..Growth::default() })
