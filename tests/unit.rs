@@ -94,6 +94,8 @@ mod micro_cracks;
 mod sweep;
 #[path = "unit/verification_table.rs"]
 mod verification_table;
+#[path = "unit/watch.rs"]
+mod watch;
 #[path = "unit/length_average.rs"]
 mod length_average;
 #[path = "unit/record.rs"]
