@@ -12,8 +12,8 @@ mod nodes;
 mod read;
 
 pub use choices::{Choices, Failure, Method};
-pub use law_source::{LAW_KEYS, fitted_record};
-pub use read::SECTIONS;
+pub use law_source::{LAW_KEYS, fitted_record, remove_law};
+pub use read::{RECORD, SECTIONS};
 
 use crate::body::lattice::fitting_spacing;
 use crate::bond_law::{BondLaw, SurfaceCorrection};
@@ -23,6 +23,7 @@ use crate::element_free::resolution::ElementFreeSettings;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, FatigueSettings};
+use crate::input::Provenance;
 use crate::levels::{Discretisation, Refinement};
 use crate::loading::Loading;
 use crate::material::Material;
@@ -141,6 +142,8 @@ pub struct Case {
     pub warnings: Vec<String>,
     /// The input as given, overrides applied; echoed in `result.json`.
     pub echo: serde_json::Value,
+    /// Files that were read for it, and overrides.
+    pub provenance: Provenance,
     /// Whether growth far outside the calibrated range of ΔK is accepted.
     pub allow_extrapolation: bool,
     /// What the file chose explicitly; a fitted record must agree with it.

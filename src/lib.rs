@@ -10,6 +10,27 @@
 //! ([`growth::tip_field`], the default), or every bond by its own strain ([`growth::bond_strain`]). Limits: linear elasticity, small-scale
 //! yielding, through cracks in plane stress or plane strain. `src/README.md` has the theory room by room, with symbols, limits and sources.
 //!
+//! As a library, from readings of a test to the life of another plate; lengths are metres inside, and names of what is not SI say so:
+//!
+//! ```
+//! use perilife::calibration::{calibrate::calibrate, case::CalibrationCase, results::record};
+//! use perilife::{case::Case, input::Folder, predict::{Silent, predict}};
+//!
+//! let csv = "cycles,crack_length_mm\n0,9\n20000,9.6\n40000,10.3\n60000,11.2\n80000,12.3\n100000,13.6\n120000,15.3\n140000,17.6\n";
+//! let panel = r#"specimen = { kind = "middle_tension", width_mm = 152.4, length_mm = 300.0, thickness_mm = 2.54, crack_length_mm = 9.0 }
+//!     material = { name = "al2024-t3" }
+//!     loading = { stress_range_mpa = 48.28, stress_ratio = 0.2 }
+//!     model = { method = "handbook" }"#;
+//! let readings = Folder::at_hand([("panel.csv".to_owned(), csv.into())]);
+//! let test = CalibrationCase::from_text(&format!("measured.files = ['panel.csv']\n{panel}"), "panel", readings)?;
+//! let law = record(&test, &calibrate(&test, &Silent)?);
+//! let narrower = format!("{panel}\nstop = {{ crack_length_mm = 20.0 }}").replace("152.4", "120.0");
+//! let life = predict(&Case::from_toml_with_law(&narrower, "narrower", Folder::none(), law)?, &Silent)?;
+//! println!("{:.0} cycles to {:.1} mm", life.life_cycles(), life.crack_length_final_mm());
+//! # assert!(life.life_cycles() > 1e5 && (life.crack_length_final_mm() - 20.0).abs() < 1e-6);
+//! # Ok::<(), perilife::Error>(())
+//! ```
+//!
 //! Rooms stand in the order in which data flows; a file uses only rooms listed above its own
 //! (kept by `tests/unit/layering.rs`).
 #![warn(missing_docs)]
@@ -20,6 +41,7 @@ pub mod units;
 #[cfg(feature = "tables")]
 pub mod tables;
 pub mod parallel;
+pub mod watch;
 pub mod monotone;
 pub mod quadrature;
 pub mod line;

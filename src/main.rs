@@ -9,6 +9,7 @@ use perilife::commands::{CommandLine, message};
 fn main() -> ExitCode {
     let line = CommandLine::parse();
     line.start_log();
+    line.watch_signals();
     match line.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

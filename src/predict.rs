@@ -30,6 +30,7 @@ use crate::growth::element_free::ElementFree;
 use crate::growth::hand_calculation::HandCalculation;
 use crate::growth::tip_field::TipField;
 use crate::parallel::in_pool;
+use crate::watch;
 use checkpoint::Checkpoint;
 use record::Record;
 
@@ -38,7 +39,7 @@ use record::Record;
 /// # Errors
 /// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
-    in_pool(|| follow(Record::new(case, observer)))
+    watched(case, observer, || follow(Record::new(case, observer)))
 }
 
 /// Goes on with a run of a case from a checkpoint of it; gives what [`predict`] gives, bit for bit, its wall time counted from the
@@ -48,7 +49,12 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 /// As [`predict`]; [`crate::Error::Input`] if the checkpoint is not one of this case.
 pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
     checkpoint.check(case)?;
-    in_pool(|| follow(Record::new(case, observer).resumed_from(checkpoint)))
+    watched(case, observer, || follow(Record::new(case, observer).resumed_from(checkpoint)))
+}
+
+/// A run under the eyes of its observer from building the plate on.
+fn watched(case: &Case, observer: &dyn Observer, run: impl FnOnce() -> Result<Prediction> + Send) -> Result<Prediction> {
+    in_pool(|| watch::with(observer.watch(), || watch::unless_cancelled(&case.name, run())))
 }
 
 /// A run by what its case asks to be driven by.

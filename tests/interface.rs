@@ -2,6 +2,8 @@
 
 #[path = "support/browser.rs"]
 mod browser;
+#[path = "support/daily.rs"]
+mod daily;
 #[path = "support/fatigue_test.rs"]
 mod fatigue_test;
 #[path = "support/made_up_run.rs"]
@@ -33,6 +35,8 @@ mod check;
 mod checkpoint;
 #[path = "interface/cli.rs"]
 mod cli;
+#[path = "interface/doors.rs"]
+mod doors;
 #[path = "interface/export.rs"]
 mod export;
 #[path = "interface/bad_scenes.rs"]
@@ -41,12 +45,16 @@ mod bad_scenes;
 mod fracture;
 #[path = "interface/element_free.rs"]
 mod element_free;
+#[path = "interface/time_limit.rs"]
+mod time_limit;
 #[path = "interface/ends.rs"]
 mod ends;
 #[path = "interface/hand_calculation.rs"]
 mod hand_calculation;
 #[path = "interface/laws.rs"]
 mod laws;
+#[path = "interface/nothing_lost.rs"]
+mod nothing_lost;
 #[path = "interface/rates.rs"]
 mod rates;
 #[path = "interface/service.rs"]
@@ -55,5 +63,7 @@ mod service;
 mod sif;
 #[path = "interface/sweep.rs"]
 mod sweep;
+#[path = "interface/traceable.rs"]
+mod traceable;
 #[path = "interface/verify.rs"]
 mod verify;

@@ -69,6 +69,8 @@ mod case;
 mod exponent;
 #[path = "unit/fit_use.rs"]
 mod fit_use;
+#[path = "unit/floats.rs"]
+mod floats;
 #[path = "unit/growth_law.rs"]
 mod growth_law;
 #[path = "unit/growth_rate.rs"]
@@ -96,6 +98,8 @@ mod micro_cracks;
 mod sweep;
 #[path = "unit/verification_table.rs"]
 mod verification_table;
+#[path = "unit/watch.rs"]
+mod watch;
 #[path = "unit/length_average.rs"]
 mod length_average;
 #[path = "unit/record.rs"]

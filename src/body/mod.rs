@@ -22,6 +22,7 @@ use crate::bond_law::{BondLaw, SurfaceCorrection};
 use crate::error::{Error, Result};
 use crate::material::Material;
 use crate::specimen::{Point, Specimen};
+use crate::watch::{self, Stage};
 use beyond::CoarseNeighbours;
 use boundary::Boundary;
 use lattice::Lattice;
@@ -89,6 +90,7 @@ impl Body {
         let mut is_point = vec![false; places];
         let mut points = Vec::new();
         for row in 0..lattice.rows {
+            watch::at(Stage::Points, row as f64 / lattice.rows as f64)?;
             for column in 0..lattice.columns {
                 if specimen.has_point_at(lattice.position_of(column as f64, row as f64), lattice::ON_RIM * lattice.spacing) {
                     let place = lattice.place(column, row);
@@ -98,7 +100,7 @@ impl Body {
             }
         }
         let steps: Vec<isize> = stencil.bonds.iter().map(|bond| lattice.step(bond.dx, bond.dy)).collect();
-        let multiplier = uncut_bonds(specimen, &lattice, &stencil, &steps, &is_point, &points);
+        let multiplier = uncut_bonds(specimen, &lattice, &stencil, &steps, &is_point, &points)?;
         let bond_count = multiplier.iter().filter(|&&m| m > 0.0).count();
         // The sharing reads the lattice beside the body that takes it over.
         let (grid, occupied) = (lattice.clone(), is_point.clone());
@@ -109,6 +111,7 @@ impl Body {
             }
             SurfaceCorrection::None | SurfaceCorrection::VolumeAndSurface => Sharing::nearest(&grid, &occupied),
         };
+        watch::at(Stage::Loads, 0.0)?;
         let boundary = Boundary::of(specimen, &lattice, &stencil, &sharing, &points)?;
         let no_fail = boundary.no_fail(&lattice, stencil.horizon);
         let mut body = Body {
@@ -126,6 +129,7 @@ impl Body {
             mirror: Mirror::default(),
             beyond: CoarseNeighbours::default(),
         };
+        watch::at(Stage::Rim, 0.0)?;
         match law.surface_correction {
             SurfaceCorrection::None => {}
             SurfaceCorrection::VolumeAndSurface => {
@@ -140,6 +144,7 @@ impl Body {
                 }
             }
         }
+        watch::at(Stage::Loads, 0.5)?;
         body.boundary.balance(&body.lattice)?;
         body.boundary.stiffen_grips(&body.lattice, &body.steps, &mut body.multiplier);
         body.pre_cut = pre_crack::bonds_cut_by(&body, specimen);
@@ -194,6 +199,9 @@ impl Body {
     }
 }
 
+/// Points between two marks of progress.
+const POINTS_PER_MARK: usize = 4096;
+
 /// Multipliers of the uncracked plate: 1 where both ends are points and the bond stays inside the material.
 fn uncut_bonds(
     specimen: &Specimen,
@@ -202,11 +210,14 @@ fn uncut_bonds(
     steps: &[isize],
     is_point: &[bool],
     points: &[u32],
-) -> Vec<f32> {
+) -> Result<Vec<f32>> {
     let places = lattice.places();
     let mut multiplier = vec![0.0_f32; places * stencil.bonds.len()];
     let obstacles = Obstacles::of(specimen, lattice.spacing, stencil.horizon);
-    for &point in points {
+    for (i, &point) in points.iter().enumerate() {
+        if i % POINTS_PER_MARK == 0 {
+            watch::at(Stage::Bonds, i as f64 / points.len() as f64)?;
+        }
         let place = point as usize;
         let here = lattice.position(place);
         let near = obstacles.near(here);
@@ -217,5 +228,5 @@ fn uncut_bonds(
             }
         }
     }
-    multiplier
+    Ok(multiplier)
 }

@@ -10,6 +10,7 @@ use crate::error::{Result, input_missing};
 use crate::predict::Observer;
 use crate::predict::factor_curve::{EXPONENT_USUAL, FactorCurve};
 use crate::units::MPA_SQRT_M;
+use crate::watch;
 
 /// Change of the exponent below which the path of several tips needs no other run.
 const EXPONENT_SAME: f64 = 0.05;
@@ -27,7 +28,10 @@ const RUNS_MAX: usize = 4;
 /// # Errors
 /// Mechanics without a result, a window in which the handbook has no K, or a law that no metal has.
 pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Result<Fit> {
-    let fit = fit_by_method(calibration, observer)?;
+    let fit = watch::with(observer.watch(), || {
+        let fit = fit_by_method(calibration, observer);
+        watch::unless_cancelled(&calibration.case.name, fit)
+    })?;
     match paris::doubt(fit.paris.c, fit.paris.m) {
         None => Ok(fit),
         Some(doubt) => {

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 
 use crate::calibration::criterion::Criterion;
@@ -14,10 +13,11 @@ use crate::calibration::fit_keys::{FitSlice, delta_k_ratio, exponent};
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::calibration::record::SourceFile;
-use crate::case::{Case, LAW_KEYS, LawSource};
+pub use crate::case::remove_law;
+use crate::case::{Case, LawSource};
 use crate::error::{input, input_missing};
 use crate::fatigue::{Ageing, GrowthRate};
-use crate::input::{Document, Folder, LENGTH, slice};
+use crate::input::{Document, Folder, LENGTH, sha256, slice};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::MM;
@@ -43,6 +43,8 @@ pub struct CalibrationCase {
     pub left_out: Vec<LeaveOut>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// The whole file, overrides applied.
+    pub input: Table,
     formula: Option<HandbookFormula>,
 }
 
@@ -90,6 +92,7 @@ impl CalibrationCase {
 
     /// The same for a parsed document, which gives errors their line.
     pub fn from_document(mut document: Document) -> crate::Result<Self> {
+        let whole = document.table.clone();
         // Taken out of the table, but not of the text: errors still find their line.
         let measured = document.table.remove("measured");
         let fit = document.table.remove("fit").unwrap_or_else(|| Value::Table(Table::new()));
@@ -100,7 +103,10 @@ impl CalibrationCase {
             let case = Case::from_table(document.table.clone(), &document.name, &document.folder)?;
             Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.folder)
         };
-        build().map_err(|error| document.locate(error))
+        let mut calibration: Self = build().map_err(|error| document.locate(error))?;
+        calibration.input = whole;
+        calibration.case.provenance = document.folder.opened().so_far();
+        Ok(calibration)
     }
 
     fn build(mut case: Case, keys: MeasuredSlice, fit: FitSlice, folder: &Folder) -> crate::Result<Self> {
@@ -134,7 +140,8 @@ impl CalibrationCase {
         case.material.yield_strength = None;
         warnings.extend(unrecorded(&case));
         warnings.extend(case.warnings.iter().cloned());
-        Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out: keys.leave_out, warnings, formula })
+        let (input, left_out) = (Table::new(), keys.leave_out);
+        Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out, warnings, input, formula })
     }
 
     /// ΔK of the handbook (Pa√m) at a crack length (m); `None` where no handbook has the specimen, as a drawn plate.
@@ -142,15 +149,6 @@ impl CalibrationCase {
     pub fn delta_k(&self, crack_length: f64) -> Option<f64> {
         let loading = &self.case.loading;
         self.formula.map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
-    }
-}
-
-/// Takes the law out of the sections of a case that is to get another one, or needs none.
-pub fn remove_law(sections: &mut Table) {
-    if let Some(fatigue) = sections.get_mut("fatigue").and_then(Value::as_table_mut) {
-        for key in LAW_KEYS {
-            fatigue.remove(key);
-        }
     }
 }
 
@@ -208,8 +206,7 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> crate::Result<(Measured, V
 
 /// What the record says about a measured file.
 pub(crate) fn source(file: &str, bytes: &[u8]) -> SourceFile {
-    let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    SourceFile { file: file.to_owned(), sha256 }
+    SourceFile { file: file.to_owned(), sha256: sha256(bytes) }
 }
 
 fn window(measured: &Measured, keys: &MeasuredSlice) -> crate::Result<Measured> {

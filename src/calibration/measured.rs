@@ -13,6 +13,7 @@ use crate::calibration::readings::curves_of;
 use crate::calibration::table::{Fault, Table};
 use crate::calibration::test_piece::side_difference_max;
 use crate::error::{Error, InputError, Result, input};
+use crate::input::Opened;
 use crate::specimen::Specimen;
 use crate::units::MM;
 
@@ -67,11 +68,16 @@ pub struct Measured {
     pub warnings: Vec<String>,
 }
 
-/// Reads one or many files.
+/// Reads one or many files; `-` is standard input.
 pub fn read(files: &[PathBuf], import: &Import) -> Result<Measured> {
+    read_into(&Opened::default(), files, import)
+}
+
+/// The same, remembering what was read.
+pub fn read_into(opened: &Opened, files: &[PathBuf], import: &Import) -> Result<Measured> {
     let mut all = Measured::default();
     for file in files {
-        let bytes = std::fs::read(file).map_err(|error| Error::file(file, "cannot read", error))?;
+        let bytes = opened.read(file, &file.display().to_string())?;
         all.add(parse(&bytes, file, import)?)?;
     }
     Ok(all)

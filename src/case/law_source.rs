@@ -3,7 +3,7 @@
 //! A case has one law: a second one, however it is given, is refused. A driver that needs a law of the other kind, of bonds (A, p) or over
 //! K (C, m), takes what the given one stands for.
 
-use toml::Value;
+use toml::{Table, Value};
 
 use super::choices::Method;
 use super::growth_law::{FactorKeys, Setting};
@@ -194,6 +194,15 @@ fn together<const N: usize>(keys: Vec<(&str, Option<f64>)>, remedy: &str) -> Res
         *slot = value.ok_or_else(|| input_missing(&format!("fatigue.{key}"), format!("is missing{why}"), remedy))?;
     }
     Ok(Some(values))
+}
+
+/// Takes the law out of the sections of a case that is to get another one, or needs none.
+pub fn remove_law(sections: &mut Table) {
+    if let Some(fatigue) = sections.get_mut("fatigue").and_then(Value::as_table_mut) {
+        for key in LAW_KEYS {
+            fatigue.remove(key);
+        }
+    }
 }
 
 /// Reads a `fitted.toml`; one that does not exist (yet) is [`LawSource::Missing`].

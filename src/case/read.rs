@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::choices::{Choices, Method};
-use super::{Case, LAW_KEYS, LawSource, fatigue, first_load, law, law_record, model};
+use super::{Case, LAW_KEYS, LawSource, fatigue, first_load, law, law_record, model, remove_law};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
-use crate::input::{Document, Folder, ForeignSections, OF_SCENES, Sections, value_at};
+use crate::input::{Document, Folder, ForeignSections, OF_SCENES, OpenedFile, Provenance, Sections, value_at};
 use crate::levels::Discretisation;
 use crate::loading::LoadingKind;
 use crate::material::Plane;
@@ -20,6 +20,8 @@ use crate::specimen::CrackLine;
 use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use crate::{loading, material, specimen};
 
+/// What a record is called that came with no file.
+pub const RECORD: &str = "fitted.toml";
 /// Sections of a case file.
 pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "refinement", "fatigue", "stop"];
 
@@ -50,14 +52,27 @@ impl Case {
 
     /// Reads a case from a parsed document, which gives errors their line. The case must have a fatigue law.
     pub fn from_document(document: &Document) -> Result<Self> {
-        let read = || {
-            let case = Self::from_table(document.table.clone(), &document.name, &document.folder)?;
-            if matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
-                // Says what is missing and what to give.
-                return Err(law::missing(case.model.method, Path::new("")));
-            }
-            Ok(case)
-        };
+        Self::complete(document).map_err(|error| document.locate(error))
+    }
+
+    /// The same, with errors that do not know their line.
+    pub(crate) fn complete(document: &Document) -> Result<Self> {
+        let case = Self::from_table(document.table.clone(), &document.name, &document.folder)?;
+        if matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
+            // Says what is missing and what to give.
+            return Err(law::missing(case.model.method, Path::new("")));
+        }
+        Ok(case)
+    }
+
+    /// Reads a case from text whose law is that of `record`, whatever its own says; files it names lie in `folder`.
+    ///
+    /// # Errors
+    /// As [`Case::from_toml`] and [`Case::with_law`].
+    pub fn from_toml_with_law(text: &str, name: &str, folder: impl Into<Folder>, record: FittedRecord) -> Result<Self> {
+        let mut document = Document::parse(text, name, folder, &[])?;
+        remove_law(&mut document.table);
+        let read = || Self::from_table(document.table.clone(), name, &document.folder)?.with_law(record);
         read().map_err(|error| document.locate(error))
     }
 
@@ -98,6 +113,7 @@ impl Case {
             stop,
             warnings,
             echo,
+            provenance: Provenance::default(),
             allow_extrapolation: fatigue.allow_extrapolation,
             choices,
             law_record,
@@ -121,6 +137,7 @@ impl Case {
         case.warnings.extend(first_load::warning(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
+        case.provenance = folder.opened().so_far();
         Ok(case)
     }
 
@@ -137,6 +154,10 @@ impl Case {
             keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
         }
         self.law_record = None;
+        if let Ok(text) = toml::to_string(&record) {
+            let file = OpenedFile { name: RECORD.to_owned(), path: None, id: None, content: text.into_bytes().into() };
+            self.provenance.files.push(file);
+        }
         law::adopt(&mut self, record)?;
         model::check_law(&self)?;
         let lines = law_lines(&self)?;

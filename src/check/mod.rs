@@ -18,7 +18,7 @@ use crate::case::Case;
 use crate::error::Result;
 use crate::fracture::Scene;
 use crate::fracture::read::is_scene;
-use crate::input::Document;
+use crate::input::{Document, Provenance};
 use crate::report::specimen_picture::specimen_svg;
 use crate::sweep::Sweep;
 use crate::sweep::design::{self, CASES_MAX, is_sweep};
@@ -40,6 +40,8 @@ pub struct Checked {
     pub drawing: String,
     /// The input as it was given.
     pub echo: Value,
+    /// Files that were read for it.
+    pub provenance: Provenance,
 }
 
 impl Checked {
@@ -91,10 +93,13 @@ pub fn check(document: Document) -> Result<Checked> {
 /// # Errors
 /// As [`check`].
 pub fn check_file(path: &Path, overrides: &[String]) -> Result<Checked> {
-    if !is_sweep(&Document::read(path, &[])?.table) {
-        return check(Document::read(path, overrides)?);
+    // Read once: a pipe is empty the second time.
+    let mut document = Document::read(path, &[])?;
+    if !is_sweep(&document.table) {
+        document.set_all(overrides)?;
+        return check(document);
     }
-    let sweep = Sweep::from_file(path, overrides, CASES_MAX)?;
+    let sweep = Sweep::with_overrides(document, overrides, CASES_MAX)?;
     let cases = sweep.cases()?;
     let lines = sweep_lines(&sweep, &cases);
     // A sweep has one case at least; what they have in common shows in any of them.
@@ -102,6 +107,7 @@ pub fn check_file(path: &Path, overrides: &[String]) -> Result<Checked> {
     let mut checked = checked_case(&sweep.base, "sweep", &first, first.warnings.clone())?;
     checked.name.clone_from(&sweep.name);
     checked.echo = design::echo(&sweep.document.table);
+    checked.provenance = sweep.document.folder.opened().so_far();
     checked.lines.splice(0..0, lines);
     Ok(checked)
 }
@@ -120,7 +126,8 @@ pub fn checked_case(document: &Document, kind: &'static str, case: &Case, mut wa
     let preview = preview(case).map_err(|error| document.locate(error))?;
     warnings.extend(preview.warnings);
     let lines = case_lines(case, preview.points);
-    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing: specimen_svg(case), echo: case.echo.clone() })
+    let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
+    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, echo: case.echo.clone(), provenance })
 }
 
 /// A fit of laws has a plate only where its rates come from readings.
@@ -132,7 +139,8 @@ fn checked_laws(document: &Document) -> Result<Checked> {
         lines.extend(case_lines(&test.case, "none: rates over handbook K".to_owned()));
         drawing = specimen_svg(&test.case);
     }
-    Ok(Checked { kind: "calibration", name: case.name, lines, warnings: case.warnings, drawing, echo: case.echo })
+    let provenance = document.folder.opened().so_far();
+    Ok(Checked { kind: "calibration", name: case.name, lines, warnings: case.warnings, drawing, echo: case.echo, provenance })
 }
 
 fn checked_scene(document: &Document) -> Result<Checked> {
@@ -140,5 +148,6 @@ fn checked_scene(document: &Document) -> Result<Checked> {
     let (lines, of_points) = scene_lines(&scene).map_err(|error| document.locate(error))?;
     let drawing = scene_drawing(&scene);
     let warnings = scene.warnings.into_iter().chain(of_points).collect();
-    Ok(Checked { kind: "fracture", name: scene.name, lines, warnings, drawing, echo: scene.echo })
+    let (name, echo, provenance) = (scene.name, scene.echo, scene.provenance);
+    Ok(Checked { kind: "fracture", name, lines, warnings, drawing, echo, provenance })
 }

@@ -9,7 +9,7 @@ use super::console::Console;
 use crate::bench::first_solve::first_solve;
 use crate::bench::{self, Effort, Figure, FirstSolve, Observer, Request, Row, groups};
 use crate::error::{Error, Result, input};
-use crate::report::output::{OutputFolder, write_file};
+use crate::report::output::{OutputFolder, RunKind, write_file};
 use crate::report::{bench as tables, speed_chart};
 
 /// Arguments of `perilife bench`.
@@ -48,17 +48,19 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let groups = groups(&args.names)?;
     let effort = effort(args)?;
-    let folder = args.out.as_deref().map(OutputFolder::create).transpose()?;
+    let folder = args.out.as_deref().map(|path| OutputFolder::create(path, RunKind::Bench)).transpose()?;
     let outcome = bench::run(&groups, effort, &in_own_process, &args.console)?;
     let object = tables::object(&outcome);
-    if let Some(folder) = folder {
-        let write = |name: &str, text: String| write_file(&folder.path().join(name), text.as_bytes());
-        write("bench.csv", tables::csv(&outcome.rows))?;
-        write("figures.csv", tables::figures_csv(&outcome.figures))?;
-        write("bench.json", format!("{object:#}\n"))?;
-        write("bench.md", tables::markdown(&outcome))?;
-        speed_chart::speed_accuracy(&folder.path().join("bench.svg"), &outcome)?;
-        folder.finish()?;
+    if let Some(mut folder) = folder {
+        folder.fill(|path| {
+            let write = |name: &str, text: String| write_file(&path.join(name), text.as_bytes());
+            write("bench.csv", tables::csv(&outcome.rows))?;
+            write("figures.csv", tables::figures_csv(&outcome.figures))?;
+            write("bench.json", format!("{object:#}\n"))?;
+            write("bench.md", tables::markdown(&outcome))?;
+            speed_chart::speed_accuracy(&path.join("bench.svg"), &outcome)
+        })?;
+        drop(folder.finish()?);
     }
     args.console.say(&format!(
         "{} rows; reference run: {}, {}; {}",

@@ -17,8 +17,8 @@ use crate::case::Case;
 use crate::error::{Result, input};
 use crate::input::Document;
 use crate::predict::Prediction;
-use crate::report::fit;
-use crate::report::output::OutputFolder;
+use crate::report::output::{Finished, OutputFolder, Room, RunKind};
+use crate::report::{fit, run};
 
 /// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
@@ -57,8 +57,10 @@ pub fn run(args: &Args) -> Result<()> {
     let calibration = CalibrationCase::from_document(document)?;
     // Read before the fit: a slip in the last case should not cost a calibration.
     let cases = cases_to_predict(&args.predict)?;
-    let folder = OutputFolder::create(&args.out)?;
-    for warning in &calibration.warnings {
+    let mut read = calibration.case.provenance.clone();
+    read.files.extend(cases.iter().flat_map(|document| document.folder.opened().so_far().files));
+    let mut folder = OutputFolder::claim(&args.out, RunKind::Calibrate, &read, Room { tables: 64_000, all: 1_000_000 })?;
+    for warning in calibration.warnings.iter().map(String::as_str).chain(folder.warning()) {
         console.warn(warning);
     }
     let started = Instant::now();
@@ -68,8 +70,9 @@ pub fn run(args: &Args) -> Result<()> {
         console.warn(warning);
     }
     let law = record(&calibration, &fitted);
-    fit::write(folder.path(), &calibration, &fitted, &report, &law)?;
-    folder.finish()?;
+    folder.fill(|path| fit::write(path, &calibration, &fitted, &report, &law))?;
+    // Nobody else writes there until the predictions stand in it.
+    let place = folder.finish()?;
     for line in summary(&report, &args.out) {
         console.say(&line);
     }
@@ -78,16 +81,17 @@ pub fn run(args: &Args) -> Result<()> {
         case_of(document)?.with_law(law.clone()).map_err(|error| document.locate(error))
     };
     let cases = cases.iter().map(with_law).collect::<Result<_>>()?;
-    predict_each(cases, json!(report), args)
+    predict_each(cases, json!(report), args, &place)
 }
 
 /// Prints the report, with the predictions: each case with the fit, as the command `predict` does it, into its own folder. They run side by
 /// side; what they say comes in their order.
-pub(super) fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args) -> Result<()> {
+pub(super) fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &Finished) -> Result<()> {
     let console = &args.console;
     // Claimed first: a folder that cannot be written should not cost a run.
-    let folders: Vec<OutputFolder> =
-        cases.iter().map(|case| OutputFolder::create(&args.out.join(&case.name))).collect::<Result<_>>()?;
+    let claim =
+        |case: &Case| OutputFolder::claim(&args.out.join(&case.name), RunKind::Predict, &case.provenance, run::room(case));
+    let folders: Vec<OutputFolder> = cases.iter().map(claim).collect::<Result<_>>()?;
     let bars = console.progress_of_each(cases.iter().map(|case| &*case.name));
     let runs: Vec<Result<Prediction>> =
         cases.par_iter().zip(bars).map(|(case, bar)| crate::predict::predict(case, &bar)).collect();
@@ -96,7 +100,9 @@ pub(super) fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args) -> 
         for warning in &case.warnings {
             console.warn(warning);
         }
-        predictions.insert(case.name.clone(), predict::keep(case, run?, folder, console)?.result);
+        place.adopt(&case.name)?;
+        let kept = predict::keep(case, run?, folder, &|_| Ok(()), console)?;
+        predictions.insert(case.name.clone(), kept.result);
     }
     if let Some(fields) = report.as_object_mut()
         && !predictions.is_empty()

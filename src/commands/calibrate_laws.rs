@@ -11,7 +11,7 @@ use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
 use crate::input::Document;
 use crate::report::law_fit;
-use crate::report::output::OutputFolder;
+use crate::report::output::{OutputFolder, Room, RunKind};
 
 /// Fits the laws of a calibration file.
 ///
@@ -25,8 +25,10 @@ pub(super) fn run(args: &Args, document: &Document) -> Result<()> {
     for document in &cases {
         check_no_gamma(document)?;
     }
-    let folder = OutputFolder::create(&args.out)?;
-    for warning in &case.warnings {
+    let mut read = document.folder.opened().so_far();
+    read.files.extend(cases.iter().flat_map(|document| document.folder.opened().so_far().files));
+    let mut folder = OutputFolder::claim(&args.out, RunKind::Calibrate, &read, Room { tables: 64_000, all: 200_000 })?;
+    for warning in case.warnings.iter().map(String::as_str).chain(folder.warning()) {
         console.warn(warning);
     }
     let started = Instant::now();
@@ -35,13 +37,14 @@ pub(super) fn run(args: &Args, document: &Document) -> Result<()> {
         console.warn(warning);
     }
     let report = report(&case, &fits, started.elapsed().as_secs_f64());
-    law_fit::write(folder.path(), &case, &fits, &report)?;
-    folder.finish()?;
+    folder.fill(|path| law_fit::write(path, &case, &fits, &report))?;
+    // Nobody else writes there until the predictions stand in it.
+    let place = folder.finish()?;
     for line in summary(&case, &fits) {
         console.say(&line);
     }
     console.say(&format!("  results        {}", args.out.display()));
-    predict_each(with_record(cases, args)?, report, args)
+    predict_each(with_record(cases, args)?, report, args, &place)
 }
 
 /// A law over K has its own influence of R.

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use super::console::Console;
 use crate::check::check_file;
 use crate::error::Result;
-use crate::report::output::write_file;
+use crate::report::output::{OutputFile, Sort};
+use crate::report::specimen_picture::SIGN;
 
 /// Arguments of `perilife check`.
 #[derive(clap::Args, Debug)]
@@ -32,7 +33,10 @@ pub fn run(args: &Args) -> Result<()> {
     let checked = check_file(&args.file, &args.set)?;
     match &args.picture {
         Some(_) if checked.drawing.is_empty() => args.console.warn("no picture is written: tables of rates have no plate"),
-        Some(path) => write_file(path, checked.drawing.as_bytes())?,
+        Some(path) => {
+            let sort = Sort { option: "--picture", sign: SIGN.as_bytes() };
+            OutputFile::claim(path, sort, &checked.provenance)?.write(checked.drawing.as_bytes())?;
+        }
         None => {}
     }
     for warning in &checked.warnings {

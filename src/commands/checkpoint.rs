@@ -2,18 +2,21 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::console::{Console, RunProgress};
+use super::signals;
 use crate::case::Case;
-use crate::error::{Error, Result};
-use crate::fracture::checkpoint::SceneCheckpoint;
+use crate::error::{Error, Result, input};
+use crate::fracture::checkpoint::{SIGN as SCENE_SIGN, SceneCheckpoint};
 use crate::fracture::{self, Fracture, Scene, SceneObserver, SceneProgress};
-use crate::predict::checkpoint::Checkpoint;
+use crate::input::Provenance;
+use crate::predict::checkpoint::{Checkpoint, SIGN};
 use crate::predict::{Observer, Prediction, Progress, predict, resume};
-use crate::report::output::Replaced;
+use crate::report::output::{Replaced, Sort};
 use crate::units::MM;
+use crate::watch::Watch;
 
 /// Time between two checkpoints over the time that writing one takes, at least: so they cost 5 % at most.
 const OVER_COST: u32 = 20;
@@ -28,6 +31,9 @@ pub struct Args {
     /// Least time between two writings; they wait for a place from which the run can go on
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = seconds, requires = "checkpoint")]
     pub checkpoint_every: f64,
+    /// Time after which the run is asked to end, building the plate included; with a checkpoint the same command goes on later
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub time_limit: Option<f64>,
 }
 
 /// A time that is not negative.
@@ -41,13 +47,17 @@ impl Args {
     ///
     /// # Errors
     /// As [`predict`] and [`resume`]; a file that cannot be read, or is no checkpoint of this case.
-    pub fn run(&self, case: &Case, console: &Console) -> Result<Prediction> {
-        let progress = console.progress(&case.name);
-        let Some(path) = &self.checkpoint else { return predict(case, &progress) };
+    pub fn run(&self, case: &Case, console: &Console) -> Result<(Prediction, Option<Replaced>)> {
+        let progress = self.progress(&case.name, console);
+        let Some(path) = &self.checkpoint else {
+            return Ok((self.within_limit(&case.name, &progress, predict(case, &progress))?, None));
+        };
         let of_case = |bytes: Vec<u8>| Checkpoint::from_bytes(&bytes).and_then(|kept| kept.check(case).map(|()| kept));
         let checkpoint = read(path)?.map(of_case).transpose().map_err(|error| error.in_file(path))?;
-        let keeper = self.keeper(path, progress, console)?;
-        let Some(checkpoint) = checkpoint else { return predict(case, &keeper) };
+        let keeper = self.keeper((path, SIGN), progress, &case.provenance, console)?;
+        let Some(checkpoint) = checkpoint else {
+            return Ok((self.within_limit(&case.name, &keeper.progress, predict(case, &keeper))?, Some(keeper.file)));
+        };
         let Progress { cycles, crack_length, .. } = checkpoint.progress();
         console.note(&format!(
             "{}: goes on from {}: N = {cycles:.1}, a = {:.3} mm",
@@ -55,30 +65,79 @@ impl Args {
             path.display(),
             crack_length / MM
         ));
-        resume(case, checkpoint, &keeper)
+        let done = resume(case, checkpoint, &keeper);
+        Ok((self.within_limit(&case.name, &keeper.progress, done)?, Some(keeper.file)))
     }
 
     /// Runs a scene, from its checkpoint if there is one.
     ///
     /// # Errors
     /// As [`fracture::run`] and [`fracture::resume`]; a file that cannot be read, or is no checkpoint of this scene.
-    pub fn run_scene(&self, scene: &Scene, console: &Console) -> Result<Fracture> {
-        let progress = console.progress(&scene.name);
-        let Some(path) = &self.checkpoint else { return fracture::run(scene, &progress) };
+    pub fn run_scene(&self, scene: &Scene, console: &Console) -> Result<(Fracture, Option<Replaced>)> {
+        let progress = self.progress(&scene.name, console);
+        let Some(path) = &self.checkpoint else {
+            return Ok((self.within_limit(&scene.name, &progress, fracture::run(scene, &progress))?, None));
+        };
         let of_scene = |bytes: Vec<u8>| SceneCheckpoint::from_bytes(&bytes).and_then(|kept| kept.check(scene).map(|()| kept));
         let checkpoint = read(path)?.map(of_scene).transpose().map_err(|error| error.in_file(path))?;
-        let keeper = self.keeper(path, progress, console)?;
-        let Some(checkpoint) = checkpoint else { return fracture::run(scene, &keeper) };
+        let keeper = self.keeper((path, SCENE_SIGN), progress, &scene.provenance, console)?;
+        let Some(checkpoint) = checkpoint else {
+            return Ok((self.within_limit(&scene.name, &keeper.progress, fracture::run(scene, &keeper))?, Some(keeper.file)));
+        };
         let (step, share) = (checkpoint.step(), checkpoint.progress().share);
         console.note(&format!("{}: goes on from {}: step {step}, {:.1} % done", scene.name, path.display(), 100.0 * share));
-        fracture::resume(scene, checkpoint, &keeper)
+        let done = fracture::resume(scene, checkpoint, &keeper);
+        Ok((self.within_limit(&scene.name, &keeper.progress, done)?, Some(keeper.file)))
     }
 
-    fn keeper<'a>(&self, path: &Path, progress: RunProgress, console: &'a Console) -> Result<Keeper<'a>> {
+    fn progress(&self, name: &str, console: &Console) -> RunProgress {
+        // The parser let no other time through.
+        let limit = self.time_limit.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        console.progress_within(name, limit)
+    }
+
+    /// What came of a run, with words for one whose time was over.
+    fn within_limit<T>(&self, name: &str, progress: &RunProgress, done: Result<T>) -> Result<T> {
+        if done.is_ok() || !progress.ran_out() {
+            return done;
+        }
+        let way = match &self.checkpoint {
+            Some(path) if path.is_file() => format!("the same command goes on from {}", path.display()),
+            Some(path) => format!("the same command begins anew: {} was not written yet", path.display()),
+            None => "give more, or keep the run with --checkpoint FILE".to_owned(),
+        };
+        let seconds = self.time_limit.unwrap_or_default();
+        Err(Error::Mechanics(format!("{name}: the time limit of {seconds} s is over before the run is; {way}")))
+    }
+
+    /// Refuses a checkpoint below the folder of the results, which it would make one that holds something else.
+    ///
+    /// # Errors
+    /// [`Error::Input`].
+    pub fn check_outside(&self, out: &Path) -> Result<()> {
+        let Some(path) = &self.checkpoint else { return Ok(()) };
+        let real = |path: &Path| std::path::absolute(fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf()));
+        match (real(path), real(out)) {
+            (Ok(file), Ok(folder)) if file.starts_with(&folder) => {
+                let problem = format!("lies below --out = {}, which has nothing but results", out.display());
+                Err(input("--checkpoint", path.display(), problem, "give a name beside it"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn keeper<'a>(
+        &self,
+        (path, sign): (&Path, &'static [u8]),
+        progress: RunProgress,
+        read: &Provenance,
+        console: &'a Console,
+    ) -> Result<Keeper<'a>> {
+        signals::go_on_from(path);
         Ok(Keeper {
             progress,
             console,
-            file: Replaced::claim(path)?,
+            file: Replaced::claim(path, Sort { option: "--checkpoint", sign }, read)?,
             // The parser let no other time through.
             every: Duration::try_from_secs_f64(self.checkpoint_every).unwrap_or_default(),
             last: Mutex::new(Last { at: Instant::now(), cost: Duration::ZERO, has_failed: false }),
@@ -92,18 +151,6 @@ fn read(path: &Path) -> Result<Option<Vec<u8>>> {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(Error::file(path, "cannot read", error)),
-    }
-}
-
-/// Removes the file, if one was given, of a run that is done.
-///
-/// # Errors
-/// [`Error::File`] if it is there and cannot be removed.
-pub fn remove(checkpoint: Option<&Path>) -> Result<()> {
-    let Some(path) = checkpoint else { return Ok(()) };
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::file(path, "cannot remove", error)),
-        _ => Ok(()),
     }
 }
 
@@ -124,6 +171,10 @@ struct Last {
 }
 
 impl Observer for Keeper<'_> {
+    fn watch(&self) -> Option<Arc<Watch>> {
+        Observer::watch(&self.progress)
+    }
+
     fn block_done(&self, progress: &Progress) -> bool {
         self.progress.block_done(progress)
     }
@@ -134,6 +185,10 @@ impl Observer for Keeper<'_> {
 }
 
 impl SceneObserver for Keeper<'_> {
+    fn watch(&self) -> Option<Arc<Watch>> {
+        SceneObserver::watch(&self.progress)
+    }
+
     fn step_done(&self, progress: &SceneProgress) -> bool {
         self.progress.step_done(progress)
     }

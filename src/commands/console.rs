@@ -2,14 +2,14 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
+use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use serde_json::Value;
 
+pub use super::run_progress::RunProgress;
+
 use crate::error::{Error, Result};
-use crate::fracture::{SceneObserver, SceneProgress};
-use crate::predict::{Observer, Progress};
-use crate::units::MM;
 
 /// Options of every command that prints results.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
@@ -63,12 +63,18 @@ impl Console {
     /// A progress bar on stderr, drawn only on a terminal.
     #[must_use]
     pub fn progress(&self, name: &str) -> RunProgress {
+        self.progress_within(name, None)
+    }
+
+    /// The same for a run that is asked to end after so long.
+    #[must_use]
+    pub fn progress_within(&self, name: &str, limit: Option<Duration>) -> RunProgress {
         let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(STEPS) };
         let style = ProgressStyle::with_template("{prefix} {bar:30} {percent:>3} %  {msg}  {eta} left");
         // The template is fixed, so it either always parses or a look at the screen shows the plain bar.
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(name.to_owned());
-        RunProgress { bar }
+        RunProgress::new(bar, limit)
     }
 
     /// A bar on stderr that counts to `total`, drawn only on a terminal.
@@ -86,9 +92,9 @@ impl Console {
     #[must_use]
     pub fn progress_of_each<'a>(&self, names: impl Iterator<Item = &'a str>) -> Vec<RunProgress> {
         let bars: Vec<RunProgress> = names.map(|name| self.progress(name)).collect();
-        if bars.iter().any(|run| !run.bar.is_hidden()) {
+        if bars.iter().any(|run| !run.bar().is_hidden()) {
             let screen = MultiProgress::new();
-            bars.iter().for_each(|run| drop(screen.add(run.bar.clone())));
+            bars.iter().for_each(|run| drop(screen.add(run.bar().clone())));
         }
         bars
     }
@@ -103,7 +109,7 @@ fn to_stdout(text: &str) -> Result<()> {
 }
 
 /// Steps of a full bar.
-const STEPS: u64 = 1000;
+pub(super) const STEPS: u64 = 1000;
 
 /// Counts what is done; the bar goes when the value is dropped.
 #[derive(Debug)]
@@ -119,35 +125,6 @@ impl Count {
 }
 
 impl Drop for Count {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-/// Shows a run's cycles, crack length, share and time left; the bar goes when the value is dropped.
-#[derive(Debug)]
-pub struct RunProgress {
-    bar: ProgressBar,
-}
-
-impl Observer for RunProgress {
-    fn block_done(&self, progress: &Progress) -> bool {
-        let share = if progress.share.is_finite() { progress.share.clamp(0.0, 1.0) } else { 0.0 };
-        self.bar.set_message(format!("N = {:.4e}, a = {:.2} mm", progress.cycles, progress.crack_length / MM));
-        self.bar.set_position((share * STEPS as f64) as u64);
-        true
-    }
-}
-
-impl SceneObserver for RunProgress {
-    fn step_done(&self, progress: &SceneProgress) -> bool {
-        let share = if progress.share.is_finite() { progress.share.clamp(0.0, 1.0) } else { 0.0 };
-        self.bar.set_position((share * STEPS as f64) as u64);
-        true
-    }
-}
-
-impl Drop for RunProgress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

@@ -6,9 +6,14 @@ use serde_json::json;
 
 use super::console::Console;
 use crate::error::{Error, Result, input};
-use crate::report::csv::{self, A_N_COLUMNS, A_N_FILE, Row, read_a_n};
-use crate::report::output::write_file;
+use crate::input::Opened;
+use crate::report::csv::{self, A_N_FILE, Row, parse_a_n};
+use crate::report::output::{OutputFile, Sort};
 use crate::report::resample::{ROWS_MAX, Sampling};
+use crate::report::whole;
+
+/// First line of an export, which a run's own table has not.
+const HEADER: &str = "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n";
 
 /// Arguments of `perilife export`.
 #[derive(Debug, clap::Args)]
@@ -35,25 +40,30 @@ pub struct Args {
 /// # Errors
 /// Wrong input, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
-    let curve = curve_of(&args.run)?;
+    let opened = Opened::default();
+    let curve = curve_of(&args.run, &opened)?;
     let (first, last) = (curve[0].cycles, curve[curve.len() - 1].cycles);
     let sampling = args.every_cycles.map_or(Sampling::Points(args.points), Sampling::EveryCycles);
     let rows = sampling.of(&curve, "--every-cycles")?;
     let text = csv::table(&rows);
-    check_replaceable(&args.out)?;
-    write_file(&args.out, text.as_bytes())?;
-    if args.out.is_file() {
+    let sort = Sort { option: "--out", sign: HEADER.as_bytes() };
+    let file = OutputFile::claim(&args.out, sort, &opened.so_far())?;
+    let is_file = file.is_file();
+    file.write(text.as_bytes())?;
+    if is_file {
         args.console.say(&format!("{}: {} rows from {first} to {last} cycles", args.out.display(), rows.len()));
     }
     args.console.object(&json!({ "file": args.out, "rows": rows.len(), "cycles_first": first, "cycles_last": last }))
 }
 
 /// The a-N curve of a run's folder, at least one row.
-fn curve_of(folder: &Path) -> Result<Vec<Row>> {
+fn curve_of(folder: &Path, opened: &Opened) -> Result<Vec<Row>> {
     std::fs::read_dir(folder).map_err(|e| Error::file(folder, "cannot read the folder of a run", e))?;
     let table = folder.join(A_N_FILE);
     if table.is_file() {
-        return read_a_n(&table);
+        let bytes = opened.read(&table, A_N_FILE)?;
+        whole::check(folder, A_N_FILE, &bytes, opened)?;
+        return parse_a_n(&String::from_utf8_lossy(&bytes), &table);
     }
     let remedy = if folder.join("fitted.toml").is_file() {
         "this is a calibration: give the folder of a predicted case inside it"
@@ -61,17 +71,4 @@ fn curve_of(folder: &Path) -> Result<Vec<Row>> {
         "give the --out folder of `perilife predict`"
     };
     Err(input("DIR", folder.display(), format!("holds no finished run ({A_N_FILE} is missing)"), remedy))
-}
-
-/// An existing file is replaced only if it is an export, or empty.
-fn check_replaceable(out: &Path) -> Result<()> {
-    if !out.is_file() {
-        return Ok(());
-    }
-    let there = std::fs::read(out).map_err(|e| Error::file(out, "cannot read", e))?;
-    let header = A_N_COLUMNS.join(",") + "\n";
-    if there.is_empty() || there.starts_with(header.as_bytes()) {
-        return Ok(());
-    }
-    Err(input("--out", out.display(), "is a file that this command did not write", "give a new name, or remove it yourself"))
 }

@@ -9,7 +9,7 @@ use crate::fracture::scene::Procedure;
 use crate::fracture::{Fracture, Scene, SceneEnd};
 use crate::input::Document;
 use crate::report::fracture as report;
-use crate::report::output::OutputFolder;
+use crate::report::output::{OutputFolder, Replaced, RunKind};
 use crate::units::{KN, MM};
 
 /// Arguments of `perilife fracture`.
@@ -48,14 +48,16 @@ pub fn run(args: &Args) -> Result<()> {
     let document = Document::read(&args.case, &args.set)?;
     let scene = Scene::from_document(&document)?;
     // Claimed first: a folder that cannot be written should not cost a run.
-    let folder = OutputFolder::create(&args.out)?;
-    for warning in &scene.warnings {
+    args.keeping.check_outside(&args.out)?;
+    let folder = OutputFolder::claim(&args.out, RunKind::Fracture, &scene.provenance, report::room(&scene))?;
+    for warning in scene.warnings.iter().map(String::as_str).chain(folder.warning()) {
         args.console.warn(warning);
     }
     // Some wrong input shows only once points and bonds stand.
-    let fracture = args.keeping.run_scene(&scene, &args.console).map_err(|error| document.locate(error))?;
+    let run = args.keeping.run_scene(&scene, &args.console);
+    let (fracture, checkpoint) = run.map_err(|error| document.locate(error))?;
     keep(&scene, &fracture, folder, &args.console)?;
-    checkpoint::remove(args.keeping.checkpoint.as_deref())
+    checkpoint.map_or(Ok(()), Replaced::remove)
 }
 
 /// Writes the files of a run, puts the folder in place and prints what was found.
@@ -63,14 +65,14 @@ pub fn run(args: &Args) -> Result<()> {
 /// # Errors
 /// [`Error::File`] if a file cannot be written; [`Error::Mechanics`], with everything written, if the scene ended without
 /// convergence or blew up.
-pub fn keep(scene: &Scene, fracture: &Fracture, folder: OutputFolder, console: &Console) -> Result<()> {
+pub fn keep(scene: &Scene, fracture: &Fracture, mut folder: OutputFolder, console: &Console) -> Result<()> {
     for warning in &fracture.warnings {
         console.warn(warning);
     }
     let result = report::result(scene, fracture);
-    report::write(folder.path(), scene, fracture, &result)?;
+    folder.fill(|path| report::write(path, scene, fracture, &result))?;
     let out = folder.name().to_owned();
-    folder.finish()?;
+    drop(folder.finish()?);
     for line in summary(scene, fracture, &out) {
         console.say(&line);
     }

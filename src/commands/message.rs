@@ -24,7 +24,8 @@ pub fn of(error: &Error) -> String {
 #[must_use]
 pub fn with_source_line(input: &InputError) -> Option<String> {
     let (file, line) = (input.file.as_ref()?, input.line?);
-    let text = std::fs::read_to_string(file).ok()?;
+    // A pipe is empty by now, and a terminal would wait.
+    let text = Some(file).filter(|file| file.is_file()).and_then(|file| std::fs::read_to_string(file).ok())?;
     let start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
     let length = text.lines().nth(line - 1)?.len();
     // Where the trouble stands is part of the message already; the shown line takes their place.

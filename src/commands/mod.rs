@@ -25,6 +25,8 @@ pub mod worker;
 pub mod checkpoint;
 pub mod console;
 pub mod message;
+pub mod run_progress;
+pub mod signals;
 mod unaged;
 
 use clap::{Parser, Subcommand};
@@ -96,9 +98,9 @@ commands! {
     subcommand_required = true,
     arg_required_else_help = true,
     after_help = "Units: mm, MPa, GPa, N, MPa√m, mm/cycle; every key and column carries its own.\n\
-                  Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble.\n\
+                  Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble, 128 + number of the signal that ended it.\n\
                   A run that ends for a mechanical reason after its crack has grown is done: stop_reason says why it stopped.\n\
-                  An output folder appears when it is whole, and replaces only one that this program made (it holds .perilife).\n\
+                  An output folder appears when it is whole. A run replaces the files of an earlier one of its kind (.perilife lists them), and no others.\n\
                   `perilife <COMMAND> --help` explains a command."
 )]
 pub struct CommandLine {
@@ -111,6 +113,21 @@ pub struct CommandLine {
 }
 
 impl CommandLine {
+    /// Whether it ends on signals by itself, once what it began is done or given back.
+    fn is_service(&self) -> bool {
+        #[cfg(feature = "service")]
+        return matches!(self.command, Command::Serve(_) | Command::Worker(_));
+        #[cfg(not(feature = "service"))]
+        return false;
+    }
+
+    /// Has signals that end the process leave nothing half-made behind.
+    pub fn watch_signals(&self) {
+        if !self.is_service() {
+            signals::fold_up_on_signals();
+        }
+    }
+
     /// Sends the log to stderr, filtered by RUST_LOG or else by `--verbose`.
     pub fn start_log(&self) {
         let level = ["warn", "perilife=info", "perilife=debug"][usize::from(self.verbose.min(2))];

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::predict::plastic_zone::PlasticZone;
 use crate::predict::residual_strength::{check_strength, residual_strength};
 use crate::predict::{Prediction, StopReason};
-use crate::report::output::OutputFolder;
+use crate::report::output::{OutputFolder, Replaced, RunKind};
 use crate::report::{self, fit_use, run};
 use crate::specimen::handbook::handbook;
 use crate::units::MM;
@@ -51,7 +51,6 @@ pub fn run(args: &Args) -> Result<()> {
     let case = Case::from_file(&args.case, &args.set)?;
     let extras = Extras { residual_strength: args.residual_strength, keeping: args.keeping.clone() };
     let done = run_case(&case, &args.out, &extras, &args.console)?;
-    checkpoint::remove(args.keeping.checkpoint.as_deref())?;
     args.console.object(&done.result)
 }
 
@@ -80,36 +79,53 @@ pub struct FinishedRun {
 /// As the engine and [`keep`] report; nothing is written then.
 pub fn run_case(case: &Case, out: &Path, extras: &Extras, console: &Console) -> Result<FinishedRun> {
     // Claimed first: a folder that cannot be written should not cost a run.
-    let folder = OutputFolder::create(out)?;
-    for warning in &case.warnings {
+    let provenance = &case.provenance;
+    extras.keeping.check_outside(out)?;
+    let folder = OutputFolder::claim(out, RunKind::Predict, provenance, run::room(case))?;
+    for warning in case.warnings.iter().map(String::as_str).chain(folder.warning()) {
         console.warn(warning);
     }
     if extras.residual_strength {
         // A plate without known strength should not cost a run; K of its curve comes later.
         check_strength(case)?;
     }
-    let prediction = extras.keeping.run(case, console)?;
-    if extras.residual_strength {
-        let strengths = residual_strength(case, &prediction.curve)?;
-        report::residual_strength::write(folder.path(), case, &strengths)?;
-    }
-    keep(case, prediction, folder, console)
+    let (prediction, checkpoint) = extras.keeping.run(case, console)?;
+    // If that fails, the run itself is written all the same.
+    let strengths = extras.residual_strength.then(|| residual_strength(case, &prediction.curve)).transpose();
+    let more = |folder: &Path| match &strengths {
+        Ok(Some(strengths)) => report::residual_strength::write(folder, case, strengths),
+        _ => Ok(()),
+    };
+    let done = keep(case, prediction, folder, &more, console)?;
+    checkpoint.map(Replaced::remove).transpose()?;
+    strengths.map(|_| done)
 }
 
 /// Judges a run, writes its files and puts the folder in place.
 ///
+/// `more` writes what goes beside them.
+///
 /// # Errors
-/// As [`run::judge`] and [`run::write`]; with the files in place, as [`run::refusal`].
-pub fn keep(case: &Case, prediction: Prediction, folder: OutputFolder, console: &Console) -> Result<FinishedRun> {
+/// As [`run::judge`] and [`run::write`], what there is then stays under a visible name; with the files in place, as [`run::refusal`].
+pub fn keep(
+    case: &Case,
+    prediction: Prediction,
+    mut folder: OutputFolder,
+    more: &dyn Fn(&Path) -> Result<()>,
+    console: &Console,
+) -> Result<FinishedRun> {
     for warning in &prediction.warnings {
         console.warn(warning);
     }
     for warning in run::judge(case, &prediction)? {
         console.warn(&warning);
     }
-    let result = run::write(folder.path(), case, &prediction)?;
+    let result = folder.fill(|path| {
+        let result = run::write(path, case, &prediction)?;
+        more(path).map(|()| result)
+    })?;
     let lines = summary(case, &prediction, folder.name());
-    folder.finish()?;
+    drop(folder.finish()?);
     for line in lines {
         console.say(&line);
     }

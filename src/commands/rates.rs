@@ -1,14 +1,16 @@
 //! `perilife rates`: da/dN against ΔK from measured a-N curves.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use super::console::Console;
 use super::unaged::case_without_law;
 use crate::calibration::decimal::Decimal;
-use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, read};
+use crate::calibration::measured::{
+    ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, read_into,
+};
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt;
 use crate::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
@@ -16,7 +18,8 @@ use crate::calibration::results::quoted;
 use crate::calibration::test_piece::{TestPiece, add_delta_k};
 use crate::case::Case;
 use crate::error::{Result, input};
-use crate::report::output::write_file;
+use crate::input::{Opened, STREAM};
+use crate::report::output::{OutputFile, Sort};
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
@@ -62,6 +65,9 @@ pub struct Args {
     pub console: Console,
 }
 
+/// First line of the table.
+const HEADER: &str = "specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio\n";
+
 /// Rates of one specimen.
 struct SpecimenRates {
     name: String,
@@ -92,7 +98,8 @@ impl Args {
 /// Wrong input, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let method: RateMethod = args.method.parse()?;
-    let mut measured = read(&args.measured, &args.import()?)?;
+    let opened = Opened::default();
+    let mut measured = read_into(&opened, &args.measured, &args.import()?)?;
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     if let Some(case) = &case {
         let (limit, limit_name) = case.specimen.length_limit();
@@ -106,10 +113,15 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let table = table(&specimens);
     match &args.out {
-        Some(path) => write_file(path, table.as_bytes())?,
+        Some(path) => {
+            let mut read = opened.so_far();
+            read.files.extend(case.iter().flat_map(|case| case.provenance.files.clone()));
+            let sort = Sort { option: "--out", sign: HEADER.as_bytes() };
+            OutputFile::claim(path, sort, &read)?.write(table.as_bytes())?;
+        }
         None => args.console.result(&table)?,
     }
-    if args.out.is_some() {
+    if args.out.as_deref().is_some_and(|path| path != Path::new(STREAM)) {
         specimens.iter().for_each(|specimen| args.console.say(&specimen.summary()));
     }
     args.console.object(&object(&specimens, method))
@@ -158,7 +170,7 @@ fn outside_formula(points: &[RatePoint], formula: &HandbookFormula) -> Option<St
 
 /// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio`; ΔK and R are empty where they are not known.
 fn table(specimens: &[SpecimenRates]) -> String {
-    let mut text = String::from("specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio\n");
+    let mut text = HEADER.to_owned();
     for specimen in specimens {
         for point in &specimen.points {
             let delta_k = known(point.delta_k / MPA_SQRT_M).map_or_else(String::new, |k| format!("{k:.10}"));

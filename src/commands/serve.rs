@@ -1,6 +1,6 @@
 //! `perilife serve`: the HTTP service and its web page.
 
-use std::net::SocketAddr;
+use std::net::{SocketAddr, ToSocketAddrs};
 use std::num::NonZeroU32;
 
 use super::console::Console;
@@ -19,7 +19,7 @@ use crate::service::{Settings, serve};
 )]
 pub struct Args {
     /// Address; beyond this machine it needs tokens (`perilife token`) and a proxy that adds TLS
-    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", help_heading = "Service")]
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", value_parser = address, help_heading = "Service")]
     pub listen: SocketAddr,
     /// Ask for tokens even on this machine
     #[arg(long, help_heading = "Service")]
@@ -50,6 +50,22 @@ pub struct Args {
     pub console: Console,
 }
 
+/// An address with a port; a name is looked up, and stands for its address of the fourth version where it has one.
+fn address(text: &str) -> std::result::Result<SocketAddr, String> {
+    let wrong = |why: &str| format!("{why}; give ADDRESS:PORT or NAME:PORT, for example 127.0.0.1:8080 or localhost:8080");
+    let Some((host, port)) = text.rsplit_once(':') else { return Err(wrong("it has no port")) };
+    if port.parse::<u16>().is_err() {
+        return Err(wrong("the port is not 0 to 65535"));
+    }
+    if host.is_empty() {
+        return Err(wrong("it has no address; 0.0.0.0 is every one of this machine"));
+    }
+    let found = text.to_socket_addrs().map_err(|error| wrong(&format!("the name is not known here ({error})")))?;
+    let found: Vec<SocketAddr> = found.collect();
+    let chosen = found.iter().find(|one| one.is_ipv4()).or(found.first());
+    chosen.copied().ok_or_else(|| wrong("the name has no address"))
+}
+
 /// Runs `perilife serve`, until it is asked to stop.
 ///
 /// # Errors
@@ -66,7 +82,7 @@ pub fn run(args: &Args) -> Result<()> {
     };
     let settings = Settings {
         listen: args.listen,
-        database: args.work.place.url()?,
+        database: args.work.place.made()?,
         needs_token: args.require_token,
         limits,
         workers: args.work.settings(),

@@ -13,9 +13,11 @@ use std::time::Instant;
 use serde_json::Value;
 
 use super::console::Console;
+use super::signals;
 #[cfg(feature = "service")]
 use super::worker::Place;
 use crate::error::{Error, Result};
+use crate::report::output::Share;
 use crate::report::sweep::{Outcome, Plan, write};
 use crate::sweep::design::CASES_MAX;
 use crate::sweep::{DrawnCase, Sweep};
@@ -116,11 +118,17 @@ pub fn run(args: &Args) -> Result<()> {
     let sweep = Sweep::from_file(&args.sweep, &args.set, args.most)?;
     let cases = sweep.cases()?;
     let plan = Plan::new(&sweep, &cases);
+    let read = sweep.document.folder.opened().so_far();
     if let Some(shard) = args.shard {
-        return run_part(args, shard, &sweep, &cases, plan);
+        return run_part(args, shard, &sweep, &cases, SweepFolder::open_part(&args.out, plan, &read)?);
     }
-    // Tasks of an earlier call may still run.
-    let folder = SweepFolder::open(&args.out, plan, args.engine == Engine::Slurm)?;
+    // Tasks of an earlier call of Slurm may still run, and those of this one will.
+    let share = if args.engine == Engine::Slurm { Share::Parts } else { Share::Alone };
+    let folder = SweepFolder::open(&args.out, plan, &read, share)?;
+    if let Some(changed) = &folder.changed {
+        args.console.warn(&format!("{}: {changed}", args.out.display()));
+    }
+    signals::say_at_the_end(&format!("finished cases stay in {}; the same command goes on from there", args.out.display()));
     let left = left(&cases, &folder, !args.summary_only);
     if left.len() < cases.len() {
         args.console.note(&format!("{}: {} of {} cases are there already", sweep.name, cases.len() - left.len(), cases.len()));
@@ -158,8 +166,7 @@ fn threads(args: &Args) -> usize {
 }
 
 /// Runs one part and leaves the gathering to `perilife collect`.
-fn run_part(args: &Args, shard: Shard, sweep: &Sweep, cases: &[DrawnCase], plan: Plan) -> Result<()> {
-    let folder = SweepFolder::open_part(&args.out, plan)?;
+fn run_part(args: &Args, shard: Shard, sweep: &Sweep, cases: &[DrawnCase], folder: SweepFolder) -> Result<()> {
     let own = || cases.iter().filter(|case| shard.has(case.number));
     let left: Vec<&DrawnCase> = own().filter(|case| !folder.is_done(case.number, !args.summary_only)).collect();
     let name = format!("{} {}/{}", sweep.name, shard.number, shard.of);

@@ -7,7 +7,7 @@ use super::worker::Place;
 use crate::error::{Result, input};
 use crate::service::job::time;
 use crate::service::store::Role;
-use crate::service::with_store;
+use crate::service::{with_store, without_password};
 
 /// Arguments of `perilife token`.
 #[derive(Debug, clap::Args)]
@@ -51,7 +51,8 @@ pub enum Task {
 /// # Errors
 /// A name that is taken or not known; a database that cannot be used.
 pub fn run(args: &Args) -> Result<()> {
-    let (url, console) = (args.place.url()?, &args.console);
+    let may_make = matches!(args.task, Task::Add { .. });
+    let (url, console) = (if may_make { args.place.made()? } else { args.place.url()? }, &args.console);
     match &args.task {
         Task::Add { name, role, days } => {
             if name.is_empty() || name.chars().any(char::is_control) {
@@ -60,6 +61,7 @@ pub fn run(args: &Args) -> Result<()> {
             let secret = with_store(&url, async |store| store.add_token(name, *role, *days).await)?;
             let taken = || input("NAME", name, "has a token already", "remove it first: perilife token remove NAME");
             let secret = secret.ok_or_else(taken)?;
+            console.note(&format!("{name}: token for {}", without_password(&url)));
             console.result(&format!("{secret}\n"))?;
             console.object(&json!({ "name": name, "role": role, "token": secret }))
         }

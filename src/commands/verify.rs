@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use super::console::Console;
-use crate::error::{Error, Result, input};
+use crate::error::{Error, Result};
+use crate::input::Provenance;
 use crate::report::disc::springs_chart;
-use crate::report::output::{OutputFolder, write_file};
+use crate::report::output::{OutputFile, OutputFolder, RunKind, Sort, write_file};
 use crate::report::verification;
 use crate::verify::{self, topics};
 
@@ -35,27 +36,27 @@ pub struct Args {
 /// of misses than is pinned; files that cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let topics = topics(&args.names)?;
-    if let Some(path) = args.markdown.as_deref().filter(|path| path.is_dir()) {
-        // Before minutes are spent on what cannot be written.
-        return Err(input("--markdown", path.display(), "is a folder", "give the name of a file"));
-    }
-    let folder = args.out.as_deref().map(OutputFolder::create).transpose()?;
+    // Before minutes are spent on what cannot be written.
+    let sort = Sort { option: "--markdown", sign: b"Written by `perilife verify --markdown`" };
+    let markdown = args.markdown.as_deref().map(|path| OutputFile::claim(path, sort, &Provenance::default())).transpose()?;
+    let folder = args.out.as_deref().map(|path| OutputFolder::create(path, RunKind::Verify)).transpose()?;
     let rows = verify::rows(&topics, &|topic, rows| {
         let lines: Vec<String> = rows.iter().map(verification::line).collect();
         args.console.say(&format!("{}: {}\n{}", topic.name, topic.about, lines.join("\n")));
     })?;
     let object = verification::object(&rows);
-    if let Some(folder) = folder {
-        write_file(&folder.path().join("verify.csv"), verification::csv(&rows).as_bytes())?;
-        write_file(&folder.path().join("verify.json"), format!("{object:#}\n").as_bytes())?;
-        write_file(&folder.path().join("verify.md"), verification::markdown(&topics, &rows).as_bytes())?;
-        if topics.iter().any(|topic| topic.name == "pbx_disc") {
-            springs_chart(&folder.path().join("springs_on_disc.svg"))?;
-        }
-        folder.finish()?;
+    if let Some(mut folder) = folder {
+        folder.fill(|path| {
+            write_file(&path.join("verify.csv"), verification::csv(&rows).as_bytes())?;
+            write_file(&path.join("verify.json"), format!("{object:#}\n").as_bytes())?;
+            write_file(&path.join("verify.md"), verification::markdown(&topics, &rows).as_bytes())?;
+            let has_disc = topics.iter().any(|topic| topic.name == "pbx_disc");
+            if has_disc { springs_chart(&path.join("springs_on_disc.svg")) } else { Ok(()) }
+        })?;
+        drop(folder.finish()?);
     }
-    if let Some(path) = &args.markdown {
-        write_file(path, verification::markdown(&topics, &rows).as_bytes())?;
+    if let Some(file) = markdown {
+        file.write(verification::markdown(&topics, &rows).as_bytes())?;
     }
     let (failed, missed) = (rows.iter().filter(|row| row.fails()).count(), rows.iter().filter(|row| !row.ok()).count());
     args.console.say(&format!(

@@ -1,20 +1,24 @@
 //! `perilife worker`: works for a service, from this or another machine.
 
-use std::fs::DirBuilder;
-use std::os::unix::fs::DirBuilderExt;
+use std::fs::{DirBuilder, OpenOptions};
+use std::io::ErrorKind;
+use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
 use std::path::PathBuf;
 use std::time::Duration;
 
 use super::console::Console;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, input};
 use crate::service::store::url_of_file;
 use crate::service::{self, worker};
+
+/// The database in the folder of a service.
+const FILE: &str = "perilife.sqlite";
 
 /// Where a service keeps its jobs.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Jobs and results")]
 pub struct Place {
-    /// Folder of the database file, made if it is not there
+    /// Folder of the database file, which `serve` and `token add` make if it is not there
     #[arg(long, value_name = "DIR", default_value = "perilife-data")]
     pub data: PathBuf,
     /// Database instead of that file, e.g. postgres://user:password@host/name, for several machines
@@ -23,18 +27,55 @@ pub struct Place {
 }
 
 impl Place {
-    /// URL of the database.
+    /// URL of the database of a service that was begun.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where there is none.
+    pub fn url(&self) -> Result<String> {
+        if let Some(url) = self.given()? {
+            return Ok(url);
+        }
+        match std::fs::canonicalize(self.data.join(FILE)) {
+            Ok(file) => Ok(url_of_file(&file)),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                let remedy = "give the folder that `perilife serve --data` was given; it makes the database";
+                Err(input("--data", self.data.display(), format!("holds no database of a service ({FILE} is missing)"), remedy))
+            }
+            Err(error) => Err(Error::file(&self.data, "cannot use the folder", error)),
+        }
+    }
+
+    fn given(&self) -> Result<Option<String>> {
+        let Some(url) = &self.database else { return Ok(None) };
+        if url.trim().is_empty() {
+            let problem = "is empty; where --database is left out, the variable PERILIFE_DATABASE counts";
+            return Err(input(
+                "--database",
+                "\"\"",
+                problem,
+                "unset the variable, or give for example postgres://user@host/name",
+            ));
+        }
+        Ok(Some(url.clone()))
+    }
+
+    /// The same, of a service that begins: the folder and its file are made where they are missing.
     ///
     /// # Errors
     /// A folder that cannot be made.
-    pub fn url(&self) -> Result<String> {
-        if let Some(url) = &self.database {
-            return Ok(url.clone());
+    pub fn made(&self) -> Result<String> {
+        if let Some(url) = self.given()? {
+            return Ok(url);
         }
         let cannot = |error| Error::file(&self.data, "cannot create the folder", error);
         // Measured data and results are nobody else's business.
         DirBuilder::new().recursive(true).mode(0o700).create(&self.data).map_err(cannot)?;
-        Ok(url_of_file(&std::fs::canonicalize(&self.data).map_err(cannot)?.join("perilife.sqlite")))
+        let file = std::fs::canonicalize(&self.data).map_err(cannot)?.join(FILE);
+        // Whatever the folder lets others do: the files that SQLite lays beside it get the same rights.
+        match OpenOptions::new().write(true).create_new(true).mode(0o600).open(&file) {
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => Err(Error::file(&file, "cannot create", error)),
+            _ => Ok(url_of_file(&file)),
+        }
     }
 }
 

@@ -18,7 +18,9 @@ use super::scene::Scene;
 use crate::error::{Error, Result};
 use crate::sealed::{Seal, refused};
 
-const SEAL: Seal = Seal { of: "a scene of this program", magic: b"perilife scene checkpoint\n", form: 1 };
+/// First bytes of a checkpoint.
+pub const SIGN: &[u8] = b"perilife scene checkpoint\n";
+const SEAL: Seal = Seal { of: "a scene of this program", magic: SIGN, form: 1 };
 
 /// State of a scene after one of its steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -27,6 +27,8 @@ pub mod rotation;
 pub mod scene;
 pub mod springs;
 
+use std::sync::Arc;
+
 pub use outcome::{Fracture, SceneEnd};
 pub use scene::Scene;
 
@@ -36,6 +38,7 @@ use crate::error::{Result, input};
 use crate::levels::{MultiLevelSpec, Net, dual_horizon};
 use crate::parallel::in_pool;
 use crate::predict::memory;
+use crate::watch::{self, Stage, Watch};
 use bonds::BondState;
 use boundary::Boundary;
 use checkpoint::SceneCheckpoint;
@@ -62,6 +65,11 @@ pub trait SceneObserver: Sync {
     /// Called after every recorded step.
     fn step_done(&self, progress: &SceneProgress) -> bool;
 
+    /// Where the run marks what it does before it has a first step to show, and where it looks whether it may go on; by default nowhere.
+    fn watch(&self) -> Option<Arc<Watch>> {
+        None
+    }
+
     /// Called after steps from which the run can be taken up later; what is not asked for costs nothing.
     fn may_keep(&self, _checkpoint: &dyn Fn() -> SceneCheckpoint) {}
 }
@@ -77,7 +85,13 @@ impl SceneObserver for crate::predict::Silent {
 /// # Errors
 /// Wrong input that shows only now, choices that do not go together, a run that was cancelled.
 pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
-    in_pool(|| follow(scene, observer, None))
+    watched(scene, observer, None)
+}
+
+/// A run under the eyes of its observer from building the points on.
+fn watched(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpoint>) -> Result<Fracture> {
+    let run = || watch::unless_cancelled(&scene.name, follow(scene, observer, from));
+    in_pool(|| watch::with(observer.watch(), run))
 }
 
 /// Goes on with a run of a scene from a checkpoint of it; gives what [`run`] gives, bit for bit, its wall time counted from the start
@@ -87,12 +101,13 @@ pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
 /// As [`run`]; [`crate::Error::Input`] if the checkpoint is not one of this scene.
 pub fn resume(scene: &Scene, checkpoint: SceneCheckpoint, observer: &dyn SceneObserver) -> Result<Fracture> {
     checkpoint.check(scene)?;
-    in_pool(|| follow(scene, observer, Some(checkpoint)))
+    watched(scene, observer, Some(checkpoint))
 }
 
 fn follow(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpoint>) -> Result<Fracture> {
     let clock = Clock::start(from.as_ref());
     let course = Course::new(scene, observer, clock, from);
+    watch::at(Stage::Points, 0.0)?;
     let (net, body) = build(scene)?;
     let boundary = Boundary::of(scene, &net)?;
     let mut bonds = BondState::new(&net, &boundary.no_fail);

@@ -2,6 +2,7 @@
 
 use crate::bond_law::BondLaw;
 use crate::case::HORIZON_RATIO;
+use crate::input::Provenance;
 pub use crate::levels::{Discretisation, RefinedRegion, Refinement};
 use crate::material::Material;
 use crate::specimen::{Edge, Point, Specimen};
@@ -266,6 +267,8 @@ pub struct Scene {
     pub warnings: Vec<String>,
     /// The input as given; echoed in `result.json`.
     pub echo: serde_json::Value,
+    /// Files that were read for it, and overrides.
+    pub provenance: Provenance,
 }
 
 impl Scene {
@@ -297,6 +300,7 @@ impl Scene {
             refinement: None,
             warnings: Vec::new(),
             echo: serde_json::Value::Null,
+            provenance: Provenance::default(),
         }
     }
 }

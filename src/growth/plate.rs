@@ -17,6 +17,7 @@ use crate::solver::Equilibrium;
 use crate::solver::field::Layout;
 use crate::specimen::{Point, Specimen, Support};
 use crate::state::Bonds;
+use crate::watch::{self, Stage};
 
 /// A discretised plate.
 #[derive(Debug, Clone)]
@@ -38,6 +39,7 @@ impl Plate {
             let body = Body::build(specimen, material, law, model.spacing, ratio, angle)?;
             return Ok(Plate { body, levels: None });
         }
+        watch::at(Stage::Points, 0.0)?;
         let holds = |support: &Support| !matches!(support, Support::RigidEnds);
         let ask = MultiLevelSpec {
             specimen,

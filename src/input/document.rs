@@ -6,8 +6,8 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
-use super::Folder;
 use super::slice::{path_steps, shorten};
+use super::{Folder, OpenedFile, STREAM};
 use crate::error::{Error, InputError, Result, input};
 
 /// A parsed input file that still knows where everything stands in the text.
@@ -25,28 +25,35 @@ pub struct Document {
 }
 
 impl Document {
-    /// Reads a TOML file and applies `section.key=value` overrides.
+    /// Reads a TOML file, once, and applies `section.key=value` overrides; `-` is standard input.
     pub fn read(path: &Path, overrides: &[String]) -> Result<Self> {
-        Self::of_file(super::read_text(path)?, path, path.parent().unwrap_or(Path::new("")).into(), overrides)
+        // What comes through a pipe lies nowhere: its names start from the current folder.
+        let is_pipe = ["/dev", "/proc"].iter().any(|system| path.starts_with(system));
+        let folder: Folder = if is_pipe { Path::new("") } else { path.parent().unwrap_or(Path::new("")) }.into();
+        let text = super::text_of(folder.opened().read(path, &path.display().to_string())?, path)?;
+        Self::of_file(text, path, folder, overrides)
     }
 
     /// The text of a file; the files it names lie in `folder`.
     pub(super) fn of_file(text: String, path: &Path, folder: Folder, overrides: &[String]) -> Result<Self> {
-        let name = path.file_stem().map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        // Standard input has no name.
+        let stem = path.file_stem().filter(|stem| *stem != STREAM);
+        let name = stem.map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
         Self::build(text, name, folder, Some(path.to_path_buf()), overrides)
     }
 
     /// The same for text that is not in a file; the files it names lie in `folder`.
     pub fn parse(text: &str, name: &str, folder: impl Into<Folder>, overrides: &[String]) -> Result<Self> {
-        Self::build(text.to_owned(), name.to_owned(), folder.into(), None, overrides)
+        let folder: Folder = folder.into();
+        let file = OpenedFile { name: format!("{name}.toml"), path: None, id: None, content: text.as_bytes().into() };
+        folder.opened().add(file);
+        Self::build(text.to_owned(), name.to_owned(), folder, None, overrides)
     }
 
     fn build(text: String, name: String, folder: Folder, file: Option<PathBuf>, overrides: &[String]) -> Result<Self> {
         let table = text.parse::<Table>().map_err(|error| syntax_error(&error, &text, file.as_deref()))?;
         let mut document = Document { name, folder, table, file, text, overridden: Vec::new() };
-        for text in overrides {
-            document.set(text)?;
-        }
+        document.set_all(overrides)?;
         Ok(document)
     }
 
@@ -68,6 +75,14 @@ impl Document {
         Error::Input(trouble)
     }
 
+    /// Applies overrides on top of those that it was read with.
+    ///
+    /// # Errors
+    /// One that is no `section.key=value`, or names no place for a value.
+    pub fn set_all(&mut self, overrides: &[String]) -> Result<()> {
+        overrides.iter().try_for_each(|text| self.set(text))
+    }
+
     /// Applies one override.
     fn set(&mut self, text: &str) -> Result<()> {
         let refuse = |problem: &str| {
@@ -85,6 +100,7 @@ impl Document {
         }
         self.put(key, plain_value(value)).map_err(refuse)?;
         self.overridden.push(key.to_owned());
+        self.folder.opened().add_override(text);
         Ok(())
     }
 

@@ -6,21 +6,18 @@
 
 mod document;
 mod folder;
+mod opened;
 mod quantity;
 mod sections;
 mod slice;
 
 pub use document::Document;
 pub use folder::Folder;
+pub use opened::{FileId, Opened, OpenedFile, Provenance, STREAM, sha256};
 pub use quantity::*;
 pub use sections::{ForeignSections, Sections};
 pub(crate) use slice::shorten;
 pub use slice::{OF_SCENES, PLANNED, slice, table_of, value_at};
-
-/// Reads a whole text file; bytes that are not UTF-8 are wrong input, everything else is trouble with the file.
-pub fn read_text(path: &std::path::Path) -> crate::Result<String> {
-    text_of(std::fs::read(path).map_err(|source| crate::Error::file(path, "cannot read", source))?, path)
-}
 
 /// Bytes of a file as text.
 fn text_of(bytes: Vec<u8>, path: &std::path::Path) -> crate::Result<String> {

@@ -15,7 +15,9 @@ use crate::error::Result;
 use crate::growth::{CrackGrowth, State};
 use crate::sealed::{Seal, refused};
 
-const SEAL: Seal = Seal { of: "this program", magic: b"perilife checkpoint\n", form: 5 };
+/// First bytes of a checkpoint.
+pub const SIGN: &[u8] = b"perilife checkpoint\n";
+const SEAL: Seal = Seal { of: "this program", magic: SIGN, form: 5 };
 
 /// State of a run at one of the places where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,5 +1,7 @@
 //! What a run gives and how it reports while it goes on.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::checkpoint::Checkpoint;
@@ -11,6 +13,8 @@ pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
 use crate::growth::{CrackGrowth, GrowthStatus};
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
+use crate::units::MM;
+use crate::watch::Watch;
 
 /// Picture of the damaged plate at one moment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -109,6 +113,12 @@ impl Prediction {
         self.curve.last().map_or(0.0, |point| point.cycles)
     }
 
+    /// Crack length at the end, mm.
+    #[must_use]
+    pub fn crack_length_final_mm(&self) -> f64 {
+        self.crack_length_final() / MM
+    }
+
     /// Crack length at the end, m.
     #[must_use]
     pub fn crack_length_final(&self) -> f64 {
@@ -142,6 +152,10 @@ impl Progress {
 pub trait Observer: Sync {
     /// Called after every cycle block.
     fn block_done(&self, progress: &Progress) -> bool;
+    /// Where the run marks what it does before it has a first row to show, and where it looks whether it may go on; by default nowhere.
+    fn watch(&self) -> Option<Arc<Watch>> {
+        None
+    }
     /// Called where the run could be taken up again ([`super::resume`]); `checkpoint` builds what that takes, so that nothing is
     /// built where nobody wants it. By default nobody does.
     ///

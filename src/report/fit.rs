@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::chart::{self, Mark, Series};
 use super::output::write_file;
+use super::provenance;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::Fit;
 use crate::calibration::record::FittedRecord;
@@ -18,12 +19,16 @@ use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 /// [`Error::File`] if a file cannot be written.
 pub fn write(folder: &Path, calibration: &CalibrationCase, fit: &Fit, report: &FitReport, law: &FittedRecord) -> Result<()> {
     let unwritable = |file: &str, error: String| Error::file(&folder.join(file), "cannot write", std::io::Error::other(error));
-    let json = serde_json::to_string_pretty(report).map_err(|error| unwritable("fit.json", error.to_string()))?;
+    let mut json = serde_json::to_value(report).map_err(|error| unwritable("fit.json", error.to_string()))?;
     let toml = toml::to_string(law).map_err(|error| unwritable("fitted.toml", error.to_string()))?;
-    write_file(&folder.join("fit.json"), format!("{json}\n").as_bytes())?;
+    let (curves, band) = (fit_curves_csv(fit), band(calibration, fit, report));
+    let provenance = &calibration.case.provenance;
+    provenance::add(&mut json, provenance, &[("fitted.toml", &toml), ("fit_curves.csv", &curves), ("fit_band.csv", &band)]);
+    write_file(&folder.join("fit.json"), format!("{json:#}\n").as_bytes())?;
     write_file(&folder.join("fitted.toml"), toml.as_bytes())?;
-    write_file(&folder.join("fit_curves.csv"), fit_curves_csv(fit).as_bytes())?;
-    write_file(&folder.join("fit_band.csv"), band(calibration, fit, report).as_bytes())?;
+    write_file(&folder.join("fit_curves.csv"), curves.as_bytes())?;
+    write_file(&folder.join("fit_band.csv"), band.as_bytes())?;
+    provenance::write(folder, "calibrate", calibration.input.clone(), provenance)?;
     write_tables(folder, calibration, fit)?;
     draw(folder, calibration, fit)
 }

@@ -10,8 +10,8 @@ pub use json::result;
 use super::chart::{self, Mark, Series};
 use super::csv::{exact, number};
 use super::damage::{DamagePicture, PointField};
-use super::output::write_file;
-use super::vtk;
+use super::output::{Room, write_file};
+use super::{provenance, vtk};
 use crate::error::{Error, Result};
 use crate::fracture::outcome::{HistoryRow, PathPoint};
 use crate::fracture::scene::Procedure;
@@ -59,15 +59,34 @@ pub fn crack_path(path: &[PathPoint]) -> String {
     text
 }
 
+/// All tables by name.
+pub(super) fn tables(fracture: &Fracture) -> [(&'static str, String); 3] {
+    [
+        ("history.csv", history(fracture)),
+        ("crack_path.csv", crack_path(&fracture.path)),
+        ("cracking.csv", crack_path(&fracture.cracking)),
+    ]
+}
+
+/// Bytes that a scene will write, roughly.
+#[must_use]
+pub fn room(scene: &Scene) -> Room {
+    // A dozen moments of some 140 bytes a point.
+    let points = scene.specimen.area() / scene.model.spacing.powi(2);
+    Room { tables: 64_000, all: 500_000 + (12.0 * 140.0 * points) as u64 }
+}
+
 /// Writes all files of a scene into `folder`.
 ///
 /// # Errors
 /// [`Error::File`] if one cannot be written.
 pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &serde_json::Value) -> Result<()> {
-    write_file(&folder.join("history.csv"), history(fracture).as_bytes())?;
-    write_file(&folder.join("crack_path.csv"), crack_path(&fracture.path).as_bytes())?;
-    write_file(&folder.join("cracking.csv"), crack_path(&fracture.cracking).as_bytes())?;
+    // Tables and figures first: what a full disk cuts off are pictures.
+    for (file, text) in tables(fracture) {
+        write_file(&folder.join(file), text.as_bytes())?;
+    }
     write_file(&folder.join(super::json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
+    provenance::write(folder, "fracture", provenance::table_of(&scene.echo), &scene.provenance)?;
     draw_charts(folder, scene, fracture)?;
     // The last state of a motion that blew up is no number.
     let finite = |snapshot: &&Snapshot| snapshot.displacement.iter().flatten().all(|u| u.is_finite());

@@ -15,14 +15,17 @@ pub mod fracture;
 pub mod json;
 pub mod model_words;
 pub mod output;
+pub mod provenance;
 pub mod resample;
 pub mod residual_strength;
 pub mod run;
 pub mod speed_chart;
 pub mod specimen_picture;
 pub mod sweep;
+pub mod time;
 pub mod verification;
 pub mod vtk;
+pub mod whole;
 
 mod axis;
 mod colour;

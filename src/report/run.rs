@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use serde_json::Value;
+use toml::Table;
 
 use super::chart::{self, Mark, Series};
 use super::csv::{self, Row};
 use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
-use super::output::write_file;
+use super::output::{Room, write_file};
 use super::specimen_picture::{nodes_svg, tip_svg};
-use super::{fit_use, json, vtk};
-use crate::case::Case;
-use crate::case::Method;
+use super::{fit_use, json, provenance, vtk};
 use crate::case::first_load;
+use crate::case::{Case, Method, RECORD};
 use crate::error::{Error, Result, input};
 use crate::predict::guard::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::{Prediction, StopReason};
@@ -22,6 +22,8 @@ use crate::units::MM;
 
 /// Half the width of the picture of the fatigue zone, in horizons.
 const ZONE_HORIZONS: f64 = 4.0;
+/// Table of the ways of the tips.
+const CRACK_PATH_FILE: &str = "crack_path.csv";
 /// Folder of the ParaView files in that of a run.
 pub const PARAVIEW: &str = "paraview";
 /// Share of life outside the fitted ΔK range above which the user is warned.
@@ -116,12 +118,17 @@ pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
 /// [`Error::File`] if a file cannot be written.
 pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Value> {
     let mut result = json::result(case, prediction);
+    let a_n = csv::a_n(prediction, case.loading.displacement());
+    let path = csv::crack_path(prediction, &case.specimen.cracks);
+    provenance::add(&mut result, &case.provenance, &[(csv::A_N_FILE, &a_n), (CRACK_PATH_FILE, &path)]);
     if let (Some(refusal), Some(object)) = (refusal(case, prediction), result.as_object_mut()) {
         object.insert("refused".to_owned(), refusal.to_string().into());
     }
-    write_file(&folder.join(csv::A_N_FILE), csv::a_n(prediction, case.loading.displacement()).as_bytes())?;
-    write_file(&folder.join("crack_path.csv"), csv::crack_path(prediction, &case.specimen.cracks).as_bytes())?;
+    // Tables and figures first: what a full disk cuts off are pictures.
+    write_file(&folder.join(csv::A_N_FILE), a_n.as_bytes())?;
+    write_file(&folder.join(CRACK_PATH_FILE), path.as_bytes())?;
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
+    provenance::write(folder, "predict", input_of(case), &case.provenance)?;
     draw_curves(folder, case, prediction)?;
     let paths: Vec<Vec<Point>> = csv::paths(prediction, &case.specimen.cracks)
         .into_iter()
@@ -148,6 +155,28 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
         vtk::write_series(&paraview, &prediction.grid, &prediction.snapshots)?;
     }
     Ok(result)
+}
+
+/// The input of a case, with a record that came with no file as a file.
+fn input_of(case: &Case) -> Table {
+    let mut input = provenance::table_of(&case.echo);
+    let fitted = input.get_mut("fatigue").and_then(|fatigue| fatigue.as_table_mut()?.get_mut("fitted"));
+    if let Some(record) = fitted.filter(|record| record.is_table()) {
+        *record = RECORD.into();
+    }
+    input
+}
+
+/// Bytes that a run of this case will write, roughly.
+#[must_use]
+pub fn room(case: &Case) -> Room {
+    // An archive of every moment has some 140 bytes a point, and there are a dozen moments.
+    const OF_POINT: f64 = 12.0 * 140.0;
+    let points = case.specimen.area() / case.model.spacing.powi(2);
+    let of_points = if case.model.method == Method::Handbook { 0.0 } else { OF_POINT * points };
+    let texts: usize = case.provenance.files.iter().map(|file| file.content.len()).sum();
+    let tables = 32_000 + texts as u64;
+    Room { tables, all: tables + 500_000 + of_points as u64 }
 }
 
 /// The fatigue zone ahead of a tip, in the middle of the snapshots that have one.

@@ -13,6 +13,8 @@ use crate::specimen::geometry::{along, bounding_box, distance};
 use crate::specimen::{Crack, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
 use crate::units::{KN, MM, MPA};
 
+/// What a drawing says of itself, so that it is known again.
+pub const SIGN: &str = "drawn by perilife check";
 /// Room around the plate for arrows, sizes and words, pixels: left, right, top, bottom.
 const MARGIN: [f64; 4] = [110.0, 190.0, 150.0, 122.0];
 /// Largest size of the plate itself, pixels.

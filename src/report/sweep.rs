@@ -20,7 +20,7 @@ use crate::sweep::{DrawnCase, Sweep, design};
 /// File that says what a sweep consists of.
 pub const PLAN_FILE: &str = "plan.json";
 /// File of a case that says what came of it.
-pub const OUTCOME_FILE: &str = "case.toml";
+pub const OUTCOME_FILE: &str = "outcome.toml";
 /// The table.
 pub const TABLE_FILE: &str = "sweep.csv";
 /// The figures.
@@ -242,7 +242,7 @@ fn draw(path: &Path, plan: &Plan, outcomes: &[Option<Outcome>]) -> Result<()> {
 }
 
 impl Plan {
-    /// As [`read_plan`] gives it back: the last bit of a number may be another.
+    /// As [`read_plan`] gives it back: numbers may be of another type, of the same value.
     #[must_use]
     pub fn as_read(&self) -> Plan {
         let read = serde_json::to_string(self).ok().and_then(|text| serde_json::from_str(&text).ok());

@@ -88,7 +88,7 @@ impl State {
 }
 
 /// How far a running job is.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JobProgress {
     /// Cycles since N = 0.
     pub cycles: f64,
@@ -100,6 +100,9 @@ pub struct JobProgress {
     pub elapsed_s: f64,
     /// What is left at the pace so far.
     pub seconds_left: Option<f64>,
+    /// What is being done before the first cycles, in words, and how much of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stage: Option<String>,
 }
 
 /// A job as the API shows it.

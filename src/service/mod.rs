@@ -142,6 +142,10 @@ pub fn without_password(url: &str) -> String {
     let Some((scheme, rest)) = url.split_once("://") else { return "the database".to_owned() };
     // Query parameters may hold passwords as well.
     let rest = rest.split('?').next().unwrap_or_default();
+    if scheme == "sqlite" {
+        // The path of a file, as its owner writes it.
+        return percent_encoding::percent_decode_str(rest).decode_utf8_lossy().into_owned();
+    }
     match rest.rsplit_once('@') {
         Some((user, place)) => format!("{scheme}://{}@{place}", user.split(':').next().unwrap_or_default()),
         None => format!("{scheme}://{rest}"),

@@ -10,6 +10,7 @@ use super::{LinearSolver, Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
+use crate::watch::{self, Stage};
 
 /// Residual over load at which a solve ends. Neither the preconditioner in single precision nor a window's starting values are
 /// symmetric to the last digit, and mirror twins have to agree better than the tolerance within which bonds break together.
@@ -129,6 +130,7 @@ impl<const N: usize> MultigridSolver<N> {
         // r·z and the step of the last iteration.
         let mut last: Option<(f64, f64)> = None;
         for iteration in 1..=ITERATIONS_MAX {
+            watch::at(Stage::Equilibrium, iteration as f64 / ITERATIONS_MAX as f64)?;
             let z = self.multigrid.precondition(bonds, product, &self.r);
             if let Some(rigid) = &rigid {
                 rigid.take_off(z);

@@ -7,7 +7,7 @@ use toml::{Table, Value};
 
 use super::vary::{Spread, Vary};
 use crate::error::{Error, Result, input, input_missing};
-use crate::input::{Document, Folder, slice};
+use crate::input::{Document, slice};
 
 crate::kinds! {
     /// How the cases of a sweep are chosen.
@@ -92,10 +92,19 @@ impl Sweep {
     /// # Errors
     /// Wrong input; files that cannot be read.
     pub fn from_file(path: &Path, overrides: &[String], most: usize) -> Result<Self> {
+        Self::with_overrides(Document::read(path, &[])?, overrides, most)
+    }
+
+    /// The same for a document that was read without overrides.
+    ///
+    /// # Errors
+    /// Wrong input; files that cannot be read.
+    pub fn with_overrides(mut document: Document, overrides: &[String], most: usize) -> Result<Self> {
         let section = |text: &str| text.split(['.', '[', '=']).next().unwrap_or_default().trim().to_owned();
         let of_sweep = |text: &String| ["design", "vary"].contains(&section(text).as_str());
         let (own, of_case): (Vec<String>, Vec<String>) = overrides.iter().cloned().partition(of_sweep);
-        Self::from_document(Document::read(path, &own)?, &of_case, most)
+        document.set_all(&own)?;
+        Self::from_document(document, &of_case, most)
     }
 
     /// The same for a document; the overrides are those of the base case.
@@ -108,11 +117,7 @@ impl Sweep {
             Ok((input.case, read_design(&input.design, &input.vary, most)?))
         };
         let (case, design) = read().map_err(|error| document.locate(error))?;
-        let base = match &document.folder {
-            Folder::Disk(folder) => Document::read(&folder.join(&case), of_case)?,
-            // A document that was read from a path lies on disk.
-            Folder::AtHand(_) => document.folder.document(&case)?,
-        };
+        let base = document.folder.document_with(&case, of_case)?;
         Ok(Sweep { name: document.name.clone(), document, base, design })
     }
 }

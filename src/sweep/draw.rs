@@ -10,14 +10,12 @@ use super::scatter::{self, LawScatter};
 use super::vary::Spread;
 use crate::calibration::case::remove_law;
 use crate::calibration::record::FittedRecord;
-use crate::case::{Case, Method, fitted_record};
+use crate::case::{Case, LawSource, Method, fitted_record};
 use crate::error::{Error, InputError, Result, input_missing};
 use crate::input::{Document, Folder, value_at};
 
 /// Name of a drawn record among the files of its case.
 const FITTED: &str = "fitted.toml";
-/// Keys of a case that name files.
-const FILE_KEYS: [&str; 2] = ["fatigue.fitted", "material.name"];
 
 /// A case of a sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -148,7 +146,7 @@ impl Sweep {
             )));
         };
         let record = fitted_record(&fitted, &self.base.folder)?;
-        scatter::read(record, &self.base.folder.path(&fitted), self.design.scatter)
+        scatter::read(record, &fitted, &self.base.folder, self.design.scatter)
     }
 
     fn build(&self, number: usize, draw: &Draw) -> Result<DrawnCase> {
@@ -164,7 +162,7 @@ impl Sweep {
                 ))
             })?;
         }
-        let mut files = Vec::new();
+        let mut drawn = Vec::new();
         let mut values = draw.values.clone();
         if let Some(law) = &draw.law {
             remove_law(&mut document.table);
@@ -172,24 +170,24 @@ impl Sweep {
             if let Some(fatigue) = fatigue.as_table_mut() {
                 fatigue.insert("fitted".to_owned(), FITTED.into());
             }
-            files.push((FITTED.to_owned(), text_of(law, "record")?.into_bytes()));
+            drawn.push((FITTED.to_owned(), text_of(law, "record")?.into_bytes()));
             values.push(Value::Float(law.rate_at_pivot_mm_per_cycle));
             let pair = if self.is_by_hand() { [law.paris_m, law.paris_c_mm_per_cycle] } else { [law.p, law.a] };
             values.extend(pair.map(Value::Float));
         }
-        let whole = Value::Table(document.table.clone());
-        for key in FILE_KEYS {
-            let Some(name) = value_at(&whole, key).and_then(Value::as_str) else { continue };
-            let is_built_in = key == "material.name" && !name.ends_with(".toml") && !name.contains(['/', '\\']);
-            if !is_built_in && files.iter().all(|(known, _)| known != name) {
-                files.push((name.to_owned(), self.base.folder.read(name)?));
-            }
-        }
+        document.name = format!("{}_{}", self.base.name, label(number));
+        document.folder = self.base.folder.anew_with(drawn);
+        let name = document.name.clone();
         let text = text_of(&document.table, "case")?;
-        let hash = hash(&text, &files);
-        let name = format!("{}_{}", self.base.name, label(number));
-        let case = DrawnCase { number, name, values, text, files, hash };
-        case.read().map_err(|error| self.blame(&case, error))?;
+        let mut case = DrawnCase { number, name, values, text, files: Vec::new(), hash: String::new() };
+        // Reading it is what tells which files it names, whatever the keys.
+        read(&document).map_err(|error| self.blame(&case, error))?;
+        let opened = document.folder.opened().so_far().files;
+        // No output goes over them; those that were drawn lie nowhere.
+        let on_disk = opened.iter().filter(|file| file.path.is_some()).cloned();
+        on_disk.for_each(|file| self.document.folder.opened().add(file));
+        case.files = opened.into_iter().map(|file| (file.name, file.content.to_vec())).collect();
+        case.hash = hash(&case.text, &case.files);
         Ok(case)
     }
 
@@ -216,6 +214,14 @@ impl Sweep {
         }
         trouble.problem.push_str(&which);
         self.base.locate(Error::Input(trouble))
+    }
+}
+
+/// The case of a document whose errors are to be placed by the sweep; it must be ready to run.
+fn read(document: &Document) -> Result<()> {
+    match Case::complete(document)?.law {
+        LawSource::Missing(path) => Err(Error::file(&path, "cannot read", std::io::ErrorKind::NotFound.into())),
+        _ => Ok(()),
     }
 }
 

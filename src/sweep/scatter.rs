@@ -22,6 +22,7 @@ use crate::calibration::record::FittedRecord;
 use crate::case::Method;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::rate_constant::rate_constant_slope;
+use crate::input::Folder;
 use crate::material::Plane;
 use crate::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
 
@@ -144,20 +145,24 @@ impl LawScatter {
     }
 }
 
-/// Reads the scatter of the record of a case; `fitted` is its file.
+/// Reads the scatter of the record of a case; `fitted` is its file in `folder`.
 ///
 /// # Errors
 /// Files that cannot be read, or say too little.
-pub fn read(record: FittedRecord, fitted: &Path, scatter: Scatter) -> Result<LawScatter> {
+pub fn read(record: FittedRecord, fitted: &str, folder: &Folder, scatter: Scatter) -> Result<LawScatter> {
     if scatter == Scatter::Constants {
-        return LawScatter::of_constants(record).map_err(|error| error.in_file(fitted));
+        return LawScatter::of_constants(record).map_err(|error| error.in_file(&folder.path(fitted)));
     }
-    let path = fitted.with_file_name(FIT_FILE);
-    let text = std::fs::read_to_string(&path).map_err(|error| {
-        let action = "cannot read the fits of the specimens (`perilife calibrate` writes them beside its record)";
-        Error::file(&path, action, error)
+    let beside = Path::new(fitted).with_file_name(FIT_FILE).to_string_lossy().into_owned();
+    let path = folder.path(&beside);
+    let bytes = folder.read(&beside).map_err(|error| match error {
+        Error::File { path, source, .. } => {
+            let action = "cannot read the fits of the specimens (`perilife calibrate` writes them beside its record)";
+            Error::file(&path, action, source)
+        }
+        other => other,
     })?;
-    let fits: SpecimenFits = serde_json::from_str(&text).map_err(|error| {
+    let fits: SpecimenFits = serde_json::from_slice(&bytes).map_err(|error| {
         let problem = format!("is no report of a calibration: {error}");
         input_missing("file", problem, "calibrate again").in_file(&path)
     })?;

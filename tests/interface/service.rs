@@ -2,6 +2,8 @@
 
 #[path = "service/crashes.rs"]
 mod crashes;
+#[path = "service/doors.rs"]
+mod doors;
 #[path = "service/fuzzed.rs"]
 mod fuzzed;
 #[path = "service/jobs.rs"]

@@ -102,7 +102,7 @@ fn a_finished_case_is_not_run_again() {
     let dir = folder_with(GRID);
     let here = dir.path();
     done(here, &["sweep", "sweep.toml", "--out", "out"]);
-    let (whole, outcome) = (rows(&here.join("out")), |case: &str| fs::read(here.join(format!("out/cases/{case}/case.toml"))));
+    let (whole, outcome) = (rows(&here.join("out")), |case: &str| fs::read(here.join(format!("out/cases/{case}/outcome.toml"))));
     let before = outcome("0002").unwrap();
     // As after a crash: cases that are missing, one that was being written, no tables.
     fs::remove_dir_all(here.join("out/cases/0004")).unwrap();
@@ -137,17 +137,17 @@ fn a_killed_sweep_goes_on() {
         .spawn()
         .unwrap();
     let begun = Instant::now();
-    while !here.join("out/cases/0001/case.toml").is_file() {
+    while !here.join("out/cases/0001/outcome.toml").is_file() {
         assert!(begun.elapsed() < PATIENCE, "no case is done");
         std::thread::sleep(Duration::from_millis(5));
     }
     let _ = process.kill();
     process.wait().unwrap();
     assert!(!here.join("out/sweep.csv").exists(), "it was killed before its end");
-    let first = fs::read(here.join("out/cases/0001/case.toml")).unwrap();
+    let first = fs::read(here.join("out/cases/0001/outcome.toml")).unwrap();
     let output = perilife(here, &["sweep", "sweep.toml", "--out", "out", "--threads", "2"]);
     assert!(texts(&output).1.contains("of 5 cases are there already"), "{}", texts(&output).1);
-    assert_eq!(first, fs::read(here.join("out/cases/0001/case.toml")).unwrap());
+    assert_eq!(first, fs::read(here.join("out/cases/0001/outcome.toml")).unwrap());
     let rows = rows(&here.join("out"));
     assert!(rows.len() == 6 && rows[1..].iter().all(|row| row[3] == "crack_length_reached"), "{rows:?}");
     done(here, &["predict", "small.toml", "--out", "single", "--set", "specimen.crack_length_mm=12"]);
@@ -279,6 +279,8 @@ fn a_service_hands_over_all_files() {
     let failing = design(&panel.display().to_string(), "loading.stress_range_mpa", "[48.28, 20.0]");
     fs::write(here.join("failing.toml"), failing).unwrap();
     let place = in_folder(&here.join("service"));
+    // The database is made by a service.
+    drop(Server::start(&[&place[0], &place[1]], &["--jobs", "0"]));
     let _worker = Server::worker(&[&place[0], &place[1]], &["--jobs", "1"]);
     for sweep in ["sweep", "failing"] {
         let file = format!("{sweep}.toml");

@@ -27,7 +27,7 @@ fn rows(readings: &[(f64, f64)], more: impl Fn(usize) -> String) -> String {
 
 fn case(csv: &str, keys: &str) -> perilife::Result<CalibrationCase> {
     let files = BTreeMap::from([("test.csv".to_owned(), csv.as_bytes().to_vec())]);
-    CalibrationCase::from_text(&calibration("test.csv", keys), "case", Folder::AtHand(files.into()))
+    CalibrationCase::from_text(&calibration("test.csv", keys), "case", Folder::at_hand(files))
 }
 
 fn fitted(csv: &str, keys: &str) -> Fit {
@@ -184,7 +184,7 @@ fn lack_of_fit_is_told_at_both_ends() {
         let csv = format!("cycles,crack_length_mm\n{}", rows(&made, |_| String::new()));
         let files = BTreeMap::from([("test.csv".to_owned(), csv.into_bytes())]);
         let text = calibration("test.csv", "") + "[fit]\nparameters = [\"a\"]\np = 3.0\n";
-        let case = CalibrationCase::from_text(&text, "case", Folder::AtHand(files.into())).unwrap();
+        let case = CalibrationCase::from_text(&text, "case", Folder::at_hand(files)).unwrap();
         calibrate(&case, &Silent).unwrap().lack_of_fit.unwrap()
     };
     let [low, high] = [lack(3.5).low, lack(3.5).high];

@@ -9,7 +9,7 @@ use perilife::commands::{check, message, predict};
 use perilife::error::InputError;
 use perilife::predict::{Prediction, StopReason};
 use perilife::report::catalogue::lines;
-use perilife::report::output::OutputFolder;
+use perilife::report::output::{OutputFolder, RunKind};
 use tempfile::tempdir;
 
 use crate::{layering, made_up_case, made_up_run};
@@ -17,7 +17,7 @@ use crate::{layering, made_up_case, made_up_run};
 const QUIET: Console = Console { json: false, quiet: true };
 
 fn keep(case: &Case, run: Prediction, out: &Path) -> Result<(), perilife::Error> {
-    predict::keep(case, run, OutputFolder::create(out)?, &QUIET).map(|_| ())
+    predict::keep(case, run, OutputFolder::create(out, RunKind::Predict)?, &|_| Ok(()), &QUIET).map(|_| ())
 }
 
 #[test]

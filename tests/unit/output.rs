@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::report::output::{MARKER, OutputFolder, write_file};
+use perilife::report::output::{MARKER, OutputFolder, RunKind, write_file};
 use tempfile::tempdir;
 
 fn names(folder: &Path) -> Vec<String> {
@@ -17,7 +17,7 @@ fn a_folder_appears_when_it_is_finished_and_replaces_only_its_own() {
     let dir = tempdir().unwrap();
     let out = dir.path().join("new/parent/run");
     for content in ["first", "second"] {
-        let folder = OutputFolder::create(&out).unwrap();
+        let folder = OutputFolder::create(&out, RunKind::Predict).unwrap();
         fs::write(folder.path().join(content), content).unwrap();
         assert!(!out.join(content).exists(), "nothing is seen before the end");
         folder.finish().unwrap();
@@ -30,10 +30,10 @@ fn a_folder_appears_when_it_is_finished_and_replaces_only_its_own() {
 fn an_unfinished_folder_leaves_nothing() {
     let dir = tempdir().unwrap();
     let out = dir.path().join("deep/run");
-    drop(OutputFolder::create(&out).unwrap());
+    drop(OutputFolder::create(&out, RunKind::Predict).unwrap());
     assert!(names(dir.path()).is_empty(), "new parents go as well");
     let panicked = std::panic::catch_unwind(|| {
-        let folder = OutputFolder::create(&out).unwrap();
+        let folder = OutputFolder::create(&out, RunKind::Predict).unwrap();
         fs::write(folder.path().join("half"), "").unwrap();
         std::panic::resume_unwind(Box::new("in the middle of a run"));
     });
@@ -44,8 +44,8 @@ fn an_unfinished_folder_leaves_nothing() {
 fn an_unfinished_folder_leaves_the_earlier_result() {
     let dir = tempdir().unwrap();
     let out = dir.path().join("run");
-    OutputFolder::create(&out).unwrap().finish().unwrap();
-    drop(OutputFolder::create(&out).unwrap());
+    OutputFolder::create(&out, RunKind::Predict).unwrap().finish().unwrap();
+    drop(OutputFolder::create(&out, RunKind::Predict).unwrap());
     assert_eq!(names(&out), [MARKER]);
 }
 
@@ -54,7 +54,7 @@ fn an_empty_folder_may_be_used() {
     let dir = tempdir().unwrap();
     let out = dir.path().join("run");
     fs::create_dir(&out).unwrap();
-    OutputFolder::create(&out).unwrap().finish().unwrap();
+    OutputFolder::create(&out, RunKind::Predict).unwrap().finish().unwrap();
     assert_eq!(names(&out), [MARKER]);
 }
 
@@ -67,7 +67,7 @@ fn what_is_not_ours_is_refused() {
     fs::write(&file, "text").unwrap();
     // The last two: a folder below a file, and the folder the test itself runs in.
     for (path, code) in [(folder.as_path(), 2), (&file, 2), (Path::new(""), 2), (&file.join("run"), 4), (Path::new("."), 2)] {
-        let error = OutputFolder::create(path).unwrap_err();
+        let error = OutputFolder::create(path, RunKind::Predict).unwrap_err();
         assert_eq!(error.exit_code(), code, "{error}");
         assert!(error.to_string().contains(&path.display().to_string()), "{error}");
     }

@@ -22,7 +22,7 @@ fn fitted(readings: &str, specimen: &str) -> Option<perilife::Result<Fit>> {
     let text = std::fs::read_to_string(specimen).unwrap();
     let name = readings.file_name().unwrap().to_str().unwrap();
     let text = format!("[measured]\nfiles = [\"{name}\"]\n{text}[model]\nmethod = \"handbook\"\n");
-    let folder = Folder::Disk(readings.parent().unwrap().to_path_buf());
+    let folder = Folder::from(readings.parent().unwrap());
     let document = Document::parse(&text, "case", folder, &[]).unwrap();
     Some(CalibrationCase::from_document(document).and_then(|case| calibrate(&case, &Silent)))
 }

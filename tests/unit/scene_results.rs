@@ -8,7 +8,7 @@ use perilife::commands::fracture::keep;
 use perilife::fracture::outcome::HistoryRow;
 use perilife::fracture::{Scene, SceneEnd, run};
 use perilife::predict::Silent;
-use perilife::report::output::OutputFolder;
+use perilife::report::output::{OutputFolder, RunKind};
 use serde_json::Value;
 
 const TEXT: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 20\nlength_mm = 20\nthickness_mm = 1\n[material]\nyoungs_modulus_gpa = 65\n\
@@ -28,7 +28,7 @@ fn histories_of_a_bad_end_are_kept() {
         fracture.snapshots.last_mut().unwrap().displacement[0] = [f64::NAN, f64::INFINITY];
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("run");
-        let folder = OutputFolder::create(&out).unwrap();
+        let folder = OutputFolder::create(&out, RunKind::Fracture).unwrap();
         let error = keep(&scene, &fracture, folder, &Console { json: false, quiet: true }).unwrap_err();
         assert_eq!(error.exit_code(), 3);
         assert!(error.to_string().contains(end.name()) && error.to_string().contains("histories so far are kept"), "{error}");

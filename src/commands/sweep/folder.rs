@@ -4,8 +4,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::slurm::{LOGS, SCRIPT_FILE, TASKS_FILE};
 use crate::error::{Error, Result, input};
-use crate::report::output::{MARKER, OutputFolder, write_file};
+use crate::input::Provenance;
+use crate::report::output::{Marker, OutputFolder, RunKind, Share, StandingFolder, is_temporary, write_file};
 use crate::report::sweep::{
     CHART_FILE, FIGURES_FILE, OUTCOME_FILE, Outcome, PLAN_FILE, Plan, TABLE_FILE, read_outcome, read_plan,
 };
@@ -22,31 +24,37 @@ pub struct SweepFolder {
     pub path: PathBuf,
     /// What it is to hold.
     pub plan: Plan,
+    /// What goes because the plan has changed, in words.
+    pub changed: Option<String>,
+    _standing: StandingFolder,
 }
 
 impl SweepFolder {
     /// Opens or makes the folder for a whole sweep. Finished cases of an earlier call stay where their input is the same; tables of
     /// another plan, and cases that it had more, go; what killed processes left behind goes too, unless others may be at work on
-    /// the same folder (`is_shared`).
+    /// the same folder ([`Share::Parts`]).
     ///
     /// # Errors
-    /// As [`OutputFolder::create`]; files that cannot be read or written.
-    pub fn open(path: &Path, plan: Plan, is_shared: bool) -> Result<Self> {
-        let folder = SweepFolder { path: path.to_path_buf(), plan };
-        if !is_sweep(path) {
-            let new = OutputFolder::create(path)?;
-            folder.write_plan(new.path())?;
-            new.finish()?;
-            return Ok(folder);
-        }
+    /// As [`OutputFolder::claim`]; [`Error::Input`] if it holds another sweep; files that cannot be read or written.
+    pub fn open(path: &Path, plan: Plan, read: &Provenance, share: Share) -> Result<Self> {
+        let standing = enter(path, &plan, read, share)?;
+        let earlier = read_plan(path);
+        let mut folder = SweepFolder { path: path.to_path_buf(), plan, changed: None, _standing: standing };
         // A plan that cannot be read is one of another version, and replaced as such.
-        if read_plan(path).ok().flatten().as_ref() != Some(&folder.plan.as_read()) {
+        let earlier = earlier.ok().flatten();
+        if let Some(other) = earlier.as_ref().filter(|earlier| earlier.name != folder.plan.name) {
+            let done = (1..=other.cases.len()).filter(|number| folder.outcome_in(other, *number).is_some()).count();
+            let problem = format!("holds another sweep, {}, with {done} of {} cases done", other.name, other.cases.len());
+            return Err(input("--out", path.display(), problem, "give another folder, or remove this one yourself"));
+        }
+        if earlier.as_ref() != Some(&folder.plan.as_read()) {
+            folder.changed = earlier.and_then(|earlier| folder.lost(&earlier));
             for file in [TABLE_FILE, FIGURES_FILE, CHART_FILE] {
                 remove(&path.join(file))?;
             }
-            folder.write_plan(path)?;
+            write_file(&path.join(PLAN_FILE), &text_of(&folder.plan))?;
         }
-        folder.tidy(is_shared)?;
+        folder.tidy(share)?;
         Ok(folder)
     }
 
@@ -54,14 +62,9 @@ impl SweepFolder {
     ///
     /// # Errors
     /// As [`SweepFolder::open`]; [`Error::Input`] if it holds anything but this sweep.
-    pub fn open_part(path: &Path, plan: Plan) -> Result<Self> {
-        let folder = SweepFolder { path: path.to_path_buf(), plan };
-        if !is_sweep(path) {
-            let new = OutputFolder::create(path)?;
-            folder.write_plan(new.path())?;
-            // Another part may have been first.
-            new.finish_new()?;
-        }
+    pub fn open_part(path: &Path, plan: Plan, read: &Provenance) -> Result<Self> {
+        let standing = enter(path, &plan, read, Share::Parts)?;
+        let folder = SweepFolder { path: path.to_path_buf(), plan, changed: None, _standing: standing };
         if read_plan(path)?.as_ref() != Some(&folder.plan.as_read()) {
             let problem = "holds something else than this sweep, or the sweep has changed since it began";
             return Err(input("--out", path.display(), problem, "give another folder, or begin anew without --shard"));
@@ -74,19 +77,38 @@ impl SweepFolder {
     /// # Errors
     /// [`Error::Input`] if it is none.
     pub fn existing(path: &Path) -> Result<Self> {
-        let plan = if is_sweep(path) { read_plan(path)? } else { None };
+        let is_sweep = Marker::read(path).is_some_and(|marker| marker.kind == RunKind::Sweep);
+        let plan = if is_sweep { read_plan(path)? } else { None };
         let Some(plan) = plan else {
             let remedy = "give the folder that `perilife sweep --out` was given";
             return Err(input("DIR", path.display(), "is not the folder of a sweep", remedy));
         };
-        Ok(SweepFolder { path: path.to_path_buf(), plan })
+        Ok(SweepFolder { path: path.to_path_buf(), plan, changed: None, _standing: StandingFolder::join(path)? })
     }
 
     /// What came of a case, if it has been run: its number counts from 1.
     #[must_use]
     pub fn outcome(&self, number: usize) -> Option<Outcome> {
-        let planned = self.plan.cases.get(number.checked_sub(1)?)?;
+        self.outcome_in(&self.plan, number)
+    }
+
+    fn outcome_in(&self, plan: &Plan, number: usize) -> Option<Outcome> {
+        let planned = plan.cases.get(number.checked_sub(1)?)?;
         read_outcome(&self.of_case(number), &planned.input)
+    }
+
+    /// Finished cases of an earlier plan that have no place in this one, in words.
+    fn lost(&self, earlier: &Plan) -> Option<String> {
+        let stays = |number: usize| {
+            let [old, new] = [earlier, &self.plan].map(|plan| plan.cases.get(number - 1).map(|case| &case.input));
+            old == new
+        };
+        let goes = |number: &usize| !stays(*number) && self.outcome_in(earlier, *number).is_some();
+        let lost: Vec<String> = (1..=earlier.cases.len()).filter(goes).map(label).collect();
+        let named = lost[..lost.len().min(super::NAMED)].join(", ");
+        let more = if lost.len() > super::NAMED { ", ..." } else { "" };
+        let all = earlier.cases.len();
+        (!lost.is_empty()).then(|| format!("the plan has changed: {} of {all} finished cases go: {named}{more}", lost.len()))
     }
 
     /// Whether nothing is left to do for a case; one without the files that are wanted is run again, unless it failed.
@@ -105,47 +127,51 @@ impl SweepFolder {
     pub fn keep(&self, case: &DrawnCase, make: impl FnOnce(&Path) -> Result<Outcome>) -> Result<()> {
         let cases = self.path.join(CASES);
         fs::create_dir_all(&cases).map_err(|error| Error::file(&cases, "cannot create the folder", error))?;
-        let folder = OutputFolder::create(&self.of_case(case.number))?;
+        let folder = OutputFolder::create(&self.of_case(case.number), RunKind::SweepCase)?;
         let outcome = make(folder.path())?;
         let path = folder.path().join(OUTCOME_FILE);
         let failed = |error| Error::file(&path, "cannot write", std::io::Error::other(error));
         let text = toml::to_string(&outcome).map_err(|error| failed(error.to_string()))?;
         write_file(&path, text.as_bytes())?;
-        folder.finish()
+        folder.finish().map(drop)
     }
 
     fn of_case(&self, number: usize) -> PathBuf {
         self.path.join(CASES).join(label(number))
     }
 
-    fn write_plan(&self, folder: &Path) -> Result<()> {
-        // Text, numbers and lists always have a JSON form.
-        let text = serde_json::to_string_pretty(&self.plan).unwrap_or_default();
-        write_file(&folder.join(PLAN_FILE), text.as_bytes())
-    }
-
     /// Removes cases beyond the plan, and what processes left behind that were killed while they wrote.
-    fn tidy(&self, is_shared: bool) -> Result<()> {
+    fn tidy(&self, share: Share) -> Result<()> {
         let cases = self.path.join(CASES);
         let Ok(entries) = fs::read_dir(&cases) else { return Ok(()) };
         for entry in entries.flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let is_planned = name.parse::<usize>().is_ok_and(|number| (1..=self.plan.cases.len()).contains(&number));
-            // A temporary name: of a process that was killed, or of one that runs.
-            let may_be_used = is_shared && name.starts_with('.');
-            if !is_planned && !may_be_used {
-                let path = entry.path();
+            let (name, path) = (entry.file_name().to_string_lossy().into_owned(), entry.path());
+            let failed = |error| Error::file(&path, "cannot remove", error);
+            let is_beyond = name.parse::<usize>().is_ok_and(|number| number > self.plan.cases.len());
+            if let Some(marker) = Marker::read(&path).filter(|marker| is_beyond && marker.kind == RunKind::SweepCase) {
+                marker.remove_from(&path).map_err(failed)?;
+                let _ = fs::remove_dir(&path);
+            } else if is_temporary(&name) && share == Share::Alone {
+                // Of a process that was killed: nobody else is at work.
                 let removed = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
-                removed.map_err(|error| Error::file(&path, "cannot remove", error))?;
+                removed.map_err(failed)?;
             }
         }
         Ok(())
     }
 }
 
-/// Whether this program made a sweep there.
-fn is_sweep(path: &Path) -> bool {
-    path.join(MARKER).is_file() && path.join(PLAN_FILE).is_file()
+/// Locks the folder of a sweep, which is made with its plan where there is none.
+fn enter(path: &Path, plan: &Plan, read: &Provenance, share: Share) -> Result<StandingFolder> {
+    let runs = [CASES, LOGS].map(|name| format!("{name}/"));
+    let files = [PLAN_FILE, TABLE_FILE, FIGURES_FILE, CHART_FILE, TASKS_FILE, SCRIPT_FILE, &runs[0], &runs[1]];
+    let marker = Marker::listing(RunKind::Sweep, &files);
+    StandingFolder::open(path, &marker, read, share, &[(PLAN_FILE, text_of(plan))])
+}
+
+fn text_of(plan: &Plan) -> Vec<u8> {
+    // Text, numbers and lists always have a JSON form.
+    serde_json::to_vec_pretty(plan).unwrap_or_default()
 }
 
 fn remove(path: &Path) -> Result<()> {

@@ -14,6 +14,7 @@ use crate::commands::console::Count;
 use crate::error::{Error, Result};
 use crate::report::csv::{A_N_FILE, parse_a_n};
 use crate::report::output::write_file;
+use crate::report::provenance::INPUTS;
 use crate::report::run::PARAVIEW;
 use crate::report::sweep::Outcome;
 use crate::service::job::{Job, JobKind, State, Submission};
@@ -175,14 +176,14 @@ fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Resu
     })
 }
 
-/// Writes a file of a job; the archive of ParaView files becomes the folder that it was made of.
+/// Writes a file of a job; an archive becomes the folder that it was made of.
 fn unpacked(folder: &Path, file: &File) -> Result<()> {
     let path = folder.join(&file.name);
-    if file.name != format!("{PARAVIEW}.zip") {
+    let Some(archived) = [PARAVIEW, INPUTS].into_iter().find(|name| file.name == format!("{name}.zip")) else {
         return write_file(&path, &file.content);
-    }
+    };
     let failed = |error: &dyn std::fmt::Display| Error::file(&path, "cannot unpack", std::io::Error::other(error.to_string()));
-    let into = folder.join(PARAVIEW);
+    let into = folder.join(archived);
     fs::create_dir(&into).map_err(|error| Error::file(&into, "cannot create the folder", error))?;
     let mut archive = zip::ZipArchive::new(Cursor::new(&file.content)).map_err(|error| failed(&error))?;
     for i in 0..archive.len() {

@@ -14,11 +14,11 @@ use crate::sweep::DrawnCase;
 /// Most tasks of an array unless the user asks for smaller ones: Slurm's own default limit is 1001.
 const TASKS_MAX: usize = 1000;
 /// Tasks and their cases.
-const TASKS_FILE: &str = "tasks";
+pub(super) const TASKS_FILE: &str = "tasks";
 /// Script of the array job.
-const SCRIPT_FILE: &str = "job.sh";
+pub(super) const SCRIPT_FILE: &str = "job.sh";
 /// Folder of what tasks print.
-const LOGS: &str = "logs";
+pub(super) const LOGS: &str = "logs";
 
 /// Options for Slurm.
 #[derive(Debug, Clone, Default, clap::Args)]

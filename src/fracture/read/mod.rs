@@ -54,7 +54,7 @@ use toml::{Table, Value};
 
 use super::scene::{Scene, SceneLaw};
 use crate::error::Result;
-use crate::input::{Document, Folder, ForeignSections, Sections};
+use crate::input::{Document, Folder, ForeignSections, Provenance, Sections};
 use crate::levels::read as refinement;
 use crate::{material, specimen};
 
@@ -146,6 +146,7 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
         refinement,
         warnings,
         echo,
+        provenance: Provenance::default(),
     };
     checks::check(&scene)?;
     checks::settle_balance(&mut scene)?;
@@ -154,5 +155,6 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
     }
     let lines = checks::lines(&scene);
     scene.warnings.extend(lines);
+    scene.provenance = folder.opened().so_far();
     Ok(scene)
 }

@@ -7,7 +7,7 @@ use crate::fracture::outcome::PathPoint;
 use crate::fracture::scene::{Action, Procedure, Scene, SceneLaw};
 use crate::fracture::{Fracture, SceneEnd};
 use crate::report::json::clean;
-use crate::report::model_words;
+use crate::report::{model_words, provenance};
 use crate::units::MM;
 
 /// The whole object. A figure that does not exist is `null`.
@@ -17,7 +17,7 @@ pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
     let peak = rows(fracture).max_by(|a, b| a.load.total_cmp(&b.load));
     let last = rows(fracture).last();
     let warnings: Vec<&String> = scene.warnings.iter().chain(&fracture.warnings).collect();
-    json!({
+    let mut result = json!({
         "name": scene.name,
         "stop_reason": fracture.end.name(),
         "stop_meaning": fracture.end.meaning(),
@@ -46,7 +46,11 @@ pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
         "warnings": warnings,
         "version": env!("CARGO_PKG_VERSION"),
         "case": scene.echo,
-    })
+    });
+    let tables = super::tables(fracture);
+    let tables: Vec<(&str, &str)> = tables.iter().map(|(name, text)| (*name, &**text)).collect();
+    provenance::add(&mut result, &scene.provenance, &tables);
+    result
 }
 
 /// Time of a step where there is time.

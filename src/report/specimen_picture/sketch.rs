@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::SIGN;
 use crate::specimen::Point;
 
 /// Colour of the plate.
@@ -134,7 +135,7 @@ impl Sketch {
     pub fn finish(self, width: f64, height: f64) -> String {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
-             font-family=\"Helvetica, Arial, sans-serif\">\n  <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
+             font-family=\"Helvetica, Arial, sans-serif\">\n  <!-- {SIGN} -->\n  <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
             self.body
         )
     }

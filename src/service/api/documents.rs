@@ -75,14 +75,52 @@ pub struct Body {
     pub room: OwnedSemaphorePermit,
 }
 
+/// What a body is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Json,
+    Toml,
+    Form,
+}
+
+/// By its media type, in which case does not count (RFC 9110, 8.3.1). A body without one is taken for JSON.
+fn kind_of(request: &Request) -> Answer<Kind> {
+    let text = |name| request.headers().get(name).map(|value| String::from_utf8_lossy(value.as_bytes()).into_owned());
+    let refused = |what: String| Err(Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "Unsupported media type", what));
+    if let Some(coding) = text(header::CONTENT_ENCODING).filter(|coding| !coding.trim().eq_ignore_ascii_case("identity")) {
+        return refused(format!("the body comes in content-encoding {coding:?}; send it as it is"));
+    }
+    let given = text(header::CONTENT_TYPE).unwrap_or_default();
+    match &*given.split(';').next().unwrap_or_default().trim().to_ascii_lowercase() {
+        "" | "application/json" => Ok(Kind::Json),
+        "application/toml" | "application/x-toml" | "text/toml" | "text/x-toml" => Ok(Kind::Toml),
+        "multipart/form-data" => Ok(Kind::Form),
+        other => refused(format!(
+            "the body is of type {other:?}; send TOML with content-type: application/toml, JSON with application/json, or a form with \
+             multipart/form-data"
+        )),
+    }
+}
+
+/// Where a JSON value has a null, which TOML has not: the keys to it.
+fn null_in(value: &Value, above: &str) -> Option<String> {
+    let below = |key: &str| if above.is_empty() { key.to_owned() } else { format!("{above}.{key}") };
+    match value {
+        Value::Null => Some(above.to_owned()),
+        Value::Object(fields) => fields.iter().find_map(|(key, value)| null_in(value, &below(key))),
+        Value::Array(items) => items.iter().enumerate().find_map(|(i, value)| null_in(value, &format!("{above}[{i}]"))),
+        _ => None,
+    }
+}
+
 /// Reads a body.
 ///
 /// # Errors
-/// 400 and 413.
+/// 400, 413 and 415.
 pub async fn read(app: &App, request: Request) -> Answer<Body> {
     let room = room(app).await?;
-    let kind = request.headers().get(header::CONTENT_TYPE).and_then(|kind| kind.to_str().ok()).unwrap_or_default().to_owned();
-    let (asked, fingerprint) = if kind.starts_with("multipart/form-data") {
+    let kind = kind_of(&request)?;
+    let (asked, fingerprint) = if kind == Kind::Form {
         let (mut fields, files) = form(app, request).await?;
         let mut hash = Sha256::new();
         let fields_and_files = fields.iter().map(|(name, value)| (name, value.as_bytes()));
@@ -107,7 +145,7 @@ pub async fn read(app: &App, request: Request) -> Answer<Body> {
     } else {
         let bytes = bytes(request).await?;
         let fingerprint = hex(&Sha256::digest(&bytes));
-        let asked = if kind.starts_with("application/toml") {
+        let asked = if kind == Kind::Toml {
             if bytes.len() > INPUT_MAX {
                 return Err(too_long());
             }
@@ -267,6 +305,10 @@ fn text_of(given: Value) -> Answer<String> {
         Value::String(text) if text.len() > INPUT_MAX => Err(too_long()),
         Value::String(text) => Ok(text),
         Value::Object(_) => {
+            if let Some(key) = null_in(&given, "") {
+                let detail = format!("`input` has no form in TOML: {key} is null; give a value, or leave the key out");
+                return Err(Problem::bad_request(detail));
+            }
             let refused = |error: &dyn std::fmt::Display| Problem::bad_request(format!("`input` has no form in TOML: {error}"));
             let table = toml::Table::try_from(given).map_err(|error| refused(&error))?;
             toml::to_string(&table).map_err(|error| refused(&error))

@@ -8,6 +8,7 @@ mod inputs;
 mod knowledge;
 mod page;
 mod results;
+mod sending;
 mod security;
 mod watching;
 

@@ -3,25 +3,23 @@
 use std::path::Path as FilePath;
 
 use axum::Json;
-use axum::body::Body;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State as Shared};
-use axum::http::header;
+use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use tokio::sync::OwnedSemaphorePermit;
-use tokio::sync::mpsc::channel;
-use tokio_stream::wrappers::ReceiverStream;
 use utoipa::{IntoParams, ToSchema};
 
 use super::App;
 use super::collections::{is_id, job_of};
+use super::sending::Stored;
 use crate::error::input;
 use crate::report::csv::{self, A_N_FILE, Row};
 use crate::report::resample::{Sampling, cycles_over_length};
 use crate::service::job::{Job, State};
 use crate::service::problem::{Answer, Problem};
-use crate::service::store::{FileEntry, Origin, Store, media_type};
+use crate::service::store::{Origin, media_type};
 
 /// Rows of a resampled curve: as many as a table can show.
 const POINTS: std::ops::RangeInclusive<u64> = 2..=100_000;
@@ -39,12 +37,15 @@ pub struct Wanted {
 /// A file of a finished job: `result.json`, `a_n.csv`, `fitted.toml`, pictures and so on, as the job lists them.
 #[utoipa::path(get, path = "/v1/{collection}/{id}/files/{name}", tag = "results",
     params(("collection" = String, Path), ("id" = String, Path), ("name" = String, Path), Wanted),
-    responses((status = 200, description = "The file"), (status = 400, body = Problem), (status = 404, body = Problem),
+    responses((status = 200, description = "The file"), (status = 206, description = "The range of it that was asked for"),
+        (status = 304, description = "It is the one of If-None-Match"), (status = 400, body = Problem), (status = 404, body = Problem),
+        (status = 416, description = "The range lies beyond its end"),
         (status = 409, body = Problem, description = "The job has no result"), (status = 422, body = Problem)))]
 pub async fn file(
     Shared(app): Shared<App>,
     Path((collection, id, name)): Path<(String, String, String)>,
     wanted: Result<Query<Wanted>, QueryRejection>,
+    headers: HeaderMap,
 ) -> Answer<Response> {
     let Query(wanted) = wanted.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
     // Names of other collections lead nowhere, even if the id is right.
@@ -72,7 +73,8 @@ pub async fn file(
         let can_be = is_id(&id) && name.bytes().all(|byte| byte.is_ascii_graphic());
         let found = if can_be { app.store.open_file(&id, Origin::Result, &name).await? } else { None };
         let Some((entry, first)) = found else { return Err(is_missing().await) };
-        (entry.media_type.clone(), sent(app.store, id, Origin::Result, entry, first))
+        let media_type = entry.media_type.clone();
+        (media_type, Stored { store: app.store, job: id, origin: Origin::Result, entry, first }.answer(&headers))
     };
     let shown = matches!(&*media_type, "image/png" | "image/svg+xml" | "application/json");
     let disposition = format!("{}; filename=\"{name}\"", if shown { "inline" } else { "attachment" });
@@ -83,30 +85,6 @@ pub async fn file(
         (header::CACHE_CONTROL, "private, max-age=86400, immutable".to_owned()),
     ];
     Ok((fixed, content).into_response())
-}
-
-/// A stored file as it goes out, a part at a time: none is read before its reader has taken the last but one.
-fn sent(store: Store, job: String, origin: Origin, entry: FileEntry, first: Vec<u8>) -> Response {
-    if first.len() as i64 == entry.bytes {
-        return first.into_response();
-    }
-    let (parts, reader) = channel(1);
-    let length = entry.bytes;
-    tokio::spawn(async move {
-        let (mut part, mut number, mut left) = (Ok(Some(first)), 0, entry.bytes);
-        loop {
-            // Deleted meanwhile: an error, since a packed answer does not show that something is missing.
-            let next = part.and_then(|part| part.ok_or(sqlx::Error::RowNotFound));
-            left -= next.as_ref().map_or(left, |bytes| bytes.len() as i64);
-            // Who went away needs no more.
-            if parts.send(next).await.is_err() || left <= 0 {
-                return;
-            }
-            number += 1;
-            part = store.file_part(&job, origin, &entry.name, number).await;
-        }
-    });
-    ([(header::CONTENT_LENGTH, length)], Body::from_stream(ReceiverStream::new(reader))).into_response()
 }
 
 /// A curve at other cycles; `None` if there is none.
@@ -158,6 +136,7 @@ fn must_have_result(job: &Job) -> Answer<()> {
 pub async fn input_file(
     Shared(app): Shared<App>,
     Path((collection, id, name)): Path<(String, String, String)>,
+    headers: HeaderMap,
 ) -> Answer<Response> {
     job_of(&app, &collection, &id).await?;
     // Names are text without line breaks; the rest would be none of a database's.
@@ -166,7 +145,8 @@ pub async fn input_file(
     let (entry, first) = found.ok_or_else(|| Problem::not_found("file of this job"))?;
     // Whatever it claims to be, it is somebody's upload: saved, never shown.
     let fixed = [(header::CONTENT_TYPE, "application/octet-stream"), (header::CONTENT_DISPOSITION, "attachment")];
-    Ok((fixed, sent(app.store, id, Origin::Input, entry, first)).into_response())
+    let stored = Stored { store: app.store, job: id, origin: Origin::Input, entry, first };
+    Ok((fixed, stored.answer(&headers)).into_response())
 }
 
 /// The plate of a running prediction as it was last seen: damage and crack paths.

@@ -87,10 +87,10 @@ export function createJobHead(first, { actions = [] } = {}) {
 
   function showProgress() {
     const p = job.progress;
-    if (job.state === "queued" || !p) {
+    if (job.state === "queued" || !p || p.stage) {
       bar.removeAttribute("value");
       const before = job.position > 0 ? `, ${count(job.position, "run")} before it` : "";
-      show(figures, element("p", null, job.state === "queued" ? `Waiting for a free worker${before}.` : "Starting …"));
+      show(figures, element("p", null, job.state === "queued" ? `Waiting for a free worker${before}.` : p?.stage ? `Starting: ${p.stage} …` : "Starting …"));
       return;
     }
     const prediction = job.kind === "prediction";

@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 use super::{Result, Store};
 
 /// Bytes of a part.
-const PART: usize = 256 << 10;
+pub const PART: usize = 256 << 10;
 
 /// A file to be stored.
 #[derive(Debug, Clone, PartialEq)]

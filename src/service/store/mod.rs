@@ -11,13 +11,13 @@ mod schema;
 mod tokens;
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 use sqlx::any::AnyPoolOptions;
-use sqlx::{AnyPool, Connection};
+use sqlx::{AnyConnection, AnyPool, Connection};
 
-pub use files::{File, FileEntry, Origin, media_type};
+pub use files::{File, FileEntry, Origin, PART, media_type};
 pub use jobs::{Listing, NewJob, Submitted};
 pub use queue::{Claim, Growth, Heartbeat, Outcome};
 pub use tokens::{Role, Token, hash, hex};
@@ -27,6 +27,9 @@ pub type Result<T> = std::result::Result<T, sqlx::Error>;
 
 /// Time a statement waits for a free connection, and a SQLite writer for another.
 const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Time between two looks for a database that is not there yet.
+const LOOK_EVERY: Duration = Duration::from_millis(250);
 
 /// The database.
 #[derive(Debug, Clone)]
@@ -91,6 +94,29 @@ pub fn url_of_file(path: &Path) -> String {
     format!("sqlite://{}?mode=rwc", percent_encode(path.as_os_str().as_encoded_bytes(), &IN_FILES))
 }
 
+/// Connects once without a pool, which would only say that its time is over. A database that is on its way up is waited for; the first
+/// error is the one that says what is wrong.
+async fn first_look(url: &str, dialect: Dialect) -> Result<()> {
+    let look = async || -> Result<()> {
+        let mut connection = AnyConnection::connect(url).await?;
+        // SQLite reads nothing of its file before it is asked something.
+        let question = if dialect == Dialect::Sqlite { "PRAGMA schema_version" } else { "SELECT 1" };
+        sqlx::raw_sql(question).execute(&mut connection).await?;
+        connection.close().await
+    };
+    let (begun, mut first) = (Instant::now(), None);
+    loop {
+        match look().await {
+            Err(error) if is_gone(&error) && begun.elapsed() < PATIENCE => {
+                first.get_or_insert(error);
+                tokio::time::sleep(LOOK_EVERY).await;
+            }
+            Err(error) => return Err(first.unwrap_or(error)),
+            Ok(()) => return Ok(()),
+        }
+    }
+}
+
 impl Store {
     /// Connects to `sqlite://FILE` or `postgres://...` and lays the tables in a new database.
     ///
@@ -103,6 +129,7 @@ impl Store {
             Some("postgres" | "postgresql") => Dialect::Postgres,
             _ => return Err(sqlx::Error::Configuration("the URL must begin with sqlite:// or postgres://".into())),
         };
+        first_look(url, dialect).await?;
         let pool = AnyPoolOptions::new()
             .max_connections(connections)
             .acquire_timeout(PATIENCE)

@@ -16,6 +16,7 @@ use crate::calibration::results::{FitReport, record};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::Prediction;
+use crate::report::provenance::INPUTS;
 use crate::report::run::PARAVIEW;
 use crate::report::{fit, law_fit, run};
 use crate::service::store::File;
@@ -103,13 +104,13 @@ fn temporary() -> Result<tempfile::TempDir> {
     tempfile::tempdir().map_err(|error| Error::file(&std::env::temp_dir(), "cannot create a folder in", error))
 }
 
-/// All files of a folder; that of ParaView becomes one archive.
+/// All files of a folder; those of ParaView and of inputs become an archive each.
 fn collected(folder: &Path) -> Result<Vec<File>> {
     let mut files = Vec::new();
     for path in entries(folder)? {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() {
-            debug_assert_eq!(name, PARAVIEW);
+            debug_assert!([PARAVIEW, INPUTS].contains(&&*name));
             files.push(File { name: format!("{name}.zip"), content: archive(&path)? });
         } else {
             files.push(File { name, content: read(&path)? });

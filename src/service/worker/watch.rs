@@ -2,7 +2,7 @@
 //! store, and brings back whether the run may go on.
 
 use std::sync::atomic::{AtomicU8, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::predict::checkpoint::Checkpoint;
@@ -12,6 +12,7 @@ use crate::service::job::JobProgress;
 use crate::service::store::Growth;
 use crate::specimen::{Crack, Point};
 use crate::units::MM;
+use crate::watch::{Stage, Watch as Work};
 
 /// Entries of a growing curve from its start to its end: as many as a picture of it can show.
 const ENTRIES: f64 = 800.0;
@@ -72,6 +73,10 @@ pub struct Watch<'a> {
     started: Instant,
     /// 0 or a [`Stop`].
     stop: AtomicU8,
+    /// What the run does before it has rows to show, and where it looks whether it may go on.
+    work: Arc<Work>,
+    /// Whether nobody has shown any of its curve yet.
+    is_fresh: bool,
     told: Mutex<Pending>,
 }
 
@@ -110,12 +115,15 @@ impl<'a> Watch<'a> {
             kept: Instant::now(),
             keep_cost: Duration::ZERO,
         };
-        Watch { cracks, keep, keep_every, started: Instant::now(), stop: AtomicU8::new(0), told: Mutex::new(told) }
+        let (stop, work) = (AtomicU8::new(0), Arc::default());
+        let is_fresh = growth.cycles.is_empty();
+        Watch { cracks, keep, keep_every, started: Instant::now(), stop, work, is_fresh, told: Mutex::new(told) }
     }
 
     /// Asks the run to end; the first reason counts.
     pub fn stop(&self, why: Stop) {
         let _ = self.stop.compare_exchange(0, why as u8, Ordering::Relaxed, Ordering::Relaxed);
+        self.work.cancel();
     }
 
     /// Why it was asked to end.
@@ -135,8 +143,15 @@ impl<'a> Watch<'a> {
             let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
             let done = share - first_share;
             let seconds_left = (done > 0.0).then(|| elapsed_s * (1.0 - share) / done);
-            JobProgress { cycles, crack_length_mm: crack_length / MM, share, elapsed_s, seconds_left }
+            JobProgress { cycles, crack_length_mm: crack_length / MM, share, elapsed_s, seconds_left, stage: None }
         });
+        let before = |(stage, share): (Stage, f64)| JobProgress {
+            elapsed_s,
+            stage: Some(format!("{} {:.0} %", stage.words(), 100.0 * share)),
+            ..JobProgress::default()
+        };
+        // One that is taken up is as far as it was until it has more to show.
+        let progress = progress.or_else(|| self.work.now().filter(|_| self.is_fresh).map(before));
         let growth = (!told.entries.cycles.is_empty()).then(|| {
             let next = told.entries.from + told.entries.cycles.len();
             std::mem::replace(&mut told.entries, Growth { from: next, ..Growth::default() })
@@ -156,6 +171,10 @@ impl<'a> Watch<'a> {
 }
 
 impl Observer for Watch<'_> {
+    fn watch(&self) -> Option<Arc<Work>> {
+        Some(self.work.clone())
+    }
+
     fn block_done(&self, progress: &Progress) -> bool {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         if told.first_share.is_nan() {

@@ -20,6 +20,7 @@ use super::product::Product;
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::state::Bonds;
+use crate::watch::{self, Stage};
 use coarse::{BlockRows, CoarseOperator};
 use fine::Fine;
 use smoother::{Operator, Smoother, Step, Work};
@@ -79,6 +80,8 @@ impl<const N: usize> Multigrid<N> {
     /// Builds the hierarchy for the present bonds.
     #[must_use]
     pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
+        // Who asked it to end is heard by the first equilibrium.
+        let _ = watch::at(Stage::Solver, 0.0);
         let fine = Fine::new(body, bonds, product);
         let layout = *product.layout();
         let (columns, rows) = (body.lattice.columns, body.lattice.rows);

@@ -1,0 +1,209 @@
+//! The doors of the service as they are used from a shell: media types, ranges, addresses, databases, rights.
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use assert_cmd::cargo::{cargo_bin, cargo_bin_cmd};
+use serde_json::json;
+use tempfile::tempdir;
+
+use super::{QUICK, SLOW, of};
+use crate::cli::{assert_refused, perilife, texts};
+use crate::server::{PATIENCE, Server, in_folder};
+
+/// The case of a media type does not count; another type is refused with those that are taken.
+#[test]
+fn a_body_is_taken_by_its_media_type() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let json = of("case", QUICK).to_string();
+    let cases: [(&str, &str, u16); 12] = [
+        ("application/toml", QUICK, 200),
+        ("APPLICATION/TOML", QUICK, 200),
+        ("Application/Toml; charset=utf-8", QUICK, 200),
+        ("text/x-toml", QUICK, 200),
+        ("text/toml", QUICK, 200),
+        ("application/json", &json, 200),
+        ("Application/JSON ; charset=UTF-8", &json, 200),
+        ("text/plain", QUICK, 415),
+        ("application/x-www-form-urlencoded", QUICK, 415),
+        ("application/octet-stream", QUICK, 415),
+        ("application/tomlx", QUICK, 415),
+        ("application/json", QUICK, 400),
+    ];
+    for (kind, body, status) in cases {
+        let answer = service.send("POST", "/v1/check", &[("content-type", kind)], body.as_bytes());
+        assert_eq!(answer.status, status, "{kind}: {}", answer.text());
+        if status == 415 {
+            let detail = answer.json()["detail"].as_str().unwrap().to_owned();
+            ["application/toml", "application/json", "multipart/form-data"]
+                .iter()
+                .for_each(|taken| assert!(detail.contains(taken), "{detail}"));
+        }
+    }
+    let packed = [("content-type", "application/toml"), ("content-encoding", "gzip")];
+    let answer = service.send("POST", "/v1/check", &packed, &[0x1f, 0x8b, 8, 0]).expect(415);
+    assert!(answer.text().contains("gzip") && answer.text().contains("send it as it is"), "{}", answer.text());
+    for (input, key) in [
+        (json!({ "specimen": { "kind": "plate", "width_mm": null } }), "specimen.width_mm"),
+        (json!({ "specimen": { "holes": [{ "x_mm": 1.0 }, { "x_mm": null }] } }), "specimen.holes[1].x_mm"),
+    ] {
+        let answer = service.post("/v1/check", &json!({ "input": input })).expect(400);
+        assert!(answer.text().contains(key) && answer.text().contains("null"), "{}", answer.text());
+    }
+}
+
+/// A download that broke off goes on where it was, of files of one part and of many.
+#[test]
+fn files_have_tags_and_ranges() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let job = service.submit("predictions", &of("slow", &SLOW.replace("spacing_mm = 0.8", "spacing_mm = 0.5")));
+    service.succeeded(&job);
+    for file in ["a_n.csv", "paraview.zip"] {
+        let path = format!("{job}/files/{file}");
+        let whole = service.get(&path).expect(200);
+        let (tag, bytes) = (whole.header("etag").unwrap().to_owned(), whole.body.len());
+        assert!(tag.starts_with('"') && (file == "a_n.csv" || bytes > 600_000), "{tag}: {bytes} bytes of {file}");
+        let asked = |headers: &[(&str, &str)]| service.send("GET", &path, headers, b"");
+        let part = 256 << 10;
+        let spans = [(0, 0), (100, 199), (bytes / 2, bytes - 1), (part - 1, part), (part, 2 * part), (bytes - 1, bytes - 1)];
+        for (from, to) in spans.into_iter().filter(|(_, to)| *to < bytes) {
+            let answer = asked(&[("range", &format!("bytes={from}-{to}"))]).expect(206);
+            assert!(answer.body == whole.body[from..=to], "{file} {from}-{to}");
+            assert_eq!(answer.header("content-range"), Some(&*format!("bytes {from}-{to}/{bytes}")));
+        }
+        assert!(asked(&[("range", "bytes=-10")]).expect(206).body == whole.body[bytes - 10..]);
+        let rest = [("range", format!("bytes={}-", bytes - 7)), ("if-range", tag.clone())];
+        assert!(asked(&rest.each_ref().map(|(k, v)| (*k, v.as_str()))).expect(206).body == whole.body[bytes - 7..]);
+        assert!(asked(&[("range", "bytes=5-9"), ("if-range", "\"another\"")]).expect(200).body == whole.body);
+        assert_eq!(asked(&[("range", "bytes=0-1,4-5")]).expect(200).body.len(), bytes);
+        assert_eq!(asked(&[("range", "lines=0-1")]).expect(200).body.len(), bytes);
+        let beyond = asked(&[("range", &format!("bytes={bytes}-"))]).expect(416);
+        assert_eq!(beyond.header("content-range"), Some(&*format!("bytes */{bytes}")));
+        assert!(asked(&[("if-none-match", &tag)]).expect(304).body.is_empty());
+        assert_eq!(service.get(&path).header("etag"), Some(&*tag), "the same tag each time");
+    }
+}
+
+/// A name is looked up; what is no address is answered with what would be.
+#[test]
+fn addresses_are_looked_up() {
+    let dir = tempdir().unwrap();
+    let data = dir.path().join("d").display().to_string();
+    for address in [":0", "127.0.0.1", "127.0.0.1:99999", "no such name:80", "localhost:http"] {
+        let output = perilife(dir.path(), &["serve", "--listen", address, "--data", &data]);
+        let (code, stderr) = (output.status.code(), texts(&output).1);
+        assert!(code == Some(2) && stderr.contains("127.0.0.1:8080") && stderr.contains("localhost:8080"), "{address}: {stderr}");
+    }
+    assert!(!Path::new(&data).exists());
+    let mut process = Command::new(cargo_bin("perilife"))
+        .args(["serve", "--listen", "localhost:0", "--data", &data, "--jobs", "0"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(process.stderr.take().unwrap()), &mut line).unwrap();
+    process.kill().unwrap();
+    process.wait().unwrap();
+    assert!(line.contains("at http://127.0.0.1:") || line.contains("at http://[::1]:"), "{line}");
+}
+
+/// The first error is said, and no library's log; only a service makes a database, and the first token of one.
+#[test]
+fn a_database_is_named_and_not_made_by_a_slip() {
+    let dir = tempdir().unwrap();
+    let here = dir.path();
+    let token = ["token", "list"];
+    fs::create_dir(here.join("junk")).unwrap();
+    fs::write(here.join("junk/perilife.sqlite"), b"no database at all, but long enough to be taken for one ".repeat(100))
+        .unwrap();
+    let output = perilife(here, &["token", "--data", "junk", "list"]);
+    assert_refused(&output, 4, &["junk/perilife.sqlite", "not a database"]);
+    assert_eq!(texts(&output).1.lines().count(), 1);
+    let with = |database: &str| {
+        let mut command = cargo_bin_cmd!("perilife");
+        command.current_dir(here).env("PERILIFE_DATABASE", database).args(token).output().unwrap()
+    };
+    let output = with("postgres://u:secret@127.0.0.1:1/db");
+    let stderr = texts(&output).1;
+    assert!(
+        output.status.code() == Some(4) && stderr.to_lowercase().contains("refused") && !stderr.contains("secret"),
+        "{stderr}"
+    );
+    assert_refused(&with(""), 2, &["--database", "PERILIFE_DATABASE", "unset the variable"]);
+
+    fs::create_dir(here.join("empty")).unwrap();
+    let sweep = "case = \"case.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"specimen.crack_length_mm\"\nvalues = [9.0]\n";
+    fs::write(here.join("case.toml"), QUICK).unwrap();
+    fs::write(here.join("sweep.toml"), sweep).unwrap();
+    for data in ["typo", "empty"] {
+        for call in [
+            vec!["token", "--data", data, "list"],
+            vec!["token", "--data", data, "remove", "ann"],
+            vec!["worker", "--data", data],
+            vec!["sweep", "sweep.toml", "--out", "out", "-q", "--engine", "service", "--data", data],
+        ] {
+            let output = perilife(here, &call);
+            assert_refused(&output, 2, &[&format!("--data = {data}"), "holds no database of a service", "perilife serve --data"]);
+        }
+        assert!(!here.join("typo").exists() && fs::read_dir(here.join("empty")).unwrap().count() == 0);
+    }
+    let output = perilife(here, &["token", "--data", "right", "add", "ana", "--role", "read"]);
+    assert!(output.status.success() && texts(&output).1.contains("right/perilife.sqlite"), "{}", texts(&output).1);
+}
+
+/// Files of the store are nobody else's, in a folder that others may read as well.
+#[test]
+fn nobody_else_reads_the_store() {
+    let dir = tempdir().unwrap();
+    let rights = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+    for (name, call) in [("by_token", vec!["token", "add", "ana", "--role", "admin"]), ("by_serve", vec![])] {
+        let data = dir.path().join(name);
+        fs::create_dir(&data).unwrap();
+        fs::set_permissions(&data, fs::Permissions::from_mode(0o755)).unwrap();
+        let place = in_folder(&data);
+        if !call.is_empty() {
+            let output = perilife(dir.path(), &[&call[..1], &[&place[0], &place[1]], &call[1..]].concat());
+            assert!(output.status.success(), "{}", texts(&output).1);
+        }
+        let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+        service.submit("predictions", &of("case", QUICK));
+        let mut seen = 0;
+        for entry in fs::read_dir(&data).unwrap().map(Result::unwrap) {
+            assert_eq!(rights(&entry.path()), 0o600, "{:?}", entry.path());
+            seen += 1;
+        }
+        assert!(seen >= 2, "the database and what SQLite lays beside it");
+    }
+}
+
+/// A plate that takes long to build can be cancelled, and says what is being done.
+#[test]
+fn building_a_plate_is_watched() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1", "--points", "100000000"]);
+    let large = QUICK.replace("spacing_mm = 1.5", "spacing_mm = 0.05");
+    let job = service.submit("predictions", &of("large", &large));
+    let begun = Instant::now();
+    let stage = loop {
+        let found = service.get(&job).expect(200).json();
+        assert!(found["state"] == "queued" || found["state"] == "running", "{found}");
+        if let Some(stage) = found["progress"]["stage"].as_str() {
+            break stage.to_owned();
+        }
+        assert!(begun.elapsed() < PATIENCE, "no stage");
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    assert!(stage.ends_with('%'), "{stage}");
+    let asked = Instant::now();
+    service.post(&format!("{job}/cancel"), &json!({})).expect(202);
+    assert_eq!(service.ended(&job)["state"], "cancelled");
+    println!("{stage}; cancelled within {:?}", asked.elapsed());
+}
