@@ -165,7 +165,7 @@ impl DamagePicture<'_> {
     }
 
     /// What is left of the displacements without the rigid motion and the uniform strain nearest to them, drawn larger so that the
-    /// largest is a thirtieth of the plate: a crack shows by how it opens.
+    /// largest is a hundredth of the plate: a crack shows by how it opens.
     fn drawn_displacement(&self) -> Vec<Point> {
         let displacement = &self.snapshot.displacement;
         let mut at = vec![[0.0; 2]; displacement.len()];
@@ -192,7 +192,7 @@ impl DamagePicture<'_> {
         }
         let largest = rest.iter().map(|u| u[0].hypot(u[1])).fold(f64::MIN_POSITIVE, f64::max);
         let size = self.grid.columns.max(self.grid.rows) as f64 * self.grid.spacing;
-        rest.iter().map(|u| u.map(|u| u * size / (30.0 * largest))).collect()
+        rest.iter().map(|u| u.map(|u| u * size / (100.0 * largest))).collect()
     }
 
     /// Every point as a square where it has moved to, a little larger than its share: faces that part leave a gap.
