@@ -22,6 +22,10 @@ use crate::specimen::{Point, Specimen};
 /// crack and the edge that it starts from, which carries nothing.
 const LEFT_OUT: f64 = 0.25;
 
+/// Distance of a tip from a cell, in its spacings, within which the cell is integrated as one with a tip, at the point nearest to it: 1/r
+/// a thousandth of a spacing beyond a side leaves K 2 % wrong by 3 × 3 points.
+const BESIDE_TIP: f64 = 0.3;
+
 /// A symmetric matrix of some unknowns.
 #[derive(Debug, Clone, Default)]
 pub struct Element {
@@ -84,8 +88,12 @@ pub fn quadrature(specimen: &Specimen, plate: &Discretisation) -> Vec<(usize, Ve
     let near_pieces = by_leaf(grid, pieces.iter().copied(), 0.0);
     let mut tips: HashMap<usize, Vec<(Point, Point)>> = HashMap::new();
     for axes in &plate.axes {
-        let slack = [1e-9, -1e-9].map(|slack| axes.at.map(|x| x - slack * axes.spacing));
-        grid.visit(slack[0], slack[1], &mut |leaf| tips.entry(leaf).or_default().push((axes.at, axes.ahead)));
+        let reach = BESIDE_TIP * axes.spacing;
+        grid.visit(axes.at.map(|x| x - reach), axes.at.map(|x| x + reach), &mut |leaf| {
+            let [low, high] = grid.bounds(leaf);
+            let nearest = [0, 1].map(|i| axes.at[i].clamp(low[i], high[i]));
+            tips.entry(leaf).or_default().push((nearest, axes.ahead));
+        });
     }
     let leaves: Vec<usize> = grid.leaves().collect();
     let of_leaf = |&leaf: &usize| {
