@@ -24,9 +24,6 @@ const WAY_LEFT: f64 = 2e-3;
 const TO_JOINT: f64 = 0.08;
 /// Distance of a tip that another faces over the way to its crack, at the most.
 const ALIKE: f64 = 1.1;
-/// Error of the cycles of a step over the percentage asked for: half as much again, since K of two node sets differs by 0.1 %, which would be
-/// taken for curvature.
-const ERROR_SHARE: f64 = 0.015;
 /// Cosine of the angle between a tip and the way to another within which they face each other.
 const FACING: f64 = 0.8;
 
@@ -176,7 +173,7 @@ impl ElementFree<'_> {
             .fronts
             .iter()
             .any(|front| front.is_growing() && front.corner.is_some() && front.own_length() < front.spacing * 12.0);
-        let error = ERROR_SHARE * self.case.fatigue.step_error_percent;
+        let error = 0.01 * self.case.fatigue.step_error_percent;
         let by_error = (error / curvature.abs().max(f64::MIN_POSITIVE)).sqrt();
         grown * by_error.min(RISE[usize::from(!kinked)]).max(0.5)
     }
