@@ -24,6 +24,8 @@ const WAY_LEFT: f64 = 2e-3;
 const TO_JOINT: f64 = 0.08;
 /// Distance of a tip that another faces over the way to its crack, at the most.
 const ALIKE: f64 = 1.1;
+/// Turn of a tip in an increment at the most, rad: between two equilibria a path is straight.
+const TURN: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Cosine of the angle between a tip and the way to another within which they face each other.
 const FACING: f64 = 0.8;
 
@@ -100,7 +102,8 @@ impl ElementFree<'_> {
         }
         let to_gap = if is_facing { TO_JOINT * gap } else { share * gap };
         let crack = share * (front.length + front.growth);
-        let most = crack.min(share * room).min(to_gap);
+        let turning = if front.turn == 0.0 { f64::INFINITY } else { TURN / front.turn.abs() };
+        let most = crack.min(share * room).min(to_gap).min(turning);
         let most = if front.begins_kink() { most.min(FIRST_OF_KINK * share * front.spacing) } else { most };
         Way { most, is_last: false }
     }
