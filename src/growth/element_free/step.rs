@@ -17,7 +17,7 @@ const FIRST: f64 = 0.1;
 /// A step over the last one at the most, after a kink and without one.
 const RISE: [f64; 2] = [1.3, 1.6];
 /// Share of the cycles so far that the way to a rim or another tip takes at the most where it is gone in one step.
-const SHARE_LEFT: f64 = 2e-3;
+const SHARE_LEFT: f64 = 5e-4;
 /// Way to a rim, in far spacings, that is gone in one step whatever it takes.
 const WAY_LEFT: f64 = 2e-3;
 /// Share of the room to another tip that both take together at the most: K rises fast between tips that join.
