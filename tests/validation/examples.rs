@@ -29,8 +29,8 @@ const OWN: [(&str, f64, StopReason); 8] = [
     ("hand_calculation", 247_247.1, StopReason::CrackLengthReached),
     ("notched_plate", 54_525.6, StopReason::Severed),
     ("plate_with_hole", 33_452.2, StopReason::Severed),
-    ("ti_slant_30", 17_120.4, StopReason::CrackLengthReached),
-    ("ti_slant_43", 23_012.1, StopReason::CrackLengthReached),
+    ("ti_slant_30", 17_122.7, StopReason::CrackLengthReached),
+    ("ti_slant_43", 23_001.9, StopReason::CrackLengthReached),
     ("two_cracks_plate", 39_028.7, StopReason::CracksJoined),
 ];
 const SLANT: &str = "slant_crack_plate";
