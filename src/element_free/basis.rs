@@ -122,8 +122,8 @@ impl AnyBasis {
         // Both see the same nodes in the same order.
         for (value, enriched) in values.iter_mut().zip(&of_basis) {
             let more = enriched.value - value.value;
-            for i in 0..2 {
-                value.gradient[i] += share * (enriched.gradient[i] - value.gradient[i]) + slope[i] * more;
+            for ((gradient, enriched), slope) in value.gradient.iter_mut().zip(enriched.gradient).zip(slope) {
+                *gradient += share * (enriched - *gradient) + slope * more;
             }
             value.value += share * more;
         }

@@ -4,8 +4,8 @@
 //! on a pulled plate. A plate that floats under loads in equilibrium is held at three unknowns, which is exact, since the shape functions
 //! reproduce rigid motions and the springs take up no force.
 
-use super::assembly::Element;
 use super::field::{Discretisation, Local, singular};
+use super::matrix::Element;
 use crate::body::boundary::load_pieces;
 use crate::error::Result;
 use crate::specimen::geometry::{along, bounding_box, direction, distance};

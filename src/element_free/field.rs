@@ -177,20 +177,12 @@ impl Discretisation {
                 let Some(fields) = &local.fields[tip as usize] else { continue };
                 for (mode, (field, gradient)) in fields.iter().enumerate() {
                     let size = u[first + 2 + 2 * k + mode];
-                    for i in 0..2 {
-                        of_node[i] += size * field[i];
-                        for j in 0..2 {
-                            slope[i][j] += value.value * size * gradient[i][j];
-                        }
-                    }
+                    add(&mut of_node, size, field);
+                    slope.iter_mut().zip(gradient).for_each(|(row, gradient)| add(row, value.value * size, gradient));
                 }
             }
-            for i in 0..2 {
-                sum[i] += value.value * of_node[i];
-                for j in 0..2 {
-                    slope[i][j] += value.gradient[j] * of_node[i];
-                }
-            }
+            add(&mut sum, value.value, &of_node);
+            slope.iter_mut().zip(of_node).for_each(|(row, u)| add(row, u, &value.gradient));
         }
         Some((sum, slope))
     }
@@ -201,6 +193,11 @@ impl Discretisation {
         let [low, high] = bounding_box(&specimen.outline);
         (high[0] - low[0]).max(high[1] - low[1])
     }
+}
+
+/// Adds a multiple of a vector.
+fn add(sum: &mut Point, factor: f64, vector: &Point) {
+    sum.iter_mut().zip(vector).for_each(|(sum, component)| *sum += factor * component);
 }
 
 /// A tip as nodes see it.

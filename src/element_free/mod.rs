@@ -13,6 +13,7 @@ pub mod cuts;
 pub mod factors;
 pub mod field;
 pub mod grid;
+mod matrix;
 pub mod nodes;
 pub mod raster;
 pub mod resolution;

@@ -119,11 +119,9 @@ pub fn shape_functions<const M: usize>(
     for node in &weighted {
         let factors = [node.weight, node.slope[0], node.slope[1]];
         for (moment, factor) in moments.iter_mut().zip(factors) {
-            for i in 0..M {
-                let left = factor * node.p[i];
-                for j in 0..=i {
-                    moment[i][j] += left * node.p[j];
-                }
+            for (i, (row, p)) in moment.iter_mut().zip(node.p).enumerate() {
+                let left = factor * p;
+                row[..=i].iter_mut().zip(node.p).for_each(|(sum, p)| *sum += left * p);
             }
         }
     }

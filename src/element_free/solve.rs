@@ -6,9 +6,10 @@ use faer::sparse::linalg::LltError;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use rayon::prelude::*;
 
-use super::assembly::{Element, Lower, Scratch, gathered, of_cell, quadrature};
+use super::assembly::{Scratch, of_cell, quadrature};
 use super::boundary::Boundary;
 use super::field::Discretisation;
+use super::matrix::{Element, Lower, gathered};
 use crate::error::{Error, Result};
 use crate::specimen::Specimen;
 

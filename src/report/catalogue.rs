@@ -13,6 +13,7 @@ use crate::calibration::laws::FitLaw;
 use crate::calibration::rates::RateMethod;
 use crate::case::growth_law::TableEnds;
 use crate::case::{Failure, Method};
+use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
@@ -46,6 +47,8 @@ pub fn lines() -> Vec<(String, String, String)> {
     ];
     let of_the_model = [
         Method::lines(),
+        BasisKind::lines(),
+        Enrichment::lines(),
         BondLawKind::lines(),
         PointLaw::lines(),
         ZeroEnergyControl::lines(),

@@ -8,6 +8,7 @@ use perilife::element_free::crack::TipAxes;
 use perilife::element_free::factors::integral;
 use perilife::element_free::field::{Discretisation, Local, Tip};
 use perilife::element_free::resolution::Resolution;
+use perilife::element_free::shape::Value;
 use perilife::element_free::solve::{Workspace, solve};
 use perilife::growth::element_free::initial_tips;
 use perilife::material::{Material, Plane};
@@ -69,20 +70,17 @@ fn shape_functions_reproduce_linear_fields_beside_cracks_holes_and_corners() {
                 continue;
             }
             seen += 1;
-            let sum = |f: &dyn Fn([f64; 2]) -> f64, of: &dyn Fn(f64, [f64; 2]) -> f64| -> f64 {
-                local.values.iter().map(|value| of(value.value, value.gradient) * f(plate.nodes.at[value.node as usize])).sum()
-            };
-            let ([one, x, y], [value, slope]): ([&dyn Fn([f64; 2]) -> f64; 3], [&dyn Fn(f64, [f64; 2]) -> f64; 2]) =
-                ([&|_| 1.0, &|p| p[0], &|p| p[1]], [&|value, _| value, &|_, gradient| gradient[0]]);
+            let node = |value: &Value| plate.nodes.at[value.node as usize];
+            let sum = |of: &dyn Fn(&Value) -> f64| -> f64 { local.values.iter().map(of).sum() };
             // Of the enriched basis both moments are far from unit.
             let bound = if choice.1 == Enrichment::Intrinsic { 1e-7 } else { 1e-10 };
             for (found, wanted, size) in [
-                (sum(one, value), 1.0, 1.0),
-                (sum(x, value), at[0], far),
-                (sum(y, value), at[1], far),
-                (sum(one, slope), 0.0, 1.0 / far),
-                (sum(x, slope), 1.0, 1.0),
-                (sum(y, slope), 0.0, 1.0),
+                (sum(&|value| value.value), 1.0, 1.0),
+                (sum(&|value| value.value * node(value)[0]), at[0], far),
+                (sum(&|value| value.value * node(value)[1]), at[1], far),
+                (sum(&|value| value.gradient[0]), 0.0, 1.0 / far),
+                (sum(&|value| value.gradient[0] * node(value)[0]), 1.0, 1.0),
+                (sum(&|value| value.gradient[0] * node(value)[1]), 0.0, 1.0),
             ] {
                 // Sums of slopes cancel over the finest spacing.
                 let finest = plate.nodes.spacing.iter().copied().fold(f64::INFINITY, f64::min);

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fatigue::crack_tip::TipState;
+use crate::growth::tip_field::kink::coefficients;
 use crate::growth::tip_field::steering::{equivalent_factor, kink_angle};
 use crate::specimen::LineEnd;
 
@@ -110,7 +111,7 @@ impl Front {
 
     /// Takes the rate, m/cycle; `fastest` is that of the tip that grows fastest.
     pub fn grow_at(&mut self, before: f64, fastest: f64) {
-        let at_rest = !(self.rate > fastest * REST.exp());
+        let at_rest = self.rate <= fastest * REST.exp();
         let known = self.age > 1 && self.advance > 0.0 && before > 0.0 && self.rate > 0.0;
         self.gain = if known && !at_rest { (self.rate / before).ln() / self.advance } else { 0.0 };
         if at_rest {
@@ -122,4 +123,11 @@ impl Front {
     pub fn forget(&mut self) {
         (self.turn, self.gain, self.age, self.advance) = (0.0, 0.0, 0, 0.0);
     }
+}
+
+/// K of the kink that a tip begins, Pa√m, of none of its length.
+pub(super) fn kinked(front: &Front) -> f64 {
+    let factors = [front.factors[0].max(0.0), front.factors[1]];
+    let [f11, f12, _] = coefficients(kink_angle(factors));
+    (f11 * factors[0] + f12 * factors[1]).max(0.0)
 }

@@ -1,40 +1,33 @@
 //! One increment of all cracks, call by call ([`crate::predict::increment`]).
 
 use super::ElementFree;
-use super::front::Front;
-use super::step::{Move, unit};
+use super::front::{Front, kinked};
+use super::step::Move;
 use crate::element_free::factors;
 use crate::element_free::field::{Discretisation, Tip};
 use crate::element_free::resolution::room;
 use crate::element_free::solve::solve;
 use crate::error::Error;
 use crate::fatigue::crack_tip::TipState;
-use crate::growth::cross_check::ReleasedEnergy;
 use crate::growth::record::StopReason;
 use crate::growth::rows::gone;
-use crate::growth::tip_field::ahead;
-use crate::growth::tip_field::kink::coefficients;
-use crate::growth::tip_field::steering::kink_angle;
 use crate::growth::tip_field::step::cycles;
 use crate::growth::{TipGrowth, rows};
-use crate::specimen::Point;
-use crate::specimen::geometry::{along, distance};
+use crate::specimen::geometry::distance;
 
 /// Compliance over that at the start from which a plate is as good as severed.
 const MECHANISM: f64 = 20.0;
-/// Share of the way to what it meets from which a step goes all of it.
-const ALL_OF_WAY: f64 = 0.999;
 
 /// An increment in the making.
 pub struct Increment {
     lead: usize,
-    moves: Vec<Move>,
+    pub(super) moves: Vec<Move>,
     /// Rate of every tip at the start, m/cycle.
     rates: Vec<f64>,
     /// Rate of the lead before the last increment, and its growth in that, where no corner lies between.
     past: Option<[f64; 2]>,
     /// K_eq²/E' of every tip, J/m², and work of the loads, J.
-    before: (Vec<f64>, f64),
+    pub(super) before: (Vec<f64>, f64),
     /// Whether the lead begins a kink.
     is_kink: bool,
     /// Tips that have met something, with what they have become.
@@ -100,71 +93,6 @@ impl ElementFree<'_> {
         }
         let fastest = self.state.fronts.iter().map(|front| front.rate).fold(0.0, f64::max);
         self.state.fronts.iter_mut().zip(before).for_each(|(front, before)| front.grow_at(before, fastest));
-    }
-
-    fn energies(&self) -> (Vec<f64>, f64) {
-        let modulus = self.case.material.plane_modulus();
-        let of_front = |front: &Front| {
-            let factor = if front.begins_kink() { kinked(front) } else { front.equivalent() };
-            factor.powi(2) / modulus
-        };
-        (self.state.fronts.iter().map(of_front).collect(), self.load_work())
-    }
-
-    /// Compares the energy that the new segments released by their K with what the plate did.
-    fn compare_energies(&mut self, step: &Increment, cycles: f64) {
-        let ((now, work_now), (before, work)) = (self.energies(), &step.before);
-        let growths: Vec<f64> = step.moves.iter().map(|step| step.0).collect();
-        let released: f64 = growths.iter().zip(before).zip(now).map(|((growth, then), now)| 0.5 * (then + now) * growth).sum();
-        let length_less = |growths: &[f64]| {
-            let growths: Vec<f64> = self.state.fronts.iter().zip(growths).map(|(front, growth)| front.growth - growth).collect();
-            self.case.specimen.crack_length_after(&growths)
-        };
-        let length = length_less(&vec![0.0; growths.len()]);
-        let sign = if self.case.loading.displacement().is_some() { -1.0 } else { 1.0 };
-        let block = ReleasedEnergy {
-            of_tips: self.case.specimen.thickness * released,
-            of_plate: sign * 0.5 * (work_now - work),
-            growth: growths.iter().sum(),
-            lengthening: length - length_less(&growths),
-            cycles,
-        };
-        self.state.balance.take(block, length, 0.2 * self.settings.resolution.far);
-    }
-
-    /// Where a tip goes with its move, what becomes of it, and the tip that it meets, which comes as well.
-    fn target(&self, index: usize, (length, aim): Move) -> (Point, TipState, Option<usize>) {
-        let front = &self.state.fronts[index];
-        let (from, [x, y]) = (self.position(front), unit(aim));
-        let straight = [from[0] + length * x, from[1] + length * y];
-        let way = self.way(index);
-        let goes_all = way.is_last && length >= ALL_OF_WAY * way.most;
-        if let (true, (_, true), Some((other, _))) = (goes_all, self.gap(index), self.faced(index)) {
-            return (straight, TipState::LinkedUp, Some(other));
-        }
-        let reach = [from[0] + length / ALL_OF_WAY * x, from[1] + length / ALL_OF_WAY * y];
-        let (specimen, lines, own) = (&self.case.specimen, &self.state.lines, front.end.line);
-        if let Some((share, what)) = ahead::first_rim(specimen, lines, own, from, reach) {
-            return (along(from, reach, share), what.state, None);
-        }
-        let beside = if goes_all { ahead::beside(specimen, lines, own, from, 1.01 * self.room(index)) } else { None };
-        beside.map_or((straight, TipState::Active, None), |(at, what)| (at, what.state, None))
-    }
-
-    /// Where all tips go, and what becomes of them; tips that face each other meet between them.
-    fn targets(&self, moves: &[Move]) -> Vec<(Point, TipState)> {
-        let targets: Vec<_> = moves.iter().enumerate().map(|(index, step)| self.target(index, *step)).collect();
-        let mut found: Vec<(Point, TipState)> = targets.iter().map(|target| (target.0, target.1)).collect();
-        for (index, target) in targets.iter().enumerate() {
-            let Some(other) = target.2 else { continue };
-            let [here, there] = [index, other].map(|tip| self.position(&self.state.fronts[tip]));
-            let [own, towards] = [moves[index].0, moves[other].0];
-            // The same place for both, whichever is asked first.
-            let share = own / (own + towards).max(f64::MIN_POSITIVE);
-            let meeting = if index < other { along(here, there, share) } else { along(there, here, 1.0 - share) };
-            (found[index], found[other]) = ((meeting, TipState::LinkedUp), (meeting, TipState::LinkedUp));
-        }
-        found
     }
 }
 
@@ -294,13 +222,6 @@ impl TipGrowth for ElementFree<'_> {
         }
         reason
     }
-}
-
-/// K of the kink that a tip begins, Pa√m, of none of its length.
-fn kinked(front: &Front) -> f64 {
-    let factors = [front.factors[0].max(0.0), front.factors[1]];
-    let [f11, f12, _] = coefficients(kink_angle(factors));
-    (f11 * factors[0] + f12 * factors[1]).max(0.0)
 }
 
 /// Cycles of the first step of a kink, with ln of the rate linear in the root of its length: `∫ da/r = (2 s/r₀) [1 - e^-g (1 + g)]/g²`,
