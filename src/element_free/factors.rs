@@ -19,6 +19,8 @@ const RING: [f64; 2] = [0.4, 0.9];
 const PANELS: usize = 4;
 /// Distance from a crack at which its face is read, in spacings.
 const BESIDE: f64 = 1e-5;
+/// Distance from a face at which the auxiliary fields are taken, over that from the tip.
+const ON_FACE: f64 = 1e-7;
 /// Angle from the line behind a tip below which a face is straight, as sine.
 const STRAIGHT: f64 = 1e-9;
 /// Gauss points on [0, 1] of order 8.
@@ -165,7 +167,9 @@ fn faces(
                     let inward = axes.from_axes([-normal[0], -normal[1]]);
                     let step = BESIDE * axes.spacing;
                     let beside = [at[0] + step * inward[0], at[1] + step * inward[1]];
-                    let (r, theta) = axes.polar(beside);
+                    // By far nearer to the face than to the tip: the field of a force goes with 1/r.
+                    let close = ON_FACE * distance(axes.at, at);
+                    let (r, theta) = axes.polar([at[0] + close * inward[0], at[1] + close * inward[1]]);
                     let t = ((r - inner) / (outer - inner)).clamp(0.0, 1.0);
                     let q = 1.0 - t * t * (3.0 - 2.0 * t);
                     if q == 0.0 {
