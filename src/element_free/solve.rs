@@ -1,8 +1,5 @@
 //! Equilibrium of a plate of nodes.
 
-use faer::Side;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::LltError;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use rayon::prelude::*;
 
@@ -10,6 +7,7 @@ use super::assembly::{Scratch, of_cell, quadrature};
 use super::boundary::Boundary;
 use super::field::Discretisation;
 use super::matrix::{Element, Lower, gathered};
+use crate::block_cholesky::Structure;
 use crate::error::{Error, Result};
 use crate::specimen::Specimen;
 
@@ -74,13 +72,14 @@ fn cholesky(lower: Lower, forces: &[f64]) -> Result<Vec<f64>> {
             values[k] *= scale[column] * scale[rows[k]];
         }
     }
-    let symbolic = SymbolicSparseColMat::new_checked(n, n, starts, None, rows);
-    let matrix = SparseColMat::new(symbolic, values);
-    let factor = matrix.sp_cholesky(Side::Lower).map_err(|error| match error {
-        LltError::Numeric(_) => Error::LossOfStiffness,
-        LltError::Generic(_) => Error::Mechanics(format!("the stiffness matrix could not be factorised: {error:?}")),
+    let matrix = SparseColMat::new(SymbolicSparseColMat::new_checked(n, n, starts, None, rows), values);
+    // One thread: sums that depend on the number of threads would make a run another one on another machine.
+    let structure = Structure::of(matrix.symbolic(), 1).ok_or_else(|| {
+        Error::Mechanics("the stiffness matrix is too large to be factorised; give fewer model.nodes".to_owned())
     })?;
-    let right = faer::Mat::from_fn(n, 1, |i, _| scale[i] * forces[i]);
-    let solution = factor.solve(&right);
-    Ok((0..n).map(|i| scale[i] * solution[(i, 0)]).collect())
+    let factor = structure.factor(matrix.as_ref()).ok_or(Error::LossOfStiffness)?;
+    let mut solution: Vec<f64> = forces.iter().zip(&scale).map(|(force, scale)| scale * force).collect();
+    factor.solve(&mut solution).ok_or_else(|| Error::Mechanics("memory is short for the solution".to_owned()))?;
+    solution.iter_mut().zip(&scale).for_each(|(u, scale)| *u *= scale);
+    Ok(solution)
 }

@@ -63,7 +63,8 @@ fn keys_that_do_not_go_together_are_refused_by_name() {
     for key in ["model.nodes=500", "model.enrichment=tip", "model.influence_radius=2.5"] {
         let dir = tempdir().unwrap();
         fs::write(dir.path().join("case.toml"), CASE).unwrap();
-        let output = perilife(dir.path(), &["predict", "case.toml", "--set", "model.method=peridynamics", "--set", key]);
+        let output =
+            perilife(dir.path(), &["predict", "case.toml", "--set", "model.method=peridynamics", "--set", key, "--out", "run"]);
         let (_, stderr) = texts(&output);
         assert_eq!(output.status.code(), Some(2), "{key}: {stderr}");
         assert!(stderr.contains("element_free_galerkin"), "{key}: {stderr}");
