@@ -38,13 +38,17 @@ fn a_standard_specimen_stands_beside_its_handbook() {
         // 50 MPa √(π 12 mm sec(π 12/60)).
         assert!((handbook - 10.794).abs() < 1e-3, "{handbook}");
         let methods = tip["methods"].as_object().unwrap();
-        assert_eq!(methods.keys().collect::<Vec<_>>(), ["ring", "energy_release"]);
+        assert_eq!(methods.keys().collect::<Vec<_>>(), ["ring", "element_free_galerkin", "energy_release"]);
         for (method, result) in methods {
             let [k_i, wall] = ["k_i_mpa_sqrt_m", "wall_s"].map(|key| result[key].as_f64().unwrap());
             // A crack of four horizons.
             assert!((k_i / handbook - 1.0).abs() < 0.025 && wall > 0.0, "{method}: {result}");
             match method.as_str() {
                 "energy_release" => assert_eq!(result.get("k_ii_mpa_sqrt_m"), Some(&Value::Null), "growth straight ahead"),
+                // Nodes lie on a lattice of their own, which is not symmetric about the crack.
+                "element_free_galerkin" => {
+                    assert!(result["k_ii_mpa_sqrt_m"].as_f64().unwrap().abs() < 2e-3 * k_i, "{method}: {result}");
+                }
                 _ => assert!(result["k_ii_mpa_sqrt_m"].as_f64().unwrap().abs() < 1e-3, "{method}: {result}"),
             }
         }

@@ -197,7 +197,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     let left = service.get(&format!("/v1/predictions/{first}/remaining?crack_length_mm={today}&factor=3")).json();
     let interval = format!("{:.0}", left["inspection_interval_cycles"].as_f64().unwrap().floor());
     page.until(&format!(
-        "document.querySelector('[data-value=inspection_interval_cycles]').innerText.replace(/\\D/g, '').startsWith('{interval}')"
+        "document.querySelector('[data-value=inspection_interval_cycles]')?.innerText.replace(/\\D/g, '').startsWith('{interval}')"
     ));
 
     // Files come down as they are.
