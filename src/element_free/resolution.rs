@@ -6,7 +6,7 @@
 
 use super::basis::{BasisKind, Enrichment};
 use super::field::Tip;
-use super::grid::{Grid, LEVELS_MAX, Source};
+use super::grid::{Grid, Source};
 use super::rims::stretches;
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{bounding_box, distance, distance_to_segment, edges, meeting_share, segments_touch};
@@ -65,12 +65,6 @@ impl Resolution {
         let at_tip = |tip: &Tip| grid.spacing(grid.leaf(lines[tip.end.line].end(tip.end.at_last)));
         let spacings = tips.iter().map(at_tip).collect();
         Ok((grid, spacings))
-    }
-
-    /// Finest spacing that there can be, m.
-    #[must_use]
-    pub fn finest(&self) -> f64 {
-        self.far / f64::from(1_u32 << LEVELS_MAX)
     }
 
     /// Holes by their radius, and ligaments between rims by the way straight into the material.

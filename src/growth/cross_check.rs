@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::case::Case;
 use crate::units::MM;
 
 /// Growth over which energies are compared, in horizons: within it the cut bonds stand for a length that is right to 2 %.
@@ -64,6 +65,33 @@ pub struct ReleasedEnergy {
     pub lengthening: f64,
     /// Cycles.
     pub cycles: f64,
+}
+
+impl ReleasedEnergy {
+    /// That of a block in which K of the tips released `of_tips` per thickness, J/m; their growth in it and until its end, m, the work of
+    /// the loads before and after it, J, and its cycles. Gives the crack length at its end, m, too.
+    pub fn of_block(
+        case: &Case,
+        of_tips: f64,
+        growths: &[f64],
+        grown: &[f64],
+        [before, after]: [f64; 2],
+        cycles: f64,
+    ) -> (Self, f64) {
+        let specimen = &case.specimen;
+        let at_start: Vec<f64> = grown.iter().zip(growths).map(|(grown, growth)| grown - growth).collect();
+        let length = specimen.crack_length_after(grown);
+        // What is released under a load is half of the work that this does more, and under a displacement the strain energy lost.
+        let sign = if case.loading.displacement().is_some() { -1.0 } else { 1.0 };
+        let block = ReleasedEnergy {
+            of_tips: specimen.thickness * of_tips,
+            of_plate: sign * 0.5 * (after - before),
+            growth: growths.iter().sum(),
+            lengthening: length - specimen.crack_length_after(&at_start),
+            cycles,
+        };
+        (block, length)
+    }
 }
 
 /// Energies of the growth since the last comparison, and the comparisons so far.

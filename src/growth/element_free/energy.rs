@@ -21,19 +21,8 @@ impl ElementFree<'_> {
         let ((now, work_now), (before, work)) = (self.energies(), &step.before);
         let growths: Vec<f64> = step.moves.iter().map(|step| step.0).collect();
         let released: f64 = growths.iter().zip(before).zip(now).map(|((growth, then), now)| 0.5 * (then + now) * growth).sum();
-        let length_less = |growths: &[f64]| {
-            let growths: Vec<f64> = self.state.fronts.iter().zip(growths).map(|(front, growth)| front.growth - growth).collect();
-            self.case.specimen.crack_length_after(&growths)
-        };
-        let length = length_less(&vec![0.0; growths.len()]);
-        let sign = if self.case.loading.displacement().is_some() { -1.0 } else { 1.0 };
-        let block = ReleasedEnergy {
-            of_tips: self.case.specimen.thickness * released,
-            of_plate: sign * 0.5 * (work_now - work),
-            growth: growths.iter().sum(),
-            lengthening: length - length_less(&growths),
-            cycles,
-        };
+        let grown: Vec<f64> = self.state.fronts.iter().map(|front| front.growth).collect();
+        let (block, length) = ReleasedEnergy::of_block(self.case, released, &growths, &grown, [*work, work_now], cycles);
         self.state.balance.take(block, length, 0.2 * self.settings.resolution.far);
     }
 }

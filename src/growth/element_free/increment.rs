@@ -47,7 +47,6 @@ impl ElementFree<'_> {
         let load = self.case.loading.maximum;
         let solution = solve(specimen, &plate, resolution.far, load, &mut self.workspace)?;
         self.solves += 1;
-        self.unknowns = self.unknowns.max(plate.unknowns());
         self.nodes = self.nodes.max(plate.nodes.at.len());
         self.work = solution.work;
         self.plate = Some((plate, solution));

@@ -45,7 +45,6 @@ pub struct ElementFree<'a> {
     curve: Vec<CurvePoint>,
     solves: usize,
     nodes: usize,
-    unknowns: usize,
     was_closed: bool,
     /// Rows at the last place where the run could be taken up.
     rows_at_checkpoint: usize,
@@ -92,7 +91,6 @@ impl<'a> ElementFree<'a> {
             curve: Vec::new(),
             solves: 0,
             nodes: 0,
-            unknowns: 0,
             was_closed: false,
             rows_at_checkpoint: 0,
             warnings: Vec::new(),

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::growth::cross_check::{CrossCheck, EnergyBalance};
-use crate::growth::record::{CurvePoint, StopReason, TipRecord};
+use crate::growth::record::{CurvePoint, TipRecord};
 use crate::growth::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
@@ -38,7 +38,7 @@ pub struct FrontsState {
     past: Option<[f64; 2]>,
     work: f64,
     curve: Vec<CurvePoint>,
-    figures: [usize; 3],
+    figures: [usize; 2],
     was_closed: bool,
 }
 
@@ -98,7 +98,7 @@ impl CrackGrowth for ElementFree<'_> {
             past: self.past,
             work: self.work,
             curve: self.curve.clone(),
-            figures: [self.solves, self.nodes, self.unknowns],
+            figures: [self.solves, self.nodes],
             was_closed: self.was_closed,
         })
     }
@@ -110,7 +110,7 @@ impl CrackGrowth for ElementFree<'_> {
             return Ok(false);
         }
         (self.state, self.past, self.work, self.curve, self.was_closed) = (state, past, work, curve, was_closed);
-        [self.solves, self.nodes, self.unknowns] = figures;
+        [self.solves, self.nodes] = figures;
         self.rows_at_checkpoint = self.curve.len();
         Ok(true)
     }
@@ -153,10 +153,6 @@ impl CrackGrowth for ElementFree<'_> {
 
     fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {
         self.state.balance.check(cycles)
-    }
-
-    fn close(&mut self, stop: StopReason) -> Result<StopReason> {
-        Ok(stop)
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -266,20 +266,8 @@ impl TipField<'_> {
             0.5 * (then + now) * (growth + offset - offset_then)
         };
         let released: f64 = growths.iter().zip(before).zip(now).map(of_tip).sum();
-        let length_less = |growths: &[f64]| {
-            let growths: Vec<f64> = self.state.tips.iter().zip(growths).map(|(tip, growth)| tip.growth - growth).collect();
-            self.case.specimen.crack_length_after(&growths)
-        };
-        let length = length_less(&vec![0.0; growths.len()]);
-        // What is released under a load is half of the work that this does more, and under a displacement the strain energy lost.
-        let sign = if self.case.loading.displacement().is_some() { -1.0 } else { 1.0 };
-        let block = ReleasedEnergy {
-            of_tips: self.case.specimen.thickness * released,
-            of_plate: sign * 0.5 * (work_now - work),
-            growth: growths.iter().sum(),
-            lengthening: length - length_less(&growths),
-            cycles,
-        };
+        let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();
+        let (block, length) = ReleasedEnergy::of_block(self.case, released, &growths, &grown, [*work, work_now], cycles);
         self.state.balance.take(block, length, self.plate.body.horizon());
     }
 
