@@ -67,7 +67,7 @@ pub mod predict;
 pub mod fracture;
 pub mod calibration;
 pub mod verify;
-pub mod bench;
+pub mod chart;
 pub mod sweep;
 pub mod report;
 pub mod check;

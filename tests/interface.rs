@@ -25,8 +25,8 @@ mod bad_csv;
 mod bad_sweeps;
 #[path = "interface/bad_toml.rs"]
 mod bad_toml;
-#[path = "interface/bench.rs"]
-mod bench;
+#[path = "interface/chart.rs"]
+mod chart;
 #[path = "interface/calibrate.rs"]
 mod calibrate;
 #[path = "interface/check.rs"]

@@ -13,10 +13,10 @@ mod noise;
 #[path = "support/shared.rs"]
 mod shared;
 
-#[path = "unit/bench.rs"]
-mod bench;
-#[path = "unit/bench_parts.rs"]
-mod bench_parts;
+#[path = "unit/chart_parts.rs"]
+mod chart_parts;
+#[path = "unit/speed_chart.rs"]
+mod speed_chart;
 #[path = "unit/collinear.rs"]
 mod collinear;
 #[path = "unit/boundary.rs"]

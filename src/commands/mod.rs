@@ -2,9 +2,9 @@
 //!
 //! A new subcommand is its file, its `mod` and its line in the list below.
 
-pub mod bench;
 pub mod calibrate;
 mod calibrate_laws;
+pub mod chart;
 pub mod check;
 pub mod collect;
 pub mod export;
@@ -34,10 +34,10 @@ use tracing_subscriber::EnvFilter;
 
 /// Declares the subcommands: doc line, name and module; gives the enum that clap parses and the call of the right `run`.
 macro_rules! commands {
-    ($($(#[$attribute:meta])+ $Name:ident: $module:ident),+ $(,)?) => {
+    ($($(#[$attribute:meta])+ $Name:ident: $module:ident $(or $alias:literal)?),+ $(,)?) => {
         /// A subcommand with its arguments.
         #[derive(Debug, Subcommand)]
-        pub enum Command { $($(#[$attribute])+ $Name($module::Args)),+ }
+        pub enum Command { $($(#[$attribute])+ $(#[command(alias = $alias)])? $Name($module::Args)),+ }
 
         impl Command {
             /// Runs it.
@@ -71,8 +71,8 @@ commands! {
     Rates: rates,
     /// Run the built-in verification: computed, reference, error and bound of every row
     Verify: verify,
-    /// Measure every solver, law and resolution side by side: time against error
-    Bench: bench,
+    /// Measure every method, law, solver and resolution: time against error
+    Chart: chart or "bench",
     /// Check an input file without running it
     Check: check,
     /// List every kind of every key of the input files

@@ -2,7 +2,6 @@
 
 use serde_json::{Value, json};
 
-use crate::bench::GROUPS;
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::calibration::case::Parameter;
 use crate::calibration::criterion::Criterion;
@@ -13,6 +12,7 @@ use crate::calibration::laws::FitLaw;
 use crate::calibration::rates::RateMethod;
 use crate::case::growth_law::TableEnds;
 use crate::case::{Failure, Method};
+use crate::chart::{Family, SCENES, Status};
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
@@ -101,7 +101,8 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.extend(of_sweeps.into_iter().flatten().map(words));
     all.extend(of_the_tips.into_iter().map(words));
     all.extend(all_topics().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
-    all.extend(GROUPS.iter().map(|group| ("bench NAME".to_owned(), group.name.to_owned(), group.about.to_owned())));
+    all.extend(SCENES.iter().map(|scene| ("chart SCENE".to_owned(), scene.name.to_owned(), scene.about.to_owned())));
+    all.extend([Family::lines(), Status::lines()].into_iter().flatten().map(words));
     all
 }
 

@@ -2,7 +2,6 @@
 //!
 //! A run writes into an [`output::OutputFolder`], which appears under its name only once it is whole.
 
-pub mod bench;
 pub mod catalogue;
 pub mod chart;
 pub mod csv;
@@ -19,7 +18,7 @@ pub mod provenance;
 pub mod resample;
 pub mod residual_strength;
 pub mod run;
-pub mod speed_chart;
+pub mod speed;
 pub mod specimen_picture;
 pub mod sweep;
 pub mod time;

@@ -27,6 +27,7 @@ use crate::growth::tip_field::{InitialTips, initial_tips};
 use crate::specimen::TipSeed;
 use crate::specimen::handbook::handbook;
 pub use cracked_plate::{CrackedPlate, Field};
+pub use gradient::{Derivatives, derivatives_at};
 pub use tip_frame::TipFrame;
 
 crate::kinds! {

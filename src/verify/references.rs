@@ -196,13 +196,33 @@ impl Reference {
         Case::from_toml(self.files[0], self.name, Path::new("."), &set)
     }
 
+    /// Cycles and places of its tips.
+    ///
+    /// # Errors
+    /// As [`tips_of_table`].
+    pub fn tips(&self) -> Result<Vec<Curve>> {
+        tips_of_table(self.files[1])
+    }
+
+    /// K_I and K_II of its first tip at the start, MPa√m.
+    ///
+    /// # Errors
+    /// A table without a first row.
+    pub fn initial_factors(&self) -> Result<[f64; 2]> {
+        let fields = self.files[1].lines().nth(1).map(|line| line.split(',').skip(4).map(str::parse).collect::<Vec<_>>());
+        match fields.as_deref() {
+            Some([Ok(k_i), Ok(k_ii)]) => Ok([*k_i, *k_ii]),
+            _ => Err(Error::Mechanics(format!("no K in the first row of {}", self.name))),
+        }
+    }
+
     /// Its run, and how the tips went.
     ///
     /// # Errors
     /// As [`predict`].
     pub fn run(&self, set: &[&str]) -> Result<(Prediction, Vec<Compared>)> {
         let run = predict(&self.case(set)?, &Silent)?;
-        let compared = compare(&run, tips_of_table(self.files[1])?, f64::INFINITY);
+        let compared = compare(&run, self.tips()?, f64::INFINITY);
         Ok((run, compared))
     }
 }

@@ -1,9 +1,10 @@
 //! Standard specimens at default resolution, and their lives by quadrature with K of finite elements.
 
-use super::scene::{MATERIAL_AND_LAW, PULL, case};
+use super::scene::{MATERIAL_AND_LAW, PULL, case, points};
+use crate::calibration::model::cycles_since_first;
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::predict::{Silent, predict};
+use crate::predict::{Prediction, Silent, predict};
 use crate::quadrature::integrate;
 use crate::specimen::LoadMeasure;
 use crate::specimen::handbook::handbook;
@@ -66,9 +67,30 @@ impl Standard {
     /// # Errors
     /// As [`predict`].
     pub fn over_quadrature(&self, set: &[&str]) -> Result<f64> {
-        let by_hand = self.case(&[set, &["model.method=handbook"]].concat())?;
-        let reference = predict(&by_hand, &Silent)?.life_cycles() * over_handbook(&by_hand, self.range)?;
-        Ok(self.life(set)? / reference)
+        Ok(self.life(set)? / self.by_quadrature(set, self.range[1])?)
+    }
+
+    /// Life to a length, mm, by quadrature with K of finite elements, cycles.
+    fn by_quadrature(&self, set: &[&str], to: f64) -> Result<f64> {
+        let range = [self.range[0], to];
+        let by_hand = self.clone().from_to(range).case(&[set, &["model.method=handbook"]].concat())?;
+        Ok(predict(&by_hand, &Silent)?.life_cycles() * over_handbook(&by_hand, range)?)
+    }
+
+    /// The largest error of the cycles of a run at shares of the growth, percent, against [`Standard::over_quadrature`]'s reference.
+    ///
+    /// # Errors
+    /// A run that ends before one of these lengths.
+    pub fn error_percent(&self, run: &Prediction, shares: &[f64]) -> Result<f64> {
+        let [from, to] = self.range;
+        let lengths: Vec<f64> = [0.0].iter().chain(shares).map(|share| from + share * (to - from)).collect();
+        let cycles = cycles_since_first(&points(run), &lengths.iter().map(|length| length * MM).collect::<Vec<_>>())?;
+        let mut largest = 0.0_f64;
+        for (length, cycles) in lengths.iter().zip(&cycles).skip(1) {
+            let error = 100.0 * (cycles / self.by_quadrature(&[], *length)? - 1.0);
+            largest = if error.abs() > largest.abs() { error } else { largest };
+        }
+        Ok(largest)
     }
 
     /// Life, cycles.
@@ -79,7 +101,11 @@ impl Standard {
         Ok(predict(&self.case(set)?, &Silent)?.life_cycles())
     }
 
-    fn case(&self, set: &[&str]) -> Result<Case> {
+    /// Its case, other keys set by `section.key=value`.
+    ///
+    /// # Errors
+    /// As [`Case::from_toml`].
+    pub fn case(&self, set: &[&str]) -> Result<Case> {
         let [from, to] = self.range;
         let range = [format!("specimen.crack_length_mm={from}"), format!("stop.crack_length_mm={to}")];
         case(&format!("[specimen]\n{}{MATERIAL_AND_LAW}", self.text), &[&[&*range[0], &*range[1]], set].concat())

@@ -28,8 +28,8 @@ pub enum RunKind {
     SweepCase,
     /// `perilife verify`.
     Verify,
-    /// `perilife bench`.
-    Bench,
+    /// `perilife chart`.
+    Chart,
 }
 
 impl RunKind {
@@ -43,7 +43,7 @@ impl RunKind {
             RunKind::Sweep => "a sweep",
             RunKind::SweepCase => "a case of a sweep",
             RunKind::Verify => "a verification",
-            RunKind::Bench => "a benchmark",
+            RunKind::Chart => "a speed-accuracy chart",
         }
     }
 }

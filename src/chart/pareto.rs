@@ -1,7 +1,5 @@
 //! Pareto front of time and error: runs that no other one beats in both.
 
-use super::row::Row;
-
 /// Relative gain of error that earns a slower run its place: less is round-off between solvers that are equally exact.
 pub const GAIN: f64 = 1e-3;
 
@@ -20,10 +18,4 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
         nearer
     });
     order
-}
-
-/// Marks the rows of one group that are on its front.
-pub(super) fn mark(rows: &mut [Row]) {
-    let places: Vec<(f64, f64)> = rows.iter().map(|row| row.place().unwrap_or((f64::NAN, f64::NAN))).collect();
-    front(&places).into_iter().for_each(|i| rows[i].on_front = true);
 }

@@ -1,34 +1,9 @@
-//! Parts of the benchmark: exponents, fronts, clocks, places of samples, and what is made of them.
+//! Parts of the chart: fronts, places of samples, and what is made of them.
 
-use perilife::bench::clock::cpu_seconds;
-use perilife::bench::exponent::growth_exponent;
-use perilife::bench::extrapolation::{Sampled, places};
-use perilife::bench::hand_calculation::{lengths_mm, readings};
-use perilife::bench::machine::Machine;
-use perilife::bench::pareto::front;
-use perilife::report::bench::seconds;
-
-#[test]
-fn a_power_is_found() {
-    let sizes = [3e4, 1.2e5, 4.8e5, 1e6];
-    let times = sizes.map(|size: f64| 2e-6 * size.powf(1.13));
-    assert!((growth_exponent(&sizes, &times) - 1.13).abs() < 1e-12);
-}
-
-#[test]
-fn scatter_is_averaged() {
-    // Times a factor 1.1 above, below, below and above the line: symmetric about the middle, so the slope stays.
-    let sizes = [1.0, 10.0, 100.0, 1000.0];
-    let times = [1.1, 10.0 / 1.1, 100.0 / 1.1, 1100.0];
-    assert!((growth_exponent(&sizes, &times) - 1.0).abs() < 1e-12);
-}
-
-#[test]
-fn what_has_no_exponent_is_not_a_number() {
-    assert!(growth_exponent(&[5.0], &[1.0]).is_nan());
-    assert!(growth_exponent(&[5.0, 5.0], &[1.0, 2.0]).is_nan());
-    assert!(growth_exponent(&[1.0, 2.0], &[0.0, 1.0]).is_nan());
-}
+use perilife::chart::extrapolation::{Sampled, places};
+use perilife::chart::machine::Machine;
+use perilife::chart::pareto::front;
+use perilife::report::speed::seconds;
 
 #[test]
 fn vectors_hold_whole_doubles() {
@@ -53,13 +28,6 @@ fn round_off_earns_no_place() {
 #[test]
 fn nothing_has_no_front() {
     assert!(front(&[]).is_empty() && front(&[(f64::INFINITY, 1.0), (1.0, f64::NAN)]).is_empty());
-}
-
-#[test]
-fn processor_time_never_falls() {
-    let before = cpu_seconds();
-    // On other systems there is none.
-    assert!(before.is_nan() || before >= 0.0 && cpu_seconds() >= before);
 }
 
 fn sampled(blocks: &[(usize, f64)]) -> Sampled {
@@ -96,15 +64,7 @@ fn places_are_spread_over_the_run() {
 }
 
 #[test]
-fn the_readings_are_those_of_a_panel() {
-    let lengths = lengths_mm();
-    assert_eq!(lengths.len(), 164);
-    assert!((lengths[163] - 49.8).abs() < 1e-9 && lengths.windows(2).all(|pair| pair[1] > pair[0]));
-    assert_eq!(readings().unwrap().lines().count(), 165);
-}
-
-#[test]
-fn times_have_three_digits_and_a_unit_that_suits() {
-    let looks = [(12.345, "12.3 s"), (0.01234, "12.3 ms"), (2.5e-4, "250 µs"), (f64::NAN, "-"), (1234.0, "1234 s")];
+fn times_have_two_digits_and_a_unit_that_suits() {
+    let looks = [(12.345, "12 s"), (1.2345, "1.2 s"), (0.01234, "12 ms"), (2.5e-4, "250 µs"), (f64::NAN, "-"), (1234.0, "1234 s")];
     looks.iter().for_each(|(value, text)| assert_eq!(seconds(*value), *text));
 }

@@ -1,0 +1,235 @@
+//! `perilife chart`: speed against accuracy of every method, law, solver and resolution.
+
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use super::console::Console;
+use super::signals;
+use crate::chart::schedule::{Effort, Outcome, Record, Request, measure};
+use crate::chart::{self, run, scenes};
+use crate::error::{Error, Result, input, input_missing};
+use crate::input::Provenance;
+use crate::report::output::{Marker, RunKind, Share, StandingFolder};
+use crate::report::speed::{self, Origin, digits, seconds};
+
+/// Arguments of `perilife chart`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Scenes to measure; all where none is given (`perilife list` names them)
+    #[arg(value_name = "SCENE")]
+    pub names: Vec<String>,
+    /// Few choices, one run each: under three minutes on two cores
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for chart.csv, chart.svg, chart.html and summary.md; a chart that was broken off goes on there
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: Option<PathBuf>,
+    /// One run of one scene with the keys of --set: prints its time and error
+    #[arg(long, conflicts_with_all = ["quick", "out"])]
+    pub once: bool,
+    /// Key of the scene's case for --once (repeatable), e.g. --set model.spacing_mm=2
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE", requires = "once")]
+    pub set: Vec<String>,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// File of all runs so far, one JSON object a line.
+const RUNS_FILE: &str = "runs.jsonl";
+/// Seconds between two looks at a process.
+const LOOK: Duration = Duration::from_millis(2);
+
+/// Runs `perilife chart`.
+///
+/// # Errors
+/// A name that is no scene; a process that cannot be started; files that cannot be written.
+pub fn run(args: &Args) -> Result<()> {
+    if args.once {
+        return once(args);
+    }
+    let scenes = scenes(&args.names)?;
+    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
+    let folder = args.out.as_deref().map(RunsFolder::open).transpose()?;
+    let known = folder.as_ref().map(|folder| folder.known()).transpose()?.unwrap_or_default();
+    if let Some(folder) = &folder {
+        signals::say_at_the_end(&format!("finished runs stay in {}; the same command goes on from there", folder.name.display()));
+        if !known.is_empty() {
+            args.console.note(&format!("{}: {} runs are there already", folder.name.display(), known.len()));
+        }
+    }
+    let mut keep = |record: &Record| {
+        args.console.say(&line(record));
+        folder.as_ref().map_or(Ok(()), |folder| folder.keep(record))
+    };
+    let chart = measure(&scenes, effort, known, &in_own_process, &mut keep)?;
+    let origin = Origin::now(command(args));
+    if let Some(folder) = &folder {
+        speed::write(folder.standing.path(), &chart, &origin)?;
+    }
+    let object = json!({
+        "version": chart.machine.version, "threads": chart.machine.threads, "reference_s": chart.reference_s,
+        "points": chart.points.len(), "with_result": chart.points.iter().filter(|point| point.place().is_some()).count(),
+        "files": folder.as_ref().map(|folder| folder.name.display().to_string()),
+    });
+    args.console.say("");
+    args.console.say(&speed::markdown(&chart, &origin));
+    args.console.object(&object)
+}
+
+/// The command in words, as the user gave it.
+fn command(args: &Args) -> String {
+    let quick = if args.quick { " --quick" } else { "" };
+    let names = args.names.iter().map(|name| format!(" {name}")).collect::<String>();
+    format!("perilife chart{quick}{names}")
+}
+
+fn line(record: &Record) -> String {
+    let keys = record.request.set.join(" ");
+    let told = match &record.outcome {
+        Outcome::Done(run) => {
+            format!(
+                "{:>9} {:>8} %  ratio {}",
+                seconds(run.wall_s),
+                digits(run.error_percent),
+                digits(run.wall_s / record.reference_s)
+            )
+        }
+        Outcome::Refused(reason) => format!("refused: {reason}"),
+        Outcome::Failed(reason) => format!("failed: {reason}"),
+        Outcome::Stopped(limit) => format!("stopped after {limit} s"),
+    };
+    format!("  {:<20} {told}  {keys}", record.request.scene)
+}
+
+/// Answer of a process to its request.
+#[derive(Serialize, Deserialize)]
+enum Answer {
+    Done(chart::Run),
+    Refused(String),
+    Failed(String),
+}
+
+/// One run in this process, printed.
+fn once(args: &Args) -> Result<()> {
+    let [name] = args.names.as_slice() else {
+        return Err(input_missing("SCENE", "is not one scene, and --once runs one".to_owned(), "name one scene"));
+    };
+    let scene = scenes(std::slice::from_ref(name))?[0];
+    let ran = run::once(scene, &args.set);
+    if !args.console.json {
+        let found = ran?;
+        args.console.say(&format!(
+            "{}: error {} % of {}, {}, {} solves, {} MB",
+            scene.name,
+            digits(found.error_percent),
+            scene.quantity,
+            seconds(found.wall_s),
+            found.solves,
+            digits(found.memory_mb)
+        ));
+        return Ok(());
+    }
+    let answer = match ran {
+        Ok(run) => Answer::Done(run),
+        Err(error @ Error::Input(_)) => Answer::Refused(error.to_string()),
+        Err(error) => Answer::Failed(error.to_string()),
+    };
+    args.console.object(&json!(answer))
+}
+
+/// Starts this program once more for one run, so that memory and caches are that run's alone.
+fn in_own_process(request: &Request, limit_s: f64) -> Result<Outcome> {
+    let failed = |source| Error::file(Path::new("perilife"), "cannot start a process of its own", source);
+    let program = std::env::current_exe().map_err(failed)?;
+    let mut answer = tempfile::tempfile().map_err(failed)?;
+    let out = answer.try_clone().map_err(failed)?;
+    let mut command = Command::new(program);
+    command.args(["chart", &request.scene, "--once", "--json"]);
+    for key in &request.set {
+        command.args(["--set", key]);
+    }
+    let mut child = command.stdin(Stdio::null()).stdout(out).stderr(Stdio::null()).spawn().map_err(failed)?;
+    let started = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().map_err(failed)? {
+            break status;
+        }
+        if started.elapsed().as_secs_f64() > limit_s {
+            child.kill().and_then(|()| child.wait()).map_err(failed)?;
+            return Ok(Outcome::Stopped(limit_s));
+        }
+        thread::sleep(LOOK);
+    };
+    let mut text = String::new();
+    std::io::Seek::rewind(&mut answer).and_then(|()| std::io::Read::read_to_string(&mut answer, &mut text)).map_err(failed)?;
+    Ok(match serde_json::from_str(&text) {
+        Ok(Answer::Done(run)) => Outcome::Done(run),
+        Ok(Answer::Refused(reason)) => Outcome::Refused(reason),
+        Ok(Answer::Failed(reason)) => Outcome::Failed(reason),
+        Err(_) => Outcome::Failed(format!("its process ended without an answer: {status}")),
+    })
+}
+
+/// The folder of a chart: it keeps every run, which is how a chart that was broken off goes on.
+#[derive(Debug)]
+struct RunsFolder {
+    name: PathBuf,
+    standing: StandingFolder,
+}
+
+/// First line of the file of runs: runs of another version or number of threads are not mixed with these.
+#[derive(Serialize, Deserialize, PartialEq)]
+struct Header {
+    version: String,
+    instruction_set: String,
+    threads: usize,
+}
+
+impl Header {
+    fn here() -> Header {
+        let machine = chart::Machine::here();
+        Header { version: machine.version.to_owned(), instruction_set: machine.instruction_set, threads: machine.threads }
+    }
+}
+
+impl RunsFolder {
+    fn open(path: &Path) -> Result<RunsFolder> {
+        let files: Vec<&str> = speed::FILES.into_iter().chain([RUNS_FILE]).collect();
+        let marker = Marker::listing(RunKind::Chart, &files);
+        let first = format!("{}\n", json!(Header::here())).into_bytes();
+        let standing = StandingFolder::open(path, &marker, &Provenance::default(), Share::Alone, &[(RUNS_FILE, first)])?;
+        Ok(RunsFolder { name: path.to_path_buf(), standing })
+    }
+
+    fn file(&self) -> PathBuf {
+        self.standing.path().join(RUNS_FILE)
+    }
+
+    /// Runs of an earlier call; a last line that was broken off counts for nothing.
+    fn known(&self) -> Result<Vec<Record>> {
+        let path = self.name.join(RUNS_FILE);
+        let text = fs::read_to_string(self.file()).map_err(|error| Error::file(&path, "cannot read", error))?;
+        let mut lines = text.lines();
+        let header = lines.next().and_then(|line| serde_json::from_str::<Header>(line).ok());
+        if header != Some(Header::here()) {
+            let problem = "holds runs of another version, machine or number of threads";
+            return Err(input("--out", self.name.display(), problem, "give another folder, or remove this one yourself"));
+        }
+        Ok(lines.filter_map(|line| serde_json::from_str(line).ok()).collect())
+    }
+
+    fn keep(&self, record: &Record) -> Result<()> {
+        let path = self.name.join(RUNS_FILE);
+        let append =
+            || fs::OpenOptions::new().append(true).open(self.file())?.write_all(format!("{}\n", json!(record)).as_bytes());
+        append().map_err(|error| Error::file(&path, "cannot write", error))
+    }
+}

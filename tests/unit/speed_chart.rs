@@ -1,0 +1,224 @@
+//! The speed-accuracy chart around its measurements: order of runs, tables, picture, page, summary. Speed itself is never asserted.
+
+use std::cell::RefCell;
+use std::path::Path;
+
+use perilife::Error;
+use perilife::case::Case;
+use perilife::chart::choice::choices;
+use perilife::chart::extrapolation::History;
+use perilife::chart::run::Model;
+use perilife::chart::schedule::{Effort, Outcome, Record, Request, measure};
+use perilife::chart::static_scenes::concentration_of;
+use perilife::chart::summary::{beaten, fastest_within, never_on_front};
+use perilife::chart::{Chart, Family, Run, SCENES, Status, scenes};
+use perilife::predict::{Silent, predict};
+use perilife::report::speed::{COLUMNS, Origin, csv, markdown, svg};
+use perilife::solver::SolverKind;
+
+/// A run that took and found so much.
+fn run(wall_s: f64, error_percent: f64) -> Run {
+    let model = Model {
+        driver: "tip_field".to_owned(),
+        bond_law: "two_parameter".to_owned(),
+        solver: "window".to_owned(),
+        discretisation: "lattice".to_owned(),
+        spacing_mm: Some(1.0),
+        horizon_ratio: Some(3.015),
+        step: Some(0.5),
+    };
+    Run {
+        wall_s,
+        memory_mb: 50.0,
+        error_percent,
+        path_rms_mm: None,
+        points: 1000,
+        solves: 20,
+        model,
+        extrapolated_from_blocks: None,
+    }
+}
+
+/// A process that answers by the keys it is given: the time of a choice, and its error.
+fn answer(request: &Request) -> Outcome {
+    let has = |word: &str| request.set.iter().any(|key| key.contains(word));
+    match () {
+        () if has("direct") => Outcome::Failed("no \"factor\", <none>".to_owned()),
+        () if has("one_bond") => Outcome::Refused("not with this material".to_owned()),
+        () if has("relaxation") => Outcome::Stopped(120.0),
+        () if has("element_free") && has("tolerance_percent=1") => Outcome::Done(run(1.5, 0.3)),
+        () if has("element_free") => Outcome::Done(run(0.3, 0.8)),
+        () if has("bond_strain") => Outcome::Done(Run { extrapolated_from_blocks: Some(7), ..run(40.0, 9.0) }),
+        () if has("spacing_mm") => Outcome::Done(run(0.2, 5.0)),
+        () => Outcome::Done(run(1.0, 1.0)),
+    }
+}
+
+/// A chart of these scenes by [`answer`], and the requests in the order in which they were made.
+fn measured(names: &[&str], effort: Effort, known: Vec<Record>) -> (Chart, Vec<Request>, Vec<Record>) {
+    let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+    let asked = RefCell::new(Vec::new());
+    let isolated = |request: &Request, _: f64| {
+        asked.borrow_mut().push(request.clone());
+        Ok(answer(request))
+    };
+    let mut kept = Vec::new();
+    let mut keep = |record: &Record| {
+        kept.push(record.clone());
+        Ok::<(), Error>(())
+    };
+    let chart = measure(&scenes(&names).unwrap(), effort, known, &isolated, &mut keep).unwrap();
+    (chart, asked.into_inner(), kept)
+}
+
+#[test]
+fn runs_are_repeated_by_their_time_and_in_random_order() {
+    let (chart, asked, kept) = measured(&["middle_tension"], Effort::FULL, Vec::new());
+    let count = |name: &str| chart.points.iter().find(|point| point.choice.name() == name).unwrap().walls.len();
+    assert_eq!([count("tip_field"), count("element_free_galerkin"), count("bond_strain")], [5, 5, 1]);
+    let planned = choices(&SCENES[0]).unwrap();
+    let order: Vec<usize> = kept[..planned.len()]
+        .iter()
+        .map(|record| planned.iter().position(|choice| choice.set == record.request.set).unwrap())
+        .collect();
+    assert!(order.windows(2).any(|pair| pair[1] < pair[0]), "in the order of the list: {order:?}");
+    let mut sorted = order.clone();
+    sorted.sort_unstable();
+    assert_eq!(sorted, (0..planned.len()).collect::<Vec<_>>(), "each choice once before any is repeated");
+    // A reference run in the beginning at least.
+    assert!(asked.len() > kept.len() && asked[0].set.is_empty());
+    // What is known is not run again, and gives the same chart.
+    let (again, asked, more) = measured(&["middle_tension"], Effort::FULL, kept);
+    assert!(asked.is_empty() && more.is_empty(), "{asked:?}");
+    assert_eq!(csv(&again), csv(&chart));
+    let (quick, ..) = measured(&["middle_tension"], Effort::QUICK, Vec::new());
+    assert!(quick.points.len() < chart.points.len() && quick.points.iter().all(|point| point.walls.len() <= 1));
+}
+
+#[test]
+fn what_has_no_result_is_a_point_with_its_reason() {
+    let (chart, ..) = measured(&["middle_tension", "slant_severance"], Effort::FULL, Vec::new());
+    for status in [Status::Failed, Status::Refused, Status::Stopped] {
+        let point = chart.points.iter().find(|point| point.status == status).unwrap();
+        assert!(point.place().is_none() && !point.reason.is_empty() && !point.is_on_front, "{status}: {}", point.reason);
+    }
+    let table = csv(&chart);
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    assert_eq!(reader.headers().unwrap().iter().collect::<Vec<_>>().join(","), COLUMNS);
+    // The reader refuses rows of another length.
+    let records: Vec<csv::StringRecord> = reader.records().collect::<Result<_, _>>().unwrap();
+    assert_eq!(records.len(), chart.points.len());
+    let origin = Origin { command: "perilife chart".to_owned(), date: "2026-01-01".to_owned() };
+    let picture = svg(&chart, &origin);
+    let crosses = chart.points.iter().filter(|point| point.place().is_none()).count();
+    assert_eq!(picture.matches("stroke=\"#8893a1\" stroke-width=\"1.6\"").count(), crosses, "a cross for each");
+    assert!(picture.contains("no &quot;factor&quot;, &lt;none&gt;") && !picture.contains("<none>"));
+    assert!(picture.contains("stroke-dasharray=\"2 2\""), "extrapolated points are dashed");
+    // Two panels, a star in each for the default.
+    assert_eq!(picture.matches("#f2c14e").count(), 2);
+    let summary = markdown(&chart, &origin);
+    assert!(summary.contains("refused: not with this material") && summary.contains("stopped: not done after 120 s"), "{summary}");
+}
+
+#[test]
+fn the_summary_tells_the_fastest_and_the_beaten() {
+    let (chart, ..) = measured(&["slant_severance", "hole_entered"], Effort::FULL, Vec::new());
+    let name = |percent: f64| fastest_within(&chart, percent).map(|choice| choice.name);
+    assert_eq!(name(10.0).as_deref(), Some("tip_field, spacing × 2"));
+    assert_eq!(name(2.0).as_deref(), Some("element_free_galerkin"));
+    assert_eq!(name(0.5).as_deref(), Some("element_free_galerkin, to 1 %"));
+    assert_eq!(name(0.1), None);
+    let lost = beaten(&chart);
+    assert_eq!(lost.len(), 2, "0.3 s and 0.8 % beat 1 s and 1 %");
+    assert_eq!(lost[0].by.map(|by| by.choice.family), Some(Family::ElementFree));
+    assert!(never_on_front(&chart).contains(&Family::BondStrain) && !never_on_front(&chart).contains(&Family::ElementFree));
+}
+
+#[test]
+fn every_choice_is_a_case_of_its_own() {
+    for scene in SCENES {
+        let all = choices(scene).unwrap();
+        assert!(all[0].is_default() && all.iter().filter(|choice| choice.is_default()).count() == 1, "{}", scene.name);
+        let default = scene.case(&[]).unwrap();
+        for (i, choice) in all.iter().enumerate() {
+            assert!(all[..i].iter().all(|other| other.name() != choice.name()), "{}: {} twice", scene.name, choice.name());
+            // One that the program refuses is a point as well; the others differ from the default in what they set.
+            let Ok(case) = scene.case(&choice.set) else { continue };
+            let differs = case.model != default.model || case.fatigue != default.fatigue || case.material != default.material;
+            assert!(differs || choice.is_default(), "{}: {}", scene.name, choice.name());
+        }
+        for family in [Family::TipField, Family::BondLaw, Family::Solver] {
+            assert!(all.iter().any(|choice| choice.family == family), "{}: {family}", scene.name);
+        }
+    }
+    assert!(SCENES.len() >= 10 && SCENES.iter().all(|scene| scene.truth_uncertainty_percent < 1.0));
+}
+
+#[test]
+fn the_hole_has_the_concentration_of_the_handbook() {
+    // Kirsch 1898; Howland 1930, Phil. Trans. 229:49, table at 0.2 and 0.5 of the width: 3.14 and 4.32.
+    for (share, wanted) in [(0.0, 3.0), (0.2, 3.14), (0.5, 4.32)] {
+        assert!((concentration_of(share) / wanted - 1.0).abs() < 0.005, "{share}: {}", concentration_of(share));
+    }
+}
+
+#[test]
+fn unknown_scenes_are_answered_with_the_known_ones() {
+    let error = scenes(&["tension_plate".to_owned(), "nothing".to_owned()]).map(|_| ()).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("nothing") && error.to_string().contains("slant_severance"), "{error}");
+    assert_eq!(scenes(&[]).unwrap().len(), SCENES.len());
+}
+
+const SMALL: &str = r#"
+[specimen]
+kind = "middle_tension"
+width_mm = 30.0
+length_mm = 40.0
+thickness_mm = 2.0
+crack_length_mm = 6.0
+[material]
+youngs_modulus_gpa = 72.0
+poisson_ratio = 0.3
+[loading]
+stress_max_mpa = 50.0
+stress_ratio = 0.1
+[model]
+spacing_mm = 1.0
+symmetry = "off"
+[fatigue]
+a = 1e5
+p = 3.0
+horizon_mm = 3.015
+# The curve then counts all bonds that break.
+precrack = "none"
+[stop]
+crack_length_mm = 9.0
+"#;
+
+#[test]
+fn a_replayed_run_is_the_run() {
+    let case = Case::from_toml(SMALL, "small", Path::new("."), &[]).unwrap();
+    let (history, _) = History::of(&case).unwrap();
+    assert!(history.blocks() >= 20, "{}", history.blocks());
+    // The curve is averaged over a spacing of growth and ends that much earlier than the run: a longer one has the state looked for.
+    let longer = Case::from_toml(SMALL, "small", Path::new("."), &["stop.crack_length_mm=12".to_owned()]).unwrap();
+    let longer = predict(&longer, &Silent).unwrap().curve;
+    // No time to spend: the fewest blocks.
+    let samples: Vec<_> =
+        SolverKind::ALL.iter().map(|&kind| (kind, history.sample(kind, case.loading.maximum, 0.0).unwrap())).collect();
+    let exact = samples.iter().find(|(kind, _)| *kind == SolverKind::Direct).unwrap().1.work;
+    for (kind, sampled) in &samples {
+        assert_eq!(sampled.blocks.len(), 5, "{kind}");
+        assert!(sampled.blocks.windows(2).all(|pair| pair[0].0 < pair[1].0) && sampled.blocks[4].0 < history.blocks());
+        assert!(sampled.whole(history.blocks()) > sampled.start_s && sampled.start_s > 0.0, "{kind}");
+        // The run went through the same state, whatever solver finds it again. Its curve is averaged over a spacing of growth,
+        // 1 mm, and work rises with growth: that of the state lies between rows a spacing before and after.
+        let of_run = longer.iter().find(|row| row.broken_bonds >= sampled.broken_bonds).unwrap();
+        assert_eq!(of_run.broken_bonds, sampled.broken_bonds, "{kind}");
+        let before = longer.iter().rfind(|row| row.crack_length <= of_run.crack_length - 1e-3).unwrap().work;
+        let after = longer.iter().find(|row| row.crack_length >= of_run.crack_length + 1e-3).unwrap().work;
+        assert!((before..after).contains(&sampled.work), "{kind}: {} J not within {before} and {after} J", sampled.work);
+        assert!((sampled.work / exact - 1.0).abs() < 1e-5, "{kind}: {} J against {exact} J", sampled.work);
+    }
+}
