@@ -19,5 +19,7 @@ mod kept_back;
 mod median_virkler;
 #[path = "validation/notched_plates.rs"]
 mod notched_plates;
+#[path = "validation/rivals.rs"]
+mod rivals;
 #[path = "validation/rates_virkler.rs"]
 mod rates_virkler;

@@ -65,6 +65,7 @@ fn places_are_spread_over_the_run() {
 
 #[test]
 fn times_have_two_digits_and_a_unit_that_suits() {
-    let looks = [(12.345, "12 s"), (1.2345, "1.2 s"), (0.01234, "12 ms"), (2.5e-4, "250 µs"), (f64::NAN, "-"), (1234.0, "1234 s")];
+    let looks =
+        [(12.345, "12 s"), (1.2345, "1.2 s"), (0.01234, "12 ms"), (2.5e-4, "250 µs"), (f64::NAN, "-"), (1234.0, "1234 s")];
     looks.iter().for_each(|(value, text)| assert_eq!(seconds(*value), *text));
 }

@@ -13,7 +13,7 @@ const HEAD: f64 = 104.0;
 const FOOT: f64 = 44.0;
 const COLUMNS: usize = 3;
 /// Errors, percent, and seconds between which the scales lie, whatever lies beyond.
-const ERRORS: [f64; 2] = [0.01, 100.0];
+const ERRORS: [f64; 2] = [0.002, 100.0];
 const SECONDS_LEAST: f64 = 0.02;
 /// Errors, percent, beyond which a run says nothing: drawn at the upper edge.
 pub const LEFT_OUT_MOST_PERCENT: f64 = ERRORS[1];
@@ -330,6 +330,15 @@ impl Panel<'_> {
                 );
             }
             let colour = colour(drawn[i].0.choice.family);
+            // Its white rim first, as text of its own: not every program draws a rim below the letters.
+            for paint in ["fill=\"none\" stroke=\"#ffffff\" stroke-width=\"3\"", &format!("fill=\"{colour}\"")] {
+                let _ = writeln!(
+                    text,
+                    "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\" font-size=\"{LABEL}\" {paint}>{}</text>",
+                    y + 4.0,
+                    escaped(words)
+                );
+            }
             let _ = writeln!(
                 text,
                 "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\" font-size=\"{LABEL}\" fill=\"{colour}\" stroke=\"#ffffff\" \
@@ -353,6 +362,9 @@ fn short_name(point: &Point) -> String {
         Family::BondLaw | Family::Solver => "",
     };
     match (family, point.choice.words.as_str()) {
+        (family, "") if point.wall_s().is_some_and(|wall| wall < SECONDS_LEAST) => {
+            format!("{family}, {}", seconds(point.wall_s().unwrap_or(f64::NAN)))
+        }
         (family, "") => family.to_owned(),
         ("", words) => words.replace("adaptive_dynamic_", ""),
         (family, words) => format!("{family}, {words}"),
