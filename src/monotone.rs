@@ -38,8 +38,9 @@ impl Monotone {
         0.5 * (low + high)
     }
 
-    /// y at a fraction of the way from point `before` to the next.
-    fn between(&self, before: usize, t: f64) -> f64 {
+    /// y at a fraction of the way in x from point `before` to the next, which there is.
+    #[must_use]
+    pub fn between(&self, before: usize, t: f64) -> f64 {
         let ([_, from], [_, to]) = (self.0[before], self.0[before + 1]);
         let [width, _] = self.chord(Some(before)).unwrap_or([0.0; 2]);
         let [left, right] = [before, before + 1].map(|point| width * self.slope(point));

@@ -46,7 +46,9 @@ fn answer(request: &Request) -> Outcome {
         () if has("direct") => Outcome::Failed("no \"factor\", <none>".to_owned()),
         () if has("one_bond") => Outcome::Refused("not with this material".to_owned()),
         () if has("relaxation") => Outcome::Stopped(120.0),
-        () if has("element_free") && has("tolerance_percent=1") => Outcome::Done(run(1.5, 0.3)),
+        () if has("element_free") && request.set.iter().any(|key| key == "model.tolerance_percent=1") => {
+            Outcome::Done(run(1.5, 0.3))
+        }
         () if has("element_free") => Outcome::Done(run(0.3, 0.8)),
         () if has("bond_strain") => Outcome::Done(Run { extrapolated_from_blocks: Some(7), ..run(40.0, 9.0) }),
         () if has("spacing_mm") => Outcome::Done(run(0.2, 5.0)),
