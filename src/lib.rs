@@ -67,6 +67,7 @@ pub mod predict;
 pub mod fracture;
 pub mod calibration;
 pub mod verify;
+pub mod stability;
 pub mod bench;
 pub mod sweep;
 pub mod report;

@@ -3,7 +3,7 @@
 use super::scene::{MATERIAL_AND_LAW, PULL, case};
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::predict::{Silent, predict};
+use crate::predict::{Observer, Silent, StopReason, predict};
 use crate::quadrature::integrate;
 use crate::specimen::LoadMeasure;
 use crate::specimen::handbook::handbook;
@@ -66,9 +66,21 @@ impl Standard {
     /// # Errors
     /// As [`predict`].
     pub fn over_quadrature(&self, set: &[&str]) -> Result<f64> {
+        self.over_quadrature_watched(set, &Silent)
+    }
+
+    /// [`Standard::over_quadrature`] with an observer of the run, which may end it.
+    ///
+    /// # Errors
+    /// As [`predict`]; a run that ends before the last length.
+    pub fn over_quadrature_watched(&self, set: &[&str], observer: &dyn Observer) -> Result<f64> {
         let by_hand = self.case(&[set, &["model.method=handbook"]].concat())?;
         let reference = predict(&by_hand, &Silent)?.life_cycles() * over_handbook(&by_hand, self.range)?;
-        Ok(self.life(set)? / reference)
+        let run = predict(&self.case(set)?, observer)?;
+        if run.stop != StopReason::CrackLengthReached {
+            return Err(Error::Mechanics(format!("{} ended before its last length: {}", self.name, run.stop)));
+        }
+        Ok(run.life_cycles() / reference)
     }
 
     /// Life, cycles.

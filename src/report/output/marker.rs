@@ -30,6 +30,8 @@ pub enum RunKind {
     Verify,
     /// `perilife bench`.
     Bench,
+    /// `perilife stability`.
+    Stability,
 }
 
 impl RunKind {
@@ -44,6 +46,7 @@ impl RunKind {
             RunKind::SweepCase => "a case of a sweep",
             RunKind::Verify => "a verification",
             RunKind::Bench => "a benchmark",
+            RunKind::Stability => "a map of stability",
         }
     }
 }
