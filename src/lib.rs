@@ -48,6 +48,7 @@ pub mod line;
 pub mod block_cholesky;
 pub mod sealed;
 pub mod input;
+pub mod limits;
 
 pub mod specimen;
 pub mod loading;

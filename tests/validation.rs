@@ -13,11 +13,15 @@ mod fracture_scenes;
 mod fit_engine;
 #[path = "validation/fit_virkler.rs"]
 mod fit_virkler;
+#[path = "validation/fuzz_cases.rs"]
+mod fuzz_cases;
 #[path = "validation/kept_back.rs"]
 mod kept_back;
 #[path = "validation/median_virkler.rs"]
 mod median_virkler;
 #[path = "validation/notched_plates.rs"]
 mod notched_plates;
+#[path = "validation/stability.rs"]
+mod stability;
 #[path = "validation/rates_virkler.rs"]
 mod rates_virkler;

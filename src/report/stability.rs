@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::csv::number;
 use super::time;
-use crate::stability::{Outcome, Record};
+use crate::stability::Record;
 
 /// One record as a line on the console.
 #[must_use]
@@ -20,8 +20,10 @@ pub fn range(record: &Record) -> String {
     let unit = if sweep.unit.is_empty() { String::new() } else { format!(" {}", sweep.unit) };
     let (first, last) = (sweep.values[0], sweep.values[sweep.values.len() - 1]);
     match (record.is_safe, record.ends) {
-        (false, _) => format!("not within {} % at the usual value {}{unit}", sweep.bound_percent, sweep.usual),
-        (true, [None, None]) => format!("within {} % from {first} to {last}{unit}, the whole sweep", sweep.bound_percent),
+        (false, _) => format!("not within {} % at the usual value {}{unit}", sweep.bound_percent, short(sweep.usual)),
+        (true, [None, None]) => {
+            format!("within {} % from {} to {}{unit}, the whole sweep", sweep.bound_percent, short(first), short(last))
+        }
         (true, [low, high]) => {
             let end = |end: Option<f64>, whole: f64| short(end.unwrap_or(whole));
             format!("within {} % from {} to {}{unit}", sweep.bound_percent, end(low, first), end(high, last))
@@ -32,7 +34,8 @@ pub fn range(record: &Record) -> String {
 /// Four significant digits.
 #[must_use]
 pub fn short(value: f64) -> String {
-    format!("{}", format!("{value:.3e}").parse::<f64>().unwrap_or(value))
+    let rounded = format!("{value:.3e}").parse::<f64>().unwrap_or(value);
+    if (1e-4..1e6).contains(&rounded.abs()) || rounded == 0.0 { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 /// `stability.csv`: a row a run; `boundary` is the end of the safe range on the side of the value, empty where it has none there.
@@ -42,10 +45,7 @@ pub fn csv(records: &[Record]) -> String {
     for record in records {
         let sweep = record.sweep;
         for (value, outcome) in &record.points {
-            let (error, reason) = match outcome {
-                Outcome::Error(error) => (number(*error), ""),
-                Outcome::Failed(reason) => (String::new(), reason.as_str()),
-            };
+            let (error, reason) = (outcome.error().map_or_else(String::new, number), outcome.reason().unwrap_or_default());
             text += &format!(
                 "{},{},{},{},{},{error},{},{},{}\n",
                 sweep.name,
@@ -90,12 +90,9 @@ pub fn object(records: &[Record]) -> Value {
     let record = |record: &Record| {
         let sweep = record.sweep;
         let points = record.points.iter().map(|(value, outcome)| {
-            let (error, reason) = match outcome {
-                Outcome::Error(error) => (Some(*error), None),
-                Outcome::Failed(reason) => (None, Some(reason)),
-            };
             json!({
-                "value": value, "status": outcome.status(sweep.bound_percent).name(), "error_percent": error, "reason": reason,
+                "value": value, "status": outcome.status(sweep.bound_percent).name(), "error_percent": outcome.error(),
+                "reason": outcome.reason(),
             })
         });
         json!({

@@ -9,7 +9,7 @@ use super::chart::{FINE, INK, font, px, save};
 use super::stability::{range, short};
 use super::stability_picture::is_logarithmic;
 use crate::error::Result;
-use crate::stability::{Outcome, Record, Status, Sweep};
+use crate::stability::{Record, Status, Sweep};
 
 /// Height of a row, of the head and of the foot, px.
 const ROW: u32 = 24;
@@ -99,7 +99,7 @@ fn bar(root: &Area<'_>, record: &Record, top: u32) -> Drawn {
             Status::Failed => FAILED,
         };
         root.draw(&Rectangle::new([(low, from), (high, to)], colour.filled()))?;
-        if matches!(outcome, Outcome::Failed(_)) {
+        if status == Status::Failed {
             hatch(root, [low, high], [from, to])?;
         }
     }

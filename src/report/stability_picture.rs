@@ -45,7 +45,7 @@ fn reasons(records: &[&Record]) -> Vec<String> {
     let mut found: Vec<(String, String)> = Vec::new();
     for record in records {
         for (value, outcome) in &record.points {
-            let Outcome::Failed(reason) = outcome else { continue };
+            let Some(reason) = outcome.reason() else { continue };
             let words: String = reason.chars().filter(|c| !c.is_ascii_digit()).collect();
             if found.iter().all(|(known, _)| *known != words) {
                 let cut: String = reason.chars().take(REASON).collect();
@@ -66,10 +66,8 @@ fn draw(svg: &mut String, size: (u32, u32), sweep: &Sweep, records: &[&Record], 
     area.draw(&Text::new(title, (px(SIZE.0 / 2), px(20)), font(17).pos(middle)))?;
     let values = || sweep.values.iter().copied();
     let x = if is_logarithmic(sweep) { Axis::logarithmic(values()) } else { Axis::linear(values()) };
-    let sizes = records.iter().flat_map(|record| &record.points).filter_map(|(_, outcome)| match outcome {
-        Outcome::Error(error) => Some(error.abs().clamp(FLOOR, CEILING)),
-        Outcome::Failed(_) => None,
-    });
+    let drawn = |error: f64| error.abs().clamp(FLOOR, CEILING);
+    let sizes = records.iter().flat_map(|record| &record.points).filter_map(|(_, outcome)| outcome.error()).map(drawn);
     let y = Axis::logarithmic_wide(sizes.chain([sweep.bound_percent]));
     let (low, high) = (y.range().start, y.range().end);
     let (x_labels, y_labels) = (x.labels(), y.labels());
@@ -115,19 +113,14 @@ fn draw(svg: &mut String, size: (u32, u32), sweep: &Sweep, records: &[&Record], 
     for (record, colour) in records.iter().zip(COLOURS.iter().cycle()) {
         let line = ShapeStyle::from(colour).stroke_width(2 * FINE);
         // A failure interrupts the line.
-        let pieces = record.points.split(|(_, outcome)| matches!(outcome, Outcome::Failed(_)));
+        let pieces = record.points.split(|(_, outcome)| outcome.error().is_none());
         for piece in pieces {
-            let points: Vec<(f64, f64)> = piece
-                .iter()
-                .filter_map(|(value, outcome)| match outcome {
-                    Outcome::Error(error) => Some((*value, error.abs().clamp(FLOOR, CEILING))),
-                    Outcome::Failed(_) => None,
-                })
-                .collect();
+            let point = |(value, outcome): &(f64, Outcome)| Some((*value, drawn(outcome.error()?)));
+            let points: Vec<(f64, f64)> = piece.iter().filter_map(point).collect();
             chart.draw_series(LineSeries::new(points.iter().copied(), line))?;
             chart.draw_series(points.iter().map(|&point| Circle::new(point, px(3), colour.filled())))?;
         }
-        let failed = record.points.iter().filter(|(_, outcome)| matches!(outcome, Outcome::Failed(_)));
+        let failed = record.points.iter().filter(|(_, outcome)| outcome.error().is_none());
         let top = high / (high / low).powf(0.03);
         chart.draw_series(failed.map(|(value, _)| Cross::new((*value, top), px(5), line)))?;
     }

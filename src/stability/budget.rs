@@ -100,8 +100,8 @@ pub fn within(budget: Budget, work: impl FnOnce(&Run) -> Result<f64>) -> Outcome
     });
     match done {
         Err(panic) => Outcome::Failed(format!("panic: {}", words_of(panic.as_ref()))),
-        Ok(_) if ran_out.load(Ordering::Relaxed) => Outcome::Failed(format!("not done within {} s", budget.seconds)),
-        Ok(_) if run.watch.is_cancelled() => Outcome::Failed(format!("not done within {} blocks", budget.blocks)),
+        Ok(_) if ran_out.load(Ordering::Relaxed) => Outcome::Unfinished(format!("not done within {} s", budget.seconds)),
+        Ok(_) if run.watch.is_cancelled() => Outcome::Unfinished(format!("not done within {} blocks", budget.blocks)),
         Ok(Ok(error)) if error.is_finite() => Outcome::Error(error),
         Ok(Ok(error)) => Outcome::Failed(format!("the result is {error}")),
         Ok(Err(error)) => Outcome::Failed(reason(&error)),

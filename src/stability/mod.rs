@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-pub use budget::{Budget, Run};
+pub use budget::{Budget, Run, within};
 pub use sweeps::SWEEPS;
 
 use crate::error::{Result, input};
@@ -57,6 +57,8 @@ pub enum Outcome {
     Error(f64),
     /// No result, and why.
     Failed(String),
+    /// The budget was spent before there was one, which says nothing about the method.
+    Unfinished(String),
 }
 
 /// How that is judged.
@@ -89,7 +91,25 @@ impl Outcome {
         match self {
             Outcome::Error(error) if error.abs() <= bound_percent => Status::Stable,
             Outcome::Error(_) => Status::Degraded,
-            Outcome::Failed(_) => Status::Failed,
+            Outcome::Failed(_) | Outcome::Unfinished(_) => Status::Failed,
+        }
+    }
+
+    /// Error, percent, where there is a result.
+    #[must_use]
+    pub fn error(&self) -> Option<f64> {
+        match self {
+            Outcome::Error(error) => Some(*error),
+            Outcome::Failed(_) | Outcome::Unfinished(_) => None,
+        }
+    }
+
+    /// Why there is no result.
+    #[must_use]
+    pub fn reason(&self) -> Option<&str> {
+        match self {
+            Outcome::Error(_) => None,
+            Outcome::Failed(reason) | Outcome::Unfinished(reason) => Some(reason),
         }
     }
 }
@@ -103,7 +123,7 @@ pub struct Record {
     pub method: &'static str,
     /// Values, rising, those of the bisection among them, with what came of them.
     pub points: Vec<(f64, Outcome)>,
-    /// Ends of the safe range: the last stable values, `None` where the range has no end within the sweep.
+    /// Ends of the safe range: the last stable values, `None` where the range has no end within the sweep or the budget.
     pub ends: [Option<f64>; 2],
     /// Whether the usual value is stable; without it there is no safe range.
     pub is_safe: bool,
@@ -135,7 +155,7 @@ impl Effort {
     /// All values, ends to 2 %.
     pub const FULL: Effort = Effort { stride: 1, resolution: 0.02, budget: Budget { seconds: 60.0, blocks: 4000 } };
     /// Every third value, ends to 20 %.
-    pub const QUICK: Effort = Effort { stride: 3, resolution: 0.2, budget: Budget { seconds: 6.0, blocks: 1000 } };
+    pub const QUICK: Effort = Effort { stride: 3, resolution: 0.2, budget: Budget { seconds: 20.0, blocks: 1000 } };
 }
 
 /// The sweeps of these names, all where no name is given.
@@ -144,7 +164,7 @@ impl Effort {
 /// A name that no sweep bears.
 pub fn sweeps(names: &[String]) -> Result<Vec<&'static Sweep>> {
     if names.is_empty() {
-        return Ok(SWEEPS.iter().copied().collect());
+        return Ok(SWEEPS.to_vec());
     }
     let known = || SWEEPS.iter().map(|sweep| sweep.name).collect::<Vec<_>>().join(", ");
     let find = |name: &String| {

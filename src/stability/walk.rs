@@ -19,6 +19,8 @@ pub(super) fn walk(sweep: &'static Sweep, method: &'static Method, effort: Effor
     if let Some(usual) = usual {
         let below = points[..usual].iter().rposition(|point| !is_stable(point));
         let above = points[usual..].iter().position(|point| !is_stable(point)).map(|more| usual + more);
+        let is_judged = |at: &usize| !matches!(points[*at].1, Outcome::Unfinished(_));
+        let (below, above) = (below.filter(is_judged), above.filter(is_judged));
         let pairs = [below.map(|at| (points[at + 1].0, points[at].0)), above.map(|at| (points[at - 1].0, points[at].0))];
         for (end, pair) in ends.iter_mut().zip(pairs) {
             let Some((mut inside, mut beyond)) = pair else { continue };
@@ -27,12 +29,16 @@ pub(super) fn walk(sweep: &'static Sweep, method: &'static Method, effort: Effor
                     break;
                 }
                 let point = measure(between(inside, beyond));
+                let is_judged = !matches!(point.1, Outcome::Unfinished(_));
                 if is_stable(&point) {
                     inside = point.0;
                 } else {
                     beyond = point.0;
                 }
                 points.push(point);
+                if !is_judged {
+                    break;
+                }
             }
             *end = Some(inside);
         }

@@ -151,7 +151,9 @@ pub fn patch(law: BondLaw) -> Result<Patch> {
 /// # Errors
 /// As [`patch`].
 pub fn patch_of(law: BondLaw, levels: usize) -> Result<Patch> {
-    let scene = boxed(law, [[-20.0 * MM, -30.0 * MM], [20.0 * MM, 30.0 * MM]], levels);
+    // The finer, the narrower, so that the number of points stays within bounds.
+    let half = 20.0 * MM / 2.0_f64.powi(levels.saturating_sub(1) as i32);
+    let scene = boxed(law, [[-half, -30.0 * MM], [half, 30.0 * MM]], levels);
     let net = fracture::build(&scene)?.0;
     let (n, nu, size) = (net.unknowns, scene.material.poisson_ratio, net.len() * net.unknowns);
     let (mut exact, mut held) = (vec![0.0; size], vec![false; size]);

@@ -21,8 +21,8 @@ pub const LEVEL_JUMP: Sweep = Sweep {
             displacement over strain times length",
     parameter: "coarsest over finest spacing",
     unit: "",
-    values: &[1.0, 2.0, 4.0, 8.0],
-    usual: 1.0,
+    values: &[2.0, 4.0, 8.0],
+    usual: 2.0,
     is_continuous: false,
     bound_percent: 1.0,
     methods: &[

@@ -32,6 +32,7 @@ pub const PLANE_STRAIN: Sweep = Sweep {
     name: "nu_plane_strain",
     parameter: "Poisson's ratio, plane strain",
     values: &[0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.48, 0.49, 0.499],
+    usual: 0.2,
     methods: &[
         Method { name: "law chosen by the program", measure: |nu, run| life(nu, run, "strain", &[]) },
         Method { name: "two_parameter", measure: |nu, run| life(nu, run, "strain", &["model.bond_law=two_parameter"]) },

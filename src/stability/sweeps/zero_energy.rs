@@ -21,7 +21,7 @@ pub const SPRING: Sweep = Sweep {
     parameter: "spring constant c_I (model.zero_energy_factor)",
     unit: "N/m^7",
     values: &[1e18, 1e19, 1e20, 3e20, 1e21, 3e21, 1e22, 3e22, 1e23],
-    usual: 1e20,
+    usual: 3e20,
     is_continuous: true,
     bound_percent: 5.0,
     methods: &[
@@ -35,8 +35,8 @@ pub const SILLING: Sweep = Sweep {
     name: "zero_energy_silling",
     parameter: "factor H (model.zero_energy_factor)",
     unit: "",
-    values: &[0.0, 0.001, 0.01, 0.05, 0.1, 0.5, 1.0, 3.0, 10.0, 30.0, 100.0],
-    usual: 0.5,
+    values: &[0.0, 0.001, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0],
+    usual: 0.3,
     methods: &[
         Method { name: "correspondence, silling: global", measure: |h, _: &Run| global((ZeroEnergyControl::Silling, h)) },
         Method { name: "correspondence, silling: nodal", measure: |h, _: &Run| nodal((ZeroEnergyControl::Silling, h)) },
