@@ -1,5 +1,6 @@
 //! One input file: one choice from each room, checked as a whole before anything runs.
 
+mod boundaries;
 mod choices;
 mod fatigue;
 pub mod first_load;

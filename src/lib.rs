@@ -48,6 +48,7 @@ pub mod line;
 pub mod block_cholesky;
 pub mod sealed;
 pub mod input;
+pub mod limits;
 
 pub mod specimen;
 pub mod loading;
@@ -67,6 +68,7 @@ pub mod predict;
 pub mod fracture;
 pub mod calibration;
 pub mod verify;
+pub mod stability;
 pub mod chart;
 pub mod sweep;
 pub mod report;

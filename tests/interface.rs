@@ -61,6 +61,8 @@ mod rates;
 mod service;
 #[path = "interface/sif.rs"]
 mod sif;
+#[path = "interface/stability.rs"]
+mod stability;
 #[path = "interface/sweep.rs"]
 mod sweep;
 #[path = "interface/traceable.rs"]

@@ -81,6 +81,8 @@ mod hand_case;
 mod handbook;
 #[path = "unit/quadrature.rs"]
 mod quadrature;
+#[path = "unit/limits.rs"]
+mod limits;
 #[path = "unit/loading.rs"]
 mod loading;
 #[path = "unit/specimen.rs"]

@@ -13,6 +13,8 @@ mod fracture_scenes;
 mod fit_engine;
 #[path = "validation/fit_virkler.rs"]
 mod fit_virkler;
+#[path = "validation/fuzz_cases.rs"]
+mod fuzz_cases;
 #[path = "validation/kept_back.rs"]
 mod kept_back;
 #[path = "validation/median_virkler.rs"]
@@ -21,5 +23,7 @@ mod median_virkler;
 mod notched_plates;
 #[path = "validation/rivals.rs"]
 mod rivals;
+#[path = "validation/stability.rs"]
+mod stability;
 #[path = "validation/rates_virkler.rs"]
 mod rates_virkler;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::choices::{Choices, Method};
-use super::{Case, LAW_KEYS, LawSource, fatigue, first_load, law, law_record, model, remove_law};
+use super::{Case, LAW_KEYS, LawSource, boundaries, fatigue, first_load, law, law_record, model, remove_law};
 use crate::calibration::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
@@ -14,9 +14,7 @@ use crate::fatigue::paris::ParisLaw;
 use crate::input::{Document, Folder, ForeignSections, OF_SCENES, OpenedFile, Provenance, Sections, value_at};
 use crate::levels::Discretisation;
 use crate::loading::LoadingKind;
-use crate::material::Plane;
 use crate::solver::SolverKind;
-use crate::specimen::CrackLine;
 use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use crate::{loading, material, specimen};
 
@@ -224,11 +222,7 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
         }
     }
     lines.extend(compression_line(case));
-    if case.is_driven_by_factors() && case.model.method == Method::Peridynamics {
-        lines.extend(short_line(case));
-        lines.extend(small_hole_line(case));
-        lines.extend(incompressible_line(case));
-    }
+    lines.extend(boundaries::lines(case));
     if case.spends_bond_life() {
         lines.extend(horizon_line(case));
     }
@@ -250,48 +244,6 @@ fn units_line(law: &ParisLaw) -> Option<String> {
             "C and m give {rate:.1e} mm/cycle at ΔK = 10 MPa√m, where metals have {low:.0e} to {high:.0e}: is C in mm/cycle and MPa√m? \
              (C in m/cycle is to be multiplied by 1000; that for ksi√in and inch/cycle by 25.4 / 1.0988^m)"
         )
-    })
-}
-
-/// A crack that is short against the horizon. Measured (spacing 1 mm, horizon 3 mm): K over handbook -0.6 % at 1.3 horizons and -3.9 %
-/// at 0.8 in middle tension, -0.8 % at 2.7 and -3.8 % at 1 in single edge tension.
-fn short_line(case: &Case) -> Option<String> {
-    /// Horizons below which K is read more than 1 % low: cracks with two tips by their half, and with one.
-    const LEAST: [f64; 2] = [1.2, 2.5];
-    let (specimen, horizon) = (&case.specimen, case.model.horizon_ratio * case.model.spacing);
-    let size = |line: &CrackLine| (line.length() / specimen.tips_of(line).max(1) as f64, specimen.tips_of(line));
-    let lines = specimen.crack_lines();
-    let sizes = lines.iter().map(size);
-    let short = sizes.filter(|(size, tips)| *size < LEAST[usize::from(*tips == 1)] * horizon).map(|(size, _)| size);
-    let size = short.min_by(f64::total_cmp)?;
-    let (flaw, horizon) = (model::round_mm(size), model::round_mm(horizon));
-    Some(format!(
-        "a crack of {flaw} mm is short against the horizon, {horizon} mm: its K is read up to 4 % low, and its life is too long by up to m \
-         times that until it has grown; give a smaller model.spacing_mm"
-    ))
-}
-
-/// A hole that the points round off. Measured against finite elements (beam with three holes of 6 mm, of which a crack enters one;
-/// `tests/reference`): life +2.3 to +4.4 % with a horizon of 4 mm, on three lattices, +0.2 % with 1.5 mm.
-fn small_hole_line(case: &Case) -> Option<String> {
-    const LEAST: f64 = 2.0;
-    let horizon = case.model.horizon_ratio * case.model.spacing;
-    let smallest = case.specimen.holes.iter().map(|hole| 2.0 * hole.radius).min_by(f64::total_cmp)?;
-    let (hole, given) = (model::round_mm(smallest), model::round_mm(horizon));
-    (smallest < LEAST * horizon).then(|| {
-        format!(
-            "a hole of {hole} mm is small against the horizon, {given} mm: a crack that it draws may err by some percent of life; give a \
-             smaller model.spacing_mm"
-        )
-    })
-}
-
-/// Measured in plane strain (middle tension, spacing 1 mm): K over handbook -0.1, +0.7, +4.8 % at ν = 0.3, 0.45, 0.49.
-fn incompressible_line(case: &Case) -> Option<String> {
-    const NU: f64 = 0.44;
-    let nu = case.material.poisson_ratio;
-    (case.material.plane == Plane::Strain && nu > NU).then(|| {
-        format!("nu {nu} in plane strain is nearly incompressible: K is read up to 6 % high, and the life is too short by up to m times that")
     })
 }
 

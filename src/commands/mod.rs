@@ -15,6 +15,7 @@ pub mod rates;
 #[cfg(feature = "service")]
 pub mod serve;
 pub mod sif;
+pub mod stability;
 pub mod sweep;
 #[cfg(feature = "service")]
 pub mod token;
@@ -73,6 +74,8 @@ commands! {
     Verify: verify,
     /// Measure every method, law, solver and resolution: time against error
     Chart: chart or "bench",
+    /// Take every method across its range until it fails: safe ranges and why they end
+    Stability: stability,
     /// Check an input file without running it
     Check: check,
     /// List every kind of every key of the input files

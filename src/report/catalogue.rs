@@ -27,6 +27,7 @@ use crate::material::{Plane, library};
 use crate::predict::StopReason;
 use crate::solver::{SolverKind, SolverUsed, Symmetry};
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
+use crate::stability::SWEEPS;
 use crate::stress_intensity::StressIntensityMethod;
 use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
 use crate::verify::all_topics;
@@ -103,6 +104,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.extend(all_topics().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
     all.extend(SCENES.iter().map(|scene| ("chart SCENE".to_owned(), scene.name.to_owned(), scene.about.to_owned())));
     all.extend([Family::lines(), Status::lines()].into_iter().flatten().map(words));
+    all.extend(SWEEPS.iter().map(|sweep| ("stability NAME".to_owned(), sweep.name.to_owned(), sweep.about.to_owned())));
     all
 }
 

@@ -118,8 +118,8 @@ fn left(net: &Net, u: &[f64]) -> Left {
 ///
 /// # Errors
 /// As [`fracture::build`].
-fn ghost(law: BondLaw, arrangement: Discretisation) -> Result<f64> {
-    let mut scene = boxed(law, [[10.0 * MM, -30.0 * MM], [50.0 * MM, 30.0 * MM]], 1);
+pub fn ghost(law: BondLaw, arrangement: Discretisation, levels: usize) -> Result<f64> {
+    let mut scene = boxed(law, [[10.0 * MM, -30.0 * MM], [50.0 * MM, 30.0 * MM]], levels);
     scene.model.arrangement = arrangement;
     let net = fracture::build(&scene)?.0;
     let mut u = vec![0.0; net.len() * net.unknowns];
@@ -143,7 +143,17 @@ pub struct Patch {
 /// # Errors
 /// As [`fracture::build`], no equilibrium.
 pub fn patch(law: BondLaw) -> Result<Patch> {
-    let scene = boxed(law, [[-20.0 * MM, -30.0 * MM], [20.0 * MM, 30.0 * MM]], 1);
+    patch_of(law, 1)
+}
+
+/// The same with points split in four so many times in the middle.
+///
+/// # Errors
+/// As [`patch`].
+pub fn patch_of(law: BondLaw, levels: usize) -> Result<Patch> {
+    // The finer, the narrower, so that the number of points stays within bounds.
+    let half = 20.0 * MM / 2.0_f64.powi(levels.saturating_sub(1) as i32);
+    let scene = boxed(law, [[-half, -30.0 * MM], [half, 30.0 * MM]], levels);
     let net = fracture::build(&scene)?.0;
     let (n, nu, size) = (net.unknowns, scene.material.poisson_ratio, net.len() * net.unknowns);
     let (mut exact, mut held) = (vec![0.0; size], vec![false; size]);
@@ -295,7 +305,7 @@ fn momentum(table: &mut Table) -> Result<()> {
 /// Resultant of uniform strain with the dual horizon and without it.
 fn ghosts(table: &mut Table) -> Result<()> {
     let unbalanced = || laws().filter(|law| law.surface_correction != SurfaceCorrection::Balanced);
-    let all = |arrangement| unbalanced().map(|law| ghost(law, arrangement)).collect::<Result<Vec<f64>>>();
+    let all = |arrangement| unbalanced().map(|law| ghost(law, arrangement, 1)).collect::<Result<Vec<f64>>>();
     let (dual, without) = (all(Discretisation::DualHorizon)?, all(Discretisation::VariableHorizon)?);
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     let source = "Ren, Zhuang, Cai and Rabczuk 2016";

@@ -4,7 +4,7 @@ use super::scene::{MATERIAL_AND_LAW, PULL, case, points};
 use crate::calibration::model::cycles_since_first;
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::predict::{Prediction, Silent, predict};
+use crate::predict::{Observer, Prediction, Silent, StopReason, predict};
 use crate::quadrature::integrate;
 use crate::specimen::LoadMeasure;
 use crate::specimen::handbook::handbook;
@@ -67,7 +67,19 @@ impl Standard {
     /// # Errors
     /// As [`predict`].
     pub fn over_quadrature(&self, set: &[&str]) -> Result<f64> {
-        Ok(self.life(set)? / self.by_quadrature(set, self.range[1])?)
+        self.over_quadrature_watched(set, &Silent)
+    }
+
+    /// [`Standard::over_quadrature`] with an observer of the run, which may end it.
+    ///
+    /// # Errors
+    /// As [`predict`]; a run that ends before the last length.
+    pub fn over_quadrature_watched(&self, set: &[&str], observer: &dyn Observer) -> Result<f64> {
+        let run = predict(&self.case(set)?, observer)?;
+        if run.stop != StopReason::CrackLengthReached {
+            return Err(Error::Mechanics(format!("{} ended before its last length: {}", self.name, run.stop)));
+        }
+        Ok(run.life_cycles() / self.by_quadrature(set, self.range[1])?)
     }
 
     /// Life to a length, mm, by quadrature with K of finite elements, cycles.

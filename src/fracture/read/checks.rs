@@ -3,7 +3,10 @@
 use super::region::{around, overlap};
 use crate::bond_law::BondLawKind;
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::{Action, DamageLaw, Discretisation, LoadRamp, Procedure, Region, Scene, SceneLaw, SceneLoad};
+use crate::fracture::scene::{
+    Action, DamageLaw, Discretisation, LoadRamp, Procedure, Region, Scene, SceneLaw, SceneLoad, ZeroEnergyControl,
+};
+use crate::limits;
 use crate::loading::imbalance;
 use crate::specimen::{Point, Support};
 
@@ -188,5 +191,20 @@ pub fn lines(scene: &Scene) -> Vec<String> {
             "damage.law = \"critical_energy\" on bond_based counts normal stretch alone, as critical_stretch does (nu {nu})"
         ));
     }
+    lines.extend(zero_energy_line(scene));
     lines
+}
+
+/// A factor of `silling` beyond what was measured safe ([`crate::limits`]).
+fn zero_energy_line(scene: &Scene) -> Option<String> {
+    let SceneLaw::Correspondence { control: ZeroEnergyControl::Silling, factor } = scene.model.law else { return None };
+    let passed = |ordinate: &str| {
+        let limit = limits::of("zero_energy_silling", ordinate)?;
+        Some((limit.passed(factor)?, limit.bound_percent))
+    };
+    let (end, bound, what) =
+        passed("correspondence, silling: global").map(|(end, bound)| (end, bound, "displacements err")).or_else(|| {
+            passed("correspondence, silling: nodal").map(|(end, bound)| (end, bound, "strain differs from point to point"))
+        })?;
+    Some(format!("model.zero_energy_factor {factor}: beyond {end} {what} by more than {bound} %; leave it out"))
 }

@@ -30,6 +30,8 @@ pub enum RunKind {
     Verify,
     /// `perilife chart`.
     Chart,
+    /// `perilife stability`.
+    Stability,
 }
 
 impl RunKind {
@@ -44,6 +46,7 @@ impl RunKind {
             RunKind::SweepCase => "a case of a sweep",
             RunKind::Verify => "a verification",
             RunKind::Chart => "a speed-accuracy chart",
+            RunKind::Stability => "a map of stability",
         }
     }
 }

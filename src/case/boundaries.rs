@@ -1,0 +1,197 @@
+//! What a case is told where it lies beyond the safe range of its method: the figures are those of [`crate::limits`].
+
+use super::model::round_mm;
+use super::{Case, Method};
+use crate::bond_law::BondLawKind;
+use crate::case::LawSource;
+use crate::element_free::basis::BasisKind;
+use crate::fatigue::{Ageing, Driver, GrowthRate};
+use crate::limits;
+use crate::material::Plane;
+use crate::specimen::geometry::{distance, edges, meeting_share, segments_touch};
+use crate::specimen::{CrackLine, Hole, Point, Specimen};
+
+/// A line for every safe range that the case lies beyond.
+pub(super) fn lines(case: &Case) -> Vec<String> {
+    let mut lines = Vec::new();
+    match (case.model.method, case.fatigue.driver) {
+        (Method::Handbook, _) => {}
+        (Method::ElementFreeGalerkin, _) => {
+            lines.extend(influence_line(case));
+            lines.extend(poisson_line(case, Some("element_free_galerkin")));
+        }
+        (Method::Peridynamics, Driver::TipField) => {
+            lines.extend(horizon_lines(case));
+            lines.extend(ratio_line(case, "tip_field"));
+            lines.extend(poisson_line(case, law_name(case)));
+            lines.extend(step_line(case));
+            lines.extend(exponent_line(case, "exponent", "tip_field"));
+        }
+        (Method::Peridynamics, Driver::BondStrain) => {
+            // What bonds by their own strain do over the horizon ratio is told with its size elsewhere.
+            match (case.fatigue.ageing, case.fatigue.growth_rate) {
+                (Ageing::Everywhere, _) => lines.extend(exponent_line(case, "ageing", "bond_strain, ageing everywhere")),
+                (_, GrowthRate::StressIntensity) => {
+                    lines.extend(ratio_line(case, "bond_strain at the rate of K"));
+                    lines.extend(exponent_line(case, "exponent", "bond_strain at the rate of K"));
+                }
+                (_, GrowthRate::BondStrain) => {
+                    lines.extend(exponent_line(case, "exponent", "bond_strain by its own strain"));
+                }
+            }
+        }
+    }
+    lines
+}
+
+/// The law of a case as the sweeps over Poisson's ratio name it.
+fn law_name(case: &Case) -> Option<&'static str> {
+    match case.choices.bond_law {
+        None => Some("law chosen by the program"),
+        Some(BondLawKind::TwoParameter) => Some("two_parameter"),
+        Some(BondLawKind::StateBased) => Some("state_based"),
+        Some(BondLawKind::OneBondTwoParameter) => Some("one_bond_two_parameter"),
+        Some(BondLawKind::BondBased) => None,
+    }
+}
+
+/// The horizon against crack, ligament, hole and other cracks.
+fn horizon_lines(case: &Case) -> Vec<String> {
+    let specimen = &case.specimen;
+    let horizon = case.model.horizon_ratio * case.model.spacing;
+    let sizes = |has_one_tip: bool| {
+        let lines = specimen.crack_lines();
+        let of_kind = lines.into_iter().filter(|line| (specimen.tips_of(line) == 1) == has_one_tip);
+        of_kind.map(|line| line.length() / specimen.tips_of(&line).max(1) as f64).fold(f64::INFINITY, f64::min)
+    };
+    let diameter = specimen.holes.iter().map(|hole| 2.0 * hole.radius).fold(f64::INFINITY, f64::min);
+    let Gaps { ligament, hole, crack } = Gaps::of(specimen);
+    let resolved = [
+        ("crack_length", "half crack length", sizes(false)),
+        ("edge_crack_length", "length of a crack from a rim", sizes(true)),
+        ("ligament", "ligament ahead of a tip", ligament),
+        ("hole_distance", "distance to a hole", hole),
+        ("hole_diameter", "diameter of a hole", diameter),
+        ("crack_distance", "distance to another crack", crack),
+    ];
+    let line = |(sweep, what, length): (&str, &str, f64)| {
+        let limit = limits::of(sweep, "tip_field")?;
+        let end = limit.passed(horizon / length)?;
+        Some(format!(
+            "the horizon, {} mm, is {:.2} of the {what}, {} mm; beyond {end} K errs by more than {} %, and the life by m times that: give a \
+             smaller model.spacing_mm",
+            round_mm(horizon),
+            horizon / length,
+            round_mm(length),
+            limit.bound_percent
+        ))
+    };
+    resolved.into_iter().filter_map(line).collect()
+}
+
+/// Least distances of the tips from what lies around them, m; infinite where there is nothing.
+struct Gaps {
+    /// To the outline straight ahead.
+    ligament: f64,
+    /// To the rim of a hole that the crack does not start from.
+    hole: f64,
+    /// To another crack.
+    crack: f64,
+}
+
+impl Gaps {
+    fn of(specimen: &Specimen) -> Gaps {
+        let lines = specimen.crack_lines();
+        let mut gaps = Gaps { ligament: f64::INFINITY, hole: f64::INFINITY, crack: f64::INFINITY };
+        for tip in 0..specimen.tips.len() {
+            let Some(end) = specimen.line_end(tip) else { continue };
+            let line = &lines[end.line];
+            let at = line.end(end.at_last);
+            gaps.ligament = gaps.ligament.min(ahead(specimen, at, specimen.tips[tip].direction));
+            let others = lines.iter().enumerate().filter(|(other, _)| *other != end.line);
+            gaps.crack = others.map(|(_, other)| other.distance(at)).fold(gaps.crack, f64::min);
+            let holes = specimen.holes.iter().filter(|hole| !starts_at(line, !end.at_last, hole));
+            gaps.hole = holes.map(|hole| distance(at, hole.centre) - hole.radius).fold(gaps.hole, f64::min);
+        }
+        gaps
+    }
+}
+
+/// Whether an end of a crack is its mouth on a hole.
+fn starts_at(line: &CrackLine, at_last: bool, hole: &Hole) -> bool {
+    distance(line.end(at_last), hole.centre) < hole.radius * (1.0 + 1e-6)
+}
+
+/// Way from a tip to the outline straight ahead, m.
+fn ahead(specimen: &Specimen, at: Point, [x, y]: Point) -> f64 {
+    let reach = specimen.gross_width + specimen.length();
+    let far = [at[0] + reach * x, at[1] + reach * y];
+    let met = edges(&specimen.outline).filter(|(a, b)| segments_touch(at, far, *a, *b));
+    met.filter_map(|(a, b)| meeting_share(at, far, a, b)).map(|share| share * reach).fold(f64::INFINITY, f64::min)
+}
+
+/// Horizon over spacing.
+fn ratio_line(case: &Case, method: &str) -> Option<String> {
+    let ratio = case.model.horizon_ratio;
+    let limit = limits::of("horizon_ratio", method)?;
+    let end = limit.passed(ratio)?;
+    Some(format!("model.horizon_ratio {ratio}: beyond {end} the life errs by more than {} %; give 3.015", limit.bound_percent))
+}
+
+/// Poisson's ratio.
+fn poisson_line(case: &Case, method: Option<&str>) -> Option<String> {
+    let nu = case.material.poisson_ratio;
+    let (sweep, plane) = match case.material.plane {
+        Plane::Stress => ("nu_plane_stress", "stress"),
+        Plane::Strain => ("nu_plane_strain", "strain"),
+    };
+    let limit = limits::of(sweep, method?)?;
+    let end = limit.passed(nu)?;
+    let what = if case.model.method == Method::ElementFreeGalerkin { "K errs" } else { "the life at m = 3 errs" };
+    Some(format!("nu {nu} in plane {plane}: beyond {end} {what} by more than {} %", limit.bound_percent))
+}
+
+/// Length of cycle blocks.
+fn step_line(case: &Case) -> Option<String> {
+    let error = case.fatigue.step_error_percent;
+    let passed = ["growth_step", "severing_step"].into_iter().find_map(|sweep| {
+        let limit = limits::of(sweep, "tip_field")?;
+        limit.ends[1].filter(|high| error > *high).map(|high| (high, limit.bound_percent))
+    });
+    let (end, bound) = passed?;
+    Some(format!(
+        "fatigue.step_error_percent {error}: beyond {end} blocks are so long that the life errs by more than {bound} %; give less"
+    ))
+}
+
+/// Exponent of the law.
+fn exponent_line(case: &Case, sweep: &str, method: &str) -> Option<String> {
+    let exponent = match &case.law {
+        LawSource::Inline(law) => law.p,
+        LawSource::Paris(law) => law.m,
+        LawSource::Fitted(record) => record.p,
+        LawSource::Factor(_) | LawSource::Missing(_) => return None,
+    };
+    let limit = limits::of(sweep, method)?;
+    let bound = limit.bound_percent;
+    if !limit.is_safe {
+        return Some(format!("{method}: the life errs by more than {bound} % at any exponent that was measured"));
+    }
+    let end = limit.passed(exponent)?;
+    Some(format!("exponent {exponent} by {method}: beyond {end} the life errs by more than {bound} %"))
+}
+
+/// Radius of influence of nodes.
+fn influence_line(case: &Case) -> Option<String> {
+    let resolution = &case.model.element_free.resolution;
+    let method = match resolution.basis {
+        BasisKind::Linear => "element_free_galerkin, linear basis",
+        BasisKind::Quadratic => "element_free_galerkin, quadratic basis",
+    };
+    let limit = limits::of("influence_radius", method)?;
+    let end = limit.passed(resolution.support)?;
+    Some(format!(
+        "model.influence_radius {}: beyond {end} spacings of nodes K errs by more than {} %; leave it out",
+        resolution.support, limit.bound_percent
+    ))
+}

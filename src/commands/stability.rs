@@ -1,0 +1,54 @@
+//! `perilife stability`: where each method fails.
+
+use std::path::PathBuf;
+
+use super::console::Console;
+use crate::error::Result;
+use crate::report::output::{OutputFolder, RunKind, write_file};
+use crate::report::stability as tables;
+use crate::report::{stability_map, stability_picture};
+use crate::stability::{self, Effort, sweeps};
+
+/// Arguments of `perilife stability`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Sweeps to run; all where none is given (`perilife list` names them)
+    #[arg(value_name = "NAME")]
+    pub names: Vec<String>,
+    /// Every third value and ends to 20 %: two minutes
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for stability.csv, boundaries.csv, stability.json, stability.svg and a picture of every sweep
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: Option<PathBuf>,
+    /// What is printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// Runs `perilife stability`.
+///
+/// # Errors
+/// A name that is no sweep; files that cannot be written.
+pub fn run(args: &Args) -> Result<()> {
+    let sweeps = sweeps(&args.names)?;
+    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
+    let folder = args.out.as_deref().map(|path| OutputFolder::create(path, RunKind::Stability)).transpose()?;
+    let records = stability::run(&sweeps, effort, &|record| args.console.say(&tables::line(record)));
+    let object = tables::object(&records);
+    if let Some(mut folder) = folder {
+        folder.fill(|path| {
+            let write = |name: &str, text: String| write_file(&path.join(name), text.as_bytes());
+            write("stability.csv", tables::csv(&records))?;
+            write("boundaries.csv", tables::boundaries(&records))?;
+            write("stability.json", format!("{object:#}\n"))?;
+            for sweep in &sweeps {
+                let of_sweep: Vec<_> = records.iter().filter(|record| record.sweep.name == sweep.name).collect();
+                stability_picture::sweep(&path.join(format!("{}.svg", sweep.name)), sweep, &of_sweep)?;
+            }
+            stability_map::overview(&path.join("stability.svg"), &records)
+        })?;
+        drop(folder.finish()?);
+    }
+    args.console.object(&object)
+}
