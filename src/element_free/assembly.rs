@@ -1,8 +1,7 @@
 //! Stiffness matrix and loads.
 //!
-//! `K_ab = h ∫ e_aᵀ D e_b dA` with e the strain of an unknown, `f_a = Σ F · u_a` over the loads. The matrix of a cell is one of all
-//! unknowns in reach; columns of the whole are gathered from those of the cells, each by itself, so that sums do not depend on the
-//! number of threads.
+//! `K_ab = h ∫ e_aᵀ D e_b dA` with e the strain of an unknown. The matrix of a cell is one of all unknowns in reach, and goes straight
+//! to the dense matrix of the part of the plate that the cell lies in ([`super::dissection`]).
 
 use std::collections::HashMap;
 
@@ -10,7 +9,8 @@ use rayon::prelude::*;
 
 use super::cells::{Dividers, QuadraturePoint, divided, whole};
 use super::field::{Discretisation, Local, TipFields, singular};
-use super::matrix::Element;
+use super::front::Front;
+use super::matrix::{lower_product, whole_product};
 use super::nodes::by_leaf;
 use super::rims::Side;
 use super::shape::Value;
@@ -66,18 +66,25 @@ pub struct Scratch {
     ends: Vec<(usize, f64)>,
     /// Near-tip fields at the points, all tips of a point together.
     fields: Vec<Option<TipFields>>,
-    /// First unknown of the cell of every node of the plate that it holds.
-    place: Vec<u32>,
-    nodes: Vec<u32>,
-    strains: Vec<f64>,
+    /// Number in the cell of every node of the plate, none of those that it does not hold.
+    numbers: Vec<u32>,
+    /// Nodes of the cell in the order of their unknowns in the front, with the number of the first enriched unknown of each.
+    nodes: Vec<(u32, u32)>,
+    /// Places in the front of the enriched unknowns.
+    enriched: Vec<u32>,
+    /// Gradients of shape functions, a row a point, and the same times the area.
+    gradients: [Vec<f64>; 2],
+    /// Strains of the unknowns without and with fields, three rows a point, and stresses of the latter times the area.
+    strains: [Vec<f64>; 2],
     stresses: Vec<f64>,
+    product: Vec<f64>,
 }
 
 impl Scratch {
     /// For a plate of so many nodes.
     #[must_use]
     pub fn of(nodes: usize) -> Self {
-        Scratch { place: vec![u32::MAX; nodes], ..Scratch::default() }
+        Scratch { numbers: vec![u32::MAX; nodes], ..Scratch::default() }
     }
 
     /// Takes the shape functions at all points.
@@ -101,74 +108,146 @@ impl Scratch {
         Ok(())
     }
 
-    /// Numbers the nodes in reach of any point; gives their unknowns.
-    fn number(&mut self, plate: &Discretisation, unknowns: &mut Vec<u32>) {
+    /// Numbers the nodes in reach of any point, and their enriched unknowns.
+    fn number(&mut self, plate: &Discretisation, places: &[u32]) {
         self.nodes.clear();
         for value in &self.values {
-            let place = &mut self.place[value.node as usize];
-            if *place == u32::MAX {
-                *place = 0;
-                self.nodes.push(value.node);
+            let number = &mut self.numbers[value.node as usize];
+            if *number == u32::MAX {
+                *number = 0;
+                self.nodes.push((value.node, 0));
             }
         }
-        self.nodes.sort_unstable();
-        unknowns.clear();
-        for &node in &self.nodes {
-            self.place[node as usize] = unknowns.len() as u32;
-            unknowns.extend(plate.first[node as usize]..plate.first[node as usize + 1]);
+        self.nodes.sort_unstable_by_key(|node| places[node.0 as usize]);
+        self.enriched.clear();
+        for (number, (node, first)) in (0..).zip(&mut self.nodes) {
+            self.numbers[*node as usize] = number;
+            *first = self.enriched.len() as u32;
+            let place = places[*node as usize] + 2;
+            self.enriched.extend(place..place + 2 * plate.enriched[*node as usize].len() as u32);
+        }
+    }
+
+    /// Gradients and strains at all points.
+    fn fill(&mut self, plate: &Discretisation, thickness: f64) {
+        let Scratch { values, ends, fields, numbers, nodes, enriched, gradients, strains, stresses, .. } = self;
+        let (n, m, points, tips) = (2 * nodes.len(), enriched.len(), ends.len(), plate.axes.len());
+        let is_enriched = usize::from(m > 0);
+        let [of_points, weighted] = gradients;
+        let [of_nodes, of_fields] = strains;
+        let sizes = [points * n, points * n, 3 * points * n * is_enriched, 3 * points * m, 3 * points * m];
+        for (rows, size) in [of_points, weighted, of_nodes, of_fields, stresses].into_iter().zip(sizes) {
+            rows.clear();
+            rows.resize(size, 0.0);
+        }
+        let [of_points, weighted] = gradients;
+        let [of_nodes, of_fields] = strains;
+        let elasticity = plate.elasticity();
+        let mut first_value = 0;
+        for (index, &(end, area)) in ends.iter().enumerate() {
+            let factor = thickness * area;
+            for value in &values[first_value..end] {
+                let number = numbers[value.node as usize] as usize;
+                let ([x, y], column) = (value.gradient, 2 * number);
+                let place = index * n + column;
+                (of_points[place], of_points[place + 1]) = (x, y);
+                (weighted[place], weighted[place + 1]) = (factor * x, factor * y);
+                if m == 0 {
+                    continue;
+                }
+                let row = 3 * index * n + column;
+                (of_nodes[row], of_nodes[row + 2 * n]) = (x, y);
+                (of_nodes[row + n + 1], of_nodes[row + 2 * n + 1]) = (y, x);
+                let first = nodes[number].1 as usize;
+                for (k, &tip) in plate.enriched[value.node as usize].iter().enumerate() {
+                    let Some(fields) = &fields[index * tips + tip as usize] else { continue };
+                    for (mode, (field, slope)) in fields.iter().enumerate() {
+                        let part = |i: usize, j: usize| field[i] * value.gradient[j] + value.value * slope[i][j];
+                        let gradient = [[part(0, 0), part(0, 1)], [part(1, 0), part(1, 1)]];
+                        let strain = [gradient[0][0], gradient[1][1], gradient[0][1] + gradient[1][0]];
+                        let column = 3 * index * m + first + 2 * k + mode;
+                        for (row, (strain, stress)) in strain.into_iter().zip(elasticity.stress(&gradient)).enumerate() {
+                            of_fields[column + row * m] = strain;
+                            stresses[column + row * m] = factor * stress;
+                        }
+                    }
+                }
+            }
+            first_value = end;
         }
     }
 }
 
-/// Matrix of a cell.
+/// Adds the matrix of a cell to a front in which the unknowns of a node begin at `places[node]`.
+///
+/// With `P = Σ ∇Φ ∇Φᵀ dA` of all pairs of gradients that of unknowns without fields is made of its entries; those with fields take all
+/// of `∫ e_aᵀ D e_b dA`.
 ///
 /// # Errors
 /// Nodes in reach of a point do not span the basis.
-pub fn of_cell(
+pub fn add_cell(
     plate: &Discretisation,
     thickness: f64,
     (leaf, points): (usize, &[QuadraturePoint]),
     scratch: &mut Scratch,
-    element: &mut Element,
+    places: &[u32],
+    front: &mut Front,
 ) -> Result<()> {
     scratch.read(plate, leaf, points)?;
-    scratch.number(plate, &mut element.unknowns);
-    let (n, tips) = (element.unknowns.len(), plate.axes.len());
-    let Scratch { values, ends, fields, place, nodes, strains, stresses, .. } = scratch;
-    for rows in [&mut *strains, &mut *stresses] {
-        rows.clear();
-        rows.resize(3 * n * ends.len(), 0.0);
+    scratch.number(plate, places);
+    scratch.fill(plate, thickness);
+    let Scratch { ends, numbers, nodes, enriched, gradients: [of_points, weighted], strains: [of_nodes, of_fields], stresses, product, .. } =
+        scratch;
+    let (n, m, points) = (2 * nodes.len(), enriched.len(), ends.len());
+    if points == 0 {
+        return Ok(());
     }
-    // Stress of unit strains.
+    lower_product(of_points, weighted, [points, n], product);
+    add_nodes(plate, nodes, places, product, front);
+    if m > 0 {
+        let place = |number: usize| (places[nodes[number / 2].0 as usize] + number as u32 % 2) as usize;
+        whole_product(stresses, of_nodes, [3 * points, m, n], product);
+        for column in 0..n {
+            let values = &product[column * m..(column + 1) * m];
+            enriched.iter().zip(values).for_each(|(&row, value)| front.add(row as usize, place(column), *value));
+        }
+        lower_product(of_fields, stresses, [3 * points, m], product);
+        for (index, &column) in enriched.iter().enumerate() {
+            let (sums, first) = front.column(column as usize);
+            let values = &product[index * m + index..(index + 1) * m];
+            enriched[index..].iter().zip(values).for_each(|(&row, value)| sums[row as usize - first] += value);
+        }
+    }
+    nodes.iter().for_each(|&(node, _)| numbers[node as usize] = u32::MAX);
+    Ok(())
+}
+
+/// Adds the matrix of the unknowns without fields.
+fn add_nodes(plate: &Discretisation, nodes: &[(u32, u32)], places: &[u32], product: &[f64], front: &mut Front) {
     let elasticity = plate.elasticity();
+    // Stress of unit strains.
     let [direct, lateral, _] = elasticity.stress(&[[1.0, 0.0], [0.0, 0.0]]);
     let shear = elasticity.shear_modulus;
-    let mut first_value = 0;
-    for (index, &(end, area)) in ends.iter().enumerate() {
-        let row = 3 * index * n;
-        let factor = thickness * area;
-        let [direct, lateral, shear] = [direct, lateral, shear].map(|modulus| factor * modulus);
-        let mut set = |unknown: usize, [xx, yy, xy]: [f64; 3]| {
-            let [a, b, c] = [row + unknown, row + n + unknown, row + 2 * n + unknown];
-            (strains[a], strains[b], strains[c]) = (xx, yy, xy);
-            (stresses[a], stresses[b], stresses[c]) = (direct * xx + lateral * yy, lateral * xx + direct * yy, shear * xy);
-        };
-        for value in &values[first_value..end] {
-            let first = place[value.node as usize] as usize;
-            let [x, y] = value.gradient;
-            set(first, [x, 0.0, y]);
-            set(first + 1, [0.0, y, x]);
-            for (k, &tip) in plate.enriched[value.node as usize].iter().enumerate() {
-                let Some(fields) = &fields[index * tips + tip as usize] else { continue };
-                for (mode, (field, slope)) in fields.iter().enumerate() {
-                    let product = |i: usize, j: usize| field[i] * value.gradient[j] + value.value * slope[i][j];
-                    set(first + 2 + 2 * k + mode, [product(0, 0), product(1, 1), product(0, 1) + product(1, 0)]);
-                }
-            }
+    let n = 2 * nodes.len();
+    for (j, &(node, _)) in nodes.iter().enumerate() {
+        let column = places[node as usize] as usize;
+        let (of_x, of_y) = (&product[2 * j * n..(2 * j + 1) * n], &product[(2 * j + 1) * n..(2 * j + 2) * n]);
+        let [xx, xy, yy] = [of_x[2 * j], of_x[2 * j + 1], of_y[2 * j + 1]];
+        let (sums, first) = front.column(column);
+        sums[column - first] += direct * xx + shear * yy;
+        sums[column + 1 - first] += (lateral + shear) * xy;
+        let pairs = || of_x.chunks_exact(2).zip(of_y.chunks_exact(2)).zip(nodes).skip(j + 1);
+        for ((x, y), &(node, _)) in pairs() {
+            let row = places[node as usize] as usize - first;
+            sums[row] += direct * x[0] + shear * y[1];
+            sums[row + 1] += lateral * x[1] + shear * y[0];
         }
-        first_value = end;
+        let (sums, first) = front.column(column + 1);
+        sums[column + 1 - first] += direct * yy + shear * xx;
+        for ((x, y), &(node, _)) in pairs() {
+            let row = places[node as usize] as usize - first;
+            sums[row] += lateral * y[0] + shear * x[1];
+            sums[row + 1] += direct * y[1] + shear * x[0];
+        }
     }
-    nodes.iter().for_each(|&node| place[node as usize] = u32::MAX);
-    element.take_product(strains, stresses);
-    Ok(())
 }
