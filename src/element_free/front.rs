@@ -46,21 +46,29 @@ impl Front {
     /// Takes up the complement of an eliminated part, whose other unknowns have these `places` here.
     pub fn take(&mut self, part: &mut Front, places: &[u32]) {
         let complement = std::mem::take(&mut part.complement);
-        for (k, &place) in places.iter().enumerate() {
-            let values = &complement[k * part.rest + k..(k + 1) * part.rest];
-            let place = place as usize;
-            let (column, first) = self.column(place);
-            // Those that are above the diagonal here.
-            let mut above = false;
-            for (&row, value) in places[k..].iter().zip(values) {
-                let row = row as usize;
-                if row >= place { column[row - first] += value } else { above = true }
+        // Stretches of unknowns that follow one another here as well.
+        let mut stretches: Vec<[usize; 2]> = Vec::new();
+        for k in 0..places.len() {
+            match stretches.last_mut() {
+                Some([_, end]) if places[k] == places[k - 1] + 1 => *end = k + 1,
+                _ => stretches.push([k, k + 1]),
             }
-            if above {
-                for (&row, value) in places[k..].iter().zip(values) {
-                    if (row as usize) < place {
-                        self.add(row as usize, place, *value);
+        }
+        for (index, &[start, end]) in stretches.iter().enumerate() {
+            for column in start..end {
+                let values = &complement[column * part.rest..(column + 1) * part.rest];
+                let place = places[column] as usize;
+                let (sums, first) = self.column(place);
+                for &[from, to] in std::iter::once(&[column, end]).chain(&stretches[index + 1..]) {
+                    let row = places[from] as usize;
+                    if row >= place {
+                        let sums = &mut sums[row - first..row - first + to - from];
+                        sums.iter_mut().zip(&values[from..to]).for_each(|(sum, value)| *sum += value);
                     }
+                }
+                // What is above the diagonal here.
+                for &[from, to] in stretches[index + 1..].iter().filter(|[from, _]| (places[*from] as usize) < place) {
+                    (from..to).for_each(|k| self.add(places[k] as usize, place, values[k]));
                 }
             }
         }
@@ -102,21 +110,35 @@ impl Front {
     /// `y₁ = L₁₁⁻¹ b₁`, `b₂ -= L₂₁ y₁` in place, of the unknowns with these numbers.
     pub fn solve_forward(&self, unknowns: &[u32], b: &mut [f64]) {
         let size = self.own + self.rest;
-        for (k, &unknown) in unknowns[..self.own].iter().enumerate() {
+        let mut local: Vec<f64> = unknowns.iter().map(|&unknown| b[unknown as usize]).collect();
+        for k in 0..self.own {
             let column = &self.panel[k * size + k..(k + 1) * size];
-            let y = b[unknown as usize] / column[0];
-            b[unknown as usize] = y;
-            unknowns[k + 1..].iter().zip(&column[1..]).for_each(|(&row, l)| b[row as usize] -= l * y);
+            let y = local[k] / column[0];
+            local[k] = y;
+            local[k + 1..].iter_mut().zip(&column[1..]).for_each(|(b, l)| *b -= l * y);
         }
+        unknowns.iter().zip(local).for_each(|(&unknown, local)| b[unknown as usize] = local);
     }
 
     /// `x₁ = L₁₁⁻ᵀ (y₁ - L₂₁ᵀ x₂)` in place.
     pub fn solve_backward(&self, unknowns: &[u32], b: &mut [f64]) {
         let size = self.own + self.rest;
-        for (k, &unknown) in unknowns[..self.own].iter().enumerate().rev() {
+        let mut local: Vec<f64> = unknowns.iter().map(|&unknown| b[unknown as usize]).collect();
+        for k in (0..self.own).rev() {
             let column = &self.panel[k * size + k..(k + 1) * size];
-            let sum: f64 = unknowns[k + 1..].iter().zip(&column[1..]).map(|(&row, l)| b[row as usize] * l).sum();
-            b[unknown as usize] = (b[unknown as usize] - sum) / column[0];
+            local[k] = (local[k] - dot(&column[1..], &local[k + 1..])) / column[0];
         }
+        unknowns[..self.own].iter().zip(local).for_each(|(&unknown, local)| b[unknown as usize] = local);
     }
+}
+
+/// Sum of products, eight at a time: a sum in order cannot be computed side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    let mut sums = [0.0; 8];
+    for (a, b) in a.zip(b) {
+        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
+    }
+    rest + sums.iter().sum::<f64>()
 }
