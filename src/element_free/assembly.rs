@@ -78,6 +78,8 @@ pub struct Scratch {
     strains: [Vec<f64>; 2],
     stresses: Vec<f64>,
     product: Vec<f64>,
+    /// First unknown in the front of every node of the cell.
+    in_front: Vec<usize>,
 }
 
 impl Scratch {
@@ -196,16 +198,28 @@ pub fn add_cell(
     scratch.read(plate, leaf, points)?;
     scratch.number(plate, places);
     scratch.fill(plate, thickness);
-    let Scratch { ends, numbers, nodes, enriched, gradients: [of_points, weighted], strains: [of_nodes, of_fields], stresses, product, .. } =
-        scratch;
+    let Scratch {
+        ends,
+        numbers,
+        nodes,
+        enriched,
+        gradients: [of_points, weighted],
+        strains: [of_nodes, of_fields],
+        stresses,
+        product,
+        in_front,
+        ..
+    } = scratch;
     let (n, m, points) = (2 * nodes.len(), enriched.len(), ends.len());
     if points == 0 {
         return Ok(());
     }
     lower_product(of_points, weighted, [points, n], product);
-    add_nodes(plate, nodes, places, product, front);
+    in_front.clear();
+    in_front.extend(nodes.iter().map(|&(node, _)| places[node as usize] as usize));
+    add_nodes(plate, in_front, product, front);
     if m > 0 {
-        let place = |number: usize| (places[nodes[number / 2].0 as usize] + number as u32 % 2) as usize;
+        let place = |number: usize| in_front[number / 2] + number % 2;
         whole_product(stresses, of_nodes, [3 * points, m, n], product);
         for column in 0..n {
             let values = &product[column * m..(column + 1) * m];
@@ -222,32 +236,31 @@ pub fn add_cell(
     Ok(())
 }
 
-/// Adds the matrix of the unknowns without fields.
-fn add_nodes(plate: &Discretisation, nodes: &[(u32, u32)], places: &[u32], product: &[f64], front: &mut Front) {
+/// Adds the matrix of the unknowns without fields, of which those of each node begin at one of the ascending `places`.
+fn add_nodes(plate: &Discretisation, places: &[usize], product: &[f64], front: &mut Front) {
     let elasticity = plate.elasticity();
     // Stress of unit strains.
     let [direct, lateral, _] = elasticity.stress(&[[1.0, 0.0], [0.0, 0.0]]);
     let shear = elasticity.shear_modulus;
-    let n = 2 * nodes.len();
-    for (j, &(node, _)) in nodes.iter().enumerate() {
-        let column = places[node as usize] as usize;
+    let n = 2 * places.len();
+    for (j, &column) in places.iter().enumerate() {
         let (of_x, of_y) = (&product[2 * j * n..(2 * j + 1) * n], &product[(2 * j + 1) * n..(2 * j + 2) * n]);
         let [xx, xy, yy] = [of_x[2 * j], of_x[2 * j + 1], of_y[2 * j + 1]];
+        let below = || of_x.chunks_exact(2).zip(of_y.chunks_exact(2)).zip(places).skip(j + 1);
         let (sums, first) = front.column(column);
         sums[column - first] += direct * xx + shear * yy;
         sums[column + 1 - first] += (lateral + shear) * xy;
-        let pairs = || of_x.chunks_exact(2).zip(of_y.chunks_exact(2)).zip(nodes).skip(j + 1);
-        for ((x, y), &(node, _)) in pairs() {
-            let row = places[node as usize] as usize - first;
-            sums[row] += direct * x[0] + shear * y[1];
-            sums[row + 1] += lateral * x[1] + shear * y[0];
+        for ((x, y), &row) in below() {
+            let sums = &mut sums[row - first..row - first + 2];
+            sums[0] += direct * x[0] + shear * y[1];
+            sums[1] += lateral * x[1] + shear * y[0];
         }
         let (sums, first) = front.column(column + 1);
         sums[column + 1 - first] += direct * yy + shear * xx;
-        for ((x, y), &(node, _)) in pairs() {
-            let row = places[node as usize] as usize - first;
-            sums[row] += lateral * y[0] + shear * x[1];
-            sums[row + 1] += direct * y[1] + shear * x[0];
+        for ((x, y), &row) in below() {
+            let sums = &mut sums[row - first..row - first + 2];
+            sums[0] += lateral * y[0] + shear * x[1];
+            sums[1] += direct * y[1] + shear * x[0];
         }
     }
 }

@@ -5,7 +5,7 @@
 //! holds both halves (multifrontal method: Duff and Reid 1983, ACM Trans. Math. Softw. 9:302). So nothing sparse is stored, ordered or
 //! searched. Halves are worked on at the same time, and the order of sums does not depend on the number of threads.
 
-use std::iter::repeat;
+use std::ops::Range;
 
 use super::front::Front;
 use crate::error::{Error, Result};
@@ -32,6 +32,16 @@ pub trait Matrices: Sync {
     fn add(&self, members: &[u32], places: &[u32], front: &mut Front) -> Result<()>;
 }
 
+/// A part of the plate before anything is computed.
+#[derive(Debug)]
+struct Plan {
+    /// Where its members stand in the order of all.
+    members: Range<usize>,
+    /// Nodes that are eliminated in it.
+    own: Vec<u32>,
+    halves: Option<Box<[Plan; 2]>>,
+}
+
 /// A part of the plate with its factor.
 #[derive(Debug)]
 struct Part {
@@ -41,18 +51,17 @@ struct Part {
     halves: Option<Box<[Part; 2]>>,
 }
 
-/// Nodes of a part that are not eliminated in it, ascending, with the number of its matrices in which they occur.
-type Open = Vec<(u32, u32)>;
-
 /// Factor L of a positive definite matrix `A = L Lᵀ`.
 #[derive(Debug)]
 pub struct Factor(Part);
 
 struct Dissection<'a, M> {
     members: &'a [Member],
+    /// Members part by part.
+    order: Vec<u32>,
     first: &'a [u32],
-    /// Number of members in which every node occurs.
-    uses: Vec<u32>,
+    /// When nodes are eliminated.
+    ranks: Vec<u32>,
     matrices: &'a M,
 }
 
@@ -62,20 +71,96 @@ impl Factor {
     /// # Errors
     /// [`Error::LossOfStiffness`] where the sum is not positive definite; those of the matrices.
     pub fn of(members: &[Member], first: &[u32], matrices: &impl Matrices) -> Result<Self> {
-        let mut uses = vec![0; first.len() - 1];
-        members.iter().flat_map(|member| &member.nodes).for_each(|&node| uses[node as usize] += 1);
-        if uses.contains(&0) {
-            return Err(Error::LossOfStiffness);
+        let nodes = first.len() - 1;
+        let mut order: Vec<u32> = (0..members.len() as u32).collect();
+        let mut plan = Bisection { members, first }.plan(&mut order, 0);
+        // Where the members of a node stand, from the first to the last.
+        let mut spans = vec![0..0; nodes];
+        for (place, &member) in order.iter().enumerate() {
+            for &node in &members[member as usize].nodes {
+                let span = &mut spans[node as usize];
+                *span = if span.is_empty() { place..place + 1 } else { span.start..place + 1 };
+            }
         }
-        let dissection = Dissection { members, first, uses, matrices };
-        let mut all: Vec<u32> = (0..members.len() as u32).collect();
-        dissection.part(&mut all).map(|(part, _)| Factor(part))
+        for (node, span) in (0..).zip(spans) {
+            if span.is_empty() {
+                return Err(Error::LossOfStiffness);
+            }
+            plan.give(node, &span);
+        }
+        let mut ranks = vec![0; nodes];
+        plan.rank(&mut ranks, &mut 0);
+        Dissection { members, order, first, ranks, matrices }.part(&plan).map(|(part, _)| Factor(part))
     }
 
     /// Solves `A x = b` in place of b.
     pub fn solve(&self, b: &mut [f64]) {
         self.0.solve_forward(b);
         self.0.solve_backward(b);
+    }
+}
+
+impl Plan {
+    /// Gives a node to the smallest part that holds its members.
+    fn give(&mut self, node: u32, span: &Range<usize>) {
+        let holds = |half: &&mut Plan| half.members.start <= span.start && span.end <= half.members.end;
+        match self.halves.iter_mut().flat_map(|halves| halves.iter_mut()).find(holds) {
+            Some(half) => half.give(node, span),
+            None => self.own.push(node),
+        }
+    }
+
+    /// Numbers the nodes in the order of their elimination: those of both halves before those of the whole.
+    fn rank(&self, ranks: &mut [u32], next: &mut u32) {
+        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.rank(ranks, next));
+        for &node in &self.own {
+            ranks[node as usize] = *next;
+            *next += 1;
+        }
+    }
+}
+
+/// How a plate is divided.
+struct Bisection<'a> {
+    members: &'a [Member],
+    first: &'a [u32],
+}
+
+impl Bisection<'_> {
+    /// Orders the members part by part, the first of them being number `start` of all.
+    fn plan(&self, members: &mut [u32], start: usize) -> Plan {
+        let range = start..start + members.len();
+        if members.len() <= UNDIVIDED {
+            return Plan { members: range, own: Vec::new(), halves: None };
+        }
+        let (left, right) = self.halves(members);
+        let middle = start + left.len();
+        let (left, right) = rayon::join(|| self.plan(left, start), || self.plan(right, middle));
+        Plan { members: range, own: Vec::new(), halves: Some(Box::new([left, right])) }
+    }
+
+    /// Divides a part across x or y into halves of as many members, so that they have the fewest unknowns in common.
+    fn halves<'a>(&self, members: &'a mut [u32]) -> (&'a mut [u32], &'a mut [u32]) {
+        let middle = members.len() / 2;
+        let sort = |members: &mut [u32], axis: usize| {
+            let place = |member: u32| self.members[member as usize].at[axis];
+            members.sort_unstable_by(|a, b| place(*a).total_cmp(&place(*b)).then(a.cmp(b)));
+        };
+        let mut common = [0; 2];
+        for (axis, common) in common.iter_mut().enumerate() {
+            sort(members, axis);
+            let mut sides = vec![0_u8; self.first.len() - 1];
+            for (k, &member) in members.iter().enumerate() {
+                let side = if k < middle { 1 } else { 2 };
+                self.members[member as usize].nodes.iter().for_each(|&node| sides[node as usize] |= side);
+            }
+            let unknowns = self.first.windows(2).map(|pair| pair[1] - pair[0]);
+            *common = unknowns.zip(sides).filter(|(_, sides)| *sides == 3).map(|(unknowns, _)| unknowns).sum::<u32>();
+        }
+        if common[0] <= common[1] {
+            sort(members, 0);
+        }
+        members.split_at_mut(middle)
     }
 }
 
@@ -92,105 +177,48 @@ impl Part {
 }
 
 impl<M: Matrices> Dissection<'_, M> {
-    /// Sums the matrices of a part and eliminates what it can.
-    fn part(&self, members: &mut [u32]) -> Result<(Part, Open)> {
-        if members.len() <= UNDIVIDED {
-            return self.undivided(members);
+    /// Sums the matrices of a part and eliminates its nodes; gives the nodes that are left as well, by rank.
+    fn part(&self, plan: &Plan) -> Result<(Part, Vec<u32>)> {
+        let (mut nodes, mut halves) = (Vec::new(), None);
+        let members = &self.order[plan.members.clone()];
+        if let Some(plans) = &plan.halves {
+            let (left, right) = rayon::join(|| self.part(&plans[0]), || self.part(&plans[1]));
+            let both = [left?, right?];
+            both.iter().for_each(|(_, open)| nodes.extend(open));
+            halves = Some(both);
+        } else {
+            members.iter().for_each(|&member| nodes.extend(&self.members[member as usize].nodes));
         }
-        let (left, right) = self.halves(members);
-        let (left, right) = rayon::join(|| self.part(left), || self.part(right));
-        let ((left, of_left), (right, of_right)) = (left?, right?);
-        let mut empty = self.empty(&united(&of_left, &of_right));
-        let mut halves = Box::new([left, right]);
-        for (half, open) in halves.iter_mut().zip([of_left, of_right]) {
-            let places: Vec<u32> = open.iter().flat_map(|&(node, _)| self.numbers(node, empty.places[node as usize])).collect();
-            empty.front.take(&mut half.front, &places);
-        }
-        empty.eliminated(Some(halves))
-    }
-
-    fn undivided(&self, members: &[u32]) -> Result<(Part, Open)> {
-        let mut all: Vec<u32> = members.iter().flat_map(|&member| &self.members[member as usize].nodes).copied().collect();
-        all.sort_unstable();
-        let nodes: Open = all.chunk_by(|a, b| a == b).map(|same| (same[0], same.len() as u32)).collect();
-        let mut empty = self.empty(&nodes);
-        self.matrices.add(members, &empty.places, &mut empty.front)?;
-        empty.eliminated(None)
-    }
-
-    /// As many numbers from `from` on as a node has unknowns.
-    fn numbers(&self, node: u32, from: u32) -> std::ops::Range<u32> {
-        from..from + self.first[node as usize + 1] - self.first[node as usize]
-    }
-
-    /// The front of these nodes, of which those that occur nowhere else are eliminated.
-    fn empty(&self, nodes: &[(u32, u32)]) -> Empty {
-        let is_own = |&&(node, count): &&(u32, u32)| count == self.uses[node as usize];
-        let open: Open = nodes.iter().filter(|node| !is_own(node)).copied().collect();
-        let mut places = vec![u32::MAX; self.uses.len()];
+        nodes.sort_unstable_by_key(|&node| self.ranks[node as usize]);
+        nodes.dedup();
+        let mut places = vec![u32::MAX; self.ranks.len()];
         let mut unknowns = Vec::new();
-        let mut own = 0;
-        for (&(node, _), is_own) in nodes.iter().filter(is_own).zip(repeat(true)).chain(open.iter().zip(repeat(false))) {
+        for &node in &nodes {
             places[node as usize] = unknowns.len() as u32;
-            unknowns.extend(self.numbers(node, self.first[node as usize]));
-            own = if is_own { unknowns.len() } else { own };
+            unknowns.extend(self.unknowns(node));
         }
-        Empty { front: Front::new(own, unknowns.len() - own), unknowns, places, open }
-    }
-
-    /// Divides a part across x or y into halves of as many members, so that they have the fewest unknowns in common.
-    fn halves<'a>(&self, members: &'a mut [u32]) -> (&'a mut [u32], &'a mut [u32]) {
-        let middle = members.len() / 2;
-        let sort = |members: &mut [u32], axis: usize| {
-            let place = |member: u32| self.members[member as usize].at[axis];
-            members.sort_unstable_by(|a, b| place(*a).total_cmp(&place(*b)).then(a.cmp(b)));
-        };
-        let mut common = [0; 2];
-        for (axis, common) in common.iter_mut().enumerate() {
-            sort(members, axis);
-            let mut sides = vec![0_u8; self.uses.len()];
-            for (k, &member) in members.iter().enumerate() {
-                let side = if k < middle { 1 } else { 2 };
-                self.members[member as usize].nodes.iter().for_each(|&node| sides[node as usize] |= side);
+        // Nodes of the part have lower ranks than those that are left.
+        let open = nodes.split_off(plan.own.len());
+        let own = open.first().map_or(unknowns.len(), |&node| places[node as usize] as usize);
+        let mut front = Front::new(own, unknowns.len() - own);
+        let halves = match halves {
+            None => {
+                self.matrices.add(members, &places, &mut front)?;
+                None
             }
-            *common = (0..).zip(sides).filter(|(_, sides)| *sides == 3).map(|(node, _)| self.numbers(node, 0).len()).sum();
-        }
-        if common[0] <= common[1] {
-            sort(members, 0);
-        }
-        members.split_at_mut(middle)
-    }
-}
-
-/// A front before its elimination.
-struct Empty {
-    front: Front,
-    unknowns: Vec<u32>,
-    /// First unknown of every node in it.
-    places: Vec<u32>,
-    open: Open,
-}
-
-impl Empty {
-    fn eliminated(mut self, halves: Option<Box<[Part; 2]>>) -> Result<(Part, Open)> {
-        if !self.front.eliminate() {
-            return Err(Error::LossOfStiffness);
-        }
-        Ok((Part { front: self.front, unknowns: self.unknowns, halves }, self.open))
-    }
-}
-
-/// Both lists as one, with the sum of their counts.
-fn united(a: &[(u32, u32)], b: &[(u32, u32)]) -> Open {
-    let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
-    let mut all = Vec::new();
-    loop {
-        let next = match (a.peek(), b.peek()) {
-            (None, None) => return all,
-            (Some(x), Some(y)) => x.0.min(y.0),
-            (Some(x), None) | (None, Some(x)) => x.0,
+            Some(both) => Some(Box::new(both.map(|(mut half, open)| {
+                let of_node = |&node: &u32| {
+                    let place = places[node as usize];
+                    place..place + self.unknowns(node).len() as u32
+                };
+                front.take(&mut half.front, &open.iter().flat_map(of_node).collect::<Vec<u32>>());
+                half
+            }))),
         };
-        let count = [&mut a, &mut b].into_iter().filter_map(|list| list.next_if(|entry| entry.0 == next)).map(|entry| entry.1).sum();
-        all.push((next, count));
+        if front.eliminate() { Ok((Part { front, unknowns, halves }, open)) } else { Err(Error::LossOfStiffness) }
+    }
+
+    fn unknowns(&self, node: u32) -> Range<u32> {
+        self.first[node as usize]..self.first[node as usize + 1]
     }
 }

@@ -43,7 +43,7 @@ impl Front {
         column[a.max(b) - first] += value;
     }
 
-    /// Takes up the complement of an eliminated part, whose other unknowns have these `places` here.
+    /// Takes up the complement of an eliminated part, whose other unknowns have these ascending `places` here.
     pub fn take(&mut self, part: &mut Front, places: &[u32]) {
         let complement = std::mem::take(&mut part.complement);
         // Stretches of unknowns that follow one another here as well.
@@ -57,18 +57,10 @@ impl Front {
         for (index, &[start, end]) in stretches.iter().enumerate() {
             for column in start..end {
                 let values = &complement[column * part.rest..(column + 1) * part.rest];
-                let place = places[column] as usize;
-                let (sums, first) = self.column(place);
+                let (sums, first) = self.column(places[column] as usize);
                 for &[from, to] in std::iter::once(&[column, end]).chain(&stretches[index + 1..]) {
-                    let row = places[from] as usize;
-                    if row >= place {
-                        let sums = &mut sums[row - first..row - first + to - from];
-                        sums.iter_mut().zip(&values[from..to]).for_each(|(sum, value)| *sum += value);
-                    }
-                }
-                // What is above the diagonal here.
-                for &[from, to] in stretches[index + 1..].iter().filter(|[from, _]| (places[*from] as usize) < place) {
-                    (from..to).for_each(|k| self.add(places[k] as usize, place, values[k]));
+                    let row = places[from] as usize - first;
+                    sums[row..row + to - from].iter_mut().zip(&values[from..to]).for_each(|(sum, value)| *sum += value);
                 }
             }
         }

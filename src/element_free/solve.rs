@@ -23,22 +23,18 @@ pub struct Solution {
     pub area: f64,
 }
 
-/// Memory of the matrices of cells, which is reused from one equilibrium to the next.
-#[derive(Debug, Clone, Default)]
-pub struct Workspace {}
-
 /// The matrices of a plate: those of cells, then those of supports.
-pub struct Stiffness<'a> {
-    pub plate: &'a Discretisation,
-    pub thickness: f64,
-    pub cells: &'a [(usize, Vec<QuadraturePoint>)],
-    pub held: &'a [Square],
+struct Stiffness<'a> {
+    plate: &'a Discretisation,
+    thickness: f64,
+    cells: &'a [(usize, Vec<QuadraturePoint>)],
+    held: &'a [Square],
     /// First unknown of every node, and of every grip after them.
-    pub first: &'a [u32],
+    first: &'a [u32],
 }
 
 impl Stiffness<'_> {
-    pub fn members(&self) -> Vec<Member> {
+    fn members(&self) -> Vec<Member> {
         let of_cell = |(leaf, points): &(usize, Vec<QuadraturePoint>)| {
             let bounds = |of: fn(f64, f64) -> f64, from: f64| [0, 1].map(|i| points.iter().map(|p| p.at[i]).fold(from, of));
             let box_of_points = [bounds(f64::min, f64::INFINITY), bounds(f64::max, f64::NEG_INFINITY)];
@@ -85,7 +81,7 @@ impl Matrices for Stiffness<'_> {
 ///
 /// # Errors
 /// [`crate::error::Error::LossOfStiffness`] where some part moves freely; nodes in reach of a point that do not span the basis.
-pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64, _workspace: &mut Workspace) -> Result<Solution> {
+pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -> Result<Solution> {
     let cells = quadrature(specimen, plate);
     let Boundary { mut forces, held, of_grips } = Boundary::new(specimen, plate, far)?;
     let grips = (plate.unknowns()..plate.unknowns() + of_grips).step_by(UNKNOWNS_OF_GRIP);
