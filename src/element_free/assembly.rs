@@ -1,61 +1,18 @@
-//! Stiffness matrix and loads.
+//! Stiffness matrices of cells.
 //!
 //! `K_ab = h ∫ e_aᵀ D e_b dA` with e the strain of an unknown. The matrix of a cell is one of all unknowns in reach, and goes straight
 //! to the dense matrix of the part of the plate that the cell lies in ([`super::dissection`]).
 
-use std::collections::HashMap;
-
-use rayon::prelude::*;
-
-use super::cells::{Dividers, QuadraturePoint, divided, whole};
+use super::cells::QuadraturePoint;
 use super::field::{Discretisation, Local, TipFields, singular};
 use super::front::Front;
 use super::matrix::{lower_product, whole_product};
-use super::nodes::by_leaf;
-use super::rims::Side;
 use super::shape::Value;
 use crate::error::Result;
-use crate::specimen::{Point, Specimen};
 
 /// Area of points that may be left out where nodes in reach do not span the basis, over that of a cell: in the wedge between a slant
 /// crack and the edge that it starts from, which carries nothing.
 const LEFT_OUT: f64 = 0.25;
-
-/// Distance of a tip from a cell, in its spacings, within which the cell is integrated as one with a tip, at the point nearest to it: 1/r
-/// a thousandth of a spacing beyond a side leaves K 2 % wrong by 3 × 3 points.
-const BESIDE_TIP: f64 = 0.3;
-
-/// Points of integration of every cell with material.
-#[must_use]
-pub fn quadrature(specimen: &Specimen, plate: &Discretisation) -> Vec<(usize, Vec<QuadraturePoint>)> {
-    let grid = &plate.grid;
-    let near_sides = by_leaf(grid, plate.sides.iter().map(|side| side.ends), 0.0);
-    let pieces: Vec<[Point; 2]> =
-        plate.obstacles.cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]).collect();
-    let near_pieces = by_leaf(grid, pieces.iter().copied(), 0.0);
-    let mut tips: HashMap<usize, Vec<(Point, Point)>> = HashMap::new();
-    for axes in &plate.axes {
-        let reach = BESIDE_TIP * axes.spacing;
-        grid.visit(axes.at.map(|x| x - reach), axes.at.map(|x| x + reach), &mut |leaf| {
-            let [low, high] = grid.bounds(leaf);
-            let nearest = [0, 1].map(|i| axes.at[i].clamp(low[i], high[i]));
-            tips.entry(leaf).or_default().push((nearest, axes.ahead));
-        });
-    }
-    let leaves: Vec<usize> = grid.leaves().collect();
-    let of_leaf = |&leaf: &usize| {
-        let sides: Vec<Side> = near_sides.get(&leaf).into_iter().flatten().map(|&side| plate.sides[side as usize]).collect();
-        let cracks: Vec<[Point; 2]> = near_pieces.get(&leaf).into_iter().flatten().map(|&piece| pieces[piece as usize]).collect();
-        let at_tips = tips.get(&leaf).cloned().unwrap_or_default();
-        let points = if sides.is_empty() && cracks.is_empty() && at_tips.is_empty() {
-            if specimen.contains(grid.middle(leaf)) { whole(grid, leaf) } else { Vec::new() }
-        } else {
-            divided(specimen, grid, leaf, Dividers { sides: &sides, cracks: &cracks, tips: &at_tips })
-        };
-        (!points.is_empty()).then_some((leaf, points))
-    };
-    leaves.par_iter().filter_map(of_leaf).collect()
-}
 
 /// What is reused from cell to cell.
 #[derive(Debug, Default)]
@@ -222,8 +179,15 @@ pub fn add_cell(
         let place = |number: usize| in_front[number / 2] + number % 2;
         whole_product(stresses, of_nodes, [3 * points, m, n], product);
         for column in 0..n {
-            let values = &product[column * m..(column + 1) * m];
-            enriched.iter().zip(values).for_each(|(&row, value)| front.add(row as usize, place(column), *value));
+            let from = enriched.partition_point(|&row| (row as usize) < place(column));
+            let (sums, first) = front.column(place(column));
+            let values = &product[column * m + from..(column + 1) * m];
+            enriched[from..].iter().zip(values).for_each(|(&row, value)| sums[row as usize - first] += value);
+        }
+        for (index, &column) in enriched.iter().enumerate() {
+            let from = 2 * in_front.partition_point(|&row| row < column as usize);
+            let (sums, first) = front.column(column as usize);
+            (from..n).for_each(|row| sums[place(row) - first] += product[row * m + index]);
         }
         lower_product(of_fields, stresses, [3 * points, m], product);
         for (index, &column) in enriched.iter().enumerate() {

@@ -74,16 +74,17 @@ impl Factor {
         let nodes = first.len() - 1;
         let mut order: Vec<u32> = (0..members.len() as u32).collect();
         let mut plan = Bisection { members, first }.plan(&mut order, 0);
-        // Where the members of a node stand, from the first to the last.
+        // Where the members of a node stand, from the first to the last; an end of 0 has none.
         let mut spans = vec![0..0; nodes];
         for (place, &member) in order.iter().enumerate() {
             for &node in &members[member as usize].nodes {
                 let span = &mut spans[node as usize];
-                *span = if span.is_empty() { place..place + 1 } else { span.start..place + 1 };
+                let start = if span.end == 0 { place } else { span.start };
+                *span = start..place + 1;
             }
         }
         for (node, span) in (0..).zip(spans) {
-            if span.is_empty() {
+            if span.end == 0 {
                 return Err(Error::LossOfStiffness);
             }
             plan.give(node, &span);

@@ -15,6 +15,7 @@ pub mod factors;
 pub mod field;
 mod front;
 pub mod grid;
+mod integration;
 mod matrix;
 pub mod nodes;
 pub mod raster;

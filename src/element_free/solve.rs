@@ -1,11 +1,12 @@
 //! Equilibrium of a plate of nodes.
 
-use super::assembly::{Scratch, add_cell, quadrature};
+use super::assembly::{Scratch, add_cell};
 use super::boundary::{Boundary, UNKNOWNS_OF_GRIP};
 use super::cells::QuadraturePoint;
 use super::dissection::{Factor, Matrices, Member};
 use super::field::Discretisation;
 use super::front::Front;
+use super::integration::quadrature;
 use super::matrix::Square;
 use crate::error::Result;
 use crate::specimen::Specimen;
