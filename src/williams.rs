@@ -62,30 +62,74 @@ impl Eigenfunction {
     /// 2G u at (r, θ) for coefficient 1, in the axes of the tip.
     #[must_use]
     pub fn displacement(&self, kappa: f64, r: f64, theta: f64) -> [f64; 2] {
-        let [u, v, ..] = self.angular(kappa, theta);
-        let power = r.powf(0.5 * f64::from(self.order));
-        [power * u, power * v]
+        Place::new(self.order, r, theta).displacement(self.symmetry, kappa)
     }
 
     /// 2G ∂u_i/∂x_j at (r, θ) for coefficient 1.
     #[must_use]
     pub fn gradient(&self, kappa: f64, r: f64, theta: f64) -> [[f64; 2]; 2] {
-        let half = 0.5 * f64::from(self.order);
-        let [u, v, du, dv] = self.angular(kappa, theta);
-        let (sin, cos) = theta.sin_cos();
-        let power = r.powf(half - 1.0);
+        Place::new(self.order, r, theta).gradient(self.symmetry, kappa)
+    }
+
+    /// 2G u and 2G ∂u_i/∂x_j of both functions of an order, opening first, for which angles and powers are computed once.
+    #[must_use]
+    pub fn both(order: i32, kappa: f64, r: f64, theta: f64) -> [([f64; 2], [[f64; 2]; 2]); 2] {
+        let place = Place::new(order, r, theta);
+        [Symmetry::Opening, Symmetry::Sliding]
+            .map(|symmetry| (place.displacement(symmetry, kappa), place.gradient(symmetry, kappa)))
+    }
+}
+
+/// A point as the functions of order n see it: powers of r, n/2, sine and cosine of θ, of n θ/2 and of (n/2 - 2) θ.
+struct Place {
+    /// r^(n/2) and r^(n/2 - 1).
+    powers: [f64; 2],
+    half: f64,
+    /// (-1)^n.
+    sign: f64,
+    whole: (f64, f64),
+    high: (f64, f64),
+    low: (f64, f64),
+}
+
+impl Place {
+    #[inline]
+    fn new(order: i32, r: f64, theta: f64) -> Self {
+        let half = 0.5 * f64::from(order);
+        let sign = if order % 2 == 0 { 1.0 } else { -1.0 };
+        Place {
+            powers: [r.powf(half), r.powf(half - 1.0)],
+            half,
+            sign,
+            whole: theta.sin_cos(),
+            high: (half * theta).sin_cos(),
+            low: ((half - 2.0) * theta).sin_cos(),
+        }
+    }
+
+    #[inline]
+    fn displacement(&self, symmetry: Symmetry, kappa: f64) -> [f64; 2] {
+        let [u, v, ..] = self.angular(symmetry, kappa);
+        let power = self.powers[0];
+        [power * u, power * v]
+    }
+
+    #[inline]
+    fn gradient(&self, symmetry: Symmetry, kappa: f64) -> [[f64; 2]; 2] {
+        let half = self.half;
+        let [u, v, du, dv] = self.angular(symmetry, kappa);
+        let (sin, cos) = self.whole;
+        let power = self.powers[1];
         // ∂/∂x₁ = cos θ ∂/∂r - sin θ/r ∂/∂θ, ∂/∂x₂ = sin θ ∂/∂r + cos θ/r ∂/∂θ.
         [(u, du), (v, dv)].map(|(f, df)| [power * (cos * half * f - sin * df), power * (sin * half * f + cos * df)])
     }
 
     /// Angular functions of both components and their derivatives over θ.
-    fn angular(&self, kappa: f64, theta: f64) -> [f64; 4] {
-        let h = 0.5 * f64::from(self.order);
-        let sign = if self.order % 2 == 0 { 1.0 } else { -1.0 };
-        let (sin_h, cos_h) = (h * theta).sin_cos();
-        let (sin_l, cos_l) = ((h - 2.0) * theta).sin_cos();
+    #[inline]
+    fn angular(&self, symmetry: Symmetry, kappa: f64) -> [f64; 4] {
+        let Place { half: h, sign, high: (sin_h, cos_h), low: (sin_l, cos_l), .. } = *self;
         let (h_l, l) = (h * (h - 2.0), h);
-        match self.symmetry {
+        match symmetry {
             Symmetry::Opening => {
                 let (a, b) = (kappa + h + sign, kappa - h - sign);
                 [a * cos_h - l * cos_l, b * sin_h + l * sin_l, -a * h * sin_h + h_l * sin_l, b * h * cos_h + h_l * cos_l]

@@ -5,7 +5,7 @@
 //! reproduce rigid motions and the springs take up no force.
 
 use super::field::{Discretisation, Local, singular};
-use super::matrix::Element;
+use super::matrix::Square;
 use crate::body::boundary::load_pieces;
 use crate::error::Result;
 use crate::specimen::geometry::{along, bounding_box, direction, distance};
@@ -18,13 +18,16 @@ const PIECES_IN_SPACING: f64 = 6.0;
 /// Points of a held stretch in a local spacing.
 const HELD_IN_SPACING: f64 = 3.0;
 
+/// Unknowns of a grip: two displacements and a turn.
+pub const UNKNOWNS_OF_GRIP: usize = 3;
+
 /// Loads and supports.
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
     /// Forces on the unknowns at unit nominal load, N, those of grips last.
     pub forces: Vec<f64>,
-    /// Matrices of supports and grips.
-    pub held: Vec<Element>,
+    /// Springs of supports and grips.
+    pub held: Vec<Square>,
     /// Unknowns of grips: displacement and turn of each.
     pub of_grips: usize,
 }
@@ -110,9 +113,9 @@ impl Boundary {
         for (at, length) in pieces(plate, ends) {
             let motions = motions(plate, at)?;
             for axis in (0..2).filter(|axis| held[*axis]) {
-                let sizes: Vec<f64> = motions.iter().map(|motion| motion.1[axis]).collect();
+                let v = motions.iter().map(|motion| motion.1[axis]).collect();
                 let unknowns = motions.iter().map(|motion| motion.0).collect();
-                self.held.push(Element::square(unknowns, &sizes, penalty(specimen, plate, at) * length));
+                self.held.push(Square { unknowns, v, factor: penalty(specimen, plate, at) * length });
             }
         }
         Ok(())
@@ -129,23 +132,23 @@ impl Boundary {
         let mut grips = Vec::new();
         for stretch in ends {
             let (first, middle) = (self.forces.len(), along(stretch[0], stretch[1], 0.5));
-            self.forces.extend([0.0; 3]);
-            self.of_grips += 3;
+            self.forces.extend([0.0; UNKNOWNS_OF_GRIP]);
+            self.of_grips += UNKNOWNS_OF_GRIP;
             for (at, length) in pieces(plate, stretch) {
                 let arm = at[0] - middle[0];
                 let factor = penalty(specimen, plate, at) * length;
                 let mut motions = motions(plate, at)?;
                 motions.extend([(first as u32, [-1.0, 0.0]), (first as u32 + 1, [0.0, -1.0]), (first as u32 + 2, [0.0, -arm])]);
                 for axis in 0..2 {
-                    let sizes: Vec<f64> = motions.iter().map(|motion| motion.1[axis]).collect();
-                    self.held.push(Element::square(motions.iter().map(|motion| motion.0).collect(), &sizes, factor));
+                    let v = motions.iter().map(|motion| motion.1[axis]).collect();
+                    self.held.push(Square { unknowns: motions.iter().map(|motion| motion.0).collect(), v, factor });
                 }
             }
             grips.push(Grip { first, middle, turns: !clamped });
         }
         for grip in grips.iter().filter(|grip| !grip.turns) {
             let [width, size] = [high[0] - low[0], penalty(specimen, plate, grip.middle)];
-            self.held.push(Element::square(vec![grip.first as u32 + 2], &[1.0], size * width.powi(3)));
+            self.held.push(Square { unknowns: vec![grip.first as u32 + 2], v: vec![1.0], factor: size * width.powi(3) });
         }
         Ok(grips)
     }
@@ -176,7 +179,7 @@ impl Boundary {
         }
         let size = plate.elasticity().plane_modulus;
         for unknown in pinned {
-            self.held.push(Element::square(vec![unknown], &[1.0], size * PIN));
+            self.held.push(Square { unknowns: vec![unknown], v: vec![1.0], factor: size * PIN });
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::cuts::{Cut, lengthened, simplified};
 use crate::specimen::geometry::{along, direction, distance, distance_to_polygon, edges, meeting_share, segments_touch};
 use crate::specimen::{CrackLine, LineEnd, Point, Slot, Specimen};
-use crate::williams::{Eigenfunction, Elasticity, Symmetry};
+use crate::williams::{Eigenfunction, Elasticity};
 
 /// Distance within which an end of a crack lies on a rim or on another crack, in sizes of the plate.
 const TOUCH: f64 = 1e-7;
@@ -192,11 +192,9 @@ impl TipAxes {
     pub fn near_tip(&self, elasticity: Elasticity, at: Point) -> [(Point, [[f64; 2]; 2]); 2] {
         let (r, theta) = self.polar(at);
         let (r, size) = ((r / self.spacing).max(1e-9), 1.0 / (elasticity.kappa + 1.0));
-        [Symmetry::Opening, Symmetry::Sliding].map(|symmetry| {
-            let function = Eigenfunction { order: 1, symmetry };
-            let u = function.displacement(elasticity.kappa, r, theta).map(|u| size * u);
-            let gradient = function.gradient(elasticity.kappa, r, theta).map(|row| row.map(|g| size / self.spacing * g));
-            (self.from_axes(u), self.gradient_from_axes(gradient))
+        Eigenfunction::both(1, elasticity.kappa, r, theta).map(|(u, gradient)| {
+            let gradient = gradient.map(|row| row.map(|g| size / self.spacing * g));
+            (self.from_axes(u.map(|u| size * u)), self.gradient_from_axes(gradient))
         })
     }
 }

@@ -6,7 +6,7 @@
 //! crack that bends. A crack that starts at a hole is cut on to the middle of it, one at an edge on beyond it: supports would reach
 //! round its mouth through what is no material. A slot is parted along its middle line like a crack.
 
-use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges, segments_touch, turn};
+use crate::specimen::geometry::{along, bounding_box, direction, distance, distance_to_segment, edges, segments_touch, turn};
 use crate::specimen::{Hole, Point, Specimen};
 
 /// Distance of a segment from the middle of a hole, in radii, within which the hole parts its ends.
@@ -38,10 +38,29 @@ pub struct Obstacles {
 /// Those near a cell.
 #[derive(Debug, Clone, Default)]
 pub struct Near {
-    cuts: Vec<(Vec<[Point; 2]>, Vec<Point>)>,
+    cuts: Vec<NearCut>,
     holes: Vec<Hole>,
     edges: Vec<[Point; 2]>,
     corners: Vec<Point>,
+}
+
+/// Pieces of a cut near a cell, the box around them, and the ends round which the way leads.
+#[derive(Debug, Clone, Default)]
+struct NearCut {
+    pieces: Vec<[Point; 2]>,
+    bounds: [Point; 2],
+    free: Vec<Point>,
+}
+
+impl NearCut {
+    /// Whether a segment crosses the pieces an odd number of times.
+    fn parts(&self, a: Point, b: Point) -> bool {
+        let [low, high] = self.bounds;
+        if (0..2).any(|i| a[i].max(b[i]) < low[i] || a[i].min(b[i]) > high[i]) {
+            return false;
+        }
+        self.pieces.iter().filter(|[c, d]| crosses(a, b, *c, *d)).count() % 2 == 1
+    }
 }
 
 /// Length of the way from a node to a point, m, and its gradient at the point.
@@ -67,7 +86,10 @@ impl Obstacles {
             let pieces: Vec<[Point; 2]> = cut.points.windows(2).map(|piece| [piece[0], piece[1]]).collect();
             let is_near = |piece: &[Point; 2]| distance_to_segment(at, piece[0], piece[1]) <= reach;
             let near: Vec<[Point; 2]> = pieces.into_iter().filter(is_near).collect();
-            (!near.is_empty()).then(|| (near, cut.free.clone()))
+            (!near.is_empty()).then(|| {
+                let bounds = bounding_box(near.as_flattened());
+                NearCut { pieces: near, bounds, free: cut.free.clone() }
+            })
         };
         Near {
             cuts: self.cuts.iter().filter_map(of_cut).collect(),
@@ -89,7 +111,7 @@ fn straight(node: Point, at: Point) -> Way {
 /// Length and gradient of the way round a place.
 fn round(node: Point, place: Point, at: Point) -> Way {
     let (last, gradient) = straight(place, at);
-    (distance(node, place) + last, gradient)
+    (straight(node, place).0 + last, gradient)
 }
 
 impl Near {
@@ -112,10 +134,9 @@ impl Near {
             let ways = self.corners.iter().filter(clear).map(|corner| round(node, *corner, at));
             way = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
         }
-        for (pieces, free) in &self.cuts {
-            let crossings = pieces.iter().filter(|[a, b]| crosses(node, at, *a, *b)).count();
-            if crossings % 2 == 1 {
-                let ways = free.iter().map(|end| round(node, *end, at));
+        for cut in &self.cuts {
+            if cut.parts(node, at) {
+                let ways = cut.free.iter().map(|end| round(node, *end, at));
                 let detour = ways.min_by(|a, b| a.0.total_cmp(&b.0))?;
                 if detour.0 > way.0 {
                     way = detour;

@@ -143,6 +143,17 @@ impl Discretisation {
         self.elasticity
     }
 
+    /// Nodes that a leaf sees and whose supports reach into a box, m, within it.
+    #[must_use]
+    pub fn in_reach(&self, leaf: usize, [low, high]: [Point; 2]) -> Vec<u32> {
+        let reaches = |node: &u32| {
+            let (at, support) = (self.nodes.at[*node as usize], self.supports[*node as usize]);
+            let outside = [0, 1].map(|i| (low[i] - at[i]).max(at[i] - high[i]).max(0.0));
+            outside[0] * outside[0] + outside[1] * outside[1] < support * support
+        };
+        self.leaves[leaf].nodes.iter().copied().filter(reaches).collect()
+    }
+
     /// Shape functions and near-tip fields at a point of a leaf; whether the nodes in reach span the basis.
     pub fn at(&self, leaf: usize, at: Point, local: &mut Local) -> bool {
         let Neighbourhood { nodes, near } = &self.leaves[leaf];

@@ -1,14 +1,14 @@
 //! Equilibrium of a plate of nodes.
 
-use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-use rayon::prelude::*;
-
-use super::assembly::{Scratch, of_cell, quadrature};
-use super::boundary::Boundary;
+use super::assembly::{Scratch, add_cell};
+use super::boundary::{Boundary, UNKNOWNS_OF_GRIP};
+use super::cells::QuadraturePoint;
+use super::dissection::{Factor, Matrices, Member};
 use super::field::Discretisation;
-use super::matrix::{Element, Lower, gathered};
-use crate::block_cholesky::Structure;
-use crate::error::{Error, Result};
+use super::front::Front;
+use super::integration::quadrature;
+use super::matrix::Square;
+use crate::error::Result;
 use crate::specimen::Specimen;
 
 /// Displacement of a plate under its loads.
@@ -24,62 +24,76 @@ pub struct Solution {
     pub area: f64,
 }
 
-/// Memory of the matrices of cells, which is reused from one equilibrium to the next.
-#[derive(Debug, Clone, Default)]
-pub struct Workspace {
-    elements: Vec<Element>,
+/// The matrices of a plate: those of cells, then those of supports.
+struct Stiffness<'a> {
+    plate: &'a Discretisation,
+    thickness: f64,
+    cells: &'a [(usize, Vec<QuadraturePoint>)],
+    held: &'a [Square],
+    /// First unknown of every node, and of every grip after them.
+    first: &'a [u32],
 }
 
-/// Solves `K u = f` at the nominal load `load`, Pa or N, by a sparse Cholesky factor.
+impl Stiffness<'_> {
+    fn members(&self) -> Vec<Member> {
+        let of_cell = |(leaf, points): &(usize, Vec<QuadraturePoint>)| {
+            let bounds = |of: fn(f64, f64) -> f64, from: f64| [0, 1].map(|i| points.iter().map(|p| p.at[i]).fold(from, of));
+            let box_of_points = [bounds(f64::min, f64::INFINITY), bounds(f64::max, f64::NEG_INFINITY)];
+            Member { at: self.plate.grid.middle(*leaf), nodes: self.plate.in_reach(*leaf, box_of_points) }
+        };
+        let of_support = |square: &Square| {
+            let mut nodes: Vec<u32> = square.unknowns.iter().map(|unknown| self.node(*unknown)).collect();
+            nodes.dedup();
+            let at = &self.plate.nodes.at;
+            Member { at: *at.get(nodes[0] as usize).unwrap_or(&at[0]), nodes }
+        };
+        self.cells.iter().map(of_cell).chain(self.held.iter().map(of_support)).collect()
+    }
+
+    /// Node, or grip, that an unknown belongs to.
+    fn node(&self, unknown: u32) -> u32 {
+        self.first.partition_point(|first| *first <= unknown) as u32 - 1
+    }
+}
+
+impl Matrices for Stiffness<'_> {
+    fn add(&self, members: &[u32], places: &[u32], front: &mut Front) -> Result<()> {
+        let mut scratch = Scratch::of(self.plate.nodes.at.len());
+        for &member in members {
+            let member = member as usize;
+            if let Some((leaf, points)) = self.cells.get(member) {
+                add_cell(self.plate, self.thickness, (*leaf, points), &mut scratch, places, front)?;
+                continue;
+            }
+            let Square { unknowns, v, factor } = &self.held[member - self.cells.len()];
+            let place = |unknown: u32| {
+                let node = self.node(unknown) as usize;
+                (places[node] + unknown - self.first[node]) as usize
+            };
+            for (k, &a) in unknowns.iter().enumerate() {
+                unknowns[..=k].iter().zip(v).for_each(|(&b, of_b)| front.add(place(a), place(b), factor * v[k] * of_b));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Solves `K u = f` at the nominal load `load`, Pa or N, by a Cholesky factor.
 ///
 /// # Errors
-/// [`Error::LossOfStiffness`] where some part moves freely; nodes in reach of a point that do not span the basis.
-pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64, workspace: &mut Workspace) -> Result<Solution> {
+/// [`crate::error::Error::LossOfStiffness`] where some part moves freely; nodes in reach of a point that do not span the basis.
+pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -> Result<Solution> {
     let cells = quadrature(specimen, plate);
-    workspace.elements.resize_with(cells.len().max(workspace.elements.len()), Element::default);
-    let elements = &mut workspace.elements[..cells.len()];
-    elements.par_iter_mut().zip(&cells).try_for_each_init(
-        || Scratch::of(plate.nodes.at.len()),
-        |scratch, (element, (leaf, points))| of_cell(plate, specimen.thickness, (*leaf, points), scratch, element),
-    )?;
     let Boundary { mut forces, held, of_grips } = Boundary::new(specimen, plate, far)?;
-    let all: Vec<&Element> = elements.iter().chain(&held).collect();
-    let lower = gathered(&all, plate.unknowns() + of_grips);
+    let grips = (plate.unknowns()..plate.unknowns() + of_grips).step_by(UNKNOWNS_OF_GRIP);
+    let first: Vec<u32> = plate.first.iter().copied().chain(grips.map(|first| (first + UNKNOWNS_OF_GRIP) as u32)).collect();
+    let stiffness = Stiffness { plate, thickness: specimen.thickness, cells: &cells, held: &held, first: &first };
+    let factor = Factor::of(&stiffness.members(), &first, &stiffness)?;
     forces.iter_mut().for_each(|force| *force *= load);
-    let u = cholesky(lower, &forces)?;
+    let mut u = forces.clone();
+    factor.solve(&mut u);
     let work = forces.iter().zip(&u).map(|(f, u)| f * u).sum();
     let points = cells.iter().map(|(_, points)| points.len()).sum();
     let area = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
     Ok(Solution { u, work, points, area })
-}
-
-fn cholesky(lower: Lower, forces: &[f64]) -> Result<Vec<f64>> {
-    let n = forces.len();
-    let scale: Vec<f64> = (0..n)
-        .map(|column| {
-            let start = lower.starts[column];
-            let diagonal =
-                if start < lower.starts[column + 1] && lower.rows[start] == column { lower.values[start] } else { 0.0 };
-            if diagonal > 0.0 { 1.0 / diagonal.sqrt() } else { 0.0 }
-        })
-        .collect();
-    if scale.contains(&0.0) {
-        return Err(Error::LossOfStiffness);
-    }
-    let Lower { starts, rows, mut values } = lower;
-    for column in 0..n {
-        for k in starts[column]..starts[column + 1] {
-            values[k] *= scale[column] * scale[rows[k]];
-        }
-    }
-    let matrix = SparseColMat::new(SymbolicSparseColMat::new_checked(n, n, starts, None, rows), values);
-    // One thread: sums that depend on the number of threads would make a run another one on another machine.
-    let structure = Structure::of(matrix.symbolic(), 1).ok_or_else(|| {
-        Error::Mechanics("the stiffness matrix is too large to be factorised; give fewer model.nodes".to_owned())
-    })?;
-    let factor = structure.factor(matrix.as_ref()).ok_or(Error::LossOfStiffness)?;
-    let mut solution: Vec<f64> = forces.iter().zip(&scale).map(|(force, scale)| scale * force).collect();
-    factor.solve(&mut solution).ok_or_else(|| Error::Mechanics("memory is short for the solution".to_owned()))?;
-    solution.iter_mut().zip(&scale).for_each(|(u, scale)| *u *= scale);
-    Ok(solution)
 }

@@ -9,7 +9,7 @@ use perilife::element_free::factors::integral;
 use perilife::element_free::field::{Discretisation, Local, Tip};
 use perilife::element_free::resolution::Resolution;
 use perilife::element_free::shape::Value;
-use perilife::element_free::solve::{Workspace, solve};
+use perilife::element_free::solve::solve;
 use perilife::growth::element_free::initial_tips;
 use perilife::material::{Material, Plane};
 use perilife::specimen::{CrackLine, Specimen};
@@ -99,7 +99,7 @@ fn a_patch_in_uniform_tension_is_in_equilibrium_within_a_thousandth() {
     case.specimen.cracks.clear();
     case.specimen.tips.clear();
     let (plate, far) = nodes(&case, 10.0, BASES[0]);
-    let solution = solve(&case.specimen, &plate, far, case.loading.maximum, &mut Workspace::default()).unwrap();
+    let solution = solve(&case.specimen, &plate, far, case.loading.maximum).unwrap();
     assert!((solution.area - case.specimen.area()).abs() < 1e-12 * solution.area, "the cells cover the plate");
     let (strain, nu) = (case.loading.maximum / case.material.youngs_modulus, case.material.poisson_ratio);
     let mut local = Local::default();
@@ -154,7 +154,7 @@ fn near_tip_fields_bring_the_stress_ahead_of_a_tip_that_polynomials_miss() {
     let k = 1.488 * case.loading.maximum * (PI * 0.01).sqrt();
     let error = |choice| {
         let (plate, far) = nodes(&case, 20.0, choice);
-        let solution = solve(&case.specimen, &plate, far, case.loading.maximum, &mut Workspace::default()).unwrap();
+        let solution = solve(&case.specimen, &plate, far, case.loading.maximum).unwrap();
         let mut local = Local::default();
         let ahead = [(1e-4, 1.005), (1e-3, 1.015), (5e-3, 1.074)].map(|(r, share): (f64, f64)| {
             let (_, gradient) = plate.displacement(&solution.u, [-0.015 + r, 0.0], &mut local).unwrap();

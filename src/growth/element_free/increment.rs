@@ -45,7 +45,7 @@ impl ElementFree<'_> {
         let resolution = &self.settings.resolution;
         let plate = Discretisation::new(specimen, self.elasticity, &self.state.lines, &tips, resolution)?;
         let load = self.case.loading.maximum;
-        let solution = solve(specimen, &plate, resolution.far, load, &mut self.workspace)?;
+        let solution = solve(specimen, &plate, resolution.far, load)?;
         self.solves += 1;
         self.nodes = self.nodes.max(plate.nodes.at.len());
         self.work = solution.work;

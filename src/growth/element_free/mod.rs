@@ -20,7 +20,7 @@ use super::record::{CurvePoint, TipRecord};
 use crate::case::Case;
 use crate::element_free::field::{Discretisation, Tip};
 use crate::element_free::resolution::ElementFreeSettings;
-use crate::element_free::solve::{Solution, Workspace};
+use crate::element_free::solve::Solution;
 use crate::error::{Result, input};
 use crate::fatigue::growth_law::{GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
@@ -39,7 +39,6 @@ pub struct ElementFree<'a> {
     /// Rate of the lead before the last increment, and its growth in that, where ln of the rate is smooth over both.
     past: Option<[f64; 2]>,
     plate: Option<(Discretisation, Solution)>,
-    workspace: Workspace,
     /// Work of the loads of the last equilibrium at the nominal load, J.
     work: f64,
     curve: Vec<CurvePoint>,
@@ -86,7 +85,6 @@ impl<'a> ElementFree<'a> {
             state: Fronts { lines, fronts, step: 0.0, balance: EnergyBalance::default() },
             past: None,
             plate: None,
-            workspace: Workspace::default(),
             work: 0.0,
             curve: Vec::new(),
             solves: 0,

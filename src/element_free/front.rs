@@ -1,0 +1,136 @@
+//! A front: the dense matrix of the unknowns of a part of the plate, of which some are eliminated.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltRegularization, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, MatMut, Par, Spec};
+
+/// A symmetric matrix by its lower triangle, the unknowns that are eliminated first.
+///
+/// In blocks `A = [A₁₁ ·; A₂₁ A₂₂]`: columns of A₁₁ and A₂₁ stand in one piece, which becomes the factor `[L₁₁; L₂₁]`; A₂₂ becomes the
+/// complement `A₂₂ - L₂₁ L₂₁ᵀ` (Schur), which other fronts take up.
+#[derive(Debug, Clone, Default)]
+pub struct Front {
+    own: usize,
+    rest: usize,
+    panel: Vec<f64>,
+    complement: Vec<f64>,
+}
+
+impl Front {
+    /// A zero matrix of `own` unknowns to be eliminated and `rest` others.
+    #[must_use]
+    pub fn new(own: usize, rest: usize) -> Self {
+        Front { own, rest, panel: vec![0.0; (own + rest) * own], complement: vec![0.0; rest * rest] }
+    }
+
+    /// A column, with the row at which it begins.
+    pub fn column(&mut self, column: usize) -> (&mut [f64], usize) {
+        let (own, rest) = (self.own, self.rest);
+        if column < own {
+            let size = own + rest;
+            (&mut self.panel[column * size..(column + 1) * size], 0)
+        } else {
+            let column = column - own;
+            (&mut self.complement[column * rest..(column + 1) * rest], own)
+        }
+    }
+
+    /// Adds to an element and so to its mirror image, whichever is the one below the diagonal.
+    pub fn add(&mut self, a: usize, b: usize, value: f64) {
+        let (column, first) = self.column(a.min(b));
+        column[a.max(b) - first] += value;
+    }
+
+    /// Takes up the complement of an eliminated part, whose other unknowns have these ascending `places` here.
+    pub fn take(&mut self, part: &mut Front, places: &[u32]) {
+        let complement = std::mem::take(&mut part.complement);
+        // Stretches of unknowns that follow one another here as well.
+        let mut stretches: Vec<[usize; 2]> = Vec::new();
+        for k in 0..places.len() {
+            match stretches.last_mut() {
+                Some([_, end]) if places[k] == places[k - 1] + 1 => *end = k + 1,
+                _ => stretches.push([k, k + 1]),
+            }
+        }
+        for (index, &[start, end]) in stretches.iter().enumerate() {
+            for column in start..end {
+                let values = &complement[column * part.rest..(column + 1) * part.rest];
+                let (sums, first) = self.column(places[column] as usize);
+                for &[from, to] in std::iter::once(&[column, end]).chain(&stretches[index + 1..]) {
+                    let row = places[from] as usize - first;
+                    sums[row..row + to - from].iter_mut().zip(&values[from..to]).for_each(|(sum, value)| *sum += value);
+                }
+            }
+        }
+    }
+
+    /// Eliminates its own unknowns; whether the matrix is positive definite as far as they go.
+    pub fn eliminate(&mut self) -> bool {
+        let (own, rest) = (self.own, self.rest);
+        if own == 0 {
+            return true;
+        }
+        let panel = MatMut::from_column_major_slice_mut(&mut self.panel, own + rest, own);
+        let (mut corner, mut below) = panel.split_at_row_mut(own);
+        let scratch = cholesky_in_place_scratch::<f64>(own, Par::Seq, Spec::default());
+        let Ok(mut memory) = MemBuffer::try_new(scratch) else { return false };
+        let regularisation = LltRegularization::default();
+        let stack = MemStack::new(&mut memory);
+        if cholesky_in_place(corner.as_mut(), regularisation, Par::Seq, stack, Spec::default()).is_err() {
+            return false;
+        }
+        if rest > 0 {
+            // L₂₁ L₁₁ᵀ = A₂₁
+            solve_lower_triangular_in_place(corner.as_ref(), below.as_mut().transpose_mut(), Par::Seq);
+            triangular::matmul(
+                MatMut::from_column_major_slice_mut(&mut self.complement, rest, rest),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                below.as_ref(),
+                BlockStructure::Rectangular,
+                below.as_ref().transpose(),
+                BlockStructure::Rectangular,
+                -1.0,
+                Par::Seq,
+            );
+        }
+        true
+    }
+
+    /// `y₁ = L₁₁⁻¹ b₁`, `b₂ -= L₂₁ y₁` in place, of the unknowns with these numbers.
+    pub fn solve_forward(&self, unknowns: &[u32], b: &mut [f64]) {
+        let size = self.own + self.rest;
+        let mut local: Vec<f64> = unknowns.iter().map(|&unknown| b[unknown as usize]).collect();
+        for k in 0..self.own {
+            let column = &self.panel[k * size + k..(k + 1) * size];
+            let y = local[k] / column[0];
+            local[k] = y;
+            local[k + 1..].iter_mut().zip(&column[1..]).for_each(|(b, l)| *b -= l * y);
+        }
+        unknowns.iter().zip(local).for_each(|(&unknown, local)| b[unknown as usize] = local);
+    }
+
+    /// `x₁ = L₁₁⁻ᵀ (y₁ - L₂₁ᵀ x₂)` in place.
+    pub fn solve_backward(&self, unknowns: &[u32], b: &mut [f64]) {
+        let size = self.own + self.rest;
+        let mut local: Vec<f64> = unknowns.iter().map(|&unknown| b[unknown as usize]).collect();
+        for k in (0..self.own).rev() {
+            let column = &self.panel[k * size + k..(k + 1) * size];
+            local[k] = (local[k] - dot(&column[1..], &local[k + 1..])) / column[0];
+        }
+        unknowns[..self.own].iter().zip(local).for_each(|(&unknown, local)| b[unknown as usize] = local);
+    }
+}
+
+/// Sum of products, eight at a time: a sum in order cannot be computed side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    let mut sums = [0.0; 8];
+    for (a, b) in a.zip(b) {
+        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
+    }
+    rest + sums.iter().sum::<f64>()
+}
