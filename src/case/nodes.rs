@@ -5,6 +5,7 @@ use toml::Value;
 use super::Method;
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::element_free::resolution::{ElementFreeSettings, Resolution};
+use crate::element_free::sources::IN_RADIUS;
 use crate::error::{Result, input, input_missing};
 use crate::input::{LENGTH, number};
 use crate::specimen::Specimen;
@@ -91,13 +92,16 @@ impl NodeKeys {
             }
             (None, None) => width.min(height) / across,
         };
-        let basis = self.basis.unwrap_or(BasisKind::Linear);
+        // Near-tip fields make up for linear polynomials around tips; the stress of holes has no such help.
+        let usual = if specimen.has_sharp_tips() { BasisKind::Linear } else { BasisKind::Quadratic };
+        let basis = self.basis.unwrap_or(usual);
         let influence = number("a radius of influence in spacings", 1.5, 6.0)
             .read_optional("model.influence_radius", self.influence_radius)?;
         Ok(ElementFreeSettings {
             resolution: Resolution {
                 far,
                 hold: HOLD,
+                in_radius: IN_RADIUS,
                 support: influence.unwrap_or(INFLUENCE[usize::from(basis == BasisKind::Quadratic)]),
                 basis,
                 enrichment: self.enrichment.unwrap_or(Enrichment::Tip),
