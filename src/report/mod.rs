@@ -21,6 +21,7 @@ pub mod residual_strength;
 pub mod run;
 pub mod speed_chart;
 pub mod specimen_picture;
+pub mod stresses;
 pub mod sweep;
 pub mod time;
 pub mod verification;
