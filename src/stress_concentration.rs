@@ -19,8 +19,10 @@ use crate::williams::Elasticity;
 
 /// Change of the largest stress of a rim from one spacing to the next below which it counts as settled.
 pub const SETTLED: f64 = 3e-3;
-/// Spacings in the radius of a hole or fillet to begin with. Four give 3.00 of a wide plate with an error of 1 to 3 %.
+/// Spacings in the radius of a hole or fillet to begin with.
 const IN_RADIUS_FIRST: f64 = 4.0;
+/// Spacings in the radius below which peaks may agree by chance.
+const IN_RADIUS_LEAST: f64 = 16.0;
 /// Refinements at the most.
 const REFINEMENTS: usize = 4;
 /// Nodes beyond which no further refinement is begun: the next would have four times as many.
@@ -93,7 +95,8 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
         let change = largest_change(&rims, &found);
         rims = found;
         let nodes = plate.nodes.at.len();
-        let is_settled = change.is_some_and(|change| change < SETTLED) || !rims.iter().any(|rim| rim.is_round);
+        let is_settled = resolution.in_radius >= IN_RADIUS_LEAST && change.is_some_and(|change| change < SETTLED)
+            || !rims.iter().any(|rim| rim.is_round);
         if is_settled || solves > REFINEMENTS || nodes > NODES_MOST {
             let (displacement, stress) = raster::fields(specimen, &plate, &solution.u, far, case.material.plane, share);
             let grid = raster::grid(specimen, far);

@@ -92,9 +92,7 @@ impl NodeKeys {
             }
             (None, None) => width.min(height) / across,
         };
-        // Near-tip fields make up for linear polynomials around tips; the stress of holes has no such help.
-        let usual = if specimen.has_sharp_tips() { BasisKind::Linear } else { BasisKind::Quadratic };
-        let basis = self.basis.unwrap_or(usual);
+        let basis = self.basis.unwrap_or(BasisKind::Linear);
         let influence = number("a radius of influence in spacings", 1.5, 6.0)
             .read_optional("model.influence_radius", self.influence_radius)?;
         Ok(ElementFreeSettings {

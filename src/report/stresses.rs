@@ -85,8 +85,8 @@ pub fn warnings(stressed: &Stressed) -> Vec<String> {
     }
     if let (false, Some(change)) = (stressed.is_settled(), stressed.change) {
         warnings.push(format!(
-            "the largest stress of a rim still changed by {:.2} % in the last refinement ({} % was asked for); give model.basis = \
-             \"quadratic\", or more model.nodes",
+            "the largest stress of a rim still changed by {:.2} % in the last refinement ({} % was asked for); give more \
+             model.nodes",
             100.0 * change,
             100.0 * SETTLED
         ));

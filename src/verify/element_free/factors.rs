@@ -18,7 +18,8 @@ use crate::williams::Elasticity;
 use super::{METHOD, STRESS};
 
 /// Why K of the shortest crack of C(T) misses its bound.
-const BETWEEN_PINS: &str = "the tip lies between the holes of the pins, 15 mm from the load line: +0.035 % with model.nodes = 2000, 0.00 % with 4000";
+const BETWEEN_PINS: &str =
+    "the tip lies between the holes of the pins, 15 mm from the load line: +0.035 % with model.nodes = 2000, 0.00 % with 4000";
 
 /// All rows.
 ///
