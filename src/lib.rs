@@ -64,6 +64,7 @@ pub mod fatigue;
 pub mod case;
 pub mod stress_intensity;
 pub mod growth;
+pub mod stress_concentration;
 pub mod predict;
 pub mod fracture;
 pub mod calibration;

@@ -5,6 +5,7 @@ use toml::Value;
 use super::Method;
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::element_free::resolution::{ElementFreeSettings, Resolution};
+use crate::element_free::sources::IN_RADIUS;
 use crate::error::{Result, input, input_missing};
 use crate::input::{LENGTH, number};
 use crate::specimen::Specimen;
@@ -98,6 +99,7 @@ impl NodeKeys {
             resolution: Resolution {
                 far,
                 hold: HOLD,
+                in_radius: IN_RADIUS,
                 support: influence.unwrap_or(INFLUENCE[usize::from(basis == BasisKind::Quadratic)]),
                 basis,
                 enrichment: self.enrichment.unwrap_or(Enrichment::Tip),

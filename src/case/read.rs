@@ -80,6 +80,16 @@ impl Case {
     /// A table without fatigue law is accepted, since a calibration has none yet: the law is then
     /// [`LawSource::Missing`] with an empty path.
     pub fn from_table(table: Table, name: &str, folder: &Folder) -> Result<Self> {
+        let case = Self::without_growth(table, name, folder)?;
+        case.specimen.check_growth()?;
+        Ok(case)
+    }
+
+    /// As [`Case::from_table`], of a plate in which nothing need be able to grow: for its stress alone.
+    ///
+    /// # Errors
+    /// As [`Case::from_table`].
+    pub fn without_growth(table: Table, name: &str, folder: &Folder) -> Result<Self> {
         refuse_scene(&table)?;
         let sections = Sections::of(&table, SECTIONS, STRANGERS)?;
         let echo = sections.echo()?;

@@ -1,26 +1,37 @@
-//! `perilife sif`: stress intensity factors of every crack tip.
+//! `perilife sif`: stress intensity factors of every crack tip; on nodes also the stress of the plate, with or without cracks.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
 use super::console::Console;
-use super::unaged::case_without_law;
-use crate::error::{Error, Result};
+use super::unaged::plate_without_law;
+use crate::case::{Case, Method};
+use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
+use crate::report::output::{OutputFolder, RunKind};
+use crate::report::stresses;
+use crate::stress_concentration::{Stressed, stressed};
 use crate::stress_intensity::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
 use crate::units::{MM, MPA, MPA_SQRT_M};
 
 /// Arguments of `perilife sif`.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_long_help = "On nodes (--method element_free_galerkin) a plate needs no crack: printed are the largest and least stress along every rim, where they\n\
+                       are, and the stress concentration over the gross stress. DIR gets result.json, von_mises.png, nodes.svg and paraview/run.pvd."
+)]
 pub struct Args {
     /// Case file (a calibration file does as well); its fatigue law is not needed
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Methods: ring, energy_release; all where none is given
+    /// Methods: ring, element_free_galerkin, energy_release; all where none is given
     #[arg(long, value_name = "METHOD", num_args = 1.., help_heading = "Method")]
     pub method: Vec<String>,
+    /// Folder for stress and displacement of the plate on nodes (with --method element_free_galerkin); replaced if an earlier run made it
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: Option<PathBuf>,
     /// Override a key of the case (repeatable), e.g. --set specimen.crack_length_mm=20
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
@@ -35,11 +46,45 @@ pub struct Args {
 /// Wrong input, mechanics without equilibrium, or no method that gives a factor of any tip.
 pub fn run(args: &Args) -> Result<()> {
     let methods = methods(&args.method)?;
-    let case = case_without_law(&args.case, &args.set)?;
-    for warning in &case.warnings {
+    let case = plate_without_law(&args.case, &args.set)?;
+    let is_on_nodes = methods == [StressIntensityMethod::ElementFreeGalerkin]
+        || args.method.is_empty() && case.model.method == Method::ElementFreeGalerkin;
+    let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);
+    // Claimed first: a folder that cannot be written should not cost a run.
+    let folder = args.out.as_deref().map(|out| claim(out, &case, &methods)).transpose()?;
+    for warning in case.warnings.iter().map(String::as_str).chain(folder.as_ref().and_then(OutputFolder::warning)) {
         args.console.warn(warning);
     }
-    let tips = stress_intensity(&case, &methods).map_err(|error| error.in_file(&args.case))?;
+    let mut found = Map::new();
+    if has_cracks || !is_on_nodes {
+        let tips = stress_intensity(&case, &methods).map_err(|error| error.in_file(&args.case))?;
+        tell_tips(&case, &tips, &args.console)?;
+        found.insert("tips".to_owned(), tips.iter().map(object).collect());
+    }
+    if folder.is_some() || !has_cracks {
+        let stressed = stressed(&case).map_err(|error| error.in_file(&args.case))?;
+        tell_stresses(&case, &stressed, &args.console)?;
+        found.insert("stresses".to_owned(), stresses::object(&stressed));
+        if let Some(mut folder) = folder {
+            let result = Value::Object(found.clone());
+            folder.fill(|path| stresses::write(path, &case, &stressed, &result))?;
+            args.console.say(&format!("results in {}", folder.name().display()));
+            drop(folder.finish()?);
+        }
+    }
+    args.console.object(&Value::Object(found))
+}
+
+/// The folder for stresses on nodes.
+fn claim(out: &Path, case: &Case, methods: &[StressIntensityMethod]) -> Result<OutputFolder> {
+    if !methods.contains(&StressIntensityMethod::ElementFreeGalerkin) {
+        let problem = "takes the stress of the plate on nodes, and no method has nodes";
+        return Err(input("--out", out.display(), problem, "add --method element_free_galerkin, or leave --out out"));
+    }
+    OutputFolder::claim(out, RunKind::Sif, &case.provenance, stresses::room(case))
+}
+
+fn tell_tips(case: &Case, tips: &[TipResult], console: &Console) -> Result<()> {
     let results = || tips.iter().flat_map(|tip| &tip.methods);
     if results().all(|result| result.intensity.k_i.is_none()) {
         let notes: Vec<&str> = results().filter_map(|result| result.note.as_deref()).collect();
@@ -49,12 +94,23 @@ pub fn run(args: &Args) -> Result<()> {
     for result in results() {
         let Some(words) = result.note.as_ref().map(|note| format!("{}: {note}", result.method)) else { continue };
         if !said.contains(&words) {
-            args.console.warn(&words);
+            console.warn(&words);
             said.push(words);
         }
     }
-    args.console.result(&table(&tips))?;
-    args.console.object(&json!({ "tips": tips.iter().map(object).collect::<Vec<_>>() }))
+    console.result(&table(tips))
+}
+
+fn tell_stresses(case: &Case, stressed: &Stressed, console: &Console) -> Result<()> {
+    stresses::warnings(stressed).iter().for_each(|warning| console.warn(warning));
+    console.result(&stresses::table(stressed))?;
+    let gross = stressed.gross.map_or(String::new(), |gross| format!(", gross stress {:.3} MPa", gross / MPA));
+    let settled = stressed.change.map_or(String::new(), |change| format!(", last change {:.2} %", 100.0 * change));
+    let (nodes, solves) = (stressed.nodes, stressed.solves);
+    let moved = stressed.moved.0 / MM;
+    console
+        .say(&format!("{}: {nodes} nodes after {solves} solves{settled}{gross}; largest displacement {moved:.6} mm", case.name));
+    Ok(())
 }
 
 /// The methods of these names, each once; all where no name is given.

@@ -9,9 +9,16 @@ use crate::input::Document;
 
 /// Specimen, material, load and model of a file; a fitted record that does not exist yet is no obstacle.
 pub(super) fn case_without_law(path: &Path, overrides: &[String]) -> Result<Case> {
+    let case = plate_without_law(path, overrides)?;
+    case.specimen.check_growth().map_err(|error| error.in_file(path))?;
+    Ok(case)
+}
+
+/// The same of a plate that need not have a crack.
+pub(super) fn plate_without_law(path: &Path, overrides: &[String]) -> Result<Case> {
     let mut document = Document::read(path, overrides)?;
     document.table.remove("measured");
     document.table.remove("fit");
     remove_law(&mut document.table);
-    Case::from_table(document.table.clone(), &document.name, &document.folder).map_err(|error| document.locate(error))
+    Case::without_growth(document.table.clone(), &document.name, &document.folder).map_err(|error| document.locate(error))
 }

@@ -56,7 +56,7 @@ impl Scratch {
             if !plate.at(leaf, point.at, &mut self.local) {
                 left_out += point.area;
                 if left_out > LEFT_OUT * size * size {
-                    return Err(singular(point.at, size));
+                    return Err(singular(point.at, plate.reach(leaf)));
                 }
                 continue;
             }

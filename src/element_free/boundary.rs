@@ -15,6 +15,8 @@ use crate::specimen::{Point, Specimen, Support};
 const PENALTY: f64 = 1e3;
 /// Pieces of a load in a far spacing.
 const PIECES_IN_SPACING: f64 = 6.0;
+/// Distance from the plate within which a point counts as one of it, m.
+const TOUCH: f64 = 1e-9;
 /// Points of a held stretch in a local spacing.
 const HELD_IN_SPACING: f64 = 3.0;
 
@@ -61,8 +63,10 @@ impl Boundary {
         }
         boundary.press_cracks(specimen, plate)?;
         for support in &specimen.supports {
-            if let Support::Fixed { from, to, x, y, .. } = *support {
-                boundary.hold(specimen, plate, [from, to], [x, y])?;
+            if let Support::Fixed { from, to, depth, x, y } = *support {
+                for ends in layers(plate, [from, to], depth) {
+                    boundary.hold(specimen, plate, ends, [x, y])?;
+                }
             }
         }
         let holds = |axis: usize| {
@@ -110,7 +114,7 @@ impl Boundary {
 
     /// Holds components of the displacement on a stretch of the outline.
     fn hold(&mut self, specimen: &Specimen, plate: &Discretisation, ends: [Point; 2], held: [bool; 2]) -> Result<()> {
-        for (at, length) in pieces(plate, ends) {
+        for (at, length) in pieces(plate, ends).into_iter().filter(|(at, _)| specimen.has_point_at(*at, TOUCH)) {
             let motions = motions(plate, at)?;
             for axis in (0..2).filter(|axis| held[*axis]) {
                 let v = motions.iter().map(|motion| motion.1[axis]).collect();
@@ -195,6 +199,19 @@ fn penalty(specimen: &Specimen, plate: &Discretisation, at: Point) -> f64 {
     PENALTY * plate.elasticity().plane_modulus * specimen.thickness / plate.grid.spacing(plate.grid.leaf(at))
 }
 
+/// A stretch of the outline that is held down to a depth, as parallel stretches as close as the points of one.
+fn layers(plate: &Discretisation, [from, to]: [Point; 2], depth: f64) -> Vec<[Point; 2]> {
+    let spacing = plate.grid.spacing(plate.grid.leaf(along(from, to, 0.5)));
+    let count = (HELD_IN_SPACING * depth / spacing).ceil();
+    // The outline runs counter-clockwise: the plate lies on its left.
+    let [x, y] = direction(from, to);
+    let layer = |k: usize| {
+        let inward = if k == 0 { 0.0 } else { depth * k as f64 / count };
+        [from, to].map(|[a, b]| [a - inward * y, b + inward * x])
+    };
+    (0..=count as usize).map(layer).collect()
+}
+
 /// Middles and lengths of the pieces of a held stretch.
 fn pieces(plate: &Discretisation, [from, to]: [Point; 2]) -> Vec<(Point, f64)> {
     let stretch = super::rims::Stretch::Straight([from, to]);
@@ -207,7 +224,7 @@ fn pieces(plate: &Discretisation, [from, to]: [Point; 2]) -> Vec<(Point, f64)> {
 fn motions(plate: &Discretisation, at: Point) -> Result<Vec<(u32, Point)>> {
     let (leaf, mut local) = (plate.grid.leaf(at), Local::default());
     if !plate.at(leaf, at, &mut local) {
-        return Err(singular(at, plate.grid.spacing(leaf)));
+        return Err(singular(at, plate.reach(leaf)));
     }
     let mut motions = Vec::with_capacity(2 * local.values.len());
     for value in &local.values {

@@ -123,7 +123,7 @@ impl Discretisation {
             });
         }
         for leaf in 0..self.leaves.len() {
-            let reach = self.leaves[leaf].nodes.iter().map(|&node| self.supports[node as usize]).fold(0.0, f64::max);
+            let reach = self.reach(leaf);
             if reach > 0.0 {
                 let [low, high] = self.grid.bounds(leaf);
                 self.leaves[leaf].near = self.obstacles.near(self.grid.middle(leaf), reach + distance(low, high));
@@ -135,6 +135,12 @@ impl Discretisation {
     #[must_use]
     pub fn unknowns(&self) -> usize {
         self.first[self.first.len() - 1] as usize
+    }
+
+    /// Largest radius of influence of the nodes that reach a leaf, m; 0 where none does.
+    #[must_use]
+    pub fn reach(&self, leaf: usize) -> f64 {
+        self.leaves[leaf].nodes.iter().map(|&node| self.supports[node as usize]).fold(0.0, f64::max)
     }
 
     /// Elastic constants.
@@ -220,11 +226,11 @@ pub struct Tip {
     pub length: f64,
 }
 
-/// What is said where nodes in reach of points do not span the basis.
+/// What is said where nodes in reach of a point, with radii of influence up to `radius`, m, do not span the basis.
 #[must_use]
 pub fn singular(at: Point, radius: f64) -> Error {
     Error::Mechanics(format!(
-        "too few nodes are in reach of ({:.4}, {:.4}) mm within {:.4} mm to span the basis; give a larger model.influence_radius, or more \
+        "too few nodes are in reach of ({:.4}, {:.4}) mm to span the basis, with radii of influence up to {:.4} mm; give a larger model.influence_radius, or more \
          model.nodes",
         at[0] * 1e3,
         at[1] * 1e3,

@@ -48,16 +48,17 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Cells over the box from `low` to `high`, m, of about the size `far`, halved as the sources ask.
+    /// Cells over the box from `low` to `high`, m, of about the size `far`, halved as the sources ask; no more than `most` are halved
+    /// again.
     #[must_use]
-    pub fn new([low, high]: [Point; 2], far: f64, sources: &[Source]) -> Self {
+    pub fn new([low, high]: [Point; 2], far: f64, sources: &[Source], most: usize) -> Self {
         let count = [0, 1].map(|i| ((high[i] - low[i]) / far).round().max(2.0) as i64);
         let size = [0, 1].map(|i| (high[i] - low[i]) / count[i] as f64);
         let roots = (0..count[1]).flat_map(|row| (0..count[0]).map(move |column| [column, row]));
         let cells = roots.map(|place| Cell { level: 0, place, children: None }).collect();
         let mut grid = Grid { low, size, count, cells };
         let mut next = 0;
-        while next < grid.cells.len() {
+        while next < grid.cells.len() && grid.cells.len() <= most {
             let Cell { level, place, .. } = grid.cells[next];
             let (middle, spacing) = (grid.middle(next), grid.spacing(next));
             if level < LEVELS_MAX && sources.iter().any(|source| source.divides(middle, spacing)) {

@@ -20,6 +20,8 @@ mod matrix;
 pub mod nodes;
 pub mod raster;
 pub mod resolution;
+pub mod rim_stress;
 pub mod rims;
 pub mod shape;
 pub mod solve;
+pub mod sources;

@@ -23,6 +23,7 @@ pub mod specimen_picture;
 pub mod stability;
 pub mod stability_map;
 pub mod stability_picture;
+pub mod stresses;
 pub mod sweep;
 pub mod time;
 pub mod verification;

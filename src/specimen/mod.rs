@@ -17,7 +17,7 @@ mod read;
 
 pub use crack_line::{CrackLine, LineEnd};
 pub use edge::{Component, Edge};
-pub use read::{PART_THROUGH, from_value, plate_from_value};
+pub use read::{PART_THROUGH, from_value};
 
 /// A point of the plate, metres.
 pub type Point = [f64; 2];

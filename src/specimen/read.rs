@@ -37,19 +37,24 @@ impl SpecimenKind {
     }
 }
 
-/// Reads `[specimen]` of a case, in which something must be able to grow. The standard kinds come with their loads; a `plate` is
-/// loaded by `[loading]`.
-pub fn from_value(value: &Value) -> Result<Specimen> {
-    let specimen = plate_from_value(value)?;
-    if specimen.cracks.is_empty() && specimen.slots.is_empty() {
-        let problem = "is missing, and there is no notch either: nothing can grow";
-        return Err(input_missing("specimen.cracks", problem, "give cracks or notches"));
+impl Specimen {
+    /// Whether something can grow in it.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) on `specimen.cracks` of a plate without crack and slot.
+    pub fn check_growth(&self) -> Result<()> {
+        if self.cracks.is_empty() && self.slots.is_empty() {
+            let problem = "is missing, and there is no notch either: nothing can grow";
+            let remedy = "give cracks or notches; for the stress of the plate `perilife sif --method element_free_galerkin`";
+            return Err(input_missing("specimen.cracks", problem, remedy));
+        }
+        Ok(())
     }
-    Ok(specimen)
 }
 
-/// Reads `[specimen]` of a fracture scene, which may be a plate without cracks or notches.
-pub fn plate_from_value(value: &Value) -> Result<Specimen> {
+/// Reads `[specimen]`, which may be a plate without cracks or notches. The standard kinds come with their loads; a `plate` is loaded by
+/// `[loading]`.
+pub fn from_value(value: &Value) -> Result<Specimen> {
     let table = table_of(value, "specimen")?;
     let kind = match table.get("kind") {
         None => {

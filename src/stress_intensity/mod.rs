@@ -163,7 +163,7 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
         return Err(input_missing(
             "specimen.cracks",
             "is missing: only the tip of a sharp crack has stress intensity factors, a notch has none",
-            "give a crack that starts in the notch",
+            "give a crack that starts in the notch; stresses of a plate without cracks: --method element_free_galerkin alone",
         ));
     }
     let handbook_k_i = handbook(&case.specimen)

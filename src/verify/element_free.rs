@@ -1,4 +1,8 @@
-//! The element-free Galerkin method: K of standard specimens, slanted and edge cracks, first kinks, lives and paths.
+//! The element-free Galerkin method: stress concentration; K of standard specimens, slanted and edge cracks; first kinks, lives and
+//! paths.
+
+mod factors;
+mod rims;
 
 use super::references::{REFERENCES, SHARES};
 use super::scene::{case, pulled_plate};
@@ -20,6 +24,8 @@ const STRESS: f64 = 60e6;
 /// # Errors
 /// As [`predict`].
 pub fn all(table: &mut Table) -> Result<()> {
+    rims::rows(table)?;
+    factors::rows(table)?;
     edge_cracks(table)?;
     slanted_cracks(table)?;
     kinks(table)?;

@@ -6,14 +6,17 @@ use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::{Observer, Prediction, Silent, StopReason, predict};
 use crate::quadrature::integrate;
-use crate::specimen::LoadMeasure;
 use crate::specimen::handbook::handbook;
+use crate::specimen::{LoadMeasure, Specimen};
 use crate::units::{MM, MPA_SQRT_M};
 
 /// K of finite elements: specimen, crack length in mm, K_I in MPa√m at 100 MPa or 10 kN.
 const STANDARD_SPECIMENS: &str = include_str!("../../tests/reference/standard_specimens.csv");
 /// Where the reference of [`Standard::over_quadrature`] comes from.
 pub const ELEMENTS: &str = "quadrature, K of finite elements (tests/reference), 0.05 %";
+
+/// Where the reference of [`Standard::factors_of_elements`] comes from.
+pub const ELEMENTS_OF_K: &str = "finite elements (tests/reference/standard_specimens.csv), 0.05 %";
 
 /// A specimen and the growth of its crack.
 #[derive(Debug, Clone)]
@@ -113,6 +116,25 @@ impl Standard {
         Ok(predict(&self.case(set)?, &Silent)?.life_cycles())
     }
 
+    /// Crack lengths, mm, with K_I of finite elements under the load of [`Standard::at`], Pa√m.
+    ///
+    /// # Errors
+    /// As [`predict`].
+    pub fn factors_of_elements(&self) -> Result<Vec<[f64; 2]>> {
+        let case = self.case(&[])?;
+        let load = case.loading.maximum / load_of_table(&case.specimen);
+        Ok(known_factors(case.specimen.kind.name()).map(|[a, k]| [a, k * load]).collect())
+    }
+
+    /// The case at a crack length, mm.
+    ///
+    /// # Errors
+    /// As [`Case::from_toml`].
+    pub fn at(&self, length: f64, set: &[&str]) -> Result<Case> {
+        // Grown by nothing to speak of.
+        self.clone().from_to([length, 1.001 * length]).case(set)
+    }
+
     /// Its case, other keys set by `section.key=value`.
     ///
     /// # Errors
@@ -124,6 +146,19 @@ impl Standard {
     }
 }
 
+/// Load of the table: 100 MPa, or 10 kN.
+fn load_of_table(specimen: &Specimen) -> f64 {
+    if specimen.load_measure == LoadMeasure::Force { 1e4 } else { 1e8 }
+}
+
+/// Crack lengths, mm, and K_I, Pa√m, of a specimen of the table.
+fn known_factors(name: &str) -> impl Iterator<Item = [f64; 2]> {
+    STANDARD_SPECIMENS
+        .lines()
+        .filter_map(move |line| line.strip_prefix(name)?.strip_prefix(',')?.split_once(','))
+        .filter_map(|(a, k)| Some([a.parse().ok()?, k.parse::<f64>().ok()? * MPA_SQRT_M]))
+}
+
 /// Life with K by finite elements over that with the handbook's, between two lengths, mm. Their ratio is taken linear between the
 /// lengths of the table; K of finite elements is right to 0.05 % (`tests/reference/README.md`), the formulas to 0.1 to 1 %.
 fn over_handbook(case: &Case, [from, to]: [f64; 2]) -> Result<f64> {
@@ -131,14 +166,8 @@ fn over_handbook(case: &Case, [from, to]: [f64; 2]) -> Result<f64> {
     let m = case.paris_law()?.m;
     let name = specimen.kind.name();
     let formula = handbook(specimen).ok_or_else(|| Error::Mechanics(format!("no handbook formula for {name}")))?;
-    // Loads of the table: 100 MPa, or 10 kN.
-    let load = if specimen.load_measure == LoadMeasure::Force { 1e4 } else { 1e8 };
-    let ratios: Vec<[f64; 2]> = STANDARD_SPECIMENS
-        .lines()
-        .filter_map(|line| line.strip_prefix(name)?.strip_prefix(',')?.split_once(','))
-        .filter_map(|(a, k)| Some([a.parse().ok()?, k.parse::<f64>().ok()? * MPA_SQRT_M]))
-        .map(|[a, k]| [a, k / formula.k_i(a * MM, load)])
-        .collect();
+    let load = load_of_table(specimen);
+    let ratios: Vec<[f64; 2]> = known_factors(name).map(|[a, k]| [a, k / formula.k_i(a * MM, load)]).collect();
     let ratio = |a: f64| {
         let next = ratios.partition_point(|known| known[0] < a).clamp(1, ratios.len() - 1);
         let ([a0, r0], [a1, r1]) = (ratios[next - 1], ratios[next]);

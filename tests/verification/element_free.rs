@@ -10,6 +10,7 @@ use perilife::element_free::field::{Discretisation, Local, Tip};
 use perilife::element_free::resolution::Resolution;
 use perilife::element_free::shape::Value;
 use perilife::element_free::solve::solve;
+use perilife::element_free::sources::IN_RADIUS;
 use perilife::growth::element_free::initial_tips;
 use perilife::material::{Material, Plane};
 use perilife::specimen::{CrackLine, Specimen};
@@ -41,7 +42,7 @@ fn tips(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
 fn nodes(case: &Case, across: f64, (basis, enrichment, support): (BasisKind, Enrichment, f64)) -> (Discretisation, f64) {
     let (lines, tips) = tips(&case.specimen);
     let far = case.specimen.width / across;
-    let resolution = Resolution { far, hold: 3.0, support, basis, enrichment };
+    let resolution = Resolution { far, hold: 3.0, in_radius: IN_RADIUS, support, basis, enrichment };
     let elasticity = Elasticity::of(&case.material);
     (Discretisation::new(&case.specimen, elasticity, &lines, &tips, &resolution).unwrap(), far)
 }

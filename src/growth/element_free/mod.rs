@@ -24,7 +24,7 @@ use crate::element_free::solve::Solution;
 use crate::error::{Result, input};
 use crate::fatigue::growth_law::{GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
-use crate::specimen::Point;
+use crate::specimen::{CrackLine, Point, Specimen};
 use crate::williams::Elasticity;
 use run::Fronts;
 
@@ -116,17 +116,23 @@ impl<'a> ElementFree<'a> {
     }
 }
 
+/// The initial cracks of a specimen, and their tips as nodes see them; ends of slots are none.
+#[must_use]
+pub fn initial_cracks(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
+    let lines = specimen.crack_lines();
+    let ends = (0..specimen.tips.len()).filter_map(|tip| specimen.line_end(tip));
+    let length = |line: &CrackLine| line.length() / specimen.tips_of(line).max(1) as f64;
+    let tips = ends.map(|end| Tip { end, length: length(&lines[end.line]) }).collect();
+    (lines, tips)
+}
+
 /// The nodes of a case with its initial cracks.
 ///
 /// # Errors
 /// As [`ElementFree::start`]; too many cells.
 pub fn initial_plate(case: &Case) -> Result<Discretisation> {
-    let specimen = &case.specimen;
-    let lines = specimen.crack_lines();
-    let ends = (0..specimen.tips.len()).filter_map(|tip| specimen.line_end(tip));
-    let length = |line: &crate::specimen::CrackLine| line.length() / specimen.tips_of(line).max(1) as f64;
-    let tips: Vec<Tip> = ends.map(|end| Tip { end, length: length(&lines[end.line]) }).collect();
-    Discretisation::new(specimen, Elasticity::of(&case.material), &lines, &tips, &case.model.element_free.resolution)
+    let (lines, tips) = initial_cracks(&case.specimen);
+    Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &case.model.element_free.resolution)
 }
 
 /// K and T of the initial tips of a case at maximum load, in the order of `Specimen::tips`.

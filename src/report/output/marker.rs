@@ -20,6 +20,8 @@ pub enum RunKind {
     Predict,
     /// `perilife fracture`.
     Fracture,
+    /// `perilife sif`.
+    Sif,
     /// `perilife calibrate`.
     Calibrate,
     /// `perilife sweep`.
@@ -41,6 +43,7 @@ impl RunKind {
         match self {
             RunKind::Predict => "a prediction",
             RunKind::Fracture => "a fracture scene",
+            RunKind::Sif => "stresses of a plate",
             RunKind::Calibrate => "a calibration",
             RunKind::Sweep => "a sweep",
             RunKind::SweepCase => "a case of a sweep",

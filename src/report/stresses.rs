@@ -1,0 +1,140 @@
+//! Stresses of a plate on nodes: `result.json`, `von_mises.png`, `nodes.svg` and ParaView files.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::damage::{DamagePicture, PointField};
+use super::output::{Room, write_file};
+use super::run::PARAVIEW;
+use super::specimen_picture::nodes_svg;
+use super::{json::RESULT_FILE, provenance, vtk};
+use crate::case::Case;
+use crate::element_free::rim_stress::{Rim, StressAt};
+use crate::error::{Error, Result};
+use crate::predict::Snapshot;
+use crate::stress_concentration::{SETTLED, Stressed};
+use crate::units::{MM, MPA};
+
+/// A rim in words: `holes[0]`, `notches[0]`, `outline`, as its key in `[specimen]`.
+fn name(rim: Rim) -> String {
+    match rim {
+        Rim::Hole(index) => format!("holes[{index}]"),
+        Rim::Slot(index) => format!("notches[{index}]"),
+        Rim::Outline => "outline".to_owned(),
+    }
+}
+
+/// As an object: every rim with its largest and least stress, where they are, and the same over the gross stress.
+#[must_use]
+pub fn object(stressed: &Stressed) -> Value {
+    let place = |place: &StressAt| {
+        let [x, y] = place.at;
+        json!({
+            "stress_mpa": place.stress / MPA, "x_mm": x / MM, "y_mm": y / MM,
+            "stress_concentration": stressed.concentration(place.stress),
+        })
+    };
+    let rims = stressed.rims.iter().map(|rim| {
+        json!({
+            "rim": name(rim.rim), "largest": place(&rim.largest), "least": place(&rim.least),
+            "has_sharp_corner": rim.is_sharp,
+        })
+    });
+    let (moved, [x, y]) = stressed.moved;
+    json!({
+        "gross_stress_mpa": stressed.gross.map(|gross| gross / MPA),
+        "rims": rims.collect::<Vec<_>>(),
+        "last_change_percent": stressed.change.map(|change| 100.0 * change),
+        "largest_displacement": { "mm": moved / MM, "x_mm": x / MM, "y_mm": y / MM },
+        "nodes": stressed.nodes, "unknowns": stressed.unknowns, "solves": stressed.solves,
+    })
+}
+
+/// One line a rim.
+#[must_use]
+pub fn table(stressed: &Stressed) -> String {
+    let mut text = format!(
+        "{:<12} {:>12} {:>10} {:>10} {:>10} {:>12} {:>10} {:>10} {:>10}\n",
+        "rim", "largest MPa", "over gross", "x_mm", "y_mm", "least MPa", "over gross", "x_mm", "y_mm"
+    );
+    let over = |stress: f64| stressed.concentration(stress).map_or_else(|| "-".to_owned(), |share| format!("{share:.4}"));
+    for rim in &stressed.rims {
+        let mut words = String::new();
+        for StressAt { at: [x, y], stress } in [rim.largest, rim.least] {
+            // Writing to a String cannot fail.
+            let _ = write!(words, " {:>12.3} {:>10} {:>10.4} {:>10.4}", stress / MPA, over(stress), x / MM, y / MM);
+        }
+        let _ = writeln!(text, "{:<12}{words}", name(rim.rim));
+    }
+    text
+}
+
+/// What is to be said of the stresses.
+#[must_use]
+pub fn warnings(stressed: &Stressed) -> Vec<String> {
+    let sharp: Vec<String> = stressed.rims.iter().filter(|rim| rim.is_sharp).map(|rim| name(rim.rim)).collect();
+    let mut warnings = Vec::new();
+    if !sharp.is_empty() {
+        warnings.push(format!(
+            "{}: a sharp re-entrant corner has no bound of its elastic stress, so that the figure is that of these nodes alone; draw the \
+             corner with its radius, as several corners of outline_mm",
+            sharp.join(", ")
+        ));
+    }
+    if let (false, Some(change)) = (stressed.is_settled(), stressed.change) {
+        warnings.push(format!(
+            "the largest stress of a rim still changed by {:.2} % in the last refinement ({} % was asked for); give more \
+             model.nodes",
+            100.0 * change,
+            100.0 * SETTLED
+        ));
+    }
+    warnings
+}
+
+/// Bytes that the files will have, roughly.
+#[must_use]
+pub fn room(case: &Case) -> Room {
+    const OF_POINT: f64 = 60.0;
+    let points = 100.0 * case.specimen.area() / case.model.element_free.resolution.far.powi(2);
+    Room { tables: 64_000, all: 500_000 + (OF_POINT * points) as u64 }
+}
+
+/// Writes all files into `folder`; `result` is the content of `result.json` but for what made it.
+///
+/// # Errors
+/// [`Error::File`] if a file cannot be written.
+pub fn write(folder: &Path, case: &Case, stressed: &Stressed, result: &Value) -> Result<()> {
+    let mut result = result.clone();
+    provenance::add(&mut result, &case.provenance, &[]);
+    write_file(&folder.join(RESULT_FILE), format!("{result:#}\n").as_bytes())?;
+    let command = "sif --method element_free_galerkin";
+    provenance::write(folder, command, provenance::table_of(&case.echo), &case.provenance)?;
+    let snapshot = Snapshot {
+        cycles: 0.0,
+        crack_length: case.specimen.crack_length,
+        displacement: stressed.displacement.clone(),
+        damage: vec![0.0; stressed.displacement.len()],
+        remaining_life: Vec::new(),
+        stress: stressed.stress.clone(),
+    };
+    let caption = ["at maximum load".to_owned()];
+    let cracks = &case.specimen.cracks;
+    DamagePicture {
+        grid: &stressed.grid,
+        snapshot: &snapshot,
+        field: PointField::VonMises,
+        cracks,
+        paths: &[],
+        caption: &caption,
+    }
+    .write(&folder.join("von_mises.png"))?;
+    let mut of_nodes = case.clone();
+    of_nodes.model.element_free.resolution = stressed.resolution;
+    write_file(&folder.join("nodes.svg"), nodes_svg(&of_nodes, &[])?.as_bytes())?;
+    let paraview = folder.join(PARAVIEW);
+    std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
+    vtk::write_series(&paraview, &stressed.grid, &[snapshot])
+}
