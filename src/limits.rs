@@ -21,8 +21,8 @@ pub struct Limit {
     pub method: String,
     /// What the parameter is.
     pub parameter: String,
-    /// Whether there is a safe range around the usual value.
-    pub is_safe: bool,
+    /// Whether there is a safe range around the usual value; `None` where that was not judged.
+    pub is_safe: Option<bool>,
     /// Its ends: the last values that keep the bound; `None` where the sweep finds none.
     pub ends: [Option<f64>; 2],
     /// Error that counts as right, percent.
@@ -70,7 +70,12 @@ pub fn parse(text: &str) -> Result<Vec<Limit>> {
             sweep: sweep.to_owned(),
             method: method.to_owned(),
             parameter: parameter.to_owned(),
-            is_safe: is_safe == "true",
+            is_safe: match is_safe {
+                "" => None,
+                "true" => Some(true),
+                "false" => Some(false),
+                other => return Err(broken(other, "is neither true nor false")),
+            },
             ends: [end(low)?, end(high)?],
             bound_percent: number(bound)?,
             version: version.to_owned(),

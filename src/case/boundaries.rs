@@ -174,7 +174,7 @@ fn exponent_line(case: &Case, sweep: &str, method: &str) -> Option<String> {
     };
     let limit = limits::of(sweep, method)?;
     let bound = limit.bound_percent;
-    if !limit.is_safe {
+    if limit.is_safe == Some(false) {
         return Some(format!("{method}: the life errs by more than {bound} % at any exponent that was measured"));
     }
     let end = limit.passed(exponent)?;

@@ -20,11 +20,12 @@ pub fn range(record: &Record) -> String {
     let unit = if sweep.unit.is_empty() { String::new() } else { format!(" {}", sweep.unit) };
     let (first, last) = (sweep.values[0], sweep.values[sweep.values.len() - 1]);
     match (record.is_safe, record.ends) {
-        (false, _) => format!("not within {} % at the usual value {}{unit}", sweep.bound_percent, short(sweep.usual)),
-        (true, [None, None]) => {
+        (None, _) => format!("not judged: the usual value {}{unit} took more than its budget", short(sweep.usual)),
+        (Some(false), _) => format!("not within {} % at the usual value {}{unit}", sweep.bound_percent, short(sweep.usual)),
+        (Some(true), [None, None]) => {
             format!("within {} % from {} to {}{unit}, the whole sweep", sweep.bound_percent, short(first), short(last))
         }
-        (true, [low, high]) => {
+        (Some(true), [low, high]) => {
             let end = |end: Option<f64>, whole: f64| short(end.unwrap_or(whole));
             format!("within {} % from {} to {}{unit}", sweep.bound_percent, end(low, first), end(high, last))
         }
@@ -76,7 +77,7 @@ pub fn boundaries(records: &[Record]) -> String {
             sweep.name,
             quoted(record.method),
             quoted(sweep.parameter),
-            record.is_safe,
+            record.is_safe.map_or_else(String::new, |is_safe| is_safe.to_string()),
             sweep.bound_percent,
             env!("CARGO_PKG_VERSION"),
         );

@@ -97,7 +97,7 @@ fn draw(svg: &mut String, size: (u32, u32), sweep: &Sweep, records: &[&Record], 
     let [first, last] = [sweep.values[0], sweep.values[sweep.values.len() - 1]];
     for (record, colour) in records.iter().zip(COLOURS.iter().cycle()) {
         // Safe ranges lie over each other: each is shaded faintly.
-        if record.is_safe {
+        if record.is_safe == Some(true) {
             let [from, to] = [record.ends[0].unwrap_or(first), record.ends[1].unwrap_or(last)];
             let shade = colour.mix(0.25 / records.len() as f64).filled();
             chart.draw_series([Rectangle::new([(from, low), (to, sweep.bound_percent)], shade)])?;

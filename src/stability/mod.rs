@@ -125,8 +125,8 @@ pub struct Record {
     pub points: Vec<(f64, Outcome)>,
     /// Ends of the safe range: the last stable values, `None` where the range has no end within the sweep or the budget.
     pub ends: [Option<f64>; 2],
-    /// Whether the usual value is stable; without it there is no safe range.
-    pub is_safe: bool,
+    /// Whether the usual value is stable; without it there is no safe range. `None` where the budget was spent on it.
+    pub is_safe: Option<bool>,
     /// Seconds it took.
     pub wall_s: f64,
 }

@@ -14,7 +14,9 @@ pub(super) fn walk(sweep: &'static Sweep, method: &'static Method, effort: Effor
     let measure = |value: f64| (value, within(effort.budget, |run| (method.measure)(value, run)));
     let mut points: Vec<(f64, Outcome)> = chosen(sweep, effort.stride).into_iter().map(measure).collect();
     let is_stable = |point: &(f64, Outcome)| point.1.status(sweep.bound_percent) == Status::Stable;
-    let usual = points.iter().position(|point| point.0 == sweep.usual).filter(|&at| is_stable(&points[at]));
+    let at_usual = points.iter().position(|point| point.0 == sweep.usual);
+    let is_safe = at_usual.map(|at| &points[at]).filter(|point| !matches!(point.1, Outcome::Unfinished(_))).map(is_stable);
+    let usual = at_usual.filter(|_| is_safe == Some(true));
     let mut ends = [None, None];
     if let Some(usual) = usual {
         let below = points[..usual].iter().rposition(|point| !is_stable(point));
@@ -44,7 +46,7 @@ pub(super) fn walk(sweep: &'static Sweep, method: &'static Method, effort: Effor
         }
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Record { sweep, method: method.name, points, ends, is_safe: usual.is_some(), wall_s: begun.elapsed().as_secs_f64() }
+    Record { sweep, method: method.name, points, ends, is_safe, wall_s: begun.elapsed().as_secs_f64() }
 }
 
 /// Every so many-th value, the first, the last and the usual one among them.

@@ -34,37 +34,42 @@ impl Draw {
         self.between(0.0, 1.0) < share
     }
 
-    /// Outline, holes and cracks of a plate of 20 to 50 mm.
-    fn plate(&mut self) -> (String, [f64; 2]) {
+    /// Outline, holes and cracks of a plate of 20 to 50 mm; its width, and whether it is a rectangle.
+    fn plate(&mut self) -> (String, f64, bool) {
         let [w, h] = [self.between(20.0, 50.0), self.between(24.0, 60.0)];
         let (x, y) = (0.5 * w, 0.5 * h);
         let mut text = "[specimen]\nkind = \"plate\"\nthickness_mm = 2\n".to_owned();
-        text += &match self.below(4) {
-            // A corner off, and a step in the side.
+        let shape = self.below(4);
+        // Ends stay alike, so that loads on them balance.
+        text += &match shape {
             0 => {
-                let c = self.between(0.1, 0.4) * w;
-                format!("outline_mm = [[{}, {}], [{x}, {}], [{x}, {y}], [{}, {y}], [{}, {}]]\n", -x, -y, -y, c - x, -x, y - c)
+                let c = self.between(0.05, 0.2) * w.min(h);
+                format!(
+                    "outline_mm = [[{}, {}], [{x}, {}], [{x}, {y}], [{}, {y}], [{}, {}], [{}, {}]]\n",
+                    c - x,
+                    -y,
+                    -y,
+                    c - x,
+                    -x,
+                    y - c,
+                    -x,
+                    c - y
+                )
             }
             1 => {
-                let (c, d) = (self.between(0.1, 0.25) * w, self.between(0.1, 0.3) * h);
+                let (c, d) = (self.between(0.05, 0.2) * w, self.between(0.1, 0.3) * h);
+                let z = x - c;
                 format!(
-                    "outline_mm = [[{}, {}], [{x}, {}], [{x}, {}], [{}, {}], [{}, {d}], [{x}, {d}], [{x}, {y}], [{}, {y}]]\n",
-                    -x,
-                    -y,
-                    -y,
-                    -d,
-                    x - c,
-                    -d,
-                    x - c,
-                    -x
+                    "outline_mm = [[{}, {}], [{x}, {}], [{x}, {}], [{z}, {}], [{z}, {d}], [{x}, {d}], [{x}, {y}], [{}, {y}]]\n",
+                    -x, -y, -y, -d, -d, -x
                 )
             }
             _ => format!("width_mm = {w}\nlength_mm = {h}\n"),
         };
         let holes: Vec<String> = (0..self.below(3))
             .map(|_| {
-                let [a, b] = [self.between(-0.8, 0.8) * x, self.between(-0.7, 0.7) * y];
-                format!("{{ x_mm = {a}, y_mm = {b}, diameter_mm = {} }}", self.between(2.0, 0.3 * w))
+                let [a, b] = [self.between(-0.7, 0.7) * x, self.between(-0.7, 0.7) * y];
+                format!("{{ x_mm = {a}, y_mm = {b}, diameter_mm = {} }}", self.between(2.0, 0.2 * w))
             })
             .collect();
         if !holes.is_empty() {
@@ -72,80 +77,83 @@ impl Draw {
         }
         let cracks: Vec<String> = (0..1 + self.below(3)).map(|_| self.crack([x, y])).collect();
         text += &format!("cracks = [{}]\n", cracks.join(", "));
-        (text, [w, h])
+        (text, w, shape > 1)
     }
 
     /// From an edge, inside, or kinked.
     fn crack(&mut self, [x, y]: [f64; 2]) -> String {
-        let at = |draw: &mut Draw| [draw.between(-0.7, 0.7) * x, draw.between(-0.6, 0.6) * y];
-        let [a, b] = at(self);
-        let length = self.between(0.1, 0.6) * x;
-        let (sin, cos) = self.between(-3.1, 3.1).sin_cos();
-        let round = |v: f64| (v * 1e3).round() / 1e3;
-        let [c, d] = [round(a + length * cos), round(b + length * sin)];
+        let at = |draw: &mut Draw| [draw.between(-0.75, 0.75) * x, draw.between(-0.5, 0.5) * y];
+        let ([a, b], [c, d]) = (at(self), at(self));
+        let share = self.between(0.5, 0.95);
+        let [e, f] = [a + share * (c - a), b + share * (d - b)];
         match self.below(4) {
-            0 => format!("{{ from_mm = [{}, {b}], to_mm = [{}, {}] }}", -x, round(length - x), round(b + 0.3 * length * sin)),
-            1 => format!("{{ path_mm = [[{a}, {b}], [{c}, {d}], [{}, {}]] }}", round(c + 2.0 * cos.abs()), round(d + 2.0)),
-            _ => format!("{{ from_mm = [{a}, {b}], to_mm = [{c}, {d}] }}"),
+            0 => format!("{{ from_mm = [{}, {b}], to_mm = [{}, {}] }}", -x, -x + share * 0.6 * x, b + 0.2 * (f - b)),
+            1 => format!("{{ path_mm = [[{a}, {b}], [{e}, {f}], [{}, {}]] }}", e + 0.2 * (d - b), f + 0.2 * (c - a)),
+            _ => format!("{{ from_mm = [{a}, {b}], to_mm = [{e}, {f}] }}"),
         }
     }
 
-    fn loading(&mut self) -> String {
+    fn loading(&mut self, is_rectangle: bool) -> String {
         let ratio = self.between(-1.0, 0.7);
-        let more = match self.below(6) {
-            0 => format!("stress_parallel_ratio = {}\n", self.between(-1.0, 2.0)),
-            1 => "edges = [\"left\", \"right\"]\n".to_owned(),
-            2 => "edges = [\"top\", \"bottom\"]\ndirection = [1, 1]\n".to_owned(),
-            3 => format!("crack_pressure_mpa = {}\n", self.between(0.0, 30.0)),
+        let more = match self.below(8) {
+            0 if is_rectangle => format!("stress_parallel_ratio = {}\n", self.between(-1.0, 2.0)),
+            1 if is_rectangle => "edges = [\"left\", \"right\"]\n".to_owned(),
+            2 => format!("crack_pressure_mpa = {}\n", self.between(0.0, 30.0)),
             _ => String::new(),
         };
         let load = match self.below(8) {
             0 => format!("force_max_n = {}", self.between(100.0, 9e3)),
             1 => format!("stress_range_mpa = {}", self.between(1.0, 80.0)),
             2 => {
-                return format!(
-                    "[loading]\nkind = \"displacement\"\ndisplacement_max_mm = {}\nstress_ratio = 0.1\n",
-                    self.between(0.001, 0.1)
-                );
+                let most = self.between(0.001, 0.1);
+                return format!("[loading]\nkind = \"displacement\"\ndisplacement_max_mm = {most}\nstress_ratio = 0.1\n");
             }
             _ => format!("stress_max_mpa = {}", self.between(1.0, 150.0)),
         };
         format!("[loading]\n{load}\nstress_ratio = {ratio}\n{more}")
     }
 
-    fn model(&mut self, [w, _]: [f64; 2]) -> String {
-        if self.chance(0.25) {
-            let basis = self.one_of(&["linear", "quadratic"]);
-            let enrichment = self.one_of(&["tip", "tip", "none"]);
-            return format!("[model]\nmethod = \"element_free_galerkin\"\nbasis = \"{basis}\"\nenrichment = \"{enrichment}\"\n");
+    /// `[material]` and `[model]`, whose laws of bonds have their own Poisson's ratios.
+    fn model(&mut self, width: f64) -> String {
+        let plane = self.one_of(&["stress", "strain"]);
+        let most = if plane == "stress" { 1.0 / 3.0 } else { 0.25 };
+        let mut nu = self.between(0.05, 0.49);
+        let nodes = self.chance(0.25);
+        let limits = if self.chance(0.3) { "yield_strength_mpa = 350\ntoughness_mpa_sqrt_m = 40\n" } else { "" };
+        let mut text = String::new();
+        if nodes {
+            let (basis, enrichment) = (self.one_of(&["linear", "quadratic"]), self.one_of(&["tip", "tip", "none"]));
+            text += &format!("[model]\nmethod = \"element_free_galerkin\"\nbasis = \"{basis}\"\nenrichment = \"{enrichment}\"\n");
+        } else {
+            text += &format!("[model]\nspacing_mm = {}\n", width / self.between(22.0, 34.0));
+            let law = self.one_of(&["", "two_parameter", "state_based", "one_bond_two_parameter", "bond_based"]);
+            match law {
+                "two_parameter" | "one_bond_two_parameter" => nu = nu.min(most),
+                "bond_based" => nu = most,
+                _ => {}
+            }
+            if !law.is_empty() {
+                text += &format!("bond_law = \"{law}\"\n");
+            }
+            if self.chance(0.3) {
+                text += &format!("horizon_ratio = {}\n", self.between(1.5, 5.0));
+            }
+            if self.chance(0.3) {
+                text += &format!("lattice_angle_deg = {}\n", self.between(-90.0, 90.0));
+            }
+            if self.chance(0.2) {
+                text += &format!("kernel = \"{}\"\n", self.one_of(&["constant", "conical"]));
+            }
+            if law == "two_parameter" && self.chance(0.4) {
+                text += "discretisation = \"dual_horizon\"\n[refinement]\nregions = [{ around_flaws_mm = 4.0, levels = 1 }]\n";
+            } else if self.chance(0.5) {
+                text +=
+                    &format!("solver = \"{}\"\n", self.one_of(&["window", "multigrid", "direct", "adaptive_dynamic_relaxation"]));
+            } else if self.chance(0.4) {
+                text += &format!("surface_correction = \"{}\"\n", self.one_of(&["none", "volume_and_surface", "balanced"]));
+            }
         }
-        let spacing = w / self.between(18.0, 30.0);
-        let mut text = format!("[model]\nspacing_mm = {spacing}\n");
-        if self.chance(0.5) {
-            text += &format!(
-                "bond_law = \"{}\"\n",
-                self.one_of(&["two_parameter", "state_based", "one_bond_two_parameter", "bond_based"])
-            );
-        }
-        if self.chance(0.3) {
-            text += &format!("horizon_ratio = {}\n", self.between(1.5, 5.0));
-        }
-        if self.chance(0.3) {
-            text += &format!("lattice_angle_deg = {}\n", self.between(-90.0, 90.0));
-        }
-        if self.chance(0.4) {
-            text += &format!("solver = \"{}\"\n", self.one_of(&["window", "multigrid", "direct", "adaptive_dynamic_relaxation"]));
-        }
-        if self.chance(0.2) {
-            text += &format!("kernel = \"{}\"\n", self.one_of(&["constant", "conical"]));
-        }
-        if self.chance(0.2) {
-            text += &format!("surface_correction = \"{}\"\n", self.one_of(&["none", "volume_and_surface", "balanced"]));
-        }
-        if self.chance(0.1) {
-            text += "discretisation = \"dual_horizon\"\n[refinement]\nregions = [{ around_flaws_mm = 4.0, levels = 1 }]\n";
-        }
-        text
+        format!("[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = {nu}\nplane = \"{plane}\"\n{limits}{text}")
     }
 
     fn fatigue(&mut self) -> String {
@@ -161,12 +169,9 @@ impl Draw {
     }
 
     fn case(&mut self) -> String {
-        let (plate, size) = self.plate();
-        let (nu, plane) = (self.between(0.05, 0.49), self.one_of(&["stress", "strain"]));
-        let limits = if self.chance(0.3) { "yield_strength_mpa = 350\ntoughness_mpa_sqrt_m = 40\n" } else { "" };
-        let material = format!("[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = {nu}\nplane = \"{plane}\"\n{limits}");
-        let (loading, model, fatigue) = (self.loading(), self.model(size), self.fatigue());
-        format!("{plate}{material}{loading}{model}{fatigue}[stop]\ncycles_max = 1e9\n")
+        let (plate, width, is_rectangle) = self.plate();
+        let (loading, model, fatigue) = (self.loading(is_rectangle), self.model(width), self.fatigue());
+        format!("{plate}{loading}{model}{fatigue}[stop]\ncycles_max = 1e9\n")
     }
 }
 

@@ -38,7 +38,6 @@ pub const SWEEPS: &[&Sweep] = &[
     &lives::EXPONENT,
     &lives::AGEING,
     &steps::TIME_STEP,
-    &steps::LOAD_STEP,
     &solvers::DENSITY_FACTOR,
     &solvers::LAST_LIGAMENT,
     &nodes::INFLUENCE_RADIUS,

@@ -1,4 +1,4 @@
-//! Steps of fracture scenes: of time, and of load beyond the largest load.
+//! Steps of time of fracture scenes.
 
 use std::path::Path;
 
@@ -50,38 +50,4 @@ fn by_time_step(share: f64, run: &Run) -> Result<f64> {
     let largest = done.history.iter().map(|row| row.work.abs()).fold(0.0, f64::max);
     let lost = done.history.iter().map(|row| (row.kinetic + row.strain + row.fracture - row.work).abs());
     Ok(100.0 * lost.fold(0.0, f64::max) / largest)
-}
-
-/// Load step over the displacement at the largest load, which falls together with the displacement.
-pub const LOAD_STEP: Sweep = Sweep {
-    name: "load_step",
-    about: "plate of 20 x 40 mm with a crack of 8 mm, pulled until it is in two, which snaps back: work that is neither strain nor \
-            fracture energy, over all work",
-    parameter: "load steps to twice the displacement of Griffith's load",
-    unit: "",
-    values: &[1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0],
-    usual: 50.0,
-    is_continuous: false,
-    bound_percent: 2.0,
-    methods: &[
-        Method { name: "secant", measure: |steps, run| by_load_step(steps, run, "secant") },
-        Method {
-            name: "adaptive_dynamic_relaxation",
-            measure: |steps, run| by_load_step(steps, run, "adaptive_dynamic_relaxation"),
-        },
-    ],
-};
-
-fn by_load_step(steps: f64, run: &Run, solver: &str) -> Result<f64> {
-    // σ = √(E G / (π a)) = 175 MPa on 40 mm of 192 GPa: 0.036 mm, half of it at either end; twice that.
-    let text = format!(
-        "{PLATE}[model]\nspacing_mm = 1\nsolver = \"{solver}\"\n[loading]\nkind = \"displacement\"\nedges = [\"top\", \"bottom\"]\n\
-         displacement_mm = 0.036\nsteps = {steps}\n[damage]\nlaw = \"critical_energy\"\n"
-    );
-    let done = fracture::run(&Scene::from_toml(&text, "load_step", Path::new("."), &[])?, run)?;
-    if done.separated_step.is_none() {
-        return Err(Error::Mechanics(format!("the plate did not part: {}", done.end)));
-    }
-    let last = done.history.last().copied().unwrap_or_default();
-    Ok(100.0 * (last.work - last.strain - last.fracture) / last.work)
 }
