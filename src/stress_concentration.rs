@@ -10,7 +10,7 @@ use crate::element_free::field::Discretisation;
 use crate::element_free::raster;
 use crate::element_free::resolution::Resolution;
 use crate::element_free::rim_stress::{RimStress, rim_stresses};
-use crate::element_free::solve::{Workspace, solve};
+use crate::element_free::solve::solve;
 use crate::error::{Error, Result};
 use crate::growth::element_free::initial_cracks;
 use crate::levels::PointGrid;
@@ -80,12 +80,11 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
     let mut resolution = case.model.element_free.resolution;
     let far = resolution.far;
     resolution.in_radius = IN_RADIUS_FIRST;
-    let mut workspace = Workspace::default();
     let (mut rims, mut solves): (Vec<RimStress>, usize) = (Vec::new(), 0);
     loop {
         let plate = Discretisation::new(specimen, elasticity, &lines, &tips, &resolution)?;
         let load = case.loading.maximum;
-        let solution = solve(specimen, &plate, resolution.far, load, &mut workspace).map_err(|error| match error {
+        let solution = solve(specimen, &plate, resolution.far, load).map_err(|error| match error {
             Error::LossOfStiffness => Error::Mechanics(format!("{}: what is left of the plate cannot carry its load", case.name)),
             other => other,
         })?;

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::case::Case;
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::element_free::field::{Discretisation, Local};
-use crate::element_free::solve::{Workspace, solve};
+use crate::element_free::solve::solve;
 use crate::error::{Error, Result};
 use crate::growth::element_free::{initial_cracks, initial_tips};
 use crate::units::MM;
@@ -86,7 +86,7 @@ fn ahead_of_a_tip(table: &mut Table) -> Result<()> {
         let mut resolution = case.model.element_free.resolution;
         (resolution.far, resolution.basis, resolution.enrichment, resolution.support) = (2.5 * MM, basis, enrichment, support);
         let plate = Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &resolution)?;
-        let solution = solve(&case.specimen, &plate, resolution.far, STRESS, &mut Workspace::default())?;
+        let solution = solve(&case.specimen, &plate, resolution.far, STRESS)?;
         let mut sum = 0.0;
         for (r, share) in [(0.1 * MM, 1.005), (1.0 * MM, 1.015), (5.0 * MM, 1.074)] {
             let known = plate.displacement(&solution.u, [-15.0 * MM + r, 0.0], &mut Local::default());
