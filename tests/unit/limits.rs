@@ -45,7 +45,7 @@ fn a_broken_table_is_refused() {
     }
 }
 
-const REST: &str = "[material]\nyoungs_modulus_gpa = 70\n[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n[fatigue]\n\
+const REST: &str = "[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\n[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n[fatigue]\n\
     paris_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
 
 /// A panel or plate without model.
