@@ -114,7 +114,8 @@ fn at(limit: &Limit, value: f64) -> Option<((String, Vec<String>), String)> {
         ("exponent", "tip_field") => {
             Some((panel(&[("fatigue.paris_m", value)], "material.poisson_ratio=0.3", "spacing_mm = 1"), "exponent".to_owned()))
         }
-        ("influence_radius", method) => {
+        // The key begins at 1.5: what lies below is refused, safe or not.
+        ("influence_radius", method) if limit.ends[0].is_none_or(|low| low > 1.5) => {
             let basis = if method.contains("linear") { "model.basis=linear" } else { "model.basis=quadratic" };
             let model = "method = \"element_free_galerkin\"";
             let set = format!("material.poisson_ratio=0.3 {basis}");
