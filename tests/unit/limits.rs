@@ -45,7 +45,7 @@ fn a_broken_table_is_refused() {
     }
 }
 
-const REST: &str = "[material]\nyoungs_modulus_gpa = 70\n[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n[fatigue]\n\
+const REST: &str = "[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\n[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n[fatigue]\n\
     paris_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
 
 /// A panel or plate without model.
@@ -114,7 +114,8 @@ fn at(limit: &Limit, value: f64) -> Option<((String, Vec<String>), String)> {
         ("exponent", "tip_field") => {
             Some((panel(&[("fatigue.paris_m", value)], "material.poisson_ratio=0.3", "spacing_mm = 1"), "exponent".to_owned()))
         }
-        ("influence_radius", method) => {
+        // The key begins at 1.5: what lies below is refused, safe or not.
+        ("influence_radius", method) if limit.ends[0].is_none_or(|low| low > 1.5) => {
             let basis = if method.contains("linear") { "model.basis=linear" } else { "model.basis=quadratic" };
             let model = "method = \"element_free_galerkin\"";
             let set = format!("material.poisson_ratio=0.3 {basis}");
