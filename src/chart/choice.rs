@@ -87,6 +87,9 @@ pub fn choices(scene: &Scene) -> Result<Vec<Choice>> {
             choice(Family::TipField, &format!("step to {error} %"), &[&set], false)
         }));
     }
+    if scene.name == "hole_in_tension" {
+        all.push(choice(Family::ElementFree, "", &[NODES_KEY], true));
+    }
     if scene.has_crack() {
         all.push(choice(Family::ElementFree, "", &[NODES_KEY], true));
         all.extend(TOLERANCES.map(|(percent, is_quick)| {

@@ -2,15 +2,17 @@
 
 use crate::body::Body;
 use crate::case::{Case, Method};
+use crate::element_free::rim_stress::Rim;
 use crate::error::{Error, Result};
 use crate::solver::Equilibrium;
 use crate::solver::field::Layout;
 use crate::specimen::Point;
 use crate::specimen::geometry::distance;
 use crate::state::Bonds;
+use crate::stress_concentration::stressed;
 use crate::stress_intensity::{TipFrame, derivatives_at};
 use crate::units::MM;
-use crate::verify::scene::{case, pulled_plate};
+use crate::verify::scene::{plate_alone, pulled_plate};
 use crate::verify::uniform_tension::{strip, uniform_tension_with};
 
 use super::run::points_of;
@@ -24,32 +26,26 @@ pub const HOLE_UNCERTAINTY_PERCENT: f64 = 0.5;
 const WIDTH_MM: f64 = 100.0;
 const LENGTH_MM: f64 = 200.0;
 const DIAMETER_MM: f64 = 20.0;
-/// Where the text of the case has a crack, which is not cut: a case has one.
-const CRACK: &str = "cracks = [{ from_mm = [-50, 60], to_mm = [-30, 60] }]";
-
-/// The plate in uniform tension; the crack of the text is not cut.
+/// The plate in uniform tension.
 ///
 /// # Errors
-/// As [`Case::from_toml`].
+/// As [`plate_alone`].
 pub fn tension_case(set: &[String]) -> Result<Case> {
-    uncracked(&pulled_plate(&format!("width_mm = {WIDTH_MM}\nlength_mm = {LENGTH_MM}\n{CRACK}")), set)
+    of_text(&pulled_plate(&format!("width_mm = {WIDTH_MM}\nlength_mm = {LENGTH_MM}")), set)
 }
 
-/// The plate with the hole; the crack of the text is not cut.
+/// The plate with the hole.
 ///
 /// # Errors
-/// As [`Case::from_toml`].
+/// As [`plate_alone`].
 pub fn hole_case(set: &[String]) -> Result<Case> {
     let hole = format!("holes = [{{ x_mm = 0, y_mm = 0, diameter_mm = {DIAMETER_MM} }}]");
-    uncracked(&pulled_plate(&format!("width_mm = {WIDTH_MM}\nlength_mm = {LENGTH_MM}\n{CRACK}\n{hole}")), set)
+    of_text(&pulled_plate(&format!("width_mm = {WIDTH_MM}\nlength_mm = {LENGTH_MM}\n{hole}")), set)
 }
 
-fn uncracked(text: &str, set: &[String]) -> Result<Case> {
+fn of_text(text: &str, set: &[String]) -> Result<Case> {
     let keys: Vec<&str> = set.iter().map(String::as_str).collect();
-    let mut case = case(text, &keys)?;
-    case.specimen.cracks.clear();
-    case.specimen.tips.clear();
-    Ok(case)
+    plate_alone(text, &keys)
 }
 
 /// Displacement of a plate in uniform tension.
@@ -74,6 +70,9 @@ pub fn tension(case: &Case) -> Result<Found> {
 /// # Errors
 /// No equilibrium.
 pub fn hole(case: &Case) -> Result<Found> {
+    if case.model.method == Method::ElementFreeGalerkin {
+        return hole_on_nodes(case);
+    }
     on_points(case)?;
     let model = &case.model;
     let body =
@@ -99,8 +98,20 @@ pub fn hole(case: &Case) -> Result<Found> {
     };
     let mean = 0.5 * (strain([radius, 0.0])? + strain([-radius, 0.0])?);
     let concentration = case.material.youngs_modulus * mean / case.loading.maximum;
-    let error_percent = 100.0 * (concentration / concentration_of(DIAMETER_MM / WIDTH_MM) - 1.0).abs();
-    Ok(Found { points: body.points.len(), solves: 1, error_percent, path_rms_mm: None })
+    Ok(Found { points: body.points.len(), solves: 1, error_percent: off(concentration), path_rms_mm: None })
+}
+
+/// The same by the stress along the rim, on nodes.
+fn hole_on_nodes(case: &Case) -> Result<Found> {
+    let stressed = stressed(case)?;
+    let largest = stressed.rims.iter().find(|rim| rim.rim == Rim::Hole(0)).map(|rim| rim.largest.stress);
+    let concentration = largest.and_then(|stress| stressed.concentration(stress)).unwrap_or(f64::NAN);
+    Ok(Found { points: stressed.nodes, solves: stressed.solves, error_percent: off(concentration), path_rms_mm: None })
+}
+
+/// Size of the error of a stress concentration, percent.
+fn off(concentration: f64) -> f64 {
+    100.0 * (concentration / concentration_of(DIAMETER_MM / WIDTH_MM) - 1.0).abs()
 }
 
 /// Largest stress over that far away of a hole of d/W = x in a strip in tension: (3 - 3.14 x + 3.667 x² - 1.527 x³)/(1 - x), a fit to

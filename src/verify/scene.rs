@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::calibration::case::remove_law;
 use crate::calibration::record::FittedRecord;
 use crate::case::Case;
 use crate::error::Result;
@@ -37,6 +38,17 @@ pub fn pulled_plate(keys: &str) -> String {
 pub fn case(text: &str, set: &[&str]) -> Result<Case> {
     let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
     Case::from_toml(text, "verification", Path::new("."), &overrides)
+}
+
+/// A plate from the text of a case, which need not have a crack; its fatigue law is not read.
+///
+/// # Errors
+/// As [`Case::from_table`].
+pub fn plate_alone(text: &str, set: &[&str]) -> Result<Case> {
+    let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
+    let mut document = Document::parse(text, "verification", Path::new("."), &overrides)?;
+    remove_law(&mut document.table);
+    Case::without_growth(document.table.clone(), &document.name, &document.folder)
 }
 
 /// A case from text without fatigue law, with a fitted one and keys overridden.

@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::element_free::rim_stress::{Rim, RimStress};
 use crate::error::{Error, Result};
 use crate::stress_concentration::stressed;
-use crate::verify::scene::{case, pulled_plate};
+use crate::verify::scene::{plate_alone, pulled_plate};
 use crate::verify::table::Table;
 
 /// Bound of every row, percent.
@@ -43,7 +43,7 @@ fn wide_plates(table: &mut Table) -> Result<()> {
         ("equal stresses", &[all], [2.0, 2.0]),
         ("shear", &["loading.stress_parallel_ratio=-1"], [4.0, -4.0]),
     ] {
-        let found = over_gross(&case(&text, set)?, Rim::Hole(0))?;
+        let found = over_gross(&plate_alone(&text, set)?, Rim::Hole(0))?;
         for (which, found, wanted) in [("largest", found[0], wanted[0]), ("least", found[1], wanted[1])] {
             table.compare(format!("hole in a wide plate, {name}, nodes: {which} stress over σ"), found, wanted, BOUND, SOURCE);
             table.known_miss(SCATTER, 7.1);
@@ -58,7 +58,7 @@ fn strips(table: &mut Table) -> Result<()> {
         let hole = format!("holes = [{{ x_mm = 0, y_mm = 0, diameter_mm = {} }}]", 100.0 * share);
         let text = pulled_plate(&format!("width_mm = 100\nlength_mm = 300\n{hole}"));
         let net = 3.00 - 3.14 * share + 3.667 * share.powi(2) - 1.527 * share.powi(3);
-        let found = over_gross(&case(&text, &[])?, Rim::Hole(0))?[0];
+        let found = over_gross(&plate_alone(&text, &[])?, Rim::Hole(0))?[0];
         let quantity = format!("hole in a strip, d/W {share}, nodes: K_tg");
         table.compare(quantity, found, net / (1.0 - share), BOUND, "Howland 1930 by the fit of Peterson (0.5 %)");
     }
@@ -69,11 +69,11 @@ fn strips(table: &mut Table) -> Result<()> {
 fn outlines(table: &mut Table) -> Result<()> {
     let ellipse = half_plate([20.0, 10.0], 400.0, 400.0);
     let held = ["supports.left.fix=[\"x\"]", "loading.edges=[\"top\", \"bottom\"]"];
-    let found = over_gross(&case(&ellipse, &held)?, Rim::Outline)?[0];
+    let found = over_gross(&plate_alone(&ellipse, &held)?, Rim::Outline)?[0];
     let source = "Inglis 1913, 1 + 2a/b, infinite plate (0.5 % at a/W 0.05)";
     table.compare("elliptical opening 2:1 drawn as outline, nodes: K_tg", found, 5.0, BOUND, source);
     let notch = half_plate([10.0, 10.0], 400.0, 400.0);
-    let found = over_gross(&case(&notch, &["loading.edges=[\"top\", \"bottom\"]"])?, Rim::Outline)?[0];
+    let found = over_gross(&plate_alone(&notch, &["loading.edges=[\"top\", \"bottom\"]"])?, Rim::Outline)?[0];
     let source = "Maunsell 1936, half plane (3.065), with bending of the remaining width (+0.3 % at a/W 0.025)";
     table.compare("semicircular edge notch drawn as outline, nodes: K_tg", found, 3.065, BOUND, source);
     table.known_miss(SCATTER, 2.15);
