@@ -93,7 +93,7 @@ impl NodeKeys {
             }
             (None, None) => width.min(height) / across,
         };
-        let basis = self.basis.unwrap_or(BasisKind::Linear);
+        let basis = self.basis.unwrap_or(if specimen.tips.is_empty() { BasisKind::Quadratic } else { BasisKind::Linear });
         let influence = number("a radius of influence in spacings", 1.5, 6.0)
             .read_optional("model.influence_radius", self.influence_radius)?;
         Ok(ElementFreeSettings {
