@@ -65,7 +65,7 @@ pub struct Model {
 /// As [`Scene::case`] and [`Scene::run`].
 pub fn once(scene: &Scene, set: &[String]) -> Result<Run> {
     let case = scene.case(set)?;
-    if case.fatigue.driver == Driver::BondStrain && case.model.solver == SolverKind::AdaptiveDynamicRelaxation {
+    if scene.grows() && case.fatigue.driver == Driver::BondStrain && case.model.solver == SolverKind::AdaptiveDynamicRelaxation {
         return extrapolated(scene, &case);
     }
     let timed = || -> Result<(Case, Found, f64)> {

@@ -90,8 +90,8 @@ const fn plate(name: &'static str, about: &'static str, of: &'static str, way_mm
 
 /// All scenes, in the order of the panels.
 pub const SCENES: &[Scene] = &[
-    specimen("middle_tension", "middle-tension panel, W 100 mm, a 10 to 38 mm", 0, [[-50.0, -8.0], [50.0, 8.0]]),
-    specimen("compact_tension", "compact specimen, W 50 mm, a 15 to 35 mm", 1, [[12.0, -6.0], [50.0, 6.0]]),
+    specimen("middle_tension", "middle-tension panel, W 100 mm, a 10 to 38 mm", 0, [[-50.0, -13.0], [50.0, 13.0]]),
+    specimen("compact_tension", "compact specimen, W 50 mm, a 15 to 35 mm", 1, [[7.0, -7.0], [50.0, 7.0]]),
     specimen("single_edge", "single-edge panel, W 50 mm, a 8 to 28 mm", 2, [[-25.0, -6.0], [25.0, 6.0]]),
     Scene {
         name: "slant_factors",
@@ -99,11 +99,11 @@ pub const SCENES: &[Scene] = &[
         quantity: "K, the larger error of K_I and K_II over |K|",
         truth: ELEMENTS,
         truth_uncertainty_percent: 0.02,
-        way_mm: Some([[-16.0, -12.0], [16.0, 12.0]]),
+        way_mm: Some([[-19.0, -15.0], [19.0, 15.0]]),
         question: Question::Factors("slant_severance"),
     },
     plate("slant_severance", "slant crack until the plate is in two", "slant_severance", Some([[-40.0, -14.0], [40.0, 14.0]])),
-    plate("hole_entered", "edge crack that enters a hole", "hole_attracts", Some([[-50.0, -8.0], [-2.0, 20.0]])),
+    plate("hole_entered", "edge crack that enters a hole", "hole_attracts", Some([[-50.0, -13.0], [-2.0, 24.0]])),
     plate("hole_passed", "edge crack that passes a hole", "hole_missed", None),
     plate("offset_cracks", "two edge cracks that pass each other", "offset_edge_cracks", None),
     plate("three_cracks", "three collinear cracks that join", "three_cracks", None),
