@@ -4,7 +4,7 @@ use super::collinear::{Collinear, growth_integral};
 use super::references;
 use super::scene::{case, pulled_plate};
 use super::table::Table;
-use crate::calibration::model::cycles_since_first;
+use crate::calibration::model::cycles_of_run;
 use crate::error::Result;
 use crate::growth::tip_field::steering::kink_angle;
 use crate::predict::{Silent, StopReason, predict};
@@ -78,7 +78,7 @@ fn collinear_cracks(table: &mut Table) -> Result<()> {
         let by_hand = growth_integral(start, left, WIDTH_MM * MM, stress / MPA, M) / paris.c;
         let growth: Vec<(f64, f64)> =
             run.curve.iter().map(|point| (point.cycles, 0.5 * (point.tips[1].growth + point.tips[2].growth))).collect();
-        let cycles = cycles_since_first(&growth, &[0.0, start.inner - left])?[1];
+        let cycles = cycles_of_run(&growth, &[0.0, start.inner - left])?[1];
         let quantity = format!("two collinear cracks 24 mm apart: life to a ligament of {ligament} mm over quadrature");
         table.compare(
             quantity,

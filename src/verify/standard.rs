@@ -1,7 +1,7 @@
 //! Standard specimens at default resolution, and their lives by quadrature with K of finite elements.
 
 use super::scene::{MATERIAL_AND_LAW, PULL, case, points};
-use crate::calibration::model::cycles_since_first;
+use crate::calibration::model::cycles_of_run;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::{Observer, Prediction, Silent, StopReason, predict};
@@ -99,7 +99,7 @@ impl Standard {
     pub fn error_percent(&self, run: &Prediction, shares: &[f64]) -> Result<f64> {
         let [from, to] = self.range;
         let lengths: Vec<f64> = [0.0].iter().chain(shares).map(|share| from + share * (to - from)).collect();
-        let cycles = cycles_since_first(&points(run), &lengths.iter().map(|length| length * MM).collect::<Vec<_>>())?;
+        let cycles = cycles_of_run(&points(run), &lengths.iter().map(|length| length * MM).collect::<Vec<_>>())?;
         let mut largest = 0.0_f64;
         for (length, cycles) in lengths.iter().zip(&cycles).skip(1) {
             let error = 100.0 * (cycles / self.by_quadrature(&[], *length)? - 1.0);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use perilife::calibration::model::cycles_since_first;
+use perilife::calibration::model::cycles_of_run;
 use perilife::case::Case;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::quadrature::integrate;
@@ -58,7 +58,7 @@ fn standard_specimens_live_as_hand_calculation_says() {
     let constant_over_elasticity = {
         let (case, run) = example("virkler_panel");
         let curve: Vec<(f64, f64)> = run.curve.iter().map(|point| (point.cycles, point.crack_length)).collect();
-        let cycles = cycles_since_first(&curve, &[20.0 * MM, 45.0 * MM]).unwrap();
+        let cycles = cycles_of_run(&curve, &[20.0 * MM, 45.0 * MM]).unwrap();
         integral(&case, 20.0 * MM, 45.0 * MM) / cycles[1] * case.material.plane_modulus().powf(2.86)
     };
     for name in BY_HAND {

@@ -2,7 +2,7 @@
 
 use super::grown::{Grown, grow};
 use super::scene::PANEL;
-use crate::calibration::model::cycles_since_first;
+use crate::calibration::model::cycles_of_run;
 use crate::case::Case;
 use crate::error::Result;
 use crate::predict::{Silent, predict};
@@ -108,7 +108,7 @@ pub fn collinear_cracks(table: &mut Table) -> Result<()> {
     let (from, to) = (20.0 * MM, 27.0 * MM);
     let range = |length: f64| delta_k(&panel.specimen, length, panel.loading.maximum, panel.loading.range_share());
     let integral = integrate(|length| range(length).map_or(f64::NAN, |k| k.powf(-EXPONENT)), from, to, 1e-9).value;
-    let constant = integral / cycles_since_first(&points(&run), &[from, to])?[1];
+    let constant = integral / cycles_of_run(&points(&run), &[from, to])?[1];
 
     const WIDTH_MM: f64 = 180.0;
     let (inner, outer) = (12.0, 36.0);
@@ -125,7 +125,7 @@ pub fn collinear_cracks(table: &mut Table) -> Result<()> {
         let by_hand = growth_integral(start, left, WIDTH_MM * MM, stress, EXPONENT) / constant;
         let growth: Vec<(f64, f64)> =
             run.curve.iter().map(|point| (point.cycles, 0.5 * (point.tips[1].growth + point.tips[2].growth))).collect();
-        let cycles = cycles_since_first(&growth, &[0.0, start.inner - left])?[1];
+        let cycles = cycles_of_run(&growth, &[0.0, start.inner - left])?[1];
         let quantity = format!("two collinear cracks 24 mm apart: life to a ligament of {ligament} mm over quadrature");
         let source = "closed form with elliptic integrals (Tada, Paris and Irwin 2000), C of a middle-tension panel";
         table.compare(quantity, cycles / by_hand, 1.0, 5.0, source);
