@@ -72,6 +72,7 @@ fn outlines(table: &mut Table) -> Result<()> {
     let found = over_gross(&plate_alone(&ellipse, &held)?, Rim::Outline)?[0];
     let source = "Inglis 1913, 1 + 2a/b, infinite plate (0.5 % at a/W 0.05)";
     table.compare("elliptical opening 2:1 drawn as outline, nodes: K_tg", found, 5.0, BOUND, source);
+    table.known_miss(SCATTER, 1.216);
     let notch = half_plate([10.0, 10.0], 400.0, 400.0);
     let found = over_gross(&plate_alone(&notch, &["loading.edges=[\"top\", \"bottom\"]"])?, Rim::Outline)?[0];
     let source = "Maunsell 1936, half plane (3.065), with bending of the remaining width (+0.3 % at a/W 0.025)";
