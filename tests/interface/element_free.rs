@@ -174,7 +174,9 @@ fn a_plate_without_cracks_has_the_stress_of_its_holes() {
     let kept: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap();
     assert_eq!(kept["stresses"], found["stresses"]);
     let (stdout, stderr) = texts(&perilife(dir.path(), &by_nodes));
-    assert!(stdout.contains("holes[0]") && stdout.contains("outline") && stderr.is_empty(), "{stdout}{stderr}");
+    assert!(stdout.contains("holes[0]") && stdout.contains("outline"), "{stdout}{stderr}");
+    // Nothing is said but how far the peak has settled.
+    assert!(stderr.lines().all(|line| line.contains("still changed by")), "{stderr}");
     // A square end has no finite stress.
     let slot = without_crack("notches = [{ from_mm = [-30, 0], to_mm = [-20, 0], width_mm = 3 }]\n");
     fs::write(dir.path().join("slot.toml"), slot).unwrap();
