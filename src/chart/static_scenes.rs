@@ -12,6 +12,7 @@ use crate::state::Bonds;
 use crate::stress_concentration::stressed;
 use crate::stress_intensity::{TipFrame, derivatives_at};
 use crate::units::MM;
+use crate::verify::element_free::rims::concentration_of;
 use crate::verify::scene::{plate_alone, pulled_plate};
 use crate::verify::uniform_tension::{strip, uniform_tension_with};
 
@@ -112,13 +113,6 @@ fn hole_on_nodes(case: &Case) -> Result<Found> {
 /// Size of the error of a stress concentration, percent.
 fn off(concentration: f64) -> f64 {
     100.0 * (concentration / concentration_of(DIAMETER_MM / WIDTH_MM) - 1.0).abs()
-}
-
-/// Largest stress over that far away of a hole of d/W = x in a strip in tension: (3 - 3.14 x + 3.667 x² - 1.527 x³)/(1 - x), a fit to
-/// Howland 1930 within 0.5 %.
-#[must_use]
-pub fn concentration_of(x: f64) -> f64 {
-    (3.0 - x * (3.14 - x * (3.667 - 1.527 * x))) / (1.0 - x)
 }
 
 fn on_points(case: &Case) -> Result<()> {

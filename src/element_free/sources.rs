@@ -72,7 +72,7 @@ impl Resolution {
         for (k, &at) in outline.iter().enumerate() {
             let [before, after] = [(k + outline.len() - 1) % outline.len(), (k + 1) % outline.len()].map(|k| outline[k]);
             let turn = turn_at(before, at, after);
-            if turn >= -1e-6 || turn < -ARC_TURN {
+            if !(-ARC_TURN..-1e-6).contains(&turn) {
                 continue;
             }
             let side = distance(before, at).min(distance(at, after));

@@ -2,7 +2,7 @@
 //! paths.
 
 mod factors;
-mod rims;
+pub mod rims;
 
 use super::references::{REFERENCES, SHARES};
 use super::scene::{case, pulled_plate};

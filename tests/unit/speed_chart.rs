@@ -9,12 +9,12 @@ use perilife::chart::choice::choices;
 use perilife::chart::extrapolation::History;
 use perilife::chart::run::Model;
 use perilife::chart::schedule::{Effort, Outcome, Record, Request, measure};
-use perilife::chart::static_scenes::concentration_of;
 use perilife::chart::summary::{beaten, fastest_within, never_on_front};
 use perilife::chart::{Chart, Family, Run, SCENES, Status, scenes};
 use perilife::predict::{Silent, predict};
 use perilife::report::speed::{COLUMNS, Origin, csv, markdown, svg};
 use perilife::solver::SolverKind;
+use perilife::verify::element_free::rims::concentration_of;
 
 /// A run that took and found so much.
 fn run(wall_s: f64, error_percent: f64) -> Run {
@@ -160,6 +160,7 @@ fn every_choice_is_a_case_of_its_own() {
 }
 
 #[test]
+#[allow(clippy::approx_constant, reason = "a value of the table, not π")]
 fn the_hole_has_the_concentration_of_the_handbook() {
     // Kirsch 1898; Howland 1930, Phil. Trans. 229:49, table at 0.2 and 0.5 of the width: 3.14 and 4.32.
     for (share, wanted) in [(0.0, 3.0), (0.2, 3.14), (0.5, 4.32)] {
