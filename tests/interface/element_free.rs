@@ -142,7 +142,9 @@ fn too_few_nodes_for_a_basis_are_named() {
 
 /// The case with this in place of its crack.
 fn without_crack(extra: &str) -> String {
-    CASE.replace("cracks = [{ from_mm = [-7, -5], to_mm = [7, 5] }]\n", extra).replace("[stop]\ncrack_length_mm = 30\n", "").replace("length_mm = 100", "length_mm = 200")
+    CASE.replace("cracks = [{ from_mm = [-7, -5], to_mm = [7, 5] }]\n", extra)
+        .replace("[stop]\ncrack_length_mm = 30\n", "")
+        .replace("length_mm = 100", "length_mm = 200")
 }
 
 #[test]
