@@ -243,6 +243,9 @@ impl GrowthHistory {
         let mut rows = self.averaged(body.lattice.spacing);
         let zero = self.zero_of(&rows);
         if let Some(cycles_max) = self.run_out {
+            // The averaged crack may have its initial length long before that of the bonds: what lies beyond the end is none of the run.
+            let within = rows.partition_point(|row| row.cycles <= zero + cycles_max).max(1);
+            rows.truncate(within);
             // The crack stands where it is until then.
             rows.extend(rows.last().cloned().map(|row| Row { cycles: zero + cycles_max, ..row }));
         }
