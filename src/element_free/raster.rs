@@ -8,7 +8,7 @@ use crate::material::Plane;
 use crate::specimen::geometry::bounding_box;
 use crate::specimen::{Point, Specimen};
 
-/// Points of the raster in a far spacing: a dozen rasters of a run then cost less than its solves.
+/// Points of the raster in a far spacing: a dozen rasters of a run then have fewer places than its solves have points of integration.
 const IN_SPACING: f64 = 6.0;
 
 /// The raster of a plate whose nodes have the spacing `far`, m, away from everything.

@@ -13,7 +13,7 @@ use crate::chart::Chart;
 use crate::error::Result;
 
 pub use summary::markdown;
-pub use svg::{LEFT_OUT_MOST_PERCENT, svg};
+pub use svg::svg;
 pub use table::{COLUMNS, csv};
 
 /// Names of the files of a chart.
