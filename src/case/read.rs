@@ -85,6 +85,18 @@ impl Case {
         Ok(case)
     }
 
+    /// Specimen, material, load and model of a case or calibration file, of which nothing asks for the fatigue law, nor for a crack.
+    ///
+    /// # Errors
+    /// As [`Case::from_table`].
+    pub fn plate_of(document: &Document) -> Result<Self> {
+        let mut table = document.table.clone();
+        table.remove("measured");
+        table.remove("fit");
+        remove_law(&mut table);
+        Case::without_growth(table, &document.name, &document.folder).map_err(|error| document.locate(error))
+    }
+
     /// As [`Case::from_table`], of a plate in which nothing need be able to grow: for its stress alone.
     ///
     /// # Errors

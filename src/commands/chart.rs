@@ -8,7 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::console::Console;
 use super::signals;
@@ -55,6 +55,14 @@ pub fn run(args: &Args) -> Result<()> {
     if args.once {
         return once(args);
     }
+    args.console.object(&measured(args)?)
+}
+
+/// Measures scenes and writes what was found: the object of `--json`.
+///
+/// # Errors
+/// As [`run`].
+pub fn measured(args: &Args) -> Result<Value> {
     let scenes = scenes(&args.names)?;
     let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
     let folder = args.out.as_deref().map(RunsFolder::open).transpose()?;
@@ -81,7 +89,7 @@ pub fn run(args: &Args) -> Result<()> {
     });
     args.console.say("");
     args.console.say(&speed::markdown(&chart, &origin));
-    args.console.object(&object)
+    Ok(object)
 }
 
 /// The command in words, as the user gave it.

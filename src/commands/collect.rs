@@ -23,5 +23,5 @@ pub struct Args {
 /// # Errors
 /// A folder that is not one of a sweep; cases that are missing, after what is there has been written.
 pub fn run(args: &Args) -> Result<()> {
-    finish(&SweepFolder::existing(&args.dir)?, Instant::now(), &args.console)
+    finish(&SweepFolder::existing(&args.dir)?, Instant::now(), &args.console).map(drop)
 }

@@ -16,10 +16,10 @@ use crate::error::{Error, Result};
 #[command(next_help_heading = "What is printed")]
 pub struct Console {
     /// Print one JSON object on stdout and nothing else there
-    #[arg(long)]
+    #[arg(long, global = true)]
     pub json: bool,
     /// Print no summary and no progress bar; warnings stay
-    #[arg(long, short)]
+    #[arg(long, short, global = true)]
     pub quiet: bool,
 }
 

@@ -9,6 +9,8 @@ pub mod check;
 pub mod collect;
 pub mod export;
 pub mod fracture;
+#[cfg(feature = "service")]
+pub mod job;
 pub mod list;
 pub mod predict;
 pub mod rates;
@@ -35,10 +37,10 @@ use tracing_subscriber::EnvFilter;
 
 /// Declares the subcommands: doc line, name and module; gives the enum that clap parses and the call of the right `run`.
 macro_rules! commands {
-    ($($(#[$attribute:meta])+ $Name:ident: $module:ident $(or $alias:literal)?),+ $(,)?) => {
+    ($($(#[$attribute:meta])+ $Name:ident: $module:ident $(or $alias:literal)? $(hidden = $hide:literal)?),+ $(,)?) => {
         /// A subcommand with its arguments.
         #[derive(Debug, Subcommand)]
-        pub enum Command { $($(#[$attribute])+ $(#[command(alias = $alias)])? $Name($module::Args)),+ }
+        pub enum Command { $($(#[$attribute])+ $(#[command(alias = $alias)])? $(#[command(hide = $hide)])? $Name($module::Args)),+ }
 
         impl Command {
             /// Runs it.
@@ -89,6 +91,9 @@ commands! {
     /// Make, list and remove the tokens of a service
     #[cfg(feature = "service")]
     Token: token,
+    /// Run one job of a worker, which starts this by itself
+    #[cfg(feature = "service")]
+    Job: job hidden = true,
 }
 
 /// Fatigue-life prediction of cracked plates by peridynamics.

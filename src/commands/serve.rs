@@ -2,11 +2,12 @@
 
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::num::NonZeroU32;
+use std::path::PathBuf;
 
 use super::console::Console;
 use super::worker;
 use crate::error::Result;
-use crate::service::api::Limits;
+use crate::service::api::{Limits, Security};
 use crate::service::{Settings, serve};
 
 /// Arguments of `perilife serve`.
@@ -14,7 +15,7 @@ use crate::service::{Settings, serve};
 #[command(
     after_long_help = "Page: / with drawings, fits, runs as they go on and remaining life. Interface: /docs, for programs /openapi.json. A script submits by\n  curl -H \"content-type: application/toml\" --data-binary @case.toml localhost:8080/v1/predictions\n\
                        and asks /v1/predictions/ID/remaining?crack_length_mm=20&factor=3 for the cycles that are left and the inspection interval.\n\
-                       Watching: /healthz, /metrics for Prometheus, the log by -v or RUST_LOG.\n\
+                       Watching: /healthz (alive), /readyz (takes jobs), /metrics for Prometheus, the log by -v or RUST_LOG.\n\
                        Without tokens it answers this machine alone. To let others in: perilife token add, --listen, and a proxy with TLS before it."
 )]
 pub struct Args {
@@ -24,6 +25,15 @@ pub struct Args {
     /// Ask for tokens even on this machine
     #[arg(long, help_heading = "Service")]
     pub require_token: bool,
+    /// Believe what a proxy says of a request, and let in without a token who comes through it
+    #[arg(long, help_heading = "Service")]
+    pub trust_proxy: bool,
+    /// Where the service is reached from outside, e.g. https://life.example.org
+    #[arg(long, value_name = "URL", value_parser = public_url, help_heading = "Service")]
+    pub public_url: Option<String>,
+    /// Append a line of JSON for every change and every refusal
+    #[arg(long, value_name = "FILE", help_heading = "Service")]
+    pub audit_log: Option<PathBuf>,
     /// Largest body of a request, MiB
     #[arg(long, value_name = "MIB", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "Limits")]
     pub body_mib: u32,
@@ -33,6 +43,9 @@ pub struct Args {
     /// Most jobs of one owner that wait
     #[arg(long, value_name = "COUNT", default_value_t = 1000, help_heading = "Limits")]
     pub queued: u32,
+    /// Most MiB of the files of one owner's jobs, inputs and results
+    #[arg(long, value_name = "MIB", default_value_t = 102_400, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Limits")]
+    pub quota_mib: u32,
     /// Most connections at a time; the others wait
     #[arg(long, value_name = "COUNT", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Limits")]
     pub connections: u32,
@@ -66,6 +79,15 @@ fn address(text: &str) -> std::result::Result<SocketAddr, String> {
     chosen.copied().ok_or_else(|| wrong("the name has no address"))
 }
 
+/// A URL of HTTP without a path, which is where a page and its scripts are looked for.
+fn public_url(text: &str) -> std::result::Result<String, String> {
+    let url = text.trim_end_matches('/');
+    let host = url.strip_prefix("https://").or_else(|| url.strip_prefix("http://"));
+    let is_fine = host.is_some_and(|host| !host.is_empty() && !host.contains(['/', '?', '#', '@', ' ']));
+    let wrong = || "it is no address such as https://life.example.org: a scheme and a host, without a path".to_owned();
+    is_fine.then(|| url.to_owned()).ok_or_else(wrong)
+}
+
 /// Runs `perilife serve`, until it is asked to stop.
 ///
 /// # Errors
@@ -75,6 +97,7 @@ pub fn run(args: &Args) -> Result<()> {
         body_bytes: (args.body_mib as usize) << 20,
         points: f64::from(args.points),
         queued: i64::from(args.queued),
+        quota_bytes: i64::from(args.quota_mib) << 20,
         connections: args.connections as usize,
         requests_per_second: args.requests_per_second,
         writes_per_second: args.writes_per_second,
@@ -83,7 +106,12 @@ pub fn run(args: &Args) -> Result<()> {
     let settings = Settings {
         listen: args.listen,
         database: args.work.place.made()?,
-        needs_token: args.require_token,
+        security: Security {
+            needs_token: args.require_token,
+            trusts_proxy: args.trust_proxy,
+            public_url: args.public_url.clone(),
+        },
+        audit_log: args.audit_log.clone(),
         limits,
         workers: args.work.settings(),
     };

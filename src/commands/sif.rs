@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 
 use super::console::Console;
-use super::unaged::plate_without_law;
 use crate::case::{Case, Method};
 use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
+use crate::input::Document;
 use crate::report::output::{OutputFolder, RunKind};
 use crate::report::stresses;
 use crate::stress_concentration::{Stressed, stressed};
@@ -45,34 +45,44 @@ pub struct Args {
 /// # Errors
 /// Wrong input, mechanics without equilibrium, or no method that gives a factor of any tip.
 pub fn run(args: &Args) -> Result<()> {
-    let methods = methods(&args.method)?;
-    let case = plate_without_law(&args.case, &args.set)?;
+    let document = Document::read(&args.case, &args.set)?;
+    let found = run_on(&document, &args.method, args.out.as_deref(), &args.console)?;
+    args.console.object(&found)
+}
+
+/// Factors and stresses of the case of a document, by these methods or by all: the object of `--json`.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_on(document: &Document, method: &[String], out: Option<&Path>, console: &Console) -> Result<Value> {
+    let methods = methods(method)?;
+    let case = Case::plate_of(document)?;
     let is_on_nodes = methods == [StressIntensityMethod::ElementFreeGalerkin]
-        || args.method.is_empty() && case.model.method == Method::ElementFreeGalerkin;
+        || method.is_empty() && case.model.method == Method::ElementFreeGalerkin;
     let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);
     // Claimed first: a folder that cannot be written should not cost a run.
-    let folder = args.out.as_deref().map(|out| claim(out, &case, &methods)).transpose()?;
+    let folder = out.map(|out| claim(out, &case, &methods)).transpose()?;
     for warning in case.warnings.iter().map(String::as_str).chain(folder.as_ref().and_then(OutputFolder::warning)) {
-        args.console.warn(warning);
+        console.warn(warning);
     }
     let mut found = Map::new();
     if has_cracks || !is_on_nodes {
-        let tips = stress_intensity(&case, &methods).map_err(|error| error.in_file(&args.case))?;
-        tell_tips(&case, &tips, &args.console)?;
+        let tips = stress_intensity(&case, &methods).map_err(|error| document.locate(error))?;
+        tell_tips(&case, &tips, console)?;
         found.insert("tips".to_owned(), tips.iter().map(object).collect());
     }
     if folder.is_some() || !has_cracks {
-        let stressed = stressed(&case).map_err(|error| error.in_file(&args.case))?;
-        tell_stresses(&case, &stressed, &args.console)?;
+        let stressed = stressed(&case).map_err(|error| document.locate(error))?;
+        tell_stresses(&case, &stressed, console)?;
         found.insert("stresses".to_owned(), stresses::object(&stressed));
         if let Some(mut folder) = folder {
             let result = Value::Object(found.clone());
             folder.fill(|path| stresses::write(path, &case, &stressed, &result))?;
-            args.console.say(&format!("results in {}", folder.name().display()));
+            console.say(&format!("results in {}", folder.name().display()));
             drop(folder.finish()?);
         }
     }
-    args.console.object(&Value::Object(found))
+    Ok(Value::Object(found))
 }
 
 /// The folder for stresses on nodes.

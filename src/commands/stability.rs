@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::report::output::{OutputFolder, RunKind, write_file};
 use crate::report::stability as tables;
 use crate::report::{stability_map, stability_picture};
-use crate::stability::{self, Effort, sweeps};
+use crate::stability::{self, Effort, SLOW, sweeps};
 
 /// Arguments of `perilife stability`.
 #[derive(Debug, clap::Args)]
@@ -32,7 +32,13 @@ pub struct Args {
 /// A name that is no sweep; files that cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let sweeps = sweeps(&args.names)?;
-    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
+    // Who names a sweep wants all of it.
+    let with_slow = !args.quick || !args.names.is_empty();
+    let effort = Effort { with_slow, ..if args.quick { Effort::QUICK } else { Effort::FULL } };
+    if !with_slow {
+        let left_out = SLOW.map(|(sweep, method)| format!("{sweep} of {method}")).join(", ");
+        args.console.note(&format!("left out, since they take most of the time: {left_out}"));
+    }
     let folder = args.out.as_deref().map(|path| OutputFolder::create(path, RunKind::Stability)).transpose()?;
     let records = stability::run(&sweeps, effort, &|record| args.console.say(&tables::line(record)));
     let object = tables::object(&records);

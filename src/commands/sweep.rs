@@ -17,6 +17,7 @@ use super::signals;
 #[cfg(feature = "service")]
 use super::worker::Place;
 use crate::error::{Error, Result};
+use crate::input::Document;
 use crate::report::output::Share;
 use crate::report::sweep::{Outcome, Plan, write};
 use crate::sweep::design::CASES_MAX;
@@ -152,7 +153,22 @@ pub fn run(args: &Args) -> Result<()> {
             }
         }
     }
-    finish(&folder, begun, &args.console)
+    finish(&folder, begun, &args.console).map(drop)
+}
+
+/// Runs all cases of the sweep of a document on this machine: the figures of `sweep.json`.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_on(document: Document, out: &Path, threads: usize, console: &Console) -> Result<Value> {
+    let begun = Instant::now();
+    let sweep = Sweep::with_overrides(document, &[], CASES_MAX)?;
+    let cases = sweep.cases()?;
+    let read = sweep.document.folder.opened().so_far();
+    let folder = SweepFolder::open(out, Plan::new(&sweep, &cases), &read, Share::Alone)?;
+    let all: Vec<&DrawnCase> = cases.iter().collect();
+    local::run(&all, &folder, threads, true, &console.count(&sweep.name, all.len()))?;
+    finish(&folder, begun, console)
 }
 
 /// Cases that are not done yet.
@@ -184,7 +200,7 @@ fn run_part(args: &Args, shard: Shard, sweep: &Sweep, cases: &[DrawnCase], folde
 ///
 /// # Errors
 /// [`Error::Mechanics`] if cases are missing or none has a result; files that cannot be written.
-pub fn finish(folder: &SweepFolder, begun: Instant, console: &Console) -> Result<()> {
+pub fn finish(folder: &SweepFolder, begun: Instant, console: &Console) -> Result<Value> {
     let outcomes: Vec<Option<Outcome>> = (1..=folder.plan.cases.len()).map(|number| folder.outcome(number)).collect();
     let figures = write(&folder.path, &folder.plan, &outcomes, begun.elapsed().as_secs_f64())?;
     for warning in first(&figures, "warnings") {
@@ -199,7 +215,8 @@ pub fn finish(folder: &SweepFolder, begun: Instant, console: &Console) -> Result
     }
     summary(&folder.path, &folder.plan, &figures).iter().for_each(|line| console.say(line));
     console.object(&figures)?;
-    verdict(&folder.plan.name, &figures)
+    verdict(&folder.plan.name, &figures)?;
+    Ok(figures)
 }
 
 fn summary(path: &Path, plan: &Plan, figures: &Value) -> Vec<String> {

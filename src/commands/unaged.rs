@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use crate::calibration::case::remove_law;
 use crate::case::Case;
 use crate::error::Result;
 use crate::input::Document;
@@ -16,9 +15,5 @@ pub(super) fn case_without_law(path: &Path, overrides: &[String]) -> Result<Case
 
 /// The same of a plate that need not have a crack.
 pub(super) fn plate_without_law(path: &Path, overrides: &[String]) -> Result<Case> {
-    let mut document = Document::read(path, overrides)?;
-    document.table.remove("measured");
-    document.table.remove("fit");
-    remove_law(&mut document.table);
-    Case::without_growth(document.table.clone(), &document.name, &document.folder).map_err(|error| document.locate(error))
+    Case::plate_of(&Document::read(path, overrides)?)
 }

@@ -19,10 +19,10 @@ const FILE: &str = "perilife.sqlite";
 #[command(next_help_heading = "Jobs and results")]
 pub struct Place {
     /// Folder of the database file, which `serve` and `token add` make if it is not there
-    #[arg(long, value_name = "DIR", default_value = "perilife-data")]
+    #[arg(long, value_name = "DIR", default_value = "perilife-data", global = true)]
     pub data: PathBuf,
     /// Database instead of that file, e.g. postgres://user:password@host/name, for several machines
-    #[arg(long, value_name = "URL", env = "PERILIFE_DATABASE", hide_env_values = true)]
+    #[arg(long, value_name = "URL", env = "PERILIFE_DATABASE", hide_env_values = true, global = true)]
     pub database: Option<String>,
 }
 
@@ -35,6 +35,7 @@ impl Place {
         if let Some(url) = self.given()? {
             return Ok(url);
         }
+        self.check_drive()?;
         match std::fs::canonicalize(self.data.join(FILE)) {
             Ok(file) => Ok(url_of_file(&file)),
             Err(error) if error.kind() == ErrorKind::NotFound => {
@@ -43,6 +44,16 @@ impl Place {
             }
             Err(error) => Err(Error::file(&self.data, "cannot use the folder", error)),
         }
+    }
+
+    /// Refuses drives over which SQLite cannot keep several processes apart (sqlite.org, "How to corrupt an SQLite database file", 2.1).
+    fn check_drive(&self) -> Result<()> {
+        // One that is not there yet, or tells nothing, shows what it is when the database is opened.
+        let Ok(about) = rustix::fs::statfs(&self.data) else { return Ok(()) };
+        let Some(kind) = network_drive(about.f_type as u64) else { return Ok(()) };
+        let problem = format!("lies on a network drive ({kind}), on which SQLite cannot lock its file");
+        let remedy = "give a folder on a disk of this machine, or --database postgres://... for several machines";
+        Err(input("--data", self.data.display(), problem, remedy))
     }
 
     fn given(&self) -> Result<Option<String>> {
@@ -70,12 +81,28 @@ impl Place {
         let cannot = |error| Error::file(&self.data, "cannot create the folder", error);
         // Measured data and results are nobody else's business.
         DirBuilder::new().recursive(true).mode(0o700).create(&self.data).map_err(cannot)?;
+        self.check_drive()?;
         let file = std::fs::canonicalize(&self.data).map_err(cannot)?.join(FILE);
         // Whatever the folder lets others do: the files that SQLite lays beside it get the same rights.
         match OpenOptions::new().write(true).create_new(true).mode(0o600).open(&file) {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => Err(Error::file(&file, "cannot create", error)),
             _ => Ok(url_of_file(&file)),
         }
+    }
+}
+
+/// What a network drive is called whose file system has this number (statfs(2)); `None` for disks of the machine.
+#[must_use]
+pub fn network_drive(number: u64) -> Option<&'static str> {
+    match number & 0xffff_ffff {
+        0x6969 => Some("NFS"),
+        0x517b | 0xff53_4d42 | 0xfe53_4d42 => Some("SMB"),
+        0x0102_1997 => Some("9P"),
+        0x5346_414f => Some("AFS"),
+        0x00c3_6400 => Some("Ceph"),
+        0x0bd0_0bd0 => Some("Lustre"),
+        0x4750_4653 => Some("GPFS"),
+        _ => None,
     }
 }
 
@@ -101,7 +128,13 @@ pub struct Work {
     /// Workers that may die over a job without getting as far as a checkpoint, until it is given up
     #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     pub attempts: u32,
-    /// Delete finished jobs after so many days [default: never]
+    /// Most memory of a job's own process, MiB
+    #[arg(long, value_name = "MIB", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(256..))]
+    pub job_memory: u32,
+    /// Most computing time of a job, h
+    #[arg(long, value_name = "HOURS", default_value_t = 24.0, value_parser = hours)]
+    pub job_hours: f64,
+    /// Delete finished jobs after so many days of service [default: never]
     #[arg(long, value_name = "DAYS", value_parser = days)]
     pub keep_days: Option<f64>,
 }
@@ -109,6 +142,11 @@ pub struct Work {
 fn threads(text: &str) -> std::result::Result<usize, String> {
     let count = text.parse().ok().filter(|count| (1..=1024).contains(count));
     count.ok_or_else(|| format!("`{text}` is not 1 to 1024"))
+}
+
+fn hours(text: &str) -> std::result::Result<f64, String> {
+    let hours = text.parse().ok().filter(|hours| *hours > 0.0 && *hours < 1e6);
+    hours.ok_or_else(|| format!("`{text}` is no time in hours above 0"))
 }
 
 fn days(text: &str) -> std::result::Result<f64, String> {
@@ -128,6 +166,9 @@ impl Work {
             checkpoint_every: Duration::from_secs(self.checkpoint_every),
             attempts: i64::from(self.attempts),
             keep: self.keep_days.and_then(|days| Duration::try_from_secs_f64(86_400.0 * days).ok()),
+            memory: u64::from(self.job_memory) << 20,
+            time: Duration::try_from_secs_f64(3600.0 * self.job_hours).unwrap_or(default.time),
+            program: default.program,
         }
     }
 }

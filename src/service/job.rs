@@ -21,6 +21,14 @@ pub enum JobKind {
     Calibration,
     /// Runs a case.
     Prediction,
+    /// Runs a fracture scene without cycles.
+    Scene,
+    /// Runs many cases of one.
+    Sweep,
+    /// Stress intensity factors of a case.
+    Sif,
+    /// Time against error of every method.
+    Chart,
 }
 
 /// Where a job stands.
@@ -62,16 +70,42 @@ macro_rules! names {
         }
     };
 }
-names!(JobKind, Calibration = "calibration", Prediction = "prediction");
+names!(
+    JobKind,
+    Calibration = "calibration",
+    Prediction = "prediction",
+    Scene = "scene",
+    Sweep = "sweep",
+    Sif = "sif",
+    Chart = "chart"
+);
 names!(State, Queued = "queued", Running = "running", Succeeded = "succeeded", Failed = "failed", Cancelled = "cancelled");
 
 impl JobKind {
+    /// All of them.
+    pub const ALL: [JobKind; 6] =
+        [JobKind::Calibration, JobKind::Prediction, JobKind::Scene, JobKind::Sweep, JobKind::Sif, JobKind::Chart];
+
     /// Its place in URLs.
     #[must_use]
     pub fn collection(self) -> &'static str {
         match self {
             JobKind::Calibration => "calibrations",
             JobKind::Prediction => "predictions",
+            JobKind::Scene => "scenes",
+            JobKind::Sweep => "sweeps",
+            JobKind::Sif => "sif",
+            JobKind::Chart => "charts",
+        }
+    }
+
+    /// Options of its command that a job of it may have.
+    #[must_use]
+    pub fn options(self) -> &'static [&'static str] {
+        match self {
+            JobKind::Sif => &["method"],
+            JobKind::Chart => &["quick", "scene"],
+            _ => &[],
         }
     }
 }
@@ -151,6 +185,9 @@ pub struct Submission {
     pub text: String,
     /// Whether the law is that of the file [`FITTED`], whatever the text says.
     pub with_fitted: bool,
+    /// Options of the command, `NAME=VALUE`; stored beside it.
+    #[serde(skip)]
+    pub options: Vec<String>,
     /// Files that the text names; stored beside it.
     #[serde(skip)]
     pub files: Vec<(String, Vec<u8>)>,

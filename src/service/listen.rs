@@ -20,12 +20,16 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio_io_timeout::TimeoutStream;
 use tower::ServiceExt;
 
+use super::api::{Crowded, Place, Places};
+
 /// Time in which the head of a request must have come; also that for which an idle connection is kept.
 const HEAD_WITHIN: Duration = Duration::from_secs(10);
 /// Time for which an answer may wait for its reader to take some of it.
 const TAKEN_WITHIN: Duration = Duration::from_secs(30);
 /// Time that requests have to end when the process is to stop.
 const LAST_ANSWERS: Duration = Duration::from_secs(10);
+/// Connections beyond those for everybody, over which those who watch over the service are answered.
+const RESERVE: usize = 64;
 /// Time before another try when the system gives no connection, most likely because it has no more file handles.
 const TRY_EVERY: Duration = Duration::from_millis(200);
 
@@ -33,23 +37,35 @@ const TRY_EVERY: Duration = Duration::from_millis(200);
 pub async fn serve(listener: TcpListener, router: Router, connections: usize, stop: impl Future<Output = ()>) {
     let graceful = GracefulShutdown::new();
     let room = Arc::new(Semaphore::new(connections));
+    let reserve = Arc::new(Semaphore::new(RESERVE));
+    // A proxy on this machine speaks for everybody, another machine for itself.
+    let of_address = Places::new((3 * connections / 4).max(1));
     tokio::pin!(stop);
     loop {
-        // Whoever comes when all are taken waits in the queue of the system.
+        // Whoever comes when all are taken, the reserve among them, waits in the queue of the system.
         let next = async {
-            let place = Arc::clone(&room).acquire_owned().await;
-            (listener.accept().await, place)
+            let held = tokio::select! {
+                biased;
+                place = Arc::clone(&room).acquire_owned() => (place, None),
+                place = Arc::clone(&reserve).acquire_owned() => (place, Some(Crowded(Arc::clone(&room)))),
+            };
+            (listener.accept().await, held)
         };
         tokio::select! {
             () = &mut stop => break,
-            (accepted, place) = next => match (accepted, place) {
-                (Ok((stream, address)), Ok(place)) => take(stream, address, place, router.clone(), &graceful),
+            (accepted, held) = next => match (accepted, held) {
+                (Ok((stream, address)), (Ok(place), crowded)) => {
+                    let own = if address.ip().is_loopback() { None } else { of_address.take(&address.ip().to_string()) };
+                    if own.is_some() || address.ip().is_loopback() {
+                        take(stream, Held { address, crowded, _places: (place, own) }, router.clone(), &graceful);
+                    }
+                }
                 (Err(error), _) => {
                     tracing::warn!("no connection can be taken: {error}");
                     tokio::time::sleep(TRY_EVERY).await;
                 }
                 // Never closed.
-                (_, Err(_)) => break,
+                (_, (Err(_), _)) => break,
             },
         }
     }
@@ -58,12 +74,23 @@ pub async fn serve(listener: TcpListener, router: Router, connections: usize, st
     let _ = tokio::time::timeout(LAST_ANSWERS, graceful.shutdown()).await;
 }
 
-fn take(stream: TcpStream, address: SocketAddr, place: OwnedSemaphorePermit, router: Router, graceful: &GracefulShutdown) {
+/// What a connection holds as long as it is open.
+struct Held {
+    address: SocketAddr,
+    crowded: Option<Crowded>,
+    _places: (OwnedSemaphorePermit, Option<Place>),
+}
+
+fn take(stream: TcpStream, held: Held, router: Router, graceful: &GracefulShutdown) {
     // Waiting for more to send would only cost time: what is large comes in large parts.
     let _ = stream.set_nodelay(true);
+    let (address, crowded) = (held.address, held.crowded.clone());
     let service = service_fn(move |request: Request<Incoming>| {
         let mut request = request.map(Body::new);
         request.extensions_mut().insert(ConnectInfo(address));
+        if let Some(crowded) = &crowded {
+            request.extensions_mut().insert(crowded.clone());
+        }
         let answer = router.clone().oneshot(request);
         async move { Ok::<_, Infallible>(answer.await.unwrap_or_else(|never| match never {})) }
     });
@@ -75,6 +102,6 @@ fn take(stream: TcpStream, address: SocketAddr, place: OwnedSemaphorePermit, rou
     tokio::spawn(async move {
         // Its trouble is the client's, who is gone.
         let _ = connection.await;
-        drop(place);
+        drop(held);
     });
 }

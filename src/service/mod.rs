@@ -5,8 +5,8 @@
 //! machines share one PostgreSQL ([`work`]).
 //!
 //! A job is accepted once it is committed, claimed by one worker at a time (a number that grows with every claim fences off one
-//! that was taken for dead and is not), kept alive by signs of life, taken up from its last checkpoint wherever its worker died,
-//! and finished once, together with its files, in one transaction. After a crash a prediction goes on to the same curve, bit for bit on
+//! that was taken for dead and is not), run in a process of its own with so much memory and time, kept alive by signs of life, taken
+//! up from its last checkpoint wherever its worker died, and finished once, together with its files, in one transaction. After a crash a prediction goes on to the same curve, bit for bit on
 //! the same kind of processor; a calibration, which takes seconds, begins anew. The same `Idempotency-Key` makes no second job while
 //! the first is kept. A database that is gone or a disk that is full is a 503 until it is back.
 //!
@@ -21,7 +21,7 @@ pub mod store;
 pub mod worker;
 
 use std::net::SocketAddr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -31,8 +31,8 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::Notify;
 
 use crate::error::{Error, Result, input};
-use api::{App, Limits, Security};
-use store::Store;
+use api::{App, Audit, Limits, Security};
+use store::{Store, Upgrade};
 use worker::Workers;
 
 /// Connections to the database beyond those of the workers.
@@ -47,8 +47,10 @@ pub struct Settings {
     pub listen: SocketAddr,
     /// `sqlite://FILE` or `postgres://...`.
     pub database: String,
-    /// Whether every request needs a token, even from this machine.
-    pub needs_token: bool,
+    /// Who is let in; whoever listens to other machines needs tokens in any case.
+    pub security: Security,
+    /// File to which changes and refusals are appended.
+    pub audit_log: Option<PathBuf>,
     /// How much a request may ask for.
     pub limits: Limits,
     /// Workers of this process; `jobs` 0 has none.
@@ -61,8 +63,9 @@ pub struct Settings {
 /// [`Error::Input`] if it would be open to other machines without tokens; [`Error::File`] if address or database cannot be used.
 pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> {
     runtime()?.block_on(async {
-        let store = open(&settings.database, CONNECTIONS + settings.workers.jobs as u32).await?;
-        let needs_token = settings.needs_token || !settings.listen.ip().is_loopback();
+        let store = open(&settings.database, CONNECTIONS + settings.workers.jobs as u32, Upgrade::Allowed).await?;
+        let needs_token = settings.security.needs_token || !settings.listen.ip().is_loopback();
+        let audit = settings.audit_log.as_deref().map(Audit::open).transpose()?;
         if needs_token && store.tokens().await.map_err(|error| database(&settings.database, error))?.is_empty() {
             let remedy = "make one first: perilife token add NAME --role admin";
             let problem = "asks for tokens, of which there is none";
@@ -74,8 +77,10 @@ pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> 
 
         let wake = Arc::new(Notify::new());
         let workers = Workers::start(store.clone(), settings.workers.clone(), Arc::clone(&wake)).map_err(threads)?;
-        let security = Security { needs_token };
-        let app = App::new(store.clone(), settings.limits.clone(), security, settings.workers.jobs, wake);
+        let security = Security { needs_token, ..settings.security.clone() };
+        let mut app = App::new(store.clone(), settings.limits.clone(), security, settings.workers.jobs, wake);
+        app.audit = audit.map(Arc::new);
+        app.disks = Arc::new(disks(settings));
         api::start_counting();
         let forgetting = tokio::spawn(forget_callers(app.clone()));
         ready(address);
@@ -99,7 +104,7 @@ pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> 
 /// [`Error::File`] if the database cannot be used.
 pub fn work(url: &str, settings: &worker::Settings, ready: impl FnOnce()) -> Result<()> {
     runtime()?.block_on(async {
-        let store = open(url, 1 + settings.jobs as u32).await?;
+        let store = open(url, 1 + settings.jobs as u32, Upgrade::Refused).await?;
         let workers = Workers::start(store.clone(), settings.clone(), Arc::new(Notify::new())).map_err(threads)?;
         ready();
         asked_to_stop().await;
@@ -110,13 +115,21 @@ pub fn work(url: &str, settings: &worker::Settings, ready: impl FnOnce()) -> Res
     })
 }
 
+/// Folders that a service writes to: of the database file, and of temporary files where it runs jobs.
+fn disks(settings: &Settings) -> Vec<PathBuf> {
+    let file = settings.database.starts_with("sqlite://").then(|| PathBuf::from(without_password(&settings.database)));
+    let store = file.and_then(|file| file.parent().map(Path::to_path_buf));
+    let temporary = (settings.workers.jobs > 0).then(std::env::temp_dir);
+    store.into_iter().chain(temporary).collect()
+}
+
 /// Does something with the store of a service.
 ///
 /// # Errors
 /// [`Error::File`] if the database cannot be used.
 pub fn with_store<T>(url: &str, task: impl AsyncFnOnce(&Store) -> store::Result<T>) -> Result<T> {
     runtime()?.block_on(async {
-        let store = open(url, 1).await?;
+        let store = open(url, 1, Upgrade::Refused).await?;
         let done = task(&store).await.map_err(|error| database(url, error));
         store.close().await;
         done
@@ -127,8 +140,8 @@ fn runtime() -> Result<Runtime> {
     Builder::new_multi_thread().enable_all().build().map_err(threads)
 }
 
-async fn open(url: &str, connections: u32) -> Result<Store> {
-    Store::open(url, connections).await.map_err(|error| database(url, error))
+async fn open(url: &str, connections: u32, upgrade: Upgrade) -> Result<Store> {
+    Store::open(url, connections, upgrade).await.map_err(|error| database(url, error))
 }
 
 /// A database that cannot be used; passwords in its URL are not repeated.

@@ -8,6 +8,8 @@ mod doors;
 mod fuzzed;
 #[path = "service/jobs.rs"]
 pub mod jobs;
+#[path = "service/limits.rs"]
+mod limits;
 #[path = "service/page.rs"]
 mod page;
 #[path = "service/queue.rs"]
@@ -18,6 +20,8 @@ mod reader;
 mod refusals;
 #[path = "service/results.rs"]
 mod results;
+#[path = "service/soak.rs"]
+mod soak;
 #[path = "service/tokens.rs"]
 mod tokens;
 

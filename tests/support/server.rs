@@ -53,8 +53,13 @@ impl Answer {
 impl Server {
     /// Starts the service with a free port of this machine; `place` is `["--data", DIR]` or `["--database", URL]`.
     pub fn start(place: &[&str], more: &[&str]) -> Server {
+        Server::start_with(place, more, &[])
+    }
+
+    /// The same with variables of its environment.
+    pub fn start_with(place: &[&str], more: &[&str], variables: &[(&str, &str)]) -> Server {
         let arguments = [&["serve", "--listen", "127.0.0.1:0"], place, more].concat();
-        let (process, line) = started(&arguments);
+        let (process, line) = started(&arguments, variables);
         let url = line.rsplit(' ').next().unwrap_or_default().trim().to_owned();
         assert!(url.starts_with("http://127.0.0.1:"), "{line}");
         Server { process, url, agent: agent(), token: None }
@@ -62,7 +67,7 @@ impl Server {
 
     /// Starts a worker without a door.
     pub fn worker(place: &[&str], more: &[&str]) -> Server {
-        let (process, line) = started(&[&["worker"], place, more].concat());
+        let (process, line) = started(&[&["worker"], place, more].concat(), &[]);
         assert!(line.starts_with("perilife worker"), "{line}");
         Server { process, url: String::new(), agent: agent(), token: None }
     }
@@ -203,10 +208,11 @@ impl Drop for Server {
 }
 
 /// Starts the program and returns what it says once it is ready.
-fn started(arguments: &[&str]) -> (Child, String) {
+fn started(arguments: &[&str], variables: &[(&str, &str)]) -> (Child, String) {
     let mut process = Command::new(cargo_bin("perilife"))
         .args(arguments)
         .env("RUST_LOG", "perilife=error")
+        .envs(variables.iter().copied())
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())

@@ -158,3 +158,17 @@ fn every_line_says_something_once() {
             .any(|(key, name, meaning)| key == "specimen.kind" && name.contains("part-through") && meaning.contains("refused"))
     );
 }
+
+/// Numbers of file systems over a network (statfs(2)) are known, those of disks of a machine are not among them.
+#[test]
+#[cfg(feature = "service")]
+fn network_drives_are_known() {
+    use perilife::commands::worker::network_drive;
+    for (number, kind) in [(0x6969, "NFS"), (0xff53_4d42, "SMB"), (0xffff_ffff_ff53_4d42, "SMB"), (0x0102_1997, "9P")] {
+        assert_eq!(network_drive(number), Some(kind));
+    }
+    // ext4, XFS, Btrfs, tmpfs, overlay, ZFS.
+    for number in [0xef53, 0x5846_5342, 0x9123_683e, 0x0102_1994, 0x794c_7630, 0x2fc1_2fc1] {
+        assert_eq!(network_drive(number), None, "{number:x}");
+    }
+}

@@ -18,7 +18,7 @@ use crate::report::provenance::INPUTS;
 use crate::report::run::PARAVIEW;
 use crate::report::sweep::Outcome;
 use crate::service::job::{Job, JobKind, State, Submission};
-use crate::service::store::{self, File, FileEntry, NewJob, Origin, Store, Submitted, is_gone};
+use crate::service::store::{self, FileEntry, NewJob, Origin, Room, Store, Submitted, is_gone};
 use crate::service::with_store;
 use crate::sweep::DrawnCase;
 
@@ -30,6 +30,15 @@ const LOOK_EVERY: Duration = Duration::from_millis(250);
 const TRY_EVERY: Duration = Duration::from_secs(1);
 /// Jobs looked at each time: they are taken in their order, so that those behind have hardly begun.
 const LOOKED_AT: usize = 64;
+
+/// A file of a result.
+struct File {
+    name: String,
+    content: Vec<u8>,
+}
+
+/// As many jobs as a sweep has.
+const ROOM: Room = Room { queued: i64::MAX, bytes: i64::MAX };
 
 /// Has cases run, and fetches what comes of them.
 ///
@@ -84,8 +93,13 @@ async fn patiently<T>(ask: impl AsyncFn() -> store::Result<T>) -> store::Result<
 
 /// The job of a case: a new one, or that of an earlier call unless it was cancelled or lost.
 async fn submitted(store: &Store, case: &DrawnCase) -> store::Result<String> {
-    let submission =
-        Submission { name: case.name.clone(), text: case.text.clone(), with_fitted: false, files: case.files.clone() };
+    let submission = Submission {
+        name: case.name.clone(),
+        text: case.text.clone(),
+        with_fitted: false,
+        options: Vec::new(),
+        files: case.files.clone(),
+    };
     let mut tries = 0;
     loop {
         let key = if tries == 0 { format!("sweep {}", case.hash) } else { format!("sweep {} {tries}", case.hash) };
@@ -97,7 +111,7 @@ async fn submitted(store: &Store, case: &DrawnCase) -> store::Result<String> {
             fingerprint: &case.hash,
             submission: &submission,
         };
-        match patiently(async || store.submit(&new, i64::MAX).await).await? {
+        match patiently(async || store.submit(&new, ROOM).await).await? {
             Submitted::New(id) => return Ok(id),
             Submitted::Again(id) => {
                 let job = patiently(async || store.job(JobKind::Prediction, &id).await).await?;
@@ -106,7 +120,7 @@ async fn submitted(store: &Store, case: &DrawnCase) -> store::Result<String> {
                 }
             }
             // The key names its request, and the queue has no end here; another key is as good.
-            Submitted::KeyTaken | Submitted::QueueFull => {}
+            Submitted::KeyTaken | Submitted::QueueFull | Submitted::SpaceFull(_) => {}
         }
         tries += 1;
     }

@@ -2,6 +2,7 @@
 
 use std::net::IpAddr;
 use std::num::NonZeroU32;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -9,6 +10,10 @@ use std::time::{Duration, Instant};
 use governor::{DefaultKeyedRateLimiter, Quota, RateLimiter};
 use tokio::sync::{Notify, RwLock, Semaphore};
 
+use super::audit::Audit;
+use super::places::{BodyPlaces, Place, Places};
+use super::security::Caller;
+use crate::service::problem::{Answer, Problem};
 use crate::service::store::{Store, Token};
 
 /// How much a request may ask for.
@@ -22,12 +27,20 @@ pub struct Limits {
     pub points: f64,
     /// Jobs of one owner that wait.
     pub queued: i64,
+    /// Bytes of the files of one owner, inputs and results.
+    pub quota_bytes: i64,
     /// Requests a second of one caller.
     pub requests_per_second: NonZeroU32,
     /// Of them those that submit, check or upload.
     pub writes_per_second: NonZeroU32,
     /// Bodies read and checked at a time, so that memory is bounded: the others wait.
     pub bodies_at_once: usize,
+    /// Of them those of one caller.
+    pub bodies_of_caller: usize,
+    /// Of them those of all callers together who may only read.
+    pub bodies_of_readers: usize,
+    /// Streams of events, and waits for the end of a job, of one caller at a time.
+    pub streams_of_caller: usize,
     /// Connections at a time.
     pub connections: usize,
     /// Time in which an answer must begin.
@@ -43,9 +56,13 @@ impl Default for Limits {
             files: 64,
             points: 1e6,
             queued: 1000,
+            quota_bytes: 100 << 30,
             requests_per_second: READS,
             writes_per_second: WRITES,
             bodies_at_once: 8,
+            bodies_of_caller: 3,
+            bodies_of_readers: 4,
+            streams_of_caller: 64,
             connections: 1000,
             answer_within: Duration::from_secs(60),
         }
@@ -56,10 +73,14 @@ impl Default for Limits {
 const CURVES_AT_ONCE: usize = 16;
 
 /// Who is let in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Security {
     /// Whether every request needs a token. Without, only this machine can reach the service, and all who can may do all.
     pub needs_token: bool,
+    /// Whether what a proxy says of a request is believed. Else one that came through a proxy needs a token in any case.
+    pub trusts_proxy: bool,
+    /// Where the service is reached from outside, without a slash at the end.
+    pub public_url: Option<String>,
 }
 
 /// Time for which a token that was found good is not looked up again.
@@ -81,9 +102,15 @@ pub struct App {
     /// Workers of this process.
     pub workers: usize,
     /// Room for bodies.
-    pub bodies: Arc<Semaphore>,
+    pub bodies: BodyPlaces,
     /// Room for whole curves that something is computed from.
     pub curves: Arc<Semaphore>,
+    /// Folders that are written to: of the database file, of temporary files.
+    pub disks: Arc<Vec<PathBuf>>,
+    /// Who has changed what, if that is written down.
+    pub audit: Option<Arc<Audit>>,
+    streams: Places,
+    all_streams: Places,
     shared: Arc<Shared>,
 }
 
@@ -106,9 +133,44 @@ impl App {
             tokens: RwLock::new(Vec::new()),
             stopping: AtomicBool::new(false),
         };
-        let bodies = Arc::new(Semaphore::new(limits.bodies_at_once));
+        let bodies = BodyPlaces::new(&limits);
         let curves = Arc::new(Semaphore::new(CURVES_AT_ONCE));
-        App { store, limits, security, wake, workers, bodies, curves, shared: Arc::new(shared) }
+        // Half of the connections are left to those who ask and go.
+        let (streams, all_streams) = (Places::new(limits.streams_of_caller), Places::new((limits.connections / 2).max(1)));
+        App {
+            store,
+            limits,
+            security,
+            wake,
+            workers,
+            bodies,
+            curves,
+            disks: Arc::default(),
+            audit: None,
+            streams,
+            all_streams,
+            shared: Arc::new(shared),
+        }
+    }
+
+    /// A place for a stream of events, or a wait for the end of a job.
+    ///
+    /// # Errors
+    /// 429.
+    pub fn stream(&self, caller: &Caller) -> Answer<[Place; 2]> {
+        let own = self.streams.take(&caller.name).ok_or_else(|| {
+            Problem::too_many(format!("{} streams of yours are open, which is all this server takes", self.streams.most()), 5)
+        })?;
+        let all = self.all_streams.take("").ok_or_else(|| {
+            Problem::too_many(format!("{} streams are open, which is all this server takes", self.all_streams.most()), 5)
+        })?;
+        Ok([own, all])
+    }
+
+    /// An address as others reach it.
+    #[must_use]
+    pub fn public(&self, path: &str) -> String {
+        format!("{}{path}", self.security.public_url.as_deref().unwrap_or_default())
     }
 
     /// Whether a caller may ask once more just now.
@@ -123,6 +185,7 @@ impl App {
     pub fn forget_callers(&self) {
         self.shared.requests.retain_recent();
         self.shared.writes.retain_recent();
+        self.bodies.forget();
     }
 
     /// The token with this hash, if it was looked up a moment ago.

@@ -1,5 +1,7 @@
 //! Jobs: submit, list, look at, cancel, delete.
 
+use std::time::{Duration, Instant};
+
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, Request, State as Shared};
 use axum::http::{HeaderMap, StatusCode, header};
@@ -15,7 +17,7 @@ use super::documents::{self, JobRequest, submission};
 use super::security::Caller;
 use crate::service::job::{Job, JobKind, State};
 use crate::service::problem::{Answer, Problem};
-use crate::service::store::{FileEntry, NewJob, Origin, Role, Submitted};
+use crate::service::store::{FileEntry, NewJob, Origin, Role, Room, Submitted};
 
 /// Most jobs of one part of a list.
 const LIST_MAX: u32 = 200;
@@ -78,8 +80,7 @@ pub struct Part {
 /// # Errors
 /// 404.
 pub fn kind_of(collection: &str) -> Answer<JobKind> {
-    let kinds = [JobKind::Calibration, JobKind::Prediction];
-    kinds.into_iter().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
+    JobKind::ALL.into_iter().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
 }
 
 /// Whether a job can have this id. Anything else never gets to the database.
@@ -131,9 +132,9 @@ pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
     Ok(JobView { job, files, inputs, input: submission.map(|submission| submission.text), case })
 }
 
-/// Submits a calibration or a prediction. With the header `Idempotency-Key` a repeated request gives the same job.
+/// Submits a job. With the header `Idempotency-Key` a repeated request gives the same job.
 #[utoipa::path(post, path = "/v1/{collection}", tag = "jobs",
-    params(("collection" = String, Path, description = "`calibrations` or `predictions`"),
+    params(("collection" = String, Path, description = "`calibrations`, `predictions`, `scenes`, `sweeps`, `sif` or `charts`"),
         ("Idempotency-Key" = Option<String>, Header, description = "Text of the caller's choice, new for every new job")),
     request_body = JobRequest,
     responses((status = 202, body = JobView, description = "Accepted: it will be run, whatever happens to this server"),
@@ -151,7 +152,7 @@ pub async fn submit(
     let kind = kind_of(&collection)?;
     caller.must_be(Role::Run)?;
     let key = key_of(&headers)?;
-    let body = documents::read(&app, request).await?;
+    let body = documents::read(&app, &caller, request).await?;
     let fingerprint = format!("{kind} {}", body.fingerprint);
     let calibration = body.asked.calibration.clone();
     // Asked before the body is looked into: what it refers to may be gone since it was accepted.
@@ -166,7 +167,7 @@ pub async fn submit(
                 fingerprint: &fingerprint,
                 submission: &submission(&app, Some(kind), body.asked).await?,
             };
-            app.store.submit(&new, app.limits.queued).await?
+            app.store.submit(&new, Room { queued: app.limits.queued, bytes: app.limits.quota_bytes }).await?
         }
     };
     let (id, status) = match submitted {
@@ -183,10 +184,19 @@ pub async fn submit(
             let detail = format!("{} of your jobs wait already, which is all this server takes", app.limits.queued);
             return Err(Problem::too_many(detail, QUEUE_MOVES_S));
         }
+        Submitted::SpaceFull(bytes) => {
+            let detail = format!(
+                "the files of your jobs have {} MiB, which is all that this server keeps of one owner ({} MiB): delete jobs that are not \
+                 needed any more",
+                bytes >> 20,
+                app.limits.quota_bytes >> 20
+            );
+            return Err(Problem::new(StatusCode::INSUFFICIENT_STORAGE, "No room", detail));
+        }
     };
     drop(body.room);
     let job = job_of(&app, &collection, &id).await?;
-    let location = format!("/v1/{collection}/{id}");
+    let location = app.public(&format!("/v1/{collection}/{id}"));
     Ok((status, [(header::LOCATION, location)], Json(view(&app, job, false).await?)).into_response())
 }
 
@@ -199,7 +209,7 @@ fn key_of(headers: &HeaderMap) -> Answer<Option<String>> {
 
 /// Lists jobs, newest first.
 #[utoipa::path(get, path = "/v1/{collection}", tag = "jobs",
-    params(("collection" = String, Path, description = "`calibrations` or `predictions`"), Part),
+    params(("collection" = String, Path, description = "`calibrations`, `predictions`, `scenes`, `sweeps`, `sif` or `charts`"), Part),
     responses((status = 200, body = Page), (status = 400, body = Problem), (status = 404, body = Problem)))]
 pub async fn list(
     Shared(app): Shared<App>,
@@ -221,16 +231,48 @@ pub async fn list(
     Ok(Json(Page { items, next: listing.next }))
 }
 
-/// A job: where it stands, its figures and files.
+/// How long a look at a job may wait.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Wait {
+    /// Seconds, 0 to 50, after which the job is shown even if it has not ended.
+    wait: Option<u32>,
+}
+
+/// Longest wait for the end of a job, s: below the time in which every answer begins.
+const WAIT_MAX_S: u32 = 50;
+/// Time between two looks at the store.
+const LOOK_EVERY: Duration = Duration::from_millis(250);
+
+/// A job: where it stands, its figures and files. With `wait` the answer comes when the job has ended, or that many seconds later.
 #[utoipa::path(get, path = "/v1/{collection}/{id}", tag = "jobs",
-    params(("collection" = String, Path), ("id" = String, Path)),
-    responses((status = 200, body = JobView), (status = 404, body = Problem)))]
-pub async fn show(Shared(app): Shared<App>, Path((collection, id)): Path<(String, String)>) -> Answer<Json<JobView>> {
-    let job = job_of(&app, &collection, &id).await?;
+    params(("collection" = String, Path), ("id" = String, Path), Wait),
+    responses((status = 200, body = JobView), (status = 400, body = Problem), (status = 404, body = Problem)))]
+pub async fn show(
+    Shared(app): Shared<App>,
+    Path((collection, id)): Path<(String, String)>,
+    Extension(caller): Extension<Caller>,
+    wait: Result<Query<Wait>, QueryRejection>,
+) -> Answer<Json<JobView>> {
+    let Query(Wait { wait }) = wait.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
+    let mut job = job_of(&app, &collection, &id).await?;
+    if let Some(seconds) = wait {
+        if seconds > WAIT_MAX_S {
+            return Err(Problem::bad_request(format!("wait = {seconds} is not 0 to {WAIT_MAX_S} s")));
+        }
+        let (_places, begun) = (app.stream(&caller)?, Instant::now());
+        while !job.state.is_final() && begun.elapsed() < Duration::from_secs(seconds.into()) && !app.is_stopping() {
+            tokio::time::sleep(LOOK_EVERY).await;
+            let now = app.store.revision(&id).await?;
+            if now != Some(job.revision) {
+                job = job_of(&app, &collection, &id).await?;
+            }
+        }
+    }
     Ok(Json(view(&app, job, true).await?))
 }
 
-/// Asks for the end of a job. One that runs stops within a cycle block.
+/// Asks for the end of a job. One that runs ends with the next sign of life of its worker, one whose worker is silent at once.
 #[utoipa::path(post, path = "/v1/{collection}/{id}/cancel", tag = "jobs",
     params(("collection" = String, Path), ("id" = String, Path)),
     responses((status = 202, body = JobView), (status = 403, body = Problem), (status = 404, body = Problem),
@@ -249,7 +291,7 @@ pub async fn cancel(
     Ok((StatusCode::ACCEPTED, Json(view(&app, job, false).await?)))
 }
 
-/// Deletes a job that does not run, with its results.
+/// Deletes a job that no worker has, with its results.
 #[utoipa::path(delete, path = "/v1/{collection}/{id}", tag = "jobs",
     params(("collection" = String, Path), ("id" = String, Path)),
     responses((status = 204), (status = 403, body = Problem), (status = 404, body = Problem), (status = 409, body = Problem)))]

@@ -1,6 +1,7 @@
 //! The body of a request to what is to be run or checked: JSON or a form, a table or TOML text, files beside it.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::body::Bytes;
@@ -11,19 +12,25 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use tokio::sync::OwnedSemaphorePermit;
 use utoipa::ToSchema;
 
 use super::App;
 use super::collections::is_id;
+use super::places::BodyPlace;
+use super::security::Caller;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::laws::case::{LawCase, is_law_fit};
 use crate::case::{Case, Method};
 use crate::check::is_calibration;
 use crate::error::input;
+use crate::fracture::Scene;
 use crate::service::job::{FITTED, JobKind, State, Submission};
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::{Origin, hex};
+use crate::stress_intensity::StressIntensityMethod;
+use crate::sweep::design::CASES_MAX;
+use crate::sweep::{DrawnCase, Sweep};
+use crate::watch::{self, Watch};
 
 /// Longest input, bytes; files beside it may be as large as bodies are.
 const INPUT_MAX: usize = 1 << 20;
@@ -49,6 +56,10 @@ pub struct JobRequest {
     pub files: BTreeMap<String, FileText>,
     /// Calibration whose law is to be used, whatever `[fatigue]` says.
     pub calibration: Option<String>,
+    /// Options of the command: `method` (a list) for stress intensity factors, `quick` and `scene` (a list) for charts.
+    #[serde(default)]
+    #[schema(value_type = Value)]
+    pub options: BTreeMap<String, Value>,
 }
 
 /// Content of a file.
@@ -72,7 +83,7 @@ pub struct Body {
     /// Hash of it.
     pub fingerprint: String,
     /// Given back when the body is done with.
-    pub room: OwnedSemaphorePermit,
+    pub room: BodyPlace,
 }
 
 /// What a body is.
@@ -117,8 +128,8 @@ fn null_in(value: &Value, above: &str) -> Option<String> {
 ///
 /// # Errors
 /// 400, 413 and 415.
-pub async fn read(app: &App, request: Request) -> Answer<Body> {
-    let room = room(app).await?;
+pub async fn read(app: &App, caller: &Caller, request: Request) -> Answer<Body> {
+    let room = app.bodies.wait(caller).await?;
     let kind = kind_of(&request)?;
     let (asked, fingerprint) = if kind == Kind::Form {
         let (mut fields, files) = form(app, request).await?;
@@ -135,10 +146,14 @@ pub async fn read(app: &App, request: Request) -> Answer<Body> {
             name: field("name"),
             input: field("input").map(input_of_form).transpose()?,
             calibration: field("calibration"),
+            options: field("options")
+                .map(|text| json(text.as_bytes(), "`options`", "give an object"))
+                .transpose()?
+                .unwrap_or_default(),
             files: files.into_iter().map(|(name, content)| (name, FileText(content))).collect(),
         };
         if let Some(name) = fields.keys().next() {
-            let detail = format!("the form has a field `{name}`; known are input, name, calibration and file");
+            let detail = format!("the form has a field `{name}`; known are input, name, calibration, options and file");
             return Err(Problem::bad_request(detail));
         }
         (asked, hex(&hash.finalize()))
@@ -152,7 +167,7 @@ pub async fn read(app: &App, request: Request) -> Answer<Body> {
             let text = String::from_utf8(bytes.into()).map_err(|_| Problem::bad_request("the body is not UTF-8 text"))?;
             JobRequest { input: Some(Value::String(text)), ..JobRequest::default() }
         } else {
-            json(&bytes, "the body", "known are input, name, calibration, files")?
+            json(&bytes, "the body", "known are input, name, calibration, files, options")?
         };
         (asked, fingerprint)
     };
@@ -179,12 +194,6 @@ fn input_of_form(text: String) -> Answer<Value> {
         true => json(text.as_bytes(), "`input`", "give an object of the keys of the TOML"),
         false => Ok(Value::String(text)),
     }
-}
-
-/// Waits for room for one more body.
-pub async fn room(app: &App) -> Answer<OwnedSemaphorePermit> {
-    // Never closed, and if it were: come back later.
-    app.bodies.clone().acquire_owned().await.map_err(|_| Problem::too_many("the server is about to stop", 5))
 }
 
 async fn bytes(request: Request) -> Answer<Bytes> {
@@ -255,7 +264,13 @@ fn check_name(key: &str, name: &str) -> Answer<()> {
 /// # Errors
 /// What is wrong with it, as the command line would say it.
 pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> Answer<Submission> {
-    let given = asked.input.ok_or_else(|| Problem::bad_request("the body has no `input`: give TOML text or an object"))?;
+    let options = options(kind, &asked.options)?;
+    let given = match asked.input {
+        Some(given) => given,
+        // Its scenes are built in.
+        None if kind == Some(JobKind::Chart) => Value::String(String::new()),
+        None => return Err(Problem::bad_request("the body has no `input`: give TOML text or an object")),
+    };
     let name = asked.name.unwrap_or_else(|| kind.map_or("case", JobKind::name).to_owned());
     check_name("name", &name)?;
     let mut files: Vec<(String, Vec<u8>)> = Vec::with_capacity(asked.files.len() + 1);
@@ -273,11 +288,52 @@ pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> 
         files.retain(|(name, _)| name != FITTED);
         files.push((FITTED.to_owned(), record_of(app, id).await?));
     }
-    let submission = Submission { name, text, with_fitted, files };
+    let submission = Submission { name, text, with_fitted, options, files };
     let points = app.limits.points;
-    let checked = tokio::task::spawn_blocking(move || check(&submission, kind, points).map(|()| submission));
-    let checked = checked.await.map_err(|_| Problem::internal())?;
+    let checked = while_asked(move || check(&submission, kind, points).map(|()| submission)).await;
     checked.map_err(|problem| if is_text { problem } else { problem.without_line() })
+}
+
+/// Options as a command takes them, `NAME=VALUE`.
+fn options(kind: Option<JobKind>, given: &BTreeMap<String, Value>) -> Answer<Vec<String>> {
+    let known = kind.map_or(&[][..], JobKind::options);
+    let mut options = Vec::new();
+    for (name, value) in given {
+        let refused = |problem: &str, remedy: String| Err(input(&format!("options.{name}"), value, problem, remedy).into());
+        if !known.contains(&name.as_str()) {
+            let remedy = if known.is_empty() { "leave it out".to_owned() } else { format!("known are {}", known.join(", ")) };
+            return refused("is no option of this job", remedy);
+        }
+        let values = value.as_array().cloned().unwrap_or_else(|| vec![value.clone()]);
+        for value in values {
+            match value {
+                Value::String(text) if text.len() <= NAME_MAX => options.push(format!("{name}={text}")),
+                Value::Bool(flag) => options.push(format!("{name}={flag}")),
+                _ => return refused("is neither a word, nor true or false, nor a list of words", "give one of these".to_owned()),
+            }
+        }
+    }
+    Ok(options)
+}
+
+/// Asks for the end of work when nobody waits for it any more.
+struct Asked(Arc<Watch>);
+
+impl Drop for Asked {
+    fn drop(&mut self) {
+        self.0.cancel();
+    }
+}
+
+/// Work on a thread of its own; it ends at its next mark when the request that waits for it has gone.
+///
+/// # Errors
+/// Those of the work; 500 if it panicked.
+pub async fn while_asked<T: Send + 'static>(work: impl FnOnce() -> Answer<T> + Send + 'static) -> Answer<T> {
+    let watch = Arc::new(Watch::default());
+    let _asked = Asked(Arc::clone(&watch));
+    let worked = tokio::task::spawn_blocking(move || watch::with(Some(watch), work));
+    worked.await.map_err(|_| Problem::internal())?
 }
 
 fn too_long() -> Problem {
@@ -351,6 +407,22 @@ fn check(submission: &Submission, kind: Option<JobKind>, points: f64) -> Answer<
         Some(JobKind::Prediction) => check_points(&Case::from_document(&document)?, points),
         Some(JobKind::Calibration) if is_law_fit(&document.table) => Ok(LawCase::from_document(&document).map(drop)?),
         Some(JobKind::Calibration) => check_points(&CalibrationCase::from_document(document)?.case, points),
+        Some(JobKind::Scene) => Ok(Scene::from_document(&document).map(drop)?),
+        Some(JobKind::Sweep) => {
+            let sweep = Sweep::with_overrides(document, &[], CASES_MAX)?;
+            let first = sweep.cases()?.first().map(DrawnCase::read).transpose()?;
+            first.map_or(Ok(()), |case| check_points(&case, points))
+        }
+        Some(JobKind::Sif) => {
+            for name in submission.options.iter().filter_map(|option| option.strip_prefix("method=")) {
+                name.parse::<StressIntensityMethod>()?;
+            }
+            check_points(&Case::plate_of(&document)?, points)
+        }
+        Some(JobKind::Chart) => {
+            let names = submission.options.iter().filter_map(|option| option.strip_prefix("scene=")).map(str::to_owned);
+            Ok(crate::chart::scenes(&names.collect::<Vec<_>>()).map(drop)?)
+        }
         None => Ok(()),
     }
 }

@@ -3,15 +3,19 @@
 use std::convert::Infallible;
 use std::time::{Duration, Instant};
 
+use axum::Extension;
 use axum::extract::{Path, State as Shared};
 use axum::http::HeaderMap;
-use axum::response::sse::{Event, KeepAlive, KeepAliveStream, Sse};
+use axum::response::IntoResponse;
+use axum::response::sse::{Event, KeepAlive, Sse};
 use serde_json::json;
 use tokio::sync::mpsc::{Sender, channel};
 use tokio_stream::wrappers::ReceiverStream;
 
 use super::App;
 use super::collections::{job_of, view};
+use super::places::Place;
+use super::security::Caller;
 use crate::service::job::JobKind;
 use crate::service::problem::{Answer, Problem};
 
@@ -19,6 +23,8 @@ use crate::service::problem::{Answer, Problem};
 const LOOK_EVERY: Duration = Duration::from_millis(250);
 /// Time for which a store that does not answer is asked again, before the stream ends and the reader has to come back.
 const PATIENCE: Duration = Duration::from_secs(30);
+/// Time between two looks whether the token of a reader still counts.
+const TOKEN_EVERY: Duration = Duration::from_secs(2);
 /// Events that may wait for a slow reader.
 const WAITING: usize = 16;
 
@@ -48,22 +54,31 @@ impl Seen {
 }
 
 /// A job as it goes on: events `job` (where it stands), `growth` (more of its curve: entries from `from` on, 0 starts over) and
-/// `picture` (a new one is at its `href`). Ends when the job has ended. `Last-Event-ID` goes on where a reader was cut off.
+/// `picture` (a new one is at its `href`). Ends when the job has ended, or the token does not count any more. `Last-Event-ID` goes on where a reader was cut off.
 #[utoipa::path(get, path = "/v1/{collection}/{id}/events", tag = "jobs",
     params(("collection" = String, Path), ("id" = String, Path), ("Last-Event-ID" = Option<String>, Header)),
-    responses((status = 200, description = "Events", content_type = "text/event-stream"), (status = 404, body = Problem)))]
+    responses((status = 200, description = "Events", content_type = "text/event-stream"), (status = 404, body = Problem), (status = 429, body = Problem)))]
 pub async fn events(
     Shared(app): Shared<App>,
     Path((collection, id)): Path<(String, String)>,
+    Extension(caller): Extension<Caller>,
     headers: HeaderMap,
-) -> Answer<Sse<KeepAliveStream<ReceiverStream<Result<Event, Infallible>>>>> {
+) -> Answer<impl IntoResponse> {
+    let places = app.stream(&caller)?;
     let kind = job_of(&app, &collection, &id).await?.kind;
     let seen = headers.get("last-event-id").and_then(|id| id.to_str().ok()).and_then(Seen::of).unwrap_or_default();
     let (events, reader) = channel(WAITING);
     tokio::spawn(async move {
-        let mut follower = Follower { app, kind, id, seen, has_told: false, events };
-        let mut answered = Instant::now();
+        let mut follower = Follower { app, kind, id, seen, has_told: false, events, _places: places };
+        let (mut answered, mut admitted) = (Instant::now(), Instant::now());
         loop {
+            if admitted.elapsed() > TOKEN_EVERY {
+                admitted = Instant::now();
+                // A database that does not answer is the matter of the look.
+                if !caller.token.is_empty() && matches!(follower.app.store.token(&caller.token).await, Ok(None)) {
+                    break;
+                }
+            }
             match follower.look().await {
                 Ok(true) => answered = Instant::now(),
                 Ok(false) => break,
@@ -76,7 +91,8 @@ pub async fn events(
             tokio::time::sleep(LOOK_EVERY).await;
         }
     });
-    Ok(Sse::new(ReceiverStream::new(reader)).keep_alive(KeepAlive::default()))
+    // A proxy that gathers an answer before it hands it on would keep events back.
+    Ok(([("x-accel-buffering", "no")], Sse::new(ReceiverStream::new(reader)).keep_alive(KeepAlive::default())))
 }
 
 /// Sends a reader what is new.
@@ -87,6 +103,7 @@ struct Follower {
     seen: Seen,
     has_told: bool,
     events: Sender<Result<Event, Infallible>>,
+    _places: [Place; 2],
 }
 
 impl Follower {

@@ -2,23 +2,25 @@
 
 use std::path::Path;
 
-use axum::Json;
 use axum::extract::{Request, State};
+use axum::{Extension, Json};
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::App;
-use super::documents::{self, JobRequest, check_points, submission};
+use super::documents::{self, JobRequest, check_points, submission, while_asked};
+use super::security::Caller;
 use crate::calibration::columns::Shape;
 use crate::calibration::decimal::Decimal;
 use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, MeasuredCurve, Sheet, Survey, survey};
 use crate::case::Case;
 use crate::check;
-use crate::error::input;
+use crate::error::{Error, input};
 use crate::fracture::read::is_scene;
 use crate::service::problem::{Answer, Place, Problem};
 use crate::units::MM;
+use crate::watch;
 
 /// What was found in files of readings.
 #[derive(Serialize, ToSchema)]
@@ -97,8 +99,8 @@ const FIELDS: [&str; 6] = ["length_unit", "cycle_unit", "load_unit", "decimal", 
 #[utoipa::path(post, path = "/v1/measured", tag = "inputs",
     request_body(content = inline(Readings), content_type = "multipart/form-data"),
     responses((status = 200, body = Found), (status = 400, body = Problem), (status = 413, body = Problem)))]
-pub async fn measured(State(app): State<App>, request: Request) -> Answer<Json<Found>> {
-    let room = documents::room(&app).await?;
+pub async fn measured(State(app): State<App>, Extension(caller): Extension<Caller>, request: Request) -> Answer<Json<Found>> {
+    let room = app.bodies.wait(&caller).await?;
     let (fields, files) = documents::form(&app, request).await?;
     if let Some(name) = fields.keys().find(|name| !FIELDS.contains(&name.as_str())) {
         return Err(Problem::bad_request(format!("the form has a field `{name}`; known are file, {}", FIELDS.join(", "))));
@@ -118,9 +120,13 @@ pub async fn measured(State(app): State<App>, request: Request) -> Answer<Json<F
     let look = move || {
         // Taken up until the work is done, even if nobody waits for it any more.
         let _room = room;
-        Found { files: files.into_iter().map(|(file, content)| found(file, &content, &import)).collect() }
+        // Between two files is where it ends if nobody waits for it any more.
+        let looked = |(file, content): (String, Vec<u8>)| {
+            watch::unless_cancelled(&file.clone(), Ok(())).map(|()| found(file, &content, &import))
+        };
+        Ok(Found { files: files.into_iter().map(looked).collect::<Result<_, Error>>()? })
     };
-    tokio::task::spawn_blocking(look).await.map(Json).map_err(|_| Problem::internal())
+    while_asked(look).await.map(Json)
 }
 
 /// Columns by name of a JSON object.
@@ -174,8 +180,8 @@ fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
 /// Checks a case, a calibration or a fracture scene without running it: what was understood, and a drawing.
 #[utoipa::path(post, path = "/v1/check", tag = "inputs", request_body = JobRequest,
     responses((status = 200, body = Value), (status = 400, body = Problem), (status = 422, body = Problem)))]
-pub async fn check(State(app): State<App>, request: Request) -> Answer<Json<Value>> {
-    let body = documents::read(&app, request).await?;
+pub async fn check(State(app): State<App>, Extension(caller): Extension<Caller>, request: Request) -> Answer<Json<Value>> {
+    let body = documents::read(&app, &caller, request).await?;
     let is_text = body.asked.input.as_ref().is_some_and(Value::is_string);
     let submission = submission(&app, None, body.asked).await?;
     let points = app.limits.points;
@@ -191,6 +197,5 @@ pub async fn check(State(app): State<App>, request: Request) -> Answer<Json<Valu
         object["drawing"] = checked.drawing.into();
         Ok(object)
     };
-    let looked = tokio::task::spawn_blocking(look).await.map_err(|_| Problem::internal())?;
-    looked.map(Json).map_err(|problem| if is_text { problem } else { problem.without_line() })
+    while_asked(look).await.map(Json).map_err(|problem| if is_text { problem } else { problem.without_line() })
 }

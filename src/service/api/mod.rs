@@ -1,18 +1,23 @@
 //! The HTTP service: every route, its limits and its answers.
 
 mod app;
+mod audit;
 mod collections;
 mod documents;
 mod events;
 mod inputs;
 mod knowledge;
 mod page;
+mod places;
 mod results;
 mod sending;
 mod security;
 mod watching;
 
 pub use app::{App, Limits, Security};
+pub use audit::Audit;
+pub use places::{Place, Places};
+pub use security::Crowded;
 pub use watching::{start as start_counting, sum_up};
 
 use axum::Router;
@@ -71,6 +76,7 @@ pub fn router(app: App) -> Router {
     let limits = app.limits.clone();
     v1.merge(Router::from(SwaggerUi::new("/docs").url("/openapi.json", description)))
         .route("/healthz", get(watching::health))
+        .route("/readyz", get(watching::ready))
         .route("/metrics", get(watching::metrics))
         .fallback(page::page)
         .method_not_allowed_fallback(|| async {
@@ -79,6 +85,7 @@ pub fn router(app: App) -> Router {
         .layer(DefaultBodyLimit::max(limits.body_bytes))
         .layer(from_fn_with_state(limits.body_bytes, security::in_size))
         .layer(from_fn_with_state(app.clone(), security::guard))
+        .layer(from_fn(security::in_room))
         .layer(from_fn(watching::measure))
         .layer(from_fn(security::in_whole))
         .layer(from_fn_with_state(limits.answer_within, security::in_time))

@@ -1,6 +1,7 @@
 //! Who may ask, how often, and what browsers are told.
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::body::{Body, HttpBody, to_bytes};
@@ -10,9 +11,10 @@ use axum::http::uri::Authority;
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use tokio::sync::Semaphore;
 use tokio_stream::StreamExt;
 
-use super::App;
+use super::{App, Security};
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::{Role, hash};
 
@@ -23,6 +25,8 @@ pub struct Caller {
     pub name: String,
     /// What he may do.
     pub role: Role,
+    /// Hash of the token; empty where none is needed.
+    pub token: String,
 }
 
 impl Caller {
@@ -50,28 +54,64 @@ impl Caller {
 /// Lets a request through, or not.
 pub async fn guard(
     State(app): State<App>,
-    ConnectInfo(address): ConnectInfo<SocketAddr>,
+    ConnectInfo(connected): ConnectInfo<SocketAddr>,
     request: Request,
     next: Next,
 ) -> Response {
     // The body, which may not be shared, is left aside.
     let (mut head, body) = request.into_parts();
-    match caller_of(&app, address, &head).await {
+    let address = address_of(&app, connected.ip(), &head.headers);
+    let (method, path) = (head.method.clone(), head.uri.path().to_owned());
+    let (caller, response) = match caller_of(&app, address, &head).await {
         Ok(caller) => {
-            if let Some(caller) = caller {
-                head.extensions.insert(caller);
+            if let Some(caller) = &caller {
+                head.extensions.insert(caller.clone());
             }
-            next.run(Request::from_parts(head, body)).await
+            (caller, next.run(Request::from_parts(head, body)).await)
         }
-        Err(problem) => problem.into_response(),
+        Err(problem) => (None, problem.into_response()),
+    };
+    if let Some(audit) = &app.audit {
+        let place = response.headers().get(header::LOCATION).and_then(|place| place.to_str().ok());
+        audit.write(caller.as_ref(), address, &method, place.unwrap_or(&path), response.status());
     }
+    response
+}
+
+/// What proxies add to a request.
+const OF_PROXIES: [&str; 8] = [
+    "forwarded",
+    "via",
+    "x-forwarded-for",
+    "x-forwarded-host",
+    "x-forwarded-port",
+    "x-forwarded-proto",
+    "x-forwarded-server",
+    "x-real-ip",
+];
+
+/// Where a request comes from: what the proxy nearest to here says, if it is believed.
+fn address_of(app: &App, connected: IpAddr, headers: &HeaderMap) -> IpAddr {
+    if !app.security.trusts_proxy {
+        return connected;
+    }
+    let last = |name: &str| headers.get_all(name).iter().next_back()?.to_str().ok()?.rsplit(',').next()?.trim().parse().ok();
+    last("x-forwarded-for").or_else(|| last("x-real-ip")).unwrap_or(connected)
 }
 
 /// Who asks; `None` for what everybody may see.
-async fn caller_of(app: &App, address: SocketAddr, head: &Parts) -> Answer<Option<Caller>> {
+async fn caller_of(app: &App, address: IpAddr, head: &Parts) -> Answer<Option<Caller>> {
     let is_write = !matches!(head.method, Method::GET | Method::HEAD);
-    check_origin(app, &head.headers, is_write)?;
-    let token = token_of(&head.headers).filter(|_| app.security.needs_token);
+    let security = &app.security;
+    // A proxy on this machine makes everybody look as if he were here.
+    let is_forwarded = !security.trusts_proxy && OF_PROXIES.iter().any(|name| head.headers.contains_key(*name));
+    let needs_token = security.needs_token || is_forwarded;
+    check_origin(security, needs_token, &head.headers, is_write)?;
+    let path = head.uri.path();
+    if IS_WELL.contains(&path) {
+        return Ok(None);
+    }
+    let token = token_of(&head.headers).filter(|_| needs_token);
     let hash = token.map(hash);
     let (fresh, name) = match &hash {
         Some(hash) => (app.fresh_token(hash).await, app.known_name(hash).await),
@@ -79,23 +119,26 @@ async fn caller_of(app: &App, address: SocketAddr, head: &Parts) -> Answer<Optio
     };
     // Who guesses tokens is held to the limit of his address before the store is asked; who is known has his own, even behind
     // the same proxy.
-    if !app.may_ask(name.as_deref(), address.ip(), is_write) {
+    if !app.may_ask(name.as_deref(), address, is_write) {
         return Err(Problem::too_many("more requests than this server takes from one caller; go slower", 1));
     }
-    if !app.security.needs_token {
-        return Ok(Some(Caller { name: String::new(), role: Role::Admin }));
+    if !needs_token {
+        return Ok(Some(Caller { name: String::new(), role: Role::Admin, token: String::new() }));
     }
     let known = match (fresh, &hash) {
         (None, Some(hash)) => app.token(hash).await?,
         (fresh, _) => fresh,
     };
-    let path = head.uri.path();
     let is_open = !(path.starts_with("/v1/") || path == "/metrics") || path == "/v1/service";
     match known {
-        Some(token) => Ok(Some(Caller { name: token.name, role: token.role })),
+        Some(token) => Ok(Some(Caller { name: token.name, role: token.role, token: hash.unwrap_or_default() })),
         None if is_open => Ok(None),
         None => {
             let detail = match token {
+                None if is_forwarded && !security.needs_token => {
+                    "this came through a proxy and needs a token (`Authorization: Bearer TOKEN`, made by `perilife token add`), unless \
+                     the service is started with --trust-proxy"
+                }
                 None => "this needs a token: send the header `Authorization: Bearer TOKEN`",
                 Some(_) => "this token is not known, or its time is over",
             };
@@ -104,20 +147,28 @@ async fn caller_of(app: &App, address: SocketAddr, head: &Parts) -> Answer<Optio
     }
 }
 
+/// Asked by those who watch over the service, who are always answered.
+pub const IS_WELL: [&str; 2] = ["/healthz", "/readyz"];
+
+/// The token of a request; the name of the scheme is written in any case (RFC 9110, 11.1).
 fn token_of(headers: &HeaderMap) -> Option<&str> {
-    headers.get(header::AUTHORIZATION)?.to_str().ok()?.strip_prefix("Bearer ").map(str::trim)
+    let (scheme, token) = headers.get(header::AUTHORIZATION)?.to_str().ok()?.trim().split_once(' ')?;
+    scheme.eq_ignore_ascii_case("bearer").then(|| token.trim())
 }
 
 /// Refuses what a page of somebody else makes a browser send: names that merely lead here (DNS rebinding), and changes from
 /// other origins.
-fn check_origin(app: &App, headers: &HeaderMap, is_write: bool) -> Answer<()> {
+fn check_origin(security: &Security, needs_token: bool, headers: &HeaderMap, is_write: bool) -> Answer<()> {
     let refused = |detail: &str| Err(Problem::new(StatusCode::FORBIDDEN, "Forbidden", detail));
     let text = |name: header::HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
+    let of_url = |url: &str| url.split_once("://").and_then(|(_, rest)| rest.split('/').next()?.parse::<Authority>().ok());
     let host = text(header::HOST).and_then(|host| host.parse::<Authority>().ok());
-    if !app.security.needs_token {
+    let public = security.public_url.as_deref().and_then(of_url);
+    if !needs_token {
         let is_here = host.as_ref().is_some_and(|host| {
             let name = host.host().trim_matches(['[', ']']);
-            name == "localhost" || name.parse::<std::net::IpAddr>().is_ok_and(|address| address.is_loopback())
+            let is_public = security.trusts_proxy && public.as_ref().is_some_and(|public| public.host() == host.host());
+            is_public || name == "localhost" || name.parse::<IpAddr>().is_ok_and(|address| address.is_loopback())
         });
         if !is_here {
             return refused("without tokens this service answers to the names of this machine only: 127.0.0.1, [::1], localhost");
@@ -126,12 +177,35 @@ fn check_origin(app: &App, headers: &HeaderMap, is_write: bool) -> Answer<()> {
     if let Some(origin) = text(header::ORIGIN)
         && is_write
     {
-        let same = origin.split_once("://").and_then(|(_, rest)| rest.parse::<Authority>().ok()) == host;
-        if !same {
+        let origin = of_url(origin);
+        if origin.is_none() || (origin != host && origin != public) {
             return refused("a page of another origin may not change anything here");
         }
     }
     Ok(())
+}
+
+/// A connection beyond those that there are for everybody: who watches over the service is answered, others when there is room.
+#[derive(Debug, Clone)]
+pub struct Crowded(pub Arc<Semaphore>);
+
+/// Time for which a request on such a connection waits for room.
+const ROOM_WITHIN: Duration = Duration::from_secs(5);
+
+/// Holds back requests on connections beyond those that there are for everybody.
+pub async fn in_room(request: Request, next: Next) -> Response {
+    let room = request.extensions().get::<Crowded>().map(|crowded| Arc::clone(&crowded.0));
+    let Some(room) = room.filter(|_| !IS_WELL.contains(&request.uri().path())) else { return next.run(request).await };
+    match tokio::time::timeout(ROOM_WITHIN, room.acquire_owned()).await {
+        Ok(Ok(_place)) => next.run(request).await,
+        _ => {
+            let problem =
+                Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Too many connections", "all connections are taken; try again");
+            let mut response = Problem { retry_after: Some(1), ..problem }.into_response();
+            response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
+            response
+        }
+    }
 }
 
 /// Ends a request whose answer does not begin in time.

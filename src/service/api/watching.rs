@@ -1,27 +1,37 @@
 //! For those who run the service: is it well, and what is it doing?
 
 use std::sync::OnceLock;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use axum::extract::{MatchedPath, Request, State as Shared};
-use axum::http::header;
+use axum::http::{StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 
 use super::App;
 use crate::service::job::State;
-use crate::service::problem::Answer;
+use crate::service::problem::{Answer, Problem};
+use crate::service::worker::free_bytes;
 
 /// Bounds of the histogram of answer times, s.
 const BOUNDS_S: [f64; 12] = [0.000_5, 0.001, 0.002_5, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 5.0];
+
+/// Bounds of the histograms of jobs, s.
+const BOUNDS_OF_JOBS_S: [f64; 10] = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 1000.0, 10_000.0, 100_000.0];
+/// Bounds of the histogram of memory, MB.
+const BOUNDS_MB: [f64; 8] = [50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
 
 /// The one recorder of a process.
 fn recorder() -> Option<&'static PrometheusHandle> {
     static RECORDER: OnceLock<Option<PrometheusHandle>> = OnceLock::new();
     let install = || {
-        let bounds = Matcher::Suffix("seconds".to_owned());
-        PrometheusBuilder::new().set_buckets_for_metric(bounds, &BOUNDS_S).ok()?.install_recorder().ok()
+        let with = |builder: PrometheusBuilder, suffix: &str, bounds: &[f64]| {
+            builder.set_buckets_for_metric(Matcher::Suffix(suffix.to_owned()), bounds).ok()
+        };
+        let builder = with(PrometheusBuilder::new(), "request_seconds", &BOUNDS_S)?;
+        let builder = with(builder, "_seconds", &BOUNDS_OF_JOBS_S)?;
+        with(builder, "_megabytes", &BOUNDS_MB)?.install_recorder().ok()
     };
     RECORDER.get_or_init(install).as_ref()
 }
@@ -40,6 +50,12 @@ pub fn start() {
     metrics::describe_histogram!("perilife_http_request_seconds", "Time to the beginning of the answer, s.");
     metrics::describe_counter!("perilife_jobs_finished_total", "Jobs ended by the workers of this process.");
     metrics::describe_gauge!("perilife_jobs", "Jobs in the store by state.");
+    metrics::describe_gauge!("perilife_queue_age_seconds", "Time for which the oldest job that waits has waited, s.");
+    metrics::describe_gauge!("perilife_disk_free_bytes", "Room for the database file and for temporary files.");
+    metrics::describe_counter!("perilife_job_failures_total", "Ends of jobs that were not their fault, by reason.");
+    metrics::describe_histogram!("perilife_queue_seconds", "Time from submission to the first worker, s.");
+    metrics::describe_histogram!("perilife_job_seconds", "Time of a run by a worker of this process, s.");
+    metrics::describe_histogram!("perilife_job_memory_megabytes", "Most memory that the process of a job had, MB.");
 }
 
 /// Counts a request. Routes are few, so their number stays bounded whatever is asked for.
@@ -57,11 +73,34 @@ pub async fn measure(request: Request, next: Next) -> Response {
     response
 }
 
-/// `/healthz`: 200 while the store answers, else 503.
-pub async fn health(Shared(app): Shared<App>) -> Answer<&'static str> {
-    app.store.ping().await?;
-    Ok("ok\n")
+/// `/healthz`: 200 while the process answers.
+pub async fn health() -> &'static str {
+    "ok\n"
 }
+
+/// Bytes that must be free on every disk that is written to.
+const FREE_BYTES: u64 = 64 << 20;
+
+/// `/readyz`: 200 while jobs are taken: the store can be written, its tables are of this version, disks have room; else 503 and why.
+pub async fn ready(Shared(app): Shared<App>) -> Answer<&'static str> {
+    let refused = |why: String| Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Not ready", why);
+    let asked = tokio::time::timeout(READY_WITHIN, app.store.is_ready()).await;
+    let asked = asked.map_err(|_| refused(format!("the database does not answer within {} s", READY_WITHIN.as_secs())))?;
+    asked.map_err(|error| {
+        tracing::warn!("the store is not ready: {error}");
+        refused("the database cannot be written, or its tables are of another version; see the log".to_owned())
+    })?;
+    for folder in app.disks.iter() {
+        let free = free_bytes(folder).unwrap_or(0);
+        if free < FREE_BYTES {
+            return Err(refused(format!("a disk has {} MB free, and {} are needed; see the log", free >> 20, FREE_BYTES >> 20)));
+        }
+    }
+    Ok("ready\n")
+}
+
+/// Time in which the store must answer.
+const READY_WITHIN: Duration = Duration::from_secs(5);
 
 /// `/metrics` in the text format of Prometheus.
 pub async fn metrics(Shared(app): Shared<App>) -> Answer<Response> {
@@ -70,6 +109,10 @@ pub async fn metrics(Shared(app): Shared<App>) -> Answer<Response> {
     for state in State::ALL {
         let count = counts.iter().find(|(name, _)| name == state.name()).map_or(0, |(_, count)| *count);
         metrics::gauge!("perilife_jobs", "state" => state.name()).set(count as f64);
+    }
+    metrics::gauge!("perilife_queue_age_seconds").set(app.store.queue_age_ms().await? as f64 / 1e3);
+    for (folder, place) in app.disks.iter().zip(["store", "temporary"]) {
+        metrics::gauge!("perilife_disk_free_bytes", "place" => place).set(free_bytes(folder).unwrap_or(0) as f64);
     }
     let text = recorder().map(PrometheusHandle::render).unwrap_or_default();
     Ok(([(header::CONTENT_TYPE, "text/plain; version=0.0.4")], text).into_response())

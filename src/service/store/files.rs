@@ -11,15 +11,6 @@ use super::{Result, Store};
 /// Bytes of a part.
 pub const PART: usize = 256 << 10;
 
-/// A file to be stored.
-#[derive(Debug, Clone, PartialEq)]
-pub struct File {
-    /// Its name, by which it is also known what it is.
-    pub name: String,
-    /// Its bytes.
-    pub content: Vec<u8>,
-}
-
 /// What is said of a file.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct FileEntry {

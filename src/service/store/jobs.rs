@@ -34,6 +34,17 @@ pub enum Submitted {
     KeyTaken,
     /// The owner has as many jobs in the queue as he may have.
     QueueFull,
+    /// The owner's files have so many bytes, which is all they may have.
+    SpaceFull(i64),
+}
+
+/// How much of one owner there may be.
+#[derive(Debug, Clone, Copy)]
+pub struct Room {
+    /// Jobs that wait.
+    pub queued: i64,
+    /// Bytes of files of all his jobs.
+    pub bytes: i64,
 }
 
 /// Part of a list, newest first.
@@ -49,6 +60,9 @@ pub struct Listing {
 const COLUMNS: &str = "id, kind, name, owner, state, calibration, created_ms, started_ms, finished_ms, cancel_asked, \
                        revision, fence, progress, problem, summary";
 
+/// Jobs removed at a time because their time is over: a mistake in a clock shows before all is gone.
+const EXPIRED_AT_ONCE: i64 = 200;
+
 /// Sorts behind every id.
 const BEHIND_ALL: &str = "~";
 
@@ -57,7 +71,7 @@ impl Store {
     ///
     /// # Errors
     /// The database cannot take it; nothing is stored then.
-    pub async fn submit(&self, new: &NewJob<'_>, queued_max: i64) -> Result<Submitted> {
+    pub async fn submit(&self, new: &NewJob<'_>, room: Room) -> Result<Submitted> {
         // Without failure: text and numbers.
         let content = postcard::to_stdvec(new.submission).unwrap_or_default();
         let mut transaction = self.begin().await?;
@@ -75,8 +89,17 @@ impl Store {
             .bind(new.owner)
             .fetch_one(&mut *transaction)
             .await?;
-        if queued >= queued_max {
+        if queued >= room.queued {
             return Ok(Submitted::QueueFull);
+        }
+        let stored: i64 = sqlx::query_scalar(
+            "SELECT CAST(COALESCE(SUM(size), 0) AS BIGINT) FROM job_files WHERE job IN (SELECT id FROM jobs WHERE owner = $1)",
+        )
+        .bind(new.owner)
+        .fetch_one(&mut *transaction)
+        .await?;
+        if stored >= room.bytes {
+            return Ok(Submitted::SpaceFull(stored));
         }
         let turn = turn(&mut transaction, new.owner).await?;
         let id = uuid::Uuid::now_v7().to_string();
@@ -92,9 +115,10 @@ impl Store {
         .bind(turn)
         .execute(&mut *transaction)
         .await?;
-        sqlx::query("INSERT INTO submissions (job, content) VALUES ($1, $2)")
+        sqlx::query("INSERT INTO submissions (job, content, options) VALUES ($1, $2, $3)")
             .bind(&id)
             .bind(content)
+            .bind(serde_json::to_string(&new.submission.options).unwrap_or_default())
             .execute(&mut *transaction)
             .await?;
         for (name, content) in &new.submission.files {
@@ -155,10 +179,13 @@ impl Store {
     /// # Errors
     /// The database does not answer.
     pub async fn submission(&self, id: &str) -> Result<Option<Submission>> {
-        let content: Option<Vec<u8>> =
-            sqlx::query_scalar("SELECT content FROM submissions WHERE job = $1").bind(id).fetch_optional(&self.pool).await?;
-        let broken = |error: postcard::Error| sqlx::Error::Decode(error.into());
-        content.map(|bytes| postcard::from_bytes(&bytes).map_err(broken)).transpose()
+        let row = sqlx::query("SELECT content, options FROM submissions WHERE job = $1").bind(id);
+        let Some(row) = row.fetch_optional(&self.pool).await? else { return Ok(None) };
+        let content: Vec<u8> = row.try_get(0)?;
+        let options: String = row.try_get(1)?;
+        let mut submission: Submission = postcard::from_bytes(&content).map_err(|error| sqlx::Error::Decode(error.into()))?;
+        submission.options = serde_json::from_str(&options).map_err(|error| sqlx::Error::Decode(error.into()))?;
+        Ok(Some(submission))
     }
 
     /// Jobs of a kind, newest first, from behind the job `after` on.
@@ -184,15 +211,17 @@ impl Store {
         Ok(Listing { jobs, next })
     }
 
-    /// Asks for the end of a job: one that waits ends at once, one that runs within a cycle block. Whether there was one to end.
+    /// Asks for the end of a job: one that waits, or whose worker is silent, ends at once, one that runs with the next sign of life.
+    /// Whether there was one to end.
     ///
     /// # Errors
     /// The database does not answer.
     pub async fn cancel(&self, id: &str) -> Result<bool> {
         let changed = sqlx::query(self.sql(
             "UPDATE jobs SET cancel_asked = 1, revision = revision + 1,
-                finished_ms = CASE WHEN state = 'queued' THEN {now} END,
-                state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END
+                finished_ms = CASE WHEN state = 'queued' OR {orphaned} THEN {now} END,
+                finished_count_ms = CASE WHEN state = 'queued' OR {orphaned} THEN {counted} END,
+                state = CASE WHEN state = 'queued' OR {orphaned} THEN 'cancelled' ELSE state END
              WHERE id = $1 AND state IN ('queued', 'running')",
         ))
         .bind(id)
@@ -201,22 +230,35 @@ impl Store {
         Ok(changed.rows_affected() > 0)
     }
 
-    /// Removes a job that does not run, with all it has. Whether there was one.
+    /// Removes a job that no worker has, with all it has. Whether there was one.
     ///
     /// # Errors
     /// The database does not answer.
     pub async fn delete(&self, id: &str) -> Result<bool> {
-        let gone = sqlx::query("DELETE FROM jobs WHERE id = $1 AND state <> 'running'").bind(id).execute(&self.pool).await?;
-        Ok(gone.rows_affected() > 0)
+        let statement = self.sql("DELETE FROM jobs WHERE id = $1 AND (state <> 'running' OR {orphaned})");
+        Ok(sqlx::query(statement).bind(id).execute(&self.pool).await?.rows_affected() > 0)
     }
 
-    /// Removes jobs that ended longer than so many milliseconds ago; returns how many.
+    /// Removes jobs that ended longer than so many milliseconds of the counted clock ago, the oldest first and only so many at a time;
+    /// returns how many.
     ///
     /// # Errors
     /// The database does not answer.
     pub async fn expire(&self, kept_ms: i64) -> Result<u64> {
-        let gone = sqlx::query(self.sql("DELETE FROM jobs WHERE finished_ms < {now} - $1")).bind(kept_ms);
-        Ok(gone.execute(&self.pool).await?.rows_affected())
+        let gone = sqlx::query(self.sql(
+            "DELETE FROM jobs WHERE id IN
+                (SELECT id FROM jobs WHERE finished_count_ms < {counted} - $1 ORDER BY finished_count_ms LIMIT $2)",
+        ));
+        Ok(gone.bind(kept_ms).bind(EXPIRED_AT_ONCE).execute(&self.pool).await?.rows_affected())
+    }
+
+    /// Time for which the oldest job that waits has waited, ms; 0 if none does.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn queue_age_ms(&self) -> Result<i64> {
+        let oldest = self.sql("SELECT {now} - COALESCE(MIN(created_ms), {now}) FROM jobs WHERE state = 'queued'");
+        sqlx::query_scalar(oldest).fetch_one(&self.pool).await
     }
 
     /// Jobs in each state.

@@ -17,9 +17,9 @@ use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 use sqlx::any::AnyPoolOptions;
 use sqlx::{AnyConnection, AnyPool, Connection};
 
-pub use files::{File, FileEntry, Origin, PART, media_type};
-pub use jobs::{Listing, NewJob, Submitted};
-pub use queue::{Claim, Growth, Heartbeat, Outcome};
+pub use files::{FileEntry, Origin, PART, media_type};
+pub use jobs::{Listing, NewJob, Room, Submitted};
+pub use queue::{Claim, Growth, Heartbeat, Outcome, ResultFile};
 pub use tokens::{Role, Token, hash, hex};
 
 /// What a statement can fail with; see [`is_gone`].
@@ -117,12 +117,34 @@ async fn first_look(url: &str, dialect: Dialect) -> Result<()> {
     }
 }
 
+/// Longest step of the counted clock: what is longer was a jump of the database's clock, or no service ran.
+const COUNTED_STEP: Duration = Duration::from_secs(300);
+
+/// Time since the counted clock was looked at last, within its longest step.
+const STEP: &str = "CASE WHEN {now} < seen_ms THEN 0 WHEN {now} - seen_ms > {most} THEN {most} ELSE {now} - seen_ms END";
+
+/// A running job whose worker is silent: its lease is over, or ends later than any lease granted now could, as after a clock was set
+/// back.
+const ORPHANED: &str = "(lease_until_ms < {now} OR lease_until_ms > {now} + 2 * lease_ms)";
+
+/// Pages of SQLite given back to the disk at a time, 4 kB each: so that writers do not wait for long.
+const GIVEN_BACK: u32 = 16_384;
+
+/// Whether tables of an earlier version are led on to this one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Upgrade {
+    /// By the service itself.
+    Allowed,
+    /// Not by who merely uses its store.
+    Refused,
+}
+
 impl Store {
     /// Connects to `sqlite://FILE` or `postgres://...` and lays the tables in a new database.
     ///
     /// # Errors
     /// Another kind of URL; a database that cannot be reached or was made by another version of this program.
-    pub async fn open(url: &str, connections: u32) -> Result<Store> {
+    pub async fn open(url: &str, connections: u32, upgrade: Upgrade) -> Result<Store> {
         sqlx::any::install_default_drivers();
         let dialect = match url.split(':').next() {
             Some("sqlite") => Dialect::Sqlite,
@@ -138,9 +160,11 @@ impl Store {
                     let patience = PATIENCE.as_millis();
                     let settings = match dialect {
                         // Readers and the writer do not wait for each other; what was committed outlives a loss of power.
-                        Dialect::Sqlite => {
-                            format!("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA busy_timeout = {patience};")
-                        }
+                        // Space of what was deleted can be given back where that was said before the first table was laid.
+                        Dialect::Sqlite => format!(
+                            "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; \
+                             PRAGMA busy_timeout = {patience};"
+                        ),
                         // A process that stands still in the middle of a transaction would keep others from its job for as long as
                         // its connection seems to be there.
                         Dialect::Postgres => format!("SET idle_in_transaction_session_timeout = {patience};"),
@@ -157,16 +181,32 @@ impl Store {
             .connect(url)
             .await?;
         let store = Store { pool, dialect };
-        store.lay_tables().await?;
+        store.lay_tables(upgrade == Upgrade::Allowed).await?;
         Ok(store)
     }
 
-    /// Whether the database answers.
+    /// Whether the database takes what is written, and its tables are of this version.
     ///
     /// # Errors
-    /// It does not.
-    pub async fn ping(&self) -> Result<()> {
-        sqlx::query("SELECT 1").execute(&self.pool).await.map(drop)
+    /// It does not, or they are not.
+    pub async fn is_ready(&self) -> Result<()> {
+        let mut transaction = self.begin().await?;
+        schema::expect(&mut transaction).await?;
+        sqlx::query("UPDATE clock SET seen_ms = seen_ms").execute(&mut *transaction).await?;
+        transaction.commit().await
+    }
+
+    /// Lets the counted clock go on, and gives space of what was deleted back to the disk.
+    ///
+    /// # Errors
+    /// The database does not answer.
+    pub async fn tidy(&self) -> Result<()> {
+        sqlx::query(self.sql("UPDATE clock SET counted_ms = counted_ms + {step}, seen_ms = {now}")).execute(&self.pool).await?;
+        if self.dialect == Dialect::Sqlite {
+            let give_back = format!("PRAGMA incremental_vacuum({GIVEN_BACK}); PRAGMA wal_checkpoint(TRUNCATE)");
+            sqlx::raw_sql(sqlx::AssertSqlSafe(give_back)).execute(&self.pool).await?;
+        }
+        Ok(())
     }
 
     /// Closes all connections.
@@ -174,10 +214,14 @@ impl Store {
         self.pool.close().await;
     }
 
-    /// A statement with the fragments of this database filled in: `{now}`, `{skip_locked}`, `{bytes}`, `{key}`.
+    /// A statement with the fragments of this database filled in: `{now}`, `{skip_locked}`, `{bytes}`, `{key}`, and those made of
+    /// them: `{counted}`, the counted clock, and `{orphaned}`, whether a running job's lease is over.
     fn sql(&self, statement: &str) -> sqlx::AssertSqlSafe<String> {
         let dialect = self.dialect;
         let filled = statement
+            .replace("{counted}", "(SELECT counted_ms + {step} FROM clock)")
+            .replace("{step}", &STEP.replace("{most}", &COUNTED_STEP.as_millis().to_string()))
+            .replace("{orphaned}", ORPHANED)
             .replace("{now}", dialect.now())
             .replace("{skip_locked}", dialect.skip_locked())
             .replace("{bytes}", dialect.bytes())

@@ -3,8 +3,11 @@
 use serde::{Deserialize, Serialize};
 use sqlx::Row;
 
-use super::{File, FileEntry, Origin, Result, Store, files};
-use crate::service::job::{JobKind, JobProgress, State, Submission};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::{FileEntry, Origin, Result, Store, files, schema};
+use crate::service::job::{JobKind, State, Submission};
 
 /// A job that a worker holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +22,16 @@ pub struct Claim {
     pub attempts: i64,
     /// Somebody asked for its end already.
     pub cancel_asked: bool,
+    /// Ends so far that were not the job's fault.
+    pub failures: i64,
+    /// Computing time of earlier claims, ms.
+    pub spent_ms: i64,
+    /// Time from its submission to its first worker, ms.
+    pub waited_ms: i64,
 }
+
+/// Longest time for which a job that was put back waits.
+const LONGEST_WAIT: Duration = Duration::from_secs(300);
 
 /// What a sign of life brings back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +44,15 @@ pub enum Heartbeat {
     Lost,
 }
 
+/// A file of a result, where its worker has it on disk.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ResultFile {
+    /// Its name in the store.
+    pub name: String,
+    /// Where its bytes are.
+    pub path: PathBuf,
+}
+
 /// How a job ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
@@ -42,7 +63,7 @@ pub struct Outcome {
     /// Why there is none, JSON.
     pub problem: Option<String>,
     /// Its files.
-    pub files: Vec<File>,
+    pub files: Vec<ResultFile>,
 }
 
 /// A piece of a growing curve.
@@ -66,16 +87,20 @@ impl Store {
     pub async fn claim(&self, worker: &str, lease_ms: i64) -> Result<Option<Claim>> {
         // Within a transaction, since only its end tells that the claim has got to the disk.
         let mut transaction = self.begin().await?;
+        schema::expect(&mut transaction).await?;
         let row = sqlx::query(self.sql(
             "UPDATE jobs SET state = 'running', worker = $1, fence = fence + 1, attempts = attempts + 1,
-                lease_until_ms = {now} + $2, started_ms = COALESCE(started_ms, {now}), revision = revision + 1
+                lease_until_ms = {now} + $2, lease_ms = $2, started_ms = COALESCE(started_ms, {now}), revision = revision + 1
              WHERE id = COALESCE(
-                (SELECT id FROM jobs WHERE state = 'running' AND lease_until_ms < {now} ORDER BY turn, id LIMIT 1 {skip_locked}),
-                (SELECT id FROM jobs WHERE state = 'queued' ORDER BY turn, id LIMIT 1 {skip_locked}))
-             RETURNING id, kind, fence, attempts, cancel_asked, owner, turn",
+                (SELECT id FROM jobs WHERE state = 'running' AND {orphaned} ORDER BY turn, id LIMIT 1 {skip_locked}),
+                (SELECT id FROM jobs WHERE state = 'queued'
+                    AND (not_before_ms IS NULL OR not_before_ms <= {now} OR not_before_ms > {now} + $3)
+                 ORDER BY turn, id LIMIT 1 {skip_locked}))
+             RETURNING id, kind, fence, attempts, cancel_asked, owner, turn, failures, spent_ms, started_ms - created_ms AS waited_ms",
         ))
         .bind(worker)
         .bind(lease_ms)
+        .bind(LONGEST_WAIT.as_millis() as i64)
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(row) = row else { return Ok(None) };
@@ -96,6 +121,9 @@ impl Store {
             fence: row.try_get("fence")?,
             attempts: row.try_get("attempts")?,
             cancel_asked: row.try_get::<i64, _>("cancel_asked")? != 0,
+            failures: row.try_get("failures")?,
+            spent_ms: row.try_get("spent_ms")?,
+            waited_ms: row.try_get("waited_ms")?,
         }))
     }
 
@@ -114,22 +142,22 @@ impl Store {
         Ok((Some(submission), checkpoint.fetch_optional(&self.pool).await?))
     }
 
-    /// A sign of life: the claim holds on for `lease_ms`.
+    /// A sign of life: the claim holds on for `lease_ms`, has taken so long so far, and is as far as `progress` says, JSON.
     ///
     /// # Errors
     /// The database does not answer; the claim may still hold.
-    pub async fn beat(&self, claim: &Claim, lease_ms: i64, progress: Option<&JobProgress>) -> Result<Heartbeat> {
-        let progress = progress.and_then(|progress| serde_json::to_string(progress).ok());
+    pub async fn beat(&self, claim: &Claim, lease_ms: i64, elapsed: Duration, progress: Option<&str>) -> Result<Heartbeat> {
         let mut transaction = self.begin().await?;
         let asked: Option<i64> = sqlx::query_scalar(self.sql(
-            "UPDATE jobs SET lease_until_ms = {now} + $3, revision = revision + CASE WHEN $4 IS NULL OR $4 = progress THEN 0 ELSE 1 END,
-                progress = COALESCE($4, progress)
+            "UPDATE jobs SET lease_until_ms = {now} + $3, lease_ms = $3, spent_ms = $5,
+                revision = revision + CASE WHEN $4 IS NULL OR $4 = progress THEN 0 ELSE 1 END, progress = COALESCE($4, progress)
              WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING cancel_asked",
         ))
         .bind(&claim.id)
         .bind(claim.fence)
         .bind(lease_ms)
         .bind(progress)
+        .bind(claim.spent_ms + elapsed.as_millis() as i64)
         .fetch_optional(&mut *transaction)
         .await?;
         transaction.commit().await?;
@@ -244,7 +272,7 @@ impl Store {
     pub async fn finish(&self, claim: &Claim, outcome: &Outcome) -> Result<bool> {
         let mut transaction = self.begin().await?;
         let changed = sqlx::query(self.sql(
-            "UPDATE jobs SET state = $3, summary = $4, problem = $5, finished_ms = {now}, worker = NULL, lease_until_ms = NULL,
+            "UPDATE jobs SET state = $3, summary = $4, problem = $5, finished_ms = {now}, finished_count_ms = {counted}, worker = NULL, lease_until_ms = NULL,
                 revision = revision + 1
              WHERE id = $1 AND fence = $2 AND state = 'running'",
         ))
@@ -258,8 +286,10 @@ impl Store {
         if changed.rows_affected() == 0 {
             return Ok(false);
         }
-        for File { name, content } in &outcome.files {
-            files::add(&mut transaction, &claim.id, Origin::Result, name, content).await?;
+        for ResultFile { name, path } in &outcome.files {
+            // One at a time in memory.
+            let content = tokio::fs::read(path).await?;
+            files::add(&mut transaction, &claim.id, Origin::Result, name, &content).await?;
         }
         for leftover in ["DELETE FROM checkpoints WHERE job = $1", "DELETE FROM growth WHERE job = $1"] {
             sqlx::query(leftover).bind(&claim.id).execute(&mut *transaction).await?;
@@ -274,12 +304,30 @@ impl Store {
     /// The database does not answer; the job goes on elsewhere once its time has run out.
     pub async fn release(&self, claim: &Claim) -> Result<()> {
         sqlx::query(
-            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, attempts = attempts - 1,
-                revision = revision + 1
+            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL,
+                attempts = CASE WHEN attempts > 0 THEN attempts - 1 ELSE 0 END, revision = revision + 1
              WHERE id = $1 AND fence = $2 AND state = 'running'",
         )
         .bind(&claim.id)
         .bind(claim.fence)
+        .execute(&self.pool)
+        .await
+        .map(drop)
+    }
+
+    /// Gives a job back to the queue after an end that was not its fault, which is counted; nobody takes it before `wait` is over.
+    ///
+    /// # Errors
+    /// As [`Store::release`].
+    pub async fn put_back(&self, claim: &Claim, wait: Duration) -> Result<()> {
+        sqlx::query(self.sql(
+            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, failures = failures + 1,
+                not_before_ms = {now} + $3, revision = revision + 1
+             WHERE id = $1 AND fence = $2 AND state = 'running'",
+        ))
+        .bind(&claim.id)
+        .bind(claim.fence)
+        .bind(wait.min(LONGEST_WAIT).as_millis() as i64)
         .execute(&self.pool)
         .await
         .map(drop)

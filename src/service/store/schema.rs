@@ -3,7 +3,32 @@
 use super::{Dialect, Result, Store};
 
 /// Version of the tables; one higher with every change of them.
-const VERSION: i64 = 2;
+const VERSION: i64 = 3;
+
+/// Version of [`TABLES`], to which [`UPGRADES`] lead on.
+const FIRST: i64 = 2;
+
+/// What leads from the version before to the one named: additions only, so that what is stored stays as it is.
+const UPGRADES: &[(i64, &[&str])] = &[(
+    3,
+    &[
+        // `failures` counts ends that are not the job's fault and never falls; the job waits until `not_before_ms`. `lease_ms` is
+        // what was granted last: a lease that ends later than that from now was granted before the clock was set back. `spent_ms` is
+        // computing time by the clocks of the workers, `finished_count_ms` the counted clock at the end.
+        "ALTER TABLE jobs ADD COLUMN failures BIGINT NOT NULL DEFAULT 0",
+        "ALTER TABLE jobs ADD COLUMN not_before_ms BIGINT",
+        "ALTER TABLE jobs ADD COLUMN lease_ms BIGINT NOT NULL DEFAULT 0",
+        "ALTER TABLE jobs ADD COLUMN spent_ms BIGINT NOT NULL DEFAULT 0",
+        "ALTER TABLE jobs ADD COLUMN finished_count_ms BIGINT",
+        "UPDATE jobs SET finished_count_ms = 0 WHERE finished_ms IS NOT NULL",
+        "CREATE INDEX jobs_finished_count ON jobs (finished_count_ms)",
+        "DROP INDEX jobs_finished",
+        "ALTER TABLE submissions ADD COLUMN options TEXT NOT NULL DEFAULT '[]'",
+        // Time during which a service ran, by steps that no jump of a clock makes long.
+        "CREATE TABLE clock (seen_ms BIGINT NOT NULL, counted_ms BIGINT NOT NULL)",
+        "INSERT INTO clock (seen_ms, counted_ms) VALUES ({now}, 0)",
+    ],
+)];
 
 const TABLES: &[&str] = &[
     // `id` is a UUID of version 7: sorted by it jobs are sorted by time. `fence` counts the claims: whoever writes must name the
@@ -59,38 +84,75 @@ const POSTGRES_ONLY: &str = "postgres: ";
 const LOCK: i64 = 0x7065_7269_6c69_6665;
 
 impl Store {
-    /// Lays the tables, all or none, where there are none.
+    /// Lays the tables, all or none, where there are none, and leads older ones on to this version if that is wanted.
     ///
     /// # Errors
-    /// Tables of another version.
-    pub(super) async fn lay_tables(&self) -> Result<()> {
+    /// Tables of a later version; of an earlier one that may not be changed.
+    pub(super) async fn lay_tables(&self, may_upgrade: bool) -> Result<()> {
         let mut transaction = self.begin().await?;
         if self.dialect == Dialect::Postgres {
             sqlx::query("SELECT pg_advisory_xact_lock($1)").bind(LOCK).execute(&mut *transaction).await?;
         }
         sqlx::query("CREATE TABLE IF NOT EXISTS perilife_schema (version BIGINT NOT NULL)").execute(&mut *transaction).await?;
-        let version: Option<i64> =
-            sqlx::query_scalar("SELECT MAX(version) FROM perilife_schema").fetch_one(&mut *transaction).await?;
-        match version {
+        let found = version(&mut transaction).await?;
+        match found {
             Some(VERSION) => return Ok(()),
-            Some(other) => {
-                let problem = format!(
-                    "the tables of the database are of version {other}, and this program reads version {VERSION} only: use a new \
-                     database (--data or --database)"
-                );
-                return Err(sqlx::Error::Configuration(problem.into()));
+            Some(FIRST..VERSION) if may_upgrade => {}
+            Some(other) => return Err(of_another_version(other)),
+            None => {
+                for statement in TABLES {
+                    self.lay(&mut transaction, statement).await?;
+                }
             }
-            None => {}
         }
-        for statement in TABLES {
-            let statement = match statement.strip_prefix(POSTGRES_ONLY) {
-                Some(_) if self.dialect == Dialect::Sqlite => continue,
-                Some(theirs) => theirs,
-                None => statement,
-            };
-            sqlx::query(self.sql(statement)).execute(&mut *transaction).await?;
+        for (to, statements) in UPGRADES.iter().filter(|(to, _)| *to > found.unwrap_or(FIRST)) {
+            for statement in *statements {
+                self.lay(&mut transaction, statement).await?;
+            }
+            tracing::info!("tables of version {to} laid");
         }
+        sqlx::query("DELETE FROM perilife_schema").execute(&mut *transaction).await?;
         sqlx::query("INSERT INTO perilife_schema (version) VALUES ($1)").bind(VERSION).execute(&mut *transaction).await?;
-        transaction.commit().await
+        transaction.commit().await?;
+        if found.is_some() && self.dialect == Dialect::Sqlite {
+            // A file that was made without giving space back learns it only by being written anew.
+            let mut connection = self.pool.acquire().await?;
+            sqlx::raw_sql("PRAGMA auto_vacuum = INCREMENTAL; VACUUM").execute(&mut *connection).await?;
+        }
+        Ok(())
     }
+
+    async fn lay(&self, transaction: &mut sqlx::Transaction<'static, sqlx::Any>, statement: &'static str) -> Result<()> {
+        let statement = match statement.strip_prefix(POSTGRES_ONLY) {
+            Some(_) if self.dialect == Dialect::Sqlite => return Ok(()),
+            Some(theirs) => theirs,
+            None => statement,
+        };
+        sqlx::query(self.sql(statement)).execute(&mut **transaction).await.map(drop)
+    }
+}
+
+/// Version of the tables; `None` where there are none.
+async fn version(connection: &mut sqlx::AnyConnection) -> Result<Option<i64>> {
+    sqlx::query_scalar("SELECT MAX(version) FROM perilife_schema").fetch_one(connection).await
+}
+
+/// Refuses tables that another program has led on meanwhile.
+pub(super) async fn expect(connection: &mut sqlx::AnyConnection) -> Result<()> {
+    match version(connection).await? {
+        Some(VERSION) => Ok(()),
+        other => Err(of_another_version(other.unwrap_or(0))),
+    }
+}
+
+/// Refuses tables of another version.
+fn of_another_version(other: i64) -> sqlx::Error {
+    let remedy = if (FIRST..VERSION).contains(&other) {
+        "start `perilife serve` of this program once, which leads older tables on, after a copy was made"
+    } else {
+        "use the program that made them, or a new database (--data or --database)"
+    };
+    let problem =
+        format!("the tables of the database are of version {other}, and this program needs version {VERSION}: {remedy}");
+    sqlx::Error::Configuration(problem.into())
 }

@@ -1,20 +1,15 @@
 //! One job from its claim to its end.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use std::path::Path;
+use std::time::{Duration, Instant};
 
 use axum::http::StatusCode;
+use tempfile::TempDir;
 
-use super::results::{Results, of_fit, of_laws, of_run};
-use super::watch::{Keep, Stop, Watch};
-use super::{Shared, TRY_EVERY, milliseconds};
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::laws::case::{LawCase, is_law_fit};
-use crate::case::Case;
+use super::frames::{News, Order};
+use super::process::{Death, JobProcess, Look};
+use super::{Shared, TRY_EVERY, milliseconds, results};
 use crate::error::{Error, Result};
-use crate::predict::checkpoint::Checkpoint;
-use crate::predict::{Prediction, predict, resume};
 use crate::service::job::{JobKind, State, Submission};
 use crate::service::problem::Problem;
 use crate::service::store::{Claim, Growth, Heartbeat, Outcome, is_gone};
@@ -23,25 +18,42 @@ use crate::service::store::{Claim, Growth, Heartbeat, Outcome, is_gone};
 const BEAT: Duration = Duration::from_millis(400);
 /// Tries to hand in a result when the process is to stop.
 const LAST_TRIES: u32 = 3;
+/// Wait after the first end that was not the job's fault; twice as long after each further one.
+const FIRST_WAIT: Duration = Duration::from_secs(1);
+/// Bytes in a megabyte, as messages count them.
+const MEGABYTE: u64 = 1_000_000;
 
-/// What is to be run.
-enum Task {
-    Prediction(Box<Case>, Option<Box<Checkpoint>>),
-    Calibration(Box<CalibrationCase>),
-    Laws(Box<LawCase>),
+/// How a run ended.
+enum End {
+    /// With figures, JSON, and files in the folder.
+    Done(String),
+    /// Without a result, by its input: a problem as JSON.
+    Failed(String),
+    /// The disk of this machine does not take its files.
+    NoRoom(String),
+    /// Its process died.
+    Died(Death),
+    /// It took longer than a job may.
+    OutOfTime,
+    /// Somebody asked for it.
+    Cancelled,
+    /// The job is not this worker's any more.
+    Lost,
+    /// This process stops.
+    Shutdown,
 }
 
 /// Works on a claimed job until it has ended, or is not this worker's any more.
-pub fn work(shared: &Shared, pool: &rayon::ThreadPool, claim: &Claim) {
+pub fn work(shared: &Shared, claim: &Claim) {
     tracing::info!(job = claim.id, kind = %claim.kind, attempt = claim.attempts, "job taken");
+    metrics::histogram!("perilife_queue_seconds", "kind" => claim.kind.name()).record(claim.waited_ms as f64 / 1e3);
     let limit = shared.settings.attempts;
     if claim.cancel_asked {
-        return hand_in(shared, claim, &ended(State::Cancelled, None));
+        return hand_in(shared, claim, &ended(State::Cancelled, None), "cancelled");
     }
     if claim.attempts > limit {
         let detail = format!("given up: {limit} workers stopped while they had it, none of them getting as far as a checkpoint");
-        let problem = Problem::new(StatusCode::INTERNAL_SERVER_ERROR, "Given up", detail);
-        return hand_in(shared, claim, &ended(State::Failed, Some(&problem)));
+        return fail(shared, claim, StatusCode::INTERNAL_SERVER_ERROR, "Given up", &detail, "given_up");
     }
     let content = loop {
         match shared.handle.block_on(shared.store.content(claim)) {
@@ -53,206 +65,244 @@ pub fn work(shared: &Shared, pool: &rayon::ThreadPool, claim: &Claim) {
     };
     // Deleted meanwhile.
     let (Some(submission), checkpoint) = content else { return };
-    let task = match task(claim.kind, &submission, checkpoint) {
-        Ok(task) => task,
-        Err(error) => return hand_in(shared, claim, &ended(State::Failed, Some(&error.into()))),
-    };
-    let growth = growth_so_far(shared, claim, &task);
-    let keep = |bytes: Vec<u8>| match shared.handle.block_on(shared.store.keep(claim, bytes)) {
-        Ok(held) => held,
-        Err(error) => {
-            tracing::warn!(job = claim.id, "a checkpoint cannot be kept: {error}");
-            false
+    let begun = Instant::now();
+    match begin(shared, claim, submission, checkpoint) {
+        Ok((process, folder)) => {
+            let end = relay(shared, claim, &process, begun).unwrap_or_else(|| End::Died(process.death()));
+            let seconds = begun.elapsed().as_secs_f64();
+            metrics::histogram!("perilife_job_seconds", "kind" => claim.kind.name()).record(seconds);
+            conclude(shared, claim, end, &folder.path().join(RESULTS));
         }
-    };
-    let (cracks, keep): (_, Option<Keep<'_>>) = match &task {
-        Task::Prediction(case, _) => (case.specimen.cracks.clone(), Some(&keep)),
-        Task::Calibration(calibration) => (calibration.case.specimen.cracks.clone(), None),
-        Task::Laws(_) => (Vec::new(), None),
-    };
-    let watch = Watch::new(&cracks, &growth, keep, shared.settings.checkpoint_every);
-    let outcome = run_watched(shared, pool, claim, task, &watch);
-    conclude(shared, claim, outcome, watch.stopped());
+        Err(error) => conclude(shared, claim, End::NoRoom(error.to_string()), Path::new("")),
+    }
 }
 
-/// Reads the input, and takes the checkpoint if it is one of it.
-fn task(kind: JobKind, submission: &Submission, checkpoint: Option<Vec<u8>>) -> Result<Task> {
-    let document = submission.document()?;
-    if kind == JobKind::Calibration {
-        if is_law_fit(&document.table) {
-            return Ok(Task::Laws(Box::new(LawCase::from_document(&document)?)));
-        }
-        return Ok(Task::Calibration(Box::new(CalibrationCase::from_document(document)?)));
-    }
-    let case = Case::from_document(&document)?;
-    let taken = checkpoint.and_then(|bytes| match Checkpoint::from_bytes(&bytes) {
-        Ok(checkpoint) => checkpoint.belongs_to(&case).then(|| Box::new(checkpoint)),
-        Err(error) => {
-            tracing::warn!("the run begins anew: {error}");
-            None
-        }
-    });
-    Ok(Task::Prediction(Box::new(case), taken))
-}
-
-/// The curve that earlier workers have shown, as far as the checkpoint confirms it.
-fn growth_so_far(shared: &Shared, claim: &Claim, task: &Task) -> Growth {
-    let mut all = Growth::default();
-    if claim.fence == 1 || !matches!(task, Task::Prediction(..)) {
-        return all;
-    }
-    if let Task::Prediction(_, Some(checkpoint)) = task {
-        let until = checkpoint.progress().cycles;
-        let pieces = shared.handle.block_on(shared.store.growth(&claim.id, 0, None)).unwrap_or_default();
-        for piece in pieces {
-            let kept = piece.cycles.iter().take_while(|cycles| **cycles <= until).count();
-            all.cycles.extend_from_slice(&piece.cycles[..kept]);
-            all.crack_length_mm.extend_from_slice(&piece.crack_length_mm[..kept]);
-            all.tips.extend_from_slice(&piece.tips[..kept]);
-        }
-    }
-    if let Err(error) = shared.handle.block_on(shared.store.grow(claim, &all)) {
-        tracing::warn!(job = claim.id, "the growing curve cannot be shown: {error}");
-        return Growth::default();
-    }
-    all
-}
-
-/// Runs in the pool, while this thread gives signs of life; `None` after a panic.
-fn run_watched(
+/// Starts the process of a job, and makes the folder for its results.
+fn begin(
     shared: &Shared,
-    pool: &rayon::ThreadPool,
     claim: &Claim,
-    task: Task,
-    watch: &Watch<'_>,
-) -> Option<Result<Results>> {
-    let (done, end) = channel();
-    pool.in_place_scope(|scope| {
-        scope.spawn(move |_| {
-            let outcome = catch_unwind(AssertUnwindSafe(|| run(task, watch))).ok();
-            // Whoever waits for it waits until it comes.
-            let _ = done.send(outcome);
-        });
-        loop {
-            match end.recv_timeout(BEAT) {
-                Ok(outcome) => break outcome,
-                Err(RecvTimeoutError::Disconnected) => break None,
-                Err(RecvTimeoutError::Timeout) => tell(shared, claim, watch),
+    mut submission: Submission,
+    checkpoint: Option<Vec<u8>>,
+) -> Result<(JobProcess, TempDir)> {
+    let parent = std::env::temp_dir();
+    let folder = tempfile::Builder::new().prefix("perilife-job-").tempdir_in(&parent);
+    let folder = folder.map_err(|error| Error::file(&parent, "cannot create a folder in", error))?;
+    let results = folder.path().join(RESULTS);
+    std::fs::create_dir(&results).map_err(|error| Error::file(&results, "cannot create", error))?;
+    let shown = (claim.fence > 1 && claim.kind == JobKind::Prediction)
+        .then(|| shared.handle.block_on(shared.store.growth(&claim.id, 0, None)).unwrap_or_default());
+    let order = Order {
+        kind: claim.kind,
+        options: std::mem::take(&mut submission.options),
+        files: std::mem::take(&mut submission.files),
+        submission,
+        checkpoint,
+        shown,
+        folder: results,
+        threads: shared.settings.threads,
+        checkpoint_every: shared.settings.checkpoint_every,
+    };
+    let process = JobProcess::start(&shared.settings.program, &order, shared.settings.memory);
+    let process = process.map_err(|error| Error::file(&shared.settings.program, "cannot be started", error))?;
+    Ok((process, folder))
+}
+
+/// Folder of the results in that of a job.
+const RESULTS: &str = "results";
+
+/// What the store has not been told yet.
+#[derive(Default)]
+struct Untold {
+    progress: Option<String>,
+    growth: Option<Growth>,
+    picture: Option<(String, Vec<u8>)>,
+}
+
+/// Tells the store what the process tells, until it ends or is to end; `None` if it ended without a word.
+fn relay(shared: &Shared, claim: &Claim, process: &JobProcess, begun: Instant) -> Option<End> {
+    let (mut untold, mut beaten) = (Untold::default(), Instant::now());
+    let mut memory = 0;
+    let end = loop {
+        match process.look(BEAT.saturating_sub(beaten.elapsed())) {
+            Look::News(News::Progress(progress)) => untold.progress = Some(progress),
+            Look::News(News::Growth(growth)) => untold.add(growth),
+            Look::News(News::Picture(about, picture)) => untold.picture = Some((about, picture)),
+            Look::News(News::Checkpoint(bytes)) => keep(shared, claim, bytes),
+            Look::News(News::Done(summary)) => break Some(End::Done(summary)),
+            Look::News(News::Failed(problem)) => break Some(End::Failed(problem)),
+            Look::News(News::NoRoom(why, bytes)) => break Some(End::NoRoom(room_needed(&why, bytes))),
+            Look::Quiet => {}
+            Look::Over => break None,
+        }
+        if beaten.elapsed() >= BEAT {
+            beaten = Instant::now();
+            memory = process.memory().unwrap_or(0).max(memory);
+            if let Some(end) = beat(shared, claim, &mut untold, begun.elapsed()) {
+                break Some(end);
             }
         }
+    };
+    metrics::histogram!("perilife_job_memory_megabytes", "kind" => claim.kind.name()).record((memory / MEGABYTE) as f64);
+    end
+}
+
+impl Untold {
+    fn add(&mut self, growth: Growth) {
+        match &mut self.growth {
+            // A piece from the beginning starts over.
+            Some(earlier) if growth.from > 0 => {
+                earlier.cycles.extend(growth.cycles);
+                earlier.crack_length_mm.extend(growth.crack_length_mm);
+                earlier.tips.extend(growth.tips);
+            }
+            _ => self.growth = Some(growth),
+        }
+    }
+}
+
+fn room_needed(why: &str, bytes: u64) -> String {
+    let folder = std::env::temp_dir();
+    let free = super::free_bytes(&folder).map_or_else(String::new, |free| format!(", which has {} MB free", free / MEGABYTE));
+    // What was written until the disk was full is a part of it.
+    format!("{why}; needs {} MB or more in {}{free}", bytes.div_ceil(MEGABYTE) + 1, folder.display())
+}
+
+fn keep(shared: &Shared, claim: &Claim, checkpoint: Vec<u8>) {
+    if let Err(error) = shared.handle.block_on(shared.store.keep(claim, checkpoint)) {
+        tracing::warn!(job = claim.id, "a checkpoint cannot be kept: {error}");
+    }
+}
+
+/// A sign of life; why the run is to end, if it is.
+fn beat(shared: &Shared, claim: &Claim, untold: &mut Untold, elapsed: Duration) -> Option<End> {
+    if shared.is_stopping() {
+        return Some(End::Shutdown);
+    }
+    let spent = Duration::from_millis(u64::try_from(claim.spent_ms).unwrap_or(0)) + elapsed;
+    if spent > shared.settings.time {
+        return Some(End::OutOfTime);
+    }
+    let lease_ms = milliseconds(shared.settings.lease);
+    let told = shared.handle.block_on(async {
+        match shared.store.beat(claim, lease_ms, elapsed, untold.progress.as_deref()).await? {
+            Heartbeat::Held => {}
+            Heartbeat::Cancel => return Ok(Some(End::Cancelled)),
+            Heartbeat::Lost => return Ok(Some(End::Lost)),
+        }
+        untold.progress = None;
+        if let Some(growth) = &untold.growth {
+            shared.store.grow(claim, growth).await?;
+            untold.growth = None;
+        }
+        if let Some((about, picture)) = &untold.picture {
+            shared.store.show(claim, about, picture.clone()).await?;
+            untold.picture = None;
+        }
+        Ok::<_, sqlx::Error>(None)
+    });
+    told.unwrap_or_else(|error| {
+        // The run goes on: what it finds can be handed in when the database is back.
+        tracing::warn!(job = claim.id, "no sign of life can be given: {error}");
+        None
     })
 }
 
-fn run(task: Task, watch: &Watch<'_>) -> Result<Results> {
-    let of = |case: &Case, prediction: Result<Prediction>| of_run(case, &prediction?);
-    match task {
-        Task::Prediction(case, None) => of(&case, predict(&case, watch)),
-        Task::Prediction(case, Some(checkpoint)) => of(&case, resume(&case, *checkpoint, watch)),
-        Task::Calibration(calibration) => of_fit(&calibration, watch),
-        Task::Laws(case) => of_laws(&case),
-    }
-}
-
-/// Tells the store how far the run is, and the run what the store says.
-fn tell(shared: &Shared, claim: &Claim, watch: &Watch<'_>) {
-    if shared.is_stopping() {
-        watch.stop(Stop::Shutdown);
-    }
-    let news = watch.news();
-    let lease_ms = milliseconds(shared.settings.lease);
-    let told = shared.handle.block_on(async {
-        match shared.store.beat(claim, lease_ms, news.progress.as_ref()).await {
-            Ok(Heartbeat::Held) => {}
-            Ok(Heartbeat::Cancel) => watch.stop(Stop::Cancelled),
-            Ok(Heartbeat::Lost) => watch.stop(Stop::Lost),
-            Err(error) => {
-                if let Some(growth) = news.growth {
-                    watch.untold(growth);
-                }
-                return Err(error);
-            }
-        }
-        if let Some(growth) = news.growth
-            && let Err(error) = shared.store.grow(claim, &growth).await
-        {
-            watch.untold(growth);
-            return Err(error);
-        }
-        if let Some((about, picture)) = news.look.and_then(|look| look.draw()) {
-            shared.store.show(claim, &about, picture).await?;
-        }
-        Ok(())
-    });
-    if let Err(error) = told {
-        // The run goes on: what it finds can be handed in when the database is back.
-        tracing::warn!(job = claim.id, "no sign of life can be given: {error}");
-    }
-}
-
 /// Hands in what came of a run.
-fn conclude(shared: &Shared, claim: &Claim, outcome: Option<Result<Results>>, stopped: Option<Stop>) {
-    let outcome = match (outcome, stopped) {
-        (Some(Ok((summary, files))), _) => {
-            Outcome { state: State::Succeeded, summary: Some(summary.to_string()), problem: None, files }
+fn conclude(shared: &Shared, claim: &Claim, end: End, folder: &Path) {
+    let settings = &shared.settings;
+    match end {
+        End::Done(summary) => match results::files(folder) {
+            Ok(files) => {
+                let done = Outcome { state: State::Succeeded, summary: Some(summary), problem: None, files };
+                hand_in(shared, claim, &done, "done");
+            }
+            Err(error) => put_back(shared, claim, StatusCode::INSUFFICIENT_STORAGE, &error.to_string(), "disk"),
+        },
+        End::Failed(problem) => hand_in(shared, claim, &ended(State::Failed, Some(problem)), "input"),
+        End::NoRoom(why) => put_back(shared, claim, StatusCode::INSUFFICIENT_STORAGE, &why, "disk"),
+        End::Died(Death::OutOfMemory) => {
+            let detail = format!(
+                "ended: it wants more than the {} MB of memory that a job of this server may take (--job-memory); give a coarser \
+                 spacing or a smaller horizon_ratio, or run it with `perilife` on a machine with more",
+                settings.memory / MEGABYTE
+            );
+            fail(shared, claim, StatusCode::UNPROCESSABLE_ENTITY, "Too large", &detail, "memory");
         }
-        (Some(Err(_)), Some(Stop::Cancelled)) => ended(State::Cancelled, None),
-        (Some(Err(_)), Some(Stop::Lost)) => {
-            return tracing::warn!(job = claim.id, "the job is another worker's: this one was not heard of for too long");
+        End::Died(Death::Panicked(said)) => {
+            tracing::error!(job = claim.id, "the run panicked: {said}");
+            let problem = serde_json::to_string(&Problem::internal()).ok();
+            hand_in(shared, claim, &ended(State::Failed, problem), "panic");
         }
-        (Some(Err(_)), Some(Stop::Shutdown)) => return give_back(shared, claim),
-        (Some(Err(error @ Error::File { .. })), None) => {
-            // The disk of this machine, not the job.
-            tracing::error!(job = claim.id, "results cannot be written: {error}");
-            // Longer each time, so that a disk that stays full costs little.
-            let tries = u32::try_from(claim.fence.clamp(1, 30)).unwrap_or(1);
-            shared.handle.block_on(shared.pause(TRY_EVERY * tries));
-            return give_back(shared, claim);
+        End::Died(Death::Other(why)) => {
+            put_back(shared, claim, StatusCode::INTERNAL_SERVER_ERROR, &format!("the process of the job {why}"), "killed");
         }
-        (Some(Err(error)), None) => ended(State::Failed, Some(&error.into())),
-        (None, _) => {
-            tracing::error!(job = claim.id, "the run panicked");
-            ended(State::Failed, Some(&Problem::internal()))
+        End::OutOfTime => {
+            let detail = format!(
+                "ended: it took longer than the {:.3} h that a job of this server may take (--job-hours)",
+                settings.time.as_secs_f64() / 3600.0
+            );
+            fail(shared, claim, StatusCode::UNPROCESSABLE_ENTITY, "Too slow", &detail, "time");
         }
-    };
-    hand_in(shared, claim, &outcome);
+        End::Cancelled => hand_in(shared, claim, &ended(State::Cancelled, None), "cancelled"),
+        End::Lost => tracing::warn!(job = claim.id, "the job is another worker's: this one was not heard of for too long"),
+        End::Shutdown => match shared.handle.block_on(shared.store.release(claim)) {
+            Ok(()) => tracing::info!(job = claim.id, "job given back"),
+            Err(error) => tracing::warn!(job = claim.id, "the job cannot be given back, others take it later: {error}"),
+        },
+    }
 }
 
-fn ended(state: State, problem: Option<&Problem>) -> Outcome {
-    let problem = problem.and_then(|problem| serde_json::to_string(problem).ok());
+/// Counts an end that was not the job's fault: it waits longer each time, so that a disk that stays full costs little, and is given up
+/// after as many as workers may die over it.
+fn put_back(shared: &Shared, claim: &Claim, status: StatusCode, why: &str, reason: &'static str) {
+    // The disk of this machine, or its memory, not the job.
+    tracing::error!(job = claim.id, failures = claim.failures + 1, "no result: {why}");
+    metrics::counter!("perilife_job_failures_total", "reason" => reason).increment(1);
+    if claim.failures + 1 >= shared.settings.attempts {
+        let detail = format!("given up after {} tries: {why}", claim.failures + 1);
+        return fail(shared, claim, status, "Given up", &detail, reason);
+    }
+    let wait = FIRST_WAIT * (1 << claim.failures.clamp(0, 12));
+    if let Err(error) = shared.handle.block_on(shared.store.put_back(claim, wait)) {
+        tracing::warn!(job = claim.id, "the job cannot be given back, others take it later: {error}");
+    }
+}
+
+fn fail(shared: &Shared, claim: &Claim, status: StatusCode, title: &str, detail: &str, reason: &'static str) {
+    let problem = serde_json::to_string(&Problem::new(status, title, detail)).ok();
+    hand_in(shared, claim, &ended(State::Failed, problem), reason);
+}
+
+fn ended(state: State, problem: Option<String>) -> Outcome {
     Outcome { state, summary: None, problem, files: Vec::new() }
 }
 
 /// Stores the end of a job; waits for a database that is gone, since what was computed should not be lost.
-fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome) {
-    let mut tries = 0;
+fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome, reason: &'static str) {
+    let (mut tries, begun) = (0, Instant::now());
     loop {
         match shared.handle.block_on(shared.store.finish(claim, outcome)) {
             Ok(true) => {
-                metrics::counter!("perilife_jobs_finished_total", "kind" => claim.kind.name(), "state" => outcome.state.name())
+                let (kind, state) = (claim.kind.name(), outcome.state.name());
+                metrics::counter!("perilife_jobs_finished_total", "kind" => kind, "state" => state, "reason" => reason)
                     .increment(1);
-                return tracing::info!(job = claim.id, state = %outcome.state, "job done");
+                return tracing::info!(job = claim.id, state = %outcome.state, reason, "job done");
             }
             Ok(false) => return tracing::warn!(job = claim.id, "the job is another worker's: its result is dropped"),
             Err(error) => {
                 tracing::warn!(job = claim.id, "the result cannot be stored: {error}");
                 tries += 1;
                 if !is_gone(&error) && outcome.state == State::Succeeded {
-                    return hand_in(shared, claim, &ended(State::Failed, Some(&Problem::internal())));
+                    let problem = serde_json::to_string(&Problem::internal()).ok();
+                    return hand_in(shared, claim, &ended(State::Failed, problem), "store");
                 }
                 if !is_gone(&error) || (shared.is_stopping() && tries >= LAST_TRIES) {
                     return;
                 }
-                let beat = shared.store.beat(claim, milliseconds(shared.settings.lease), None);
+                let beat = shared.store.beat(claim, milliseconds(shared.settings.lease), begun.elapsed(), None);
                 let _ = shared.handle.block_on(beat);
                 std::thread::sleep(TRY_EVERY);
             }
         }
-    }
-}
-
-fn give_back(shared: &Shared, claim: &Claim) {
-    match shared.handle.block_on(shared.store.release(claim)) {
-        Ok(()) => tracing::info!(job = claim.id, "job given back"),
-        Err(error) => tracing::warn!(job = claim.id, "the job cannot be given back, others take it later: {error}"),
     }
 }

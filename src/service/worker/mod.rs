@@ -1,13 +1,19 @@
-//! Workers: threads that take jobs from the store one after the other and run them, the same functions as the commands.
+//! Workers: threads that take jobs from the store one after the other and have each run in a process of its own, by the functions of
+//! the commands.
 //!
-//! A solver never runs on the threads that serve requests, and requests never on those of a solver. Each job runs in a thread pool
-//! of its own size, so that one plate does not take the cores of another.
+//! A job that wants more memory than it may have, or takes too long, ends alone; one that is cancelled ends at once, wherever it is.
 
+pub mod child;
+mod frames;
 mod job;
+mod process;
 mod results;
 mod watch;
 
+pub use frames::Order;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -32,8 +38,14 @@ pub struct Settings {
     pub checkpoint_every: Duration,
     /// Claims without a checkpoint between them after which a job is given up.
     pub attempts: i64,
-    /// Time after which a finished job is deleted; `None` keeps it.
+    /// Time after which a finished job is deleted, during which a service ran; `None` keeps it.
     pub keep: Option<Duration>,
+    /// Memory that the process of a job may take, bytes.
+    pub memory: u64,
+    /// Computing time that a job may take, by all workers together.
+    pub time: Duration,
+    /// The program that takes the order of a job by its subcommand `job`.
+    pub program: PathBuf,
 }
 
 impl Default for Settings {
@@ -45,6 +57,9 @@ impl Default for Settings {
             checkpoint_every: Duration::from_secs(3),
             attempts: 10,
             keep: None,
+            memory: 4096 << 20,
+            time: Duration::from_secs(24 * 3600),
+            program: std::env::current_exe().unwrap_or_else(|_| PathBuf::from("perilife")),
         }
     }
 }
@@ -53,8 +68,8 @@ impl Default for Settings {
 const LOOK_EVERY: Duration = Duration::from_millis(250);
 /// Time before another try of a database that does not answer.
 const TRY_EVERY: Duration = Duration::from_secs(1);
-/// Time between two looks for finished jobs that need not be kept any longer.
-const EXPIRE_EVERY: Duration = Duration::from_secs(60);
+/// Time between two tidyings of the store.
+const TIDY_EVERY: Duration = Duration::from_secs(60);
 
 /// What the threads of a process share.
 #[derive(Debug)]
@@ -102,13 +117,11 @@ impl Workers {
             let shared = Arc::clone(&shared);
             threads.push(std::thread::Builder::new().name(format!("worker-{number}")).spawn(move || take_jobs(&shared))?);
         }
-        if let Some(keep) = shared.settings.keep {
-            shared.handle.spawn(expire(Arc::clone(&shared), keep));
-        }
+        shared.handle.spawn(tidy(Arc::clone(&shared)));
         Ok(Workers { shared, threads })
     }
 
-    /// Asks for the end and waits for it: jobs stop within a cycle block, and go on from their checkpoints elsewhere or later.
+    /// Asks for the end and waits for it: jobs end at once, and go on from their checkpoints elsewhere or later.
     pub async fn stop(self) {
         self.shared.stopping.store(true, Ordering::Relaxed);
         self.shared.wake.notify_waiters();
@@ -125,18 +138,13 @@ fn host() -> String {
 
 /// One worker.
 fn take_jobs(shared: &Arc<Shared>) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(shared.settings.threads).build();
-    let pool = match pool {
-        Ok(pool) => pool,
-        Err(error) => return tracing::error!("a worker has no threads: {error}"),
-    };
     let lease_ms = milliseconds(shared.settings.lease);
     while !shared.is_stopping() {
         match shared.handle.block_on(shared.store.claim(&shared.name, lease_ms)) {
             Ok(Some(claim)) => {
                 // There may be more where this came from.
                 shared.wake.notify_one();
-                if catch_unwind(AssertUnwindSafe(|| work(shared, &pool, &claim))).is_err() {
+                if catch_unwind(AssertUnwindSafe(|| work(shared, &claim))).is_err() {
                     // Its time will run out, and it will be tried again, so many times; this worker goes on.
                     tracing::error!(job = claim.id, "a worker panicked over a job");
                 }
@@ -150,16 +158,31 @@ fn take_jobs(shared: &Arc<Shared>) {
     }
 }
 
-/// Deletes finished jobs when their time is over.
-async fn expire(shared: Arc<Shared>, keep: Duration) {
+/// Deletes finished jobs when their time is over, and gives their space back.
+async fn tidy(shared: Arc<Shared>) {
+    let keep = shared.settings.keep;
     while !shared.is_stopping() {
-        match shared.store.expire(milliseconds(keep)).await {
-            Ok(0) => {}
-            Ok(count) => tracing::info!(count, "finished jobs deleted: their time is over"),
-            Err(error) => tracing::warn!("finished jobs cannot be deleted: {error}"),
+        let tidied = async {
+            if let Some(keep) = keep {
+                let count = shared.store.expire(milliseconds(keep)).await?;
+                if count > 0 {
+                    tracing::info!(count, "finished jobs deleted: their time is over");
+                }
+            }
+            shared.store.tidy().await
+        };
+        if let Err(error) = tidied.await {
+            tracing::warn!("the store cannot be tidied: {error}");
         }
-        tokio::time::sleep(keep.clamp(TRY_EVERY, EXPIRE_EVERY)).await;
+        tokio::time::sleep(keep.unwrap_or(TIDY_EVERY).clamp(TRY_EVERY, TIDY_EVERY)).await;
     }
+}
+
+/// Bytes that are free where a folder is; `None` where it is not there.
+#[must_use]
+pub fn free_bytes(folder: &Path) -> Option<u64> {
+    let about = rustix::fs::statvfs(folder).ok()?;
+    Some(about.f_bavail.saturating_mul(about.f_frsize))
 }
 
 fn milliseconds(time: Duration) -> i64 {

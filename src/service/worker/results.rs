@@ -1,7 +1,8 @@
-//! The files of a job, and the figures that its listing shows.
+//! The files of a job, written into the folder of its process, and the figures that its listing shows.
 
-use std::io::{Cursor, Write as _};
-use std::path::Path;
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde_json::{Value, json};
@@ -15,15 +16,11 @@ use crate::calibration::laws::results::report;
 use crate::calibration::results::{FitReport, record};
 use crate::case::Case;
 use crate::error::{Error, Result};
+use crate::fracture::{Scene, SceneEnd};
 use crate::predict::Prediction;
-use crate::report::provenance::INPUTS;
-use crate::report::run::PARAVIEW;
-use crate::report::{fit, law_fit, run};
-use crate::service::store::File;
+use crate::report::{fit, fracture, law_fit, run};
+use crate::service::store::ResultFile;
 use crate::units::MM;
-
-/// Summary and files of a result.
-pub type Results = (Value, Vec<File>);
 
 /// Keys of `result.json` that a summary has.
 const FIGURES: [&str; 14] = [
@@ -47,10 +44,9 @@ const FIGURES: [&str; 14] = [
 ///
 /// # Errors
 /// As [`run::judge`] and [`run::write`].
-pub fn of_run(case: &Case, prediction: &Prediction) -> Result<Results> {
-    let folder = temporary()?;
+pub fn of_run(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Value> {
     let judged = run::judge(case, prediction)?;
-    let result = run::write(folder.path(), case, prediction)?;
+    let result = run::write(folder, case, prediction)?;
     let mut summary: serde_json::Map<String, Value> =
         FIGURES.iter().filter_map(|key| Some(((*key).to_owned(), result.get(*key)?.clone()))).collect();
     let mut warnings: Vec<&str> = result["warnings"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
@@ -60,19 +56,19 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Result<Results> {
         warnings.insert(0, refusal);
     }
     summary.insert("warnings".to_owned(), json!(warnings));
-    Ok((Value::Object(summary), collected(folder.path())?))
+    packed(folder)?;
+    Ok(Value::Object(summary))
 }
 
 /// Fits a calibration and writes its files.
 ///
 /// # Errors
 /// As [`calibrate`] and [`fit::write`].
-pub fn of_fit(calibration: &CalibrationCase, watch: &Watch<'_>) -> Result<Results> {
-    let folder = temporary()?;
+pub fn of_fit(folder: &Path, calibration: &CalibrationCase, watch: &Watch<'_>) -> Result<Value> {
     let started = Instant::now();
     let fitted = calibrate(calibration, watch)?;
     let report = FitReport::new(calibration, &fitted, started.elapsed().as_secs_f64());
-    fit::write(folder.path(), calibration, &fitted, &report, &record(calibration, &fitted))?;
+    fit::write(folder, calibration, &fitted, &report, &record(calibration, &fitted))?;
     let mut summary = json!(report);
     let warnings: Vec<&String> = calibration.warnings.iter().chain(&fitted.warnings).collect();
     let case = &calibration.case;
@@ -84,62 +80,100 @@ pub fn of_fit(calibration: &CalibrationCase, watch: &Watch<'_>) -> Result<Result
         figures.insert("stress_ratio".to_owned(), json!(case.loading.ratio));
         figures.insert("thickness_mm".to_owned(), json!(case.specimen.thickness / MM));
     }
-    Ok((summary, collected(folder.path())?))
+    packed(folder)?;
+    Ok(summary)
 }
 
 /// Fits laws over K and writes their files.
 ///
 /// # Errors
 /// As [`LawCase::fit`] and [`law_fit::write`].
-pub fn of_laws(case: &LawCase) -> Result<Results> {
-    let folder = temporary()?;
+pub fn of_laws(folder: &Path, case: &LawCase) -> Result<Value> {
     let started = Instant::now();
     let fits = case.fit()?;
     let report = report(case, &fits, started.elapsed().as_secs_f64());
-    law_fit::write(folder.path(), case, &fits, &report)?;
-    Ok((report, collected(folder.path())?))
+    law_fit::write(folder, case, &fits, &report)?;
+    packed(folder)?;
+    Ok(report)
 }
 
-fn temporary() -> Result<tempfile::TempDir> {
-    tempfile::tempdir().map_err(|error| Error::file(&std::env::temp_dir(), "cannot create a folder in", error))
-}
-
-/// All files of a folder; those of ParaView and of inputs become an archive each.
-fn collected(folder: &Path) -> Result<Vec<File>> {
-    let mut files = Vec::new();
-    for path in entries(folder)? {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if path.is_dir() {
-            debug_assert!([PARAVIEW, INPUTS].contains(&&*name));
-            files.push(File { name: format!("{name}.zip"), content: archive(&path)? });
-        } else {
-            files.push(File { name, content: read(&path)? });
-        }
+/// Runs a scene and writes its files.
+///
+/// # Errors
+/// As [`crate::fracture::run`] and [`fracture::write`]; a scene without convergence or that blew up.
+pub fn of_scene(folder: &Path, scene: &Scene, watch: &Watch<'_>) -> Result<Value> {
+    let ran = crate::fracture::run(scene, watch)?;
+    if matches!(ran.end, SceneEnd::NoConvergence | SceneEnd::Unstable) {
+        return Err(Error::Mechanics(format!("{}: {}: {}", scene.name, ran.end, ran.end.meaning())));
     }
-    Ok(files)
+    let result = fracture::result(scene, &ran);
+    fracture::write(folder, scene, &ran, &result)?;
+    packed(folder)?;
+    Ok(result)
 }
 
-fn archive(folder: &Path) -> Result<Vec<u8>> {
-    let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+/// Makes an archive of every folder within a folder of results.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be read or written.
+pub fn packed(folder: &Path) -> Result<()> {
+    for path in entries(folder)?.into_iter().filter(|path| path.is_dir()) {
+        let archive = path.with_file_name(format!("{}.zip", name_of(&path)));
+        pack(&path, &archive)?;
+        std::fs::remove_dir_all(&path).map_err(|error| Error::file(&path, "cannot remove", error))?;
+    }
+    Ok(())
+}
+
+/// The files of a folder of results but for hidden ones, which are marks of the commands.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be read.
+pub fn files(folder: &Path) -> Result<Vec<ResultFile>> {
+    let files = entries(folder)?.into_iter().map(|path| ResultFile { name: name_of(&path), path });
+    Ok(files.filter(|file| !file.name.starts_with('.')).collect())
+}
+
+/// Bytes of all files below a folder.
+#[must_use]
+pub fn bytes(folder: &Path) -> u64 {
+    let within = |path: PathBuf| match std::fs::symlink_metadata(&path) {
+        Ok(about) if about.is_dir() => bytes(&path),
+        about => about.map_or(0, |about| about.len()),
+    };
+    entries(folder).unwrap_or_default().into_iter().map(within).sum()
+}
+
+fn pack(folder: &Path, archive: &Path) -> Result<()> {
+    let failed = |error: &dyn std::fmt::Display| Error::file(folder, "cannot pack", std::io::Error::other(error.to_string()));
+    let file = File::create(archive).map_err(|error| Error::file(archive, "cannot create", error))?;
+    let mut packed = zip::ZipWriter::new(BufWriter::new(file));
     // The fastest: a plate of numbers hardly packs better at ten times the cost.
     let packing = SimpleFileOptions::default().compression_level(Some(1));
-    let failed = |error: &dyn std::fmt::Display| Error::file(folder, "cannot pack", std::io::Error::other(error.to_string()));
-    for path in entries(folder)? {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        archive.start_file(name, packing).map_err(|error| failed(&error))?;
-        archive.write_all(&read(&path)?).map_err(|error| failed(&error))?;
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(next) = folders.pop() {
+        for path in entries(&next)? {
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().into_owned();
+            packed.start_file(name, packing).map_err(|error| failed(&error))?;
+            let mut content = File::open(&path).map_err(|error| Error::file(&path, "cannot read", error))?;
+            std::io::copy(&mut content, &mut packed).map_err(|error| failed(&error))?;
+        }
     }
-    Ok(archive.finish().map_err(|error| failed(&error))?.into_inner())
+    packed.finish().map_err(|error| failed(&error))?.flush().map_err(|error| failed(&error))
 }
 
-fn entries(folder: &Path) -> Result<Vec<std::path::PathBuf>> {
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let cannot = |error| Error::file(folder, "cannot read the folder", error);
     let mut paths =
         std::fs::read_dir(folder).map_err(cannot)?.map(|entry| Ok(entry.map_err(cannot)?.path())).collect::<Result<Vec<_>>>()?;
     paths.sort();
     Ok(paths)
-}
-
-fn read(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|error| Error::file(path, "cannot read", error))
 }

@@ -1,10 +1,9 @@
-//! A run under a worker's eyes: the run tells how far it is and where it could be taken up, the worker's other half tells the
-//! store, and brings back whether the run may go on.
+//! A run as its process sees it: the run tells how far it is and where it could be taken up, the process tells the worker.
 
-use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use crate::fracture::{SceneObserver, SceneProgress};
 use crate::predict::checkpoint::Checkpoint;
 use crate::predict::{Observer, PointGrid, Progress, Snapshot, TipRecord};
 use crate::report::damage::{DamagePicture, PointField, cycles_and_length};
@@ -16,18 +15,6 @@ use crate::watch::{Stage, Watch as Work};
 
 /// Entries of a growing curve from its start to its end: as many as a picture of it can show.
 const ENTRIES: f64 = 800.0;
-
-/// Why a run is to end before its time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Stop {
-    /// Somebody asked for it.
-    Cancelled = 1,
-    /// The job is not this worker's any more.
-    Lost = 2,
-    /// The process stops.
-    Shutdown = 3,
-}
 
 /// The plate as it was last seen, to be drawn by who has time for it.
 #[derive(Debug)]
@@ -71,9 +58,7 @@ pub struct Watch<'a> {
     keep: Option<Keep<'a>>,
     keep_every: Duration,
     started: Instant,
-    /// 0 or a [`Stop`].
-    stop: AtomicU8,
-    /// What the run does before it has rows to show, and where it looks whether it may go on.
+    /// What the run does before it has rows to show.
     work: Arc<Work>,
     /// Whether nobody has shown any of its curve yet.
     is_fresh: bool,
@@ -115,29 +100,21 @@ impl<'a> Watch<'a> {
             kept: Instant::now(),
             keep_cost: Duration::ZERO,
         };
-        let (stop, work) = (AtomicU8::new(0), Arc::default());
         let is_fresh = growth.cycles.is_empty();
-        Watch { cracks, keep, keep_every, started: Instant::now(), stop, work, is_fresh, told: Mutex::new(told) }
+        Watch { cracks, keep, keep_every, started: Instant::now(), work: Arc::default(), is_fresh, told: Mutex::new(told) }
     }
 
-    /// Asks the run to end; the first reason counts.
-    pub fn stop(&self, why: Stop) {
-        let _ = self.stop.compare_exchange(0, why as u8, Ordering::Relaxed, Ordering::Relaxed);
-        self.work.cancel();
-    }
-
-    /// Why it was asked to end.
+    /// Time since it began.
     #[must_use]
-    pub fn stopped(&self) -> Option<Stop> {
-        let why = self.stop.load(Ordering::Relaxed);
-        [Stop::Cancelled, Stop::Lost, Stop::Shutdown].into_iter().find(|stop| *stop as u8 == why)
+    pub fn elapsed_s(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
     }
 
-    /// What was told since the last time.
+    /// What was told since the last time; a look stays where no picture is wanted.
     #[must_use]
-    pub fn news(&self) -> Update {
+    pub fn news(&self, with_look: bool) -> Update {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        let elapsed_s = self.started.elapsed().as_secs_f64();
+        let elapsed_s = self.elapsed_s();
         let first_share = told.first_share;
         let progress = told.progress.map(|Progress { cycles, crack_length, share }| {
             let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
@@ -156,17 +133,7 @@ impl<'a> Watch<'a> {
             let next = told.entries.from + told.entries.cycles.len();
             std::mem::replace(&mut told.entries, Growth { from: next, ..Growth::default() })
         });
-        Update { progress, growth, look: told.look.take() }
-    }
-
-    /// Puts back what could not be told.
-    pub fn untold(&self, mut growth: Growth) {
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        let later = std::mem::take(&mut told.entries);
-        growth.cycles.extend(later.cycles);
-        growth.crack_length_mm.extend(later.crack_length_mm);
-        growth.tips.extend(later.tips);
-        told.entries = growth;
+        Update { progress, growth, look: told.look.take_if(|_| with_look) }
     }
 }
 
@@ -190,7 +157,7 @@ impl Observer for Watch<'_> {
             told.paths.resize(tips.len(), Vec::new());
             told.paths.iter_mut().zip(tips).for_each(|(path, tip)| path.push(tip));
         }
-        self.stopped().is_none()
+        true
     }
 
     fn grown(&self, tips: &[TipRecord]) {
@@ -220,5 +187,15 @@ impl Observer for Watch<'_> {
         keep(checkpoint().to_bytes());
         told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         (told.kept, told.keep_cost) = (Instant::now(), begun.elapsed());
+    }
+}
+
+impl SceneObserver for Watch<'_> {
+    fn watch(&self) -> Option<Arc<Work>> {
+        Some(self.work.clone())
+    }
+
+    fn step_done(&self, progress: &SceneProgress) -> bool {
+        Observer::block_done(self, &Progress { cycles: 0.0, crack_length: 0.0, share: progress.share })
     }
 }

@@ -14,7 +14,7 @@ use crate::postgres::Postgres;
 use crate::server::{PATIENCE, Server};
 
 /// The a-N curve of an undisturbed run by the command line.
-fn undisturbed(folder: &Path, text: &str) -> Vec<u8> {
+pub fn undisturbed(folder: &Path, text: &str) -> Vec<u8> {
     fs::write(folder.join("case.toml"), text).unwrap();
     assert!(perilife(folder, &["predict", "case.toml", "--out", "run"]).status.success());
     fs::read(folder.join("run/a_n.csv")).unwrap()
@@ -101,13 +101,23 @@ fn twenty_kills_lose_nothing() {
 }
 
 /// A small disk of its own, which can be filled.
-struct SmallDisk(tempfile::TempDir);
+pub struct SmallDisk(tempfile::TempDir);
 
 impl SmallDisk {
-    fn mounted() -> Option<SmallDisk> {
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub fn mounted() -> Option<SmallDisk> {
+        SmallDisk::mounted_with("40m")
+    }
+
+    pub fn mounted_with(size: &str) -> Option<SmallDisk> {
         let folder = tempdir().unwrap();
-        let mount =
-            std::process::Command::new("mount").args(["-t", "tmpfs", "-o", "size=40m", "tmpfs"]).arg(folder.path()).output();
+        let mount = std::process::Command::new("mount")
+            .args(["-t", "tmpfs", "-o", &format!("size={size}"), "tmpfs"])
+            .arg(folder.path())
+            .output();
         if mount.is_ok_and(|mount| mount.status.success()) {
             return Some(SmallDisk(folder));
         }

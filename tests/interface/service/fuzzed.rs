@@ -10,7 +10,7 @@ use axum::extract::ConnectInfo;
 use axum::http::Request;
 use perilife::predict::memory::peak_mb;
 use perilife::service::api::{App, Limits, Security, router};
-use perilife::service::store::{Store, url_of_file};
+use perilife::service::store::{Store, Upgrade, url_of_file};
 use serde_json::json;
 use tempfile::tempdir;
 use tower::ServiceExt;
@@ -192,7 +192,7 @@ fn flooded(count: u64) {
     let folder = tempdir().unwrap();
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().unwrap();
     let statuses = runtime.block_on(async {
-        let store = Store::open(&url_of_file(&folder.path().join("fuzz.sqlite")), 4).await.unwrap();
+        let store = Store::open(&url_of_file(&folder.path().join("fuzz.sqlite")), 4, Upgrade::Allowed).await.unwrap();
         let limits = Limits {
             body_bytes: 1 << 20,
             points: 2000.0,
@@ -201,7 +201,7 @@ fn flooded(count: u64) {
             writes_per_second: PLENTY,
             ..Limits::default()
         };
-        let service = router(App::new(store, limits, Security { needs_token: false }, 0, Arc::default()));
+        let service = router(App::new(store, limits, Security::default(), 0, Arc::default()));
         let halves = [0, 1].map(|half| tokio::spawn(flood(service.clone(), count / 2, half * (count / 2))));
         let mut all = std::collections::BTreeMap::new();
         for half in halves {

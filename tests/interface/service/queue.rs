@@ -8,9 +8,9 @@ use super::{QUICK, of};
 use crate::cli::{assert_refused, perilife, texts};
 use crate::server::{Answer, Server};
 
-/// A token of this name in the store at `place`.
-fn token(place: &[&str], name: &str) -> String {
-    let output = perilife(std::path::Path::new("."), &[&["token"], place, &["add", name, "--role", "run"]].concat());
+/// A token of this name and role in the store at `place`.
+pub fn token(place: &[&str], name: &str, role: &str) -> String {
+    let output = perilife(std::path::Path::new("."), &[&["token", "add", name, "--role", role], place].concat());
     assert!(output.status.success(), "{}", texts(&output).1);
     texts(&output).0.trim().to_owned()
 }
@@ -19,7 +19,7 @@ fn token(place: &[&str], name: &str) -> String {
 #[test]
 fn owners_take_turns() {
     with_each_store("turns", |place| {
-        let tokens = ["ann", "bob", "cy"].map(|name| (name, token(place, name)));
+        let tokens = ["ann", "bob", "cy"].map(|name| (name, token(place, name, "run")));
         let mut service = Server::start(place, &["--jobs", "0", "--require-token"]);
         let mut jobs: Vec<(String, String)> = Vec::new();
         for (owner, number) in [(0, 5), (1, 2), (2, 1)] {
@@ -150,18 +150,68 @@ fn a_store_of_another_version_is_refused() {
     with_each_store("other", |place| {
         let dir = tempdir().unwrap();
         Server::start(place, &["--jobs", "0"]).stop();
-        for version in [1, 3] {
+        for (version, remedy) in
+            [(1, "or a new database"), (2, "start `perilife serve` of this program once"), (4, "or a new database")]
+        {
             on_store(place, &format!("UPDATE perilife_schema SET version = {version}"));
             let refused = perilife(dir.path(), &[&["token"], place, &["list"]].concat());
-            assert_refused(&refused, 4, &[&format!("are of version {version}"), "use a new database"]);
+            assert_refused(&refused, 4, &[&format!("are of version {version}"), remedy]);
         }
-        on_store(place, "UPDATE perilife_schema SET version = 2");
+        on_store(place, "UPDATE perilife_schema SET version = 3");
         assert!(perilife(dir.path(), &[&["token"], place, &["list"]].concat()).status.success());
     });
 }
 
+/// What version 3 of the tables has beyond version 2.
+const BEYOND_2: [&str; 8] = [
+    "DROP INDEX jobs_finished_count",
+    "ALTER TABLE jobs DROP COLUMN failures",
+    "ALTER TABLE jobs DROP COLUMN not_before_ms",
+    "ALTER TABLE jobs DROP COLUMN lease_ms",
+    "ALTER TABLE jobs DROP COLUMN spent_ms",
+    "ALTER TABLE jobs DROP COLUMN finished_count_ms",
+    "ALTER TABLE submissions DROP COLUMN options",
+    "DROP TABLE clock",
+];
+
+/// The service leads tables of an earlier version on, with what is in them.
+#[test]
+fn an_earlier_store_is_led_on() {
+    with_each_store("earlier", |place| {
+        let mut service = Server::start(place, &["--jobs", "1"]);
+        let job = service.submit("predictions", &of("quick", QUICK));
+        let before = service.succeeded(&job);
+        service.stop();
+        for statement in BEYOND_2 {
+            on_store(place, statement);
+        }
+        on_store(place, "CREATE INDEX jobs_finished ON jobs (finished_ms)");
+        on_store(place, "UPDATE perilife_schema SET version = 2");
+        let service = Server::start(place, &["--jobs", "1"]);
+        assert_eq!(service.get(&job).json(), before);
+        service.succeeded(&service.submit("predictions", &of("quick", QUICK)));
+    });
+}
+
+/// A worker whose program is older than the tables takes no jobs, and goes on when they are its own again.
+#[test]
+fn a_worker_older_than_the_tables_takes_no_jobs() {
+    with_each_store("older", |place| {
+        let service = Server::start(place, &["--jobs", "1"]);
+        on_store(place, "UPDATE perilife_schema SET version = 4");
+        let job = service.submit("predictions", &of("quick", QUICK));
+        std::thread::sleep(std::time::Duration::from_secs(2));
+        assert_eq!(service.get(&job).json()["state"], "queued");
+        service.get("/readyz").expect(503);
+        service.get("/healthz").expect(200);
+        on_store(place, "UPDATE perilife_schema SET version = 3");
+        service.succeeded(&job);
+        service.get("/readyz").expect(200);
+    });
+}
+
 /// Runs a statement on the database of a store.
-fn on_store(place: &[&str], statement: &str) {
+pub fn on_store(place: &[&str], statement: &str) {
     use sqlx::Connection;
     let url = if place[0] == "--database" { place[1].to_owned() } else { format!("sqlite://{}/perilife.sqlite", place[1]) };
     sqlx::any::install_default_drivers();

@@ -1,0 +1,48 @@
+//! Who has changed what, and who was refused: a line of JSON each, appended to a file.
+
+use std::fs::{File, OpenOptions};
+use std::io::Write as _;
+use std::net::IpAddr;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::time::SystemTime;
+
+use axum::http::{Method, StatusCode};
+use serde_json::json;
+
+use super::security::Caller;
+use crate::error::{Error, Result};
+
+/// The file that it is written to.
+#[derive(Debug)]
+pub struct Audit(Mutex<File>);
+
+impl Audit {
+    /// Appends to a file, which nobody else may read if it is made now.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it cannot be opened.
+    pub fn open(path: &Path) -> Result<Audit> {
+        let file = OpenOptions::new().create(true).append(true).mode(0o600).open(path);
+        Ok(Audit(Mutex::new(file.map_err(|error| Error::file(path, "cannot append to", error))?)))
+    }
+
+    /// Writes down a request that changed something, or that was refused for who made it.
+    pub fn write(&self, caller: Option<&Caller>, address: IpAddr, method: &Method, path: &str, status: StatusCode) {
+        let is_read = matches!(*method, Method::GET | Method::HEAD);
+        if is_read && ![StatusCode::UNAUTHORIZED, StatusCode::FORBIDDEN].contains(&status) {
+            return;
+        }
+        let line = json!({
+            "time": humantime::format_rfc3339_millis(SystemTime::now()).to_string(),
+            "caller": caller.map(|caller| caller.name.as_str()), "role": caller.map(|caller| caller.role.name()),
+            "address": address.to_string(), "method": method.as_str(), "path": path, "status": status.as_u16(),
+        });
+        let mut file = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        // In one call, so that lines of two processes do not mix.
+        if let Err(error) = file.write_all(format!("{line}\n").as_bytes()) {
+            tracing::error!("the audit log cannot be written: {error}");
+        }
+    }
+}
