@@ -7,18 +7,23 @@ import { openComparison } from "./compare.js";
 import { byId, element, show, showPage } from "./dom.js";
 import { count } from "./format.js";
 import { problemBox } from "./notices.js";
+import { openOther } from "./other_page.js";
 import { createPredictView } from "./predict.js";
 import { openPrediction } from "./prediction_page.js";
 import { createRunsView } from "./runs.js";
 import { forgetToken, readToken } from "./token.js";
 
 const views = { measure: createCalibrateView(), predict: createPredictView(), runs: createRunsView() };
-const PAGES = { calibrations: openCalibration, predictions: openPrediction };
+const OTHERS = { scenes: "Fracture scene", sweeps: "Sweep", sif: "Stress intensity factors", charts: "Chart" };
+const PAGES = {
+  calibrations: openCalibration, predictions: openPrediction,
+  ...Object.fromEntries(Object.keys(OTHERS).map((name) => [name, openOther(name)])),
+};
 const TITLES = {
   measure: "Measure and calibrate", predict: "Predict", runs: "Runs",
-  calibrations: "Calibration", predictions: "Prediction", compare: "Comparison",
+  calibrations: "Calibration", predictions: "Prediction", compare: "Comparison", ...OTHERS,
 };
-const NAVIGATION = { measure: "measure", predict: "predict", runs: "runs", calibrations: "runs", predictions: "runs", compare: "runs" };
+const NAVIGATION = { measure: "measure", predict: "predict" }; // all others belong to the runs
 
 let leaving = new AbortController();
 let lastPlace = null;
@@ -40,7 +45,7 @@ async function route() {
   byId("start-problem").hidden = place !== "measure" && place !== "predict"; // the others need no materials
   for (const section of document.querySelectorAll("section.view")) section.hidden = section.id !== `view-${place}`;
   for (const link of document.querySelectorAll("nav a")) {
-    if (link.dataset.view === NAVIGATION[name]) link.setAttribute("aria-current", "page");
+    if (link.dataset.view === (NAVIGATION[name] ?? "runs")) link.setAttribute("aria-current", "page");
     else link.removeAttribute("aria-current");
   }
   document.title = `${TITLES[name]} – perilife`;

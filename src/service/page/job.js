@@ -8,7 +8,7 @@ import { problemBox } from "./notices.js";
 
 export const FINAL = ["succeeded", "failed", "cancelled"];
 
-export const collectionOf = (job) => (job.kind === "calibration" ? "calibrations" : "predictions");
+export const collectionOf = ({ kind }) => (kind === "sif" ? kind : `${kind}s`);
 export const hrefOf = (job) => `#/${collectionOf(job)}/${encodeURIComponent(job.id)}`;
 export const pathOf = (job) => `/v1/${collectionOf(job)}/${encodeURIComponent(job.id)}`;
 export const nameOf = (job) => job.name || job.id;

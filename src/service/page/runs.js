@@ -11,6 +11,8 @@ const REFRESH_MS = 3000;
 export const COMPARE_MAX = 8;
 
 /** Builds the view; gives {open(query), close()}. */
+const BEGINNINGS = { calibrations: ["#/measure", "Calibrate from measured curves"], predictions: ["#/predict", "Predict a plate"] };
+
 export function createRunsView() {
   const [kind, state, place, pager, compareBar] = ["runs-kind", "runs-state", "runs-list", "runs-pager", "compare-bar"].map(byId);
   const ticked = new Map(); // id to name, over all pages of the list
@@ -63,19 +65,18 @@ export function createRunsView() {
   }
 
   function empty() {
-    const what = kind.value === "calibrations" ? "calibrations" : "predictions";
+    const what = kind.selectedOptions[0].text.toLowerCase();
     if (state.value || pages.length > 1) return element("p", { class: "empty" }, `No ${state.value} ${what} here.`);
+    const [href, title] = BEGINNINGS[kind.value] ?? ["/docs", "Programs submit them: the interface"];
     return element("div", { class: "empty" }, element("p", null, `No ${what} yet.`),
-      element("p", null, kind.value === "calibrations"
-        ? element("a", { href: "#/measure", class: "button" }, "Calibrate from measured curves")
-        : element("a", { href: "#/predict", class: "button" }, "Predict a plate")));
+      element("p", null, element("a", { href, class: "button" }, title)));
   }
 
   function tableOf(items) {
     const predictions = kind.value === "predictions";
     const figures = predictions
       ? [["Life, cycles", "number"], ["Final length, mm", "number"], ["Stop reason", ""]]
-      : [["Rate at pivot, mm/cycle", "number"], ["m", "number"], ["rms life error", "number"]];
+      : kind.value === "calibrations" ? [["Rate at pivot, mm/cycle", "number"], ["m", "number"], ["rms life error", "number"]] : [];
     const heads = [predictions && ["Compare", ""], ["Name", ""], ["State", ""], ...figures, ["Submitted", ""], ["Took", "number"], ["Actions", ""]]
       .filter(Boolean);
     return element("div", { class: "table-scroll", tabindex: "0", role: "region", "aria-label": `List of ${kind.value}` },
@@ -93,8 +94,10 @@ export function createRunsView() {
     const figures = predictions
       ? [number(known(() => lifeOf(s))), number(known(() => fixed(s.crack_length_final_mm, 2))),
         element("td", { title: s?.stop_meaning }, known(() => words(s.stop_reason)))]
-      : [number(known(() => scientific(s.rate_at_pivot_mm_per_cycle, 4))), number(known(() => fixed(s.paris_m, 3))),
-        number(known(() => percent(s.rms_life_error, 2)))];
+      : job.kind === "calibration"
+        ? [number(known(() => scientific(s.rate_at_pivot_mm_per_cycle, 4))), number(known(() => fixed(s.paris_m, 3))),
+          number(known(() => percent(s.rms_life_error, 2)))]
+        : [];
     return element("tr", { "data-job": job.id, "data-job-state": job.state },
       predictions && element("td", { class: "tick" }, tick(job)),
       element("th", { scope: "row" }, element("a", { href: hrefOf(job), "data-focus": `open-${job.id}` }, nameOf(job))),
@@ -183,7 +186,8 @@ export function createRunsView() {
 
   return {
     open(query) {
-      kind.value = query.get("kind") === "calibrations" ? "calibrations" : "predictions";
+      const wanted = query.get("kind");
+      kind.value = [...kind.options].some((one) => one.value === wanted) ? wanted : "predictions";
       restart();
     },
     close() {

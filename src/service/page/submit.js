@@ -1,6 +1,7 @@
 // Starts a run: one key for one press of the button, repeated when the answer got lost, so that no press starts two runs.
 
 import { postInput, pressKey } from "./api.js";
+import { hrefOf } from "./job.js";
 
 const ATTEMPTS = 3;
 
@@ -20,7 +21,7 @@ export async function startRun(path, body, { button, status, refuse }) {
       try {
         const job = await postInput(path, body, { key });
         status.textContent = "";
-        location.hash = `#/${job.kind === "calibration" ? "calibrations" : "predictions"}/${encodeURIComponent(job.id)}`;
+        location.hash = hrefOf(job);
         return;
       } catch (error) {
         if (!error.passes || attempt === ATTEMPTS) throw error;
