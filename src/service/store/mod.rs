@@ -19,7 +19,7 @@ use sqlx::{AnyConnection, AnyPool, Connection};
 
 pub use files::{FileEntry, Origin, PART, media_type};
 pub use jobs::{Listing, NewJob, Room, Submitted};
-pub use queue::{Claim, Growth, Heartbeat, Outcome, ResultFile};
+pub use queue::{Claim, Growth, Heartbeat, Outcome, ResultFile, Told};
 pub use tokens::{Role, Token, hash, hex};
 
 /// What a statement can fail with; see [`is_gone`].

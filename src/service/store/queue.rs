@@ -79,6 +79,17 @@ pub struct Growth {
     pub tips: Vec<Vec<[f64; 2]>>,
 }
 
+/// What a run has told since its last sign of life.
+#[derive(Debug, Clone, Default)]
+pub struct Told {
+    /// How far it is, JSON.
+    pub progress: Option<String>,
+    /// More of its curve.
+    pub growth: Option<Growth>,
+    /// What is said of a picture, JSON, and its PNG.
+    pub picture: Option<(String, Vec<u8>)>,
+}
+
 impl Store {
     /// A job whose worker has given no sign of life for as long as it was granted, or else the next that waits.
     ///
@@ -142,26 +153,45 @@ impl Store {
         Ok((Some(submission), checkpoint.fetch_optional(&self.pool).await?))
     }
 
-    /// A sign of life: the claim holds on for `lease_ms`, has taken so long so far, and is as far as `progress` says, JSON.
+    /// A sign of life: the claim holds on for `lease_ms` and has taken so long so far. What the run told goes with it, in one transaction,
+    /// since each takes the disk of the database to its end.
     ///
     /// # Errors
-    /// The database does not answer; the claim may still hold.
-    pub async fn beat(&self, claim: &Claim, lease_ms: i64, elapsed: Duration, progress: Option<&str>) -> Result<Heartbeat> {
+    /// The database does not answer, and has stored nothing; the claim may still hold.
+    pub async fn beat(&self, claim: &Claim, lease_ms: i64, elapsed: Duration, told: &Told) -> Result<Heartbeat> {
         let mut transaction = self.begin().await?;
+        let is_more = told.growth.is_some() || told.picture.is_some();
         let asked: Option<i64> = sqlx::query_scalar(self.sql(
             "UPDATE jobs SET lease_until_ms = {now} + $3, lease_ms = $3, spent_ms = $5,
-                revision = revision + CASE WHEN $4 IS NULL OR $4 = progress THEN 0 ELSE 1 END, progress = COALESCE($4, progress)
+                revision = revision + CASE WHEN $6 = 0 AND ($4 IS NULL OR $4 = progress) THEN 0 ELSE 1 END,
+                progress = COALESCE($4, progress)
              WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING cancel_asked",
         ))
         .bind(&claim.id)
         .bind(claim.fence)
         .bind(lease_ms)
-        .bind(progress)
+        .bind(&told.progress)
         .bind(claim.spent_ms + elapsed.as_millis() as i64)
+        .bind(i64::from(is_more))
         .fetch_optional(&mut *transaction)
         .await?;
+        let Some(asked) = asked else { return Ok(Heartbeat::Lost) };
+        if let Some(growth) = &told.growth {
+            grow(&mut transaction, claim, growth).await?;
+        }
+        if let Some((about, picture)) = &told.picture {
+            sqlx::query(
+                "INSERT INTO pictures (job, revision, about, content) VALUES ($1, 1, $2, $3) ON CONFLICT (job) DO UPDATE
+                    SET revision = pictures.revision + 1, about = excluded.about, content = excluded.content",
+            )
+            .bind(&claim.id)
+            .bind(about)
+            .bind(&picture[..])
+            .execute(&mut *transaction)
+            .await?;
+        }
         transaction.commit().await?;
-        Ok(asked.map_or(Heartbeat::Lost, |asked| if asked == 0 { Heartbeat::Held } else { Heartbeat::Cancel }))
+        Ok(if asked == 0 { Heartbeat::Held } else { Heartbeat::Cancel })
     }
 
     /// Stores the state of a job, from which any worker can go on. Whether the claim still holds.
@@ -184,32 +214,6 @@ impl Store {
         Ok(true)
     }
 
-    /// Puts a piece behind the growing curve of a job; a piece from 0 replaces all. Whether the claim still holds.
-    ///
-    /// # Errors
-    /// The database cannot take it.
-    pub async fn grow(&self, claim: &Claim, growth: &Growth) -> Result<bool> {
-        let mut transaction = self.begin().await?;
-        if !hold(&mut transaction, claim, "revision = revision + 1").await? {
-            return Ok(false);
-        }
-        if growth.from == 0 {
-            sqlx::query("DELETE FROM growth WHERE job = $1").bind(&claim.id).execute(&mut *transaction).await?;
-        }
-        sqlx::query(
-            "INSERT INTO growth (job, first, fence, entries) VALUES ($1, $2, $3, $4)
-             ON CONFLICT (job, first) DO UPDATE SET fence = excluded.fence, entries = excluded.entries",
-        )
-        .bind(&claim.id)
-        .bind(growth.from as i64)
-        .bind(claim.fence)
-        .bind(serde_json::to_string(growth).unwrap_or_default())
-        .execute(&mut *transaction)
-        .await?;
-        transaction.commit().await?;
-        Ok(true)
-    }
-
     /// Pieces of the growing curve of a job from entry `from` on, of one claim or of all.
     ///
     /// # Errors
@@ -224,28 +228,6 @@ impl Store {
         .fetch_all(&self.pool)
         .await?;
         Ok(pieces.iter().filter_map(|piece| serde_json::from_str(piece).ok()).collect())
-    }
-
-    /// Shows the latest picture of a job; `about` is what is said of it, JSON.
-    ///
-    /// # Errors
-    /// The database cannot take it.
-    pub async fn show(&self, claim: &Claim, about: &str, picture: Vec<u8>) -> Result<bool> {
-        let mut transaction = self.begin().await?;
-        if !hold(&mut transaction, claim, "revision = revision + 1").await? {
-            return Ok(false);
-        }
-        sqlx::query(
-            "INSERT INTO pictures (job, revision, about, content) VALUES ($1, 1, $2, $3) ON CONFLICT (job) DO UPDATE
-                SET revision = pictures.revision + 1, about = excluded.about, content = excluded.content",
-        )
-        .bind(&claim.id)
-        .bind(about)
-        .bind(picture)
-        .execute(&mut *transaction)
-        .await?;
-        transaction.commit().await?;
-        Ok(true)
     }
 
     /// Number of the latest picture of a job, and what is said of it.
@@ -332,6 +314,24 @@ impl Store {
         .await
         .map(drop)
     }
+}
+
+/// Puts a piece behind the growing curve of a job; a piece from 0 replaces all.
+async fn grow(transaction: &mut sqlx::Transaction<'static, sqlx::Any>, claim: &Claim, growth: &Growth) -> Result<()> {
+    if growth.from == 0 {
+        sqlx::query("DELETE FROM growth WHERE job = $1").bind(&claim.id).execute(&mut **transaction).await?;
+    }
+    sqlx::query(
+        "INSERT INTO growth (job, first, fence, entries) VALUES ($1, $2, $3, $4)
+         ON CONFLICT (job, first) DO UPDATE SET fence = excluded.fence, entries = excluded.entries",
+    )
+    .bind(&claim.id)
+    .bind(growth.from as i64)
+    .bind(claim.fence)
+    .bind(serde_json::to_string(growth).unwrap_or_default())
+    .execute(&mut **transaction)
+    .await
+    .map(drop)
 }
 
 /// Changes the row of a claimed job, which others then cannot take until the transaction ends; whether the claim holds.

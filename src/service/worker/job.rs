@@ -12,7 +12,7 @@ use super::{Shared, TRY_EVERY, milliseconds, results};
 use crate::error::{Error, Result};
 use crate::service::job::{JobKind, State, Submission};
 use crate::service::problem::Problem;
-use crate::service::store::{Claim, Growth, Heartbeat, Outcome, is_gone};
+use crate::service::store::{Claim, Growth, Heartbeat, Outcome, Told, is_gone};
 
 /// Time between two signs of life, in which a wish to cancel comes back as well.
 const BEAT: Duration = Duration::from_millis(400);
@@ -68,7 +68,14 @@ pub fn work(shared: &Shared, claim: &Claim) {
     let begun = Instant::now();
     match begin(shared, claim, submission, checkpoint) {
         Ok((process, folder)) => {
-            let end = relay(shared, claim, &process, begun).unwrap_or_else(|| End::Died(process.death()));
+            // Its process has ended before anything else is done about it.
+            let end = match relay(shared, claim, &process, begun) {
+                Some(end) => {
+                    drop(process);
+                    end
+                }
+                None => End::Died(process.death()),
+            };
             let seconds = begun.elapsed().as_secs_f64();
             metrics::histogram!("perilife_job_seconds", "kind" => claim.kind.name()).record(seconds);
             conclude(shared, claim, end, &folder.path().join(RESULTS));
@@ -110,22 +117,14 @@ fn begin(
 /// Folder of the results in that of a job.
 const RESULTS: &str = "results";
 
-/// What the store has not been told yet.
-#[derive(Default)]
-struct Untold {
-    progress: Option<String>,
-    growth: Option<Growth>,
-    picture: Option<(String, Vec<u8>)>,
-}
-
 /// Tells the store what the process tells, until it ends or is to end; `None` if it ended without a word.
 fn relay(shared: &Shared, claim: &Claim, process: &JobProcess, begun: Instant) -> Option<End> {
-    let (mut untold, mut beaten) = (Untold::default(), Instant::now());
+    let (mut untold, mut beaten) = (Told::default(), Instant::now());
     let mut memory = 0;
     let end = loop {
         match process.look(BEAT.saturating_sub(beaten.elapsed())) {
             Look::News(News::Progress(progress)) => untold.progress = Some(progress),
-            Look::News(News::Growth(growth)) => untold.add(growth),
+            Look::News(News::Growth(growth)) => add(&mut untold.growth, growth),
             Look::News(News::Picture(about, picture)) => untold.picture = Some((about, picture)),
             Look::News(News::Checkpoint(bytes)) => keep(shared, claim, bytes),
             Look::News(News::Done(summary)) => break Some(End::Done(summary)),
@@ -146,17 +145,15 @@ fn relay(shared: &Shared, claim: &Claim, process: &JobProcess, begun: Instant) -
     end
 }
 
-impl Untold {
-    fn add(&mut self, growth: Growth) {
-        match &mut self.growth {
-            // A piece from the beginning starts over.
-            Some(earlier) if growth.from > 0 => {
-                earlier.cycles.extend(growth.cycles);
-                earlier.crack_length_mm.extend(growth.crack_length_mm);
-                earlier.tips.extend(growth.tips);
-            }
-            _ => self.growth = Some(growth),
+/// Puts a piece of a curve behind those that the store has not been told yet; a piece from the beginning starts over.
+fn add(untold: &mut Option<Growth>, growth: Growth) {
+    match untold {
+        Some(earlier) if growth.from > 0 => {
+            earlier.cycles.extend(growth.cycles);
+            earlier.crack_length_mm.extend(growth.crack_length_mm);
+            earlier.tips.extend(growth.tips);
         }
+        _ => *untold = Some(growth),
     }
 }
 
@@ -174,7 +171,7 @@ fn keep(shared: &Shared, claim: &Claim, checkpoint: Vec<u8>) {
 }
 
 /// A sign of life; why the run is to end, if it is.
-fn beat(shared: &Shared, claim: &Claim, untold: &mut Untold, elapsed: Duration) -> Option<End> {
+fn beat(shared: &Shared, claim: &Claim, untold: &mut Told, elapsed: Duration) -> Option<End> {
     if shared.is_stopping() {
         return Some(End::Shutdown);
     }
@@ -183,28 +180,19 @@ fn beat(shared: &Shared, claim: &Claim, untold: &mut Untold, elapsed: Duration) 
         return Some(End::OutOfTime);
     }
     let lease_ms = milliseconds(shared.settings.lease);
-    let told = shared.handle.block_on(async {
-        match shared.store.beat(claim, lease_ms, elapsed, untold.progress.as_deref()).await? {
-            Heartbeat::Held => {}
-            Heartbeat::Cancel => return Ok(Some(End::Cancelled)),
-            Heartbeat::Lost => return Ok(Some(End::Lost)),
+    match shared.handle.block_on(shared.store.beat(claim, lease_ms, elapsed, untold)) {
+        Ok(Heartbeat::Held) => {
+            *untold = Told::default();
+            None
         }
-        untold.progress = None;
-        if let Some(growth) = &untold.growth {
-            shared.store.grow(claim, growth).await?;
-            untold.growth = None;
+        Ok(Heartbeat::Cancel) => Some(End::Cancelled),
+        Ok(Heartbeat::Lost) => Some(End::Lost),
+        Err(error) => {
+            // The run goes on: what it finds can be handed in when the database is back.
+            tracing::warn!(job = claim.id, "no sign of life can be given: {error}");
+            None
         }
-        if let Some((about, picture)) = &untold.picture {
-            shared.store.show(claim, about, picture.clone()).await?;
-            untold.picture = None;
-        }
-        Ok::<_, sqlx::Error>(None)
-    });
-    told.unwrap_or_else(|error| {
-        // The run goes on: what it finds can be handed in when the database is back.
-        tracing::warn!(job = claim.id, "no sign of life can be given: {error}");
-        None
-    })
+    }
 }
 
 /// Hands in what came of a run.
@@ -299,7 +287,7 @@ fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome, reason: &'static s
                 if !is_gone(&error) || (shared.is_stopping() && tries >= LAST_TRIES) {
                     return;
                 }
-                let beat = shared.store.beat(claim, milliseconds(shared.settings.lease), begun.elapsed(), None);
+                let beat = shared.store.beat(claim, milliseconds(shared.settings.lease), begun.elapsed(), &Told::default());
                 let _ = shared.handle.block_on(beat);
                 std::thread::sleep(TRY_EVERY);
             }
