@@ -116,11 +116,11 @@ pub fn work(url: &str, settings: &worker::Settings, ready: impl FnOnce()) -> Res
 }
 
 /// Folders that a service writes to: of the database file, and of temporary files where it runs jobs.
-fn disks(settings: &Settings) -> Vec<PathBuf> {
+fn disks(settings: &Settings) -> Vec<(&'static str, PathBuf)> {
     let file = settings.database.starts_with("sqlite://").then(|| PathBuf::from(without_password(&settings.database)));
     let store = file.and_then(|file| file.parent().map(Path::to_path_buf));
     let temporary = (settings.workers.jobs > 0).then(std::env::temp_dir);
-    store.into_iter().chain(temporary).collect()
+    [("store", store), ("temporary", temporary)].into_iter().filter_map(|(name, place)| Some((name, place?))).collect()
 }
 
 /// Does something with the store of a service.

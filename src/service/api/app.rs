@@ -105,8 +105,8 @@ pub struct App {
     pub bodies: BodyPlaces,
     /// Room for whole curves that something is computed from.
     pub curves: Arc<Semaphore>,
-    /// Folders that are written to: of the database file, of temporary files.
-    pub disks: Arc<Vec<PathBuf>>,
+    /// Folders that are written to, by name: of the database file, of temporary files.
+    pub disks: Arc<Vec<(&'static str, PathBuf)>>,
     /// Who has changed what, if that is written down.
     pub audit: Option<Arc<Audit>>,
     streams: Places,

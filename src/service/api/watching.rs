@@ -26,12 +26,16 @@ const BOUNDS_MB: [f64; 8] = [50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 4000.0, 
 fn recorder() -> Option<&'static PrometheusHandle> {
     static RECORDER: OnceLock<Option<PrometheusHandle>> = OnceLock::new();
     let install = || {
-        let with = |builder: PrometheusBuilder, suffix: &str, bounds: &[f64]| {
-            builder.set_buckets_for_metric(Matcher::Suffix(suffix.to_owned()), bounds).ok()
+        let bounds: [(&str, &[f64]); 4] = [
+            ("perilife_http_request_seconds", &BOUNDS_S),
+            ("perilife_queue_seconds", &BOUNDS_OF_JOBS_S),
+            ("perilife_job_seconds", &BOUNDS_OF_JOBS_S),
+            ("perilife_job_memory_megabytes", &BOUNDS_MB),
+        ];
+        let with = |builder: PrometheusBuilder, (name, bounds): (&str, &[f64])| {
+            builder.set_buckets_for_metric(Matcher::Full(name.to_owned()), bounds).ok()
         };
-        let builder = with(PrometheusBuilder::new(), "request_seconds", &BOUNDS_S)?;
-        let builder = with(builder, "_seconds", &BOUNDS_OF_JOBS_S)?;
-        with(builder, "_megabytes", &BOUNDS_MB)?.install_recorder().ok()
+        bounds.into_iter().try_fold(PrometheusBuilder::new(), with)?.install_recorder().ok()
     };
     RECORDER.get_or_init(install).as_ref()
 }
@@ -90,10 +94,11 @@ pub async fn ready(Shared(app): Shared<App>) -> Answer<&'static str> {
         tracing::warn!("the store is not ready: {error}");
         refused("the database cannot be written, or its tables are of another version; see the log".to_owned())
     })?;
-    for folder in app.disks.iter() {
+    for (place, folder) in app.disks.iter() {
         let free = free_bytes(folder).unwrap_or(0);
         if free < FREE_BYTES {
-            return Err(refused(format!("a disk has {} MB free, and {} are needed; see the log", free >> 20, FREE_BYTES >> 20)));
+            let (free, needed) = (free >> 20, FREE_BYTES >> 20);
+            return Err(refused(format!("the {place} disk has {free} MB free, and {needed} are needed")));
         }
     }
     Ok("ready\n")
@@ -111,8 +116,8 @@ pub async fn metrics(Shared(app): Shared<App>) -> Answer<Response> {
         metrics::gauge!("perilife_jobs", "state" => state.name()).set(count as f64);
     }
     metrics::gauge!("perilife_queue_age_seconds").set(app.store.queue_age_ms().await? as f64 / 1e3);
-    for (folder, place) in app.disks.iter().zip(["store", "temporary"]) {
-        metrics::gauge!("perilife_disk_free_bytes", "place" => place).set(free_bytes(folder).unwrap_or(0) as f64);
+    for (place, folder) in app.disks.iter() {
+        metrics::gauge!("perilife_disk_free_bytes", "place" => *place).set(free_bytes(folder).unwrap_or(0) as f64);
     }
     let text = recorder().map(PrometheusHandle::render).unwrap_or_default();
     Ok(([(header::CONTENT_TYPE, "text/plain; version=0.0.4")], text).into_response())

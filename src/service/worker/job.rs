@@ -287,8 +287,8 @@ fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome, reason: &'static s
                 if !is_gone(&error) || (shared.is_stopping() && tries >= LAST_TRIES) {
                     return;
                 }
-                let beat = shared.store.beat(claim, milliseconds(shared.settings.lease), begun.elapsed(), &Told::default());
-                let _ = shared.handle.block_on(beat);
+                let (lease_ms, nothing) = (milliseconds(shared.settings.lease), Told::default());
+                let _ = shared.handle.block_on(shared.store.beat(claim, lease_ms, begun.elapsed(), &nothing));
                 std::thread::sleep(TRY_EVERY);
             }
         }

@@ -168,7 +168,9 @@ fn owners_have_so_much_space() {
     service.succeeded(&job);
     let refused = service.post("/v1/predictions", &of("quick", QUICK)).expect(507);
     assert!(refused.text().contains("delete jobs"), "{}", refused.text());
-    let size = || fs::metadata(dir.path().join("perilife.sqlite")).unwrap().len();
+    // What was written last may stand in the log beside the file.
+    let size_of = |name: &str| fs::metadata(dir.path().join(name)).map_or(0, |about| about.len());
+    let size = || size_of("perilife.sqlite") + size_of("perilife.sqlite-wal");
     let full = size();
     service.send("DELETE", &job, &[], b"").expect(204);
     service.submit("predictions", &of("quick", QUICK));
@@ -233,10 +235,10 @@ fn streams_of_one_shut_nobody_out() {
         while !head.ends_with("\r\n\r\n") && lines.read_line(&mut head).unwrap() > 0 {}
         (lines, head)
     };
-    let mut streams: Vec<_> = (0..100).map(|_| open()).collect();
+    let mut streams: Vec<_> = (0..90).map(|_| open()).collect();
     let admitted = streams.iter().filter(|(_, head)| head.starts_with("HTTP/1.1 200")).count();
     let refused = streams.iter().filter(|(_, head)| head.starts_with("HTTP/1.1 429")).count();
-    assert_eq!((admitted, refused), (50, 50), "half of the connections");
+    assert_eq!((admitted, refused), (50, 40), "half of the connections");
     assert!(streams[0].1.to_lowercase().contains("x-accel-buffering: no"), "{}", streams[0].1);
     service.get("/healthz").expect(200);
     service.get(&job).expect(200);
