@@ -26,7 +26,7 @@ use crate::predict::checkpoint::Checkpoint;
 use crate::predict::{Prediction, predict, resume};
 use crate::report::output::Room;
 use crate::report::{fracture, run};
-use crate::service::job::{JobKind, JobProgress};
+use crate::service::job::JobKind;
 use crate::service::problem::Problem;
 use crate::service::store::Growth;
 
@@ -207,7 +207,8 @@ impl Pictures {
             }
             (self.drawn, self.cost) = (Some(Instant::now()), begun.elapsed());
         }
-        let progress = news.progress.unwrap_or_else(|| JobProgress { elapsed_s: watch.elapsed_s(), ..JobProgress::default() });
-        tell(&News::Progress(serde_json::to_string(&progress).unwrap_or_default()));
+        if let Some(progress) = news.progress {
+            tell(&News::Progress(serde_json::to_string(&progress).unwrap_or_default()));
+        }
     }
 }

@@ -104,17 +104,11 @@ impl<'a> Watch<'a> {
         Watch { cracks, keep, keep_every, started: Instant::now(), work: Arc::default(), is_fresh, told: Mutex::new(told) }
     }
 
-    /// Time since it began.
-    #[must_use]
-    pub fn elapsed_s(&self) -> f64 {
-        self.started.elapsed().as_secs_f64()
-    }
-
     /// What was told since the last time; a look stays where no picture is wanted.
     #[must_use]
     pub fn news(&self, with_look: bool) -> Update {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        let elapsed_s = self.elapsed_s();
+        let elapsed_s = self.started.elapsed().as_secs_f64();
         let first_share = told.first_share;
         let progress = told.progress.map(|Progress { cycles, crack_length, share }| {
             let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
@@ -128,7 +122,8 @@ impl<'a> Watch<'a> {
             ..JobProgress::default()
         };
         // One that is taken up is as far as it was until it has more to show.
-        let progress = progress.or_else(|| self.work.now().filter(|_| self.is_fresh).map(before));
+        let begun = || self.work.now().map_or_else(|| JobProgress { elapsed_s, ..JobProgress::default() }, before);
+        let progress = progress.or_else(|| self.is_fresh.then(begun));
         let growth = (!told.entries.cycles.is_empty()).then(|| {
             let next = told.entries.from + told.entries.cycles.len();
             std::mem::replace(&mut told.entries, Growth { from: next, ..Growth::default() })

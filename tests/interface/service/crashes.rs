@@ -264,10 +264,11 @@ fn a_database_that_is_gone_for_a_while_loses_nothing() {
         postgres.down();
         let answer = service.post("/v1/predictions", &of("case", QUICK)).expect(503);
         assert!(answer.header("retry-after").is_some() && answer.text().contains("cannot be used just now"), "{}", answer.text());
-        service.get("/healthz").expect(503);
+        service.get("/healthz").expect(200);
+        service.get("/readyz").expect(503);
         service.get(&addresses[0]).expect(503);
         postgres.up().unwrap();
-        wait("it is well again", || service.get("/healthz").status == 200);
+        wait("it is well again", || service.get("/readyz").status == 200);
     }
     // Connections cut one by one while it stays up.
     let cut = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = 'gone' AND pid <> pg_backend_pid()";
