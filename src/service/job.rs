@@ -66,6 +66,9 @@ names!(JobKind, Calibration = "calibration", Prediction = "prediction");
 names!(State, Queued = "queued", Running = "running", Succeeded = "succeeded", Failed = "failed", Cancelled = "cancelled");
 
 impl JobKind {
+    /// All of them.
+    pub const ALL: [JobKind; 2] = [JobKind::Calibration, JobKind::Prediction];
+
     /// Its place in URLs.
     #[must_use]
     pub fn collection(self) -> &'static str {

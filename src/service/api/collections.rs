@@ -78,8 +78,7 @@ pub struct Part {
 /// # Errors
 /// 404.
 pub fn kind_of(collection: &str) -> Answer<JobKind> {
-    let kinds = [JobKind::Calibration, JobKind::Prediction];
-    kinds.into_iter().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
+    JobKind::ALL.into_iter().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
 }
 
 /// Whether a job can have this id. Anything else never gets to the database.

@@ -2,6 +2,7 @@
 
 mod app;
 mod collections;
+mod description;
 mod documents;
 mod events;
 mod inputs;
@@ -69,7 +70,8 @@ pub fn router(app: App) -> Router {
         .routes(routes!(results::remaining))
         .split_for_parts();
     let limits = app.limits.clone();
-    v1.merge(Router::from(SwaggerUi::new("/docs").url("/openapi.json", description)))
+    let docs = SwaggerUi::new("/docs").external_url_unchecked("/openapi.json", description::complete(&description));
+    v1.merge(Router::from(docs))
         .route("/healthz", get(watching::health))
         .route("/metrics", get(watching::metrics))
         .fallback(page::page)
