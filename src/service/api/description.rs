@@ -9,11 +9,18 @@ use crate::service::job::JobKind;
 /// What every request may be answered with: the door, the limits and the store stand before every handler.
 const ALWAYS: [&str; 4] = ["401", "403", "429", "503"];
 /// What the reading of a body may end with.
-const WITH_BODY: [&str; 3] = ["400", "408", "413"];
-/// What the reading of a job may end with besides.
-const WITH_JOB: [&str; 2] = ["415", "422"];
+const WITH_BODY: [&str; 4] = ["400", "408", "413", "422"];
+/// What a file may be answered with for headers that ask for a part of it, or for another than the one known.
+const WITH_FILE: [(&str, &str); 3] = [
+    ("206", "The range that was asked for"),
+    ("304", "It is the one of If-None-Match"),
+    ("416", "The range lies beyond its end"),
+];
 /// What an address with a name in it may be answered with: one that is no text, one that nothing has.
 const WITH_NAME: [&str; 2] = ["400", "404"];
+
+/// What can be done with a job that was accepted.
+const NEXT: [&str; 3] = ["show", "cancel", "delete"];
 
 const PROBLEM: &str = "application/problem+json";
 const FORM: &str = "multipart/form-data";
@@ -80,7 +87,7 @@ fn schema(name: &str) -> Value {
 
 fn complete_operation(operation: &mut Value) {
     operation["security"] = json!([{}, { "bearer": [] }]);
-    let mut statuses = ALWAYS.to_vec();
+    let (mut statuses, mut takes_job) = (ALWAYS.to_vec(), false);
     for parameter in operation.get_mut("parameters").and_then(Value::as_array_mut).into_iter().flatten() {
         if parameter["in"] == "path" {
             statuses.extend(WITH_NAME);
@@ -94,8 +101,9 @@ fn complete_operation(operation: &mut Value) {
     }
     if let Some(forms) = operation.pointer_mut("/requestBody/content") {
         statuses.extend(WITH_BODY);
-        if forms["application/json"]["schema"] == schema("JobRequest") {
-            statuses.extend(WITH_JOB);
+        takes_job = forms["application/json"]["schema"] == schema("JobRequest");
+        if takes_job {
+            statuses.push("415");
             forms["application/toml"] = json!({ "schema": { "type": "string" }, "example": EXAMPLE });
             forms[FORM] = json!({ "schema": schema("JobForm") });
         } else if let Some(file) = forms.pointer_mut("/multipart~1form-data/schema/properties/file") {
@@ -104,8 +112,19 @@ fn complete_operation(operation: &mut Value) {
         operation["requestBody"]["required"] = true.into();
     }
     let Some(responses) = operation["responses"].as_object_mut() else { return };
+    if responses.get("200").is_some_and(|whole| whole.get("content").is_none()) {
+        for (status, about) in WITH_FILE {
+            responses.entry(status).or_insert_with(|| json!({ "description": about }));
+        }
+    }
     for status in statuses {
         responses.entry(status).or_insert_with(|| json!({ "content": { PROBLEM: { "schema": schema("Problem") } } }));
+    }
+    if let Some(accepted) = responses.get_mut("202").filter(|_| takes_job) {
+        for next in NEXT {
+            let job = json!({ "collection": "$request.path.collection", "id": "$response.body#/id" });
+            accepted["links"][next] = json!({ "operationId": next, "parameters": job });
+        }
     }
     responses.sort_keys();
     for (status, response) in responses {
