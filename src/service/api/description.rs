@@ -145,7 +145,7 @@ fn complete_response(status: &str, response: &mut Value) {
         // A file of whatever kind; the first is what clients in typed languages take it for.
         "200" | "206" if response.get("content").is_none() => {
             let bytes = json!({ "schema": { "type": "string", "format": "binary" } });
-            response["content"] = json!({ "application/octet-stream": bytes, "*/*": bytes });
+            response["content"] = json!({ "application/octet-stream": bytes, "application/json": {}, "*/*": {} });
         }
         _ => {}
     }

@@ -54,7 +54,7 @@ fn every_operation_is_described_whole() {
         assert!(api.pointer(reference.trim_start_matches('#')).is_some(), "{reference} leads nowhere");
     }
 
-    let (mut ids, mut jobs) = (BTreeSet::new(), 0);
+    let (mut ids, mut linked, mut jobs) = (BTreeSet::new(), BTreeSet::new(), 0);
     for (method, path, operation) in operations(&api) {
         let about = format!("{method} {path}");
         assert!(ids.insert(operation["operationId"].as_str().unwrap()), "{about}: its operationId is taken");
@@ -67,6 +67,8 @@ fn every_operation_is_described_whole() {
         assert!(responses.keys().any(|status| status.starts_with('2')), "{about}");
         for (status, response) in responses {
             assert!(response["description"].as_str().is_some_and(|words| !words.is_empty()), "{about} {status}");
+            let links = response["links"].as_object().into_iter().flatten();
+            linked.extend(links.map(|(_, link)| link["operationId"].as_str().unwrap()));
             // Of a range that is not there only the size of the file is told.
             if *status >= "400".to_owned() && status != "416" {
                 let problem = &response["content"][PROBLEM]["schema"]["$ref"];
@@ -88,6 +90,7 @@ fn every_operation_is_described_whole() {
         assert!(taken.is_null() || operation["requestBody"]["required"] == true, "{about}");
     }
     assert!(jobs >= 2, "{jobs} operations take jobs");
+    assert!(!linked.is_empty() && linked.is_subset(&ids), "{linked:?}");
     let form = &api["components"]["schemas"]["JobForm"];
     for field in ["name", "input", "calibration"] {
         assert_eq!(form["properties"][field]["type"], "string", "{field}");
