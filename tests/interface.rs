@@ -8,6 +8,8 @@ mod daily;
 mod fatigue_test;
 #[path = "support/made_up_run.rs"]
 mod made_up_run;
+#[path = "support/nginx.rs"]
+mod nginx;
 #[path = "support/noise.rs"]
 mod noise;
 #[path = "support/postgres.rs"]

@@ -2,6 +2,10 @@
 
 #[path = "service/crashes.rs"]
 mod crashes;
+#[path = "service/deploy.rs"]
+mod deploy;
+#[path = "service/description.rs"]
+mod description;
 #[path = "service/doors.rs"]
 mod doors;
 #[path = "service/fuzzed.rs"]

@@ -164,18 +164,24 @@ impl Server {
 
     /// Events of a job until its end: names and data.
     pub fn events(&self, job: &str, headers: &[(&str, &str)]) -> Vec<(String, Value)> {
+        let mut events = Vec::new();
+        self.each_event(job, headers, |name, data| events.push((name.to_owned(), data)));
+        events
+    }
+
+    /// Does something with each event of a job as it comes.
+    pub fn each_event(&self, job: &str, headers: &[(&str, &str)], mut take: impl FnMut(&str, Value)) {
         let response = self.agent.run(self.request("GET", &format!("{job}/events"), headers, b"")).unwrap();
         assert_eq!(response.status(), 200);
-        let (mut events, mut name) = (Vec::new(), String::new());
+        let mut name = String::new();
         for line in BufReader::new(response.into_body().into_reader()).lines() {
             let line = line.unwrap();
             if let Some(value) = line.strip_prefix("event: ") {
                 name = value.to_owned();
             } else if let Some(value) = line.strip_prefix("data: ") {
-                events.push((name.clone(), serde_json::from_str(value).unwrap()));
+                take(&name, serde_json::from_str(value).unwrap());
             }
         }
-        events
     }
 
     /// Ends the process without a warning.

@@ -3,6 +3,7 @@
 mod app;
 mod audit;
 mod collections;
+mod description;
 mod documents;
 mod events;
 mod inputs;
@@ -21,11 +22,12 @@ pub use security::Crowded;
 pub use watching::{start as start_counting, sum_up};
 
 use axum::Router;
-use axum::extract::DefaultBodyLimit;
+use axum::extract::{DefaultBodyLimit, Request};
 use axum::http::StatusCode;
-use axum::middleware::{from_fn, from_fn_with_state};
-use axum::response::IntoResponse;
+use axum::middleware::{Next, from_fn, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use percent_encoding::percent_decode_str;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::CompressionLayer;
 use tower_http::compression::predicate::{DefaultPredicate, NotForContentType, Predicate};
@@ -56,6 +58,14 @@ fn worth_packing() -> impl Predicate {
     DefaultPredicate::new().and(not("application/zip")).and(not("application/vnd.apache.parquet"))
 }
 
+/// Refuses an address that is no text, before a handler does in words that are not the service's.
+async fn in_text(request: Request, next: Next) -> Response {
+    if percent_decode_str(request.uri().path()).decode_utf8().is_err() {
+        return Problem::bad_request("the address is not UTF-8 text").into_response();
+    }
+    next.run(request).await
+}
+
 /// All routes.
 pub fn router(app: App) -> Router {
     let (v1, description) = OpenApiRouter::with_openapi(Description::openapi())
@@ -74,7 +84,8 @@ pub fn router(app: App) -> Router {
         .routes(routes!(results::remaining))
         .split_for_parts();
     let limits = app.limits.clone();
-    v1.merge(Router::from(SwaggerUi::new("/docs").url("/openapi.json", description)))
+    let docs = SwaggerUi::new("/docs").external_url_unchecked("/openapi.json", description::complete(&description));
+    v1.merge(Router::from(docs))
         .route("/healthz", get(watching::health))
         .route("/readyz", get(watching::ready))
         .route("/metrics", get(watching::metrics))
@@ -82,6 +93,7 @@ pub fn router(app: App) -> Router {
         .method_not_allowed_fallback(|| async {
             Problem::new(StatusCode::METHOD_NOT_ALLOWED, "Method not allowed", "this address does not take that method")
         })
+        .layer(from_fn(in_text))
         .layer(DefaultBodyLimit::max(limits.body_bytes))
         .layer(from_fn_with_state(limits.body_bytes, security::in_size))
         .layer(from_fn_with_state(app.clone(), security::guard))
