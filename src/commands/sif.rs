@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::console::Console;
 use super::unaged::plate_without_law;
+use crate::case::budget::Budget;
 use crate::case::{Case, Method};
 use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
@@ -47,6 +48,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let methods = methods(&args.method)?;
     let case = plate_without_law(&args.case, &args.set)?;
+    Budget::of(&case).within_machine().map_err(|error| error.in_file(&args.case))?;
     let is_on_nodes = methods == [StressIntensityMethod::ElementFreeGalerkin]
         || args.method.is_empty() && case.model.method == Method::ElementFreeGalerkin;
     let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);

@@ -14,11 +14,12 @@ use sha2::{Digest, Sha256};
 use tokio::sync::OwnedSemaphorePermit;
 use utoipa::ToSchema;
 
-use super::App;
 use super::collections::is_id;
+use super::{App, Limits};
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::laws::case::{LawCase, is_law_fit};
-use crate::case::{Case, Method};
+use crate::case::Case;
+use crate::case::budget::Budget;
 use crate::check::is_calibration;
 use crate::error::input;
 use crate::service::job::{FITTED, JobKind, State, Submission};
@@ -274,8 +275,8 @@ pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> 
         files.push((FITTED.to_owned(), record_of(app, id).await?));
     }
     let submission = Submission { name, text, with_fitted, files };
-    let points = app.limits.points;
-    let checked = tokio::task::spawn_blocking(move || check(&submission, kind, points).map(|()| submission));
+    let limits = app.limits.clone();
+    let checked = tokio::task::spawn_blocking(move || check(&submission, kind, &limits).map(|()| submission));
     let checked = checked.await.map_err(|_| Problem::internal())?;
     checked.map_err(|problem| if is_text { problem } else { problem.without_line() })
 }
@@ -345,29 +346,22 @@ async fn record_of(app: &App, id: &str) -> Answer<Vec<u8>> {
 }
 
 /// Whether it can be run, as far as that shows without building the plate.
-fn check(submission: &Submission, kind: Option<JobKind>, points: f64) -> Answer<()> {
+fn check(submission: &Submission, kind: Option<JobKind>, limits: &Limits) -> Answer<()> {
     let document = submission.document()?;
     match kind {
-        Some(JobKind::Prediction) => check_points(&Case::from_document(&document)?, points),
+        Some(JobKind::Prediction) => check_points(&Case::from_document(&document)?, limits),
         Some(JobKind::Calibration) if is_law_fit(&document.table) => Ok(LawCase::from_document(&document).map(drop)?),
-        Some(JobKind::Calibration) => check_points(&CalibrationCase::from_document(document)?.case, points),
+        Some(JobKind::Calibration) => check_points(&CalibrationCase::from_document(document)?.case, limits),
         None => Ok(()),
     }
 }
 
-/// Refuses plates of more points than this server takes.
+/// Refuses plates of more points than this server takes, and what would take up more memory, before anything is laid out.
 ///
 /// # Errors
 /// 422.
-pub fn check_points(case: &Case, most: f64) -> Answer<()> {
-    let model = &case.model;
-    // The spacing is that of the finest level, so that of refined plates is an upper bound; their levels are few.
-    let points = case.specimen.area() / model.spacing.powi(2);
-    if model.method != Method::Peridynamics || model.refinement.is_some() || points <= most {
-        return Ok(());
-    }
-    let problem = format!("gives the plate {points:.3e} points, more than the {most:.3e} this server takes");
-    let spacing = model.spacing / crate::units::MM;
-    let remedy = format!("give at least {:.3}, or run it with `perilife predict`", spacing * (points / most).sqrt());
-    Err(input("model.spacing_mm", spacing, problem, remedy).into())
+pub fn check_points(case: &Case, limits: &Limits) -> Answer<()> {
+    let budget = Budget::of(case);
+    budget.within_points(limits.points)?;
+    Ok(budget.within(limits.case_bytes)?)
 }
