@@ -1,20 +1,23 @@
 //! What a case will take up, by arithmetic on its numbers alone: nothing is laid out for it.
 //!
-//! With the area A of the plate, the spacing Δ_l of level l, the area Z_l of points of level l and finer, and b bonds a point (lattice
-//! vectors of a half plane within the horizon ratio m, some π m²/2):
+//! With the area A of the plate, the spacing Δ_l of level l, the area Z_l of points of level l and finer, b bonds a point (lattice vectors of
+//! a half plane within the horizon ratio m, some π m²/2), and the length U of all rims and both flanks of all cracks:
 //!
 //! ```text
 //! points  P = A / Δ_0² + Σ_l Z_l (1/Δ_l² - 1/Δ_(l-1)²)     bonds  B = b P
-//! places  L = columns × rows of the lattice around the plate, and m rows of padding on every side
-//! bytes     = BASE + (PLACE + PLACE_BOND b) L + point(m) P
+//! places  L = columns × rows of the lattices around the plate, and m rows of padding on every side
+//! rim     R = min(U / Δ, P / m)
+//! bytes     = BASE + (PLACE + PLACE_BOND b) L + rim(m) R, and factor(m) P ln P where all points are factorised
 //! ```
 //!
-//! Z_l is bounded by the regions, each wider by the rings of levels around it. Bytes of a point depend on solver and horizon ratio; how
-//! they were measured stands beside each table.
+//! Z_l is bounded by the regions, each wider by the rings of levels around it. Coefficients are those of peak memory (`/usr/bin/time -v`) of
+//! `perilife predict` on a square of 100 mm with one slant crack, which no symmetry halves, and stand beside the runs they are of.
 
 pub mod machine;
 
-use super::{Case, Method, Model};
+use super::model::round_mm;
+use super::{Case, HORIZON_RATIO, Method};
+use crate::bond_law::SurfaceCorrection;
 use crate::error::{Result, input};
 use crate::levels::{Discretisation, RefinedRegion, Refinement};
 use crate::solver::SolverKind;
@@ -35,6 +38,10 @@ pub struct Budget {
     pub bytes: f64,
     /// Pictures, tables and ParaView files, bytes.
     pub disk_bytes: f64,
+    /// Bytes that go with the square of 1/Δ.
+    of_area: f64,
+    /// Bytes that go with 1/Δ.
+    of_rim: f64,
     /// Spacing asked for, of the coarsest level, m.
     spacing: f64,
     /// What of the keys makes it large beside the spacing.
@@ -56,25 +63,33 @@ pub struct PointPlate<'a> {
     pub refinement: Option<&'a Refinement>,
 }
 
-/// Bytes of a process that has done nothing yet.
-const BASE: f64 = 0.0;
-/// Bytes of a lattice place whatever the horizon, and of one bond of it.
-const PLACE: f64 = 0.0;
+/// Bytes of a process that has nothing but a case of hand calculation: 28 MB.
+const BASE: f64 = 28e6;
+/// Bytes of a lattice place and of each of its bonds, of which a body and the state of its bonds keep four each. With surface correction
+/// `volume_and_surface` and the window: 59 and 127 MB at 4e4 and 1.6e5 points, m = 3.015; 76 and 172 MB at m = 6; 134 MB at 4e4 and m = 12; multigrid 59 MB
+/// at 4e4, relaxation 40 MB at 1e4 (m = 3.015).
+/// The formula gives 60, 130, 75, 185 and 149 MB.
+const PLACE: f64 = 350.0;
 /// See [`PLACE`].
-const PLACE_BOND: f64 = 0.0;
+const PLACE_BOND: f64 = 8.0;
+/// Bytes of a spacing of rim under `volume_and_surface`.
+const RIM_PLAIN: f64 = 14e3;
+/// Bytes of a spacing of rim under `balanced`, whose equations couple m rows of points. With the window: 77, 132 and 241 MB at 1e4, 4e4
+/// and 1.6e5 points, m = 3.015; 290, 576 and 1166 MB at m = 6; 1237 MB at 1e4 and m = 9.
+const RIM_BALANCED: &Curve = &[(3.015, 94e3), (6.0, 545e3), (9.0, 2.55e6)];
+/// Bytes over P ln P of a sparse factor of all points, which nested dissection fills in so. `solver = "direct"`: 242 MB at 1e4 points, m =
+/// 3.015. Three levels, whose equilibrium is factorised whole: 232 and 982 MB at 8848 and 34 300 points, m = 3.015; 422 MB at 8848 and m = 5.
+const FACTOR: &Curve = &[(3.015, 2.7e3), (5.0, 4.9e3)];
+/// Bytes of a node of the element-free method: 247 MB with `nodes = 5000`.
+const NODE: f64 = 44e3;
 /// Bytes on disk: a dozen moments of 140 bytes a point, beside charts and tables.
 const DISK_POINT: f64 = 12.0 * 140.0;
+/// The same of a node, with the raster of its fields: 20 MB with `nodes = 5000`.
+const DISK_NODE: f64 = 4e3;
 /// See [`DISK_POINT`].
 const DISK_BASE: f64 = 5e5;
 
-const NODE: f64 = 1.0;
-const WINDOW: &Curve = &[(3.015, 1.0), (6.0, 2.0)];
-const DIRECT: &Curve = &[(3.015, 1.0), (6.0, 2.0)];
-const MULTIGRID: &Curve = &[(3.015, 1.0), (6.0, 2.0)];
-const RELAXATION: &Curve = &[(3.015, 1.0), (6.0, 2.0)];
-const LEVELS: &Curve = &[(3.015, 1.0), (6.0, 2.0)];
-
-/// Bytes of a point by horizon ratio.
+/// Bytes by horizon ratio.
 pub type Curve = [(f64, f64)];
 
 impl PointPlate<'_> {
@@ -132,24 +147,37 @@ impl PointPlate<'_> {
         (0..=self.deepest()).map(|level| self.places_at(self.spacing_of(level))).sum()
     }
 
-    /// What it takes up where a point takes up so much by horizon ratio.
+    /// Spacings on all rims and both flanks of all cracks, at the finest spacing.
+    fn rim(&self) -> f64 {
+        let specimen = self.specimen;
+        let outline = (0..specimen.outline.len())
+            .map(|i| distance(specimen.outline[i], specimen.outline[(i + 1) % specimen.outline.len()]));
+        let holes = specimen.holes.iter().map(|hole| 2.0 * std::f64::consts::PI * hole.radius);
+        let slots = specimen.slots.iter().map(|slot| 2.0 * (distance(slot.from, slot.to) + slot.width));
+        let cracks = specimen.cracks.iter().map(|crack| 2.0 * distance(crack.from, crack.to));
+        let length: f64 = outline.chain(holes).chain(slots).chain(cracks).sum();
+        // Of thin arms all points are at a rim.
+        (length / self.spacing_of(self.deepest())).min(self.points() / self.horizon_ratio)
+    }
+
+    /// What it takes up, with so many bytes a bond of a net beside the lattice, and with or without a factor of all points.
     #[must_use]
-    pub fn budget(&self, of_point: &Curve) -> Budget {
+    pub fn budget(&self, correction: SurfaceCorrection, of_net_bond: f64, is_factorised: bool) -> Budget {
         let (points, places, bonds) = (self.points(), self.places(), self.bonds_of_point());
-        let bytes = BASE + (PLACE + PLACE_BOND * bonds) * places + along(of_point, self.horizon_ratio) * points;
+        let factor = if is_factorised { along(FACTOR, self.horizon_ratio) * points.max(2.0).ln() } else { 0.0 };
+        let of_area = (PLACE + PLACE_BOND * bonds) * places + (of_net_bond * bonds + factor) * points;
+        let of_rim = match correction {
+            SurfaceCorrection::Balanced => along(RIM_BALANCED, self.horizon_ratio),
+            SurfaceCorrection::None | SurfaceCorrection::VolumeAndSurface => RIM_PLAIN,
+        } * self.rim();
         let other_keys = match self.refinement {
             Some(_) => ", fewer levels or smaller regions of [refinement]",
+            None if self.horizon_ratio > HORIZON_RATIO => ", or a smaller model.horizon_ratio",
             None => "",
         };
-        Budget {
-            points,
-            places,
-            bonds: bonds * points,
-            bytes,
-            disk_bytes: DISK_BASE + DISK_POINT * points,
-            spacing: self.spacing,
-            other_keys,
-        }
+        let disk_bytes = DISK_BASE + DISK_POINT * points;
+        let (bytes, bonds, spacing) = (BASE + of_area + of_rim, bonds * points, self.spacing);
+        Budget { points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing, other_keys }
     }
 }
 
@@ -188,12 +216,16 @@ impl Budget {
         match model.method {
             Method::Handbook => Budget { bytes: BASE, disk_bytes: DISK_BASE, ..Budget::none() },
             Method::ElementFreeGalerkin => of_nodes(case),
-            Method::Peridynamics => plate_of(case).budget(of_point(model)),
+            Method::Peridynamics => {
+                let is_factorised = model.solver == SolverKind::Direct || model.arrangement != Discretisation::Lattice;
+                plate_of(case).budget(model.bond_law.surface_correction, 0.0, is_factorised)
+            }
         }
     }
 
     fn none() -> Budget {
-        Budget { points: 0.0, places: 0.0, bonds: 0.0, bytes: 0.0, disk_bytes: 0.0, spacing: 0.0, other_keys: "" }
+        let [points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing] = [0.0; 8];
+        Budget { points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing, other_keys: "" }
     }
 
     /// Refuses what takes up more than so many bytes of memory.
@@ -212,7 +244,10 @@ impl Budget {
             gigabytes(self.bytes),
             gigabytes(bytes)
         );
-        self.refusal(problem, (self.bytes / bytes).sqrt())
+        // of_area / x² + of_rim / x = what is left
+        let left = (bytes - BASE).max(0.01 * bytes);
+        let coarser = (self.of_rim + (self.of_rim.powi(2) + 4.0 * left * self.of_area).sqrt()) / (2.0 * left);
+        self.refusal(problem, coarser)
     }
 
     /// Refuses more points than so many.
@@ -229,8 +264,16 @@ impl Budget {
 
     fn refusal(&self, problem: String, coarser: f64) -> Result<()> {
         let spacing = self.spacing / MM;
-        let remedy = format!("give about {:.2e} mm or more{}", 1.05 * spacing * coarser, self.other_keys);
-        Err(input("model.spacing_mm", spacing, problem, remedy))
+        let wide = 1.05 * spacing * coarser;
+        // Three digits, upwards.
+        let digit = 10.0_f64.powf(wide.log10().floor() - 2.0);
+        let wide = round_mm((wide / digit).ceil() * digit * MM);
+        Err(input(
+            "model.spacing_mm",
+            round_mm(self.spacing),
+            problem,
+            format!("give about {wide} mm or more{}", self.other_keys),
+        ))
     }
 
     /// Refuses what takes up more memory than this process may still take ([`machine::free_bytes`]).
@@ -262,17 +305,6 @@ fn plate_of(case: &Case) -> PointPlate<'_> {
 fn of_nodes(case: &Case) -> Budget {
     let far = case.model.element_free.resolution.far;
     let nodes = case.specimen.area() / (far * far);
-    let bytes = BASE + NODE * nodes;
-    Budget { points: nodes, bytes, disk_bytes: DISK_BASE + DISK_POINT * nodes, spacing: far, ..Budget::none() }
-}
-
-/// Bytes of a point of a case.
-fn of_point(model: &Model) -> &'static Curve {
-    match model.solver {
-        _ if model.arrangement != Discretisation::Lattice => LEVELS,
-        SolverKind::Direct => DIRECT,
-        SolverKind::Window => WINDOW,
-        SolverKind::Multigrid => MULTIGRID,
-        SolverKind::AdaptiveDynamicRelaxation => RELAXATION,
-    }
+    let (of_area, disk_bytes) = (NODE * nodes, DISK_BASE + DISK_NODE * nodes);
+    Budget { points: nodes, bytes: BASE + of_area, disk_bytes, of_area, spacing: far, ..Budget::none() }
 }

@@ -44,13 +44,13 @@ pub(super) fn sums(file: &[u8], chunks: impl Iterator<Item = [i64; 2]>) -> Optio
                 (1, 5 | 8, 1) => page.values = number,
                 _ => {}
             })?;
-            left = reader.left.get(usize::try_from(page.packed).ok()?..)?;
             sums.unpacked = sums.unpacked.saturating_add(u64::try_from(page.unpacked).ok()?);
             // One at the least, so that empty pages named again and again come to an end.
             sums.values = sums.values.saturating_add(usize::try_from(page.values).ok()?.max(1));
             if sums.values > CELLS_MAX || sums.unpacked > UNPACKED_MAX {
                 return Some(sums);
             }
+            left = reader.left.get(usize::try_from(page.packed).ok()?..)?;
         }
     }
     Some(sums)
