@@ -1,6 +1,7 @@
 //! One input file: one choice from each room, checked as a whole before anything runs.
 
 mod boundaries;
+pub mod budget;
 mod choices;
 mod fatigue;
 pub mod first_load;

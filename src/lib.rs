@@ -38,6 +38,7 @@
 pub mod error;
 pub mod kinds;
 pub mod units;
+pub mod cells;
 #[cfg(feature = "tables")]
 pub mod tables;
 pub mod parallel;

@@ -21,6 +21,7 @@ pub use outcome::{CrossCheck, CurvePoint, Observer, Prediction, Progress, RunFig
 
 pub use crate::levels::PointGrid;
 
+use crate::case::budget::Budget;
 use crate::case::{Case, Method};
 use crate::error::Result;
 use crate::fatigue::Driver;
@@ -37,7 +38,7 @@ use record::Record;
 /// Predicts the a-N curve of a case.
 ///
 /// # Errors
-/// Wrong input that shows only now (spacing against plate, no fatigue law), or mechanics that fail before there is a curve.
+/// Wrong input that shows only now (spacing against plate or memory, no fatigue law), or mechanics that fail before there is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
     watched(case, observer, || follow(Record::new(case, observer)))
 }
@@ -54,6 +55,7 @@ pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> R
 
 /// A run under the eyes of its observer from building the plate on.
 fn watched(case: &Case, observer: &dyn Observer, run: impl FnOnce() -> Result<Prediction> + Send) -> Result<Prediction> {
+    Budget::of(case).within_machine()?;
     in_pool(|| watch::with(observer.watch(), || watch::unless_cancelled(&case.name, run())))
 }
 

@@ -4,10 +4,13 @@
 //! a frame. Nothing a fit or a prediction needs goes through here; it serves many specimens at once and whoever goes on with
 //! the results elsewhere. Columns carry their units, as in all result files.
 
+mod pages;
+
 use std::path::Path;
 
 use polars::prelude::*;
 
+use crate::cells::{CELLS_MAX, SMALLER, TEXT_MAX, UNPACKED_MAX, defused, too_many};
 use crate::error::{Error, InputError, Result};
 use crate::units::unmistakable;
 
@@ -66,7 +69,11 @@ pub fn wide_to_long(wide: &DataFrame) -> Result<DataFrame> {
         let part = assemble(vec![name, cycles, length.clone()])?.filter(&present).map_err(trouble)?;
         long = Some(match long {
             None => part,
-            Some(all) => all.vstack(&part).map_err(trouble)?,
+            // In place: a copy for every specimen would copy all the ones before.
+            Some(mut all) => {
+                all.vstack_mut(&part).map_err(trouble)?;
+                all
+            }
         });
     }
     long.map_or_else(|| assemble(Vec::new()), Ok)
@@ -115,34 +122,68 @@ pub fn parquet(table: &DataFrame) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The table as the bytes of a CSV file, numbers with all their digits.
+/// The table as the bytes of a CSV file, numbers with all their digits, text that no spreadsheet runs ([`defused`]).
 pub fn csv(table: &DataFrame) -> Result<Vec<u8>> {
+    let columns = table.columns().iter().map(|column| {
+        let text = column.str().map(|text| text.apply_values(defused).into_column());
+        let mut column = text.unwrap_or_else(|_| column.clone());
+        column.rename(defused(column.name()).into_owned().into());
+        column
+    });
     let mut bytes = Vec::new();
-    CsvWriter::new(&mut bytes).finish(&mut table.clone()).map_err(trouble)?;
+    CsvWriter::new(&mut bytes).finish(&mut assemble(columns.collect())?).map_err(trouble)?;
     Ok(bytes)
 }
 
 /// Reads the bytes of a Parquet file; `path` is only named in messages.
+///
+/// # Errors
+/// Bytes that are none; a table that would become larger than [`crate::cells`] allows, before it does.
 pub fn read_parquet(bytes: &[u8], path: &Path) -> Result<Cells> {
-    let broken = |error: PolarsError| {
-        Error::Input(Box::new(InputError {
-            file: Some(path.to_path_buf()),
-            problem: format!("is not a Parquet table ({error})"),
-            remedy: "give a Parquet or a CSV file".to_owned(),
-            ..InputError::default()
-        }))
+    let refused = |problem: String, remedy: &str| {
+        let (file, remedy) = (Some(path.to_path_buf()), remedy.to_owned());
+        Error::Input(Box::new(InputError { file, problem, remedy, ..InputError::default() }))
     };
+    let broken = |error: PolarsError| refused(format!("is not a Parquet table ({error})"), "give a Parquet or a CSV file");
+    let too_large = |what: &str, count: usize, most: usize| Err(refused(too_many(what, count, most), SMALLER));
+    let unreadable = |what: &'static str| broken(PolarsError::ComputeError(what.into()));
+    if !pages::has_whole_footer(bytes) {
+        return Err(unreadable("its footer is cut off"));
+    }
     let mut reader = ParquetReader::new(std::io::Cursor::new(bytes));
     // A file of a few bytes can stand for any number of equal rows.
     let rows = reader.num_rows().map_err(broken)?;
     if rows > ROWS_MAX {
         return Err(broken(PolarsError::ComputeError(format!("{rows} rows are more than {ROWS_MAX}").into())));
     }
+    let groups = &reader.get_metadata().map_err(broken)?.row_groups;
+    let columns = groups.iter().map(|group| group.parquet_columns().len()).max().unwrap_or(0);
+    if rows.saturating_mul(columns) > CELLS_MAX {
+        return too_large("cells", rows.saturating_mul(columns), CELLS_MAX);
+    }
+    // The footer need not say what the pages hold.
+    let chunks = groups.iter().flat_map(|group| group.parquet_columns());
+    let chunks =
+        chunks.map(|chunk| [chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset()), chunk.compressed_size()]);
+    let pages = pages::sums(bytes, chunks).ok_or_else(|| unreadable("its pages cannot be told apart"))?;
+    if pages.values > CELLS_MAX {
+        return too_large("values in its pages", pages.values, CELLS_MAX);
+    }
+    if pages.unpacked > UNPACKED_MAX {
+        return too_large("bytes in its unpacked pages", pages.unpacked as usize, UNPACKED_MAX as usize);
+    }
     let table = reader.finish().map_err(broken)?;
     let mut rows = vec![Vec::with_capacity(table.width()); table.height()];
+    let mut length = 0;
     for column in table.columns() {
         for (index, row) in rows.iter_mut().enumerate() {
-            row.push(cell(&column.get(index).map_err(broken)?));
+            let text = cell(&column.get(index).map_err(broken)?);
+            // Values of a dictionary share their text up to here.
+            length += text.len();
+            if length > TEXT_MAX {
+                return too_large("bytes of text up to here", length, TEXT_MAX);
+            }
+            row.push(text);
         }
     }
     Ok(Cells { header: table.get_column_names().iter().map(|name| name.to_string()).collect(), rows })

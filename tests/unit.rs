@@ -21,6 +21,8 @@ mod speed_chart;
 mod collinear;
 #[path = "unit/boundary.rs"]
 mod boundary;
+#[path = "unit/budget.rs"]
+mod budget;
 #[path = "unit/calibration_case.rs"]
 mod calibration_case;
 #[path = "unit/commands.rs"]
@@ -35,6 +37,9 @@ mod guard;
 mod layering;
 #[path = "unit/belonging.rs"]
 mod belonging;
+#[cfg(feature = "tables")]
+#[path = "unit/cells.rs"]
+mod cells;
 #[path = "unit/import.rs"]
 mod import;
 #[path = "unit/laws.rs"]

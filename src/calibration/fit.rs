@@ -8,7 +8,7 @@ use crate::calibration::estimate::{Estimate, Robust, apart, are_apart, robust_co
 pub use crate::calibration::fitted_curve::FittedCurve;
 use crate::calibration::fitted_curve::{as_fitted, fit_one, fitted_curve, own_law};
 use crate::calibration::lack_of_fit::{LackOfFit, lack_of_fit};
-use crate::calibration::measured::MeasuredCurve;
+use crate::calibration::measured::{MeasuredCurve, first_of};
 use crate::calibration::median::pointwise_median;
 use crate::calibration::outliers::{doubts, readings_apart, robust_line, runs, step_rates};
 use crate::calibration::paris::{self, Paris};
@@ -97,7 +97,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         _ => task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?,
     };
     let at_ends = specimens.iter().filter(|curve| is_fitted && is_at_end(curve.constants.p));
-    warnings.extend(at_ends.map(|curve| format!("specimen {}: {}", curve.name, at_end(curve.constants.p))));
+    warnings.extend(first_of(at_ends.map(|curve| format!("specimen {}: {}", curve.name, at_end(curve.constants.p))).collect()));
     warnings.extend(short_steps_warning(&median.crack_length));
 
     let (mut confidence, mut paris) = assess(task, law, &median, &record, is_fitted)?;

@@ -2,7 +2,7 @@
 
 use crate::calibration::fit::FittedCurve;
 use crate::calibration::measured::MeasuredCurve;
-use crate::calibration::median::cycles_at;
+use crate::calibration::median::{Rising, cycles_at};
 use crate::error::Result;
 use crate::tables::{CYCLES, DataFrame, LENGTH, SPECIMEN, Values, frame, quantiles, wide_to_long};
 use crate::units::MM;
@@ -26,7 +26,8 @@ pub fn long(curves: &[MeasuredCurve]) -> Result<DataFrame> {
 pub fn wide(curves: &[MeasuredCurve], lengths: &[f64]) -> Result<DataFrame> {
     let mut columns = vec![(LENGTH, Values::Numbers(lengths_mm(lengths)))];
     for curve in curves {
-        let cycles = lengths.iter().map(|&length| cycles_at(curve, length));
+        let rising = Rising::of(curve);
+        let cycles = lengths.iter().map(|&length| rising.cycles_at(length));
         columns.push((&curve.specimen, Values::Gaps(cycles.collect())));
     }
     frame(columns)

@@ -1,9 +1,14 @@
 //! `[measured] leave_out`: growth over some cycles that does not count, with the reason, which stands in every result.
 
+use std::collections::HashMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::measured::{Measured, READINGS_MIN};
 use crate::error::{Error, Result, input, input_missing};
+
+/// Most names of specimens in a message.
+const NAMES_MAX: usize = 20;
 
 /// Cycles of a specimen that do not count.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -27,15 +32,14 @@ impl Measured {
     /// # Errors
     /// A window without specimen, reason or readings, or one that leaves fewer than [`READINGS_MIN`] readings.
     pub fn leave_out(&mut self, windows: &[LeaveOut]) -> Result<()> {
+        let places: HashMap<String, usize> =
+            self.curves.iter().enumerate().rev().map(|(place, curve)| (curve.specimen.clone(), place)).collect();
         for (index, window) in windows.iter().enumerate() {
-            self.leave_one_out(&format!("measured.leave_out[{index}]"), window)?;
+            self.leave_one_out(&format!("measured.leave_out[{index}]"), window, &places)?;
         }
         for (index, window) in windows.iter().enumerate() {
-            let Some(curve) =
-                self.curves.iter_mut().find(|curve| window.specimen.as_ref().is_none_or(|name| *name == curve.specimen))
-            else {
-                continue;
-            };
+            let place = window.specimen.as_ref().map_or(Some(0), |name| places.get(name).copied());
+            let Some(curve) = place.and_then(|place| self.curves.get_mut(place)) else { continue };
             let counted = |step: &usize| curve.counts(*step);
             let steps = 1..curve.cycles.len();
             let (Some(first), Some(last)) = (steps.clone().find(counted), steps.rev().find(counted)) else {
@@ -57,11 +61,15 @@ impl Measured {
         Ok(())
     }
 
-    fn leave_one_out(&mut self, key: &str, window: &LeaveOut) -> Result<()> {
+    fn leave_one_out(&mut self, key: &str, window: &LeaveOut, places: &HashMap<String, usize>) -> Result<()> {
         let LeaveOut { specimen, from_cycles, to_cycles, reason } = window;
-        let known = || self.curves.iter().map(|curve| format!("\"{}\"", curve.specimen)).collect::<Vec<_>>().join(", ");
+        let known = || {
+            let names = self.curves.iter().take(NAMES_MAX).map(|curve| format!("\"{}\"", curve.specimen));
+            let more = self.curves.len().saturating_sub(NAMES_MAX);
+            names.chain((more > 0).then(|| format!("{more} more"))).collect::<Vec<_>>().join(", ")
+        };
         let place = match specimen {
-            Some(name) => self.curves.iter().position(|curve| curve.specimen == *name).ok_or_else(|| {
+            Some(name) => places.get(name).copied().ok_or_else(|| {
                 input(
                     &format!("{key}.specimen"),
                     format!("\"{name}\""),

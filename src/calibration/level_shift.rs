@@ -103,7 +103,11 @@ pub fn best_split(rates: &[StepRate]) -> Option<LevelShift> {
 /// Where the rates of a curve have two levels, and not because of the few of them that `runs` names: those have their own warning.
 #[must_use]
 pub fn warning(curve: &MeasuredCurve, rates: &[StepRate], runs: &[Run]) -> Option<String> {
-    let named = |rate: &StepRate| runs.iter().any(|run| rate.from >= run.from && rate.to <= run.to);
+    // Runs follow each other.
+    let named = |rate: &StepRate| {
+        let begun = runs.partition_point(|run| run.from <= rate.from);
+        begun > 0 && rate.to <= runs[begun - 1].to
+    };
     let rest: Vec<StepRate> = rates.iter().filter(|rate| !named(rate)).copied().collect();
     let few = (rates.len() - rest.len()) as f64 <= FEW * rates.len() as f64;
     let rates = if few { &rest } else { rates };

@@ -3,7 +3,7 @@
 //! The load at a reading is the one under which the crack grew there. Where it changes once between readings of equal loads (a step), the
 //! growth up to the reading had the new load; where it changes from reading to reading (shedding), it went from one to the other.
 
-use crate::calibration::measured::{Measured, MeasuredCurve};
+use crate::calibration::measured::{Measured, MeasuredCurve, first_of};
 use crate::calibration::table::Fault;
 use crate::case::Case;
 use crate::error::Result;
@@ -47,6 +47,7 @@ impl Measured {
     pub fn resolve_loads(&mut self, case: &Case) -> Result<()> {
         let specimen = &case.specimen;
         let case_range = case.loading.maximum * case.loading.range_share();
+        let mut of_ratios = Vec::new();
         for curve in &mut self.curves {
             let Some(loads) = &curve.loads else { continue };
             let per_load = match (loads.measure, specimen.load_measure) {
@@ -66,11 +67,12 @@ impl Measured {
                 maximum * per_load * (1.0 - ratio.max(0.0)) / case_range
             };
             let factors: Vec<f64> = loads.maximum.iter().zip(&loads.ratio).map(factor).collect();
-            self.warnings.extend(ratio_warning(curve, loads, case));
+            of_ratios.extend(ratio_warning(curve, loads, case));
             // Loads of the case as a machine keeps them are those of the case.
             let is_case = factors.iter().all(|factor| (factor - 1.0).abs() < 1e-6);
             curve.load_factor = if is_case { Vec::new() } else { factors };
         }
+        self.warnings.extend(first_of(of_ratios));
         Ok(())
     }
 }

@@ -4,6 +4,7 @@
 //! feature `tables` also Parquet. Every complaint names file, line, column and value. A crack length that falls from one reading to the
 //! next is reading noise and accepted; cycles that fall or repeat are a mistake of the file and refused.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::calibration::columns::{self, Layout};
@@ -106,8 +107,16 @@ pub struct Survey {
     pub problems: Vec<InputError>,
 }
 
-/// Most problems that a survey names.
+/// Most problems that a survey names, and most warnings of one kind.
 pub const PROBLEMS_MAX: usize = 100;
+
+/// The first warnings of one kind, and how many more there are.
+pub(crate) fn first_of(mut warnings: Vec<String>) -> Vec<String> {
+    let more = warnings.len().saturating_sub(PROBLEMS_MAX);
+    warnings.truncate(PROBLEMS_MAX);
+    warnings.extend((more > 0).then(|| format!("and {more} more warnings of this kind")));
+    warnings
+}
 
 /// Reads the bytes of one file as [`parse`] does, but goes on behind a bad row.
 #[must_use]
@@ -149,8 +158,9 @@ impl Measured {
     /// # Errors
     /// [`Error::Input`] if a specimen has a name that stands here already.
     pub fn add(&mut self, other: Measured) -> Result<()> {
+        let own: HashMap<&str, &MeasuredCurve> = self.curves.iter().map(|curve| (curve.specimen.as_str(), curve)).collect();
         for curve in &other.curves {
-            let Some(earlier) = self.curves.iter().find(|earlier| earlier.specimen == curve.specimen) else { continue };
+            let Some(earlier) = own.get(curve.specimen.as_str()) else { continue };
             let problem = format!("stands in {} too", earlier.source.file.display());
             let fault = Fault {
                 file: &curve.source.file,
@@ -188,10 +198,11 @@ impl Measured {
     /// Warns of crack fronts that are more uneven than E647 accepts.
     pub fn check_sides(&mut self, specimen: &Specimen) {
         let limit = side_difference_max(specimen.kind, specimen.width, specimen.thickness);
+        let mut of_sides = Vec::new();
         for curve in &self.curves {
             let uneven: Vec<usize> = (0..curve.side_difference.len()).filter(|&i| curve.side_difference[i] > limit).collect();
             let Some(&first) = uneven.first() else { continue };
-            self.warnings.push(format!(
+            of_sides.push(format!(
                 "{}:{}: specimen {}: crack lengths on its sides differ by {:.2} mm; at {} of {} readings by more than the {:.2} mm that \
                  ASTM E647 accepts",
                 curve.source.file.display(),
@@ -203,6 +214,7 @@ impl Measured {
                 limit / MM
             ));
         }
+        self.warnings.extend(first_of(of_sides));
     }
 
     /// Readings between two crack lengths (m). Cycles are counted from the first reading kept; readings of that specimen

@@ -11,27 +11,36 @@ const SAME_LENGTH: f64 = 1e-9;
 /// Readings that fall back below an earlier one do not count: noise in a reading does not heal a crack.
 #[must_use]
 pub fn cycles_at(curve: &MeasuredCurve, crack_length: f64) -> Option<f64> {
-    let (&first_length, &first_cycles) = (curve.crack_length.first()?, curve.cycles.first()?);
-    if (crack_length - first_length).abs() <= SAME_LENGTH {
-        return Some(first_cycles);
-    }
-    if crack_length < first_length {
-        return None;
-    }
-    let (mut longest, mut at) = (first_length, first_cycles);
-    for (&a, &n) in curve.crack_length.iter().zip(&curve.cycles) {
-        if a <= longest {
-            continue;
+    Rising::of(curve).cycles_at(crack_length)
+}
+
+/// The readings of a curve at which it was longer than ever before: what [`cycles_at`] goes by, for many lengths.
+pub(super) struct Rising {
+    readings: Vec<(f64, f64)>,
+}
+
+impl Rising {
+    pub(super) fn of(curve: &MeasuredCurve) -> Rising {
+        let mut readings: Vec<(f64, f64)> = Vec::with_capacity(curve.cycles.len());
+        for (&length, &cycles) in curve.crack_length.iter().zip(&curve.cycles) {
+            if readings.last().is_none_or(|&(longest, _)| length > longest) {
+                readings.push((length, cycles));
+            }
         }
+        Rising { readings }
+    }
+
+    /// As the function of that name.
+    pub(super) fn cycles_at(&self, crack_length: f64) -> Option<f64> {
+        // The first reading that is as long or longer.
+        let place = self.readings.partition_point(|&(a, _)| a < crack_length && (crack_length - a).abs() > SAME_LENGTH);
+        let &(a, n) = self.readings.get(place)?;
         if (crack_length - a).abs() <= SAME_LENGTH {
             return Some(n);
         }
-        if crack_length < a {
-            return Some(at + (n - at) * (crack_length - longest) / (a - longest));
-        }
-        (longest, at) = (a, n);
+        let &(longest, at) = self.readings.get(place.checked_sub(1)?)?;
+        Some(at + (n - at) * (crack_length - longest) / (a - longest))
     }
-    None
 }
 
 /// Median of a non-empty set of numbers: the middle one, or the mean of the two in the middle.
@@ -80,10 +89,12 @@ pub fn common_lengths(curves: &[MeasuredCurve]) -> Result<Vec<f64>> {
 /// first of these lengths. Counting from there matters: specimens start their counters at different lengths.
 pub fn pointwise_median_at(curves: &[MeasuredCurve], lengths: &[f64]) -> Result<MeasuredCurve> {
     let mut cycles = Vec::with_capacity(lengths.len());
+    let rising: Vec<Rising> = curves.iter().map(Rising::of).collect();
+    let starts: Vec<Option<f64>> = rising.iter().map(|curve| curve.cycles_at(*lengths.first()?)).collect();
     for &length in lengths {
         let mut since_start = Vec::with_capacity(curves.len());
-        for curve in curves {
-            match (cycles_at(curve, length), cycles_at(curve, lengths[0])) {
+        for ((curve, rising), start) in curves.iter().zip(&rising).zip(&starts) {
+            match (rising.cycles_at(length), *start) {
                 (Some(n), Some(start)) => since_start.push(n - start),
                 _ => {
                     return Err(input_missing(

@@ -17,6 +17,9 @@ pub const FACTOR: f64 = 3.0;
 /// Fewest rates for a line that a few of them cannot move.
 const RATES_MIN: usize = 6;
 
+/// Rates that a line is drawn through at the most, evenly picked: slopes of all pairs are taken.
+const RATES_MAX: usize = 2000;
+
 /// Runs of readings that a message names.
 const RUNS_NAMED: usize = 5;
 
@@ -81,12 +84,14 @@ pub fn step_rates(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<St
     readings_apart(&curve.crack_length).windows(2).filter_map(rate).collect()
 }
 
-/// The repeated-median line; `None` for fewer than six rates or rates at one ΔK.
+/// The repeated-median line; `None` for fewer than six rates or rates at one ΔK. Of more than two thousand every second, third and so on
+/// is taken.
 #[must_use]
 pub fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
     if rates.len() < RATES_MIN {
         return None;
     }
+    let rates: Vec<StepRate> = rates.iter().copied().step_by(rates.len().div_ceil(RATES_MAX)).collect();
     let slope = |one: &StepRate| {
         let others = rates.iter().filter(|other| other.log_k != one.log_k);
         let slopes: Vec<f64> = others.map(|other| (other.log_rate - one.log_rate) / (other.log_k - one.log_k)).collect();
@@ -122,8 +127,10 @@ impl MeasuredCurve {
     /// The curve with the growth of some runs left out.
     #[must_use]
     pub fn without(&self, runs: &[Run]) -> MeasuredCurve {
-        let in_run = |step: usize| runs.iter().any(|run| step > run.from && step <= run.to);
-        let left_out = (0..self.cycles.len()).map(|step| !self.counts(step) || in_run(step)).collect();
+        let mut left_out: Vec<bool> = (0..self.cycles.len()).map(|step| !self.counts(step)).collect();
+        for run in runs {
+            left_out[run.from + 1..=run.to].fill(true);
+        }
         if runs.is_empty() { self.clone() } else { MeasuredCurve { left_out, ..self.clone() } }
     }
 }

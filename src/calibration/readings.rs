@@ -1,10 +1,12 @@
 //! From the cells of a table to the readings of every specimen, each checked by itself and against the one before.
 
+use std::collections::HashMap;
+
 use crate::calibration::cells::{load, value};
 use crate::calibration::columns::{Column, Layout, LoadColumns, Shape};
 use crate::calibration::decimal::Decimal;
 use crate::calibration::loads::Loads;
-use crate::calibration::measured::{Measured, MeasuredCurve, READINGS_MIN, Source};
+use crate::calibration::measured::{Measured, MeasuredCurve, READINGS_MIN, Source, first_of};
 use crate::calibration::pairs::Pair;
 use crate::calibration::table::{Fault, Row, Table, whole_file};
 use crate::error::{Error, Result};
@@ -35,6 +37,7 @@ pub(crate) fn curves_of(table: &Table, layout: &Layout, fate: Fate<'_>) -> Resul
         }
         Shape::Paired(pairs) => paired_curves(table, layout.decimal, pairs, fate)?,
     };
+    let mut falling = Vec::new();
     for curve in &measured.curves {
         let specimen = || Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
         if curve.cycles.len() < READINGS_MIN {
@@ -50,7 +53,7 @@ pub(crate) fn curves_of(table: &Table, layout: &Layout, fate: Fate<'_>) -> Resul
         }
         let falls = curve.crack_length.windows(2).filter(|pair| pair[1] < pair[0]).count();
         if falls > 0 {
-            measured.warnings.push(format!(
+            falling.push(format!(
                 "{}: specimen {}: crack length falls at {falls} of {} readings (taken as reading noise)",
                 table.file.display(),
                 curve.specimen,
@@ -58,6 +61,7 @@ pub(crate) fn curves_of(table: &Table, layout: &Layout, fate: Fate<'_>) -> Resul
             ));
         }
     }
+    measured.warnings.extend(first_of(falling));
     Ok(measured)
 }
 
@@ -79,6 +83,7 @@ fn long_curves(
 ) -> Result<Vec<MeasuredCurve>> {
     let alone = table.file.file_stem().map_or_else(|| "specimen".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let mut curves: Vec<MeasuredCurve> = Vec::new();
+    let mut places: HashMap<&str, usize> = HashMap::new();
     for row in &table.rows {
         let name = specimen.map_or(alone.as_str(), |column| row.cell(column));
         if name.is_empty() {
@@ -86,14 +91,10 @@ fn long_curves(
             fate(fault.error("is empty", "name the specimen in every row, or leave the column out"))?;
             continue;
         }
-        // The last curve is the one of the row in all files but interleaved ones.
-        let place = match curves.iter().rposition(|curve| curve.specimen == name) {
-            Some(place) => place,
-            None => {
-                curves.push(empty_curve(name, table, columns.lengths[0]));
-                curves.len() - 1
-            }
-        };
+        let place = *places.entry(name).or_insert(curves.len());
+        if place == curves.len() {
+            curves.push(empty_curve(name, table, columns.lengths[0]));
+        }
         add_reading(&mut curves[place], table, row, decimal, columns).or_else(&mut *fate)?;
     }
     Ok(curves)

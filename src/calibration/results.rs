@@ -10,6 +10,7 @@ use crate::calibration::lack_of_fit::LackOfFit;
 use crate::calibration::leave_out::LeaveOut;
 use crate::calibration::record::{FittedRecord, SourceFile};
 use crate::case::Method;
+use crate::cells::field;
 use crate::units::{GPA, MM};
 
 /// Content of `fit.json`; units as in the names, cycles else.
@@ -223,7 +224,7 @@ pub fn fit_curves_csv(fit: &Fit) -> String {
     for curve in curves_written(fit) {
         for ((length, measured), fitted) in curve.crack_length.iter().zip(&curve.cycles_measured).zip(&curve.cycles_fitted) {
             // Writing to a String cannot fail. `Display` of f64 keeps all digits.
-            let _ = writeln!(text, "{},{},{measured},{fitted}", quoted(&curve.name), tidy(length / MM));
+            let _ = writeln!(text, "{},{},{measured},{fitted}", field(&curve.name), tidy(length / MM));
         }
     }
     text
@@ -232,11 +233,6 @@ pub fn fit_curves_csv(fit: &Fit) -> String {
 /// The curves of `fit_curves`: the specimens, then the record's median where it is not one of them.
 pub fn curves_written(fit: &Fit) -> impl Iterator<Item = &FittedCurve> {
     fit.specimens.iter().chain((fit.specimens.len() > 1).then_some(&fit.record))
-}
-
-/// A name as a CSV field.
-pub(crate) fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 
 /// Twelve significant digits: hides the last bits that unit conversion leaves, so that 3.015 mm reads as 3.015.

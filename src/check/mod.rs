@@ -15,6 +15,7 @@ use self::understood::{case_lines, curves_line, rates_line, sweep_lines};
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::laws::case::{LawCase, is_law_fit};
 use crate::case::Case;
+use crate::case::budget::Budget;
 use crate::error::Result;
 use crate::fracture::Scene;
 use crate::fracture::read::is_scene;
@@ -123,7 +124,7 @@ pub fn is_calibration(table: &toml::Table) -> bool {
 /// # Errors
 /// A body that cannot be built.
 pub fn checked_case(document: &Document, kind: &'static str, case: &Case, mut warnings: Vec<String>) -> Result<Checked> {
-    let preview = preview(case).map_err(|error| document.locate(error))?;
+    let preview = Budget::of(case).within_machine().and_then(|()| preview(case)).map_err(|error| document.locate(error))?;
     warnings.extend(preview.warnings);
     let lines = case_lines(case, preview.points);
     let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());

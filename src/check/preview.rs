@@ -2,6 +2,7 @@
 
 use super::understood::{built, mm, points_words};
 use crate::body::lattice::Lattice;
+use crate::case::budget::Budget;
 use crate::case::{Case, Method};
 use crate::error::{Error, InputError, Result};
 use crate::fatigue::crack_tip::CrackTip;
@@ -10,10 +11,22 @@ use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::growth::element_free::initial_plate;
 use crate::growth::plate::Plate;
 use crate::report::model_words;
+use crate::specimen::Specimen;
 use crate::state::Bonds;
 
-/// Points up to which the body is built; well below a second.
-const POINTS_BUILT: f64 = 4e5;
+/// Bonds up to which the body is built, those of 4e5 points at the usual horizon; well below a second.
+const BONDS_BUILT: f64 = 6e6;
+/// Corners of an outline, holes and slots among them, with which a place is asked in no time.
+const CORNERS_USUAL: f64 = 50.0;
+/// Places up to which it is: an outline of thin arms has many that are empty, and each of them is asked whether it lies in the plate.
+const PLACES_BUILT: f64 = 2e6;
+
+/// Whether points and bonds are so few that a check lays them.
+pub(super) fn is_quick(budget: &Budget, specimen: &Specimen) -> bool {
+    let corners = specimen.outline.len() + specimen.holes.len() + 4 * specimen.slots.len();
+    let asked = budget.places * (corners as f64 / CORNERS_USUAL).max(1.0);
+    budget.bonds <= BONDS_BUILT && asked <= PLACES_BUILT
+}
 
 /// What the lattice makes of a case.
 pub(super) struct Preview {
@@ -48,13 +61,13 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
         return of_nodes(case);
     }
     let (model, specimen) = (&case.model, &case.specimen);
-    let about = specimen.area() / model.spacing.powi(2);
-    if about > POINTS_BUILT {
+    let budget = Budget::of(case);
+    if !is_quick(&budget, specimen) {
         let padding = model.horizon_ratio.floor() as usize;
         let lattice = Lattice::over(specimen, model.coarsest_spacing(), model.lattice_angle, padding)?;
-        let spacing = model.fitting_spacing(specimen);
         let most = if model.refinement.is_some() { "at most" } else { "about" };
-        let count = format!("{most} {:.0}", specimen.area() / spacing.powi(2));
+        let spacing = model.fitting_spacing(specimen);
+        let count = format!("{most} {:.0}", budget.points * (model.spacing / spacing).powi(2));
         return Ok(Preview { points: points_line(case, &count, [spacing, lattice.spacing]), warnings: Vec::new() });
     }
     let plate = Plate::build(specimen, specimen, &case.material, model).map_err(as_input)?;

@@ -1,6 +1,6 @@
 //! What `perilife check` has understood of a fracture scene, in words.
 
-use super::preview::as_input;
+use super::preview::{as_input, is_quick};
 use super::understood::{self, Line, line, mm, plate_lines, points_words, short};
 use crate::error::Result;
 use crate::fracture::Scene;
@@ -12,14 +12,16 @@ use crate::units::{MM, MPA};
 
 /// Lines about loads and supports that fit below the drawing.
 const LINES_MAX: usize = 8;
-/// Points up to which points and bonds are built; below a second.
-const POINTS_BUILT: f64 = 1e5;
+/// Bonds up to which points and bonds are built, those of 1e5 points at the usual horizon; below a second.
+const BONDS_BUILT: f64 = 1.5e6;
 
 /// One line for each thing understood, and what the user should know; points and bonds are built where that is quick, since only
 /// then some troubles show.
 pub(super) fn scene_lines(scene: &Scene) -> Result<(Vec<Line>, Vec<String>)> {
-    let about = scene.specimen.area() / scene.model.spacing.powi(2);
-    let built = (about <= POINTS_BUILT).then(|| preview(scene).map_err(as_input)).transpose()?;
+    let budget = scene.budget();
+    budget.within_machine()?;
+    let is_quick = budget.bonds <= BONDS_BUILT && is_quick(&budget, &scene.specimen);
+    let built = is_quick.then(|| preview(scene).map_err(as_input)).transpose()?;
     let specimen = &scene.specimen;
     let chosen = model_words::of_scene(scene, None);
     let micro = scene.echo.get("micro_cracks").and_then(|section| section.get("count")).and_then(serde_json::Value::as_u64);
@@ -28,7 +30,7 @@ pub(super) fn scene_lines(scene: &Scene) -> Result<(Vec<Line>, Vec<String>)> {
     let asked = scene.model.spacing;
     let (counts, [fine, coarse], horizon) = match &built {
         Some(laid) => (understood::built([laid.points, laid.bonds, laid.cut]), laid.spacings, laid.horizons[0]),
-        None => (format!("about {about:.0}"), [asked; 2], asked * scene.model.horizon_ratio),
+        None => (format!("about {:.0}", budget.points), [asked; 2], asked * scene.model.horizon_ratio),
     };
     // Scenes ask for the spacing of the coarsest level.
     let points = points_words(&counts, [fine, coarse], [asked * fine / coarse, horizon], &chosen);

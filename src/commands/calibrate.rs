@@ -14,6 +14,7 @@ use crate::calibration::estimate::Estimate;
 use crate::calibration::laws::case::is_law_fit;
 use crate::calibration::results::{FitReport, record};
 use crate::case::Case;
+use crate::case::budget::Budget;
 use crate::error::{Result, input};
 use crate::input::Document;
 use crate::predict::Prediction;
@@ -55,6 +56,7 @@ pub fn run(args: &Args) -> Result<()> {
         return calibrate_laws::run(args, &document);
     }
     let calibration = CalibrationCase::from_document(document)?;
+    Budget::of(&calibration.case).within_machine().map_err(|error| error.in_file(&args.calibration))?;
     // Read before the fit: a slip in the last case should not cost a calibration.
     let cases = cases_to_predict(&args.predict)?;
     let mut read = calibration.case.provenance.clone();

@@ -47,6 +47,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let document = Document::read(&args.case, &args.set)?;
     let scene = Scene::from_document(&document)?;
+    scene.budget().within_machine().map_err(|error| document.locate(error))?;
     // Claimed first: a folder that cannot be written should not cost a run.
     args.keeping.check_outside(&args.out)?;
     let folder = OutputFolder::claim(&args.out, RunKind::Fracture, &scene.provenance, report::room(&scene))?;

@@ -6,8 +6,10 @@ use serde_json::Value;
 
 use super::checkpoint;
 use super::console::Console;
+use crate::case::budget::Budget;
 use crate::case::{Case, Method};
 use crate::error::Result;
+use crate::input::Document;
 use crate::predict::plastic_zone::PlasticZone;
 use crate::predict::residual_strength::{check_strength, residual_strength};
 use crate::predict::{Prediction, StopReason};
@@ -48,7 +50,10 @@ pub struct Args {
 /// # Errors
 /// Wrong input, a run without a result, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
-    let case = Case::from_file(&args.case, &args.set)?;
+    let document = Document::read(&args.case, &args.set)?;
+    let case = Case::from_document(&document)?;
+    // Before anything is laid out or written.
+    Budget::of(&case).within_machine().map_err(|error| document.locate(error))?;
     let extras = Extras { residual_strength: args.residual_strength, keeping: args.keeping.clone() };
     let done = run_case(&case, &args.out, &extras, &args.console)?;
     args.console.object(&done.result)

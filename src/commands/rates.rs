@@ -9,14 +9,14 @@ use super::console::Console;
 use super::unaged::case_without_law;
 use crate::calibration::decimal::Decimal;
 use crate::calibration::measured::{
-    ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, read_into,
+    ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, first_of, read_into,
 };
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt;
 use crate::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
-use crate::calibration::results::quoted;
 use crate::calibration::test_piece::{TestPiece, add_delta_k};
 use crate::case::Case;
+use crate::cells::field;
 use crate::error::{Result, input};
 use crate::input::{Opened, STREAM};
 use crate::report::output::{OutputFile, Sort};
@@ -108,7 +108,8 @@ pub fn run(args: &Args) -> Result<()> {
         measured.check_sides(&case.specimen);
     }
     let specimens = specimen_rates(&measured, method, case.as_ref())?;
-    for warning in measured.warnings.iter().chain(specimens.iter().flat_map(|specimen| &specimen.warnings)) {
+    let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());
+    for warning in measured.warnings.iter().chain(&of_specimens) {
         args.console.warn(warning);
     }
     let table = table(&specimens);
@@ -179,7 +180,7 @@ fn table(specimens: &[SpecimenRates]) -> String {
             let _ = writeln!(
                 text,
                 "{},{},{:.10},{delta_k},{:.10e},{},{ratio}",
-                quoted(&specimen.name),
+                field(&specimen.name),
                 point.cycles,
                 point.crack_length / MM,
                 point.rate / MM_PER_CYCLE,

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 
 use super::console::Console;
+use crate::case::budget::Budget;
 use crate::case::{Case, Method};
 use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
@@ -57,6 +58,7 @@ pub fn run(args: &Args) -> Result<()> {
 pub fn run_on(document: &Document, method: &[String], out: Option<&Path>, console: &Console) -> Result<Value> {
     let methods = methods(method)?;
     let case = Case::plate_of(document)?;
+    Budget::of(&case).within_machine().map_err(|error| document.locate(error))?;
     let is_on_nodes = methods == [StressIntensityMethod::ElementFreeGalerkin]
         || method.is_empty() && case.model.method == Method::ElementFreeGalerkin;
     let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);

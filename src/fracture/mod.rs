@@ -6,6 +6,7 @@
 
 pub mod bonds;
 pub mod boundary;
+mod budget;
 pub mod checkpoint;
 pub mod contact;
 pub mod correspondence;
@@ -90,6 +91,7 @@ pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
 
 /// A run under the eyes of its observer from building the points on.
 fn watched(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpoint>) -> Result<Fracture> {
+    scene.budget().within_machine()?;
     let run = || watch::unless_cancelled(&scene.name, follow(scene, observer, from));
     in_pool(|| watch::with(observer.watch(), run))
 }

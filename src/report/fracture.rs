@@ -71,9 +71,7 @@ pub(super) fn tables(fracture: &Fracture) -> [(&'static str, String); 3] {
 /// Bytes that a scene will write, roughly.
 #[must_use]
 pub fn room(scene: &Scene) -> Room {
-    // A dozen moments of some 140 bytes a point.
-    let points = scene.specimen.area() / scene.model.spacing.powi(2);
-    Room { tables: 64_000, all: 500_000 + (12.0 * 140.0 * points) as u64 }
+    Room { tables: 64_000, all: scene.budget().disk_bytes as u64 }
 }
 
 /// Writes all files of a scene into `folder`.

@@ -11,6 +11,7 @@ use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_u
 use super::output::{Room, write_file};
 use super::specimen_picture::{nodes_svg, tip_svg};
 use super::{fit_use, json, provenance, vtk};
+use crate::case::budget::Budget;
 use crate::case::first_load;
 use crate::case::{Case, Method, RECORD};
 use crate::error::{Error, Result, input};
@@ -170,13 +171,9 @@ fn input_of(case: &Case) -> Table {
 /// Bytes that a run of this case will write, roughly.
 #[must_use]
 pub fn room(case: &Case) -> Room {
-    // An archive of every moment has some 140 bytes a point, and there are a dozen moments.
-    const OF_POINT: f64 = 12.0 * 140.0;
-    let points = case.specimen.area() / case.model.spacing.powi(2);
-    let of_points = if case.model.method == Method::Handbook { 0.0 } else { OF_POINT * points };
     let texts: usize = case.provenance.files.iter().map(|file| file.content.len()).sum();
     let tables = 32_000 + texts as u64;
-    Room { tables, all: tables + 500_000 + of_points as u64 }
+    Room { tables, all: tables + Budget::of(case).disk_bytes as u64 }
 }
 
 /// The fatigue zone ahead of a tip, in the middle of the snapshots that have one.

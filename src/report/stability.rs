@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::csv::number;
 use super::time;
+use crate::cells::field;
 use crate::stability::Record;
 
 /// One record as a line on the console.
@@ -50,12 +51,12 @@ pub fn csv(records: &[Record]) -> String {
             text += &format!(
                 "{},{},{},{},{},{error},{},{},{}\n",
                 sweep.name,
-                quoted(record.method),
-                quoted(sweep.parameter),
+                field(record.method),
+                field(sweep.parameter),
                 number(*value),
                 outcome.status(sweep.bound_percent).name(),
                 record.end_beside(*value).map_or_else(String::new, number),
-                quoted(reason),
+                field(reason),
                 env!("CARGO_PKG_VERSION"),
             );
         }
@@ -75,8 +76,8 @@ pub fn boundaries(records: &[Record]) -> String {
         text += &format!(
             "{},{},{},{},{low},{high},{},{},{date}\n",
             sweep.name,
-            quoted(record.method),
-            quoted(sweep.parameter),
+            field(record.method),
+            field(sweep.parameter),
             record.is_safe.map_or_else(String::new, |is_safe| is_safe.to_string()),
             sweep.bound_percent,
             env!("CARGO_PKG_VERSION"),
@@ -103,9 +104,4 @@ pub fn object(records: &[Record]) -> Value {
         })
     };
     json!({ "version": env!("CARGO_PKG_VERSION"), "records": records.iter().map(record).collect::<Vec<_>>() })
-}
-
-/// A field with commas or quotes in quotes.
-fn quoted(field: &str) -> String {
-    if field.contains([',', '"']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field.to_owned() }
 }

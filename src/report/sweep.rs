@@ -10,7 +10,7 @@ use super::chart::{self, Mark, Series};
 use super::csv;
 use super::output::write_file;
 use super::sweep_warnings::warnings;
-use crate::calibration::results::quoted;
+use crate::cells::field;
 use crate::error::{Error, Result, input_missing};
 use crate::predict::StopReason;
 use crate::sweep::draw::label;
@@ -113,7 +113,7 @@ impl Plan {
     #[must_use]
     pub fn new(sweep: &Sweep, cases: &[DrawnCase]) -> Self {
         let planned =
-            |case: &DrawnCase| PlannedCase { input: case.hash.clone(), values: case.values.iter().map(field).collect() };
+            |case: &DrawnCase| PlannedCase { input: case.hash.clone(), values: case.values.iter().map(written).collect() };
         Plan {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             name: sweep.name.clone(),
@@ -125,7 +125,7 @@ impl Plan {
 }
 
 /// A value as the table writes it.
-fn field(value: &toml::Value) -> String {
+fn written(value: &toml::Value) -> String {
     match value {
         toml::Value::Float(number) => csv::exact(*number),
         toml::Value::String(text) => text.clone(),
@@ -136,10 +136,10 @@ fn field(value: &toml::Value) -> String {
 /// `sweep.csv`: a row for each case in order; one that is not there yet says so.
 #[must_use]
 pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
-    let columns: String = plan.columns.iter().map(|key| format!("{},", quoted(key))).collect();
+    let columns: String = plan.columns.iter().map(|key| format!("{},", field(key))).collect();
     let mut text = format!("case,{columns}life_cycles,stop_reason,crack_length_final_mm,wall_s,problem,life_is_lower_bound\n");
     for (i, (case, outcome)) in plan.cases.iter().zip(outcomes).enumerate() {
-        let values: String = case.values.iter().map(|value| format!("{},", quoted(value))).collect();
+        let values: String = case.values.iter().map(|value| format!("{},", field(value))).collect();
         // Writing to a String cannot fail.
         let _ = write!(text, "{},{values}", label(i + 1));
         let _ = match outcome {
@@ -150,7 +150,7 @@ pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
                 outcome.stop_reason.as_deref().unwrap_or_default(),
                 outcome.crack_length_final_mm.map_or_else(String::new, csv::number),
                 csv::exact(outcome.wall_s),
-                quoted(&outcome.problem.as_deref().unwrap_or_default().replace('\n', " ")),
+                field(&outcome.problem.as_deref().unwrap_or_default().replace('\n', " ")),
                 outcome.is_lower_bound().map_or_else(String::new, |is_lower| is_lower.to_string())
             ),
             None => writeln!(text, ",,,,not run yet,"),

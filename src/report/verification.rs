@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use serde_json::{Value, json};
 
+use crate::cells::defused;
 use crate::verify::{Row, Topic};
 
 /// One row as a line on the console.
@@ -38,7 +39,7 @@ pub fn csv(rows: &[Row]) -> String {
         "name,quantity,computed,reference,error_percent,bound_percent,ok,known_miss,source,wall_s,miss_bound_percent\n"
             .to_owned();
     for row in rows {
-        let quoted = |field: &str| format!("\"{}\"", field.replace('"', "\"\""));
+        let quoted = |field: &str| format!("\"{}\"", defused(field).replace('"', "\"\""));
         text += &format!(
             "{},{},{:.12e},{:.12e},{:.6},{},{},{},{},{:.3},{}\n",
             row.name,

@@ -140,3 +140,47 @@ fn stdout_that_closes_or_is_full() {
         assert_eq!(output.status.code(), Some(4), "{}", String::from_utf8_lossy(&output.stderr));
     }
 }
+
+/// An I of thin arms: a third of a million points among two hundred million places, which ran out of memory; refused by what is free.
+const THIN_ARMS: &str = r#"
+specimen = { kind = "plate", outline_mm = [[0, 0], [7000, 0], [7000, 4], [3502, 4], [3502, 6996], [7000, 6996], [7000, 7000], [0, 7000], [0, 6996], [3498, 6996], [3498, 4], [0, 4]], thickness_mm = 2.0, cracks = [{ from_mm = [3498, 3500], to_mm = [3499, 3500] }] }
+material = { name = "al2024-t3" }
+loading = { stress_max_mpa = 50.0, stress_ratio = 0.1 }
+model = { spacing_mm = 0.5 }
+fatigue = { paris_c_mm_per_cycle = 1e-7, paris_m = 3.0 }
+"#;
+
+#[test]
+fn what_does_not_fit_into_memory_is_refused_before_it_is_laid_out() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("arms.toml"), THIN_ARMS).unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let within = |arguments: &str| {
+        let call = format!("ulimit -v 2000000; exec '{}' {arguments}", env!("CARGO_BIN_EXE_perilife"));
+        Command::new("sh").current_dir(dir.path()).args(["-c", &call]).output().unwrap()
+    };
+    for command in ["check arms.toml", "predict arms.toml --out run", "sif arms.toml"] {
+        let output = within(command);
+        assert_refused(
+            &output,
+            2,
+            &["arms.toml", "model.spacing_mm = 0.5", "lattice places", "GB of memory, more than", "give about"],
+        );
+    }
+    assert!(!dir.path().join("run").exists());
+    assert_eq!(within("check small.toml").status.code(), Some(0), "what fits is let through");
+}
+
+/// Bonds are counted, not drawn, where there are many.
+#[test]
+fn a_check_of_many_bonds_is_quick() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
+    let started = std::time::Instant::now();
+    let sets = ["--set", "model.spacing_mm=0.135", "--set", "model.horizon_ratio=12"];
+    let output = perilife(dir.path(), &[&["check", "small.toml"], &sets[..]].concat());
+    println!("{:.2} s", started.elapsed().as_secs_f64());
+    assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+    assert!(texts(&output).0.contains("about 39"), "{}", texts(&output).0);
+    assert!(started.elapsed().as_secs_f64() < 3.0, "{:.2} s", started.elapsed().as_secs_f64());
+}

@@ -122,3 +122,27 @@ fn sides_that_differ_too_much_are_flagged() {
         assert_eq!(stderr.contains("by more than the 3.00 mm that ASTM E647 accepts"), uneven, "{apart}: {stderr}");
     }
 }
+
+/// What a spreadsheet would run as a formula is text in the table, and the same name again where the table is read.
+#[test]
+fn names_like_formulas_are_text_in_tables() {
+    let dir = tempdir().unwrap();
+    let names = ["=1+1", "+A1", "-S", "@sum"];
+    let row = |name: &str, i: usize| format!("{name},{},{}\n", 1000 * i, 10 + i);
+    let rows: String = names.iter().flat_map(|name| (0..8).map(move |i| row(name, i))).collect();
+    fs::write(dir.path().join("lab.csv"), format!("specimen,cycles,crack_length_mm\n{rows}")).unwrap();
+    let read = |file: &str, out: &[&str]| {
+        let output = perilife(dir.path(), &[&["rates", file, "--method", "secant"], out].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        texts(&output).0
+    };
+    read("lab.csv", &["--out", "rates.csv", "--quiet"]);
+    let table = fs::read_to_string(dir.path().join("rates.csv")).unwrap();
+    for line in table.lines().skip(1) {
+        assert!(line.starts_with('\''), "{line}");
+    }
+    // The table is one of readings too.
+    let object: serde_json::Value = serde_json::from_str(&read("rates.csv", &["--json"])).unwrap();
+    let found: Vec<&str> = object["specimens"].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
+    assert_eq!(found, names);
+}

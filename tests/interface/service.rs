@@ -1,5 +1,7 @@
 //! The service as a client sees it.
 
+#[path = "service/budget.rs"]
+mod budget;
 #[path = "service/crashes.rs"]
 mod crashes;
 #[path = "service/deploy.rs"]

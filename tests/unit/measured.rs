@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use perilife::calibration::measured::{CycleUnit, Import, LengthUnit, Measured, MeasuredCurve, parse, read};
+use perilife::calibration::leave_out::LeaveOut;
+use perilife::calibration::measured::{
+    CycleUnit, Import, LengthUnit, Measured, MeasuredCurve, PROBLEMS_MAX, parse, read, survey,
+};
 use perilife::calibration::median::{common_lengths, cycles_at, median, pointwise_median, pointwise_median_at};
 use perilife::units::MM;
 use proptest::prelude::*;
@@ -201,5 +204,59 @@ proptest! {
                 let _ = pointwise_median(&measured.curves);
             }
         }
+    }
+}
+
+/// Names are looked up, not searched: 200 000 of them twice, interleaved, in two files.
+#[test]
+fn many_specimens_take_no_longer_each_than_few() {
+    const COUNT: usize = 200_000;
+    // In rounds, so that no row belongs to the curve of the row before; lengths fall once in every curve.
+    let file = |prefix: char| {
+        let row =
+            |round: usize, i: usize| format!("{prefix}{i},{},{}\n", 1000 * round, 10.0 - 0.1 * (round as f64 - 1.0).powi(2));
+        let rows = (0..5).flat_map(|round| (0..COUNT).map(move |i| row(round, i)));
+        std::iter::once("specimen,cycles,crack_length_mm\n".to_owned()).chain(rows).collect::<String>()
+    };
+    let started = std::time::Instant::now();
+    let [mut first, second] = ['a', 'b'].map(|prefix| parsed(&file(prefix)));
+    first.add(second).unwrap();
+    let seconds = started.elapsed().as_secs_f64();
+    println!("{COUNT} specimens twice: {seconds:.1} s");
+    assert_eq!(first.curves.len(), 2 * COUNT);
+    assert_eq!([&first.curves[7].specimen, &first.curves[COUNT].specimen], ["a7", "b0"], "in the order of the files");
+    // A search for each took minutes.
+    assert!(seconds < 30.0, "{seconds:.1} s");
+    // What is to be said of each of them is said of the first hundred.
+    assert_eq!(first.warnings.len(), 2 * 101, "{:?}", &first.warnings[..3]);
+    assert_eq!(first.warnings[100], format!("and {} more warnings of this kind", COUNT - 100));
+    let window = |name: &str| {
+        let reason = "why".to_owned();
+        vec![LeaveOut { specimen: Some(name.to_owned()), from_cycles: 0.0, to_cycles: 500.0, reason }]
+    };
+    let unknown = first.leave_out(&window("c")).unwrap_err().to_string();
+    assert!(unknown.len() < 1000 && unknown.contains("399980 more"), "{unknown}");
+    let problems = survey(file('a').replace(",1000,", ",x,").as_bytes(), Path::new("bad.csv"), &Import::default()).problems;
+    assert_eq!(problems.len(), PROBLEMS_MAX + 1);
+}
+
+/// Lengths of a curve are found by halving: equal to a search from the start, and a long curve costs no more for each.
+#[test]
+fn lengths_are_found_in_long_curves() {
+    let count = 100_000;
+    let wave = |i: usize| 10.0 + 1e-3 * i as f64 + 0.01 * (i as f64).sin();
+    let curve = |name: &str| {
+        let (cycles, lengths) = ((0..count).map(|i| 10.0 * i as f64).collect(), (0..count).map(|i| MM * wave(i)).collect());
+        MeasuredCurve::new(name, cycles, lengths)
+    };
+    let curves = [curve("a"), curve("b"), curve("c")];
+    let started = std::time::Instant::now();
+    let median = pointwise_median(&curves).unwrap();
+    println!("{count} lengths of three curves: {:.1} s", started.elapsed().as_secs_f64());
+    assert!(started.elapsed().as_secs_f64() < 30.0);
+    for (length, cycles) in median.crack_length.iter().zip(&median.cycles).step_by(9973) {
+        // The first reading that is as long, and the longest before.
+        let reached = (0..count).find(|&i| curves[0].crack_length[i] >= *length).unwrap();
+        assert!((cycles - 10.0 * reached as f64).abs() < 100.0, "{length}: {cycles} against reading {reached}");
     }
 }

@@ -8,7 +8,7 @@ use super::case::LawCase;
 use super::fit::LawFit;
 use super::{FitLaw, LawFits};
 use crate::calibration::record::law::LawRecord;
-use crate::calibration::results::quoted;
+use crate::cells::field;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Content of `fit.json`.
@@ -96,7 +96,7 @@ pub fn rates_csv(case: &LawCase, fits: &LawFits) -> String {
     for (row, residual) in case.rows.iter().zip(&fits.law().residuals) {
         let (k, rate) = (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE);
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "{},{},{k:.10e},{rate:.10e},{:.10e}", quoted(&row.series), row.ratio, rate * (-residual).exp());
+        let _ = writeln!(text, "{},{},{k:.10e},{rate:.10e},{:.10e}", field(&row.series), row.ratio, rate * (-residual).exp());
     }
     text
 }

@@ -13,6 +13,7 @@ use crate::calibration::columns::names_a_test;
 use crate::calibration::import::Import;
 use crate::calibration::names::{is_unit_or_blank, with_unit};
 use crate::calibration::numerals::is_number;
+use crate::cells::{ROWS_MAX, SMALLER, TEXT_MAX, restored, too_many};
 use crate::error::Result;
 
 /// Lines that separators are compared on.
@@ -45,6 +46,7 @@ struct Merit(bool, bool, f64);
 /// # Errors
 /// No table, or rows that are not as wide as its header.
 pub(super) fn text(text: &str, file: &Path, import: &Import) -> Result<Table> {
+    check_size(text, file)?;
     let (lines, comments) = kept_lines(text);
     if lines.is_empty() {
         return Err(
@@ -77,11 +79,26 @@ pub(super) fn text(text: &str, file: &Path, import: &Import) -> Result<Table> {
     second_try.map_or(first_try, Ok)
 }
 
-/// Lines that are neither blank nor comments, and the comments; line ends may be LF, CRLF or CR.
-fn kept_lines(text: &str) -> (Vec<Line<'_>>, Vec<Line<'_>>) {
+/// A text whose lines alone would take up much more than it does itself.
+fn check_size(text: &str, file: &Path) -> Result<()> {
+    let too_large = |what, count, most| Err(whole_file(file).error(too_many(what, count, most), SMALLER));
+    match written_lines(text).take(ROWS_MAX + 1).count() {
+        _ if text.len() > TEXT_MAX => too_large("bytes of text", text.len(), TEXT_MAX),
+        lines if lines > ROWS_MAX => too_large("or more lines", lines, ROWS_MAX),
+        _ => Ok(()),
+    }
+}
+
+/// Lines that are not blank; they may end with LF, CRLF or CR.
+fn written_lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let end = if text.contains('\n') { '\n' } else { '\r' };
     let lines = text.split(end).enumerate().map(|(index, line)| (index + 1, line.trim_end_matches('\r')));
-    lines.filter(|(_, line)| !line.trim().is_empty()).partition(|(_, line)| !is_comment(line))
+    lines.filter(|(_, line)| !line.trim().is_empty())
+}
+
+/// Lines that are neither blank nor comments, and the comments.
+fn kept_lines(text: &str) -> (Vec<Line<'_>>, Vec<Line<'_>>) {
+    written_lines(text).partition(|(_, line)| !is_comment(line))
 }
 
 fn is_comment(line: &str) -> bool {
@@ -204,6 +221,10 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Resu
     // Programs that test in blocks repeat the header over each.
     let repeats = |row: &Row, of: &[String]| of.iter().enumerate().all(|(column, name)| row.cell(column) == name);
     rows.retain(|row| !row.is_blank() && !repeats(row, &header) && !units.as_ref().is_some_and(|units| repeats(row, units)));
+    for row in rows.iter_mut().filter(|row| row.cells.iter().any(|cell| restored(cell) != cell)) {
+        row.cells = row.cells.iter().map(restored).collect();
+    }
+    let header = header.iter().map(|name| restored(name).to_owned()).collect();
     Ok(Table { file: file.to_path_buf(), header, names, header_line, rows, footer, separator: None })
 }
 

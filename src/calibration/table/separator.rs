@@ -5,6 +5,7 @@ use std::path::Path;
 use csv::StringRecord;
 
 use super::{Row, whole_file};
+use crate::cells::{CELLS_MAX, SMALLER, too_many};
 use crate::error::Result;
 
 /// A line of the file with its number.
@@ -56,12 +57,29 @@ impl Separator {
     }
 
     /// The lines cut into cells, quotes respected.
+    ///
+    /// # Errors
+    /// More cells than a table that is read may have: a byte of text can be one of them, which takes up eight and more.
     pub(super) fn cut(self, lines: &[Line<'_>], file: &Path) -> Result<Vec<Row>> {
+        let cells = lines.iter().map(|(_, text)| self.cells(text)).sum::<usize>();
+        if cells > CELLS_MAX {
+            return Err(
+                whole_file(file).error(format!("{}, cut at {}", too_many("cells", cells, CELLS_MAX), self.name()), SMALLER)
+            );
+        }
         match self.character() {
             // Quotes may hold the separator and line ends.
             Some(character) if lines.iter().any(|(_, text)| text.contains('"')) => records(lines, character as u8, file),
             Some(character) => Ok(lines.iter().map(|&(line, text)| Row { line, cells: at_character(text, character) }).collect()),
             None => Ok(lines.iter().map(|&(line, text)| Row { line, cells: self.at_blanks(text) }).collect()),
+        }
+    }
+
+    /// Cells of a line, at the most.
+    fn cells(self, text: &str) -> usize {
+        match self.character() {
+            Some(character) => text.matches(character).count() + 1,
+            None => text.split_whitespace().count(),
         }
     }
 

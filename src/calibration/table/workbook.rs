@@ -2,7 +2,7 @@
 //!
 //! Cells come one by one: a sheet that uses its last row and column alone would fill the memory as a rectangle.
 
-use std::io::{Cursor, Read};
+use std::io::{Cursor, Read, Write};
 use std::path::Path;
 
 use calamine::{Data, DataRef, Reader, Xlsx, XlsxError};
@@ -11,13 +11,12 @@ use csv::StringRecord;
 use super::{COLUMNS_MAX, Fault, Row, Table, cut, whole_file};
 use crate::calibration::columns::names_a_test;
 use crate::calibration::import::{Import, Sheet};
+use crate::cells::{CELLS_MAX, SMALLER, TEXT_MAX, UNPACKED_MAX, too_many};
 use crate::error::{Error, Result};
 use crate::units::unmistakable;
 
-/// Most bytes a workbook may unpack to.
-const UNPACKED_MAX: u64 = 1 << 30;
-/// Most cells read of a sheet.
-const CELLS_MAX: usize = 20_000_000;
+/// Most sheets of a workbook: a file may name one sheet any number of times.
+const SHEETS_MAX: usize = 256;
 
 /// Whether the bytes are those of a workbook.
 pub(super) fn is_workbook(bytes: &[u8], file: &Path) -> bool {
@@ -31,14 +30,18 @@ pub(super) fn table(bytes: &[u8], file: &Path, import: &Import) -> Result<Table>
     check_size(bytes, file)?;
     let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(broken)?;
     let sheets = book.sheet_names();
+    if sheets.len() > SHEETS_MAX {
+        return Err(whole_file(file).error(too_many("sheets", sheets.len(), SHEETS_MAX), SMALLER));
+    }
+    let mut taken = Taken::default();
     if let Some(wanted) = &import.sheet {
-        return sheet_table(&mut book, chosen(wanted, &sheets, file)?, file, import)?
+        return sheet_table(&mut book, chosen(wanted, &sheets, file)?, file, import, &mut taken)?
             .ok_or_else(|| sheet_fault(file, &wanted.0).error("is an empty sheet", "name the sheet of the readings"));
     }
     let mut found: Vec<(String, Table)> = Vec::new();
     let mut other = None;
     for name in &sheets {
-        match sheet_table(&mut book, name, file, import) {
+        match sheet_table(&mut book, name, file, import, &mut taken) {
             Ok(Some(table)) if names_a_test(&table.names, import) => found.push((name.clone(), table)),
             Ok(Some(table)) => other = other.or(Some(Ok(table))),
             Ok(None) => {}
@@ -70,28 +73,57 @@ fn sheet_fault<'a>(file: &'a Path, sheet: &'a str) -> Fault<'a> {
     Fault { key: Some("measured.sheet"), value: Some(sheet), ..whole_file(file) }
 }
 
+/// What the sheets of a workbook that were read so far take up.
+#[derive(Default)]
+struct Taken {
+    /// Cells, empty ones among them.
+    cells: usize,
+    /// Bytes of their text: cells share it in the file, but not here.
+    text: usize,
+}
+
+impl Taken {
+    fn check(&self, name: &str, file: &Path) -> Result<()> {
+        let over = [("cells", self.cells, CELLS_MAX), ("bytes of text in cells", self.text, TEXT_MAX)];
+        match over.into_iter().find(|(_, count, most)| count > most) {
+            None => Ok(()),
+            Some((what, count, most)) => {
+                Err(whole_file(file).error(format!("{} (sheet {name:?})", too_many(what, count, most)), SMALLER))
+            }
+        }
+    }
+}
+
 /// The table of a sheet; `None` without cells.
-fn sheet_table(book: &mut Xlsx<Cursor<&[u8]>>, name: &str, file: &Path, import: &Import) -> Result<Option<Table>> {
+fn sheet_table(
+    book: &mut Xlsx<Cursor<&[u8]>>,
+    name: &str,
+    file: &Path,
+    import: &Import,
+    taken: &mut Taken,
+) -> Result<Option<Table>> {
     let broken = |error: XlsxError| broken(file, &format!("sheet {name:?}: {error}"));
     let mut reader = book.worksheet_cells_reader(name).map_err(broken)?;
     let mut rows: Vec<(u32, Vec<String>)> = Vec::new();
-    let mut cells = 0;
     while let Some(cell) = reader.next_cell().map_err(broken)? {
         let (row, column) = cell.get_position();
         let text = written(cell.get_value());
+        taken.cells += 1;
+        taken.text += text.len();
+        taken.check(name, file)?;
         if text.is_empty() {
             continue;
         }
-        cells += 1;
-        if cells > CELLS_MAX || column as usize >= COLUMNS_MAX {
-            return Err(
-                whole_file(file).error(format!("sheet {name:?} is larger than any table of readings"), "give the readings alone")
-            );
+        if column as usize >= COLUMNS_MAX {
+            return Err(whole_file(file).error(format!("sheet {name:?} has more than {COLUMNS_MAX} columns"), SMALLER));
         }
         if rows.last().is_none_or(|(last, _)| *last != row) {
             rows.push((row, Vec::new()));
         }
         let Some((_, cells)) = rows.last_mut() else { continue };
+        // Up to the column of the cell, where a row may have no other.
+        taken.cells += (column as usize).saturating_sub(cells.len());
+        taken.check(name, file)?;
         cells.resize(cells.len().max(column as usize + 1), String::new());
         cells[column as usize] = text;
     }
@@ -99,6 +131,8 @@ fn sheet_table(book: &mut Xlsx<Cursor<&[u8]>>, name: &str, file: &Path, import: 
     if widest == 0 {
         return Ok(None);
     }
+    taken.cells += rows.iter().map(|(_, cells)| widest - cells.len()).sum::<usize>();
+    taken.check(name, file)?;
     let rows = rows.into_iter().map(|(row, mut cells)| {
         cells.resize(widest, String::new());
         Row { line: row as usize + 1, cells: StringRecord::from(cells) }
@@ -120,6 +154,51 @@ fn written(value: &DataRef<'_>) -> String {
     }
 }
 
+/// How an XML text of shared texts says how many there are.
+const CLAIM: &[u8] = b"uniqueCount";
+
+/// The largest [`CLAIM`] of an XML text: its reader takes room for so many texts before it sees the first.
+#[derive(Default)]
+struct Claims {
+    /// Letters of the name that stand at the end of what was seen.
+    matched: usize,
+    /// The number behind a name, as far as it was seen.
+    number: Option<u64>,
+    largest: u64,
+}
+
+impl Claims {
+    fn see(&mut self, byte: u8) {
+        match self.number {
+            // Half of UTF-16.
+            _ if byte == 0 => {}
+            Some(number) if byte.is_ascii_digit() => {
+                self.number = Some(number.saturating_mul(10).saturating_add(u64::from(byte - b'0')));
+                self.largest = self.largest.max(self.number.unwrap_or(0));
+            }
+            Some(0) if byte.is_ascii_whitespace() || matches!(byte, b'=' | b'"' | b'\'') => {}
+            Some(_) => self.number = None,
+            // An attribute stands behind a blank, so that no letter of its own name goes before it.
+            None if byte == CLAIM[self.matched] => self.matched += 1,
+            None => self.matched = 0,
+        }
+        if self.matched == CLAIM.len() {
+            (self.matched, self.number) = (0, Some(0));
+        }
+    }
+}
+
+impl Write for Claims {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        bytes.iter().for_each(|&byte| self.see(byte));
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
 /// Unpacks without keeping anything: a file of a few bytes can stand for any number of them.
 fn check_size(bytes: &[u8], file: &Path) -> Result<()> {
     let broken = |error: String| broken(file, &error);
@@ -127,10 +206,19 @@ fn check_size(bytes: &[u8], file: &Path) -> Result<()> {
     let mut left = UNPACKED_MAX;
     for index in 0..archive.len() {
         let entry = archive.by_index(index).map_err(|error| broken(error.to_string()))?;
-        let unpacked = std::io::copy(&mut entry.take(left), &mut std::io::sink()).map_err(|error| broken(error.to_string()))?;
+        let name = entry.name().map_err(|error| broken(error.to_string()))?;
+        let is_text = name.to_ascii_lowercase().ends_with("sharedstrings.xml");
+        let mut claims = Claims::default();
+        let mut nothing = std::io::sink();
+        let sink: &mut dyn Write = if is_text { &mut claims } else { &mut nothing };
+        let unpacked = std::io::copy(&mut entry.take(left), sink).map_err(|error| broken(error.to_string()))?;
+        if claims.largest > CELLS_MAX as u64 {
+            return Err(whole_file(file).error(format!("says that it has {} texts", claims.largest), SMALLER));
+        }
         left -= unpacked;
         if left == 0 {
-            return Err(whole_file(file).error("unpacks to more than 1 GiB", "give the readings alone, or CSV"));
+            let problem = format!("unpacks to more than {UNPACKED_MAX} bytes");
+            return Err(whole_file(file).error(problem, "give the readings alone, or CSV"));
         }
     }
     Ok(())

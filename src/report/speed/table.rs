@@ -1,5 +1,6 @@
 //! `chart.csv`.
 
+use crate::cells::defused;
 use crate::chart::{Chart, Point, Status};
 use crate::report::csv::exact;
 
@@ -15,7 +16,7 @@ pub fn csv(chart: &Chart) -> String {
     // Writing into memory cannot fail.
     let _ = writer.write_record(COLUMNS.split(','));
     for point in &chart.points {
-        let _ = writer.write_record(fields(point, chart));
+        let _ = writer.write_record(fields(point, chart).iter().map(|text| defused(text).into_owned()));
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }

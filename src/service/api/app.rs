@@ -25,6 +25,8 @@ pub struct Limits {
     pub files: usize,
     /// Points of a plate.
     pub points: f64,
+    /// Memory that a case may take up, bytes.
+    pub case_bytes: f64,
     /// Jobs of one owner that wait.
     pub queued: i64,
     /// Bytes of the files of one owner, inputs and results.
@@ -55,6 +57,7 @@ impl Default for Limits {
             body_bytes: 32 << 20,
             files: 64,
             points: 1e6,
+            case_bytes: 4.0 * 1024.0 * 1024.0 * 1024.0,
             queued: 1000,
             quota_bytes: 100 << 30,
             requests_per_second: READS,

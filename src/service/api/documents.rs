@@ -14,13 +14,14 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
-use super::App;
 use super::collections::is_id;
 use super::places::BodyPlace;
 use super::security::Caller;
+use super::{App, Limits};
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::laws::case::{LawCase, is_law_fit};
-use crate::case::{Case, Method};
+use crate::case::Case;
+use crate::case::budget::Budget;
 use crate::check::is_calibration;
 use crate::error::input;
 use crate::fracture::Scene;
@@ -38,6 +39,8 @@ const INPUT_MAX: usize = 1 << 20;
 const PARTS_MAX: usize = 200_000;
 /// Time in which a body must have come: until then it takes up room.
 const BODY_WITHIN: Duration = Duration::from_secs(20);
+/// Cases of a sweep that are looked at before it is accepted.
+const LOOKED_AT: usize = 100;
 /// Longest name of a case or file, bytes.
 const NAME_MAX: usize = 200;
 
@@ -289,8 +292,8 @@ pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> 
         files.push((FITTED.to_owned(), record_of(app, id).await?));
     }
     let submission = Submission { name, text, with_fitted, options, files };
-    let points = app.limits.points;
-    let checked = while_asked(move || check(&submission, kind, points).map(|()| submission)).await;
+    let limits = app.limits.clone();
+    let checked = while_asked(move || check(&submission, kind, &limits).map(|()| submission)).await;
     checked.map_err(|problem| if is_text { problem } else { problem.without_line() })
 }
 
@@ -401,23 +404,25 @@ async fn record_of(app: &App, id: &str) -> Answer<Vec<u8>> {
 }
 
 /// Whether it can be run, as far as that shows without building the plate.
-fn check(submission: &Submission, kind: Option<JobKind>, points: f64) -> Answer<()> {
+fn check(submission: &Submission, kind: Option<JobKind>, limits: &Limits) -> Answer<()> {
     let document = submission.document()?;
     match kind {
-        Some(JobKind::Prediction) => check_points(&Case::from_document(&document)?, points),
+        Some(JobKind::Prediction) => check_points(&Case::from_document(&document)?, limits),
         Some(JobKind::Calibration) if is_law_fit(&document.table) => Ok(LawCase::from_document(&document).map(drop)?),
-        Some(JobKind::Calibration) => check_points(&CalibrationCase::from_document(document)?.case, points),
-        Some(JobKind::Scene) => Ok(Scene::from_document(&document).map(drop)?),
+        Some(JobKind::Calibration) => check_points(&CalibrationCase::from_document(document)?.case, limits),
+        Some(JobKind::Scene) => within(&Scene::from_document(&document)?.budget(), limits),
         Some(JobKind::Sweep) => {
             let sweep = Sweep::with_overrides(document, &[], CASES_MAX)?;
-            let first = sweep.cases()?.first().map(DrawnCase::read).transpose()?;
-            first.map_or(Ok(()), |case| check_points(&case, points))
+            let cases = sweep.cases()?;
+            // A few of very many: each runs within the memory of the job all the same.
+            let step = cases.len().div_ceil(LOOKED_AT).max(1);
+            cases.iter().step_by(step).try_for_each(|case| check_points(&DrawnCase::read(case)?, limits))
         }
         Some(JobKind::Sif) => {
             for name in submission.options.iter().filter_map(|option| option.strip_prefix("method=")) {
                 name.parse::<StressIntensityMethod>()?;
             }
-            check_points(&Case::plate_of(&document)?, points)
+            check_points(&Case::plate_of(&document)?, limits)
         }
         Some(JobKind::Chart) => {
             let names = submission.options.iter().filter_map(|option| option.strip_prefix("scene=")).map(str::to_owned);
@@ -427,19 +432,15 @@ fn check(submission: &Submission, kind: Option<JobKind>, points: f64) -> Answer<
     }
 }
 
-/// Refuses plates of more points than this server takes.
+/// Refuses plates of more points than this server takes, and what would take up more memory, before anything is laid out.
 ///
 /// # Errors
 /// 422.
-pub fn check_points(case: &Case, most: f64) -> Answer<()> {
-    let model = &case.model;
-    // The spacing is that of the finest level, so that of refined plates is an upper bound; their levels are few.
-    let points = case.specimen.area() / model.spacing.powi(2);
-    if model.method != Method::Peridynamics || model.refinement.is_some() || points <= most {
-        return Ok(());
-    }
-    let problem = format!("gives the plate {points:.3e} points, more than the {most:.3e} this server takes");
-    let spacing = model.spacing / crate::units::MM;
-    let remedy = format!("give at least {:.3}, or run it with `perilife predict`", spacing * (points / most).sqrt());
-    Err(input("model.spacing_mm", spacing, problem, remedy).into())
+pub fn check_points(case: &Case, limits: &Limits) -> Answer<()> {
+    within(&Budget::of(case), limits)
+}
+
+fn within(budget: &Budget, limits: &Limits) -> Answer<()> {
+    budget.within_points(limits.points)?;
+    Ok(budget.within(limits.case_bytes)?)
 }

@@ -184,13 +184,13 @@ pub async fn check(State(app): State<App>, Extension(caller): Extension<Caller>,
     let body = documents::read(&app, &caller, request).await?;
     let is_text = body.asked.input.as_ref().is_some_and(Value::is_string);
     let submission = submission(&app, None, body.asked).await?;
-    let points = app.limits.points;
+    let limits = app.limits.clone();
     let room = body.room;
     let look = move || -> Answer<Value> {
         let _room = room;
         let document = submission.document()?;
         if !is_scene(&document.table) && !check::is_calibration(&document.table) {
-            check_points(&Case::from_document(&document)?, points)?;
+            check_points(&Case::from_document(&document)?, &limits)?;
         }
         let checked = check::check(document)?;
         let mut object = checked.json();
