@@ -25,7 +25,7 @@ fn case(specimen: &str, model: &str) -> Case {
 fn points_and_bonds_are_those_of_the_plate() {
     let fine = r#"regions = [{ box_mm = [[-20, -8], [20, 8]], levels = 2 }]"#;
     let flaws =
-        r#"regions = [{ around_flaws_mm = 8.0, levels = 1 }, { band_mm = [[-25, -9], [25, 9]], width_mm = 10.0, levels = 2 }]"#;
+        r#"regions = [{ around_flaws_mm = 8.0, levels = 2 }, { band_mm = [[-25, -9], [25, 9]], width_mm = 16.0, levels = 1 }]"#;
     let levels = |regions: &str| {
         format!("model = {{ spacing_mm = 2.0, discretisation = \"dual_horizon\" }}\nrefinement = {{ {regions} }}\n")
     };
