@@ -6,6 +6,7 @@
 
 mod pages;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use polars::prelude::*;
@@ -172,7 +173,9 @@ pub fn read_parquet(bytes: &[u8], path: &Path) -> Result<Cells> {
     if pages.unpacked > UNPACKED_MAX {
         return too_large("bytes in its unpacked pages", pages.unpacked as usize, UNPACKED_MAX as usize);
     }
-    let table = reader.finish().map_err(broken)?;
+    // Its decoder panics over some damaged pages.
+    let table = catch_unwind(AssertUnwindSafe(|| reader.finish())).map_err(|_| unreadable("its pages are damaged"))?;
+    let table = table.map_err(broken)?;
     let mut rows = vec![Vec::with_capacity(table.width()); table.height()];
     let mut length = 0;
     for column in table.columns() {

@@ -66,11 +66,10 @@ pub struct PointPlate<'a> {
 /// Bytes of a process that has nothing but a case of hand calculation: 28 MB.
 const BASE: f64 = 28e6;
 /// Bytes of a lattice place and of each of its bonds, of which a body and the state of its bonds keep four each. With surface correction
-/// `volume_and_surface` and the window: 59 and 127 MB at 4e4 and 1.6e5 points, m = 3.015; 76 and 172 MB at m = 6; 134 MB at 4e4 and m = 12; multigrid 59 MB
-/// at 4e4, relaxation 40 MB at 1e4 (m = 3.015).
-/// The formula gives 60, 130, 75, 185 and 149 MB.
+/// `volume_and_surface` and the window: 59 and 127 MB at 4e4 and 1.6e5 points, m = 3.015; 76 and 172 MB at m = 6; 134 MB at 4e4 and m = 12.
+/// The formula gives 61, 130, 77, 189 and 147 MB. Multigrid: 59 MB at 4e4; relaxation: 40 MB at 1e4, m = 3.015.
 const PLACE: f64 = 350.0;
-/// See [`PLACE`].
+/// See [`PLACE`]. Of empty places alone (`check` of an I of thin arms, 1.78e6 places) 209 MB at m = 3.015 and 724 MB at m = 6.
 const PLACE_BOND: f64 = 8.0;
 /// Bytes of a spacing of rim under `volume_and_surface`.
 const RIM_PLAIN: f64 = 14e3;

@@ -16,6 +16,8 @@ use crate::state::Bonds;
 
 /// Bonds up to which the body is built, those of 4e5 points at the usual horizon; well below a second.
 const BONDS_BUILT: f64 = 6e6;
+/// Memory up to which it is: what takes long beside bonds are the equations of a rim, which are large where horizons are.
+const BYTES_BUILT: f64 = 5e8;
 /// Corners of an outline, holes and slots among them, with which a place is asked in no time.
 const CORNERS_USUAL: f64 = 50.0;
 /// Places up to which it is: an outline of thin arms has many that are empty, and each of them is asked whether it lies in the plate.
@@ -25,7 +27,7 @@ const PLACES_BUILT: f64 = 2e6;
 pub(super) fn is_quick(budget: &Budget, specimen: &Specimen) -> bool {
     let corners = specimen.outline.len() + specimen.holes.len() + 4 * specimen.slots.len();
     let asked = budget.places * (corners as f64 / CORNERS_USUAL).max(1.0);
-    budget.bonds <= BONDS_BUILT && asked <= PLACES_BUILT
+    budget.bonds <= BONDS_BUILT && asked <= PLACES_BUILT && budget.bytes <= BYTES_BUILT
 }
 
 /// What the lattice makes of a case.

@@ -177,7 +177,8 @@ fn a_check_of_many_bonds_is_quick() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
     let started = std::time::Instant::now();
-    let sets = ["--set", "model.spacing_mm=0.135", "--set", "model.horizon_ratio=12"];
+    let sets = ["model.spacing_mm=0.135", "model.horizon_ratio=12", "model.surface_correction=volume_and_surface"];
+    let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", *set]).collect();
     let output = perilife(dir.path(), &[&["check", "small.toml"], &sets[..]].concat());
     println!("{:.2} s", started.elapsed().as_secs_f64());
     assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);

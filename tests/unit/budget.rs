@@ -25,7 +25,7 @@ fn case(specimen: &str, model: &str) -> Case {
 fn points_and_bonds_are_those_of_the_plate() {
     let fine = r#"regions = [{ box_mm = [[-20, -8], [20, 8]], levels = 2 }]"#;
     let flaws =
-        r#"regions = [{ around_flaws_mm = 8.0, levels = 1 }, { band_mm = [[-25, -9], [25, 9]], width_mm = 10.0, levels = 2 }]"#;
+        r#"regions = [{ around_flaws_mm = 8.0, levels = 2 }, { band_mm = [[-25, -9], [25, 9]], width_mm = 16.0, levels = 1 }]"#;
     let levels = |regions: &str| {
         format!("model = {{ spacing_mm = 2.0, discretisation = \"dual_horizon\" }}\nrefinement = {{ {regions} }}\n")
     };
@@ -87,7 +87,7 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
 #[test]
 fn scenes_are_counted_too() {
     let text = format!(
-        "{SQUARE}\nmaterial = {{ youngs_modulus_gpa = 72.0, poisson_ratio = 0.3 }}\nmodel = {{ spacing_mm = 0.05, horizon_ratio = 9.0 }}\nloading = {{ kind = \"traction\", traction_mpa = 10.0, edges = [\"top\", \"bottom\"] }}\n"
+        "{SQUARE}\nmaterial = {{ youngs_modulus_gpa = 72.0, poisson_ratio = 0.3 }}\nmodel = {{ spacing_mm = 0.05, horizon_ratio = 9.0 }}\nloading = {{ kind = \"traction\", stress_mpa = 10.0, edges = [\"top\", \"bottom\"] }}\n"
     );
     let scene = Scene::from_toml(&text, "scene", Folder::none(), &[]).unwrap();
     let error = scene.budget().within(4e9).unwrap_err().to_string();
