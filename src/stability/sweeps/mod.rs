@@ -38,6 +38,7 @@ pub const SWEEPS: &[&Sweep] = &[
     &lives::EXPONENT,
     &lives::AGEING,
     &steps::TIME_STEP,
+    &steps::LOAD_STEPS,
     &solvers::DENSITY_FACTOR,
     &solvers::LAST_LIGAMENT,
     &nodes::INFLUENCE_RADIUS,

@@ -1,7 +1,8 @@
-//! Steps of time of fracture scenes.
+//! Steps of time and of load of fracture scenes.
 
 use std::path::Path;
 
+use super::super::exact::percent;
 use super::super::{Method, Run, Sweep};
 use crate::error::{Error, Result};
 use crate::fracture::bonds::BondState;
@@ -50,4 +51,41 @@ fn by_time_step(share: f64, run: &Run) -> Result<f64> {
     let largest = done.history.iter().map(|row| row.work.abs()).fold(0.0, f64::max);
     let lost = done.history.iter().map(|row| (row.kinetic + row.strain + row.fracture - row.work).abs());
     Ok(100.0 * lost.fold(0.0, f64::max) / largest)
+}
+
+/// Steps of a load that is driven past snap-back.
+pub const LOAD_STEPS: Sweep = Sweep {
+    name: "load_steps",
+    about: "plate whose ends are pulled apart until it is severed, past snap-back: largest force over that of 256 steps",
+    parameter: "load steps (loading.steps)",
+    unit: "",
+    values: &[2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0],
+    usual: 64.0,
+    is_continuous: false,
+    bound_percent: 1.0,
+    methods: &[
+        Method { name: "secant", measure: |steps, run| by_load_steps(steps, "secant", run) },
+        Method {
+            name: "adaptive_dynamic_relaxation",
+            measure: |steps, run| by_load_steps(steps, "adaptive_dynamic_relaxation", run),
+        },
+    ],
+};
+
+/// Steps of the run that others are compared with.
+const FINEST: f64 = 256.0;
+
+fn by_load_steps(steps: f64, solver: &str, run: &Run) -> Result<f64> {
+    let peak = |steps: f64| -> Result<f64> {
+        let text = format!(
+            "{PLATE}[model]\nspacing_mm = 1\nsolver = \"{solver}\"\n[loading]\nkind = \"displacement\"\nedges = [\"top\", \"bottom\"]\n\
+             displacement_mm = 0.1\nsteps = {steps}\n[damage]\nlaw = \"critical_stretch\"\n"
+        );
+        let done = fracture::run(&Scene::from_toml(&text, "load_steps", Path::new("."), &[])?, run)?;
+        if done.separated_step.is_none() {
+            return Err(Error::Mechanics(format!("the plate is not severed: {}", done.end)));
+        }
+        Ok(done.peak_load())
+    };
+    Ok(percent(peak(steps)?, peak(FINEST)?))
 }

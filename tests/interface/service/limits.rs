@@ -52,7 +52,9 @@ fn a_job_ends_alone_at_its_limits() {
         let service = Server::start(place, &["--jobs", "1"]);
         service.succeeded(&service.submit("predictions", &of("counted", QUICK)));
         let counted = service.get("/metrics").text();
-        for line in ["perilife_job_seconds_count", "perilife_queue_age_seconds 0", "perilife_disk_free_bytes{place=\"temporary\"}"] {
+        for line in
+            ["perilife_job_seconds_count", "perilife_queue_age_seconds 0", "perilife_disk_free_bytes{place=\"temporary\"}"]
+        {
             assert!(counted.contains(line), "{line} in {counted}");
         }
     });
