@@ -49,7 +49,7 @@ pub struct FoundFile {
 /// What the columns of a file are.
 #[derive(Serialize, ToSchema)]
 pub struct Columns {
-    /// `long` (a row a reading) or `wide` (a column a specimen).
+    /// `long` (a row a reading), `wide` (a column a specimen) or `paired` (two columns a specimen).
     layout: &'static str,
     length_unit: &'static str,
     cycle_unit: &'static str,
