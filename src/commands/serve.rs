@@ -28,7 +28,7 @@ pub struct Args {
     /// Believe what a proxy says of a request, and let in without a token who comes through it
     #[arg(long, help_heading = "Service")]
     pub trust_proxy: bool,
-    /// Where the service is reached from outside, e.g. https://life.example.org
+    /// Where the service is reached from outside, such as `https://life.example.org`
     #[arg(long, value_name = "URL", value_parser = public_url, help_heading = "Service")]
     pub public_url: Option<String>,
     /// Append a line of JSON for every change and every refusal
