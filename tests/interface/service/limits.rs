@@ -128,13 +128,13 @@ fn orphans_of_dead_workers_are_nobodys() {
         let cancelled = service.post(&format!("{}/cancel", jobs[0]), &json!({})).expect(202).json();
         assert_eq!(cancelled["state"], "cancelled");
         service.send("DELETE", &jobs[1], &[], b"").expect(204);
-        on_store(place, "UPDATE jobs SET attempts = 0 WHERE state = 'running'");
         let mut worker = Server::worker(place, &lease);
         wait_for(&service, &jobs[2], "taken up", |job| job["attempts"] == 2);
+        // As a checkpoint leaves it, just before the worker gives the job back.
+        on_store(place, "UPDATE jobs SET attempts = 0 WHERE state = 'running'");
         worker.stop();
         let given_back = service.get(&jobs[2]).json();
         assert_eq!(given_back["state"], "queued", "{given_back:#}");
-        // Two gave it back or lost it after a checkpoint: still not below zero.
         on_store(place, "UPDATE jobs SET name = 'below zero' WHERE attempts < 0");
         assert_eq!(service.get(&jobs[2]).json()["name"], "slow");
     });
