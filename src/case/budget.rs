@@ -13,8 +13,10 @@
 //! Z_l is bounded by the regions, each wider by the rings of levels around it. Coefficients are those of peak memory (`/usr/bin/time -v`) of
 //! `perilife predict` on a square of 100 mm with one slant crack, which no symmetry halves, and stand beside the runs they are of.
 
+pub mod effort;
 pub mod machine;
 
+use self::effort::Effort;
 use super::model::round_mm;
 use super::{Case, HORIZON_RATIO, Method};
 use crate::bond_law::SurfaceCorrection;
@@ -38,6 +40,8 @@ pub struct Budget {
     pub bytes: f64,
     /// Pictures, tables and ParaView files, bytes.
     pub disk_bytes: f64,
+    /// Computing time.
+    pub effort: Effort,
     /// Bytes that go with the square of 1/Δ.
     of_area: f64,
     /// Bytes that go with 1/Δ.
@@ -156,10 +160,11 @@ impl PointPlate<'_> {
         let cracks = specimen.cracks.iter().map(|crack| 2.0 * distance(crack.from, crack.to));
         let length: f64 = outline.chain(holes).chain(slots).chain(cracks).sum();
         // Of thin arms all points are at a rim.
-        (length / self.spacing_of(self.deepest())).min(self.points() / self.horizon_ratio)
+        (length / self.finest()).min(self.points() / self.horizon_ratio)
     }
 
-    /// What it takes up, with so many bytes a bond of a net beside the lattice, and with or without a factor of all points.
+    /// What it takes up but for its computing time, with so many bytes a bond of a net beside the lattice, and with or without a factor
+    /// of all points.
     #[must_use]
     pub fn budget(&self, correction: SurfaceCorrection, of_net_bond: f64, is_factorised: bool) -> Budget {
         let (points, places, bonds) = (self.points(), self.places(), self.bonds_of_point());
@@ -176,7 +181,13 @@ impl PointPlate<'_> {
         };
         let disk_bytes = DISK_BASE + DISK_POINT * points;
         let (bytes, bonds, spacing) = (BASE + of_area + of_rim, bonds * points, self.spacing);
-        Budget { points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing, other_keys }
+        Budget { points, places, bonds, bytes, disk_bytes, effort: Effort::NONE, of_area, of_rim, spacing, other_keys }
+    }
+
+    /// Spacing of the finest level, m.
+    #[must_use]
+    pub fn finest(&self) -> f64 {
+        self.spacing_of(self.deepest())
     }
 }
 
@@ -217,20 +228,22 @@ impl Budget {
             Method::ElementFreeGalerkin => of_nodes(case),
             Method::Peridynamics => {
                 let is_factorised = model.solver == SolverKind::Direct || model.arrangement != Discretisation::Lattice;
-                plate_of(case).budget(model.bond_law.surface_correction, 0.0, is_factorised)
+                let plate = plate_of(case);
+                let effort = Effort::of_case(case, plate.points(), plate.bonds_of_point());
+                Budget { effort, ..plate.budget(model.bond_law.surface_correction, 0.0, is_factorised) }
             }
         }
     }
 
     fn none() -> Budget {
         let [points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing] = [0.0; 8];
-        Budget { points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing, other_keys: "" }
+        Budget { points, places, bonds, bytes, disk_bytes, effort: Effort::NONE, of_area, of_rim, spacing, other_keys: "" }
     }
 
     /// Refuses what takes up more than so many bytes of memory.
     ///
     /// # Errors
-    /// [`crate::Error::Input`] on `model.spacing_mm` with both figures and a spacing that fits.
+    /// [`crate::Error::Input`] on `model.spacing_mm` with both figures and a spacing that fits, or on `model.nodes` with such a number.
     pub fn within(&self, bytes: f64) -> Result<()> {
         if self.bytes <= bytes {
             return Ok(());
@@ -246,7 +259,7 @@ impl Budget {
         // of_area / x² + of_rim / x = what is left
         let left = (bytes - BASE).max(0.01 * bytes);
         let coarser = (self.of_rim + (self.of_rim.powi(2) + 4.0 * left * self.of_area).sqrt()) / (2.0 * left);
-        self.refusal(problem, coarser)
+        self.refusal(problem, coarser, self.other_keys)
     }
 
     /// Refuses more points than so many.
@@ -258,21 +271,23 @@ impl Budget {
             return Ok(());
         }
         let problem = format!("gives the plate {:.3e} points, more than the {most:.3e} allowed", self.points);
-        self.refusal(problem, (self.points / most).sqrt())
+        self.refusal(problem, (self.points / most).sqrt(), self.other_keys)
     }
 
-    fn refusal(&self, problem: String, coarser: f64) -> Result<()> {
+    fn refusal(&self, problem: String, coarser: f64, other_keys: &str) -> Result<()> {
+        // Nodes lie on no lattice.
+        if self.places == 0.0 {
+            let fewer = (0.9 * self.points / coarser.powi(2)).max(1.0);
+            let digit = 10.0_f64.powf(fewer.log10().floor() - 2.0).max(1.0);
+            let remedy = format!("give about {} or fewer", (fewer / digit).floor() * digit);
+            return Err(input("model.nodes", self.points.round(), problem, remedy));
+        }
         let spacing = self.spacing / MM;
         let wide = 1.05 * spacing * coarser;
         // Three digits, upwards.
         let digit = 10.0_f64.powf(wide.log10().floor() - 2.0);
         let wide = round_mm((wide / digit).ceil() * digit * MM);
-        Err(input(
-            "model.spacing_mm",
-            round_mm(self.spacing),
-            problem,
-            format!("give about {wide} mm or more{}", self.other_keys),
-        ))
+        Err(input("model.spacing_mm", round_mm(self.spacing), problem, format!("give about {wide} mm or more{other_keys}")))
     }
 
     /// Refuses what takes up more memory than this process may still take ([`machine::free_bytes`]).
@@ -305,5 +320,6 @@ fn of_nodes(case: &Case) -> Budget {
     let far = case.model.element_free.resolution.far;
     let nodes = case.specimen.area() / (far * far);
     let (of_area, disk_bytes) = (NODE * nodes, DISK_BASE + DISK_NODE * nodes);
-    Budget { points: nodes, bytes: BASE + of_area, disk_bytes, of_area, spacing: far, ..Budget::none() }
+    let effort = Effort::of_case(case, nodes, 0.0);
+    Budget { points: nodes, bytes: BASE + of_area, disk_bytes, effort, of_area, spacing: far, ..Budget::none() }
 }

@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 
 use self::preview::preview;
 use self::scene::{scene_drawing, scene_lines};
-use self::understood::{case_lines, curves_line, rates_line, sweep_lines};
+use self::understood::{case_lines, curves_line, line, rates_line, sweep_lines};
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::laws::case::{LawCase, is_law_fit};
 use crate::case::Case;
@@ -67,12 +67,15 @@ impl Checked {
     }
 }
 
-/// Reads the file as what it is: a calibration with the curves it names, a fracture scene, or a case. The body is built as well where that
-/// is quick, since only then some troubles show.
+/// Reads the file as what it is: a calibration with the curves it names, a fracture scene, a sweep with all its cases, or a case. The body
+/// is built as well where that is quick, since only then some troubles show.
 ///
 /// # Errors
 /// Wrong input, or files it names that cannot be read.
 pub fn check(document: Document) -> Result<Checked> {
+    if is_sweep(&document.table) {
+        return checked_sweep(document, &[]);
+    }
     if is_scene(&document.table) {
         return checked_scene(&document);
     }
@@ -89,17 +92,21 @@ pub fn check(document: Document) -> Result<Checked> {
     checked_case(&document, "case", &case, case.warnings.clone())
 }
 
-/// [`check`] of a file, which may also be a sweep: then every case of it is read. Overrides are those of the command that runs it.
+/// [`check`] of a file. Overrides are those of the command that runs it.
 ///
 /// # Errors
 /// As [`check`].
 pub fn check_file(path: &Path, overrides: &[String]) -> Result<Checked> {
     // Read once: a pipe is empty the second time.
     let mut document = Document::read(path, &[])?;
-    if !is_sweep(&document.table) {
-        document.set_all(overrides)?;
-        return check(document);
+    if is_sweep(&document.table) {
+        return checked_sweep(document, overrides);
     }
+    document.set_all(overrides)?;
+    check(document)
+}
+
+fn checked_sweep(document: Document, overrides: &[String]) -> Result<Checked> {
     let sweep = Sweep::with_overrides(document, overrides, CASES_MAX)?;
     let cases = sweep.cases()?;
     let lines = sweep_lines(&sweep, &cases);
@@ -124,9 +131,11 @@ pub fn is_calibration(table: &toml::Table) -> bool {
 /// # Errors
 /// A body that cannot be built.
 pub fn checked_case(document: &Document, kind: &'static str, case: &Case, mut warnings: Vec<String>) -> Result<Checked> {
-    let preview = Budget::of(case).within_machine().and_then(|()| preview(case)).map_err(|error| document.locate(error))?;
+    let budget = Budget::of(case);
+    let preview = budget.within_machine().and_then(|()| preview(case)).map_err(|error| document.locate(error))?;
     warnings.extend(preview.warnings);
-    let lines = case_lines(case, preview.points);
+    let mut lines = case_lines(case, preview.points);
+    lines.push(line("computing", budget.words()));
     let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
     Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, echo: case.echo.clone(), provenance })
 }

@@ -43,7 +43,7 @@ pub(super) fn scene_lines(scene: &Scene) -> Result<(Vec<Line>, Vec<String>)> {
     lines.extend(scene.drives.iter().map(|drive| line("load", drive_words(drive))));
     lines.extend(scene.holds.iter().map(|hold| line("support", hold_words(hold))));
     lines.extend(scene.refinement.as_ref().map(|refinement| line("refinement", refinement.words())));
-    lines.push(line("damage", damage_words(scene)));
+    lines.extend([line("damage", damage_words(scene)), line("computing", budget.words())]);
     Ok((lines, built.map_or_else(Vec::new, |built| built.warnings)))
 }
 

@@ -10,7 +10,7 @@ crate::kinds! {
     /// Why a scene ended.
     pub enum SceneEnd for "stop_reason (fracture)" {
         Done = "done": "all load steps or the whole duration were worked through",
-        Separated = "separated": "the plate is in two pieces and nothing more was asked",
+        Separated = "separated": "the plate is in two pieces, or what is left of it cannot carry a load, and nothing more was asked",
         LoadFallen = "load_fallen": "the load of the platens fell a tenth below its peak: the body has failed between them",
         NoConvergence = "no_convergence": "a load step found no equilibrium; the histories so far are kept",
         Unstable = "unstable": "the motion blew up: energy appeared from nowhere; the histories so far are kept",

@@ -16,6 +16,8 @@ mod fuzzed;
 pub mod jobs;
 #[path = "service/limits.rs"]
 mod limits;
+#[path = "service/long_use.rs"]
+mod long_use;
 #[path = "service/page.rs"]
 mod page;
 #[path = "service/queue.rs"]
@@ -26,8 +28,6 @@ mod reader;
 mod refusals;
 #[path = "service/results.rs"]
 mod results;
-#[path = "service/soak.rs"]
-mod soak;
 #[path = "service/tokens.rs"]
 mod tokens;
 

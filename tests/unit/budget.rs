@@ -1,11 +1,15 @@
 //! What a case takes up is known before anything is laid out, and refused where it is too much.
 
+use std::time::Instant;
+
 use perilife::bond_law::stencil::Stencil;
 use perilife::case::Case;
+use perilife::case::budget::effort::within_time_of_sweep;
 use perilife::case::budget::{Budget, machine};
 use perilife::fracture::Scene;
 use perilife::growth::plate::Plate;
 use perilife::input::Folder;
+use perilife::predict::Silent;
 
 const PLATE: &str = r#"
 material = { name = "al2024-t3" }
@@ -92,6 +96,96 @@ fn scenes_are_counted_too() {
     let scene = Scene::from_toml(&text, "scene", Folder::none(), &[]).unwrap();
     let error = scene.budget().within(4e9).unwrap_err().to_string();
     assert!(error.contains("model.spacing_mm = 0.05"), "{error}");
+}
+
+const PULLED: &str = "loading = { kind = \"traction\", stress_mpa = 10.0, edges = [\"top\", \"bottom\"], DRIVEN }\n";
+const STEEL: &str = "material = { youngs_modulus_gpa = 72.0, poisson_ratio = 0.3333333333333333, density_kg_m3 = 2700.0 }\n";
+
+fn scene(model: &str, driven: &str) -> Scene {
+    let text = format!("{SQUARE}\n{STEEL}model = {{ {model} }}\n{}", PULLED.replace("DRIVEN", driven));
+    Scene::from_toml(&text, "scene", Folder::none(), &[]).unwrap()
+}
+
+/// A run that would take months is refused before it begins, with a spacing or number of nodes that does not.
+#[test]
+fn runs_that_take_too_long_are_refused_with_what_would_not() {
+    const DAY: f64 = 86_400.0;
+    let of_case = |model: &str, spacing: &str| {
+        let model = format!("model = {{ {}{model} }}\n", spacing);
+        Case::from_toml(&format!("{SQUARE}{PLATE}{model}"), "case", Folder::none(), &[]).map(|case| Budget::of(&case)).ok()
+    };
+    let predictions = [
+        ("solver = \"adaptive_dynamic_relaxation\"", 0.04, "spacing_mm"),
+        ("solver = \"direct\"", 0.04, "spacing_mm"),
+        ("method = \"element_free_galerkin\"", 3e6, "nodes"),
+    ];
+    for (model, asked, key) in predictions {
+        let with = |value: f64| format!("{key} = {value:?}, ");
+        let error = of_case(model, &with(asked)).unwrap().within_time(DAY).unwrap_err().to_string();
+        println!("{error}");
+        assert!(error.contains(&format!("model.{key} = ")) && error.contains("more than the 24 h allowed"), "{error}");
+        let remedy: f64 = error.split("give about ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        let mended = of_case(model, &with(remedy)).unwrap();
+        assert!(mended.effort.seconds < DAY, "{:e} s of {remedy}", mended.effort.seconds);
+        mended.within_time(DAY).unwrap();
+    }
+    let bonds = "bond_law = \"bond_based\", spacing_mm = 0.3";
+    let motion = |time: &str| scene(bonds, time).budget();
+    let error = motion("duration_s = 10.0").within_time(DAY).unwrap_err().to_string();
+    assert!(error.contains("model.spacing_mm = 0.3") && error.contains("loading.duration_s"), "{error}");
+    motion("duration_s = 1e-4").within_time(DAY).unwrap();
+    // Steps that are given are counted as given: four times as many take four times as long.
+    let [four, one] = ["1e-9", "4e-9"].map(|step| motion(&format!("duration_s = 1e-4, time_step_s = {step}")).effort.seconds);
+    assert!((four / one - 4.0).abs() < 1e-9, "{four} {one}");
+    let load_steps = scene("spacing_mm = 0.05, solver = \"adaptive_dynamic_relaxation\"", "steps = 1000").budget();
+    load_steps.within_time(DAY).unwrap_err();
+    let handbook = Case::from_toml(
+        &format!(
+            "specimen = {{ kind = \"middle_tension\", width_mm = 100.0, thickness_mm = 2.0, crack_length_mm = 20.0 }}{PLATE}model = {{ method = \"handbook\" }}\n"
+        ),
+        "case",
+        Folder::none(),
+        &[],
+    );
+    assert_eq!(Budget::of(&handbook.unwrap()).effort.seconds, 0.0);
+    assert!(within_time_of_sweep(1000, 4.0 * DAY, DAY).unwrap_err().to_string().contains("design = 1000 cases"));
+    within_time_of_sweep(1000, DAY, DAY).unwrap();
+}
+
+/// Estimates of computing time against runs: a factor of three is what refusals leave them.
+#[test]
+#[ignore = "long: some minutes, times runs; cargo test --test unit -- --ignored computing_time --nocapture"]
+fn computing_time_is_within_a_factor_of_three() {
+    let models = [
+        "spacing_mm = 0.6",
+        "spacing_mm = 0.3",
+        "spacing_mm = 0.6, horizon_ratio = 5.015",
+        "spacing_mm = 0.5, solver = \"multigrid\"",
+        "spacing_mm = 1.0, solver = \"adaptive_dynamic_relaxation\"",
+        "spacing_mm = 1.0, solver = \"direct\"",
+        "method = \"element_free_galerkin\", nodes = 3000",
+    ];
+    let mut ratios = Vec::new();
+    for model in models {
+        let case = case(SQUARE, &format!("model = {{ {model} }}\n"));
+        let begun = Instant::now();
+        perilife::predict::predict(&case, &Silent).unwrap();
+        ratios.push((model.to_owned(), Budget::of(&case).effort.seconds / begun.elapsed().as_secs_f64()));
+    }
+    for (model, driven) in [
+        ("bond_law = \"bond_based\", spacing_mm = 0.6", "duration_s = 1e-4"),
+        ("spacing_mm = 0.6, horizon_ratio = 5.015", "duration_s = 1e-4"),
+        ("spacing_mm = 1.0, solver = \"secant\"", "steps = 4"),
+        ("spacing_mm = 1.0, solver = \"adaptive_dynamic_relaxation\"", "steps = 4"),
+    ] {
+        let scene = scene(model, driven);
+        let begun = Instant::now();
+        perilife::fracture::run(&scene, &Silent).unwrap();
+        ratios.push((format!("{model}, {driven}"), scene.budget().effort.seconds / begun.elapsed().as_secs_f64()));
+    }
+    ratios.iter().for_each(|(name, ratio)| println!("{ratio:.2} {name}"));
+    // Two cores share a run, so that an estimate of one core may be twice its time.
+    assert!(ratios.iter().all(|(_, ratio)| (1.0 / 3.0..=6.0).contains(ratio)));
 }
 
 #[test]

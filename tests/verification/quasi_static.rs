@@ -125,6 +125,31 @@ fn symmetric_plates_are_damaged_symmetrically() {
     }
 }
 
+/// A plate that hangs by its last bonds alone has no equilibrium that flanks could hold: pulled on, it is severed, whatever its peak
+/// was before. With columns that pull it stood as stiff as without a crack (6.09 instead of 3.41 kN).
+#[test]
+fn pulled_on_beyond_severing_the_plate_is_severed() {
+    let pulled = |displacement: f64| {
+        let text = format!(
+            "[specimen]\nkind = \"plate\"\nwidth_mm = 20\nlength_mm = 40\nthickness_mm = 1\n\
+             cracks = [{{ from_mm = [-4, 0], to_mm = [4, 0] }}]\n\
+             [material]\nyoungs_modulus_gpa = 192\npoisson_ratio = 0.3\nfracture_energy_j_m2 = 2000\n\
+             [model]\nspacing_mm = 1\nsolver = \"secant\"\n\
+             [loading]\nkind = \"displacement\"\nedges = [\"top\", \"bottom\"]\ndisplacement_mm = {displacement}\nsteps = 16\n\
+             [damage]\nlaw = \"critical_stretch\"\n"
+        );
+        fracture::run(&Scene::from_toml(&text, "pulled", Path::new("."), &[]).unwrap(), &Silent).unwrap()
+    };
+    let [short, long] = [0.1, 0.15].map(pulled);
+    println!("{} at {:.2} N, {} at {:.2} N", short.end, short.peak_load(), long.end, long.peak_load());
+    assert!((long.peak_load() / short.peak_load() - 1.0).abs() < 1e-6, "{} {}", long.peak_load(), short.peak_load());
+    assert_eq!(long.end, SceneEnd::Separated);
+    let last = long.history.last().unwrap();
+    assert!(last.load < 1e-3 * long.peak_load(), "{}", last.load);
+    // What neither strain nor fracture took has become motion: none came from nowhere.
+    assert!(long.history.iter().all(|row| row.work - row.strain - row.fracture > -0.02 * row.work.abs()));
+}
+
 /// The reader refuses it with its line; a scene made otherwise is refused when it runs.
 #[test]
 fn forces_without_energy_have_no_path() {

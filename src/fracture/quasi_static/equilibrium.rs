@@ -102,16 +102,19 @@ impl<'n> Equilibrium<'n> {
     /// # Errors
     /// No convergence: nothing holds what the loads pull at, nor does contact.
     pub fn solve(&mut self, bonds: &mut BondState, shape: &mut Shape) -> Result<()> {
+        let mut has_pressed_all = false;
         for _ in 0..LOOKS {
             let before = shape.clone();
             let mut frozen = Frozen { springs: &mut self.springs, contact: &self.contact, bonds };
             let found = self.inner.solve(self.net, self.full, &mut frozen, shape, TOLERANCE);
             if let Err(error) = found {
                 *shape = before;
-                // What the load drives against another piece is held by contact alone.
-                if !self.contact.press_all(bonds) {
+                // What the load drives against another piece is held by contact alone. Where that does not hold either without columns
+                // that pull, the shape found with them is none: they glue the pieces together.
+                if has_pressed_all || !self.contact.press_all(bonds) {
                     return Err(error);
                 }
+                has_pressed_all = true;
                 self.inner.renew();
                 continue;
             }

@@ -26,6 +26,9 @@ const ROW_LOAD: f64 = 0.01;
 /// Broken bonds from which a state gets a row.
 const ROW_BROKEN: usize = 10;
 
+/// Load over the peak below which a plate without equilibrium is severed: what is left of it is no more than a hinge.
+const SEVERED: f64 = 1e-3;
+
 /// A path on its way.
 pub(super) struct Walk<'a, 'r, 'n> {
     path: &'a Path<'a>,
@@ -148,7 +151,8 @@ impl<'a, 'r, 'n> Walk<'a, 'r, 'n> {
             if next.breaks { self.break_bonds(level, &start, bonds) } else { self.damage(&start, bonds) }
         };
         if found.is_err() {
-            return Ok(Some(SceneEnd::NoConvergence));
+            let is_severed = self.load() < SEVERED * self.at.load_peak;
+            return Ok(Some(if is_severed { SceneEnd::Separated } else { SceneEnd::NoConvergence }));
         }
         self.at.elastic = torn > 0 || next.breaks;
         if self.at.elastic && is_separated(self.path.net, self.recorder.boundary, bonds) {
@@ -219,11 +223,15 @@ impl<'a, 'r, 'n> Walk<'a, 'r, 'n> {
         ((self.at.account.state.level * steps * (1.0 + 1e-12)).floor() + 1.0) / steps
     }
 
+    /// Generalised load of the driven and the pushed together.
+    fn load(&self) -> f64 {
+        let State { level, strain, .. } = self.at.account.state;
+        if level > 0.0 { 2.0 * strain / level } else { 0.0 }
+    }
+
     /// A row for the present state if it differs enough from the last, or must have one.
     fn row(&mut self, must: bool, bonds: &BondState) -> Result<()> {
-        let level = self.at.account.state.level;
-        // Generalised load of the driven and the pushed together.
-        let load = if level > 0.0 { 2.0 * self.at.account.state.strain / level } else { 0.0 };
+        let (level, load) = (self.at.account.state.level, self.load());
         self.at.load_peak = self.at.load_peak.max(load);
         let moved = (level - self.at.level_at_row).abs() * self.path.steps as f64 >= 0.5
             || (load - self.at.load_at_row).abs() >= ROW_LOAD * self.at.load_peak;

@@ -21,7 +21,7 @@ use super::{App, Limits};
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::laws::case::{LawCase, is_law_fit};
 use crate::case::Case;
-use crate::case::budget::Budget;
+use crate::case::budget::{Budget, effort};
 use crate::check::is_calibration;
 use crate::error::input;
 use crate::fracture::Scene;
@@ -293,7 +293,7 @@ pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> 
     }
     let submission = Submission { name, text, with_fitted, options, files };
     let limits = app.limits.clone();
-    let checked = while_asked(move || check(&submission, kind, &limits).map(|()| submission)).await;
+    let checked = while_asked(move || kind.map_or(Ok(()), |kind| check(&submission, kind, &limits)).map(|()| submission)).await;
     checked.map_err(|problem| if is_text { problem } else { problem.without_line() })
 }
 
@@ -403,41 +403,54 @@ async fn record_of(app: &App, id: &str) -> Answer<Vec<u8>> {
     }
 }
 
-/// Whether it can be run, as far as that shows without building the plate.
-fn check(submission: &Submission, kind: Option<JobKind>, limits: &Limits) -> Answer<()> {
+/// Whether it can be run as this kind of job within the limits of this server, as far as that shows without building the plate.
+///
+/// # Errors
+/// 422.
+pub fn check(submission: &Submission, kind: JobKind, limits: &Limits) -> Answer<()> {
     let document = submission.document()?;
     match kind {
-        Some(JobKind::Prediction) => check_points(&Case::from_document(&document)?, limits),
-        Some(JobKind::Calibration) if is_law_fit(&document.table) => Ok(LawCase::from_document(&document).map(drop)?),
-        Some(JobKind::Calibration) => check_points(&CalibrationCase::from_document(document)?.case, limits),
-        Some(JobKind::Scene) => within(&Scene::from_document(&document)?.budget(), limits),
-        Some(JobKind::Sweep) => {
+        JobKind::Prediction => check_points(&Case::from_document(&document)?, limits),
+        JobKind::Calibration if is_law_fit(&document.table) => Ok(LawCase::from_document(&document).map(drop)?),
+        JobKind::Calibration => check_points(&CalibrationCase::from_document(document)?.case, limits),
+        JobKind::Scene => in_time(&Scene::from_document(&document)?.budget(), limits),
+        JobKind::Sweep => {
             let sweep = Sweep::with_overrides(document, &[], CASES_MAX)?;
             let cases = sweep.cases()?;
             // A few of very many: each runs within the memory of the job all the same.
             let step = cases.len().div_ceil(LOOKED_AT).max(1);
-            cases.iter().step_by(step).try_for_each(|case| check_points(&DrawnCase::read(case)?, limits))
+            let mut seconds = 0.0;
+            for case in cases.iter().step_by(step) {
+                let budget = Budget::of(&DrawnCase::read(case)?);
+                within(&budget, limits)?;
+                seconds += budget.effort.seconds * step as f64;
+            }
+            Ok(effort::within_time_of_sweep(cases.len(), seconds, limits.job_seconds)?)
         }
-        Some(JobKind::Sif) => {
+        JobKind::Sif => {
             for name in submission.options.iter().filter_map(|option| option.strip_prefix("method=")) {
                 name.parse::<StressIntensityMethod>()?;
             }
-            check_points(&Case::plate_of(&document)?, limits)
+            within(&Budget::of(&Case::plate_of(&document)?), limits)
         }
-        Some(JobKind::Chart) => {
+        JobKind::Chart => {
             let names = submission.options.iter().filter_map(|option| option.strip_prefix("scene=")).map(str::to_owned);
             Ok(crate::chart::scenes(&names.collect::<Vec<_>>()).map(drop)?)
         }
-        None => Ok(()),
     }
 }
 
-/// Refuses plates of more points than this server takes, and what would take up more memory, before anything is laid out.
+/// Refuses plates of more points than this server takes, and what would take up more memory or time, before anything is laid out.
 ///
 /// # Errors
 /// 422.
-pub fn check_points(case: &Case, limits: &Limits) -> Answer<()> {
-    within(&Budget::of(case), limits)
+fn check_points(case: &Case, limits: &Limits) -> Answer<()> {
+    in_time(&Budget::of(case), limits)
+}
+
+fn in_time(budget: &Budget, limits: &Limits) -> Answer<()> {
+    within(budget, limits)?;
+    Ok(budget.within_time(limits.job_seconds)?)
 }
 
 fn within(budget: &Budget, limits: &Limits) -> Answer<()> {

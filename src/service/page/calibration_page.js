@@ -3,9 +3,8 @@
 import { getBlob, getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { element, readCsv, section, show, showPage, table, terms } from "./dom.js";
-import { follow } from "./events.js";
 import { cycles, deviation, fixed, percent, plain, scientific, significant, words } from "./format.js";
-import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
+import { createJobHead, downloadList, inputText, pathOf, showAtEnd } from "./job.js";
 import { warningList } from "./check.js";
 import { lawSections } from "./law_page.js";
 import { loadInto, problemBox } from "./notices.js";
@@ -24,12 +23,7 @@ export async function openCalibration(root, id, signal) {
   let chart = null;
   signal.addEventListener("abort", () => chart?.destroy());
 
-  async function finish(last) {
-    const whole = { ...job, ...last, input: job.input };
-    if (whole.state !== "succeeded") {
-      show(body, failureOf(whole), inputText(whole));
-      return;
-    }
+  async function finish(whole) {
     use.hidden = false;
     const curves = element("div");
     const { node: rates, image } = createPicture("Growth rate against range of stress intensity, readings and fitted law, logarithmic axes");
@@ -62,21 +56,8 @@ export async function openCalibration(root, id, signal) {
     });
   }
 
-  if (isFinal(job)) {
-    await finish(job);
-    return;
-  }
-  show(body, element("p", { class: "quiet" }, "The fit, its band and its constants appear here when the calibration is done."));
-  await follow(`${pathOf(job)}/events`, {
-    signal,
-    connection: head.connection,
-    take(name, data) {
-      if (name !== "job") return false;
-      head.update(data);
-      if (isFinal(data)) finish(data);
-      return isFinal(data);
-    },
-  });
+  const announced = "The fit, its band and its constants appear here when the calibration is done.";
+  await showAtEnd(job, { head, body, announced, finish, signal });
 }
 
 /** Fitted curve with the band that the errors of its constants leave it. */

@@ -2,6 +2,7 @@
 
 import { Problem, download, postJson, remove } from "./api.js";
 import { button, byId, element, show, terms } from "./dom.js";
+import { follow } from "./events.js";
 import { excerpt } from "./excerpt.js";
 import { bytes, count, cycles, duration, fixed, moment, percent, sentence } from "./format.js";
 import { problemBox } from "./notices.js";
@@ -34,6 +35,31 @@ export async function confirmDelete(job) {
 
 export async function cancelJob(job) {
   return postJson(`${pathOf(job)}/cancel`);
+}
+
+/** Shows a run in `body`: what is `announced` until it ends, then why it has no result, or what `finish` makes of it. */
+export async function showAtEnd(job, { head, body, announced, finish, signal }) {
+  function end(last) {
+    const whole = { ...job, ...last, input: job.input };
+    if (whole.state === "succeeded") return finish(whole);
+    return show(body, failureOf(whole), inputText(whole));
+  }
+
+  if (isFinal(job)) {
+    await end(job);
+    return;
+  }
+  show(body, element("p", { class: "quiet" }, announced));
+  await follow(`${pathOf(job)}/events`, {
+    signal,
+    connection: head.connection,
+    take(name, data) {
+      if (name !== "job") return false;
+      head.update(data);
+      if (isFinal(data)) end(data);
+      return isFinal(data);
+    },
+  });
 }
 
 /** Head of the page of a run: names it, follows its state, lets it be cancelled or deleted. Gives {node, update(job), connection(live)}. */

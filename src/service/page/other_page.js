@@ -3,8 +3,7 @@
 import { getBlob, getJson } from "./api.js";
 import { warningList } from "./check.js";
 import { element, section, show, showPage } from "./dom.js";
-import { follow } from "./events.js";
-import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
+import { createJobHead, downloadList, inputText, pathOf, showAtEnd } from "./job.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
 
@@ -16,12 +15,7 @@ export const openOther = (collection) => async (root, id, signal) => {
   const body = element("div", { class: "job-body" });
   showPage(root, head.node, body);
 
-  function finish(last) {
-    const whole = { ...job, ...last, input: job.input };
-    if (whole.state !== "succeeded") {
-      show(body, failureOf(whole), inputText(whole));
-      return;
-    }
+  function finish(whole) {
     const names = (whole.files ?? []).map((file) => file.name).filter((name) => /\.(png|svg)$/i.test(name)).slice(0, PICTURES_MAX);
     const pictures = names.map((name) => {
       const { node, image } = createPicture(name);
@@ -34,20 +28,5 @@ export const openOther = (collection) => async (root, id, signal) => {
       downloadList(whole), inputText(whole));
   }
 
-  if (isFinal(job)) {
-    finish(job);
-    return;
-  }
-  show(body, element("p", { class: "quiet" }, "Pictures and files appear here when the run is done."));
-  await follow(`${pathOf(job)}/events`, {
-    signal,
-    connection: head.connection,
-    take(name, data) {
-      if (name !== "job") return false;
-      head.update(data);
-      if (!isFinal(data)) return false;
-      finish(data);
-      return true;
-    },
-  });
+  await showAtEnd(job, { head, body, announced: "Pictures and files appear here when the run is done.", finish, signal });
 };

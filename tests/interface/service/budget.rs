@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use tempfile::tempdir;
 
+use super::limits::spaced;
 use super::{QUICK, of};
 use crate::server::{Server, in_folder};
 
@@ -38,4 +39,40 @@ fn cases_that_are_too_large_are_refused_at_once() {
             assert!(started.elapsed().as_secs_f64() < 3.0);
         }
     }
+}
+
+#[test]
+fn runs_that_take_too_long_are_refused_at_once() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0", "--job-hours", "0.1"]);
+    let relaxed = spaced(0.1).replace("spacing_mm", "solver = \"adaptive_dynamic_relaxation\"\nspacing_mm");
+    let moved = "[specimen]\nkind = \"plate\"\nwidth_mm = 100\nlength_mm = 100\nthickness_mm = 1\ncracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]\n\
+                 [material]\nyoungs_modulus_gpa = 72\npoisson_ratio = 0.3333333333333333\ndensity_kg_m3 = 2700\n\
+                 [model]\nspacing_mm = 1\nbond_law = \"bond_based\"\n\
+                 [loading]\nkind = \"traction\"\nstress_mpa = 10\nedges = [\"top\", \"bottom\"]\nduration_s = 10\n";
+    let mut sweep = of(
+        "large",
+        "case = \"base.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nfrom = 40\nto = 60\ncount = 5000\n",
+    );
+    sweep["files"] = serde_json::json!({ "base.toml": QUICK });
+    let asked = [
+        ("/v1/check", of("large", &relaxed), "model.spacing_mm = 0.1"),
+        ("/v1/predictions", of("large", &relaxed), "model.spacing_mm = 0.1"),
+        ("/v1/check", of("large", moved), "loading.duration_s"),
+        ("/v1/scenes", of("large", moved), "loading.duration_s"),
+        ("/v1/sweeps", sweep, "design = 5000 cases"),
+    ];
+    for (path, body, words) in &asked {
+        let problem = service.post(path, body).expect(422).json();
+        let detail = problem["detail"].as_str().unwrap();
+        println!("{path}: {detail}");
+        assert!(
+            detail.contains("of computing on one core, far more than the 6 min allowed") && detail.contains(words),
+            "{detail}"
+        );
+    }
+    let answer = service.post("/v1/check", &of("small", QUICK)).expect(200).json();
+    let lines = answer.to_string();
+    assert!(lines.contains("computing") && lines.contains("on one core"), "{lines}");
 }

@@ -16,7 +16,7 @@ use crate::cli::perilife;
 use crate::server::{PATIENCE, Server, in_folder};
 
 /// The quick plate with points of another spacing.
-fn spaced(spacing_mm: f64) -> String {
+pub fn spaced(spacing_mm: f64) -> String {
     QUICK.replace("spacing_mm = 1.5", &format!("spacing_mm = {spacing_mm}\nsymmetry = \"off\""))
 }
 
