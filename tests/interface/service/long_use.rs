@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
@@ -191,6 +191,9 @@ fn two_thousand_jobs_over_dying_workers() {
     println!("{count} jobs over {kills} kills in {:.0} s", begun.elapsed().as_secs_f64());
 }
 
+/// Runs of a batch.
+const BATCH: usize = 8;
+
 /// Time of a batch of jobs by so many workers of one thread each, in processes of their own.
 fn batch_s(postgres: &Postgres, name: &str, workers: usize) -> f64 {
     let url = postgres.database(name);
@@ -198,21 +201,47 @@ fn batch_s(postgres: &Postgres, name: &str, workers: usize) -> f64 {
     let service = Server::start(&place, &["--jobs", "0"]);
     // Of about two seconds: long beside starting a process, short beside the patience of who waits.
     let body = of("batch", &spaced(0.5));
-    let jobs: Vec<String> = (0..8).map(|_| service.submit("predictions", &body)).collect();
+    let jobs: Vec<String> = (0..BATCH).map(|_| service.submit("predictions", &body)).collect();
     let begun = Instant::now();
     let _workers: Vec<Server> = (0..workers).map(|_| Server::worker(&place, &["--jobs", "1"])).collect();
     jobs.iter().for_each(|job| drop(service.succeeded(job)));
     begun.elapsed().as_secs_f64()
 }
 
-/// How much faster two workers of one thread are than one, five times in turn.
+/// Time of as many runs of the program alone, so many at a time, of one thread each.
+fn bare_s(folder: &Path, at_once: usize) -> f64 {
+    let file = folder.join("batch.toml");
+    fs::write(&file, spaced(0.5)).unwrap();
+    let next = AtomicUsize::new(0);
+    let begun = Instant::now();
+    std::thread::scope(|scope| {
+        let run = || {
+            while next.fetch_add(1, Ordering::Relaxed) < BATCH {
+                let out = tempdir().unwrap();
+                let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_perilife"));
+                program.env("RAYON_NUM_THREADS", "1").arg("predict").arg(&file).arg("--out").arg(out.path().join("out"));
+                assert!(program.output().unwrap().status.success());
+            }
+        };
+        (0..at_once).for_each(|_| drop(scope.spawn(run)));
+    });
+    begun.elapsed().as_secs_f64()
+}
+
+/// How much faster two workers of one thread are than one, five times in turn; beside it how much faster two processes of the program
+/// are without a service, which is what the machine gives.
 #[test]
 #[ignore = "long: some minutes on an idle machine; cargo test --test interface -- --ignored two_workers --nocapture"]
 fn two_workers_are_faster_than_one() {
     let Some(postgres) = Postgres::start() else { return };
-    let ratios: Vec<f64> =
-        (0..5).map(|i| batch_s(&postgres, &format!("one_{i}"), 1) / batch_s(&postgres, &format!("two_{i}"), 2)).collect();
-    println!("two workers over one: {ratios:.2?}");
+    let dir = tempdir().unwrap();
+    let round = |i: usize| {
+        let service = batch_s(&postgres, &format!("one_{i}"), 1) / batch_s(&postgres, &format!("two_{i}"), 2);
+        let machine = bare_s(dir.path(), 1) / bare_s(dir.path(), 2);
+        println!("two workers over one: {service:.2}; two processes without a service: {machine:.2}");
+        service
+    };
+    let ratios: Vec<f64> = (0..5).map(round).collect();
     assert!(ratios.iter().all(|ratio| *ratio >= 1.7), "{ratios:?}");
 }
 
