@@ -14,7 +14,7 @@ use rustix::process::{Signal, kill_current_process_group};
 use serde_json::Value;
 
 use super::frames::{self, News, Order};
-use super::watch::Watch;
+use super::telling::Teller;
 use super::{free_bytes, results};
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::laws::case::{LawCase, is_law_fit};
@@ -115,11 +115,11 @@ fn ended(order: &Order, other: Other<'_>, room: &mut Room, tell: &(dyn Fn(&News)
         Task::Calibration(calibration) => (calibration.case.specimen.cracks.clone(), None),
         Task::Laws(_) | Task::Scene(_) | Task::Other(..) => (Vec::new(), None),
     };
-    let watch = Watch::new(&cracks, &shown.unwrap_or_default(), keep, order.checkpoint_every);
+    let teller = Teller::new(&cracks, &shown.unwrap_or_default(), keep, order.checkpoint_every);
     let (done, end) = channel();
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            let outcome = catch_unwind(AssertUnwindSafe(|| run_task(order, task, &watch)));
+            let outcome = catch_unwind(AssertUnwindSafe(|| run_task(order, task, &teller)));
             // Whoever waits for it waits until it comes.
             let _ = done.send(outcome);
         });
@@ -131,7 +131,7 @@ fn ended(order: &Order, other: Other<'_>, room: &mut Room, tell: &(dyn Fn(&News)
                 Err(RecvTimeoutError::Disconnected) => {
                     break Err(Error::Mechanics("the run ended without an outcome".to_owned()));
                 }
-                Err(RecvTimeoutError::Timeout) => pictures.tell(&watch, tell),
+                Err(RecvTimeoutError::Timeout) => pictures.tell(&teller, tell),
             }
         }
     })
@@ -171,14 +171,14 @@ fn shown_until(pieces: &[Growth], until: Option<f64>) -> Growth {
     all
 }
 
-fn run_task(order: &Order, task: Task<'_>, watch: &Watch<'_>) -> Result<Value> {
+fn run_task(order: &Order, task: Task<'_>, teller: &Teller<'_>) -> Result<Value> {
     let of = |case: &Case, prediction: Result<Prediction>| results::of_run(&order.folder, case, &prediction?);
     match task {
-        Task::Prediction(case, None) => of(&case, predict(&case, watch)),
-        Task::Prediction(case, Some(checkpoint)) => of(&case, resume(&case, *checkpoint, watch)),
-        Task::Calibration(calibration) => results::of_fit(&order.folder, &calibration, watch),
+        Task::Prediction(case, None) => of(&case, predict(&case, teller)),
+        Task::Prediction(case, Some(checkpoint)) => of(&case, resume(&case, *checkpoint, teller)),
+        Task::Calibration(calibration) => results::of_fit(&order.folder, &calibration, teller),
         Task::Laws(case) => results::of_laws(&order.folder, &case),
-        Task::Scene(scene) => results::of_scene(&order.folder, &scene, watch),
+        Task::Scene(scene) => results::of_scene(&order.folder, &scene, teller),
         Task::Other(other, document) => {
             let summary = other(order, *document)?;
             results::packed(&order.folder)?;
@@ -194,9 +194,9 @@ struct Pictures {
 }
 
 impl Pictures {
-    fn tell(&mut self, watch: &Watch<'_>, tell: &dyn Fn(&News) -> bool) {
+    fn tell(&mut self, teller: &Teller<'_>, tell: &dyn Fn(&News) -> bool) {
         let is_due = self.drawn.is_none_or(|drawn| drawn.elapsed() > DRAW_EVERY.max(OVER_COST * self.cost));
-        let news = watch.news(is_due);
+        let news = teller.news(is_due);
         if let Some(growth) = news.growth {
             tell(&News::Growth(growth));
         }

@@ -8,7 +8,7 @@ mod frames;
 mod job;
 mod process;
 mod results;
-mod watch;
+mod telling;
 
 pub use frames::Order;
 

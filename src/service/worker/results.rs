@@ -8,7 +8,7 @@ use std::time::Instant;
 use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
 
-use super::watch::Watch;
+use super::telling::Teller;
 use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::laws::case::LawCase;
@@ -64,9 +64,9 @@ pub fn of_run(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Val
 ///
 /// # Errors
 /// As [`calibrate`] and [`fit::write`].
-pub fn of_fit(folder: &Path, calibration: &CalibrationCase, watch: &Watch<'_>) -> Result<Value> {
+pub fn of_fit(folder: &Path, calibration: &CalibrationCase, teller: &Teller<'_>) -> Result<Value> {
     let started = Instant::now();
-    let fitted = calibrate(calibration, watch)?;
+    let fitted = calibrate(calibration, teller)?;
     let report = FitReport::new(calibration, &fitted, started.elapsed().as_secs_f64());
     fit::write(folder, calibration, &fitted, &report, &record(calibration, &fitted))?;
     let mut summary = json!(report);
@@ -101,8 +101,8 @@ pub fn of_laws(folder: &Path, case: &LawCase) -> Result<Value> {
 ///
 /// # Errors
 /// As [`crate::fracture::run`] and [`fracture::write`]; a scene without convergence or that blew up.
-pub fn of_scene(folder: &Path, scene: &Scene, watch: &Watch<'_>) -> Result<Value> {
-    let ran = crate::fracture::run(scene, watch)?;
+pub fn of_scene(folder: &Path, scene: &Scene, teller: &Teller<'_>) -> Result<Value> {
+    let ran = crate::fracture::run(scene, teller)?;
     if matches!(ran.end, SceneEnd::NoConvergence | SceneEnd::Unstable) {
         return Err(Error::Mechanics(format!("{}: {}: {}", scene.name, ran.end, ran.end.meaning())));
     }

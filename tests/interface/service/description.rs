@@ -203,7 +203,8 @@ fn requests_made_from_the_description_find_no_fault() {
     let (service, _) = described(&dir.path().join("service"), &["--jobs", "1", "--points", "2000"]);
     let checks = "not_a_server_error,status_code_conformance,content_type_conformance,response_schema_conformance";
     python.args(["-m", "schemathesis.cli", "--no-color", "run", "--continue-on-failure", "--generation-database", "none"]);
-    python.args(["--checks", checks, "--max-time", &format!("{:.0}", 60.0 * minutes)]);
+    // A request may ask to wait for the end of a job up to 50 s.
+    python.args(["--checks", checks, "--request-timeout", "60", "--max-time", &format!("{:.0}", 60.0 * minutes)]);
     python.arg(format!("{}/openapi.json", service.url)).current_dir(dir.path());
     run(python.env("SCHEMATHESIS_HOOKS", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/api_hooks.py")));
     service.get("/healthz").expect(200);

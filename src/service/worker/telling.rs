@@ -11,7 +11,7 @@ use crate::service::job::JobProgress;
 use crate::service::store::Growth;
 use crate::specimen::{Crack, Point};
 use crate::units::MM;
-use crate::watch::{Stage, Watch as Work};
+use crate::watch::{Stage, Watch};
 
 /// Entries of a growing curve from its start to its end: as many as a picture of it can show.
 const ENTRIES: f64 = 800.0;
@@ -51,15 +51,15 @@ pub struct Update {
 /// Takes a checkpoint's bytes to where they are kept; whether that worked.
 pub type Keep<'a> = &'a (dyn Fn(Vec<u8>) -> bool + Sync);
 
-/// Watches one run.
-pub struct Watch<'a> {
+/// Takes down what one run tells.
+pub struct Teller<'a> {
     cracks: &'a [Crack],
     /// `None` for a calibration, which begins anew wherever it was broken off: it takes seconds.
     keep: Option<Keep<'a>>,
     keep_every: Duration,
     started: Instant,
     /// What the run does before it has rows to show.
-    work: Arc<Work>,
+    work: Arc<Watch>,
     /// Whether nobody has shown any of its curve yet.
     is_fresh: bool,
     told: Mutex<Pending>,
@@ -83,8 +83,8 @@ struct Pending {
 /// Time between two checkpoints over the time that keeping one takes, at least: so they cost 5 % at most.
 const OVER_COST: u32 = 20;
 
-impl<'a> Watch<'a> {
-    /// Watches a run of a plate with these cracks, whose curve so far is `growth`.
+impl<'a> Teller<'a> {
+    /// For a run of a plate with these cracks, whose curve so far is `growth`.
     #[must_use]
     pub fn new(cracks: &'a [Crack], growth: &Growth, keep: Option<Keep<'a>>, keep_every: Duration) -> Self {
         let tips = growth.tips.first().map_or(0, Vec::len);
@@ -101,7 +101,7 @@ impl<'a> Watch<'a> {
             keep_cost: Duration::ZERO,
         };
         let is_fresh = growth.cycles.is_empty();
-        Watch { cracks, keep, keep_every, started: Instant::now(), work: Arc::default(), is_fresh, told: Mutex::new(told) }
+        Teller { cracks, keep, keep_every, started: Instant::now(), work: Arc::default(), is_fresh, told: Mutex::new(told) }
     }
 
     /// What was told since the last time; a look stays where no picture is wanted.
@@ -132,8 +132,8 @@ impl<'a> Watch<'a> {
     }
 }
 
-impl Observer for Watch<'_> {
-    fn watch(&self) -> Option<Arc<Work>> {
+impl Observer for Teller<'_> {
+    fn watch(&self) -> Option<Arc<Watch>> {
         Some(self.work.clone())
     }
 
@@ -185,8 +185,8 @@ impl Observer for Watch<'_> {
     }
 }
 
-impl SceneObserver for Watch<'_> {
-    fn watch(&self) -> Option<Arc<Work>> {
+impl SceneObserver for Teller<'_> {
+    fn watch(&self) -> Option<Arc<Watch>> {
         Some(self.work.clone())
     }
 
