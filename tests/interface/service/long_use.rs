@@ -192,7 +192,7 @@ fn two_thousand_jobs_over_dying_workers() {
 }
 
 /// Runs of a batch.
-const BATCH: usize = 8;
+const BATCH: usize = 12;
 
 /// Time of a batch of jobs by so many workers of one thread each, in processes of their own.
 fn batch_s(postgres: &Postgres, name: &str, workers: usize) -> f64 {
@@ -204,8 +204,11 @@ fn batch_s(postgres: &Postgres, name: &str, workers: usize) -> f64 {
     let jobs: Vec<String> = (0..BATCH).map(|_| service.submit("predictions", &body)).collect();
     let begun = Instant::now();
     let _workers: Vec<Server> = (0..workers).map(|_| Server::worker(&place, &["--jobs", "1"])).collect();
+    // Waiting shall cost nothing: whoever asks again and again takes a part of a core that two workers need, and one does not.
+    jobs.iter().for_each(|job| while service.get(&format!("{job}?wait=20")).json()["finished"].is_null() {});
+    let took = begun.elapsed().as_secs_f64();
     jobs.iter().for_each(|job| drop(service.succeeded(job)));
-    begun.elapsed().as_secs_f64()
+    took
 }
 
 /// Time of as many runs of the program alone, so many at a time, of one thread each.
