@@ -80,27 +80,24 @@ impl Effort {
     pub(super) fn of_case(case: &Case, points: f64, bonds: f64) -> Effort {
         let model = &case.model;
         let with = |seconds: f64, power: f64| Effort { seconds, power, other_keys: "" };
-        let of_lattice = |each: f64| with(INCREMENTS * each * points * (bonds / BONDS_USUAL).powf(1.2), 2.0);
-        match (model.method, case.fatigue.driver) {
-            (Method::Handbook, _) => Effort::NONE,
-            (Method::ElementFreeGalerkin, _) => with(INCREMENTS * NODES * points.powf(1.5), 3.0),
-            // The break of a bond is an update of the plate around its tips, not a solve.
-            (Method::Peridynamics, Driver::BondStrain) if model.solver == SolverKind::Window => {
-                with(BREAKS * BOND_BREAK * points.powf(1.5) * bonds / BONDS_USUAL, 3.0)
-            }
-            (Method::Peridynamics, driver) => {
-                let solves = if driver == Driver::BondStrain { BREAKS * points.sqrt() } else { INCREMENTS };
-                let of_driver =
-                    |effort: Effort| Effort { power: effort.power + f64::from(driver == Driver::BondStrain), ..effort };
-                match model.solver {
-                    SolverKind::AdaptiveDynamicRelaxation => of_driver(Effort::of_relaxation(solves, points, bonds)),
-                    _ if model.arrangement != Discretisation::Lattice => of_driver(Effort::of_factors(solves, points, bonds)),
-                    SolverKind::Direct => of_driver(Effort::of_factors(solves, points, bonds)),
-                    SolverKind::Window => of_lattice(WINDOW),
-                    SolverKind::Multigrid => of_driver(of_lattice(MULTIGRID * solves / INCREMENTS)),
-                }
-            }
+        match model.method {
+            Method::Handbook => return Effort::NONE,
+            Method::ElementFreeGalerkin => return with(INCREMENTS * NODES * points.powf(1.5), 3.0),
+            Method::Peridynamics => {}
         }
+        let by_bonds = case.fatigue.driver == Driver::BondStrain;
+        let (solves, power) = if by_bonds { (BREAKS * points.sqrt(), 1.0) } else { (INCREMENTS, 0.0) };
+        let on_lattice = |each: f64| with(solves * each * points * (bonds / BONDS_USUAL).powf(1.2), 2.0);
+        let effort = match model.solver {
+            SolverKind::AdaptiveDynamicRelaxation => Effort::of_relaxation(solves, points, bonds),
+            // The break of a bond is an update of the plate around its tips, not a solve.
+            SolverKind::Window if by_bonds => with(solves * BOND_BREAK * points * bonds / BONDS_USUAL, 2.0),
+            _ if model.arrangement != Discretisation::Lattice => Effort::of_factors(solves, points, bonds),
+            SolverKind::Direct => Effort::of_factors(solves, points, bonds),
+            SolverKind::Window => on_lattice(WINDOW),
+            SolverKind::Multigrid => on_lattice(MULTIGRID),
+        };
+        Effort { power: effort.power + power, ..effort }
     }
 }
 
