@@ -22,7 +22,6 @@ pub struct Structure(SymbolicCholesky<usize>);
 impl Structure {
     /// Of a pattern whose lower triangle is made of whole blocks of `block` unknowns, one below and beside the other; `None` where
     /// it is too large.
-    #[must_use]
     pub fn of(pattern: SymbolicSparseColMatRef<'_, usize>, block: usize) -> Option<Self> {
         let points = pattern.ncols() / block;
         let (mut starts, mut rows) = (vec![0], Vec::new());
@@ -51,7 +50,6 @@ impl Structure {
     }
 
     /// The factor of an A of the pattern by its lower triangle; `None` where A is not positive definite.
-    #[must_use]
     pub fn factor(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Option<Factor<'_>> {
         let mut values = vec![0.0; self.0.len_val()];
         let mut memory = MemBuffer::try_new(self.0.factorize_numeric_llt_scratch::<f64>(PAR, faer::Spec::default())).ok()?;
@@ -70,7 +68,6 @@ pub struct Factor<'a> {
 
 impl Factor<'_> {
     /// Solves `A x = b` in place of b; `None` where memory is short.
-    #[must_use]
     pub fn solve(&self, b: &mut [f64]) -> Option<()> {
         let mut memory = MemBuffer::try_new(self.symbolic.solve_in_place_scratch::<f64>(1, PAR)).ok()?;
         let n = b.len();

@@ -85,13 +85,11 @@ impl Model {
     }
 
     /// Spacing of the coarsest level asked for, m.
-    #[must_use]
     pub fn coarsest_spacing(&self) -> f64 {
         self.coarsening() * self.spacing
     }
 
     /// The spacing that the body will have, m: the coarsest is moved to the nearest one that divides the gross width.
-    #[must_use]
     pub fn fitting_spacing(&self, specimen: &Specimen) -> f64 {
         fitting_spacing(specimen, self.coarsest_spacing(), self.lattice_angle) / self.coarsening()
     }

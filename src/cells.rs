@@ -15,7 +15,6 @@ pub const TEXT_MAX: usize = 256 << 20;
 pub const UNPACKED_MAX: u64 = 512 << 20;
 
 /// What is said of a table that is too large, for behind its file.
-#[must_use]
 pub fn too_many(what: &str, count: usize, most: usize) -> String {
     format!("has {count} {what}, more than the {most} that are read of a table")
 }
@@ -42,19 +41,16 @@ fn is_number(text: &str) -> bool {
 /// assert_eq!(restored("'=1+1"), "=1+1");
 /// assert_eq!(defused("-5.3"), "-5.3");
 /// ```
-#[must_use]
 pub fn defused(text: &str) -> Cow<'_, str> {
     if is_formula(text) { Cow::Owned(format!("'{text}")) } else { Cow::Borrowed(text) }
 }
 
 /// What [`defused`] was given.
-#[must_use]
 pub fn restored(cell: &str) -> &str {
     cell.strip_prefix('\'').filter(|_| is_formula(cell)).unwrap_or(cell)
 }
 
 /// Text as a field of a CSV file: [`defused`], in quotes where it holds a separator.
-#[must_use]
 pub fn field(text: &str) -> String {
     let text = defused(text);
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into_owned() }

@@ -33,7 +33,6 @@ pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
     /// Process exit code of this trouble: 2 wrong input, 3 mechanics, 4 file.
-    #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Input(_) => 2,
@@ -43,13 +42,11 @@ impl Error {
     }
 
     /// A file that could not be read or written.
-    #[must_use]
     pub fn file(path: &Path, action: &'static str, source: std::io::Error) -> Self {
         Error::File { path: path.to_path_buf(), action, source }
     }
 
     /// Names the file an input error came from, where it is not named yet.
-    #[must_use]
     pub fn in_file(self, path: &Path) -> Self {
         match self {
             Error::Input(mut input) => {

@@ -33,13 +33,10 @@ macro_rules! kinds {
             /// Key of the input file that takes these names.
             pub const KEY: &'static str = $key;
             /// Name in input and result files.
-            #[must_use]
             pub fn name(self) -> &'static str { match self { $($Kind::$Variant => $name),+ } }
             /// Meaning in one line.
-            #[must_use]
             pub fn meaning(self) -> &'static str { match self { $($Kind::$Variant => $meaning),+ } }
             /// Lines of `perilife list`.
-            #[must_use]
             pub fn lines() -> Vec<$crate::kinds::KindLine> {
                 Self::ALL.iter().map(|k| $crate::kinds::KindLine { key: Self::KEY, name: k.name(), meaning: k.meaning() }).collect()
             }

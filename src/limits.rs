@@ -35,7 +35,6 @@ pub struct Limit {
 
 impl Limit {
     /// The end of the safe range that a value lies beyond.
-    #[must_use]
     pub fn passed(&self, value: f64) -> Option<f64> {
         let [low, high] = self.ends;
         low.filter(|low| value < *low).or(high.filter(|high| value > *high))
@@ -86,20 +85,17 @@ pub fn parse(text: &str) -> Result<Vec<Limit>> {
 }
 
 /// The committed table as text.
-#[must_use]
 pub fn committed() -> &'static str {
     TABLE
 }
 
 /// The committed limits, read once. `tests/unit/limits.rs` reads the table with its errors.
-#[must_use]
 pub fn all() -> &'static [Limit] {
     static READ: OnceLock<Vec<Limit>> = OnceLock::new();
     READ.get_or_init(|| parse(TABLE).unwrap_or_default())
 }
 
 /// The limit of a method in a sweep, if one was measured.
-#[must_use]
 pub fn of(sweep: &str, method: &str) -> Option<&'static Limit> {
     all().iter().find(|limit| limit.sweep == sweep && limit.method == method)
 }

@@ -13,14 +13,12 @@ pub struct Line {
 
 impl Line {
     /// y of the line at x.
-    #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         self.intercept + self.slope * x
     }
 }
 
 /// Least squares line through points; `None` for fewer than two different x.
-#[must_use]
 pub fn line(x: &[f64], y: &[f64]) -> Option<Line> {
     let count = x.len().min(y.len()) as f64;
     let (mean_x, mean_y) = (x.iter().sum::<f64>() / count, y.iter().sum::<f64>() / count);

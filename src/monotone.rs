@@ -13,13 +13,11 @@ pub struct Monotone(Vec<[f64; 2]>);
 
 impl Monotone {
     /// Of its points, in order.
-    #[must_use]
     pub fn new(points: impl Iterator<Item = [f64; 2]>) -> Self {
         Monotone(points.collect())
     }
 
     /// y at x within the table; where several points share it, the last one counts. NaN for an empty table.
-    #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         let after = self.0.partition_point(|point| point[0] <= x);
         let Some(to) = self.0.get(after) else { return self.0.last().map_or(f64::NAN, |last| last[1]) };
@@ -28,7 +26,6 @@ impl Monotone {
     }
 
     /// Fraction of the way in x from point `before` to the next at which y is reached.
-    #[must_use]
     pub fn fraction(&self, before: usize, y: f64) -> f64 {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..HALVINGS {
@@ -39,7 +36,6 @@ impl Monotone {
     }
 
     /// y at a fraction of the way in x from point `before` to the next, which there is.
-    #[must_use]
     pub fn between(&self, before: usize, t: f64) -> f64 {
         let ([_, from], [_, to]) = (self.0[before], self.0[before + 1]);
         let [width, _] = self.chord(Some(before)).unwrap_or([0.0; 2]);

@@ -20,7 +20,6 @@ pub struct Bonds {
 
 impl Bonds {
     /// Bonds of the plate with its initial cracks cut.
-    #[must_use]
     pub fn new(body: &Body) -> Self {
         let mut bonds = Bonds::with_multipliers(body, body.multiplier.clone());
         for &bond in &body.pre_cut {
@@ -30,7 +29,6 @@ impl Bonds {
     }
 
     /// Bonds with these multipliers.
-    #[must_use]
     pub fn with_multipliers(body: &Body, multiplier: Vec<f32>) -> Self {
         let chunks = body.lattice.columns.div_ceil(LANES);
         let regular = vec![false; chunks * body.lattice.rows];
@@ -49,14 +47,12 @@ impl Bonds {
     }
 
     /// Bonds of the body that are cut, ascending.
-    #[must_use]
     pub fn broken(&self, body: &Body) -> Vec<Bond> {
         let is_broken = |bond: Bond| body.multiplier[bond as usize] > 0.0 && !self.is_intact(bond);
         (0..body.multiplier.len()).map(|bond| bond as Bond).filter(|&bond| is_broken(bond)).collect()
     }
 
     /// Bonds of the body that carry by another multiplier than its own, ascending, with theirs.
-    #[must_use]
     pub fn scaled(&self, body: &Body) -> Vec<(Bond, f32)> {
         let both = self.multiplier.iter().zip(&body.multiplier).enumerate();
         both.filter(|(_, (now, whole))| **now > 0.0 && now != whole).map(|(bond, (now, _))| (bond as Bond, *now)).collect()
@@ -73,31 +69,26 @@ impl Bonds {
     }
 
     /// Whether the chunk that starts at column `chunk x LANES` of a row is regular.
-    #[must_use]
     pub fn chunk_is_regular(&self, row: usize, chunk: usize) -> bool {
         self.regular[row * self.chunks + chunk]
     }
 
     /// Whether the chunks of a row are regular.
-    #[must_use]
     pub fn row_is_regular(&self, row: usize) -> &[bool] {
         &self.regular[row * self.chunks..(row + 1) * self.chunks]
     }
 
     /// Chunks of a row from the first to the last one that holds points.
-    #[must_use]
     pub fn inhabited(&self, row: usize) -> Range<usize> {
         self.inhabited[row].clone()
     }
 
     /// Chunks of a row.
-    #[must_use]
     pub fn chunks(&self) -> usize {
         self.chunks
     }
 
     /// Whether a bond carries.
-    #[must_use]
     pub fn is_intact(&self, bond: Bond) -> bool {
         self.multiplier[bond as usize] > 0.0
     }
@@ -119,7 +110,6 @@ impl Bonds {
     }
 
     /// Intact bonds of a point.
-    #[must_use]
     pub fn intact_at(&self, body: &Body, place: usize) -> usize {
         let places = body.places();
         let own = body.steps.iter().enumerate().filter(|(k, _)| self.multiplier[k * places + place] > 0.0).count();

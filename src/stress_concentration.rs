@@ -57,13 +57,11 @@ pub struct Stressed {
 
 impl Stressed {
     /// Stress over the gross stress, where that is known.
-    #[must_use]
     pub fn concentration(&self, stress: f64) -> Option<f64> {
         self.gross.filter(|gross| *gross != 0.0).map(|gross| stress / gross)
     }
 
     /// Whether the peaks of all holes and arcs have settled.
-    #[must_use]
     pub fn is_settled(&self) -> bool {
         self.change.is_none_or(|change| change < SETTLED)
     }

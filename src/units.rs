@@ -23,7 +23,6 @@ pub const MPA_SQRT_M: f64 = 1e6;
 pub const MM_PER_CYCLE: f64 = 1e-3;
 
 /// A number in writing that nobody takes its decimal point for a separator of thousands in: 12.345 becomes 12.3450.
-#[must_use]
 pub fn unmistakable(number: &str) -> String {
     match number.split_once('.') {
         Some((_, digits)) if digits.len() == 3 => format!("{number}0"),

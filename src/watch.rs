@@ -33,7 +33,6 @@ impl Stage {
     pub const ALL: [Stage; 6] = [Stage::Points, Stage::Bonds, Stage::Rim, Stage::Loads, Stage::Solver, Stage::Equilibrium];
 
     /// In words.
-    #[must_use]
     pub fn words(self) -> &'static str {
         match self {
             Stage::Points => "laying points",
@@ -59,7 +58,6 @@ pub struct Watch {
 
 impl Watch {
     /// What is being done now, and how much of it is done, 0 to 1; `None` before anything is.
-    #[must_use]
     pub fn now(&self) -> Option<(Stage, f64)> {
         let number = self.stage.load(Ordering::Relaxed);
         let stage = Stage::ALL.into_iter().find(|stage| *stage as u8 == number)?;
@@ -72,7 +70,6 @@ impl Watch {
     }
 
     /// Whether that was asked.
-    #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.is_cancelled.load(Ordering::Relaxed)
     }
@@ -122,15 +119,11 @@ pub fn at(stage: Stage, share: f64) -> Result<()> {
 const CANCELLED: &str = "the run was cancelled";
 
 /// Whether the work of this thread was asked to end.
-#[must_use]
 pub fn is_cancelled() -> bool {
     WATCHED_BY.with_borrow(|watch| watch.as_ref().is_some_and(|watch| watch.is_cancelled()))
 }
 
 /// What came of work that may have been asked to end: then that is said, whatever it ended with.
-///
-/// # Errors
-/// As `done`, or that it was cancelled.
 pub fn unless_cancelled<T>(name: &str, done: Result<T>) -> Result<T> {
     if is_cancelled() { Err(Error::Mechanics(format!("{name}: {CANCELLED}"))) } else { done }
 }

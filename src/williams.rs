@@ -28,7 +28,6 @@ pub struct Elasticity {
 
 impl Elasticity {
     /// Constants of a material.
-    #[must_use]
     pub fn of(material: &Material) -> Self {
         let nu = material.poisson_ratio;
         let kappa = match material.plane {
@@ -40,7 +39,6 @@ impl Elasticity {
     }
 
     /// Stress of a displacement gradient `∂u_i/∂x_j`, as [xx, yy, xy], Pa: `σ = 2G (ε + (3-κ)/(2(κ-1)) tr ε)`.
-    #[must_use]
     pub fn stress(&self, gradient: &[[f64; 2]; 2]) -> [f64; 3] {
         let [[xx, xy], [yx, yy]] = *gradient;
         let two_g = 2.0 * self.shear_modulus;
@@ -60,19 +58,16 @@ pub struct Eigenfunction {
 
 impl Eigenfunction {
     /// 2G u at (r, θ) for coefficient 1, in the axes of the tip.
-    #[must_use]
     pub fn displacement(&self, kappa: f64, r: f64, theta: f64) -> [f64; 2] {
         Place::new(self.order, r, theta).displacement(self.symmetry, kappa)
     }
 
     /// 2G ∂u_i/∂x_j at (r, θ) for coefficient 1.
-    #[must_use]
     pub fn gradient(&self, kappa: f64, r: f64, theta: f64) -> [[f64; 2]; 2] {
         Place::new(self.order, r, theta).gradient(self.symmetry, kappa)
     }
 
     /// 2G u and 2G ∂u_i/∂x_j of both functions of an order, opening first, for which angles and powers are computed once.
-    #[must_use]
     pub fn both(order: i32, kappa: f64, r: f64, theta: f64) -> [([f64; 2], [[f64; 2]; 2]); 2] {
         let place = Place::new(order, r, theta);
         [Symmetry::Opening, Symmetry::Sliding]
@@ -143,7 +138,6 @@ impl Place {
 }
 
 /// Coefficient of the n = 1 function over the factor it stands for: K_I = a₁ √(2π), K_II = -b₁ √(2π).
-#[must_use]
 pub fn coefficient_of_unit_factor(symmetry: Symmetry) -> f64 {
     let size = 1.0 / (2.0 * std::f64::consts::PI).sqrt();
     match symmetry {
@@ -156,7 +150,6 @@ pub fn coefficient_of_unit_factor(symmetry: Symmetry) -> f64 {
 ///
 /// In Kolosov's potentials `φ' = -1/(4π z)`, `ψ' = -φ'`: `2G (u_,1 + i v_,1) = κ φ' - conj(φ' + ψ' + conj(z) φ'')` and
 /// `2G (u_,2 + i v_,2) = i [κ φ' - conj(φ' - ψ' - conj(z) φ'')]`.
-#[must_use]
 pub fn force_gradient(elasticity: Elasticity, r: f64, theta: f64) -> [[f64; 2]; 2] {
     let Elasticity { kappa, shear_modulus, .. } = elasticity;
     let size = -1.0 / (8.0 * std::f64::consts::PI * shear_modulus * r);

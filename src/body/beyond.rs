@@ -21,7 +21,6 @@ pub struct CoarseNeighbours {
 
 impl CoarseNeighbours {
     /// Pieces, loaded or not, and the places tied to them.
-    #[must_use]
     pub fn new(mut ties: Vec<(u32, u32)>, loaded: Vec<bool>) -> Self {
         ties.sort_unstable();
         ties.dedup();
@@ -31,7 +30,6 @@ impl CoarseNeighbours {
     }
 
     /// Number of pieces.
-    #[must_use]
     pub fn pieces(&self) -> usize {
         self.loaded.len()
     }
@@ -43,19 +41,16 @@ impl CoarseNeighbours {
     }
 
     /// Places tied to a piece, ascending.
-    #[must_use]
     pub fn rim_of(&self, piece: usize) -> &[u32] {
         &self.rims[piece]
     }
 
     /// Whether loads or supports act on a piece.
-    #[must_use]
     pub fn is_loaded(&self, piece: usize) -> bool {
         self.loaded[piece]
     }
 
     /// Whether a place is tied to any piece.
-    #[must_use]
     pub fn is_rim(&self, place: usize) -> bool {
         self.pieces_at(place).next().is_some()
     }
@@ -63,13 +58,11 @@ impl CoarseNeighbours {
 
 impl Body {
     /// Whether a place of the material lies within `reach` (m) of what is beyond the body, or there.
-    #[must_use]
     pub fn is_near_rim(&self, at: Point, reach: f64) -> bool {
         self.rim_distance(at, reach).is_some()
     }
 
     /// Distance of a place of the material from what is beyond the body, m, if it is at most `reach`; 0 there.
-    #[must_use]
     pub fn rim_distance(&self, at: Point, reach: f64) -> Option<f64> {
         if self.beyond.pieces() == 0 {
             return None;

@@ -96,7 +96,6 @@ impl Boundary {
 
     /// Loads and supports of a body that is the finest part of a plate of several levels, as far as they act on it: forces at unit
     /// nominal load, places nearest to where loads act, places held, and places of grips, all in ascending order.
-    #[must_use]
     pub fn of_finest(
         forces: Vec<(u32, [f64; 2])>,
         loaded: Vec<u32>,
@@ -148,13 +147,11 @@ impl Boundary {
     }
 
     /// Force that the plate carries from end to end along y at unit nominal load, N.
-    #[must_use]
     pub fn force_through(&self) -> f64 {
         self.through
     }
 
     /// Places within one horizon of a loaded or held place.
-    #[must_use]
     pub fn no_fail(&self, lattice: &Lattice, horizon: f64) -> Vec<bool> {
         let mut no_fail = vec![false; lattice.places()];
         let reach = (horizon / lattice.spacing).floor() as i32;

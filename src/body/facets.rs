@@ -20,7 +20,6 @@ pub struct Facet {
 }
 
 /// Outline, holes and slots of a specimen, only the parts of them that bound material.
-#[must_use]
 pub fn facets(specimen: &Specimen, spacing: f64) -> Vec<Facet> {
     let outline = edges(&specimen.outline).flat_map(|(a, b)| straight(a, b, spacing));
     let turn = 2.0 * std::f64::consts::PI;

@@ -36,7 +36,6 @@ pub struct Mirror {
 pub type Flips = [bool; 2];
 
 /// Signs of a mirrored point's displacements and rotation.
-#[must_use]
 pub fn signs(flips: Flips) -> [f64; 3] {
     let sign = |flip: bool| if flip { -1.0 } else { 1.0 };
     [sign(flips[0]), sign(flips[1]), sign(flips[0] != flips[1])]
@@ -44,7 +43,6 @@ pub fn signs(flips: Flips) -> [f64; 3] {
 
 impl Line {
     /// Column or row whose image is `steps` >= 1 before the first.
-    #[must_use]
     pub fn source(self, steps: usize) -> usize {
         match self {
             Line::Between => steps - 1,
@@ -55,13 +53,11 @@ impl Line {
 
 impl Mirror {
     /// Parts of this size that make up the plate.
-    #[must_use]
     pub fn copies(self) -> usize {
         1 << self.lines.iter().flatten().count()
     }
 
     /// The point that stands behind a place of the lattice: the place itself, or what it is the image of.
-    #[must_use]
     pub fn behind(self, lattice: &Lattice, place: usize) -> (usize, Flips) {
         if self.lines == [None; 2] {
             return (place, [false; 2]);
@@ -80,7 +76,6 @@ impl Mirror {
 
     /// The lines about which a plate is symmetric: its points, bonds, loads and supports, to round-off, and which of its bonds
     /// are left, by their multipliers.
-    #[must_use]
     pub fn of(body: &Body, multiplier: &[f32]) -> Mirror {
         let lines = [0, 1].map(|axis| {
             let count = if axis == 0 { body.lattice.columns } else { body.lattice.rows };
@@ -117,7 +112,6 @@ pub struct Reflection {
 
 impl Reflection {
     /// Turns columns (axis 0) or rows (axis 1) over.
-    #[must_use]
     pub fn new(body: &Body, axis: usize) -> Self {
         let lattice = &body.lattice;
         let count = if axis == 0 { lattice.columns } else { lattice.rows };
@@ -133,7 +127,6 @@ impl Reflection {
     }
 
     /// Image of a place.
-    #[must_use]
     pub fn place(&self, place: usize) -> usize {
         self.seat([place % self.stride, place / self.stride])
     }
@@ -144,7 +137,6 @@ impl Reflection {
     }
 
     /// Image of a bond.
-    #[must_use]
     pub fn bond(&self, body: &Body, bond: Bond) -> Bond {
         let (k, from, to) = body.ends(bond);
         let (image, swaps) = self.bonds[k];
@@ -222,7 +214,6 @@ pub struct Part {
 
 impl Part {
     /// The smallest part of a plate about whose lines `mirror` it is symmetric; `None` without any.
-    #[must_use]
     pub fn of(whole: &Body, mirror: Mirror) -> Option<Part> {
         if mirror == Mirror::default() {
             return None;
@@ -278,7 +269,6 @@ impl Part {
     }
 
     /// The part's place that a place of the plate is, if it is one of its points.
-    #[must_use]
     pub fn place(&self, whole: &Body, place: usize) -> Option<usize> {
         let (column, row) = whole.lattice.column_row(place);
         let (column, row) = (column.checked_sub(self.first[0])?, row.checked_sub(self.first[1])?);
@@ -286,7 +276,6 @@ impl Part {
     }
 
     /// The plate's place that a place of the part is.
-    #[must_use]
     pub fn place_in(&self, whole: &Body, place: usize) -> usize {
         let (column, row) = self.body.lattice.column_row(place);
         whole.lattice.place(column + self.first[0], row + self.first[1])
@@ -294,7 +283,6 @@ impl Part {
 
     /// The place of the part that a place of the plate is or is the image of, and what weights on the displacements of the latter are on
     /// those of the former.
-    #[must_use]
     pub fn weights_of(&self, whole: &Body, place: usize, weights: [f64; 2]) -> (u32, [f64; 2]) {
         let seat = <[usize; 2]>::from(whole.lattice.column_row(place));
         let count = [whole.lattice.columns, whole.lattice.rows];
@@ -329,7 +317,6 @@ impl Part {
 
     /// The part's bond that stands for a bond of the plate: of the same place where that has a point of the part at one end. A bond
     /// across a line has two names in the part, one from either end.
-    #[must_use]
     pub fn bond(&self, whole: &Body, bond: Bond) -> Option<Bond> {
         let (k, from, to) = whole.ends(bond);
         if self.place(whole, from).is_none() && self.place(whole, to).is_none() {
@@ -342,7 +329,6 @@ impl Part {
     }
 
     /// The bonds of the part that stand for some bonds of the plate, each under one name, ascending.
-    #[must_use]
     pub fn bonds(&self, whole: &Body, bonds: &[Bond]) -> Vec<Bond> {
         let mut found: Vec<Bond> = bonds
             .iter()
@@ -358,14 +344,12 @@ impl Part {
     }
 
     /// Whether the mirror images of all these bonds are among them.
-    #[must_use]
     pub fn keeps(&self, whole: &Body, bonds: &[Bond]) -> bool {
         let all: std::collections::HashSet<Bond> = bonds.iter().copied().collect();
         self.reflections.iter().all(|reflection| bonds.iter().all(|&bond| all.contains(&reflection.bond(whole, bond))))
     }
 
     /// Stiffness multipliers of the part's bonds, from those of the plate.
-    #[must_use]
     pub fn multiplier(&self, whole: &Body, of_whole: &[f32]) -> Vec<f32> {
         let (here, there) = (&self.body.lattice, &whole.lattice);
         let padding = here.padding;
@@ -389,7 +373,6 @@ impl Part {
 
     /// The names in the part of some bonds of the plate and of their images, and the multiplier that all of them have by the plate's:
     /// that of one image, since round-off may tell them apart, and the stiffness of the part has to be symmetric.
-    #[must_use]
     pub fn multipliers_of(&self, whole: &Body, bonds: &[Bond], of_whole: &[f32]) -> Vec<(Bond, f32)> {
         let stride = self.body.lattice.stride;
         let mut found = Vec::new();

@@ -25,7 +25,6 @@ pub struct Obstacles<'a> {
 
 impl<'a> Obstacles<'a> {
     /// Obstacles of a specimen.
-    #[must_use]
     pub fn of(specimen: &'a Specimen, spacing: f64, horizon: f64) -> Self {
         let outline: &[Point] = if is_convex(&specimen.outline) { &[] } else { &specimen.outline };
         let slots = specimen.slots.iter().map(|slot| (*slot, drawn_in(slot, GRAZE * spacing).corners())).collect();
@@ -33,7 +32,6 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Whether a bond that starts at a point can meet an obstacle at all; most cannot, and need no further test.
-    #[must_use]
     pub fn near(&self, point: Point) -> bool {
         self.holes.iter().any(|hole| distance(point, hole.centre) < hole.radius + self.horizon)
             || self.slots.iter().any(|(slot, _)| distance_to_segment(point, slot.from, slot.to) < slot.width + self.horizon)
@@ -41,7 +39,6 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Whether the bond between two points of the material would bridge an obstacle.
-    #[must_use]
     pub fn block(&self, a: Point, b: Point) -> bool {
         self.holes.iter().any(|hole| distance_to_segment(hole.centre, a, b) < hole.radius - GRAZE * self.spacing)
             || self.slots.iter().any(|(_, corners)| edges(corners).any(|(c, d)| segments_touch(a, b, c, d)))

@@ -8,7 +8,6 @@ use crate::specimen::{Crack, Point, Specimen};
 const TIE_BREAK: f64 = 1e-7;
 
 /// Bonds of the body that the cracks of a specimen cut, ascending.
-#[must_use]
 pub fn bonds_cut_by(body: &Body, specimen: &Specimen) -> Vec<Bond> {
     let cracks = through_mouths(specimen, body.lattice.spacing);
     let mut cut: Vec<Bond> = cracks.iter().flat_map(|crack| bonds_across(body, crack.from, crack.to)).collect();
@@ -22,7 +21,6 @@ const MOUTH_STEPS: usize = 8;
 
 /// The cracks of a specimen, longer by a spacing, m, at every mouth, as far as there is no material: bonds that graze the void there
 /// would hold the mouth shut.
-#[must_use]
 pub fn through_mouths(specimen: &Specimen, spacing: f64) -> Vec<Crack> {
     let longer = |end: Point, other: Point| {
         let [x, y] = direction(other, end);
@@ -38,13 +36,11 @@ pub fn through_mouths(specimen: &Specimen, spacing: f64) -> Vec<Crack> {
 }
 
 /// How far a crack from `a` to `b` is shifted, to its left, before bonds are cut, m.
-#[must_use]
 pub fn tie_break(body: &Body, a: Point, b: Point) -> Point {
     aside(body.lattice.spacing, a, b)
 }
 
 /// A piece of crack where it cuts the bonds: shifted aside by [`tie_break`].
-#[must_use]
 pub fn as_cut(body: &Body, [a, b]: [Point; 2]) -> [Point; 2] {
     let shift = tie_break(body, a, b);
     [a, b].map(|p| [p[0] + shift[0], p[1] + shift[1]])
@@ -58,7 +54,6 @@ fn aside(spacing: f64, a: Point, b: Point) -> Point {
 
 /// Ends of the line that cuts bonds for a crack from `a` to `b` on points of a spacing, m: shifted aside, and longer by ten times
 /// that shift, so that a bond through an end of the crack is cut at both ends alike.
-#[must_use]
 pub fn cutting_line(spacing: f64, a: Point, b: Point) -> [Point; 2] {
     let aside = aside(spacing, a, b);
     let (x, y) = (10.0 * aside[1], -10.0 * aside[0]);
@@ -66,7 +61,6 @@ pub fn cutting_line(spacing: f64, a: Point, b: Point) -> [Point; 2] {
 }
 
 /// Bonds that cross the segment from `a` to `b`.
-#[must_use]
 pub fn bonds_across(body: &Body, a: Point, b: Point) -> Vec<Bond> {
     let (lattice, places) = (&body.lattice, body.places());
     if distance(a, b) == 0.0 {

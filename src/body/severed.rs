@@ -15,14 +15,12 @@ const WINDOW_HORIZONS: f64 = 4.0;
 const FADE: f64 = 0.75;
 
 /// Weight g_k of a stencil bond: normal stiffness times length.
-#[must_use]
 pub fn severed_weight(body: &Body, k: usize) -> f64 {
     let bond = &body.stencil.bonds[k];
     bond.k_n * bond.length
 }
 
 /// ρ(n): weight of the bonds severed by a unit length of crack with unit normal n (lattice axes).
-#[must_use]
 pub fn severed_per_length(body: &Body, normal: Point) -> f64 {
     let bonds = &body.stencil.bonds;
     let severed = |k: usize| {
@@ -47,7 +45,6 @@ pub struct RepresentedEnd {
 /// `length` is the length of crack that belongs to this end: all of it, or half where both ends are tips. Bonds are counted
 /// over a window before the end that fades in smoothly, so that where it starts does not matter; their middles show where
 /// the gap lies.
-#[must_use]
 pub fn represented_end(body: &Body, crack: &Crack, at_to: bool, length: f64) -> RepresentedEnd {
     let window = length.min(WINDOW_HORIZONS * body.horizon());
     let (tip, other) = if at_to { (crack.to, crack.from) } else { (crack.from, crack.to) };
@@ -74,7 +71,6 @@ const STRAIGHT_HORIZONS: f64 = 0.7;
 /// that may bend. Zero where the line has a corner so near that its bonds do not tell.
 ///
 /// `length` is the length of crack that belongs to this end, as there.
-#[must_use]
 pub fn represented_excess(body: &Body, line: &CrackLine, at_last: bool, length: f64) -> f64 {
     let mut pieces: Vec<[Point; 2]> = line.pieces().collect();
     if at_last {

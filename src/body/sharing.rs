@@ -30,19 +30,16 @@ pub struct Sharing<'a> {
 
 impl<'a> Sharing<'a> {
     /// Everything to the nearest point.
-    #[must_use]
     pub fn nearest(lattice: &'a Lattice, is_point: &'a [bool]) -> Self {
         Sharing { lattice, is_point, consistent: None }
     }
 
     /// Shares over `rows` rows of points that see the place of the force past the obstacles.
-    #[must_use]
     pub fn consistent(lattice: &'a Lattice, is_point: &'a [bool], obstacles: Obstacles<'a>, rows: usize) -> Self {
         Sharing { lattice, is_point, consistent: Some((obstacles, rows)) }
     }
 
     /// Shares of a force on a piece of the rim; empty where no point lies near.
-    #[must_use]
     pub fn of(&self, facet: &Facet) -> Vec<(u32, f64)> {
         let linear = self.consistent.as_ref().and_then(|(obstacles, rows)| {
             (0..WIDENINGS).find_map(|i| self.linear(facet, obstacles, *rows as f64, WIDEN.powi(i as i32)))
@@ -51,7 +48,6 @@ impl<'a> Sharing<'a> {
     }
 
     /// Point nearest to a position, searched within three spacings.
-    #[must_use]
     pub fn nearest_point(&self, position: Point) -> Option<u32> {
         let [column, row] = self.lattice.locate(position);
         let mut best: Option<(f64, u32)> = None;

@@ -6,7 +6,6 @@ use crate::material::Material;
 
 /// Factor by which springs of the stencil fall short of the material's energy `C₁₁ e² V/2` under uniaxial strain e along the rows:
 /// what the sum over the lattice differs from the integral by.
-#[must_use]
 pub fn interior_gain(stencil: &Stencil, c11: f64, volume: f64) -> f64 {
     let interior: f64 = stencil.bonds.iter().map(|bond| 2.0 * shares(bond)[0]).sum();
     0.5 * c11 * volume / interior
@@ -20,7 +19,6 @@ fn shares(bond: &StencilBond) -> [f64; 2] {
 }
 
 /// Rounds a multiplier: round-off in sums must not make interior bonds look irregular.
-#[must_use]
 pub fn settled(multiplier: f64) -> f32 {
     if (multiplier - 1.0).abs() < 1e-9 { 1.0 } else { multiplier as f32 }
 }

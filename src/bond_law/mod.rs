@@ -41,13 +41,11 @@ crate::kinds! {
 
 impl BondLawKind {
     /// The law for a material where a case leaves it open: two-parameter as far as its springs reach, else state-based.
-    #[must_use]
     pub fn for_material(material: &Material) -> Self {
         if stencil::is_within_springs(material) { BondLawKind::TwoParameter } else { BondLawKind::StateBased }
     }
 
     /// Whether a bond has a tangential spring beside the normal one.
-    #[must_use]
     pub fn is_two_parameter(self) -> bool {
         match self {
             BondLawKind::BondBased | BondLawKind::StateBased => false,
@@ -56,7 +54,6 @@ impl BondLawKind {
     }
 
     /// Whether the micromodulus acts on stretch and shear angle instead of on relative displacement.
-    #[must_use]
     pub fn is_stretch_form(self) -> bool {
         match self {
             BondLawKind::TwoParameter | BondLawKind::StateBased => false,

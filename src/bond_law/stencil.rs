@@ -44,7 +44,6 @@ pub struct StencilBond {
 
 impl StencilBond {
     /// Unit vector across the bond (normal turned by +90°).
-    #[must_use]
     pub fn tangent(&self) -> [f64; 2] {
         [-self.normal[1], self.normal[0]]
     }
@@ -80,7 +79,6 @@ struct SpringField {
 }
 
 /// Elastic constants C11 and C12 of the plane state, Pa.
-#[must_use]
 pub fn plane_stiffness(material: &Material) -> [f64; 2] {
     let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
     match material.plane {
@@ -93,7 +91,6 @@ pub fn plane_stiffness(material: &Material) -> [f64; 2] {
 }
 
 /// Largest Poisson's ratio of the two-parameter law: c_t ≥ 0 needs ν ≤ 1/3 (plane stress) or 1/4 (plane strain).
-#[must_use]
 pub fn poisson_limit(plane: Plane) -> f64 {
     match plane {
         Plane::Stress => 1.0 / 3.0,
@@ -102,7 +99,6 @@ pub fn poisson_limit(plane: Plane) -> f64 {
 }
 
 /// Whether springs with tangential stiffness c_t ≥ 0 reach the material's Poisson's ratio.
-#[must_use]
 pub fn is_within_springs(material: &Material) -> bool {
     material.poisson_ratio <= poisson_limit(material.plane) + POISSON_ROUND_OFF
 }
@@ -145,7 +141,6 @@ const NO_STIFFNESS: f64 = 1e-9;
 
 /// Partial-volume weight b(r): 1 inside δ - Δ/2, falling to 1/2 at δ, 0 beyond
 /// (Madenci and Oterkus 2014, Peridynamic Theory and Its Applications, ch. 7).
-#[must_use]
 pub fn partial_volume(length: f64, horizon: f64, spacing: f64) -> f64 {
     if length <= horizon - 0.5 * spacing {
         1.0
@@ -168,9 +163,6 @@ impl Stencil {
     /// `c_n (S₄ + S₂₂) = V (C₁₁ + C₁₂)`, `(c_n - c_t) S₂₂ = V C₁₂`. The weights q are first moved as little as possible
     /// (weighted least squares) to make the lattice isotropic, S₄ = 3 S₂₂, without which the stiffness would depend on
     /// the direction of the rows by some percent.
-    ///
-    /// # Errors
-    /// As [`check`].
     pub fn new(law: &BondLaw, material: &Material, spacing: f64, horizon_ratio: f64, thickness: f64) -> Result<Self, Error> {
         check(law, material)?;
         let horizon = horizon_ratio * spacing;
@@ -208,7 +200,6 @@ impl Stencil {
 impl Stencil {
     /// Normal and tangential spring of a bond to a cell of another width, N/m, as if both ends had the volume of this lattice's
     /// points; `normal` in lattice axes. Continues the stencil: its own bonds have these springs at `width = spacing`.
-    #[must_use]
     pub fn spring(&self, length: f64, normal: [f64; 2], width: f64) -> [f64; 2] {
         let SpringField { law, moduli, tilt } = &self.field;
         let weight = profile(law, length, self.horizon).max(0.0) * partial_volume(length, self.horizon, width);
@@ -216,7 +207,6 @@ impl Stencil {
     }
 
     /// Whether a rigid rotation costs energy: tangential springs between points that do not turn.
-    #[must_use]
     pub fn resists_rotation(&self) -> bool {
         self.unknowns == 2 && self.bonds.iter().any(|bond| bond.k_t > 1e-9 * bond.k_n)
     }
@@ -281,7 +271,6 @@ fn make_isotropic(shape: &[StencilBond], weight: &mut [f64]) -> f64 {
 
 /// The material that the springs of a law stand for: all of it for a two-parameter law; with E and the law's own ν for a
 /// bond-based one; with G and that ν for a state-based one, whose dilatation does the rest.
-#[must_use]
 pub fn spring_material(law: &BondLaw, material: &Material) -> Material {
     let poisson_ratio = poisson_limit(material.plane);
     match law.kind {

@@ -9,9 +9,6 @@ use crate::fatigue::rate_constant::{rate_constant, rate_constant_slope};
 use crate::units::MPA_SQRT_M;
 
 /// A fit of C and m on a plate of this horizon, m, as one of A and p, with the rate constant that ties them.
-///
-/// # Errors
-/// As [`rate_constant`].
 pub fn in_terms_of_bonds(fit: &mut Fit, case: &Case, horizon: f64) -> Result<()> {
     let (kernel, modulus) = (case.model.bond_law.kernel, case.material.plane_modulus());
     let p = fit.record.constants.p;

@@ -145,7 +145,6 @@ impl CalibrationCase {
     }
 
     /// ΔK of the handbook (Pa√m) at a crack length (m); `None` where no handbook has the specimen, as a drawn plate.
-    #[must_use]
     pub fn delta_k(&self, crack_length: f64) -> Option<f64> {
         let loading = &self.case.loading;
         self.formula.map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))

@@ -36,7 +36,6 @@ pub struct Lives<'a> {
 }
 
 /// Covariance at a fit by a criterion.
-#[must_use]
 pub fn confidence(criterion: Criterion, lives: &Lives<'_>, inverse_a: f64) -> Confidence {
     let Lives { model, model_per_p, measured } = *lives;
     let increments: Vec<(f64, f64)> = model
@@ -86,7 +85,6 @@ pub fn confidence(criterion: Criterion, lives: &Lives<'_>, inverse_a: f64) -> Co
 }
 
 /// Squared Mahalanobis distance of (ln A, p) from the fit; below 5.991 inside the 95 % ellipse (χ², 2 degrees of freedom).
-#[must_use]
 pub fn distance_squared(covariance: [[f64; 2]; 2], difference: [f64; 2]) -> f64 {
     let matrix = Matrix2::new(covariance[0][0], covariance[0][1], covariance[1][0], covariance[1][1]);
     let difference = Vector2::from(difference);

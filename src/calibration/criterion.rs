@@ -26,7 +26,6 @@ crate::kinds! {
 
 impl Criterion {
     /// Readings (from, to) between which lives are counted, of a curve with this many readings.
-    #[must_use]
     pub fn spans(self, readings: usize) -> Vec<(usize, usize)> {
         let since_first = (1..readings).map(|to| (0, to));
         match self {
@@ -36,13 +35,11 @@ impl Criterion {
     }
 
     /// The lives of a curve.
-    #[must_use]
     pub fn lives(self, cycles: &[f64]) -> Vec<f64> {
         self.spans(cycles.len()).into_iter().map(|(from, to)| cycles[to] - cycles[from]).collect()
     }
 
     /// Weights of the lives of a measured curve.
-    #[must_use]
     pub fn weights(self, measured: &[f64]) -> Vec<f64> {
         let weight = |life: f64| match self {
             Criterion::FirstReading => 1.0,

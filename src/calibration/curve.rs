@@ -4,7 +4,6 @@ use crate::calibration::measured::{MeasuredCurve, Source};
 
 impl MeasuredCurve {
     /// Readings without loads or other remarks.
-    #[must_use]
     pub fn new(specimen: impl Into<String>, cycles: Vec<f64>, crack_length: Vec<f64>) -> Self {
         MeasuredCurve { specimen: specimen.into(), cycles, crack_length, ..MeasuredCurve::default() }
     }
@@ -20,7 +19,6 @@ impl MeasuredCurve {
 
     /// The curve of some of its readings, in their order, cycles counted from the first. The growth between two of them is left out
     /// where that of any step between them was.
-    #[must_use]
     pub fn of_readings(&self, readings: &[usize]) -> MeasuredCurve {
         fn some<T: Copy>(of: &[T], readings: &[usize]) -> Vec<T> {
             readings.iter().filter_map(|&reading| of.get(reading).copied()).collect()
@@ -45,19 +43,16 @@ impl MeasuredCurve {
     }
 
     /// Whether every reading has the load of the case and counts.
-    #[must_use]
     pub fn is_plain(&self) -> bool {
         self.load_factor.is_empty() && !self.left_out.contains(&true)
     }
 
     /// Whether the growth up to a reading counts.
-    #[must_use]
     pub fn counts(&self, reading: usize) -> bool {
         self.left_out.get(reading) != Some(&true)
     }
 
     /// Cycles since the first reading, those of steps left out taken off.
-    #[must_use]
     pub fn cycles_counted(&self) -> Vec<f64> {
         let Some(&first) = self.cycles.first() else { return Vec::new() };
         if !self.left_out.contains(&true) {
@@ -74,13 +69,11 @@ impl MeasuredCurve {
     }
 
     /// Where a reading stands, for messages: its line, or its number where there is no file.
-    #[must_use]
     pub fn line(&self, reading: usize) -> usize {
         self.source.lines.get(reading).copied().unwrap_or(reading + 1)
     }
 
     /// Cycles from the first reading to the last.
-    #[must_use]
     pub fn life(&self) -> f64 {
         self.cycles.last().unwrap_or(&0.0) - self.cycles.first().unwrap_or(&0.0)
     }

@@ -36,7 +36,6 @@ pub struct Robust {
 
 impl Robust {
     /// A line of rates in m/cycle.
-    #[must_use]
     pub fn of(line: RobustLine) -> Self {
         Robust { c: line.intercept.exp() / MM_PER_CYCLE, m: line.m }
     }

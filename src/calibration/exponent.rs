@@ -20,14 +20,12 @@ pub struct Exponent {
 
 impl Exponent {
     /// Fitted where the window spans a factor [`DELTA_K_RATIO_MIN`] in ΔK.
-    #[must_use]
     pub fn fitted(delta_k_ratio: f64) -> Self {
         let source = if delta_k_ratio < DELTA_K_RATIO_MIN { "not_identified" } else { "fitted" };
         Exponent { fixed: None, error: 0.0, source: source.to_owned(), warning: None }
     }
 
     /// Its source once a fit has shown by which factor ΔK varies, as a drawn plate does only then.
-    #[must_use]
     pub fn source_over(&self, delta_k_ratio: f64) -> String {
         match self.fixed {
             None => Self::fitted(delta_k_ratio).source,
@@ -36,15 +34,11 @@ impl Exponent {
     }
 
     /// As the file gives it.
-    #[must_use]
     pub fn given(p: f64) -> Self {
         Exponent { fixed: Some(p), error: 0.0, source: "given".to_owned(), warning: None }
     }
 
     /// Of a record: p, or m for hand calculation.
-    ///
-    /// # Errors
-    /// A record that cannot be read.
     pub fn of_record(file: &str, folder: &Folder, method: Method) -> Result<Self> {
         let record = fitted_record(file, folder)?;
         let (p, error) = match method {
@@ -55,9 +49,6 @@ impl Exponent {
     }
 
     /// The exponent of a record where the window does not tell it, else the fitted one.
-    ///
-    /// # Errors
-    /// As [`Exponent::of_record`].
     pub fn record_if_needed(file: &str, folder: &Folder, method: Method, delta_k_ratio: f64) -> Result<Self> {
         let of_record = Self::of_record(file, folder, method)?;
         let (p, error) = (of_record.fixed.unwrap_or(f64::NAN), of_record.error);

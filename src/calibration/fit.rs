@@ -222,14 +222,12 @@ fn longest(curve: &MeasuredCurve) -> f64 {
 
 impl Fit {
     /// ΔK, Pa√m, at a crack length, m: of the handbook, or of the crack's own path.
-    #[must_use]
     pub fn delta_k(&self, calibration: &CalibrationCase, length: f64) -> f64 {
         let own = || Some(self.own_factors.as_ref()?.delta_k(length, self.record.constants.p) * MPA_SQRT_M);
         calibration.delta_k(length).or_else(own).unwrap_or(f64::NAN)
     }
 
     /// Standard error of p; 0 where it was given.
-    #[must_use]
     pub fn p_error(&self) -> f64 {
         self.confidence.covariance[1][1].max(0.0).sqrt()
     }

@@ -28,19 +28,16 @@ pub struct FittedCurve {
 
 impl FittedCurve {
     /// Measured cycles at the last reading.
-    #[must_use]
     pub fn life_measured(&self) -> f64 {
         self.cycles_measured.last().copied().unwrap_or(f64::NAN)
     }
 
     /// Fitted cycles at the length of the last reading.
-    #[must_use]
     pub fn life_fitted(&self) -> f64 {
         self.cycles_fitted.last().copied().unwrap_or(f64::NAN)
     }
 
     /// Rms life error, see [`rms_life_error`].
-    #[must_use]
     pub fn rms_life_error(&self) -> f64 {
         rms_life_error(&self.cycles_fitted, &self.cycles_measured)
     }

@@ -40,7 +40,6 @@ crate::kinds! {
 
 impl LengthUnit {
     /// Metres in the unit.
-    #[must_use]
     pub fn metres(self) -> f64 {
         match self {
             LengthUnit::Millimetre => MM,
@@ -52,7 +51,6 @@ impl LengthUnit {
 
 impl CycleUnit {
     /// Cycles in the unit.
-    #[must_use]
     pub fn cycles(self) -> f64 {
         match self {
             CycleUnit::Cycles => 1.0,
@@ -64,7 +62,6 @@ impl CycleUnit {
 
 impl LoadUnit {
     /// Newtons, or pascals, in the unit.
-    #[must_use]
     pub fn si(self) -> f64 {
         match self {
             LoadUnit::Newton => 1.0,
@@ -78,7 +75,6 @@ impl LoadUnit {
     }
 
     /// Whether it is one of stress.
-    #[must_use]
     pub fn is_stress(self) -> bool {
         matches!(self, LoadUnit::Megapascal | LoadUnit::Ksi)
     }

@@ -38,7 +38,6 @@ pub struct LackOfFit {
 
 /// Seven-point rates of all curves at the ends of their range against those of the same curves by the law, which have the same error of
 /// the parabola; `None` for fewer than six rates. `delta_k` is that of the case's load (Pa√m) at a length (m).
-#[must_use]
 pub fn lack_of_fit(measured: &[MeasuredCurve], fitted: &[MeasuredCurve], delta_k: &dyn Fn(f64) -> f64) -> Option<LackOfFit> {
     let mut misses: Vec<(f64, f64)> = Vec::new();
     for (measured, fitted) in measured.iter().zip(fitted) {
@@ -73,7 +72,6 @@ pub fn lack_of_fit(measured: &[MeasuredCurve], fitted: &[MeasuredCurve], delta_k
 
 impl LackOfFit {
     /// Both ends in one line.
-    #[must_use]
     pub fn words(&self) -> String {
         let end = |end: &EndMiss| {
             format!(

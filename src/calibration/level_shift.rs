@@ -68,7 +68,6 @@ impl Sums {
 }
 
 /// The best split of the rates; `None` where there are too few.
-#[must_use]
 pub fn best_split(rates: &[StepRate]) -> Option<LevelShift> {
     let count = rates.len();
     if count < 2 * SIDE_MIN + 2 {
@@ -101,7 +100,6 @@ pub fn best_split(rates: &[StepRate]) -> Option<LevelShift> {
 }
 
 /// Where the rates of a curve have two levels, and not because of the few of them that `runs` names: those have their own warning.
-#[must_use]
 pub fn warning(curve: &MeasuredCurve, rates: &[StepRate], runs: &[Run]) -> Option<String> {
     // Runs follow each other.
     let named = |rate: &StepRate| {

@@ -88,7 +88,6 @@ pub struct LoadHistory {
 
 impl LoadHistory {
     /// That at which the crack passed a length.
-    #[must_use]
     pub fn at(&self, length: f64) -> f64 {
         let to = self.lengths.partition_point(|&reached| reached < length).min(self.lengths.len().saturating_sub(1));
         let Some(&(start, end)) = self.factors.get(to) else { return 1.0 };
@@ -116,7 +115,6 @@ fn ratio_warning(curve: &MeasuredCurve, loads: &Loads, case: &Case) -> Option<St
 
 impl MeasuredCurve {
     /// Range of load over that of the case at the start and the end of the growth up to each reading; the first reading has its own.
-    #[must_use]
     pub fn step_factors(&self) -> Vec<(f64, f64)> {
         let factor = |i: usize| self.load_factor.get(i).copied().unwrap_or(1.0);
         let same = |i: usize, j: usize| (factor(i) / factor(j) - 1.0).abs() <= SAME_LOAD;
@@ -131,7 +129,6 @@ impl MeasuredCurve {
     }
 
     /// Loads over the growth of the crack.
-    #[must_use]
     pub fn load_history(&self) -> LoadHistory {
         let mut history =
             LoadHistory { lengths: Vec::with_capacity(self.cycles.len()), factors: Vec::with_capacity(self.cycles.len()) };
@@ -146,7 +143,6 @@ impl MeasuredCurve {
     }
 
     /// Whether the load is the same over some neighbouring readings.
-    #[must_use]
     pub fn holds_load(&self, readings: std::ops::RangeInclusive<usize>) -> bool {
         let Some(factors) = self.load_factor.get(readings) else { return true };
         let (low, high) =

@@ -119,7 +119,6 @@ pub(crate) fn first_of(mut warnings: Vec<String>) -> Vec<String> {
 }
 
 /// Reads the bytes of one file as [`parse`] does, but goes on behind a bad row.
-#[must_use]
 pub fn survey(bytes: &[u8], file: &Path, import: &Import) -> Survey {
     let mut survey = Survey::default();
     let mut problems: Vec<InputError> = Vec::new();

@@ -9,7 +9,6 @@ const SAME_LENGTH: f64 = 1e-9;
 /// Cycles at which a measured curve first reaches a crack length (linear between readings), or `None` outside its range.
 ///
 /// Readings that fall back below an earlier one do not count: noise in a reading does not heal a crack.
-#[must_use]
 pub fn cycles_at(curve: &MeasuredCurve, crack_length: f64) -> Option<f64> {
     Rising::of(curve).cycles_at(crack_length)
 }
@@ -44,7 +43,6 @@ impl Rising {
 }
 
 /// Median of a non-empty set of numbers: the middle one, or the mean of the two in the middle.
-#[must_use]
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -8,7 +8,6 @@ use crate::calibration::criterion::Criterion;
 
 /// 1/A of least squares: minimises `Σ w_i (n_i / A - N_i)²` over the lives of the criterion, so
 /// `1/A = Σ w_i n_i N_i / Σ w_i n_i²` with `n = A N` of the model. Cycles count from the first reading.
-#[must_use]
 pub fn inverse_a(criterion: Criterion, model: &[f64], measured: &[f64]) -> f64 {
     let (model, weights) = (criterion.lives(model), criterion.weights(measured));
     let measured = criterion.lives(measured);
@@ -17,7 +16,6 @@ pub fn inverse_a(criterion: Criterion, model: &[f64], measured: &[f64]) -> f64 {
 }
 
 /// Rms over the readings after the first of `(N_fit - N_measured) / N_measured(last)`, cycles at equal crack length.
-#[must_use]
 pub fn rms_life_error(fitted: &[f64], measured: &[f64]) -> f64 {
     let Some(&life) = measured.last() else { return f64::NAN };
     let later = fitted.iter().zip(measured).skip(1);
@@ -26,7 +24,6 @@ pub fn rms_life_error(fitted: &[f64], measured: &[f64]) -> f64 {
 }
 
 /// Smallest `√(Σ w_i (n_i / A - N_i)² / Σ w_i N_i²)` that any A can reach with this model curve.
-#[must_use]
 pub fn misfit(criterion: Criterion, model: &[f64], measured: &[f64]) -> f64 {
     let inverse_a = inverse_a(criterion, model, measured);
     let lives = criterion.lives(model).into_iter().zip(criterion.lives(measured));

@@ -57,7 +57,6 @@ pub struct Run {
 }
 
 /// Readings at least [`STEP_MIN`] of growth apart, the first among them.
-#[must_use]
 pub fn readings_apart(lengths: &[f64]) -> Vec<usize> {
     let mut apart: Vec<usize> = Vec::new();
     for (i, &length) in lengths.iter().enumerate() {
@@ -69,7 +68,6 @@ pub fn readings_apart(lengths: &[f64]) -> Vec<usize> {
 }
 
 /// Rates over steps of at least [`STEP_MIN`]; `delta_k` is that of the case's load (Pa√m) at a length (m).
-#[must_use]
 pub fn step_rates(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<StepRate> {
     let factors = curve.step_factors();
     let rate = |pair: &[usize]| {
@@ -86,7 +84,6 @@ pub fn step_rates(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<St
 
 /// The repeated-median line; `None` for fewer than six rates or rates at one ΔK. Of more than two thousand every second, third and so on
 /// is taken.
-#[must_use]
 pub fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
     if rates.len() < RATES_MIN {
         return None;
@@ -104,7 +101,6 @@ pub fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
 }
 
 /// Runs of neighbouring rates that do not belong to the line.
-#[must_use]
 pub fn runs(rates: &[StepRate], line: RobustLine) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for rate in rates {
@@ -125,7 +121,6 @@ pub fn runs(rates: &[StepRate], line: RobustLine) -> Vec<Run> {
 
 impl MeasuredCurve {
     /// The curve with the growth of some runs left out.
-    #[must_use]
     pub fn without(&self, runs: &[Run]) -> MeasuredCurve {
         let mut left_out: Vec<bool> = (0..self.cycles.len()).map(|step| !self.counts(step)).collect();
         for run in runs {
@@ -136,7 +131,6 @@ impl MeasuredCurve {
 }
 
 /// What speaks against the readings of a curve: [`runs`] that do not belong, and a [shift of level](level_shift).
-#[must_use]
 pub fn doubts(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<String> {
     let rates = step_rates(curve, delta_k);
     let runs = robust_line(&rates).map_or_else(Vec::new, |line| runs(&rates, line));

@@ -35,7 +35,6 @@ pub struct Paris {
 
 impl Paris {
     /// The same pivot and window for a law whose A and p are C and m themselves ([`crate::calibration::power_law`]).
-    #[must_use]
     pub fn of_power_law(self, constants: Constants, m_error: f64) -> Self {
         let c = constants.a / MM_PER_CYCLE;
         Paris { c, m: constants.p, m_error, rate_at_pivot: c * self.pivot.powf(constants.p), ..self }
@@ -47,7 +46,6 @@ const EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=10.0;
 const RATES_AT_TEN: std::ops::RangeInclusive<f64> = 1e-8..=1e-2;
 
 /// What is wrong with `da/dN = C ΔK^m` (mm/cycle, MPa√m) as the law of a metal: a unit that slipped shows here.
-#[must_use]
 pub fn doubt(c: f64, m: f64) -> Option<String> {
     let rate = c * 10_f64.powf(m);
     let words = "check the units of crack length, cycles and load";
@@ -61,7 +59,6 @@ pub fn doubt(c: f64, m: f64) -> Option<String> {
 }
 
 /// Equally spaced lengths of the window at which rates are taken.
-#[must_use]
 pub fn lengths(from: f64, to: f64) -> Vec<f64> {
     (0..=INTERVALS).map(|i| from + (to - from) * i as f64 / INTERVALS as f64).collect()
 }

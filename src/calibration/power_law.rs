@@ -67,7 +67,6 @@ impl PowerLaw {
 
     /// ΔK (MPa√m) at a length (m) of the one tip that would grow as fast as all together, `(Σ ΔK_i^p)^(1/p)`: that of the only tip,
     /// whatever p.
-    #[must_use]
     pub fn delta_k(&self, length: f64, p: f64) -> f64 {
         match self.tips(length).as_slice() {
             [only] => *only,
@@ -76,7 +75,6 @@ impl PowerLaw {
     }
 
     /// Largest ΔK (MPa√m) of the tips at a length (m).
-    #[must_use]
     pub fn largest_delta_k(&self, length: f64) -> f64 {
         self.tips(length).into_iter().fold(0.0, f64::max)
     }
@@ -99,7 +97,6 @@ impl PowerLaw {
     }
 
     /// The law under the loads of a curve, steps that are left out taking no cycles.
-    #[must_use]
     pub fn under(&self, curve: &MeasuredCurve) -> PowerLaw {
         let mut pieces = Vec::with_capacity(PIECES_OF_STEP * curve.cycles.len());
         let mut reached = curve.crack_length.first().copied().unwrap_or(f64::NAN);
@@ -130,9 +127,6 @@ impl PowerLaw {
     }
 
     /// Derivative of [`PowerLaw::cycles`] over p, of one tip `-∫ ln(ΔK / ΔK₀) (ΔK₀ / ΔK)^p da`.
-    ///
-    /// # Errors
-    /// As [`PowerLaw::cycles`].
     pub fn cycles_per_p(&self, p: f64, lengths: &[f64]) -> Result<Vec<f64>> {
         let slope = |tips: &[f64]| {
             let (sum, slope) = tips.iter().fold((0.0, 0.0), |(sum, slope), k| {

@@ -65,13 +65,11 @@ pub struct Flags {
 
 impl Flags {
     /// Whether anything speaks against the point.
-    #[must_use]
     pub fn any(self) -> bool {
         Flags { load_changes: false, ..self } != Flags::default()
     }
 
     /// Words of the result files, separated by blanks; empty where there is nothing to say about the point.
-    #[must_use]
     pub fn words(self) -> String {
         let words = [
             (self.short_step, "step_under_0.25_mm"),
@@ -86,7 +84,6 @@ impl Flags {
 
 /// Rates of a curve by one method, without steps that are left out; ΔK is NaN until
 /// [`add_delta_k`](crate::calibration::test_piece::add_delta_k).
-#[must_use]
 pub fn rates(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {
     let factors = curve.step_factors();
     match method {
@@ -180,7 +177,6 @@ fn mean_ratio(curve: &MeasuredCurve, readings: RangeInclusive<usize>) -> f64 {
 }
 
 /// Line through log10 da/dN (mm/cycle) over log10 ΔK (MPa√m), points that do not grow left out: `intercept` is log10 C, `slope` m.
-#[must_use]
 pub fn paris_line(points: &[RatePoint]) -> Option<Line> {
     let usable = || points.iter().filter(|point| point.rate > 0.0 && point.delta_k > 0.0);
     let log_k: Vec<f64> = usable().map(|point| (point.delta_k / MPA_SQRT_M).log10()).collect();

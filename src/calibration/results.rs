@@ -106,7 +106,6 @@ pub struct SpecimenReport {
 
 impl FitReport {
     /// The report of a fit that took `wall_s` seconds.
-    #[must_use]
     pub fn new(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Self {
         let lengths = &fit.record.crack_length;
         FitReport {
@@ -175,7 +174,6 @@ fn p_error(calibration: &CalibrationCase, fit: &Fit) -> f64 {
 }
 
 /// The record that predictions read.
-#[must_use]
 pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
     let case = &calibration.case;
     FittedRecord {
@@ -218,7 +216,6 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
 
 /// `fit_curves.csv`: each reading of each specimen with the cycles of its own fit, and after them, for several specimens,
 /// their median with the record's fit.
-#[must_use]
 pub fn fit_curves_csv(fit: &Fit) -> String {
     let mut text = String::from("specimen,crack_length_mm,cycles_measured,cycles_fitted\n");
     for curve in curves_written(fit) {

@@ -48,16 +48,12 @@ pub fn search(law: &PowerLaw, target: Target<'_>) -> Result<Constants> {
 }
 
 /// Fits A alone at a given p.
-///
-/// # Errors
-/// As [`search`].
 pub fn search_a(law: &PowerLaw, target: Target<'_>, p: f64) -> Result<Constants> {
     let model = law.cycles(p, target.lengths)?;
     Ok(Constants { a: 1.0 / inverse_a(target.criterion, &model, target.cycles), p })
 }
 
 /// Whether a searched p is an end of [`STEADY_EXPONENTS`], so that the curve follows no such law.
-#[must_use]
 pub fn is_at_end(p: f64) -> bool {
     p - STEADY_EXPONENTS.start() < AT_END || STEADY_EXPONENTS.end() - p < AT_END
 }

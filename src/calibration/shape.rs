@@ -53,7 +53,6 @@ pub enum Shape {
 
 impl Shape {
     /// The key of `measured.columns` that each of some columns has; empty for one that is not read or is a specimen of a wide table.
-    #[must_use]
     pub fn keys(&self, columns: usize) -> Vec<&'static str> {
         let mut keys = vec![""; columns];
         let mut give = |column: usize, key| keys[column] = key;

@@ -26,7 +26,6 @@ pub struct TestPiece<'a> {
 
 impl<'a> TestPiece<'a> {
     /// The specimen of a case, with ΔK from `delta_k`.
-    #[must_use]
     pub fn of(case: &Case, delta_k: &'a dyn Fn(f64) -> f64) -> Self {
         let specimen = &case.specimen;
         let force_per_load = match specimen.load_measure {
@@ -48,7 +47,6 @@ impl<'a> TestPiece<'a> {
 
 /// Largest difference between the crack lengths on the sides of a specimen that E647 accepts, m: 0.025 W of a central crack or two
 /// edge cracks, 0.25 B of one edge crack.
-#[must_use]
 pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f64 {
     let limit = match kind {
         SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => 0.025 * width,
@@ -72,7 +70,6 @@ pub fn add_delta_k(points: &mut [RatePoint], piece: &TestPiece<'_>) {
 impl TestPiece<'_> {
     /// Whether the ligament is large enough, see [`net_section::small_scale_yielding`]. True where the yield strength is not
     /// known.
-    #[must_use]
     pub fn small_scale_yielding(&self, crack_length: f64, k_max: f64, load_factor: f64) -> bool {
         let Some(yield_strength) = self.yield_strength else { return true };
         let force = self.force_max * load_factor / self.thickness;

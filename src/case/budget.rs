@@ -97,7 +97,6 @@ pub type Curve = [(f64, f64)];
 
 impl PointPlate<'_> {
     /// Lattice vectors within the horizon in a half plane: bonds of a point inside.
-    #[must_use]
     pub fn bonds_of_point(&self) -> f64 {
         let reach = self.horizon_ratio.floor() as i32;
         let near = |dx: i32, dy: i32| f64::from(dx * dx + dy * dy).sqrt() <= self.horizon_ratio;
@@ -137,7 +136,6 @@ impl PointPlate<'_> {
     }
 
     /// Points of all levels.
-    #[must_use]
     pub fn points(&self) -> f64 {
         let density = |level: usize| self.spacing_of(level).powi(-2);
         let finer = (1..=self.deepest()).map(|level| self.area_of(level) * (density(level) - density(level - 1)));
@@ -145,7 +143,6 @@ impl PointPlate<'_> {
     }
 
     /// Places of the lattices of all levels.
-    #[must_use]
     pub fn places(&self) -> f64 {
         (0..=self.deepest()).map(|level| self.places_at(self.spacing_of(level))).sum()
     }
@@ -165,7 +162,6 @@ impl PointPlate<'_> {
 
     /// What it takes up but for its computing time, with so many bytes a bond of a net beside the lattice, and with or without a factor
     /// of all points.
-    #[must_use]
     pub fn budget(&self, correction: SurfaceCorrection, of_net_bond: f64, is_factorised: bool) -> Budget {
         let (points, places, bonds) = (self.points(), self.places(), self.bonds_of_point());
         let factor = if is_factorised { along(FACTOR, self.horizon_ratio) * points.max(2.0).ln() } else { 0.0 };
@@ -185,7 +181,6 @@ impl PointPlate<'_> {
     }
 
     /// Spacing of the finest level, m.
-    #[must_use]
     pub fn finest(&self) -> f64 {
         self.spacing_of(self.deepest())
     }
@@ -220,7 +215,6 @@ fn along(curve: &Curve, ratio: f64) -> f64 {
 
 impl Budget {
     /// What a case takes up.
-    #[must_use]
     pub fn of(case: &Case) -> Budget {
         let model = &case.model;
         match model.method {
@@ -263,9 +257,6 @@ impl Budget {
     }
 
     /// Refuses more points than so many.
-    ///
-    /// # Errors
-    /// As [`Budget::within`].
     pub fn within_points(&self, most: f64) -> Result<()> {
         if self.points <= most {
             return Ok(());
@@ -291,9 +282,6 @@ impl Budget {
     }
 
     /// Refuses what takes up more memory than this process may still take ([`machine::free_bytes`]).
-    ///
-    /// # Errors
-    /// As [`Budget::within`].
     pub fn within_machine(&self) -> Result<()> {
         machine::free_bytes().map_or(Ok(()), |free| self.within(free))
     }

@@ -6,7 +6,6 @@ use crate::specimen::handbook::handbook;
 use crate::units::{KN, MPA, MPA_SQRT_M};
 
 /// What the user should know before a run, by the handbook and the net section; `None` where the plate bears the load, or nothing is known.
-#[must_use]
 pub fn warning(case: &Case) -> Option<String> {
     if case.loading.displacement().is_some() {
         return None;
@@ -17,7 +16,6 @@ pub fn warning(case: &Case) -> Option<String> {
 }
 
 /// The strengths that a largest nominal load (Pa or N) with this K_max, Pa√m, exceeds at N = 0, and the load that all of them bear.
-#[must_use]
 pub fn words(case: &Case, load: f64, k_max: Option<f64>) -> Option<String> {
     let material = &case.material;
     let stress = case.specimen.net_section_stress(case.specimen.crack_length, load).or_else(|| case.specimen.gross_stress(load));

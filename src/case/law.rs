@@ -157,19 +157,16 @@ fn material_line(material: &Material, record: &FittedRecord, bonds: bool) -> Res
 
 impl Case {
     /// Whether its crack grows as bonds lose remaining life, not by the K of its tips.
-    #[must_use]
     pub fn spends_bond_life(&self) -> bool {
         self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::BondStrain
     }
 
     /// Whether its crack grows at the rate of the K of its tips, on a plate of points.
-    #[must_use]
     pub fn is_driven_by_factors(&self) -> bool {
         self.is_driven_by_tips() || self.spends_bond_life() && self.fatigue.growth_rate == GrowthRate::StressIntensity
     }
 
     /// Whether its crack grows by the K of its tips, on points or nodes.
-    #[must_use]
     pub fn is_driven_by_tips(&self) -> bool {
         match self.model.method {
             Method::Peridynamics => self.fatigue.driver == Driver::TipField,

@@ -176,7 +176,6 @@ const POINTS_FOR_GAP: f64 = 3e5;
 /// Spacing where an input file says nothing: a ninth of the smallest flaw that can decide the life and of the least gap between a
 /// tip and a rim, another tip or another crack, a sixth of every other flaw, a hundredth of the width at the most. What is said where a gap asks
 /// for more than 3e5 points or a small flaw for too many comes beside.
-#[must_use]
 pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
     let sizes = specimen.flaw_sizes();
     let longest = sizes.iter().copied().fold(0.0, f64::max);
@@ -240,7 +239,6 @@ fn check_columns(spacing: f64, specimen: &Specimen) -> Result<()> {
 }
 
 /// Metres as mm, rounded to six digits for messages.
-#[must_use]
 pub fn round_mm(metres: f64) -> f64 {
     (metres / MM * 1e6).round() / 1e6
 }

@@ -64,9 +64,6 @@ impl Case {
     }
 
     /// Reads a case from text whose law is that of `record`, whatever its own says; files it names lie in `folder`.
-    ///
-    /// # Errors
-    /// As [`Case::from_toml`] and [`Case::with_law`].
     pub fn from_toml_with_law(text: &str, name: &str, folder: impl Into<Folder>, record: FittedRecord) -> Result<Self> {
         let mut document = Document::parse(text, name, folder, &[])?;
         remove_law(&mut document.table);
@@ -86,9 +83,6 @@ impl Case {
     }
 
     /// Specimen, material, load and model of a case or calibration file, of which nothing asks for the fatigue law, nor for a crack.
-    ///
-    /// # Errors
-    /// As [`Case::from_table`].
     pub fn plate_of(document: &Document) -> Result<Self> {
         let mut table = document.table.clone();
         table.remove("measured");
@@ -98,9 +92,6 @@ impl Case {
     }
 
     /// As [`Case::from_table`], of a plate in which nothing need be able to grow: for its stress alone.
-    ///
-    /// # Errors
-    /// As [`Case::from_table`].
     pub fn without_growth(table: Table, name: &str, folder: &Folder) -> Result<Self> {
         refuse_scene(&table)?;
         let sections = Sections::of(&table, SECTIONS, STRANGERS)?;

@@ -61,9 +61,6 @@ const LAWS: [(&str, &[&str]); 4] = [
 const SOLVERS: [&str; 3] = ["multigrid", "direct", "adaptive_dynamic_relaxation"];
 
 /// The choices of a scene, the default first.
-///
-/// # Errors
-/// As [`Scene::case`].
 pub fn choices(scene: &Scene) -> Result<Vec<Choice>> {
     let mut all = vec![choice(Family::TipField, "", &[], true)];
     let spacing = scene.case(&[])?.model.spacing / MM;
@@ -141,13 +138,11 @@ fn choice(family: Family, words: &str, set: &[&str], is_quick: bool) -> Choice {
 
 impl Choice {
     /// Its name in tables and in the chart.
-    #[must_use]
     pub fn name(&self) -> String {
         if self.words.is_empty() { self.family.name().to_owned() } else { format!("{}, {}", self.family, self.words) }
     }
 
     /// Whether it is what runs when nothing is asked for.
-    #[must_use]
     pub fn is_default(&self) -> bool {
         self.set.is_empty()
     }

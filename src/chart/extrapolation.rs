@@ -46,9 +46,6 @@ pub struct Sampled {
 
 impl History {
     /// Runs a case and takes down its breaks.
-    ///
-    /// # Errors
-    /// As [`crate::predict::predict`].
     pub fn of(case: &Case) -> Result<(Self, Prediction)> {
         let record = Record::new(case, &Silent).unchecked();
         let case = &record.case().clone();
@@ -63,7 +60,6 @@ impl History {
     }
 
     /// Blocks in which something broke: so many solves does a run take that solves after each.
-    #[must_use]
     pub fn blocks(&self) -> usize {
         self.blocks.len()
     }
@@ -104,7 +100,6 @@ impl History {
 }
 
 /// Places of measured blocks among `blocks`: [`BLOCKS`] or as many as `affordable` in the middle of equal parts.
-#[must_use]
 pub fn places(blocks: usize, affordable: usize) -> Vec<usize> {
     let count = affordable.clamp(BLOCKS_LEAST, BLOCKS).min(blocks);
     (0..count).map(|i| (2 * i + 1) * blocks / (2 * count)).collect()
@@ -122,7 +117,6 @@ fn cut(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Option<Vec<Bond>> {
 impl Sampled {
     /// Seconds of a run of so many blocks: set-up, first solve, and the line through the measured blocks (level before the first
     /// and after the last one) summed over all. NaN where none was measured.
-    #[must_use]
     pub fn whole(&self, blocks: usize) -> f64 {
         self.start_s + (0..blocks).map(|block| self.at(block)).sum::<f64>()
     }

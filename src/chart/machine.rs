@@ -17,7 +17,6 @@ pub struct Machine {
 
 impl Machine {
     /// The machine at hand.
-    #[must_use]
     pub fn here() -> Self {
         let arch = pulp::Arch::new();
         // The name of the variant, without what it holds.

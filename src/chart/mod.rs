@@ -67,39 +67,33 @@ pub struct Chart {
 
 impl Point {
     /// Median of the wall times, s.
-    #[must_use]
     pub fn wall_s(&self) -> Option<f64> {
         (!self.walls.is_empty()).then(|| median(&self.walls))
     }
 
     /// Median of the wall times over those of the reference run.
-    #[must_use]
     pub fn time_ratio(&self) -> Option<f64> {
         (!self.ratios.is_empty()).then(|| median(&self.ratios))
     }
 
     /// Largest less least wall time over the median, percent.
-    #[must_use]
     pub fn spread_percent(&self) -> Option<f64> {
         let [least, most] = self.range_s()?;
         Some(100.0 * (most - least) / self.wall_s()?)
     }
 
     /// Least and largest wall time, s.
-    #[must_use]
     pub fn range_s(&self) -> Option<[f64; 2]> {
         let least = self.walls.iter().copied().fold(f64::INFINITY, f64::min);
         (!self.walls.is_empty()).then(|| [least, self.walls.iter().copied().fold(0.0, f64::max)])
     }
 
     /// Place in the chart: seconds, error in percent.
-    #[must_use]
     pub fn place(&self) -> Option<(f64, f64)> {
         Some((self.wall_s()?, self.run.as_ref()?.error_percent)).filter(|(_, error)| error.is_finite())
     }
 
     /// The command that repeats a run of it.
-    #[must_use]
     pub fn command(&self) -> String {
         let sets = self.choice.set.iter().map(|key| {
             let plain = key.chars().all(|c| c.is_ascii_alphanumeric() || "._=-".contains(c));
@@ -111,7 +105,6 @@ impl Point {
 
 impl Chart {
     /// The chart of these points, fronts marked; `references` are the seconds of reference runs.
-    #[must_use]
     pub fn new(mut points: Vec<Point>, references: &[f64]) -> Chart {
         for scene in SCENES {
             let of_scene: Vec<usize> = (0..points.len()).filter(|&i| points[i].scene.name == scene.name).collect();
@@ -130,7 +123,6 @@ impl Chart {
     }
 
     /// Scenes that have points, in their order.
-    #[must_use]
     pub fn scenes(&self) -> Vec<&'static Scene> {
         SCENES.iter().filter(|scene| self.of(scene).next().is_some()).collect()
     }

@@ -5,7 +5,6 @@ pub const GAIN: f64 = 1e-3;
 
 /// Indices of the front, fastest first: points (time, error) that are nearer to the reference than every faster one by more
 /// than [`GAIN`]. Points that are not finite have no place on it.
-#[must_use]
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].0.is_finite() && points[i].1.is_finite()).collect();
     order.sort_by(|&a, &b| points[a].0.total_cmp(&points[b].0).then(points[a].1.total_cmp(&points[b].1)));

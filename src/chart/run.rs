@@ -60,9 +60,6 @@ pub struct Model {
 }
 
 /// Runs a scene with these keys in this process; its peak of memory is that of the process.
-///
-/// # Errors
-/// As [`Scene::case`] and [`Scene::run`].
 pub fn once(scene: &Scene, set: &[String]) -> Result<Run> {
     let case = scene.case(set)?;
     if scene.grows() && case.fatigue.driver == Driver::BondStrain && case.model.solver == SolverKind::AdaptiveDynamicRelaxation {
@@ -113,7 +110,6 @@ fn extrapolated(scene: &Scene, case: &Case) -> Result<Run> {
 
 impl Model {
     /// That of a case.
-    #[must_use]
     pub fn of(case: &Case, grows: bool) -> Model {
         let model = &case.model;
         let points = model.method == Method::Peridynamics;
@@ -160,7 +156,6 @@ impl Model {
 }
 
 /// Points of a plate of one spacing by its area, near enough for a table.
-#[must_use]
 pub(super) fn points_of(case: &Case) -> usize {
     let spacing = match case.model.method {
         Method::ElementFreeGalerkin => case.model.element_free.resolution.far,

@@ -130,27 +130,21 @@ pub const SCENES: &[Scene] = &[
 
 impl Scene {
     /// Whether cracks grow in it.
-    #[must_use]
     pub fn grows(&self) -> bool {
         matches!(self.question, Question::Specimen(_) | Question::Plate(_))
     }
 
     /// Whether a handbook has its K(a).
-    #[must_use]
     pub fn has_formula(&self) -> bool {
         matches!(self.question, Question::Specimen(_))
     }
 
     /// Whether it has a crack.
-    #[must_use]
     pub fn has_crack(&self) -> bool {
         !matches!(self.question, Question::Tension | Question::Hole)
     }
 
     /// The scene with keys set by `section.key=value`.
-    ///
-    /// # Errors
-    /// As [`Case::from_toml`].
     pub fn case(&self, set: &[String]) -> Result<Case> {
         let keys: Vec<&str> = set.iter().map(String::as_str).collect();
         match self.question {

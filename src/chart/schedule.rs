@@ -207,7 +207,6 @@ fn shuffled<T>(mut all: Vec<T>, random: &mut ChaCha8Rng) -> Vec<T> {
 }
 
 /// Families in the order of the legend.
-#[must_use]
 pub fn families(points: &[Point]) -> Vec<Family> {
     Family::ALL.iter().copied().filter(|family| points.iter().any(|point| point.choice.family == *family)).collect()
 }

@@ -28,17 +28,11 @@ const WIDTH_MM: f64 = 100.0;
 const LENGTH_MM: f64 = 200.0;
 const DIAMETER_MM: f64 = 20.0;
 /// The plate in uniform tension.
-///
-/// # Errors
-/// As [`plate_alone`].
 pub fn tension_case(set: &[String]) -> Result<Case> {
     of_text(&pulled_plate(&format!("width_mm = {WIDTH_MM}\nlength_mm = {LENGTH_MM}")), set)
 }
 
 /// The plate with the hole.
-///
-/// # Errors
-/// As [`plate_alone`].
 pub fn hole_case(set: &[String]) -> Result<Case> {
     let hole = format!("holes = [{{ x_mm = 0, y_mm = 0, diameter_mm = {DIAMETER_MM} }}]");
     of_text(&pulled_plate(&format!("width_mm = {WIDTH_MM}\nlength_mm = {LENGTH_MM}\n{hole}")), set)
@@ -67,9 +61,6 @@ pub fn tension(case: &Case) -> Result<Found> {
 ///
 /// The rim is free, so that σ_y = E ε_y there; ε_y comes from the quadratic through the displacements around the point nearest to
 /// the place, taken on to the rim.
-///
-/// # Errors
-/// No equilibrium.
 pub fn hole(case: &Case) -> Result<Found> {
     if case.model.method == Method::ElementFreeGalerkin {
         return hole_on_nodes(case);

@@ -37,7 +37,6 @@ pub struct Beaten<'c> {
 }
 
 /// Choices over the scenes in which cracks grow, in their order.
-#[must_use]
 pub fn overall(chart: &Chart) -> Vec<Overall> {
     let growing: Vec<&Point> = chart.points.iter().filter(|point| point.scene.grows()).collect();
     let mut names: Vec<String> = Vec::new();
@@ -67,7 +66,6 @@ fn of_choice(growing: &[&Point], name: String) -> Option<Overall> {
 }
 
 /// The choice with the least median time that is within an error in every scene in which cracks grow.
-#[must_use]
 pub fn fastest_within(chart: &Chart, percent: f64) -> Option<Overall> {
     let scenes = chart.scenes().into_iter().filter(|scene| scene.grows()).count();
     let fits = |choice: &Overall| choice.done == scenes && choice.worst_percent <= percent;
@@ -75,7 +73,6 @@ pub fn fastest_within(chart: &Chart, percent: f64) -> Option<Overall> {
 }
 
 /// Scenes whose default is not on the front.
-#[must_use]
 pub fn beaten(chart: &Chart) -> Vec<Beaten<'_>> {
     let of_scene = |scene: &'static Scene| -> Option<Beaten<'_>> {
         let all: Vec<&Point> = chart.points.iter().filter(|point| point.scene.name == scene.name).collect();
@@ -92,7 +89,6 @@ pub fn beaten(chart: &Chart) -> Vec<Beaten<'_>> {
 }
 
 /// Families that are on no front though they have results.
-#[must_use]
 pub fn never_on_front(chart: &Chart) -> Vec<Family> {
     let of = |family: Family| chart.points.iter().filter(move |point| point.choice.family == family);
     let never = |family: &Family| of(*family).any(|point| point.place().is_some()) && !of(*family).any(|point| point.is_on_front);

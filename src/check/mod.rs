@@ -47,7 +47,6 @@ pub struct Checked {
 
 impl Checked {
     /// As one object.
-    #[must_use]
     pub fn json(&self) -> Value {
         let mut understood: Map<String, Value> = Map::new();
         for line in &self.lines {
@@ -93,9 +92,6 @@ pub fn check(document: Document) -> Result<Checked> {
 }
 
 /// [`check`] of a file. Overrides are those of the command that runs it.
-///
-/// # Errors
-/// As [`check`].
 pub fn check_file(path: &Path, overrides: &[String]) -> Result<Checked> {
     // Read once: a pipe is empty the second time.
     let mut document = Document::read(path, &[])?;
@@ -121,7 +117,6 @@ fn checked_sweep(document: Document, overrides: &[String]) -> Result<Checked> {
 }
 
 /// Whether these are the sections of a calibration.
-#[must_use]
 pub fn is_calibration(table: &toml::Table) -> bool {
     table.contains_key("measured") || table.contains_key("fit")
 }

@@ -59,9 +59,6 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 /// Measures scenes and writes what was found: the object of `--json`.
-///
-/// # Errors
-/// As [`run()`].
 pub fn measured(args: &Args) -> Result<Value> {
     let scenes = scenes(&args.names)?;
     let effort = if args.quick { Effort::QUICK } else { Effort::FULL };

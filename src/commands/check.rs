@@ -26,9 +26,6 @@ pub struct Args {
 }
 
 /// Checks the file, prints what was understood and draws the picture.
-///
-/// # Errors
-/// Wrong input, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let checked = check_file(&args.file, &args.set)?;
     match &args.picture {

@@ -111,9 +111,6 @@ impl Args {
     }
 
     /// Refuses a checkpoint below the folder of the results, which it would make one that holds something else.
-    ///
-    /// # Errors
-    /// [`Error::Input`].
     pub fn check_outside(&self, out: &Path) -> Result<()> {
         let Some(path) = &self.checkpoint else { return Ok(()) };
         let real = |path: &Path| std::path::absolute(fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf()));

@@ -61,13 +61,11 @@ impl Console {
     }
 
     /// A progress bar on stderr, drawn only on a terminal.
-    #[must_use]
     pub fn progress(&self, name: &str) -> RunProgress {
         self.progress_within(name, None)
     }
 
     /// The same for a run that is asked to end after so long.
-    #[must_use]
     pub fn progress_within(&self, name: &str, limit: Option<Duration>) -> RunProgress {
         let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(STEPS) };
         let style = ProgressStyle::with_template("{prefix} {bar:30} {percent:>3} %  {msg}  {eta} left");
@@ -78,7 +76,6 @@ impl Console {
     }
 
     /// A bar on stderr that counts to `total`, drawn only on a terminal.
-    #[must_use]
     pub fn count(&self, name: &str, total: usize) -> Count {
         let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(total as u64) };
         let style = ProgressStyle::with_template("{prefix} {bar:30} {pos} of {len}  {eta} left");
@@ -89,7 +86,6 @@ impl Console {
     }
 
     /// A progress bar for each of several runs side by side, one below the other.
-    #[must_use]
     pub fn progress_of_each<'a>(&self, names: impl Iterator<Item = &'a str>) -> Vec<RunProgress> {
         let bars: Vec<RunProgress> = names.map(|name| self.progress(name)).collect();
         if bars.iter().any(|run| !run.bar().is_hidden()) {

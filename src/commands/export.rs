@@ -36,9 +36,6 @@ pub struct Args {
 }
 
 /// Runs `perilife export`.
-///
-/// # Errors
-/// Wrong input, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let opened = Opened::default();
     let curve = curve_of(&args.run, &opened)?;

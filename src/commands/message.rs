@@ -8,7 +8,6 @@ use miette::{Diagnostic, GraphicalReportHandler, LabeledSpan, NamedSource, Sourc
 use crate::error::{Error, InputError};
 
 /// The message for stderr.
-#[must_use]
 pub fn of(error: &Error) -> String {
     let plain = format!("error: {error}");
     if !std::io::stderr().is_terminal() {
@@ -21,7 +20,6 @@ pub fn of(error: &Error) -> String {
 }
 
 /// The message with the file's line shown; `None` if file or line are not known or the file has gone.
-#[must_use]
 pub fn with_source_line(input: &InputError) -> Option<String> {
     let (file, line) = (input.file.as_ref()?, input.line?);
     // A pipe is empty by now, and a terminal would wait.

@@ -93,9 +93,6 @@ impl Args {
 }
 
 /// Runs `perilife rates`.
-///
-/// # Errors
-/// Wrong input, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let method: RateMethod = args.method.parse()?;
     let opened = Opened::default();

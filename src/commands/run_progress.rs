@@ -36,7 +36,6 @@ struct Shared {
 
 impl RunProgress {
     /// On this bar, with an end after so long.
-    #[must_use]
     pub fn new(bar: ProgressBar, limit: Option<Duration>) -> Self {
         let shared = Arc::new(Shared::default());
         let is_looked_at = !bar.is_hidden() || limit.is_some();
@@ -46,13 +45,11 @@ impl RunProgress {
     }
 
     /// The bar.
-    #[must_use]
     pub fn bar(&self) -> &ProgressBar {
         &self.bar
     }
 
     /// Whether the time was over before the run was.
-    #[must_use]
     pub fn ran_out(&self) -> bool {
         self.shared.ran_out.load(Ordering::Relaxed)
     }

@@ -52,9 +52,6 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 /// Factors and stresses of the case of a document, by these methods or by all: the object of `--json`.
-///
-/// # Errors
-/// As [`run`].
 pub fn run_on(document: &Document, method: &[String], out: Option<&Path>, console: &Console) -> Result<Value> {
     let methods = methods(method)?;
     let case = Case::plate_of(document)?;

@@ -104,7 +104,6 @@ impl FromStr for Shard {
 
 impl Shard {
     /// Whether it has the case of this number.
-    #[must_use]
     pub fn has(self, number: usize) -> bool {
         (number - 1) % self.of == self.number - 1
     }
@@ -157,9 +156,6 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 /// Runs all cases of the sweep of a document on this machine: the figures of `sweep.json`.
-///
-/// # Errors
-/// As [`run`].
 pub fn run_on(document: Document, out: &Path, threads: usize, console: &Console) -> Result<Value> {
     let begun = Instant::now();
     let sweep = Sweep::with_overrides(document, &[], CASES_MAX)?;

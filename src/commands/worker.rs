@@ -92,7 +92,6 @@ impl Place {
 }
 
 /// What a network drive is called whose file system has this number (statfs(2)); `None` for disks of the machine.
-#[must_use]
 pub fn network_drive(number: u64) -> Option<&'static str> {
     match number & 0xffff_ffff {
         0x6969 => Some("NFS"),
@@ -156,7 +155,6 @@ fn days(text: &str) -> std::result::Result<f64, String> {
 
 impl Work {
     /// How workers work.
-    #[must_use]
     pub fn settings(&self) -> worker::Settings {
         let default = worker::Settings::default();
         worker::Settings {

@@ -41,7 +41,6 @@ pub struct Scratch {
 
 impl Scratch {
     /// For a plate of so many nodes.
-    #[must_use]
     pub fn of(nodes: usize) -> Self {
         Scratch { numbers: vec![u32::MAX; nodes], ..Scratch::default() }
     }

@@ -85,7 +85,6 @@ impl Basis<7> for Intrinsic<'_> {
 
 impl AnyBasis {
     /// Of a plate with these tips.
-    #[must_use]
     pub fn new(resolution: &Resolution, axes: &[TipAxes]) -> Self {
         let tips = if resolution.enrichment == Enrichment::Intrinsic { axes.to_vec() } else { Vec::new() };
         AnyBasis { kind: resolution.basis, tips }

@@ -50,7 +50,6 @@ pub struct Dividers<'a> {
 }
 
 /// Points of a cell that nothing divides.
-#[must_use]
 pub fn whole(grid: &Grid, leaf: usize) -> Vec<QuadraturePoint> {
     let [low, high] = grid.bounds(leaf);
     let mut points = Vec::with_capacity(9);
@@ -59,7 +58,6 @@ pub fn whole(grid: &Grid, leaf: usize) -> Vec<QuadraturePoint> {
 }
 
 /// Points of a cell by what divides it.
-#[must_use]
 pub fn divided(specimen: &Specimen, grid: &Grid, leaf: usize, dividers: Dividers<'_>) -> Vec<QuadraturePoint> {
     let [low, high] = grid.bounds(leaf);
     let spacing = grid.spacing(leaf);

@@ -26,7 +26,6 @@ pub struct TipAxes {
 }
 
 /// Cuts of a plate and the axes of its tips, in the order of `tips`: line end and spacing at it, m.
-#[must_use]
 pub fn cracks(specimen: &Specimen, lines: &[CrackLine], tips: &[(LineEnd, f64)], far: f64) -> (Vec<Cut>, Vec<TipAxes>) {
     let [low, high] = crate::specimen::geometry::bounding_box(&specimen.outline);
     let size = distance(low, high);
@@ -130,7 +129,6 @@ fn meeting_foot(at: Point, from: Point, to: Point) -> f64 {
 
 impl TipAxes {
     /// Distance from the tip, m, and angle from x₁, rad, counted on across ±π up to the face of the crack on the side of the point.
-    #[must_use]
     pub fn polar(&self, at: Point) -> (f64, f64) {
         let [x, y] = self.to_axes([at[0] - self.at[0], at[1] - self.at[1]]);
         let (r, theta) = (x.hypot(y), y.atan2(x));
@@ -138,21 +136,18 @@ impl TipAxes {
     }
 
     /// A vector in the axes of the tip.
-    #[must_use]
     pub fn to_axes(&self, [x, y]: Point) -> Point {
         let [c, s] = self.ahead;
         [c * x + s * y, c * y - s * x]
     }
 
     /// A vector of the axes of the tip in those of the plate.
-    #[must_use]
     pub fn from_axes(&self, [x, y]: Point) -> Point {
         let [c, s] = self.ahead;
         [c * x - s * y, s * x + c * y]
     }
 
     /// A gradient ∂u_i/∂x_j of the axes of the tip in those of the plate.
-    #[must_use]
     pub fn gradient_from_axes(&self, gradient: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
         let rows = gradient.map(|row| self.from_axes(row));
         let columns = [0, 1].map(|j| self.from_axes([rows[0][j], rows[1][j]]));
@@ -160,7 +155,6 @@ impl TipAxes {
     }
 
     /// A gradient of the axes of the plate in those of the tip.
-    #[must_use]
     pub fn gradient_to_axes(&self, gradient: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
         let rows = gradient.map(|row| self.to_axes(row));
         let columns = [0, 1].map(|j| self.to_axes([rows[0][j], rows[1][j]]));
@@ -188,7 +182,6 @@ impl TipAxes {
 
     /// Near-tip displacement of modes I and II at a point and its gradient ∂u_i/∂x_j, in the axes of the plate: of the term of
     /// Williams' series that goes with √r, r in spacings of the tip, over κ + 1, so that it is about 1 at a spacing.
-    #[must_use]
     pub fn near_tip(&self, elasticity: Elasticity, at: Point) -> [(Point, [[f64; 2]; 2]); 2] {
         let (r, theta) = self.polar(at);
         let (r, size) = ((r / self.spacing).max(1e-9), 1.0 / (elasticity.kappa + 1.0));

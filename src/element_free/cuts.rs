@@ -68,7 +68,6 @@ pub type Way = (f64, Point);
 
 impl Obstacles {
     /// Of a plate with these cuts.
-    #[must_use]
     pub fn new(specimen: &Specimen, cuts: Vec<Cut>) -> Self {
         let outline = &specimen.outline;
         let n = outline.len();
@@ -80,7 +79,6 @@ impl Obstacles {
     }
 
     /// Those within `reach`, m, of a point.
-    #[must_use]
     pub fn near(&self, at: Point, reach: f64) -> Near {
         let of_cut = |cut: &Cut| {
             let pieces: Vec<[Point; 2]> = cut.points.windows(2).map(|piece| [piece[0], piece[1]]).collect();
@@ -116,13 +114,11 @@ fn round(node: Point, place: Point, at: Point) -> Way {
 
 impl Near {
     /// Whether nothing is near.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.cuts.is_empty() && self.holes.is_empty() && self.edges.is_empty()
     }
 
     /// The way from a node to a point; `None` where both do not see each other.
-    #[must_use]
     pub fn way(&self, node: Point, at: Point) -> Option<Way> {
         let mut way = straight(node, at);
         let in_hole = |hole: &Hole| distance_to_segment(hole.centre, node, at) < HOLE_SHARE * hole.radius;
@@ -161,7 +157,6 @@ fn crosses(a: Point, b: Point, c: Point, d: Point) -> bool {
 }
 
 /// A line without the corners that lie within `tolerance`, m, of the straight line between those that stay (Douglas and Peucker 1973).
-#[must_use]
 pub fn simplified(points: &[Point], tolerance: f64) -> Vec<Point> {
     let [first, .., last] = points else { return points.to_vec() };
     let away = |k: &usize| distance_to_segment(points[*k], *first, *last);
@@ -178,7 +173,6 @@ pub fn simplified(points: &[Point], tolerance: f64) -> Vec<Point> {
 }
 
 /// A line with one more corner beyond its last one, `by` m on.
-#[must_use]
 pub fn lengthened(mut points: Vec<Point>, by: f64) -> Vec<Point> {
     if let [.., before, last] = points[..] {
         let [x, y] = direction(before, last);

@@ -58,9 +58,6 @@ pub fn read(plate: &Discretisation, u: &[f64], tip: usize, room: f64, pressure: 
 }
 
 /// The integral over a ring of this outer radius, m, around a tip, of a displacement with the gradient `field` at a point.
-///
-/// # Errors
-/// Those of `field`.
 pub fn integral(
     axes: &TipAxes,
     elasticity: Elasticity,

@@ -132,25 +132,21 @@ impl Discretisation {
     }
 
     /// Number of unknowns.
-    #[must_use]
     pub fn unknowns(&self) -> usize {
         self.first[self.first.len() - 1] as usize
     }
 
     /// Largest radius of influence of the nodes that reach a leaf, m; 0 where none does.
-    #[must_use]
     pub fn reach(&self, leaf: usize) -> f64 {
         self.leaves[leaf].nodes.iter().map(|&node| self.supports[node as usize]).fold(0.0, f64::max)
     }
 
     /// Elastic constants.
-    #[must_use]
     pub fn elasticity(&self) -> Elasticity {
         self.elasticity
     }
 
     /// Nodes that a leaf sees and whose supports reach into a box, m, within it.
-    #[must_use]
     pub fn in_reach(&self, leaf: usize, [low, high]: [Point; 2]) -> Vec<u32> {
         let reaches = |node: &u32| {
             let (at, support) = (self.nodes.at[*node as usize], self.supports[*node as usize]);
@@ -181,7 +177,6 @@ impl Discretisation {
     }
 
     /// Displacement, m, and its gradient ∂u_i/∂x_j at a point, of the unknowns `u`; `None` where nodes in reach do not span the basis.
-    #[must_use]
     pub fn displacement(&self, u: &[f64], at: Point, local: &mut Local) -> Option<(Point, [[f64; 2]; 2])> {
         if !self.at(self.grid.leaf(at), at, local) {
             return None;
@@ -205,7 +200,6 @@ impl Discretisation {
     }
 
     /// Larger side of the box around a plate, m.
-    #[must_use]
     pub fn size(specimen: &Specimen) -> f64 {
         let [low, high] = bounding_box(&specimen.outline);
         (high[0] - low[0]).max(high[1] - low[1])
@@ -227,7 +221,6 @@ pub struct Tip {
 }
 
 /// What is said where nodes in reach of a point, with radii of influence up to `radius`, m, do not span the basis.
-#[must_use]
 pub fn singular(at: Point, radius: f64) -> Error {
     Error::Mechanics(format!(
         "too few nodes are in reach of ({:.4}, {:.4}) mm to span the basis, with radii of influence up to {:.4} mm; give a larger model.influence_radius, or more \

@@ -20,7 +20,6 @@ pub struct Front {
 
 impl Front {
     /// A zero matrix of `own` unknowns to be eliminated and `rest` others.
-    #[must_use]
     pub fn new(own: usize, rest: usize) -> Self {
         Front { own, rest, panel: vec![0.0; (own + rest) * own], complement: vec![0.0; rest * rest] }
     }

@@ -50,7 +50,6 @@ pub struct Grid {
 impl Grid {
     /// Cells over the box from `low` to `high`, m, of about the size `far`, halved as the sources ask; no more than `most` are halved
     /// again.
-    #[must_use]
     pub fn new([low, high]: [Point; 2], far: f64, sources: &[Source], most: usize) -> Self {
         let count = [0, 1].map(|i| ((high[i] - low[i]) / far).round().max(2.0) as i64);
         let size = [0, 1].map(|i| (high[i] - low[i]) / count[i] as f64);
@@ -79,25 +78,21 @@ impl Grid {
     }
 
     /// Number of cells, halved ones included.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.cells.len()
     }
 
     /// Whether there is none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
 
     /// Larger side of a cell, m.
-    #[must_use]
     pub fn spacing(&self, cell: usize) -> f64 {
         self.size[0].max(self.size[1]) / f64::from(1_u32 << self.cells[cell].level)
     }
 
     /// Lower left and upper right corner of a cell, m.
-    #[must_use]
     pub fn bounds(&self, cell: usize) -> [Point; 2] {
         let Cell { level, place, .. } = self.cells[cell];
         let corner =
@@ -106,27 +101,23 @@ impl Grid {
     }
 
     /// Middle of a cell, m.
-    #[must_use]
     pub fn middle(&self, cell: usize) -> Point {
         let [low, high] = self.bounds(cell);
         [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])]
     }
 
     /// Corners of a cell as columns and rows of the finest lattice that there can be, counter-clockwise.
-    #[must_use]
     pub fn corners(&self, cell: usize) -> [[i64; 2]; 4] {
         let Cell { level, place, .. } = self.cells[cell];
         [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[x, y]| [place[0] + x, place[1] + y].map(|at| at << (LEVELS_MAX - level)))
     }
 
     /// Position of a place of that lattice, m.
-    #[must_use]
     pub fn position(&self, corner: [i64; 2]) -> Point {
         [0, 1].map(|i| self.low[i] + self.size[i] * corner[i] as f64 / f64::from(1_u32 << LEVELS_MAX))
     }
 
     /// The leaf that a point lies in, or the nearest one of a point beyond.
-    #[must_use]
     pub fn leaf(&self, at: Point) -> usize {
         let share = [0, 1].map(|i| ((at[i] - self.low[i]) / self.size[i]).clamp(0.0, self.count[i] as f64 * (1.0 - 1e-12)));
         let place = share.map(|share| share.floor() as i64);

@@ -15,7 +15,6 @@ use crate::specimen::{Point, Specimen};
 const BESIDE_TIP: f64 = 0.3;
 
 /// Points of integration of every cell with material.
-#[must_use]
 pub fn quadrature(specimen: &Specimen, plate: &Discretisation) -> Vec<(usize, Vec<QuadraturePoint>)> {
     let grid = &plate.grid;
     let near_sides = by_leaf(grid, plate.sides.iter().map(|side| side.ends), 0.0);

@@ -30,7 +30,6 @@ pub struct Nodes {
 
 impl Nodes {
     /// Nodes of a plate in these cells.
-    #[must_use]
     pub fn place(specimen: &Specimen, grid: &Grid, sides: &[Side], cuts: &[Cut], axes: &[TipAxes]) -> Self {
         let mut nodes = Nodes::default();
         let near_sides = by_leaf(grid, sides.iter().map(|side| side.ends), RIM_SHARE);
@@ -139,7 +138,6 @@ fn nearest_on_rim(specimen: &Specimen, at: Point) -> Point {
 }
 
 /// Segments by the leaves within `margin` spacings of which they come.
-#[must_use]
 pub fn by_leaf(grid: &Grid, segments: impl Iterator<Item = [Point; 2]>, margin: f64) -> HashMap<usize, Vec<u32>> {
     let mut of_leaf: HashMap<usize, Vec<u32>> = HashMap::new();
     for (index, [a, b]) in segments.enumerate() {

@@ -12,7 +12,6 @@ use crate::specimen::{Point, Specimen};
 const IN_SPACING: f64 = 6.0;
 
 /// The raster of a plate whose nodes have the spacing `far`, m, away from everything.
-#[must_use]
 pub fn grid(specimen: &Specimen, far: f64) -> PointGrid {
     let [low, high] = bounding_box(&specimen.outline);
     let spacing = far / IN_SPACING;
@@ -33,7 +32,6 @@ pub fn grid(specimen: &Specimen, far: f64) -> PointGrid {
 }
 
 /// Displacement, m, and von Mises stress, Pa, of the points of the raster, times `share`.
-#[must_use]
 pub fn fields(
     specimen: &Specimen,
     plate: &Discretisation,

@@ -78,7 +78,6 @@ fn too_narrow(finest: &Source) -> Error {
 }
 
 /// Room of a tip, m.
-#[must_use]
 pub fn room(specimen: &Specimen, lines: &[CrackLine], tip: &Tip) -> f64 {
     let at = lines[tip.end.line].end(tip.end.at_last);
     let others = lines.iter().enumerate().filter(|(other, _)| *other != tip.end.line).map(|(_, line)| line.distance(at));

@@ -64,7 +64,6 @@ pub struct RimStress {
 
 impl RimStress {
     /// The larger in size of both.
-    #[must_use]
     pub fn peak(&self) -> StressAt {
         if self.least.stress.abs() > self.largest.stress.abs() { self.least } else { self.largest }
     }

@@ -29,7 +29,6 @@ pub enum Stretch {
 
 impl Stretch {
     /// The point at a share of its length, m.
-    #[must_use]
     pub fn at(&self, share: f64) -> Point {
         match self {
             Stretch::Straight([a, b]) => along(*a, *b, share),
@@ -41,7 +40,6 @@ impl Stretch {
     }
 
     /// Its length, m.
-    #[must_use]
     pub fn length(&self) -> f64 {
         match self {
             Stretch::Straight([a, b]) => distance(*a, *b),
@@ -50,7 +48,6 @@ impl Stretch {
     }
 
     /// Distance of a point from it, m.
-    #[must_use]
     pub fn distance(&self, at: Point) -> f64 {
         match self {
             Stretch::Straight([a, b]) => distance_to_segment(at, *a, *b),
@@ -59,7 +56,6 @@ impl Stretch {
     }
 
     /// Unit vector into the material.
-    #[must_use]
     pub fn inward(&self, share: f64) -> Point {
         match self {
             Stretch::Straight([a, b]) => {
@@ -74,7 +70,6 @@ impl Stretch {
     }
 
     /// Shares at which it is divided into pieces no longer than `share_of_spacing` local spacings, first and last included.
-    #[must_use]
     pub fn divided(&self, grid: &Grid, pieces_least: usize, share_of_spacing: f64) -> Vec<f64> {
         let mut shares = vec![0.0];
         let whole = self.length();
@@ -107,7 +102,6 @@ impl Stretch {
 }
 
 /// All stretches of rim with their numbers; slots lose what lies outside the outline.
-#[must_use]
 pub fn stretches(specimen: &Specimen) -> Vec<(usize, Stretch)> {
     let outline = edges(&specimen.outline).map(|(a, b)| Stretch::Straight([a, b]));
     let holes = specimen.holes.iter().map(|hole| Stretch::Circle(*hole));
@@ -121,7 +115,6 @@ pub fn stretches(specimen: &Specimen) -> Vec<(usize, Stretch)> {
 }
 
 /// Sides that cells are cut along.
-#[must_use]
 pub fn sides(specimen: &Specimen, grid: &Grid) -> Vec<Side> {
     let mut sides = Vec::new();
     for (rim, stretch) in stretches(specimen) {

@@ -151,7 +151,6 @@ impl Resolution {
 }
 
 /// Turn of the way from `before` over `at` to `after`, rad, negative where a counter-clockwise outline is concave.
-#[must_use]
 pub fn turn_at(before: Point, at: Point, after: Point) -> f64 {
     let ([ax, ay], [bx, by]) = (direction(before, at), direction(at, after));
     (ax * by - ay * bx).atan2(ax * bx + ay * by)

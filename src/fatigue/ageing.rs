@@ -25,7 +25,6 @@ pub struct FatigueBond {
 }
 
 /// Linearised bond stretch `s = n·(u' - u)/|ξ|` at maximum load.
-#[must_use]
 pub fn stretch(body: &Body, layout: &Layout, displacement: &[f64], bond: Bond) -> f64 {
     let (k, from, to) = body.ends(bond);
     let (a, b) = (layout.index(from), layout.index(to));
@@ -37,13 +36,11 @@ pub fn stretch(body: &Body, layout: &Layout, displacement: &[f64], bond: Bond) -
 
 /// Share of the maximum stretch that counts as cyclic strain: (1-R)^γ with Walker's γ; a negative R counts as 0 (a closed
 /// crack takes no part of the compression).
-#[must_use]
 pub fn strain_share(loading: &Loading, settings: &FatigueSettings) -> f64 {
     loading.range_share().powf(settings.walker_gamma)
 }
 
 /// Cyclic strain below which no bond of a crack tip ages for a threshold ΔK: `ε_th = f₀ ΔK_th / (E' √δ)`.
-#[must_use]
 pub fn threshold_strain(settings: &FatigueSettings, material: &Material, horizon: f64) -> f64 {
     CORE_STRAIN * settings.threshold / (material.plane_modulus() * horizon.sqrt())
 }
@@ -53,7 +50,6 @@ pub fn threshold_strain(settings: &FatigueSettings, material: &Material, horizon
 /// The zone of a tip holds the bonds whose middle lies within its radius, and those that still bridge the crack behind
 /// it. Without the bridges a crack that runs along a row of points, where the middles of the longest bonds across it lie at
 /// the rim of a zone of half a horizon, would leave some unspent and stay pinned by them.
-#[must_use]
 pub fn candidates(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &FatigueSettings) -> Vec<Bond> {
     let may_fail = |bond: Bond| bonds.is_intact(bond) && body.can_fail(bond);
     let mut found: Vec<Bond> = match settings.ageing {
@@ -105,7 +101,6 @@ fn in_zone(body: &Body, bonds: &Bonds, tip: &CrackTip, radius: f64) -> Vec<Bond>
 /// Of the candidates those in tension, with their cyclic strain. Bonds in compression are not spent.
 ///
 /// The strain is `share` times the stretch.
-#[must_use]
 pub fn fatigue_bonds(body: &Body, candidates: &[Bond], displacement: &[f64], (share, threshold): (f64, f64)) -> Vec<FatigueBond> {
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     candidates

@@ -84,7 +84,6 @@ pub struct CrackTip {
 
 impl CrackTip {
     /// Tip at the end of an initial crack or at the middle of a slot's end face.
-    #[must_use]
     pub fn at(seed: &TipSeed, body: &Body) -> Self {
         let length = front(body) + TRAIL_HORIZONS * body.horizon();
         let behind =
@@ -109,13 +108,11 @@ impl CrackTip {
     }
 
     /// Tells the tip the length of its crack at the start, m.
-    #[must_use]
     pub fn of_crack(self, length: f64) -> Self {
         CrackTip { crack: length, ..self }
     }
 
     /// Lets the tip move along its direction, whatever breaks.
-    #[must_use]
     pub fn on_fixed_line(self) -> Self {
         CrackTip { fixed_line: Some(self.position), ..self }
     }
@@ -126,7 +123,6 @@ impl CrackTip {
     }
 
     /// Whether bonds around it can age.
-    #[must_use]
     pub fn is_active(&self) -> bool {
         self.state == TipState::Active
     }
@@ -205,7 +201,6 @@ impl CrackTip {
     }
 
     /// Whether the line between two points crosses the wake: a bond there bridges the crack.
-    #[must_use]
     pub fn is_bridge(&self, from: Point, to: Point) -> bool {
         self.wake.windows(2).any(|step| segments_touch(from, to, step[0], step[1]))
     }
@@ -248,7 +243,6 @@ fn front(body: &Body) -> f64 {
 }
 
 /// Gives every broken bond near a tip to the nearest active one, unless it lies too far behind that to belong to its front.
-#[must_use]
 pub fn share_out(body: &Body, tips: &[CrackTip], broken: &[Bond]) -> Vec<Vec<Bond>> {
     let mut shares = vec![Vec::new(); tips.len()];
     for &bond in broken {
@@ -265,7 +259,6 @@ pub fn share_out(body: &Body, tips: &[CrackTip], broken: &[Bond]) -> Vec<Vec<Bon
 }
 
 /// The nearest active tip that a bond is near to.
-#[must_use]
 pub fn nearest_tip(body: &Body, tips: &[CrackTip], bond: Bond) -> Option<usize> {
     let middle = body.middle(bond);
     (0..tips.len())

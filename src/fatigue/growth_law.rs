@@ -54,7 +54,6 @@ pub enum FactorLaw {
 
 impl FactorLaw {
     /// Which one it is.
-    #[must_use]
     pub fn kind(&self) -> GrowthLawKind {
         match self {
             FactorLaw::Forman(_) => GrowthLawKind::Forman,
@@ -64,7 +63,6 @@ impl FactorLaw {
     }
 
     /// K_max at which the law lets a crack grow without limit, Pa√m.
-    #[must_use]
     pub fn toughness(&self) -> Option<f64> {
         match self {
             FactorLaw::Forman(law) => Some(law.k_c),
@@ -74,7 +72,6 @@ impl FactorLaw {
     }
 
     /// In words, with its constants.
-    #[must_use]
     pub fn in_words(&self) -> String {
         match self {
             FactorLaw::Forman(law) => format!("m = {}, K_c = {:.4} MPa√m", law.m, law.k_c / MPA_SQRT_M),

@@ -26,7 +26,6 @@ pub struct Rate {
 
 /// Central differences over `span` metres of growth around every sample: bonds break one by one, and only a stretch of crack
 /// that severs many of them has a rate. `G = d(f·u)/2 / (h da)`: at constant load half of the loads' work is released.
-#[must_use]
 pub fn rates(samples: &[Sample], span: f64, thickness: f64) -> Vec<Rate> {
     let mut rates = Vec::with_capacity(samples.len());
     let (mut low, mut high) = (0, 0);
@@ -50,7 +49,6 @@ pub fn rates(samples: &[Sample], span: f64, thickness: f64) -> Vec<Rate> {
 ///
 /// `G = W'(g) / (2 h)` from the parabola through work W over growth g by least squares: a difference quotient over the same
 /// stretch would be that of its middle, half the stretch too late for a crack that is about to run away.
-#[must_use]
 pub fn release_rate_at_end(samples: &[Sample], thickness: f64) -> Option<f64> {
     let (first, last) = (samples.first()?, samples.last()?);
     let span = last.growth - first.growth;

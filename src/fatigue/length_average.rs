@@ -15,7 +15,6 @@ pub struct LengthAverage<'a> {
 
 impl<'a> LengthAverage<'a> {
     /// Windows in which the crack grows by `spacing` metres.
-    #[must_use]
     pub fn new(cycles: &'a [f64], lengths: &[f64], spacing: f64) -> Self {
         let first_at = |length: f64| {
             let next = lengths.partition_point(|a| *a < length).min(lengths.len() - 1);
@@ -31,7 +30,6 @@ impl<'a> LengthAverage<'a> {
     }
 
     /// Means of a recorded quantity over the windows, linear in N between rows.
-    #[must_use]
     pub fn of(&self, values: &[f64]) -> Vec<f64> {
         let mut integral = vec![0.0];
         for (cycles, values) in self.cycles.windows(2).zip(values.windows(2)) {
@@ -52,7 +50,6 @@ impl<'a> LengthAverage<'a> {
     }
 
     /// [`LengthAverage::of`] for a quantity that never falls: round-off and changing windows do not make it fall either.
-    #[must_use]
     pub fn of_rising(&self, values: &[f64]) -> Vec<f64> {
         let mut largest = f64::NEG_INFINITY;
         let mut means = self.of(values);

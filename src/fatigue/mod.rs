@@ -61,7 +61,6 @@ crate::kinds! {
 pub const STEADY_EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=8.0;
 
 /// The error of an exponent outside [`STEADY_EXPONENTS`].
-#[must_use]
 pub fn unsteady(key: &str, p: f64) -> Error {
     let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
     let problem = format!("is outside {low} to {high}, where it is known how fast a crack grows whose bonds age with it");
@@ -87,7 +86,6 @@ pub struct FatigueLaw {
 impl FatigueLaw {
     /// The same material's law at another horizon: `A₂ = A₁ (δ₂/δ₁)^((p-2)/2)`, so that the Paris constant stays
     /// (steady growth: `C = β A δ^(1-p/2) / E^p`).
-    #[must_use]
     pub fn at_horizon(&self, horizon: f64) -> FatigueLaw {
         FatigueLaw { a: self.a * (horizon / self.horizon).powf((self.p - 2.0) / 2.0), p: self.p, horizon }
     }

@@ -10,7 +10,6 @@ use crate::body::Body;
 use crate::state::Bonds;
 
 /// Indices of the active tips that cannot grow because every intact bond of their ageing zone touches a no-fail zone.
-#[must_use]
 pub fn stuck(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &FatigueSettings) -> Vec<usize> {
     // Where all bonds age, growth of one tip is still told by the bonds around it.
     let near = FatigueSettings { ageing: Ageing::CrackTip, ..*settings };

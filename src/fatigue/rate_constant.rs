@@ -43,9 +43,6 @@ pub fn rate_constant(kernel: Kernel, p: f64) -> Result<f64> {
 }
 
 /// ∂ ln β / ∂p at an exponent within [`STEADY_EXPONENTS`], at its nearer end for others.
-///
-/// # Errors
-/// None for the kernels there are.
 pub fn rate_constant_slope(kernel: Kernel, p: f64) -> Result<f64> {
     let p = p.clamp(STEADY_EXPONENTS.start() + STEP, STEADY_EXPONENTS.end() - STEP);
     Ok((logarithm(kernel, p + STEP)? - logarithm(kernel, p - STEP)?) / (2.0 * STEP))

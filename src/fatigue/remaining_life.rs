@@ -16,13 +16,11 @@ pub struct BondLife {
 
 impl BondLife {
     /// Whole lives for `bonds` bond numbers.
-    #[must_use]
     pub fn whole(bonds: usize) -> Self {
         BondLife { life: vec![1.0; bonds] }
     }
 
     /// Remaining life λ of a bond, 1 at first.
-    #[must_use]
     pub fn of(&self, bond: Bond) -> f64 {
         self.life[bond as usize]
     }
@@ -33,14 +31,12 @@ impl BondLife {
     }
 
     /// The bonds that have spent some of their life, ascending, and what remains of it.
-    #[must_use]
     pub fn begun(&self) -> Vec<(Bond, f64)> {
         self.life.iter().enumerate().filter(|(_, life)| **life != 1.0).map(|(bond, life)| (bond as Bond, *life)).collect()
     }
 
     /// The block until the next break: its cycles, and the bonds that break together at its end. Strains are constant until then, so
     /// the block is exact.
-    #[must_use]
     pub fn until_next_break(&self, law: &FatigueLaw, ageing: &[FatigueBond]) -> (f64, Vec<Bond>) {
         let rates: Vec<f64> = ageing.iter().map(|b| law.a * b.strain.powf(law.p)).collect();
         let left = ageing.iter().zip(&rates).map(|(b, &rate)| self.of(b.bond).max(0.0) / rate);
@@ -51,7 +47,6 @@ impl BondLife {
     }
 
     /// Largest share of a whole life that a bond spends until the next break; none where nothing ages.
-    #[must_use]
     pub fn share_to_next_break(&self, law: &FatigueLaw, ageing: &[FatigueBond]) -> f64 {
         let rates = || ageing.iter().map(|b| law.a * b.strain.powf(law.p));
         let cycles = ageing.iter().zip(rates()).map(|(b, rate)| self.of(b.bond).max(0.0) / rate).fold(f64::INFINITY, f64::min);

@@ -25,7 +25,6 @@ pub struct KeptBonds {
 
 impl BondState {
     /// Bonds of the plate with its cracks cut. Bonds with an end among the `no_fail` points never fail.
-    #[must_use]
     pub fn new(net: &Net, no_fail: &[bool]) -> Self {
         let mut share = vec![1.0; net.bonds.len()];
         for &bond in &net.pre_cut {
@@ -36,13 +35,11 @@ impl BondState {
     }
 
     /// What has changed in the bonds.
-    #[must_use]
     pub fn kept(&self) -> KeptBonds {
         KeptBonds { share: sparse(&self.share, 1.0), peak: sparse(&self.peak, 0.0) }
     }
 
     /// Puts the bonds where they stood; whether they are those of this net.
-    #[must_use]
     pub fn restore(&mut self, kept: &KeptBonds) -> bool {
         let count = self.share.len();
         let fits = kept.share.iter().chain(&kept.peak).all(|(bond, _)| (*bond as usize) < count);
@@ -54,13 +51,11 @@ impl BondState {
     }
 
     /// Damage of every point ([`Net::damage`]), 0 to 1.
-    #[must_use]
     pub fn damage(&self, net: &Net) -> Vec<f64> {
         net.damage(&self.share)
     }
 
     /// Bonds broken beside the cracks of the start.
-    #[must_use]
     pub fn broken(&self, net: &Net) -> usize {
         self.share.iter().filter(|&&share| share == 0.0).count() - net.pre_cut.len()
     }

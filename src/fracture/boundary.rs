@@ -21,7 +21,6 @@ pub struct Held {
 
 impl Held {
     /// Displacement and velocity at a time, m and m/s.
-    #[must_use]
     pub fn at(&self, time: f64) -> (f64, f64) {
         match self.motion {
             Motion::Displacement(value) => (value * self.rise.share(time), value * self.rise.slope(time)),
@@ -141,14 +140,12 @@ impl Boundary {
     }
 
     /// [`measure_at`](Self::measure_at) where all loads have grown in proportion to a share of the full one.
-    #[must_use]
     pub fn measure(&self, unknowns: usize, level: f64, u: &[f64], pull: &[f64]) -> (f64, f64) {
         self.measured(unknowns, |_| level, u, pull)
     }
 
     /// Displacement of the loads along their direction, summed, and their mean force at a time, s, in m and N; `pull` is what the
     /// points' bonds do to them. Where some loads are prescribed motions, given forces beside them do not count.
-    #[must_use]
     pub fn measure_at(&self, unknowns: usize, time: f64, u: &[f64], pull: &[f64]) -> (f64, f64) {
         self.measured(unknowns, |group| group.rise.share(time), u, pull)
     }

@@ -19,7 +19,6 @@ const STATES: f64 = 2.0;
 
 impl Scene {
     /// What it takes up, before anything is laid out.
-    #[must_use]
     pub fn budget(&self) -> Budget {
         let model = &self.model;
         let plate = PointPlate {

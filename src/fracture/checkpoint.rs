@@ -51,27 +51,21 @@ pub enum Place {
 
 impl SceneCheckpoint {
     /// How far the run had come.
-    #[must_use]
     pub fn progress(&self) -> SceneProgress {
         SceneProgress { share: self.share }
     }
 
     /// The step after which it was taken down, as `history.csv` counts them.
-    #[must_use]
     pub fn step(&self) -> usize {
         self.records.last_step()
     }
 
     /// Whether it is that of a run of this scene, by all that decides how the run goes; its name and where the file lies do not.
-    #[must_use]
     pub fn belongs_to(&self, scene: &Scene) -> bool {
         self.scene == hash(scene)
     }
 
     /// Refuses the checkpoint of another scene.
-    ///
-    /// # Errors
-    /// [`Error::Input`].
     pub fn check(&self, scene: &Scene) -> Result<()> {
         if self.belongs_to(scene) {
             Ok(())
@@ -81,15 +75,11 @@ impl SceneCheckpoint {
     }
 
     /// As bytes, with a checksum.
-    #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         SEAL.to_bytes(self)
     }
 
     /// From what [`SceneCheckpoint::to_bytes`] gave.
-    ///
-    /// # Errors
-    /// As [`Seal::read`].
     pub fn from_bytes(bytes: &[u8]) -> Result<SceneCheckpoint> {
         SEAL.read(bytes)
     }

@@ -101,7 +101,6 @@ pub struct Touching {
 
 impl Touching {
     /// Share of the columns that are pressed; 0 without any.
-    #[must_use]
     pub fn share(&self) -> f64 {
         if self.columns > 0 { self.pressed as f64 / self.columns as f64 } else { 0.0 }
     }
@@ -126,7 +125,6 @@ pub struct Contact<'n> {
 
 impl<'n> Contact<'n> {
     /// Contact across the initial cracks of a net and what grows from them.
-    #[must_use]
     pub fn new(net: &'n Net, cracks: &[Crack]) -> Self {
         let mut is_initial = vec![false; net.bonds.len()];
         net.pre_cut.iter().for_each(|&bond| is_initial[bond as usize] = true);
@@ -144,14 +142,12 @@ impl<'n> Contact<'n> {
     }
 
     /// How the flanks stand.
-    #[must_use]
     pub fn touching(&self) -> Touching {
         Touching { columns: self.columns.len(), pressed: self.struts.len() }
     }
 
     /// Pressed columns as springs between two points, for a factor that shall stand for them: the other side is the point with the
     /// largest share.
-    #[must_use]
     pub fn struts(&self) -> &[Strut] {
         &self.struts
     }
@@ -247,7 +243,6 @@ impl<'n> Contact<'n> {
     }
 
     /// Pressed columns by their numbers; `None` before any column was built.
-    #[must_use]
     pub fn pressed(&self) -> Option<Vec<u32>> {
         let pressed = self.columns.iter().zip(&self.pressed).filter(|(_, pressed)| **pressed);
         (self.known > 0).then(|| pressed.map(|(column, _)| column.id).collect())
@@ -387,7 +382,6 @@ impl<'n> Contact<'n> {
 
 /// What is to be said of a scene whose procedure has no contact, where flanks have passed through each other: looked for in all its
 /// pictures.
-#[must_use]
 pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, fracture: &Fracture) -> Option<String> {
     if fracture.figures.touching.is_some() {
         return None;

@@ -124,7 +124,6 @@ impl<'n> Correspondence<'n> {
     }
 
     /// First Piola-Kirchhoff stress as the forces of a point's own bonds carry it, `Σ T⟨ξ⟩ ⊗ ξ V'`, Pa.
-    #[must_use]
     pub fn carried(&self, u: &[f64], point: usize) -> Matrix2<f64> {
         let at = &self.points[point];
         let state = |n: &neighbours::Neighbour| {
@@ -246,7 +245,6 @@ impl Interaction for Correspondence<'_> {
 }
 
 /// Whether damage enters K and F.
-#[must_use]
 fn in_shape(enters: DamageEntry) -> bool {
     match enters {
         DamageEntry::Force => false,

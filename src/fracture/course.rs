@@ -19,13 +19,11 @@ pub struct Clock {
 
 impl Clock {
     /// Starts to count for a run that begins, or goes on from a checkpoint.
-    #[must_use]
     pub fn start(from: Option<&SceneCheckpoint>) -> Self {
         Clock { begun: Instant::now(), earlier_s: from.map_or(0.0, |from| from.wall_s) }
     }
 
     /// Time spent so far, s.
-    #[must_use]
     pub fn seconds(self) -> f64 {
         self.earlier_s + self.begun.elapsed().as_secs_f64()
     }
@@ -44,7 +42,6 @@ pub struct Course<'a> {
 
 impl<'a> Course<'a> {
     /// The course of a run of a scene, from a checkpoint of it if there is one.
-    #[must_use]
     pub fn new(scene: &Scene, observer: &'a dyn SceneObserver, clock: Clock, from: Option<SceneCheckpoint>) -> Self {
         Course { observer, clock, scene: hash(scene), share: 0.0, from }
     }
@@ -61,9 +58,6 @@ impl<'a> Course<'a> {
     }
 
     /// Tells how far the run is.
-    ///
-    /// # Errors
-    /// A run that was cancelled.
     pub fn step_done(&mut self, share: f64) -> Result<()> {
         self.share = self.share.max(share);
         if self.observer.step_done(&SceneProgress { share: self.share }) {

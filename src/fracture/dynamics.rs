@@ -59,7 +59,6 @@ pub struct Standing {
 }
 
 /// Masses of all unknowns, kg: `ρ V` of the displacements; rotations as said above.
-#[must_use]
 pub fn masses(net: &Net, density: f64, bound: &[[f64; 2]]) -> Vec<f64> {
     let translations = || net.volumes.iter().map(|volume| density * volume);
     let fastest = translations().zip(bound).map(|(mass, bound)| bound[0] / mass).fold(0.0, f64::max);
@@ -75,7 +74,6 @@ pub fn masses(net: &Net, density: f64, bound: &[[f64; 2]]) -> Vec<f64> {
 }
 
 /// Largest stable time step, s.
-#[must_use]
 pub fn stable_step(net: &Net, density: f64, bound: &[[f64; 2]]) -> f64 {
     let fastest = net.volumes.iter().zip(bound).map(|(volume, bound)| bound[0] / (density * volume)).fold(0.0, f64::max);
     2.0 / fastest.sqrt()

@@ -68,7 +68,6 @@ impl Failure {
 
     /// Share of its stiffness that a bond of an owner has at these measures, and its history; never more than before.
     #[inline(always)]
-    #[must_use]
     pub fn share(&self, owner: u32, at: Measures, share: f64, peak: &mut f64) -> f64 {
         match self {
             Failure::Never => share,
@@ -102,7 +101,6 @@ impl Failure {
     /// whole bond at present: `∫ s² dD / s²` along the curve, whatever the size of the step, all strains of the bond having grown in
     /// proportion. `None` for laws without a curve, and off it.
     #[inline(always)]
-    #[must_use]
     pub fn taken_along_curve(&self, at: Measures, after: f64, peak_before: f64) -> Option<f64> {
         match self {
             // What is torn by its true length alone has not followed the curve.
@@ -116,7 +114,6 @@ impl Failure {
     /// The measure that damage depends on, homogeneous in the displacement (linear in it, where [`Failure::share`] asks for the true
     /// length); 0 in compression.
     #[inline(always)]
-    #[must_use]
     pub fn measure(&self, at: Measures) -> f64 {
         match self {
             Failure::Never => 0.0,
@@ -128,7 +125,6 @@ impl Failure {
 
     /// Measure at which the damage of a bond with this share grows.
     #[inline(always)]
-    #[must_use]
     pub fn onset(&self, owner: u32, share: f64) -> f64 {
         match self {
             Failure::Never => f64::INFINITY,
@@ -140,7 +136,6 @@ impl Failure {
     /// Whether a bond is torn by its true length alone: what slides along a bond of the other side stretches it in truth, but not
     /// in linear measures.
     #[inline(always)]
-    #[must_use]
     pub fn is_overlong(&self, owner: u32, elongation: f64) -> bool {
         let last = match self {
             Failure::Never => return false,
@@ -151,7 +146,6 @@ impl Failure {
     }
 
     /// Share down to which bonds are damaged gradually; at this share they break.
-    #[must_use]
     pub fn last_share(&self) -> f64 {
         match self {
             Failure::Softening(law) => law.share(law.last),
@@ -164,7 +158,6 @@ impl Softening {
     /// Share of the stiffness 1 - D at a stretch never reached before: `D = 0` up to s_et, `1 - exp(-(s - s_et)/s_nt)` up to s_t,
     /// 1 beyond (Li, Lü, Huang and Yang 2024, equation 19). With the continuous form the force is largest at s_nt. As printed, equations (20)
     /// and (21) multiply by D itself between s_et and s_nt, so that the force drops to zero just above s_et.
-    #[must_use]
     pub fn share(&self, stretch: f64) -> f64 {
         if stretch <= self.elastic {
             1.0
@@ -178,14 +171,12 @@ impl Softening {
 
     /// Stretch at which the continuous form has this share: `s = s_et - s_nt ln(1 - D)`, at the most s_t.
     #[inline(always)]
-    #[must_use]
     pub fn stretch_at(&self, share: f64) -> f64 {
         (self.elastic - self.peak * share.ln()).min(self.last)
     }
 
     /// `∫ s² dD` along the continuous form between two shares: up to s_t it is the difference of
     /// `-(s² + 2 s s_nt + 2 s_nt²) exp(-(s - s_et)/s_nt)`, and the rest breaks at s_t.
-    #[must_use]
     pub fn square_sum(&self, [before, after]: [f64; 2]) -> f64 {
         let last = self.share(self.last);
         let curve = |share: f64| {
@@ -204,7 +195,6 @@ impl Softening {
 /// Springs with the classical corrections are those of the stencil times a factor of the body that makes uniaxial strain cost
 /// what it should, `½ C₁₁ ε²`; the springs taken here are so too (`stiffness` = C₁₁ of the plane state, Pa). Without it a crack
 /// would release a fifth too much.
-#[must_use]
 pub fn critical_stretch(stencil: &Stencil, stiffness: f64, fracture_energy: f64, thickness: f64) -> f64 {
     let volume = stencil.spacing * stencil.spacing * thickness;
     let (mut cut, mut uniaxial) = (0.0, 0.0);

@@ -91,7 +91,6 @@ pub struct Standing {
 
 impl<'n> Fronts<'n> {
     /// Fronts of points with this damage, at the tips of the specimen.
-    #[must_use]
     pub fn new(specimen: &Specimen, net: &'n Net, threshold: f64) -> Self {
         let front = |tip: &crate::specimen::TipSeed| Front::starting(tip.position, tip.direction, 0.0);
         let fronts: Vec<Front> = specimen.tips.iter().map(front).collect();
@@ -102,13 +101,11 @@ impl<'n> Fronts<'n> {
     }
 
     /// Where they are.
-    #[must_use]
     pub fn standing(&self) -> &Standing {
         &self.standing
     }
 
     /// Puts them where they stood; whether they are those of this net.
-    #[must_use]
     pub fn restore(&mut self, standing: Standing) -> bool {
         let fits = standing.cracked.len() == self.net.len();
         self.standing = standing;
@@ -116,7 +113,6 @@ impl<'n> Fronts<'n> {
     }
 
     /// Where they stood, in the order of time.
-    #[must_use]
     pub fn into_path(self) -> Vec<PathPoint> {
         self.standing.path
     }

@@ -85,7 +85,6 @@ struct Band {
 
 impl<'n> LatticeSprings<'n> {
     /// Springs of a body, if its law can be worked through this way: two unknowns a point, one limit without history.
-    #[must_use]
     pub fn new(net: &'n Net, body: &Body, bonds: &BondState, failure: &Failure, finite: bool) -> Option<Self> {
         let uniform = |limits: &[f64]| limits.first().copied().filter(|first| limits.iter().all(|limit| limit == first));
         let limit = match failure {

@@ -50,7 +50,6 @@ pub struct Records {
 
 impl Records {
     /// Step of the last row; 0 without any.
-    #[must_use]
     pub fn last_step(&self) -> usize {
         self.taken.history.last().map_or(0, |row| row.step)
     }
@@ -58,7 +57,6 @@ impl Records {
 
 impl<'a> Log<'a> {
     /// A log of a run of so many steps.
-    #[must_use]
     pub fn new(scene: &'a Scene, net: &'a Net, boundary: &'a Boundary, steps: usize) -> Self {
         Log {
             net,
@@ -71,13 +69,11 @@ impl<'a> Log<'a> {
     }
 
     /// What it holds.
-    #[must_use]
     pub fn records(&self) -> Records {
         Records { fronts: self.fronts.standing().clone(), cracking: self.cracking.standing().clone(), taken: self.taken.clone() }
     }
 
     /// Puts back what a log of an earlier run held; whether that was a run on this net.
-    #[must_use]
     pub fn restore(&mut self, records: Records) -> bool {
         let Records { fronts, cracking, taken } = records;
         let points = self.net.len();
@@ -96,13 +92,11 @@ impl<'a> Log<'a> {
     }
 
     /// Bonds broken so far.
-    #[must_use]
     pub fn broken(&self) -> usize {
         self.taken.broken
     }
 
     /// Whether loads and supports are no longer joined by bonds.
-    #[must_use]
     pub fn is_separated(&self) -> bool {
         self.taken.separated.is_some()
     }
@@ -145,7 +139,6 @@ impl<'a> Log<'a> {
     }
 
     /// The outcome; takes a last picture.
-    #[must_use]
     pub fn close(mut self, end: SceneEnd, u: &[f64], bonds: &BondState, figures: SceneFigures) -> Fracture {
         if let Some(row) = self.taken.history.last().copied() {
             let damage = bonds.damage(self.net);

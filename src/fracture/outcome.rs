@@ -103,7 +103,6 @@ pub struct Fracture {
 
 impl Fracture {
     /// Largest load, N.
-    #[must_use]
     pub fn peak_load(&self) -> f64 {
         self.history.iter().fold(0.0, |peak, row| f64::max(peak, row.load))
     }

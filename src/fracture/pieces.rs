@@ -5,7 +5,6 @@ use super::boundary::Boundary;
 use crate::levels::Net;
 
 /// Whether no way of intact bonds leads from the first load to some other load or support.
-#[must_use]
 pub fn is_separated(net: &Net, boundary: &Boundary, bonds: &BondState) -> bool {
     let Some(&start) = boundary.groups.first().and_then(|group| group.points.first()) else { return false };
     let mut reached = vec![false; net.len()];

@@ -41,7 +41,6 @@ pub struct Platen {
 
 impl Platen {
     /// Platens of a scene.
-    #[must_use]
     pub fn all(scene: &Scene, net: &Net) -> Vec<Platen> {
         scene.drives.iter().filter_map(|drive| Platen::of(drive, scene, net)).collect()
     }
@@ -121,7 +120,6 @@ pub struct Pressed<'n> {
 
 impl<'n> Pressed<'n> {
     /// Puts a body between platens, none of which has moved yet.
-    #[must_use]
     pub fn new(inner: Box<dyn Interaction + 'n>, net: &'n Net, mut platens: Vec<Platen>) -> Self {
         let whole = BondState::new(net, &vec![false; net.len()]);
         let bound = inner.stiffness_bound(&whole);

@@ -26,9 +26,6 @@ pub struct Preview {
 }
 
 /// Builds points, bonds, loads and supports of a scene.
-///
-/// # Errors
-/// What a run would find wrong before it starts.
 pub fn preview(scene: &Scene) -> Result<Preview> {
     let (net, body) = super::build(scene)?;
     let boundary = Boundary::of(scene, &net)?;

@@ -10,13 +10,11 @@ use crate::units::MM;
 
 impl Region {
     /// The outermost row of a whole side.
-    #[must_use]
     pub fn side(edge: Edge) -> Region {
         Region::Edge { edge, depth: 0.0, range: [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
     /// Points within the region, ascending; of a side at least those of its outermost row.
-    #[must_use]
     pub fn points(&self, net: &Net, specimen: &Specimen) -> Vec<u32> {
         let all = || net.positions.iter().enumerate();
         match *self {
@@ -41,14 +39,12 @@ impl Region {
 
 impl SceneLoad {
     /// A load on the outermost row of a whole side, at once.
-    #[must_use]
     pub fn on_side(edge: Edge, action: Action) -> SceneLoad {
         SceneLoad { region: Region::side(edge), action, rise: LoadRamp::AT_ONCE, key: "loading.edges".to_owned() }
     }
 
     /// A traction as loads of the plate; none where the load is something else, or the outline does not reach its part of the
     /// side.
-    #[must_use]
     pub fn loads(&self, specimen: &Specimen) -> Vec<Load> {
         let (&Region::Edge { edge, range, .. }, Action::Traction(traction)) = (&self.region, self.action) else {
             return Vec::new();

@@ -18,9 +18,6 @@ use crate::levels::rigid::{RESISTED, turning_cost, turning_warning};
 
 /// Energy of a rigid turn over that of an extension ([`turning_cost`]) of the body of a scene as it is worked through, its cracks
 /// cut; `None` where an extension costs nothing.
-///
-/// # Errors
-/// As [`build`].
 pub fn cost(scene: &Scene) -> Result<Option<f64>> {
     let (net, body) = build(scene)?;
     let bonds = BondState::new(&net, &Boundary::of(scene, &net)?.no_fail);

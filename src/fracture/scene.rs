@@ -133,7 +133,6 @@ impl LoadRamp {
     pub const AT_ONCE: LoadRamp = LoadRamp { from: 0.0, ramp: 0.0 };
 
     /// Share r of the whole load at a time, s.
-    #[must_use]
     pub fn share(self, time: f64) -> f64 {
         match time - self.from {
             since if since < 0.0 => 0.0,
@@ -143,21 +142,18 @@ impl LoadRamp {
     }
 
     /// dr/dt at a time, 1/s.
-    #[must_use]
     pub fn slope(self, time: f64) -> f64 {
         let since = time - self.from;
         if since >= 0.0 && since < self.ramp { 1.0 / self.ramp } else { 0.0 }
     }
 
     /// ∫ r dt from the start to a time, s.
-    #[must_use]
     pub fn sum(self, time: f64) -> f64 {
         let since = (time - self.from).max(0.0);
         if since < self.ramp { 0.5 * since * since / self.ramp } else { since - 0.5 * self.ramp }
     }
 
     /// Time at which the load is whole, s.
-    #[must_use]
     pub fn end(self) -> f64 {
         self.from + self.ramp
     }
@@ -274,7 +270,6 @@ pub struct Scene {
 impl Scene {
     /// A static scene on a lattice of the usual horizon ratio, upright, that nothing loads, holds or breaks: what scenes that are
     /// built without a file start from.
-    #[must_use]
     pub fn bare(name: &str, specimen: Specimen, material: Material, law: SceneLaw, spacing: f64) -> Scene {
         let solver = match law {
             SceneLaw::Bonds(_) => SceneSolver::Secant,

@@ -27,7 +27,6 @@ pub struct Springs<'n> {
 
 impl<'n> Springs<'n> {
     /// Springs with their law of damage; `finite` for true stretch, which needs two unknowns and no tangential springs.
-    #[must_use]
     pub fn new(net: &'n Net, failure: Failure, finite: bool) -> Self {
         Springs { net, failure, finite, pulls: vec![[0.0; 3]; net.bonds.len()], last: vec![0.0; net.unknowns * net.len()] }
     }
@@ -123,7 +122,6 @@ struct Task<'t> {
 
 impl Reaction {
     /// Both together.
-    #[must_use]
     pub fn and(self, other: Reaction) -> Reaction {
         Reaction {
             strain: self.strain + other.strain,
@@ -180,7 +178,6 @@ impl Interaction for Springs<'_> {
 
 /// Blocks of displacement and rotation apart: `λ(K_ii) + Σ |K_ij|`, both at the most `Σ max(k_n, k_t)`; for the rotation
 /// `Σ 2 k_t r²`, and the coupling `Σ 2 k_t r` shared out half by half.
-#[must_use]
 pub fn stiffness_bound(net: &Net, bonds: &BondState) -> Vec<[f64; 2]> {
     let of_point = |point: usize| {
         let (mut xx, mut xy, mut yy, mut beside, mut turn, mut couple) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);

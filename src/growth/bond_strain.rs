@@ -96,7 +96,6 @@ pub struct BondStrainState {
 
 impl BondStrainState {
     /// All bonds that are broken, those of the initial cracks among them, ascending.
-    #[must_use]
     pub fn broken(&self) -> &[Bond] {
         &self.broken
     }
@@ -146,13 +145,11 @@ impl<'a> BondStrain<'a> {
     }
 
     /// The plate, and its bonds as they stand.
-    #[must_use]
     pub fn plate_and_bonds(&self) -> (Body, Bonds) {
         (self.plate.body.clone(), self.run.bonds.clone())
     }
 
     /// Bonds that broke in the last block.
-    #[must_use]
     pub fn last_broken(&self) -> &[Bond] {
         &self.last_broken
     }

@@ -29,7 +29,6 @@ pub struct CrossCheck {
 
 impl CrossCheck {
     /// What the user should know about it.
-    #[must_use]
     pub fn warning(&self) -> Option<String> {
         (self.difference.abs() > WARNED).then(|| {
             format!(
@@ -125,7 +124,6 @@ impl EnergyBalance {
     }
 
     /// The comparisons that matter in a life of so many `cycles`.
-    #[must_use]
     pub fn check(&self, cycles: f64) -> Option<CrossCheck> {
         let matters = self.intervals.iter().filter(|interval| interval.cycles >= SHARE_LEAST * cycles);
         let largest = matters.clone().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()))?;

@@ -16,7 +16,6 @@ pub struct End {
 /// The first of: the length the case stops at, K_max = toughness (where a handbook has K), yield of the whole net section
 /// (standard kinds). `None` where nothing of that is given. Where cycles are of a displacement the load is not known before the run:
 /// only the length that the case stops at is.
-#[must_use]
 pub fn first_end(case: &Case) -> Option<End> {
     let (specimen, load) = (&case.specimen, case.loading.maximum);
     let (start, limit) = (specimen.crack_length, specimen.length_limit().0);

@@ -46,9 +46,6 @@ pub trait CrackGrowth {
     fn state(&self) -> State;
 
     /// Goes on from a state of an earlier run, in place of [`CrackGrowth::open`]; whether it is one of this plate and law.
-    ///
-    /// # Errors
-    /// No equilibrium.
     fn restore(&mut self, state: State) -> Result<bool>;
 
     /// The discretised plate, where there is one.
@@ -62,9 +59,6 @@ pub trait CrackGrowth {
     }
 
     /// Displacement and damage of its points as they stand.
-    ///
-    /// # Errors
-    /// No equilibrium.
     fn fields(&mut self) -> Result<Option<Fields>> {
         Ok(None)
     }
@@ -81,9 +75,6 @@ pub trait CrackGrowth {
     }
 
     /// Builds the solver anew from the bonds.
-    ///
-    /// # Errors
-    /// No equilibrium.
     fn rebuild_solver(&mut self) -> Result<()> {
         Ok(())
     }
@@ -165,7 +156,6 @@ pub struct GrowthStatus<'a> {
 
 impl GrowthStatus<'_> {
     /// Growth of all tips together, m.
-    #[must_use]
     pub fn growth(&self) -> f64 {
         self.tips.iter().map(|tip| tip.growth).sum()
     }

@@ -30,9 +30,6 @@ pub struct Plate {
 
 impl Plate {
     /// Discretises `specimen`, with its cracks as they are cut; regions around flaws are those of `flaws`.
-    ///
-    /// # Errors
-    /// As [`Body::build`] and [`MultiLevelBody::build`].
     pub fn build(specimen: &Specimen, flaws: &Specimen, material: &Material, model: &Model) -> Result<Plate> {
         let (law, ratio, angle) = (&model.bond_law, model.horizon_ratio, model.lattice_angle);
         if model.arrangement == Discretisation::Lattice {
@@ -58,7 +55,6 @@ impl Plate {
     }
 
     /// Equilibrium with these bonds under `load` times the unit load (Pa or N).
-    #[must_use]
     pub fn equilibrium(&self, model: &Model, bonds: &Bonds, load: f64) -> Equilibrium {
         match &self.levels {
             None => Equilibrium::new(model.solver, model.symmetry, &self.body, bonds, load),
@@ -67,37 +63,31 @@ impl Plate {
     }
 
     /// Whether it has points of several levels.
-    #[must_use]
     pub fn is_of_levels(&self) -> bool {
         self.levels.is_some()
     }
 
     /// Number of points, of all levels.
-    #[must_use]
     pub fn points(&self) -> usize {
         self.levels.as_ref().map_or(self.body.points.len(), |levels| levels.net.len())
     }
 
     /// Number of bonds of the uncracked plate, of all levels.
-    #[must_use]
     pub fn bonds(&self) -> usize {
         self.levels.as_ref().map_or(self.body.bond_count, |levels| levels.net.bonds.len())
     }
 
     /// Number of bonds that the initial cracks cut, of all levels.
-    #[must_use]
     pub fn cut(&self) -> usize {
         self.levels.as_ref().map_or(self.body.pre_cut.len(), |levels| levels.net.pre_cut.len())
     }
 
     /// Lattice of the pictures.
-    #[must_use]
     pub fn grid(&self) -> PointGrid {
         self.levels.as_ref().map_or_else(|| PointGrid::of_body(&self.body), |levels| levels.net.grid.clone())
     }
 
     /// What the user should know about its points.
-    #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let turning = self.body.stencil.resists_rotation().then(|| turning_warning(self.turning_cost(), RESISTED)).flatten();
         let of_levels = self.levels.iter().flat_map(|levels| levels.net.warnings.iter().cloned());
@@ -105,7 +95,6 @@ impl Plate {
     }
 
     /// Energy of a rigid turn over that of an extension, of the springs of the plate.
-    #[must_use]
     pub fn turning_cost(&self) -> Option<f64> {
         match &self.levels {
             None => turning_cost_of_springs(&Net::of_body(&self.body)),
@@ -114,7 +103,6 @@ impl Plate {
     }
 
     /// What is to be said of a tip that has come to the rim of the finest level.
-    #[must_use]
     pub fn left_refinement(&self, tip: Point, zone_radius_horizons: f64) -> String {
         // Points of the rim reach two horizons beyond themselves to bonds of coarser ones.
         let needed = clear_way(self.body.horizon(), zone_radius_horizons) + 2.0 * self.body.horizon();
@@ -127,7 +115,6 @@ impl Plate {
     }
 
     /// Displacement (x, y) in plate axes, m, and damage of every point, from a displacement in the layout of its [`Equilibrium`].
-    #[must_use]
     pub fn fields(&self, bonds: &Bonds, displacement: &[f64], lives: &[(Bond, f64)]) -> Fields {
         match &self.levels {
             None => of_body(&self.body, bonds, displacement, lives),

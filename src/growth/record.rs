@@ -26,13 +26,11 @@ crate::kinds! {
 
 impl StopReason {
     /// Whether a plate that has ended so lives on: what a crack does behind a hole, or one that has joined others, is not computed.
-    #[must_use]
     pub fn is_lower_bound(self) -> bool {
         matches!(self, StopReason::EnteredHole | StopReason::CracksJoined | StopReason::LigamentUnresolved)
     }
 
     /// Whether the load breaks a plate that has ended so.
-    #[must_use]
     pub fn is_strength(self) -> bool {
         matches!(self, StopReason::Toughness | StopReason::NetSectionYield)
     }
@@ -75,7 +73,6 @@ pub struct CurvePoint {
 
 impl CurvePoint {
     /// The row at a share of the way from another to this one; bonds broken are those of this one.
-    #[must_use]
     pub fn between(self, before: &CurvePoint, share: f64) -> CurvePoint {
         let mix = |a: f64, b: f64| a + share * (b - a);
         let tip = |(a, b): (&TipRecord, &TipRecord)| TipRecord {

@@ -97,9 +97,6 @@ impl<'a> TipField<'a> {
     }
 
     /// The discretised plate of a case.
-    ///
-    /// # Errors
-    /// As [`Plate::build`].
     pub fn plate(case: &Case) -> Result<Arc<Plate>> {
         Plate::build(&case.specimen, &case.specimen, &case.material, &case.model).map(Arc::new)
     }
@@ -223,9 +220,6 @@ pub struct InitialTips {
 }
 
 /// Reads the initial tips of a case: those of the first row of its prediction by K.
-///
-/// # Errors
-/// As [`TipField::start`] and [`CrackGrowth::open`].
 pub fn initial_tips(case: &Case) -> Result<InitialTips> {
     let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
     let mut growth = TipField::start(case, Box::new(law))?;

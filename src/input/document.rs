@@ -58,7 +58,6 @@ impl Document {
     }
 
     /// Names file and line in an error about a key of this document.
-    #[must_use]
     pub fn locate(&self, error: Error) -> Error {
         let Error::Input(mut trouble) = error else { return error };
         if trouble.file.is_some() {

@@ -27,32 +27,27 @@ impl PartialEq for Folder {
 
 impl Folder {
     /// Nothing at hand: for input that names no files.
-    #[must_use]
     pub fn none() -> Self {
         Folder::at_hand([])
     }
 
     /// Files given with their content.
-    #[must_use]
     pub fn at_hand(files: impl IntoIterator<Item = (String, Vec<u8>)>) -> Self {
         Folder { disk: None, at_hand: Arc::new(files.into_iter().collect()), opened: Opened::default() }
     }
 
     /// The same place, through which nothing was opened yet, with files at hand beside what lies there.
-    #[must_use]
     pub fn anew_with(&self, files: impl IntoIterator<Item = (String, Vec<u8>)>) -> Self {
         let at_hand = self.at_hand.iter().map(|(name, content)| (name.clone(), content.clone())).chain(files).collect();
         Folder { disk: self.disk.clone(), at_hand: Arc::new(at_hand), opened: Opened::default() }
     }
 
     /// Files and overrides that were read through it so far.
-    #[must_use]
     pub fn opened(&self) -> &Opened {
         &self.opened
     }
 
     /// What messages call a file.
-    #[must_use]
     pub fn path(&self, name: &str) -> PathBuf {
         match &self.disk {
             Some(folder) if !self.at_hand.contains_key(name) => folder.join(name),

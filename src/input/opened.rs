@@ -25,7 +25,6 @@ pub struct FileId {
 
 impl FileId {
     /// Of what is known about a file.
-    #[must_use]
     pub fn of(metadata: &std::fs::Metadata) -> Self {
         use std::os::unix::fs::MetadataExt;
         FileId { device: metadata.dev(), inode: metadata.ino() }
@@ -47,14 +46,12 @@ pub struct OpenedFile {
 
 impl OpenedFile {
     /// SHA-256 of its bytes, hexadecimal.
-    #[must_use]
     pub fn sha256(&self) -> String {
         sha256(&self.content)
     }
 }
 
 /// SHA-256, hexadecimal.
-#[must_use]
 pub fn sha256(bytes: &[u8]) -> String {
     let mut text = Vec::with_capacity(64);
     // Writing to memory cannot fail.
@@ -103,7 +100,6 @@ impl Opened {
     }
 
     /// All so far.
-    #[must_use]
     pub fn so_far(&self) -> Provenance {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

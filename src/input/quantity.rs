@@ -44,7 +44,6 @@ pub const DENSITY: Quantity = Quantity { what: "a density", unit: "kg/m³", low:
 pub const TIME: Quantity = Quantity { what: "a time", unit: "s", low: 1e-15, high: 1e6, si: 1.0 };
 
 /// A plain number within bounds.
-#[must_use]
 pub const fn number(what: &'static str, low: f64, high: f64) -> Quantity {
     Quantity { what, unit: "", low, high, si: 1.0 }
 }

@@ -36,21 +36,16 @@ impl<'t> Sections<'t> {
     }
 
     /// A section that must be there.
-    ///
-    /// # Errors
-    /// It is missing.
     pub fn required(&self, section: &str) -> Result<&Value> {
         self.given(section).ok_or_else(|| input_missing(section, "is missing", format!("write a section [{section}]")))
     }
 
     /// A section, without keys where it is left out.
-    #[must_use]
     pub fn optional(&self, section: &str) -> &Value {
         self.given(section).unwrap_or(&self.empty)
     }
 
     /// A section that may be left out.
-    #[must_use]
     pub fn given(&self, section: &str) -> Option<&Value> {
         self.table.get(section)
     }

@@ -51,7 +51,6 @@ pub fn table_of<'v>(value: &'v Value, path: &str) -> Result<&'v Table> {
 }
 
 /// The value at `path` (`holes[0].x_mm`) below `root`.
-#[must_use]
 pub fn value_at<'v>(root: &'v Value, path: &str) -> Option<&'v Value> {
     path_steps(path).into_iter().try_fold(root, |value, step| match value {
         Value::Table(table) => table.get(&step),

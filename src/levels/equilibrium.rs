@@ -35,7 +35,6 @@ pub struct FullLoad {
 
 impl FullLoad {
     /// Nothing holds, nothing pushes.
-    #[must_use]
     pub fn none(net: &Net) -> Self {
         let size = net.len() * net.unknowns;
         FullLoad { held: vec![false; size], motion: vec![0.0; size], external: vec![0.0; size], pins: Vec::new() }
@@ -48,7 +47,6 @@ impl FullLoad {
     }
 
     /// Square root of the sum of squares of the forces on the plate, N, when its bonds pull with `force`.
-    #[must_use]
     pub fn size(&self, force: &[f64]) -> f64 {
         let squares = self.held.iter().zip(force).zip(&self.external);
         squares.map(|((&held, force), external)| if held { force * force } else { external * external }).sum::<f64>().sqrt()
@@ -132,7 +130,6 @@ pub struct Shape {
 
 impl Shape {
     /// At rest.
-    #[must_use]
     pub fn at_rest(size: usize) -> Self {
         Shape { u: vec![0.0; size], force: vec![0.0; size], strain: 0.0 }
     }
@@ -140,9 +137,6 @@ impl Shape {
 
 impl Equilibrium {
     /// A solver for a net with its loads.
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn new(net: &Net, full: &FullLoad) -> Result<Self> {
         let size = full.held.len();
         Ok(Equilibrium {

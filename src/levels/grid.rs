@@ -24,13 +24,11 @@ pub struct PointGrid {
 
 impl PointGrid {
     /// That of a run without points.
-    #[must_use]
     pub fn none() -> PointGrid {
         PointGrid { spacing: f64::NAN, columns: 0, rows: 0, origin: [0.0; 2], angle: 0.0, point_at: Vec::new() }
     }
 
     /// Lattice of a body.
-    #[must_use]
     pub fn of_body(body: &Body) -> PointGrid {
         let lattice = &body.lattice;
         let mut point_at = vec![None; lattice.columns * lattice.rows];

@@ -47,14 +47,12 @@ pub struct NetBond {
 
 impl NetBond {
     /// Unit vector across the bond (normal turned by +90°).
-    #[must_use]
     pub fn tangent(&self) -> Point {
         [-self.normal[1], self.normal[0]]
     }
 
     /// Relative displacement of its ends along and across it, `η·n` and `η·t - r (θ + θ')`, m, with N unknowns a point.
     #[inline(always)]
-    #[must_use]
     pub fn deformation<const N: usize>(&self, u: &[f64]) -> [f64; 2] {
         let (a, b) = (self.from as usize * N, self.to as usize * N);
         let (eta, n) = ([u[b] - u[a], u[b + 1] - u[a + 1]], self.normal);
@@ -65,7 +63,6 @@ impl NetBond {
 
     /// Force on the owner of a bond that pulls so hard along `n` and across it, and the couple on both ends with three unknowns, N.
     #[inline(always)]
-    #[must_use]
     pub fn force<const N: usize>(&self, n: Point, normal: f64, tangential: f64) -> [f64; 3] {
         let couple = if N == 3 { tangential * self.lever } else { 0.0 };
         [normal * n[0] - tangential * n[1], normal * n[1] + tangential * n[0], couple]
@@ -112,7 +109,6 @@ pub struct Net {
 
 impl Net {
     /// The net of a lattice body, with the springs, corrections and loads it has.
-    #[must_use]
     pub fn of_body(body: &Body) -> Net {
         let lattice = &body.lattice;
         let places = body.places();
@@ -167,7 +163,6 @@ impl Net {
     }
 
     /// Fills in [`Net::entries`] from the bonds.
-    #[must_use]
     pub fn linked(mut self) -> Net {
         let count = self.positions.len();
         let acting = |b: usize, bond: &NetBond| {
@@ -194,13 +189,11 @@ impl Net {
     }
 
     /// Number of points.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
     /// Whether there are no points.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
@@ -248,7 +241,6 @@ impl Net {
 
     /// Damage φ = 1 - Σ μ V' / Σ V' of every point over its bonds (Silling and Askari 2005), 0 to 1, where every bond has a share
     /// of its stiffness. With a dual horizon only the bonds of the point's own horizon count.
-    #[must_use]
     pub fn damage(&self, share: &[f64]) -> Vec<f64> {
         let of_point = |i: usize| {
             let (mut whole, mut intact) = (0.0, 0.0);

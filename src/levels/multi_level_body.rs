@@ -25,7 +25,6 @@ const CLEAR_HORIZONS: f64 = 1.0;
 
 /// Least distance of a tip from the rim of the finest level, m, in a body of this horizon (m) where bonds age within so many
 /// horizons of a tip.
-#[must_use]
 pub fn clear_way(horizon: f64, zone_radius_horizons: f64) -> f64 {
     (CLEAR_HORIZONS + 0.5 + zone_radius_horizons) * horizon
 }
@@ -136,38 +135,32 @@ impl MultiLevelBody {
     }
 
     /// Point of the net behind a number, if it is one.
-    #[must_use]
     pub fn point(&self, id: usize) -> Option<usize> {
         self.points.get(id).filter(|&&point| point != NONE).map(|&point| point as usize)
     }
 
     /// Numbers of points lie below this.
-    #[must_use]
     pub fn numbers(&self) -> usize {
         self.points.len()
     }
 
     /// Bonds of the body, ascending, with the bond of the net each is.
-    #[must_use]
     pub fn bonds(&self) -> &[(Bond, u32)] {
         &self.bonds
     }
 
     /// The bond of the net that a bond of the body is.
-    #[must_use]
     pub fn bond(&self, bond: Bond) -> Option<usize> {
         self.bonds.binary_search_by_key(&bond, |known| known.0).ok().map(|at| self.bonds[at].1 as usize)
     }
 
     /// Unknowns of a point as the body has them (axes of the lattice, rotation times finest spacing) from those of the net.
-    #[must_use]
     pub fn to_body(&self, u: [f64; 3]) -> [f64; 3] {
         let [x, y] = self.lattice.to_axes([u[0], u[1]]);
         [x, y, self.turn * u[2]]
     }
 
     /// The inverse of [`MultiLevelBody::to_body`].
-    #[must_use]
     pub fn to_net(&self, u: [f64; 3]) -> [f64; 3] {
         let [x, y] = self.lattice.from_axes([u[0], u[1]]);
         [x, y, u[2] / self.turn]
@@ -190,7 +183,6 @@ impl MultiLevelBody {
 }
 
 /// A place in words.
-#[must_use]
 pub fn words(at: Point) -> String {
     format!("({:.3}, {:.3}) mm", 1e3 * at[0], 1e3 * at[1])
 }

@@ -46,13 +46,11 @@ pub enum RefinedRegion {
 
 impl Refinement {
     /// Times that the points of the finest level were split in four.
-    #[must_use]
     pub fn deepest(&self) -> usize {
         self.regions.iter().map(|(_, levels)| *levels).max().unwrap_or(0)
     }
 
     /// The same in words.
-    #[must_use]
     pub fn words(&self) -> String {
         format!("{} regions, up to {} levels", self.regions.len(), self.deepest())
     }

@@ -10,7 +10,6 @@ type Row = [f64; 3];
 
 /// Unknowns to be held besides those that are, at two distant points. A law whose tangential springs resist rotation does
 /// not turn freely.
-#[must_use]
 pub fn minimal_constraints(net: &Net, held: &[bool]) -> Vec<usize> {
     let carrying: Vec<usize> = (0..net.len()).filter(|&i| net.bonds_of(i).next().is_some()).collect();
     let Some(&first) = carrying.first() else { return Vec::new() };
@@ -60,7 +59,6 @@ pub const RESISTED: [&str; 2] = ["model.rotation = \"resisted\"", "use \"free\",
 /// (`u_y = ε y`), both from the `energy` of its bonds, J. The turn is the true one, `u = (R - 1) x`, where strain is `finite`, else the
 /// linear one, `u = ω (-y, x)`. It must be zero; tangential springs between points that do not turn have
 /// `8 c_t/(3 c_n + c_t) = 2 (C₁₁ - 3 C₁₂)/C₁₁` away from the rim. `None` where the extension costs nothing.
-#[must_use]
 pub fn turning_cost(net: &Net, finite: bool, mut energy: impl FnMut(&[f64]) -> f64) -> Option<f64> {
     let mut of_field = |field: &dyn Fn(Point) -> [f64; 3]| {
         let points = net.positions.iter().flat_map(|&x| field(x).into_iter().take(net.unknowns));
@@ -73,7 +71,6 @@ pub fn turning_cost(net: &Net, finite: bool, mut energy: impl FnMut(&[f64]) -> f
 }
 
 /// [`turning_cost`] of the springs of a net that nothing has broken.
-#[must_use]
 pub fn turning_cost_of_springs(net: &Net) -> Option<f64> {
     let energy = |u: &[f64]| -> f64 {
         let of = |bond: &NetBond| {
@@ -87,7 +84,6 @@ pub fn turning_cost_of_springs(net: &Net) -> Option<f64> {
 
 /// What is to be said of a body that a turn costs energy: which choice brings it, and which is free of it; `None` where it is
 /// round-off.
-#[must_use]
 pub fn turning_warning(cost: Option<f64>, [choice, remedy]: [&str; 2]) -> Option<String> {
     let percent = 100.0 * cost.filter(|cost| *cost > COSTS)?;
     Some(format!(

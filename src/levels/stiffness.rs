@@ -28,9 +28,6 @@ pub struct Stiffness {
 
 impl Stiffness {
     /// Pattern and symbolic factorisation.
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn new(net: &Net, held: &[bool]) -> Result<Self> {
         let mut number = vec![usize::MAX; held.len()];
         let free: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();

@@ -272,7 +272,6 @@ pub struct Imbalance {
 }
 
 /// What the loads of a specimen leave over, beyond round-off.
-#[must_use]
 pub fn imbalance(specimen: &Specimen) -> Imbalance {
     let (mut force, mut moment, mut scale) = ([0.0; 2], 0.0_f64, 0.0_f64);
     for load in &specimen.loads {

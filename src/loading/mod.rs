@@ -53,7 +53,6 @@ pub const UNIT_FORCE: f64 = crate::units::KN;
 impl Loading {
     /// Load of the cycle over [`Loading::maximum`], on a plate on which the latter does this work `Σ f·u`, J: 1 where the load is given,
     /// else `δ_max / δ`.
-    #[must_use]
     pub fn share(&self, work: f64) -> f64 {
         match self.control {
             LoadControl::Load => 1.0,
@@ -62,7 +61,6 @@ impl Loading {
     }
 
     /// Largest displacement of a cycle, m, where that is what is repeated.
-    #[must_use]
     pub fn displacement(&self) -> Option<f64> {
         match self.control {
             LoadControl::Load => None,
@@ -72,7 +70,6 @@ impl Loading {
 
     /// Share of the maximum that counts as range, `1 - max(R, 0)`: a closed crack does not open under compression
     /// (theory: closure assumption for negative R).
-    #[must_use]
     pub fn range_share(&self) -> f64 {
         1.0 - self.ratio.max(0.0)
     }

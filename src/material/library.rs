@@ -52,7 +52,6 @@ pub struct MaterialFile {
 }
 
 /// Names of the built-in materials, sorted.
-#[must_use]
 pub fn names() -> Vec<String> {
     let mut names: Vec<String> = FILES
         .files()

@@ -38,7 +38,6 @@ pub struct Material {
 
 impl Material {
     /// A material of which nothing is known but its elastic constants: E in Pa, ν.
-    #[must_use]
     pub fn elastic(youngs_modulus: f64, poisson_ratio: f64, plane: Plane) -> Material {
         Material {
             name: "inline".to_owned(),
@@ -54,13 +53,11 @@ impl Material {
     }
 
     /// Shear modulus G = E / (2 (1+ν)), Pa.
-    #[must_use]
     pub fn shear_modulus(&self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
     }
 
     /// E' of `K = √(E' G)`: E in plane stress, E/(1-ν²) in plane strain, Pa.
-    #[must_use]
     pub fn plane_modulus(&self) -> f64 {
         match self.plane {
             Plane::Stress => self.youngs_modulus,

@@ -75,35 +75,26 @@ impl Checkpoint {
     }
 
     /// How far the run had come.
-    #[must_use]
     pub fn progress(&self) -> Progress {
         Progress { cycles: self.cycles, crack_length: self.crack_length, share: self.share }
     }
 
     /// Whether it is that of a run of this case, by all that decides how the run goes; its name and where the file lies do not.
-    #[must_use]
     pub fn belongs_to(&self, case: &Case) -> bool {
         self.case == hash(case)
     }
 
     /// Refuses the checkpoint of another case.
-    ///
-    /// # Errors
-    /// [`crate::Error::Input`].
     pub fn check(&self, case: &Case) -> Result<()> {
         if self.belongs_to(case) { Ok(()) } else { Err(refused("belongs to another case, or to this one before it was changed")) }
     }
 
     /// As bytes, with a checksum.
-    #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         SEAL.to_bytes(self)
     }
 
     /// From what [`Checkpoint::to_bytes`] gave.
-    ///
-    /// # Errors
-    /// As [`Seal::read`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Checkpoint> {
         SEAL.read(bytes)
     }

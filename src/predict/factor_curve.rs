@@ -48,9 +48,6 @@ impl FactorCurve {
     }
 
     /// The same, several tips growing by this exponent.
-    ///
-    /// # Errors
-    /// As [`FactorCurve::of`].
     pub fn at_exponent(case: &Case, m: f64, observer: &dyn Observer) -> Result<Self> {
         let mut case = case.clone();
         // A crack that goes straight takes the same steps with all laws.
@@ -81,13 +78,11 @@ impl FactorCurve {
     }
 
     /// K_eq at maximum load, Pa√m, at a crack length, m, of the fastest tip.
-    #[must_use]
     pub fn at(&self, length: f64) -> f64 {
         self.of_tips(length).into_iter().fold(f64::NAN, f64::max)
     }
 
     /// K_eq at maximum load, Pa√m, at a crack length, m, of every tip that grows there.
-    #[must_use]
     pub fn of_tips(&self, length: f64) -> Vec<f64> {
         let last = self.tips.iter().filter_map(|tip| tip.lengths.last()).copied().fold(0.0, f64::max);
         // Beyond the last row by a rounding, K goes on.
@@ -96,7 +91,6 @@ impl FactorCurve {
     }
 
     /// Whether tips of unlike K share the growth, so that the path depends on the exponent.
-    #[must_use]
     pub fn depends_on_exponent(&self) -> bool {
         let rows = self.tips.iter().flat_map(|tip| &tip.lengths);
         rows.map(|&length| self.of_tips(length)).any(|tips| {

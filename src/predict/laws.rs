@@ -24,18 +24,12 @@ pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
 }
 
 /// What the bonds of a case are spent by, at the body's actual horizon, m.
-///
-/// # Errors
-/// As [`bond_law`] and [`growth_law`].
 pub fn bond_rates(case: &Case, horizon: f64) -> Result<BondRates> {
     let over_k = (case.fatigue.growth_rate == GrowthRate::StressIntensity).then(|| growth_law(case)).transpose()?;
     Ok(BondRates { bonds: bond_law(case, horizon)?, over_k })
 }
 
 /// Refuses growth from a K that lies beyond what the law says, where the law wants that.
-///
-/// # Errors
-/// [`crate::Error::Input`].
 pub fn check_within(case: &Case, growth: &dyn CrackGrowth) -> Result<()> {
     let Some(law) = growth.law().filter(|law| law.is_refused_beyond()) else { return Ok(()) };
     let now = growth.now();
@@ -53,7 +47,6 @@ fn beyond(case: &Case, law: &dyn GrowthLaw, delta_k: f64) -> Option<String> {
 }
 
 /// What the user should know: how much of a life was spent where the law holds the rate of its end.
-#[must_use]
 pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) -> Option<String> {
     let life = curve.last()?.cycles;
     let outside = |pair: &&[CurvePoint]| pair.iter().any(|row| beyond(case, law, row.delta_k).is_some());
@@ -65,9 +58,6 @@ pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) ->
 }
 
 /// C and m of a case; a law of bonds stands for those that [`ParisLaw::of_bonds`] gives.
-///
-/// # Errors
-/// As [`growth_law`].
 pub fn paris_law(case: &Case) -> Result<ParisLaw> {
     match &case.law {
         LawSource::Inline(law) => {

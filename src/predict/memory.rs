@@ -1,13 +1,11 @@
 //! Memory of the process, read from `/proc`; NaN where the system does not tell.
 
 /// Peak resident memory, MB.
-#[must_use]
 pub fn peak_mb() -> f64 {
     status_mb("VmHWM:")
 }
 
 /// Present resident memory, MB.
-#[must_use]
 pub fn resident_mb() -> f64 {
     status_mb("VmRSS:")
 }

@@ -102,25 +102,21 @@ pub struct Prediction {
 
 impl Prediction {
     /// The life, cycles; `None` where the cracks stand still under these loads, so that it has no end.
-    #[must_use]
     pub fn life(&self) -> Option<f64> {
         (self.stop != StopReason::NothingAges).then(|| self.life_cycles())
     }
 
     /// Cycles from N = 0 to the end of the run.
-    #[must_use]
     pub fn life_cycles(&self) -> f64 {
         self.curve.last().map_or(0.0, |point| point.cycles)
     }
 
     /// Crack length at the end, mm.
-    #[must_use]
     pub fn crack_length_final_mm(&self) -> f64 {
         self.crack_length_final() / MM
     }
 
     /// Crack length at the end, m.
-    #[must_use]
     pub fn crack_length_final(&self) -> f64 {
         self.curve.last().map_or(f64::NAN, |point| point.crack_length)
     }

@@ -15,7 +15,6 @@ const STRAIGHT: f64 = 0.05;
 const END: f64 = 0.05;
 
 /// What the user should know of tips whose straight path is unstable, with T where it has become so.
-#[must_use]
 pub fn warning(curve: &[CurvePoint]) -> Option<String> {
     let tips = curve.first().map_or(0, |row| row.tips.len());
     let counts = (1.0 - END) * curve.last().map_or(0.0, |row| row.cycles);

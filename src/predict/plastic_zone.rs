@@ -40,7 +40,6 @@ pub struct PlasticZone {
 ///
 /// Small-scale yielding: the ligament is as large as ASTM E647 asks ([`crate::specimen::net_section::small_scale_yielding`]); in
 /// a plate the nearest free edge is at least `(4/π) (K_max/σ_Y)²` away from every tip.
-#[must_use]
 pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     let strength = case.material.yield_strength?;
     let share = case.loading.range_share();
@@ -89,7 +88,6 @@ fn small(case: &Case, zone: &Zone, strength: f64) -> bool {
 }
 
 /// What the user should know: yielding that K does not cover, and a plane state that the thickness contradicts.
-#[must_use]
 pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
     let (Some(zone), Some(strength)) = (plastic_zone(case, curve), case.material.yield_strength) else { return Vec::new() };
     let mut lines = Vec::new();
@@ -117,7 +115,6 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
 
 impl PlasticZone {
     /// The zone of a finished run.
-    #[must_use]
     pub fn of(case: &Case, prediction: &Prediction) -> Option<Self> {
         plastic_zone(case, &prediction.curve)
     }

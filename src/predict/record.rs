@@ -25,7 +25,6 @@ pub struct Record<'a> {
 
 impl<'a> Record<'a> {
     /// The record of a run of a case.
-    #[must_use]
     pub fn new(case: &Case, observer: &'a dyn Observer) -> Self {
         let hash = checkpoint::hash(case);
         let mut case = case.clone();
@@ -34,19 +33,16 @@ impl<'a> Record<'a> {
     }
 
     /// The case that its run is of: the one given, with the spacing that its body has.
-    #[must_use]
     pub fn case(&self) -> &Case {
         &self.case
     }
 
     /// Goes on from where an earlier run of the same case stood.
-    #[must_use]
     pub(super) fn resumed_from(self, checkpoint: Checkpoint) -> Self {
         Record { checkpoint: Some(checkpoint), ..self }
     }
 
     /// Does not compare K with an independent one, which for fatigue bonds takes an equilibrium of its own.
-    #[must_use]
     pub fn unchecked(self) -> Self {
         Record { is_checked: false, ..self }
     }

@@ -25,13 +25,11 @@ pub struct Strength {
 
 impl Strength {
     /// The lower of the two.
-    #[must_use]
     pub fn load(&self) -> f64 {
         [self.by_toughness, self.by_net_section].into_iter().flatten().fold(f64::INFINITY, f64::min)
     }
 
     /// What ends the plate.
-    #[must_use]
     pub fn governed_by(&self) -> super::StopReason {
         let net_section = self.by_net_section.unwrap_or(f64::INFINITY);
         if self.by_toughness.is_some_and(|load| load <= net_section) {

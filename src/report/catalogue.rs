@@ -33,7 +33,6 @@ use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
 use crate::verify::all_topics;
 
 /// Every line, in the order of an input file: key, name, meaning.
-#[must_use]
 pub fn lines() -> Vec<(String, String, String)> {
     let of_the_test = [
         SpecimenKind::lines(),
@@ -109,7 +108,6 @@ pub fn lines() -> Vec<(String, String, String)> {
 }
 
 /// The same as one object.
-#[must_use]
 pub fn json() -> Value {
     let kinds = lines().into_iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning }));
     json!({ "kinds": kinds.collect::<Vec<_>>() })

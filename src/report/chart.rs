@@ -34,34 +34,22 @@ pub struct Series {
 }
 
 /// Crack length in mm against cycles, both linear.
-///
-/// # Errors
-/// [`Error::File`] if the file cannot be written.
 pub fn crack_length(path: &Path, title: &str, series: &[Series]) -> Result<()> {
     linear(path, title, ["Cycles N", "Crack length a, mm"], series)
 }
 
 /// Loads against crack length in mm, both linear; `y_name` says which load in which unit.
-///
-/// # Errors
-/// [`Error::File`] if the file cannot be written.
 pub fn over_crack_length(path: &Path, title: &str, y_name: &str, series: &[Series]) -> Result<()> {
     linear(path, title, ["Crack length a, mm", y_name], series)
 }
 
 /// Any quantities, both linear; `names` says what stands along x and y in which units.
-///
-/// # Errors
-/// [`Error::File`] if the file cannot be written.
 pub fn linear(path: &Path, title: &str, names: [&str; 2], series: &[Series]) -> Result<()> {
     let axes = [Axis::linear(values(series, |p| p.0)), Axis::linear(values(series, |p| p.1))];
     draw(path, title, axes, names, series)
 }
 
 /// Growth rate in mm/cycle against ΔK in MPa√m, both logarithmic.
-///
-/// # Errors
-/// [`Error::File`] if the file cannot be written.
 pub fn growth_rate(path: &Path, title: &str, series: &[Series]) -> Result<()> {
     let positive: Vec<Series> = series
         .iter()

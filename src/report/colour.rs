@@ -7,7 +7,6 @@ pub type Rgb = [u8; 3];
 ///
 /// The path runs through OKLab (Ottosson 2020) with lightness falling linearly, so equal steps of damage look equally large,
 /// also in grey print; hue turns from yellow over red to violet.
-#[must_use]
 pub fn of_share(share: f64) -> Rgb {
     let t = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
     let lightness = 0.94 - 0.70 * t;

@@ -30,7 +30,6 @@ pub struct Row {
 
 impl Row {
     /// The row of a point of the curve.
-    #[must_use]
     pub fn of(point: &CurvePoint) -> Row {
         Row {
             cycles: point.cycles,
@@ -41,7 +40,6 @@ impl Row {
     }
 
     /// The four fields as text.
-    #[must_use]
     pub fn fields(&self) -> String {
         let rest = [self.crack_length_mm, self.delta_k_mpa_sqrt_m, self.da_dn_mm_per_cycle].map(number);
         format!("{},{}", exact(self.cycles), rest.join(","))
@@ -50,7 +48,6 @@ impl Row {
 
 /// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
 /// (load squared times compliance), the force where the cycles are of a `displacement`, m, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
-#[must_use]
 pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
@@ -92,7 +89,6 @@ pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
 }
 
 /// A table of the four columns alone.
-#[must_use]
 pub fn table(rows: &[Row]) -> String {
     let lines = rows.iter().map(|row| row.fields() + "\n");
     std::iter::once(A_N_COLUMNS.join(",") + "\n").chain(lines).collect()
@@ -100,7 +96,6 @@ pub fn table(rows: &[Row]) -> String {
 
 /// `crack_path.csv`: `tip,cycles,x_mm,y_mm`, one row per tip and recorded step. Each tip's rows start with the initial crack
 /// it belongs to, from the far end to the tip, at N = 0; a tip at the end of a slot starts where it is.
-#[must_use]
 pub fn crack_path(prediction: &Prediction, cracks: &[Crack]) -> String {
     let mut text = String::from("tip,cycles,x_mm,y_mm\n");
     for (tip, path) in paths(prediction, cracks).iter().enumerate() {
@@ -112,7 +107,6 @@ pub fn crack_path(prediction: &Prediction, cracks: &[Crack]) -> String {
 }
 
 /// Path of every tip: cycles and positions in metres, the initial crack's far end first.
-#[must_use]
 pub fn paths(prediction: &Prediction, cracks: &[Crack]) -> Vec<Vec<(f64, Point)>> {
     let Some(first) = prediction.curve.first() else { return Vec::new() };
     let path_of = |tip: usize| {
@@ -144,9 +138,6 @@ pub fn read_a_n(path: &Path) -> Result<Vec<Row>> {
 }
 
 /// The same for text; `path` is only named in messages.
-///
-/// # Errors
-/// As [`read_a_n`].
 pub fn parse_a_n(text: &str, path: &Path) -> Result<Vec<Row>> {
     let mut lines = text.lines();
     if !lines.next().is_some_and(|head| head.split(',').map(str::trim).take(4).eq(A_N_COLUMNS)) {
@@ -192,7 +183,6 @@ fn bad_table(path: &Path, line: usize, column: Option<&str>, value: Option<&str>
 }
 
 /// A number so that it reads back bit for bit, with at least ten significant digits; empty for NaN.
-#[must_use]
 pub fn exact(value: f64) -> String {
     if value.is_nan() {
         return String::new();
@@ -209,7 +199,6 @@ pub fn exact(value: f64) -> String {
 
 /// A measured or computed quantity with 10 to 15 significant digits: unit conversion may disturb the last of the 17 that
 /// a double carries, and 15 hide that (9 mm stays 9.000000000).
-#[must_use]
 pub fn number(value: f64) -> String {
     // A 15-digit decimal always parses; the fallback only spares a panic path.
     exact(format!("{value:.14e}").parse().unwrap_or(value))

@@ -63,7 +63,6 @@ impl PointField {
 }
 
 /// The points within `reach`, m, of a place, in a grid of their own.
-#[must_use]
 pub fn around(grid: &PointGrid, place: Point, reach: f64) -> PointGrid {
     let mut part = grid.clone();
     for (index, point) in part.point_at.iter_mut().enumerate() {
@@ -76,7 +75,6 @@ pub fn around(grid: &PointGrid, place: Point, reach: f64) -> PointGrid {
 }
 
 /// Place of the point whose bonds have the least remaining life, m; `None` where all are whole.
-#[must_use]
 pub fn most_used(grid: &PointGrid, snapshot: &Snapshot) -> Option<Point> {
     let lives = grid.point_at.iter().enumerate().filter_map(|(place, point)| {
         let life = *snapshot.remaining_life.get((*point)? as usize)?;
@@ -103,7 +101,6 @@ pub struct DamagePicture<'a> {
 }
 
 /// The caption of a snapshot of cycles.
-#[must_use]
 pub fn cycles_and_length(snapshot: &Snapshot) -> [String; 2] {
     let cycles = super::axis::grouped(&format!("{:.0}", snapshot.cycles), " ");
     [format!("N = {cycles} cycles"), format!("crack length {:.2} mm", snapshot.crack_length / MM)]
@@ -111,18 +108,12 @@ pub fn cycles_and_length(snapshot: &Snapshot) -> [String; 2] {
 
 impl DamagePicture<'_> {
     /// Writes the picture as PNG.
-    ///
-    /// # Errors
-    /// [`Error::File`] if the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
         let bytes = self.png().map_err(|e| Error::file(path, "cannot draw", std::io::Error::other(e)))?;
         write_file(path, &bytes)
     }
 
     /// The picture as bytes of a PNG file.
-    ///
-    /// # Errors
-    /// None that a picture in memory is known to have.
     pub fn png(&self) -> std::result::Result<Vec<u8>, png::EncodingError> {
         self.canvas().png()
     }

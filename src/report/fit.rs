@@ -14,9 +14,6 @@ use crate::error::{Error, Result};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Writes all files of a fit into `folder`.
-///
-/// # Errors
-/// [`Error::File`] if a file cannot be written.
 pub fn write(folder: &Path, calibration: &CalibrationCase, fit: &Fit, report: &FitReport, law: &FittedRecord) -> Result<()> {
     let unwritable = |file: &str, error: String| Error::file(&folder.join(file), "cannot write", std::io::Error::other(error));
     let mut json = serde_json::to_value(report).map_err(|error| unwritable("fit.json", error.to_string()))?;

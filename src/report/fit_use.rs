@@ -11,14 +11,12 @@ const NAMED: f64 = 0.01;
 
 /// Share of the life that was spent at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
 /// within each block. `None` without a fitted record, without life, or without any known ΔK.
-#[must_use]
 pub fn life_share_extrapolated(case: &Case, prediction: &Prediction) -> Option<f64> {
     let [low, high] = fitted_range(case)?;
     life_share_outside(prediction, low, high)
 }
 
 /// What is to be said about life outside the fitted range of ΔK, the larger share first.
-#[must_use]
 pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
     let share = life_share_extrapolated(case, prediction).filter(|share| *share > WARNED);
     let Some([low, high]) = fitted_range(case).filter(|_| share.is_some()) else { return Vec::new() };
@@ -45,7 +43,6 @@ pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
 
 /// The law of a record in words: rate at the pivot and m with their errors, never A alone. `None` for inline constants, whose
 /// errors nobody knows.
-#[must_use]
 pub fn law_line(case: &Case) -> Option<String> {
     let record = fitted(case)?;
     let m_error = record.paris_m_error;

@@ -34,7 +34,6 @@ fn rows(fracture: &Fracture) -> impl Iterator<Item = &HistoryRow> {
 }
 
 /// `history.csv`: one row a recorded step.
-#[must_use]
 pub fn history(fracture: &Fracture) -> String {
     let mut text = format!("{HISTORY_COLUMNS}\n");
     for row in rows(fracture) {
@@ -48,7 +47,6 @@ pub fn history(fracture: &Fracture) -> String {
 
 /// `crack_path.csv` of [`Fracture::path`] and `cracking.csv` of [`Fracture::cracking`]: where every crack front stood and how
 /// fast it came there, in the order of time.
-#[must_use]
 pub fn crack_path(path: &[PathPoint]) -> String {
     let mut text = format!("{PATH_COLUMNS}\n");
     for point in path {
@@ -69,15 +67,11 @@ pub(super) fn tables(fracture: &Fracture) -> [(&'static str, String); 3] {
 }
 
 /// Bytes that a scene will write, roughly.
-#[must_use]
 pub fn room(scene: &Scene) -> Room {
     Room { tables: 64_000, all: scene.budget().disk_bytes as u64 }
 }
 
 /// Writes all files of a scene into `folder`.
-///
-/// # Errors
-/// [`Error::File`] if one cannot be written.
 pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &serde_json::Value) -> Result<()> {
     // Tables and figures first: what a full disk cuts off are pictures.
     for (file, text) in tables(fracture) {

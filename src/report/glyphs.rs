@@ -5,7 +5,6 @@ pub const ADVANCE: i64 = 6;
 
 /// Rows of a letter, top first; the lowest five bits are its dots from left to right. The last row lies below the line.
 /// A letter that is not in the table is a small box.
-#[must_use]
 pub fn rows(letter: char) -> [u8; 8] {
     TABLE.iter().find(|(known, _)| *known == letter).map_or([31, 17, 17, 17, 17, 17, 31, 0], |(_, rows)| *rows)
 }

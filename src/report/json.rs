@@ -17,7 +17,6 @@ use super::model_words;
 pub const RESULT_FILE: &str = "result.json";
 
 /// The whole object. A figure that does not exist (no fitted range to compare with, no ΔK) is `null`.
-#[must_use]
 pub fn result(case: &Case, prediction: &Prediction) -> Value {
     let figures = &prediction.figures;
     let extrapolated = extrapolated(case, prediction);

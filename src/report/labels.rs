@@ -20,25 +20,21 @@ const LINE_STEP: f64 = 6.0;
 
 impl Box2 {
     /// Middle.
-    #[must_use]
     pub fn centre(self) -> [f64; 2] {
         [0, 1].map(|i| 0.5 * (self.low[i] + self.high[i]))
     }
 
     /// Point of the rectangle nearest to another point.
-    #[must_use]
     pub fn nearest(self, to: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| to[i].clamp(self.low[i], self.high[i]))
     }
 
     /// Whether they share room.
-    #[must_use]
     pub fn overlaps(self, other: Box2) -> bool {
         (0..2).all(|i| self.low[i] < other.high[i] && other.low[i] < self.high[i])
     }
 
     /// Whether the other lies within.
-    #[must_use]
     pub fn contains(self, other: Box2) -> bool {
         (0..2).all(|i| self.low[i] <= other.low[i] && other.high[i] <= self.high[i])
     }
@@ -46,7 +42,6 @@ impl Box2 {
 
 /// Rectangles of the given sizes beside the `named` ones of `points`, inside the frame and off the `line`. Where all tried places
 /// are taken, the one that covers least is.
-#[must_use]
 pub fn place_labels(frame: Box2, points: &[[f64; 2]], line: &[[f64; 2]], named: &[usize], sizes: &[[f64; 2]]) -> Vec<Box2> {
     let around = |p: [f64; 2], room: f64| Box2 { low: p.map(|v| v - room), high: p.map(|v| v + room) };
     let mut taken: Vec<Box2> = points.iter().map(|p| around(*p, POINT)).collect();
@@ -78,7 +73,6 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Points along a straight stretch, some pixels apart.
-#[must_use]
 pub fn along(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
     let count = (distance(from, to) / LINE_STEP).ceil().max(1.0);
     (0..=count as usize).map(|i| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * i as f64 / count)).collect()

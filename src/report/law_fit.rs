@@ -16,9 +16,6 @@ use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 const RATIOS_DRAWN: usize = 6;
 
 /// Writes all files of a fit into `folder`; `report` is the content of `fit.json`.
-///
-/// # Errors
-/// [`Error::File`] if a file cannot be written.
 pub fn write(folder: &Path, case: &LawCase, fits: &LawFits, report: &Value) -> Result<()> {
     let unwritable = |error: toml::ser::Error| {
         Error::file(&folder.join("fitted.toml"), "cannot write", std::io::Error::other(error.to_string()))

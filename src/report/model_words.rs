@@ -29,7 +29,6 @@ pub struct Choice {
 }
 
 /// The choices as one object, reasons under `why`.
-#[must_use]
 pub fn object(choices: &[Choice]) -> Value {
     let why = |choice: &Choice| Some((choice.key.to_owned(), choice.why.clone()?.into()));
     let why: Map<String, Value> = choices.iter().filter_map(why).collect();
@@ -39,7 +38,6 @@ pub fn object(choices: &[Choice]) -> Value {
 }
 
 /// The choices of these keys in words: the first value, then key and value of the others.
-#[must_use]
 pub fn words(choices: &[Choice], keys: &[&str]) -> String {
     let value = |choice: &Choice| choice.value.as_str().map_or_else(|| choice.value.to_string(), str::to_owned);
     let chosen = choices.iter().filter(|choice| keys.contains(&choice.key)).enumerate();
@@ -51,7 +49,6 @@ pub fn words(choices: &[Choice], keys: &[&str]) -> String {
 }
 
 /// The model of a case; sizes, solver and solved part are those of its run where there was one.
-#[must_use]
 pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
     let (model, law) = (&case.model, case.model.bond_law);
     if model.method == Method::Handbook {
@@ -107,7 +104,6 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
 }
 
 /// The model of a scene; `finest` is the least spacing of its points, m, once they are laid.
-#[must_use]
 pub fn of_scene(scene: &Scene, finest: Option<f64>) -> Vec<Choice> {
     let model = &scene.model;
     let chosen = |key, value: Value, default: &str| {

@@ -32,9 +32,6 @@ pub fn add(object: &mut Value, provenance: &Provenance, tables: &[(&str, &str)])
 }
 
 /// Writes the texts as they were read, and the input as it was run: `perilife` with that file repeats the run.
-///
-/// # Errors
-/// [`Error::File`] if one cannot be written.
 pub fn write(folder: &Path, command: &str, input: Table, provenance: &Provenance) -> Result<()> {
     let inputs = folder.join(INPUTS);
     std::fs::create_dir_all(&inputs).map_err(|error| Error::file(&inputs, "cannot create the folder", error))?;
@@ -54,7 +51,6 @@ pub fn write(folder: &Path, command: &str, input: Table, provenance: &Provenance
 }
 
 /// The echo of an input as a table; what has no form in TOML is left out.
-#[must_use]
 pub fn table_of(echo: &Value) -> Table {
     let fields = echo.as_object().cloned().unwrap_or_default();
     Table::try_from(without_nulls(fields)).unwrap_or_default()

@@ -94,9 +94,6 @@ impl Canvas {
     }
 
     /// The picture as a PNG file.
-    ///
-    /// # Errors
-    /// Only what the encoder reports.
     pub fn png(&self) -> Result<Vec<u8>, png::EncodingError> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);

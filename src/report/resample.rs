@@ -82,7 +82,6 @@ fn at(curve: &[Row], table: &Monotone, cycles: f64) -> Row {
 }
 
 /// Cycles over crack length of a curve, mm.
-#[must_use]
 pub fn cycles_over_length(curve: &[Row]) -> Monotone {
     Monotone::new(curve.iter().map(|row| [row.crack_length_mm, row.cycles]))
 }

@@ -25,7 +25,6 @@ fn unit(case: &Case) -> (&'static str, &'static str, f64) {
 
 /// `crack_length_mm,residual_strength_*,by_toughness_*,by_net_section_*,governed_by` with `mpa` of gross stress or `kn` of force;
 /// empty where a strength is not known.
-#[must_use]
 pub fn table(case: &Case, curve: &[Strength]) -> String {
     let (unit, _, size) = unit(case);
     let mut text = format!("crack_length_mm,residual_strength_{unit},by_toughness_{unit},by_net_section_{unit},governed_by\n");
@@ -46,9 +45,6 @@ pub fn table(case: &Case, curve: &[Strength]) -> String {
 }
 
 /// Writes table and picture into a folder.
-///
-/// # Errors
-/// [`crate::Error::File`] if a file cannot be written.
 pub fn write(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> {
     write_file(&folder.join(RESIDUAL_STRENGTH_FILE), table(case, curve).as_bytes())?;
     let (_, axis, size) = unit(case);

@@ -98,7 +98,6 @@ fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
 
 /// Why a run does not count though it came to an end: more than a quarter of its life lies outside the fitted range of ΔK, and the
 /// case does not allow that. It is written all the same, marked as refused: what it cost is not thrown away.
-#[must_use]
 pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
     if let Some(problem) = breaks_at_once(case, prediction) {
         return Some(Error::Mechanics(format!("{}: {problem}", case.name)));
@@ -114,9 +113,6 @@ pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
 }
 
 /// Writes all files of a run into `folder`; returns the content of `result.json`.
-///
-/// # Errors
-/// [`Error::File`] if a file cannot be written.
 pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Value> {
     let mut result = json::result(case, prediction);
     let a_n = csv::a_n(prediction, case.loading.displacement());
@@ -169,7 +165,6 @@ fn input_of(case: &Case) -> Table {
 }
 
 /// Bytes that a run of this case will write, roughly.
-#[must_use]
 pub fn room(case: &Case) -> Room {
     let texts: usize = case.provenance.files.iter().map(|file| file.content.len()).sum();
     let tables = 32_000 + texts as u64;

@@ -26,7 +26,6 @@ const ARROW: f64 = 38.0;
 ///
 /// Red: cracks, with a dot at each tip that can grow, numbered as in `crack_path.csv`. Blue: loads. Green hatching: what
 /// is held.
-#[must_use]
 pub fn specimen_svg(case: &Case) -> String {
     drawing(&case.name, &load_words(case), &case.specimen, &[], |_| {})
 }

@@ -8,14 +8,12 @@ use crate::cells::field;
 use crate::stability::Record;
 
 /// One record as a line on the console.
-#[must_use]
 pub fn line(record: &Record) -> String {
     let sweep = record.sweep;
     format!("{}: {}: {} ({:.0} s)", sweep.name, record.method, range(record), record.wall_s)
 }
 
 /// The safe range in words.
-#[must_use]
 pub fn range(record: &Record) -> String {
     let sweep = record.sweep;
     let unit = if sweep.unit.is_empty() { String::new() } else { format!(" {}", sweep.unit) };
@@ -34,14 +32,12 @@ pub fn range(record: &Record) -> String {
 }
 
 /// Four significant digits.
-#[must_use]
 pub fn short(value: f64) -> String {
     let rounded = format!("{value:.3e}").parse::<f64>().unwrap_or(value);
     if (1e-4..1e6).contains(&rounded.abs()) || rounded == 0.0 { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 /// `stability.csv`: a row a run; `boundary` is the end of the safe range on the side of the value, empty where it has none there.
-#[must_use]
 pub fn csv(records: &[Record]) -> String {
     let mut text = "sweep,method,parameter,value,status,error_percent,boundary,reason,version\n".to_owned();
     for record in records {
@@ -65,7 +61,6 @@ pub fn csv(records: &[Record]) -> String {
 }
 
 /// `boundaries.csv`: a row a method, as [`crate::limits`] reads it; an end is empty where the sweep does not find one.
-#[must_use]
 pub fn boundaries(records: &[Record]) -> String {
     let now = time::now();
     let date = now.split('T').next().unwrap_or_default();
@@ -87,7 +82,6 @@ pub fn boundaries(records: &[Record]) -> String {
 }
 
 /// All records as one object.
-#[must_use]
 pub fn object(records: &[Record]) -> Value {
     let record = |record: &Record| {
         let sweep = record.sweep;

@@ -27,9 +27,6 @@ type Drawn = std::result::Result<(), Box<dyn std::error::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 /// Writes the map.
-///
-/// # Errors
-/// [`crate::Error::File`] if the file cannot be written.
 pub fn overview(path: &Path, records: &[Record]) -> Result<()> {
     let size = (WIDTH, HEAD + ROW * records.len() as u32 + FOOT);
     save(path, size, |svg| draw(svg, size, records))

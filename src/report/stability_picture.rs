@@ -25,9 +25,6 @@ const REASON: usize = 110;
 type Drawn = std::result::Result<(), Box<dyn std::error::Error>>;
 
 /// Writes the picture of a sweep with the records of its methods.
-///
-/// # Errors
-/// [`crate::Error::File`] if the file cannot be written.
 pub fn sweep(path: &Path, sweep: &Sweep, records: &[&Record]) -> Result<()> {
     let reasons = reasons(records);
     let size = (SIZE.0, SIZE.1 + LINE * (records.len() + reasons.len()) as u32 + 16);

@@ -27,7 +27,6 @@ fn name(rim: Rim) -> String {
 }
 
 /// As an object: every rim with its largest and least stress, where they are, and the same over the gross stress.
-#[must_use]
 pub fn object(stressed: &Stressed) -> Value {
     let place = |place: &StressAt| {
         let [x, y] = place.at;
@@ -53,7 +52,6 @@ pub fn object(stressed: &Stressed) -> Value {
 }
 
 /// One line a rim.
-#[must_use]
 pub fn table(stressed: &Stressed) -> String {
     let mut text = format!(
         "{:<12} {:>12} {:>10} {:>10} {:>10} {:>12} {:>10} {:>10} {:>10}\n",
@@ -72,7 +70,6 @@ pub fn table(stressed: &Stressed) -> String {
 }
 
 /// What is to be said of the stresses.
-#[must_use]
 pub fn warnings(stressed: &Stressed) -> Vec<String> {
     let sharp: Vec<String> = stressed.rims.iter().filter(|rim| rim.is_sharp).map(|rim| name(rim.rim)).collect();
     let mut warnings = Vec::new();
@@ -95,7 +92,6 @@ pub fn warnings(stressed: &Stressed) -> Vec<String> {
 }
 
 /// Bytes that the files will have, roughly.
-#[must_use]
 pub fn room(case: &Case) -> Room {
     const OF_POINT: f64 = 60.0;
     let points = 100.0 * case.specimen.area() / case.model.element_free.resolution.far.powi(2);
@@ -103,9 +99,6 @@ pub fn room(case: &Case) -> Room {
 }
 
 /// Writes all files into `folder`; `result` is the content of `result.json` but for what made it.
-///
-/// # Errors
-/// [`Error::File`] if a file cannot be written.
 pub fn write(folder: &Path, case: &Case, stressed: &Stressed, result: &Value) -> Result<()> {
     let mut result = result.clone();
     provenance::add(&mut result, &case.provenance, &[]);

@@ -86,13 +86,11 @@ pub struct Outcome {
 
 impl Outcome {
     /// Whether its life is a lower bound ([`StopReason::is_lower_bound`]); `None` without one.
-    #[must_use]
     pub fn is_lower_bound(&self) -> Option<bool> {
         Some(self.stop_reason.as_deref()?.parse::<StopReason>().ok()?.is_lower_bound())
     }
 
     /// A case without a result.
-    #[must_use]
     pub fn failed(case: &DrawnCase, problem: &str, wall_s: f64) -> Self {
         Outcome {
             input: case.hash.clone(),
@@ -110,7 +108,6 @@ impl Outcome {
 
 impl Plan {
     /// The plan of a sweep.
-    #[must_use]
     pub fn new(sweep: &Sweep, cases: &[DrawnCase]) -> Self {
         let planned =
             |case: &DrawnCase| PlannedCase { input: case.hash.clone(), values: case.values.iter().map(written).collect() };
@@ -134,7 +131,6 @@ fn written(value: &toml::Value) -> String {
 }
 
 /// `sweep.csv`: a row for each case in order; one that is not there yet says so.
-#[must_use]
 pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
     let columns: String = plan.columns.iter().map(|key| format!("{},", field(key))).collect();
     let mut text = format!("case,{columns}life_cycles,stop_reason,crack_length_final_mm,wall_s,problem,life_is_lower_bound\n");
@@ -161,7 +157,6 @@ pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
 
 /// `sweep.json`: the design, counts, quantiles of life, failures. `wall_s` is the time of this call, `computing_s` that of the
 /// runs.
-#[must_use]
 pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value {
     let there = || outcomes.iter().flatten();
     let numbered = || outcomes.iter().enumerate().filter_map(|(i, outcome)| Some((label(i + 1), outcome.as_ref()?)));
@@ -204,9 +199,6 @@ fn lives(outcomes: &[Option<Outcome>]) -> Vec<f64> {
 }
 
 /// Writes table, figures and picture into the folder of a sweep; returns the figures.
-///
-/// # Errors
-/// [`Error::File`] if a file cannot be written.
 pub fn write(folder: &Path, plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Result<Value> {
     let figures = figures(plan, outcomes, wall_s);
     write_file(&folder.join(TABLE_FILE), table(plan, outcomes).as_bytes())?;
@@ -243,7 +235,6 @@ fn draw(path: &Path, plan: &Plan, outcomes: &[Option<Outcome>]) -> Result<()> {
 
 impl Plan {
     /// As [`read_plan`] gives it back: numbers may be of another type, of the same value.
-    #[must_use]
     pub fn as_read(&self) -> Plan {
         let read = serde_json::to_string(self).ok().and_then(|text| serde_json::from_str(&text).ok());
         read.unwrap_or_else(|| self.clone())
@@ -268,7 +259,6 @@ pub fn read_plan(folder: &Path) -> Result<Option<Plan>> {
 }
 
 /// Outcome in the folder of a case, if it is that of this input. One that cannot be read counts as none: it is made again.
-#[must_use]
 pub fn read_outcome(folder: &Path, input: &str) -> Option<Outcome> {
     // TOML and not JSON: its reader gives back every bit of a number.
     let text = std::fs::read_to_string(folder.join(OUTCOME_FILE)).ok()?;

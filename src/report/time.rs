@@ -3,7 +3,6 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Now, RFC 3339 in UTC to the second: `2026-11-25T19:01:55Z`.
-#[must_use]
 pub fn now() -> String {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     rfc3339(since.as_secs())
@@ -14,7 +13,6 @@ pub fn now() -> String {
 /// ```
 /// assert_eq!(perilife::report::time::rfc3339(951_782_400), "2000-02-29T00:00:00Z");
 /// ```
-#[must_use]
 pub fn rfc3339(seconds: u64) -> String {
     let (days, rest) = (seconds / 86_400, seconds % 86_400);
     // Days since 1 March of the year 0, in eras of 400 years of 146 097 days.

@@ -8,7 +8,6 @@ use crate::cells::defused;
 use crate::verify::{Row, Topic};
 
 /// One row as a line on the console.
-#[must_use]
 pub fn line(row: &Row) -> String {
     let mark = verdict(row);
     let figures = format!("{:>12} against {:>12}", number(row.computed), number(row.reference));
@@ -18,7 +17,6 @@ pub fn line(row: &Row) -> String {
 }
 
 /// All rows as one JSON object, `{"rows": [...]}`.
-#[must_use]
 pub fn object(rows: &[Row]) -> Value {
     let row = |row: &Row| {
         json!({
@@ -33,7 +31,6 @@ pub fn object(rows: &[Row]) -> Value {
 }
 
 /// All rows as CSV, one header line.
-#[must_use]
 pub fn csv(rows: &[Row]) -> String {
     let mut text =
         "name,quantity,computed,reference,error_percent,bound_percent,ok,known_miss,source,wall_s,miss_bound_percent\n"
@@ -60,7 +57,6 @@ pub fn csv(rows: &[Row]) -> String {
 
 /// A table for a document: every topic with the row that takes the largest share of its bound, the worst topic first. Known misses
 /// are counted, and left out of that where the topic has other rows.
-#[must_use]
 pub fn summary(rows: &[Row]) -> String {
     let mut names: Vec<&str> = rows.iter().map(|row| row.name).collect();
     names.dedup();
@@ -94,7 +90,6 @@ fn share(row: &Row) -> f64 {
 
 /// The verification as a document: [`summary`], then all rows of every topic. It holds no wall times, and figures of few digits,
 /// so that whoever computes it again gets the same text.
-#[must_use]
 pub fn markdown(topics: &[&Topic], rows: &[Row]) -> String {
     let mut text = format!(
         "# Accuracy\n\nWritten by `perilife verify --markdown`: figures of the program beside their references. Errors are in percent \

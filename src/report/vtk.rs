@@ -14,9 +14,6 @@ use crate::predict::{PointGrid, Snapshot};
 use crate::units::{MM, MPA};
 
 /// Writes all snapshots into `folder` (which must exist), with `run.pvd` as the file to open.
-///
-/// # Errors
-/// [`crate::Error::File`] if a file cannot be written.
 pub fn write_series(folder: &Path, grid: &PointGrid, snapshots: &[Snapshot]) -> Result<()> {
     let extension = if grid.angle == 0.0 { "vti" } else { "vtu" };
     let mut list = String::from(
@@ -34,7 +31,6 @@ pub fn write_series(folder: &Path, grid: &PointGrid, snapshots: &[Snapshot]) -> 
 }
 
 /// A snapshot on an unturned lattice as `.vti`.
-#[must_use]
 pub fn image(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
     let extent = format!("0 {} 0 {} 0 0", grid.columns.saturating_sub(1), grid.rows.saturating_sub(1));
     let (x, y, step) = (grid.origin[0] / MM, grid.origin[1] / MM, grid.spacing / MM);
@@ -61,7 +57,6 @@ pub fn image(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
 }
 
 /// A snapshot on a turned lattice as `.vtu`: points of the material, squares between four neighbours.
-#[must_use]
 pub fn mesh(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
     let mut place_of: Vec<(u32, usize)> =
         grid.point_at.iter().enumerate().filter_map(|(place, p)| Some(((*p)?, place))).collect();

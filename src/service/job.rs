@@ -52,7 +52,6 @@ macro_rules! names {
     ($Type:ident, $($Variant:ident = $name:literal),+) => {
         impl $Type {
             /// Its name.
-            #[must_use]
             pub fn name(self) -> &'static str {
                 match self { $($Type::$Variant => $name),+ }
             }
@@ -87,7 +86,6 @@ impl JobKind {
         [JobKind::Calibration, JobKind::Prediction, JobKind::Scene, JobKind::Sweep, JobKind::Sif, JobKind::Chart];
 
     /// Its place in URLs.
-    #[must_use]
     pub fn collection(self) -> &'static str {
         match self {
             JobKind::Calibration => "calibrations",
@@ -100,7 +98,6 @@ impl JobKind {
     }
 
     /// Options of its command that a job of it may have.
-    #[must_use]
     pub fn options(self) -> &'static [&'static str] {
         match self {
             JobKind::Sif => &["method"],
@@ -115,7 +112,6 @@ impl State {
     pub const ALL: [State; 5] = [State::Queued, State::Running, State::Succeeded, State::Failed, State::Cancelled];
 
     /// Whether nothing more will happen.
-    #[must_use]
     pub fn is_final(self) -> bool {
         matches!(self, State::Succeeded | State::Failed | State::Cancelled)
     }
@@ -215,7 +211,6 @@ impl Submission {
 }
 
 /// Milliseconds since 1970 as RFC 3339 in UTC.
-#[must_use]
 pub fn time(milliseconds: i64) -> String {
     let since = Duration::from_millis(milliseconds.try_into().unwrap_or(0));
     humantime::format_rfc3339_millis(UNIX_EPOCH + since).to_string()

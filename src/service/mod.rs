@@ -150,7 +150,6 @@ fn database(url: &str, error: sqlx::Error) -> Error {
 }
 
 /// A URL that may be shown.
-#[must_use]
 pub fn without_password(url: &str) -> String {
     let Some((scheme, rest)) = url.split_once("://") else { return "the database".to_owned() };
     // Query parameters may hold passwords as well.

@@ -53,7 +53,6 @@ const DATABASE_BACK_S: u32 = 2;
 
 impl Problem {
     /// A problem without a place in the input.
-    #[must_use]
     pub fn new(status: StatusCode, title: &str, detail: impl Into<String>) -> Self {
         let slug: String = title.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
         Problem {
@@ -67,45 +66,38 @@ impl Problem {
     }
 
     /// There is no such thing.
-    #[must_use]
     pub fn not_found(what: &str) -> Self {
         Problem::new(StatusCode::NOT_FOUND, "Not found", format!("there is no such {what}"))
     }
 
     /// The request itself cannot be read.
-    #[must_use]
     pub fn bad_request(detail: impl Into<String>) -> Self {
         Problem::new(StatusCode::BAD_REQUEST, "Bad request", detail)
     }
 
     /// It clashes with what is there.
-    #[must_use]
     pub fn conflict(detail: impl Into<String>) -> Self {
         Problem::new(StatusCode::CONFLICT, "Conflict", detail)
     }
 
     /// More than this server takes.
-    #[must_use]
     pub fn too_large(detail: impl Into<String>) -> Self {
         Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "Too large", detail)
     }
 
     /// Come back later.
-    #[must_use]
     pub fn too_many(detail: impl Into<String>, seconds: u32) -> Self {
         let problem = Problem::new(StatusCode::TOO_MANY_REQUESTS, "Too many requests", detail);
         Problem { retry_after: Some(seconds), ..problem }
     }
 
     /// A fault of this program: told without its inner workings, which stand in the log.
-    #[must_use]
     pub fn internal() -> Self {
         let detail = "a fault of the program, written to its log; please report it";
         Problem::new(StatusCode::INTERNAL_SERVER_ERROR, "Internal error", detail)
     }
 
     /// Without the line, which means nothing where the input was no text; those of files stay.
-    #[must_use]
     pub fn without_line(mut self) -> Self {
         if let Some(input) = self.input.as_deref_mut().filter(|input| input.file.is_none()) {
             input.line = None;

@@ -27,7 +27,6 @@ pub struct Spring {
 impl Spring {
     /// Blocks of its stiffness, `share` of it, with N unknowns a point: of the owner (`sign` +1) or the other end (-1) with itself
     /// and with the opposite end.
-    #[must_use]
     pub fn blocks<const N: usize>(&self, sign: f64, share: f64) -> Blocks<N> {
         let (mut own, mut off) = ([[0.0; N]; N], [[0.0; N]; N]);
         for i in 0..2 {
@@ -123,7 +122,6 @@ pub struct Springs<'a, const N: usize> {
 
 impl<'a, const N: usize> Springs<'a, N> {
     /// The springs of a body and its held components.
-    #[must_use]
     pub fn new(product: &'a Product<N>) -> Self {
         let mut held = vec![false; product.layout().len()];
         product.fixed().iter().for_each(|&index| held[index] = true);
@@ -166,7 +164,6 @@ pub const MIXED: usize = 3;
 
 impl<'a, const N: usize> Mixed<'a, N> {
     /// A state-based body with its present bonds.
-    #[must_use]
     pub fn new(product: &'a Product<N>, dilatation: &'a Dilatation, bonds: &'a Bonds) -> Self {
         Mixed { springs: Springs::new(product), dilatation, bonds }
     }

@@ -18,7 +18,6 @@ pub struct GapSpring {
 
 impl GapSpring {
     /// The gap in a displacement, m.
-    #[must_use]
     pub fn gap(&self, layout: &Layout, displacement: &[f64]) -> f64 {
         let of_place = |&(place, [x, y]): &(u32, [f64; 2])| {
             let at = layout.index(place as usize);

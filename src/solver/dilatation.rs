@@ -86,7 +86,6 @@ impl<F: FnMut(usize)> pulp::WithSimd for Chunks<F> {
 
 impl Dilatation {
     /// Dilatation of a body; `None` where its law has springs alone.
-    #[must_use]
     pub fn of(body: &Body, layout: Layout) -> Option<Self> {
         if body.stencil.dilatation == 0.0 {
             return None;
@@ -155,7 +154,6 @@ impl Dilatation {
     }
 
     /// Stress P of every place under a displacement, m, mirror images included.
-    #[must_use]
     pub fn stress(&self, bonds: &Bonds, x: &[f64]) -> Vec<f64> {
         let (padding, stride) = (self.layout.padding, self.layout.stride);
         let mut stress = vec![0.0; self.gain.len() + LANES];

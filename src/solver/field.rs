@@ -26,7 +26,6 @@ pub struct Layout {
 
 impl Layout {
     /// Layout over the lattice of a body.
-    #[must_use]
     pub fn of(lattice: &Lattice, unknowns: usize) -> Self {
         Layout {
             unknowns,
@@ -38,49 +37,41 @@ impl Layout {
     }
 
     /// Length of a vector.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.rows * self.row_len() + LANES
     }
 
     /// Whether there is nothing in it.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows == 0
     }
 
     /// Length of a padded row with all components.
-    #[must_use]
     pub fn row_len(&self) -> usize {
         self.unknowns * self.stride
     }
 
     /// Index of the first component of a memory place of the lattice.
-    #[must_use]
     pub fn index(&self, place: usize) -> usize {
         place / self.stride * self.row_len() + place % self.stride
     }
 
     /// Distance in the vector to the neighbour `dx`, `dy` away.
-    #[must_use]
     pub fn step(&self, dx: i32, dy: i32) -> isize {
         dy as isize * self.row_len() as isize + dx as isize
     }
 
     /// A zero vector.
-    #[must_use]
     pub fn zeros(&self) -> Vec<f64> {
         vec![0.0; self.len()]
     }
 
     /// Padded rows that one task takes: enough work that handing it out does not count, the same for any number of threads.
-    #[must_use]
     pub fn rows_per_task(&self) -> usize {
         PLACES_PER_TASK.div_ceil(self.stride)
     }
 
     /// Values of a vector that one task takes.
-    #[must_use]
     pub fn part(&self) -> usize {
         self.row_len() * self.rows_per_task()
     }
@@ -88,7 +79,6 @@ impl Layout {
 
 /// Scalar product, summed part by part in a fixed order: the same digits whatever the number of threads. The second vector may
 /// be in single precision.
-#[must_use]
 pub fn dot<T: Copy + Sync + Into<f64>>(layout: &Layout, a: &[f64], b: &[T]) -> f64 {
     use rayon::prelude::*;
     let part = layout.part();
@@ -97,7 +87,6 @@ pub fn dot<T: Copy + Sync + Into<f64>>(layout: &Layout, a: &[f64], b: &[T]) -> f
 }
 
 /// Scalar products of two vectors with a third in one pass, summed like [`dot`].
-#[must_use]
 pub fn dots(layout: &Layout, [a, b]: [&[f64]; 2], z: &[f32]) -> [f64; 2] {
     use rayon::prelude::*;
     let part = layout.part();
@@ -107,7 +96,6 @@ pub fn dots(layout: &Layout, [a, b]: [&[f64]; 2], z: &[f32]) -> [f64; 2] {
 }
 
 /// Euclidean norm of a vector in single precision, summed like [`dot`].
-#[must_use]
 pub fn norm(layout: &Layout, a: &[f32]) -> f64 {
     use rayon::prelude::*;
     let square = |part: &[f32]| part.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>();

@@ -179,7 +179,6 @@ trait EquilibriumBackend: Send {
 
 impl Equilibrium {
     /// Equilibrium of a body under `load` times its unit load (Pa or N, as the specimen measures load).
-    #[must_use]
     pub fn new(kind: SolverKind, symmetry: Symmetry, body: &Body, bonds: &Bonds, load: f64) -> Self {
         let inner = in_pool(|| -> Box<dyn EquilibriumBackend> {
             let mirrored = match symmetry {
@@ -200,26 +199,22 @@ impl Equilibrium {
     ///
     /// Displacements are those of the body in its layout, and behind them those of all other points, unknown by unknown, in the
     /// order of their numbers ([`MultiLevelBody::ids`]).
-    #[must_use]
     pub fn of_levels(kind: SolverKind, plate: Arc<MultiLevelBody>, body: &Body, bonds: &Bonds, load: f64) -> Self {
         Equilibrium { inner: in_pool(|| sides::balance_levels(kind, plate, body, bonds, load)), solves: 0 }
     }
 
     /// Solves iteratively to this residual over load instead of what bonds that break one by one need.
-    #[must_use]
     pub fn to_tolerance(mut self, tolerance: f64) -> Self {
         self.inner.set_tolerance(tolerance);
         self
     }
 
     /// Points that are solved for: those of the body, or of the part of it that stands for all by symmetry.
-    #[must_use]
     pub fn points(&self, body: &Body) -> usize {
         self.inner.points(body)
     }
 
     /// What has solved since it was built: the window only if one was condensed.
-    #[must_use]
     pub fn used(&self) -> SolverUsed {
         self.inner.used()
     }
@@ -250,9 +245,6 @@ impl Equilibrium {
 
     /// Makes the displacement right at the ends of `watched` bonds, and gets ready for breaks around the tips; returns the
     /// iterations.
-    ///
-    /// # Errors
-    /// As [`Equilibrium::solve`].
     pub fn reach(
         &mut self,
         body: &Body,
@@ -267,42 +259,32 @@ impl Equilibrium {
     /// Whether this is a good moment to put a new one in its place, which knows nothing but the bonds: the window would have to be
     /// moved for the `watched` bonds anyway, or that many solves have passed that a new beginning hardly counts. It depends on what
     /// was solved since it was built, never on time.
-    #[must_use]
     pub fn should_rebuild(&self, body: &Body, watched: &[Bond]) -> bool {
         self.inner.is_due(body, watched, self.solves)
     }
 
     /// Makes the displacement right everywhere; returns the iterations.
-    ///
-    /// # Errors
-    /// As [`Equilibrium::solve`].
     pub fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
         in_pool(|| self.inner.complete(body, bonds, displacement))
     }
 
     /// The displacement everywhere for a picture, solved for to a residual of 1e-4 of the load where it is not known, and the
     /// iterations. What the run goes on with stays as it is, so that a run does not depend on its pictures.
-    ///
-    /// # Errors
-    /// As [`Equilibrium::solve`].
     pub fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)> {
         in_pool(|| self.inner.picture(body, bonds))
     }
 
     /// Whether the displacement is right everywhere.
-    #[must_use]
     pub fn is_whole(&self) -> bool {
         self.inner.is_whole()
     }
 
     /// Points, ascending, on which the displacement is right after every solve; `None` if that is all of them.
-    #[must_use]
     pub fn window(&self) -> Option<&[u32]> {
         self.inner.window()
     }
 
     /// Work of the loads over the last displacement, f·u, J: twice the strain energy.
-    #[must_use]
     pub fn work(&self) -> f64 {
         self.inner.work()
     }

@@ -91,7 +91,6 @@ pub struct Product<const N: usize> {
 
 impl<const N: usize> Product<N> {
     /// Product for a body; N must be the number of unknowns of its law.
-    #[must_use]
     pub fn new(body: &Body, fixed: Vec<usize>) -> Self {
         let layout = Layout::of(&body.lattice, N);
         let spring =
@@ -114,25 +113,21 @@ impl<const N: usize> Product<N> {
     }
 
     /// Layout of its vectors.
-    #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
     /// Held components.
-    #[must_use]
     pub fn fixed(&self) -> &[usize] {
         &self.fixed
     }
 
     /// What a state-based law stores beside its springs.
-    #[must_use]
     pub fn dilatation(&self) -> Option<&Dilatation> {
         self.dilatation.as_ref()
     }
 
     /// Springs between flanks in contact.
-    #[must_use]
     pub fn contact(&self) -> &[GapSpring] {
         &self.contact
     }

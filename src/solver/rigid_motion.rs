@@ -31,7 +31,6 @@ pub struct RigidMotion {
 
 impl RigidMotion {
     /// Rigid motions of a body along which nothing holds it, with its present bonds; `None` where it is held altogether.
-    #[must_use]
     pub fn of(body: &Body, bonds: &Bonds, layout: Layout) -> Option<Self> {
         let free = body.free_motion();
         if free == [false; 3] {

@@ -23,7 +23,6 @@ crate::kinds! {
 
 impl Edge {
     /// Unit vector out of the plate.
-    #[must_use]
     pub fn normal(self) -> Point {
         match self {
             Edge::Top => [0.0, 1.0],
@@ -34,7 +33,6 @@ impl Edge {
     }
 
     /// Stretches of the outline on this side; empty where only a corner touches the bounding box.
-    #[must_use]
     pub fn stretches(self, specimen: &Specimen) -> Vec<(Point, Point)> {
         let [low, high] = bounding_box(&specimen.outline);
         let (axis, place) = match self {

@@ -3,32 +3,27 @@
 use super::{Point, Slot, Specimen};
 
 /// Distance between two points, m.
-#[must_use]
 pub fn distance(a: Point, b: Point) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
 /// Point at share `t` of the way from `a` to `b`.
-#[must_use]
 pub fn along(a: Point, b: Point, t: f64) -> Point {
     [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
 }
 
 /// Unit vector from `a` to `b`; zero where they coincide.
-#[must_use]
 pub fn direction(a: Point, b: Point) -> Point {
     let length = distance(a, b);
     if length > 0.0 { [(b[0] - a[0]) / length, (b[1] - a[1]) / length] } else { [0.0, 0.0] }
 }
 
 /// Twice the signed area of the triangle abc: positive where a, b, c turn counter-clockwise.
-#[must_use]
 pub fn turn(a: Point, b: Point, c: Point) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
 /// Whether the closed segments ab and cd share a point; touching counts.
-#[must_use]
 pub fn segments_touch(a: Point, b: Point, c: Point, d: Point) -> bool {
     // Most pairs are far apart: compare the boxes first.
     if a[0].max(b[0]) < c[0].min(d[0])
@@ -43,7 +38,6 @@ pub fn segments_touch(a: Point, b: Point, c: Point, d: Point) -> bool {
 }
 
 /// Share of the way from `a` to `b` at which the line through them meets the line through c and d; `None` if parallel.
-#[must_use]
 pub fn meeting_share(a: Point, b: Point, c: Point, d: Point) -> Option<f64> {
     let (from_a, from_b) = (turn(c, d, a), turn(c, d, b));
     let share = from_a / (from_a - from_b);
@@ -51,7 +45,6 @@ pub fn meeting_share(a: Point, b: Point, c: Point, d: Point) -> Option<f64> {
 }
 
 /// Distance of `p` from the closed segment ab, m.
-#[must_use]
 pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
     let (ab, ap) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let squared = ab[0] * ab[0] + ab[1] * ab[1];
@@ -65,7 +58,6 @@ pub fn edges(polygon: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
 }
 
 /// Whether `p` lies inside the polygon (crossing count; a point exactly on the edge may fall either way).
-#[must_use]
 pub fn point_in_polygon(p: Point, polygon: &[Point]) -> bool {
     let mut inside = false;
     for (a, b) in edges(polygon) {
@@ -77,19 +69,16 @@ pub fn point_in_polygon(p: Point, polygon: &[Point]) -> bool {
 }
 
 /// Distance of `p` from the polygon's boundary, m.
-#[must_use]
 pub fn distance_to_polygon(p: Point, polygon: &[Point]) -> f64 {
     edges(polygon).map(|(a, b)| distance_to_segment(p, a, b)).fold(f64::INFINITY, f64::min)
 }
 
 /// Signed area, m²: positive if counter-clockwise.
-#[must_use]
 pub fn polygon_area(polygon: &[Point]) -> f64 {
     edges(polygon).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0
 }
 
 /// Lower left and upper right corner of the box around the points.
-#[must_use]
 pub fn bounding_box(points: &[Point]) -> [Point; 2] {
     points.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
         [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
@@ -97,7 +86,6 @@ pub fn bounding_box(points: &[Point]) -> [Point; 2] {
 }
 
 /// The first pair of edges of the polygon that touch without being neighbours, by index.
-#[must_use]
 pub fn self_intersection(polygon: &[Point]) -> Option<(usize, usize)> {
     let n = polygon.len();
     let edge = |i: usize| (polygon[i], polygon[(i + 1) % n]);
@@ -123,7 +111,6 @@ pub fn self_intersection(polygon: &[Point]) -> Option<(usize, usize)> {
 
 impl Slot {
     /// Corners of the slot, counter-clockwise: right of `from`, right of `to`, left of `to`, left of `from`.
-    #[must_use]
     pub fn corners(&self) -> [Point; 4] {
         let [dx, dy] = direction(self.from, self.to);
         let half = self.width / 2.0;
@@ -133,7 +120,6 @@ impl Slot {
     }
 
     /// Whether `p` lies in the slot.
-    #[must_use]
     pub fn contains(&self, p: Point) -> bool {
         let [dx, dy] = direction(self.from, self.to);
         let (x, y) = (p[0] - self.from[0], p[1] - self.from[1]);
@@ -144,7 +130,6 @@ impl Slot {
 
 impl Specimen {
     /// Whether `point` lies in the material: inside the outline, outside holes and slots. Cracks have no width.
-    #[must_use]
     pub fn contains(&self, point: Point) -> bool {
         point_in_polygon(point, &self.outline)
             && self.holes.iter().all(|hole| distance(point, hole.centre) > hole.radius)
@@ -153,7 +138,6 @@ impl Specimen {
 
     /// The same of a point of a lattice: on the outline, within `slack`, m, a point is one on every side of the plate, and none on the
     /// rim of a hole or a slot, so that a plate that is its own mirror image has points that are.
-    #[must_use]
     pub fn has_point_at(&self, point: Point, slack: f64) -> bool {
         let is_inside = || point_in_polygon(point, &self.outline) || distance_to_polygon(point, &self.outline) <= slack;
         let is_void = |slot: &Slot| slot.contains(point) || distance_to_polygon(point, &slot.corners()) <= slack;
@@ -163,7 +147,6 @@ impl Specimen {
     }
 
     /// Length of the part of a segment that lies inside the outline, m, for a segment that crosses it at most once.
-    #[must_use]
     pub fn length_inside(&self, from: Point, to: Point) -> f64 {
         let crossing = edges(&self.outline)
             .filter(|(a, b)| segments_touch(from, to, *a, *b))

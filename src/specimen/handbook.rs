@@ -41,7 +41,6 @@ enum Form {
 
 /// The formula used for this specimen, `None` where no handbook covers it: `plate`, clamped ends, and plates shorter than
 /// 1.5 widths.
-#[must_use]
 pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
     let long = specimen.length() >= SHORTEST_LENGTH_OVER_WIDTH * specimen.width;
     let (form, name, source, range, bounds) = match specimen.kind {
@@ -75,7 +74,6 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
 }
 
 /// The other formula for a central crack, 0.1 % for any 2a/W (Tada): for judging the first one.
-#[must_use]
 pub fn handbook_tada(specimen: &Specimen) -> Option<HandbookFormula> {
     let first = handbook(specimen)?;
     (first.form == Form::Feddersen).then_some(HandbookFormula {
@@ -91,7 +89,6 @@ pub fn handbook_tada(specimen: &Specimen) -> Option<HandbookFormula> {
 impl HandbookFormula {
     /// K_I at crack length `crack_length` (m, the specimen's convention) under `load_max`: gross stress in Pa, or pin force
     /// in N for C(T). Pa√m; NaN for a length at or beyond the plate's end.
-    #[must_use]
     pub fn k_i(&self, crack_length: f64, load_max: f64) -> f64 {
         let x = self.relative_length(crack_length);
         if !(0.0..1.0).contains(&x) {
@@ -104,13 +101,11 @@ impl HandbookFormula {
     }
 
     /// ΔK of a cycle whose largest load is `load_max` and whose counting range is `range_share` times that, Pa√m.
-    #[must_use]
     pub fn delta_k(&self, crack_length: f64, load_max: f64, range_share: f64) -> f64 {
         self.k_i(crack_length, load_max) * range_share
     }
 
     /// F (tension) or f (C(T)) of the formula, dimensionless.
-    #[must_use]
     pub fn factor(&self, crack_length: f64) -> f64 {
         let x = self.relative_length(crack_length);
         let half = PI * x / 2.0;
@@ -129,7 +124,6 @@ impl HandbookFormula {
     }
 
     /// Whether the formula holds at this crack length.
-    #[must_use]
     pub fn holds_at(&self, crack_length: f64) -> bool {
         (self.bounds[0] - RANGE_SLACK..=self.bounds[1] + RANGE_SLACK).contains(&self.relative_length(crack_length))
     }
@@ -144,7 +138,6 @@ impl HandbookFormula {
 }
 
 /// ΔK by the handbook, Pa√m; `None` where there is no formula for the specimen.
-#[must_use]
 pub fn delta_k(specimen: &Specimen, crack_length: f64, load_max: f64, range_share: f64) -> Option<f64> {
     Some(handbook(specimen)?.delta_k(crack_length, load_max, range_share))
 }

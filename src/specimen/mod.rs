@@ -75,7 +75,6 @@ pub struct Crack {
 
 impl Crack {
     /// A straight crack.
-    #[must_use]
     pub fn straight(from: Point, to: Point) -> Self {
         Crack { from, to, continues: false }
     }
@@ -234,7 +233,6 @@ impl Specimen {
     }
 
     /// Size of the plate along y, m.
-    #[must_use]
     pub fn length(&self) -> f64 {
         let [low, high] = geometry::bounding_box(&self.outline);
         high[1] - low[1]
@@ -242,7 +240,6 @@ impl Specimen {
 
     /// Sizes of the flaws that spacing and horizon have to resolve, m: half length of a crack with two tips, whole length of one with
     /// one tip, length of a slot; C(T) from the load line.
-    #[must_use]
     pub fn flaw_sizes(&self) -> Vec<f64> {
         if self.kind != SpecimenKind::Plate {
             return vec![self.crack_length];
@@ -253,20 +250,17 @@ impl Specimen {
     }
 
     /// Number of tips of a crack.
-    #[must_use]
     pub fn tips_of(&self, line: &CrackLine) -> usize {
         let ends = |tip: &&TipSeed| !tip.from_slot && [true, false].iter().any(|&at_last| line.end(at_last) == tip.position);
         self.tips.iter().filter(ends).count()
     }
 
     /// The smallest of the [`Specimen::flaw_sizes`], m.
-    #[must_use]
     pub fn smallest_flaw(&self) -> f64 {
         self.flaw_sizes().into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// Distance of a place from the nearest rim, m: outline, holes, slots.
-    #[must_use]
     pub fn rim_distance(&self, at: Point) -> f64 {
         let holes = self.holes.iter().map(|hole| (geometry::distance(at, hole.centre) - hole.radius).abs());
         let slots = self.slots.iter().map(|slot| geometry::distance_to_polygon(at, &slot.corners()));
@@ -274,7 +268,6 @@ impl Specimen {
     }
 
     /// Least distance of the tip of a crack from a rim or from a crack that it does not end, m; infinite without such a tip.
-    #[must_use]
     pub fn least_gap(&self) -> f64 {
         let lines = self.crack_lines();
         let gap = |tip: usize| {
@@ -287,7 +280,6 @@ impl Specimen {
     }
 
     /// Area of the material, m²: outline less holes and slots.
-    #[must_use]
     pub fn area(&self) -> f64 {
         let holes: f64 = self.holes.iter().map(|hole| std::f64::consts::PI * hole.radius * hole.radius).sum();
         let slots: f64 = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to) * slot.width).sum();
@@ -295,7 +287,6 @@ impl Specimen {
     }
 
     /// Crack length in the convention of the specimen for given growths of its tips, m.
-    #[must_use]
     pub fn crack_length_after(&self, growth_of_tips: &[f64]) -> f64 {
         let sum: f64 = growth_of_tips.iter().sum();
         match self.convention {
@@ -305,7 +296,6 @@ impl Specimen {
     }
 
     /// The cracks as lines, in their order.
-    #[must_use]
     pub fn crack_lines(&self) -> Vec<CrackLine> {
         let mut lines: Vec<CrackLine> = Vec::with_capacity(self.cracks.len());
         for crack in &self.cracks {
@@ -318,7 +308,6 @@ impl Specimen {
     }
 
     /// Which end of which of the [`Specimen::crack_lines`] a tip is; `None` for the end face of a slot.
-    #[must_use]
     pub fn line_end(&self, tip: usize) -> Option<LineEnd> {
         let seed = self.tips.get(tip).filter(|seed| !seed.from_slot)?;
         let mut lines = self.crack_lines().into_iter().enumerate();
@@ -331,7 +320,6 @@ impl Specimen {
     }
 
     /// Whether it has tips, and all of them are those of sharp cracks.
-    #[must_use]
     pub fn has_sharp_tips(&self) -> bool {
         !self.tips.is_empty() && (0..self.tips.len()).all(|tip| self.line_end(tip).is_some())
     }

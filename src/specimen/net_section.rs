@@ -7,7 +7,6 @@ use super::{Specimen, SpecimenKind, Support};
 
 impl Specimen {
     /// Largest crack length the specimen has room for, m, and its name.
-    #[must_use]
     pub fn length_limit(&self) -> (f64, &'static str) {
         match self.kind {
             SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => (0.5 * self.width, "half width"),
@@ -19,7 +18,6 @@ impl Specimen {
 
     /// Width of the remaining section at crack length `crack_length` (m, the specimen's convention), all ligaments together;
     /// `None` for a `plate`.
-    #[must_use]
     pub fn ligament(&self, crack_length: f64) -> Option<f64> {
         (self.kind != SpecimenKind::Plate).then(|| ligament(self.kind, self.width, crack_length))
     }
@@ -32,7 +30,6 @@ impl Specimen {
     /// through the middle of the ligaments (M(T), DE(T)) or where clamped ends take the bending;
     /// SE(T) `√(1+x²) - x` with x = a/b; C(T) `√(s²+1) - s` with s = 1 + 2a/b. Limit loads of Kumar, German and Shih 1981
     /// (EPRI NP-1931, sections 3.1 to 3.5) without their factor 1.07 of the von Mises criterion.
-    #[must_use]
     pub fn net_section_stress(&self, crack_length: f64, load: f64) -> Option<f64> {
         let ligament = self.ligament(crack_length)?;
         if ligament <= 0.0 {
@@ -55,14 +52,12 @@ impl Specimen {
     }
 
     /// Largest stress that a `plate` carries whatever its cracks: that on its edges, Pa; `None` under forces on points.
-    #[must_use]
     pub fn gross_stress(&self, load: f64) -> Option<f64> {
         let pulled = self.loads.iter().any(|load| matches!(load, super::Load::Edge { .. }));
         (pulled && self.load_measure == super::LoadMeasure::Stress).then_some(load)
     }
 
     /// Whether the ligament is large enough for K to describe the crack, see [`small_scale_yielding`]; for a standard kind.
-    #[must_use]
     pub fn small_scale_yielding(&self, crack_length: f64, load_max: f64, k_max: f64, yield_strength: f64) -> bool {
         small_scale_yielding(self.kind, self.width, crack_length, self.force_per_thickness(load_max), k_max, yield_strength)
     }
@@ -78,7 +73,6 @@ impl Specimen {
 
 /// Whether the ligament is large enough for its plastic zone (ASTM E647, 7.2): M(T) `W - 2a ≥ 1.25 P_max / (B σ_Y)`, that is
 /// 80 % of net-section yield; C(T) and, by the same reasoning, edge cracks `b ≥ (4/π) (K_max/σ_Y)²`.
-#[must_use]
 pub fn small_scale_yielding(
     kind: SpecimenKind,
     width: f64,
@@ -95,7 +89,6 @@ pub fn small_scale_yielding(
 }
 
 /// `(4/π) (K_max/σ_Y)²`, the ligament ASTM E647 asks for, m: four times the plastic zone of plane stress.
-#[must_use]
 pub fn ligament_needed(k_max: f64, yield_strength: f64) -> f64 {
     4.0 / PI * (k_max / yield_strength).powi(2)
 }

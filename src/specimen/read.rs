@@ -27,7 +27,6 @@ const ONLY_THROUGH: &str = "only through cracks in plates are supported: the cra
 
 impl SpecimenKind {
     /// The line of `perilife list` that says what no kind covers.
-    #[must_use]
     pub fn not_covered() -> KindLine {
         KindLine {
             key: Self::KEY,

@@ -34,17 +34,11 @@ pub struct Run {
 
 impl Run {
     /// A case from its text, with keys overridden by `section.key=value`.
-    ///
-    /// # Errors
-    /// As [`Case::from_toml`].
     pub fn case(&self, text: &str, set: &[&str]) -> Result<Case> {
         scene::case(text, set)
     }
 
     /// Predicts within the budget.
-    ///
-    /// # Errors
-    /// As [`predict`], and that the budget is spent.
     pub fn predict(&self, case: &Case) -> Result<Prediction> {
         predict(case, self)
     }

@@ -21,9 +21,6 @@ pub fn middle_tension(width: f64, half_crack: f64, spacing: f64) -> String {
 }
 
 /// K and T of the initial tips by the method of a case.
-///
-/// # Errors
-/// As the method's own.
 pub fn tips(case: &Case) -> Result<Vec<TipRecord>> {
     match case.model.method {
         Method::ElementFreeGalerkin => element_free::initial_tips(case),
@@ -41,9 +38,6 @@ pub fn factors(case: &Case, tip: usize) -> Result<[f64; 2]> {
 }
 
 /// Error of K_I of a standard specimen against the handbook (Tada where it has two formulas), percent.
-///
-/// # Errors
-/// As [`factors`].
 pub fn against_handbook(case: &Case) -> Result<f64> {
     let formula = handbook_tada(&case.specimen).ok_or_else(|| Error::Mechanics("no handbook formula".to_owned()))?;
     let exact = formula.k_i(case.specimen.crack_length, case.loading.maximum);
@@ -52,9 +46,6 @@ pub fn against_handbook(case: &Case) -> Result<f64> {
 
 /// Error of K_I of a tip against that of the same plate on fine nodes without elements (0.3 % of K), which share nothing with points
 /// and bonds, percent. `keys` are the overrides of the case that is judged.
-///
-/// # Errors
-/// As [`factors`].
 pub fn against_nodes(run: &Run, text: &str, keys: &[&str], tip: usize) -> Result<f64> {
     let nodes = run.case(text, &["model.method=element_free_galerkin", "model.tolerance_percent=1"])?;
     let exact = factors(&nodes, tip)?[0];
@@ -62,9 +53,6 @@ pub fn against_nodes(run: &Run, text: &str, keys: &[&str], tip: usize) -> Result
 }
 
 /// Error of a life against quadrature with K of finite elements, percent.
-///
-/// # Errors
-/// As [`crate::predict::predict`].
 pub fn life_error(run: &Run, specimen: &Standard, set: &[&str]) -> Result<f64> {
     Ok(percent(specimen.over_quadrature_watched(set, run)?, 1.0))
 }

@@ -74,7 +74,6 @@ pub enum Status {
 
 impl Status {
     /// As the table names it.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Status::Stable => "stable",
@@ -86,7 +85,6 @@ impl Status {
 
 impl Outcome {
     /// Judgement by a bound, percent.
-    #[must_use]
     pub fn status(&self, bound_percent: f64) -> Status {
         match self {
             Outcome::Error(error) if error.abs() <= bound_percent => Status::Stable,
@@ -96,7 +94,6 @@ impl Outcome {
     }
 
     /// Error, percent, where there is a result.
-    #[must_use]
     pub fn error(&self) -> Option<f64> {
         match self {
             Outcome::Error(error) => Some(*error),
@@ -105,7 +102,6 @@ impl Outcome {
     }
 
     /// Why there is no result.
-    #[must_use]
     pub fn reason(&self) -> Option<&str> {
         match self {
             Outcome::Error(_) => None,
@@ -133,7 +129,6 @@ pub struct Record {
 
 impl Record {
     /// End of the safe range on the side of a value.
-    #[must_use]
     pub fn end_beside(&self, value: f64) -> Option<f64> {
         let [low, high] = self.ends;
         if value < self.sweep.usual { low } else { high }

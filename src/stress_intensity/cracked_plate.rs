@@ -37,9 +37,6 @@ pub struct Field {
 
 impl<'a> CrackedPlate<'a> {
     /// Discretises a case.
-    ///
-    /// # Errors
-    /// As [`Body::build`], and points of several levels.
     pub fn new(case: &'a Case) -> Result<Self> {
         let model = &case.model;
         if model.arrangement != Discretisation::Lattice {
@@ -52,7 +49,6 @@ impl<'a> CrackedPlate<'a> {
     }
 
     /// Growths for [`CrackedPlate::solve`]: every crack tip by the same, m.
-    #[must_use]
     pub fn growth_of_all(&self, growth: f64) -> Vec<f64> {
         self.case.specimen.tips.iter().map(|tip| if tip.from_slot { 0.0 } else { growth }).collect()
     }
@@ -106,14 +102,12 @@ impl<'a> CrackedPlate<'a> {
     }
 
     /// Where the crack of `specimen` that a tip ends reaches once cut into bonds.
-    #[must_use]
     pub fn represented(&self, specimen: &Specimen, tip: usize) -> RepresentedEnd {
         let own = own_crack(specimen, tip);
         represented_end(&self.body, &own.crack, own.at_to, own.length)
     }
 
     /// Length of straight crack behind a tip up to its middle, where both its ends are tips, or its mouth, m.
-    #[must_use]
     pub fn crack_behind(&self, specimen: &Specimen, tip: usize) -> f64 {
         own_crack(specimen, tip).length
     }

@@ -53,7 +53,6 @@ pub fn cells_along<'a>(body: &'a Body, pieces: &'a [[Point; 2]]) -> impl Iterato
 }
 
 /// Parts of these cells that are material, each with the nearest point that sees it, of those that are `known`.
-#[must_use]
 pub fn parts(
     body: &Body,
     specimen: &Specimen,

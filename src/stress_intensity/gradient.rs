@@ -35,7 +35,6 @@ pub struct Derivatives {
 
 impl Derivatives {
     /// `∂u_i/∂x_j` at a distance from the place, m.
-    #[must_use]
     pub fn at(&self, [x, y]: Point) -> [[f64; 2]; 2] {
         [0, 1].map(|i| {
             let [xx, xy, yy] = self.second[i];
@@ -45,7 +44,6 @@ impl Derivatives {
 }
 
 /// Derivatives at a place in a frame's axes; `None` where too few bonds are left to tell.
-#[must_use]
 pub fn derivatives_at(
     body: &Body,
     bonds: &Bonds,

@@ -50,7 +50,6 @@ pub struct Intensity {
 
 impl Intensity {
     /// Both modes known.
-    #[must_use]
     pub fn both([k_i, k_ii]: [f64; 2]) -> Self {
         Intensity { k_i: Some(k_i), k_ii: Some(k_ii) }
     }

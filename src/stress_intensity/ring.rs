@@ -128,7 +128,6 @@ pub struct RingFactors {
 
 impl RingGeometry {
     /// Rim, loads and supports of a specimen.
-    #[must_use]
     pub fn new(body: &Body, specimen: &Specimen, material: &Material) -> Self {
         let spacing = body.lattice.spacing;
         let held = specimen.supports.iter().filter_map(|support| match *support {
@@ -159,7 +158,6 @@ impl RingGeometry {
 
     /// Largest outer radius for a tip, m: up to `wanted`, short of the other end of its crack, other tips and supports, and not beyond a
     /// joint of cracks that is not near.
-    #[must_use]
     pub fn radius(&self, body: &Body, lines: &[CrackLine], end: LineEnd, tips: &[LineEnd], wanted: f64) -> f64 {
         let here = lines[end.line].end(end.at_last);
         let others = tips.iter().filter(|other| **other != end).map(|other| distance(here, lines[other.line].end(other.at_last)));
@@ -179,7 +177,6 @@ impl RingGeometry {
     }
 
     /// K_I and K_II of a tip by a ring of some outer radius, m.
-    #[must_use]
     pub fn factors(&self, plate: Balanced<'_>, end: LineEnd, outer: f64) -> RingFactors {
         let Balanced { body, lines, .. } = plate;
         let line = &lines[end.line];

@@ -60,7 +60,6 @@ pub struct Sweep {
 }
 
 /// Whether these are the sections of a sweep.
-#[must_use]
 pub fn is_sweep(table: &Table) -> bool {
     table.contains_key("design")
 }
@@ -88,17 +87,11 @@ struct DesignInput {
 impl Sweep {
     /// Reads a sweep file. Overrides of `design` and `vary` are those of the sweep file, all others those of the base case; there
     /// may be at most `most` cases.
-    ///
-    /// # Errors
-    /// Wrong input; files that cannot be read.
     pub fn from_file(path: &Path, overrides: &[String], most: usize) -> Result<Self> {
         Self::with_overrides(Document::read(path, &[])?, overrides, most)
     }
 
     /// The same for a document that was read without overrides.
-    ///
-    /// # Errors
-    /// Wrong input; files that cannot be read.
     pub fn with_overrides(mut document: Document, overrides: &[String], most: usize) -> Result<Self> {
         let section = |text: &str| text.split(['.', '[', '=']).next().unwrap_or_default().trim().to_owned();
         let of_sweep = |text: &String| ["design", "vary"].contains(&section(text).as_str());
@@ -108,9 +101,6 @@ impl Sweep {
     }
 
     /// The same for a document; the overrides are those of the base case.
-    ///
-    /// # Errors
-    /// Wrong input; files that cannot be read.
     pub fn from_document(document: Document, of_case: &[String], most: usize) -> Result<Self> {
         let read = || -> Result<(String, Design)> {
             let input: Input = slice(&Value::Table(document.table.clone()), "file").map_err(at_top)?;
@@ -186,7 +176,6 @@ fn check_size(key: &str, cases: usize, most: usize) -> Result<usize> {
 }
 
 /// The design as results repeat it: the sweep file as it was read.
-#[must_use]
 pub fn echo(table: &Table) -> serde_json::Value {
     // A table that was read from TOML has a JSON form; dates, of which a sweep has none, become text.
     serde_json::to_value(table).unwrap_or_default()

@@ -35,7 +35,6 @@ pub enum Distribution {
 
 impl Distribution {
     /// The value that the quantity stays below with this probability in (0, 1).
-    #[must_use]
     pub fn quantile(&self, probability: f64) -> f64 {
         match *self {
             Distribution::Uniform { from, to } => from + probability * (to - from),
@@ -50,7 +49,6 @@ impl Distribution {
 ///
 /// Algorithm AS 241, function PPND16 (Wichura 1988, Appl. Stat. 37:477): a quotient of polynomials of degree 7 in
 /// `0.180625 - q²` for `|q| = |p - 1/2| <= 0.425`, else in `r - 1.6` or, from r = 5 on, `r - 5` with `r = sqrt(-ln min(p, 1-p))`.
-#[must_use]
 pub fn normal_quantile(probability: f64) -> f64 {
     let q = probability - 0.5;
     if q.abs() <= 0.425 {

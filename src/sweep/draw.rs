@@ -36,23 +36,18 @@ pub struct DrawnCase {
 
 impl DrawnCase {
     /// The case, checked.
-    ///
-    /// # Errors
-    /// As [`Case::from_document`].
     pub fn read(&self) -> Result<Case> {
         let folder = Folder::at_hand(self.files.iter().cloned());
         Case::from_document(&Document::parse(&self.text, &self.name, folder, &[])?)
     }
 
     /// Number as folders and tables write it.
-    #[must_use]
     pub fn label(&self) -> String {
         label(self.number)
     }
 }
 
 /// Number of a case with leading zeros.
-#[must_use]
 pub fn label(number: usize) -> String {
     format!("{number:04}")
 }
@@ -65,7 +60,6 @@ struct Draw {
 
 impl Sweep {
     /// What differs between cases: keys of the case, then figures of its law if laws scatter.
-    #[must_use]
     pub fn columns(&self) -> Vec<String> {
         let keys = self.design.vary.iter().map(|one| one.key.clone());
         let law: &[&str] = match self.design.kind {

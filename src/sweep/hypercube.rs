@@ -10,7 +10,6 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 ///
 /// Column `c` draws from stream `c` of ChaCha with 8 rounds (Bernstein 2008), whose key is the seed in its first 8 bytes, the
 /// lowest first: the same seed gives the same numbers on every machine, and one column more leaves the others as they are.
-#[must_use]
 pub fn hypercube(samples: usize, columns: usize, seed: u64) -> Vec<Vec<f64>> {
     let mut rows = vec![Vec::with_capacity(columns); samples];
     for column in 0..columns {

@@ -7,7 +7,6 @@
 /// # use perilife::sweep::quantile::quantile;
 /// assert_eq!(quantile(&[1.0, 2.0, 4.0, 8.0], 0.5), 3.0);
 /// ```
-#[must_use]
 pub fn quantile(sorted: &[f64], q: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let h = last as f64 * q.clamp(0.0, 1.0);

@@ -11,9 +11,6 @@ const PULL_MPA: f64 = 60.0;
 
 /// Life of a square plate under stress across and along its crack, over that without the latter, and the stress along the crack
 /// that its first tip reads.
-///
-/// # Errors
-/// As [`crate::predict::predict`].
 pub fn rows(table: &mut Table) -> Result<()> {
     let text = pulled_plate("width_mm = 200\nlength_mm = 200\ncracks = [{ from_mm = [-10, 0], to_mm = [10, 0] }]");
     for lattice in [0.0, 22.5, 45.0] {

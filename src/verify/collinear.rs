@@ -17,7 +17,6 @@ pub struct Collinear {
 
 impl Collinear {
     /// K over the stress of the inner and of the outer tips, √m.
-    #[must_use]
     pub fn intensity(&self) -> [f64; 2] {
         let (c, d) = (self.inner, self.outer);
         let modulus = (1.0 - (c / d).powi(2)).sqrt();
@@ -29,7 +28,6 @@ impl Collinear {
     ///
     /// On the line of the cracks, far off, `σ_y/σ = 1 + a²/(2x²)` for a crack of half length a, and
     /// `1 + ((c² + d²)/2 - e d²)/x²` for two.
-    #[must_use]
     pub fn equivalent_crack(&self) -> f64 {
         let (c, d) = (self.inner, self.outer);
         let e = elliptic_ratio((1.0 - (c / d).powi(2)).sqrt());
@@ -38,7 +36,6 @@ impl Collinear {
 
     /// [`Collinear::intensity`] in a plate of finite width, times `√(sec(π a/W))` of the equivalent crack (Feddersen 1966):
     /// the free sides raise the stress around both cracks alike, to the leading order in a/W.
-    #[must_use]
     pub fn intensity_in(&self, width: f64) -> [f64; 2] {
         let sides = (PI * self.equivalent_crack() / width).cos().powf(-0.5);
         self.intensity().map(|k| k * sides)
@@ -60,7 +57,6 @@ fn elliptic_ratio(modulus: f64) -> f64 {
 
 /// ∫ dN C of the inner tips growing from `start` until their half ligament is `ligament`, m, by `da/dN = C ΔK^p` at a stress
 /// range of `stress`; the outer tips grow meanwhile (classical Runge-Kutta over the inner tips' way).
-#[must_use]
 pub fn growth_integral(start: Collinear, ligament: f64, width: f64, stress: f64, p: f64) -> f64 {
     const STEPS: usize = 400;
     let step = (start.inner - ligament) / STEPS as f64;

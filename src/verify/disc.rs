@@ -40,7 +40,6 @@ pub const CONTROL: (ZeroEnergyControl, f64) = (ZeroEnergyControl::Silling, 0.5);
 const CORNERS: usize = 360;
 
 /// The disc between platens that each move by `travel`, m.
-#[must_use]
 pub fn scene((control, factor): (ZeroEnergyControl, f64), spacing: f64, travel: f64) -> Scene {
     let mut specimen = strip(DIAMETER, DIAMETER);
     specimen.thickness = THICKNESS;
@@ -81,9 +80,6 @@ pub struct ElasticDisc {
 }
 
 /// Equilibrium of the undamaged disc.
-///
-/// # Errors
-/// No equilibrium.
 pub fn elastic(control: (ZeroEnergyControl, f64), spacing: f64, travel: f64) -> Result<ElasticDisc> {
     let scene = scene(control, spacing, travel);
     let model = &scene.model;
@@ -128,7 +124,6 @@ pub fn elastic(control: (ZeroEnergyControl, f64), spacing: f64, travel: f64) -> 
 ///
 /// `σ_x = 2p/π (A - B)`, `σ_y = -2p/π (A + B)`, `A = (1-ρ²) sin 2α / (1 + 2ρ² cos 2α + ρ⁴)`,
 /// `B = atan((1-ρ²)/(1+ρ²) tan α)`, `ρ = 2x/D`, `p = P/(D t α)`; at the centre `2P/(π D t)` and `-6P/(π D t)` for small α.
-#[must_use]
 pub fn hondros(x: f64, load: f64, half_angle: f64) -> [f64; 2] {
     let square = (2.0 * x / DIAMETER).powi(2);
     let a = (1.0 - square) * (2.0 * half_angle).sin() / (1.0 + 2.0 * square * (2.0 * half_angle).cos() + square * square);
@@ -138,7 +133,6 @@ pub fn hondros(x: f64, load: f64, half_angle: f64) -> [f64; 2] {
 }
 
 /// u_x on the horizontal diameter from [`hondros`], m: the integral of `(σ_x - ν σ_y)/E` from the centre.
-#[must_use]
 pub fn hondros_displacement(x: f64, load: f64, half_angle: f64) -> f64 {
     let material = material();
     let strain = |x: f64| {

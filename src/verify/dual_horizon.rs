@@ -45,14 +45,12 @@ pub fn laws() -> impl Iterator<Item = BondLaw> {
 }
 
 /// A material that springs can be: E = 200 GPa, plane stress, ν that of the bond-based law or 0.7 of it.
-#[must_use]
 pub fn material(law: &BondLaw) -> Material {
     let share = if law.kind == BondLawKind::BondBased { 1.0 } else { 0.7 };
     Material::elastic(200e9, share * poisson_limit(Plane::Stress), Plane::Stress)
 }
 
 /// A plate that nothing loads or breaks, on a dual horizon with finer points in these regions.
-#[must_use]
 pub fn scene(specimen: Specimen, law: BondLaw, spacing: f64, regions: &[(RefinedRegion, usize)]) -> Scene {
     let mut scene = Scene::bare("levels", specimen, material(&law), SceneLaw::Bonds(law), spacing);
     scene.model.arrangement = Discretisation::DualHorizon;
@@ -83,7 +81,6 @@ fn boxed(law: BondLaw, [low, high]: [Point; 2], levels: usize) -> Scene {
 }
 
 /// Forces of whole springs at a displacement, N.
-#[must_use]
 pub fn forces(net: &Net, u: &[f64]) -> Vec<f64> {
     let mut bonds = BondState::new(net, &vec![false; net.len()]);
     let mut force = vec![0.0; u.len()];
@@ -115,9 +112,6 @@ fn left(net: &Net, u: &[f64]) -> Left {
 
 /// Resultant of a uniform strain along x over the sum of the sizes of all forces along x, in a plate whose right part alone has
 /// finer points: what two opposite changes of level leave would cancel.
-///
-/// # Errors
-/// As [`fracture::build`].
 pub fn ghost(law: BondLaw, arrangement: Discretisation, levels: usize) -> Result<f64> {
     let mut scene = boxed(law, [[10.0 * MM, -30.0 * MM], [50.0 * MM, 30.0 * MM]], levels);
     scene.model.arrangement = arrangement;
@@ -139,17 +133,11 @@ pub struct Patch {
 }
 
 /// The patch of a law.
-///
-/// # Errors
-/// As [`fracture::build`], no equilibrium.
 pub fn patch(law: BondLaw) -> Result<Patch> {
     patch_of(law, 1)
 }
 
 /// The same with points split in four so many times in the middle.
-///
-/// # Errors
-/// As [`patch`].
 pub fn patch_of(law: BondLaw, levels: usize) -> Result<Patch> {
     // The finer, the narrower, so that the number of points stays within bounds.
     let half = 20.0 * MM / 2.0_f64.powi(levels.saturating_sub(1) as i32);
@@ -201,9 +189,6 @@ struct Counts {
 }
 
 /// Counts of the mixed-mode plate.
-///
-/// # Errors
-/// As [`fracture::build`].
 fn counts() -> Result<Counts> {
     let read = |text: &str| Scene::from_toml(text, "mixed_mode", std::path::Path::new("."), &[]);
     let points = |scene: &Scene| Ok::<_, crate::Error>(fracture::build(scene)?.0);
@@ -216,9 +201,6 @@ fn counts() -> Result<Counts> {
 }
 
 /// Rows of the topic.
-///
-/// # Errors
-/// As [`fracture::build`], no equilibrium.
 pub fn rows(table: &mut Table) -> Result<()> {
     momentum(table)?;
     ghosts(table)?;

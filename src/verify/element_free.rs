@@ -20,9 +20,6 @@ const METHOD: &str = "model.method=element_free_galerkin";
 const STRESS: f64 = 60e6;
 
 /// All rows of the topic.
-///
-/// # Errors
-/// As [`predict`].
 pub fn all(table: &mut Table) -> Result<()> {
     rims::rows(table)?;
     factors::rows(table)?;

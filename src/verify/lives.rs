@@ -10,9 +10,6 @@ use crate::predict::{Silent, predict};
 const BOUND: f64 = 1.0;
 
 /// All rows of the topic.
-///
-/// # Errors
-/// As [`predict`].
 pub fn all(table: &mut Table) -> Result<()> {
     standard(table)?;
     laws(table)?;

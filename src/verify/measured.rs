@@ -27,7 +27,6 @@ pub const CALIBRATION: &str = include_str!("../../calibration/al2024-t3/case.tom
 pub const READINGS: &[u8] = include_bytes!("../../calibration/al2024-t3/measured/virkler_median.csv");
 
 /// The file that [`CALIBRATION`] names, with these readings.
-#[must_use]
 pub fn at_hand(readings: &[u8]) -> Folder {
     Folder::at_hand([("measured/virkler_median.csv".to_owned(), readings.to_vec())])
 }

@@ -150,9 +150,6 @@ pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
 
 /// Rows of some topics in their order, computed side by side on the processors there are. `done` hears of every topic as it
 /// ends.
-///
-/// # Errors
-/// That of the first topic that has one.
 pub fn rows(topics: &[&'static Topic], done: &(dyn Fn(&Topic, &[Row]) + Sync)) -> Result<Vec<Row>> {
     let next = AtomicUsize::new(0);
     let computed = Mutex::new(Vec::new());
@@ -178,7 +175,6 @@ pub fn rows(topics: &[&'static Topic], done: &(dyn Fn(&Topic, &[Row]) + Sync)) -
 
 /// What is wrong with the rows of some topics, a line each: rows that fail, and topics of which another number of rows misses
 /// its bounds than is pinned.
-#[must_use]
 pub fn faults(topics: &[&Topic], rows: &[Row]) -> Vec<String> {
     let failing = rows.iter().filter(|row| row.fails()).map(|row| {
         let bound = row.known_miss.as_ref().map_or(row.bound_percent, |miss| miss.bound_percent);

@@ -11,9 +11,6 @@ use crate::predict::{Silent, StopReason, predict};
 use crate::units::{MM, MPA};
 
 /// All rows of the topic.
-///
-/// # Errors
-/// As [`predict`].
 pub fn all(table: &mut Table) -> Result<()> {
     kinks(table)?;
     collinear_cracks(table)?;

@@ -8,9 +8,6 @@ use crate::error::Result;
 const INCOMPRESSIBLE: (f64, f64) = (0.49, 2.54);
 
 /// Lives of a panel against quadrature, which knows none of them: m 3, a 20 to 32 mm.
-///
-/// # Errors
-/// As [`crate::predict::predict`].
 pub fn rows(table: &mut Table) -> Result<()> {
     let [panel, ..] = standard_specimens();
     let panel = panel.from_to([20.0, 32.0]);

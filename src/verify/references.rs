@@ -74,7 +74,6 @@ pub struct Curve(pub Vec<(f64, Point)>);
 
 impl Curve {
     /// That of a tip of a run.
-    #[must_use]
     pub fn of_tip(run: &Prediction, tip: usize) -> Self {
         Curve(run.curve.iter().map(|row| (row.cycles, row.tips[tip].position)).collect())
     }
@@ -87,13 +86,11 @@ impl Curve {
     }
 
     /// Length of the path, m.
-    #[must_use]
     pub fn way(&self) -> f64 {
         self.0.windows(2).map(|pair| distance(pair[0].1, pair[1].1)).sum()
     }
 
     /// Cycles at a length of way, by a monotone cubic between the points.
-    #[must_use]
     pub fn cycles_at(&self, way: f64) -> f64 {
         let mut done = 0.0;
         let steps = self.0.windows(2).map(|pair| {
@@ -111,7 +108,6 @@ impl Curve {
     }
 
     /// Its part up to a number of cycles.
-    #[must_use]
     pub fn until(&self, cycles: f64) -> Self {
         Curve(self.0.iter().copied().filter(|(n, _)| *n <= cycles).collect())
     }
@@ -125,13 +121,11 @@ impl Curve {
     }
 
     /// The largest of these, m.
-    #[must_use]
     pub fn largest_off(&self, other: &Curve) -> f64 {
         self.off(other).fold(0.0, f64::max)
     }
 
     /// Their root mean square over the way that both have, m: what lies beyond the other's end is no distance from it.
-    #[must_use]
     pub fn rms_off(&self, other: &Curve) -> f64 {
         let common = self.up_to(other.way());
         (common.off(other).map(|off| off * off).sum::<f64>() / common.0.len() as f64).sqrt()
@@ -152,7 +146,6 @@ pub struct Compared {
 }
 
 /// Every tip of a run against its reference, up to an x, m.
-#[must_use]
 pub fn compare(run: &Prediction, reference: Vec<Curve>, x_end: f64) -> Vec<Compared> {
     let tip = |(tip, reference): (usize, Curve)| {
         let path = reference.0.first().map_or_else(Curve::default, |(_, start)| Curve::from(run, *start));
@@ -186,9 +179,6 @@ pub fn tips_of_table(text: &str) -> Result<Vec<Curve>> {
 
 impl Reference {
     /// Its case at the spacing that resolves it, other keys set by `section.key=value`.
-    ///
-    /// # Errors
-    /// As [`Case::from_toml`].
     pub fn case(&self, set: &[&str]) -> Result<Case> {
         let has_nodes = set.iter().any(|key| key.contains(Method::ElementFreeGalerkin.name()));
         let spacing = self.spacing.filter(|_| !has_nodes).map(|mm| format!("model.spacing_mm={mm}"));
@@ -197,9 +187,6 @@ impl Reference {
     }
 
     /// Cycles and places of its tips.
-    ///
-    /// # Errors
-    /// As [`tips_of_table`].
     pub fn tips(&self) -> Result<Vec<Curve>> {
         tips_of_table(self.files[1])
     }
@@ -217,9 +204,6 @@ impl Reference {
     }
 
     /// Its run, and how the tips went.
-    ///
-    /// # Errors
-    /// As [`predict`].
     pub fn run(&self, set: &[&str]) -> Result<(Prediction, Vec<Compared>)> {
         let run = predict(&self.case(set)?, &Silent)?;
         let compared = compare(&run, self.tips()?, f64::INFINITY);
@@ -228,9 +212,6 @@ impl Reference {
 }
 
 /// Path within 0.15 mm or 0.3 spacings, life within 2 %, the same end.
-///
-/// # Errors
-/// As [`predict`].
 pub fn rows(table: &mut Table) -> Result<()> {
     const SOURCE: &str = "finite elements (tests/reference)";
     for reference in &REFERENCES {

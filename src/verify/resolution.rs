@@ -8,9 +8,6 @@ use crate::error::Result;
 use crate::units::MM;
 
 /// Spacings of W/50 to W/200 and horizons of three to six spacings, cracks of three horizons at the least.
-///
-/// # Errors
-/// As [`crate::predict::predict`].
 pub fn spacing(table: &mut Table) -> Result<()> {
     let [panel, compact, ..] = standard_specimens();
     // W 100 mm, a 20 to 32 mm, and W 50 mm, from the load line.
@@ -36,9 +33,6 @@ pub fn spacing(table: &mut Table) -> Result<()> {
 }
 
 /// Lives and paths on turned lattices.
-///
-/// # Errors
-/// As [`crate::predict::predict`].
 pub fn orientation(table: &mut Table) -> Result<()> {
     for specimen in standard_specimens() {
         for lattice in [10.0, 22.5, 37.0, 45.0] {
@@ -67,9 +61,6 @@ pub fn orientation(table: &mut Table) -> Result<()> {
 }
 
 /// One plate drawn, turned over, and scaled: the same life.
-///
-/// # Errors
-/// As [`crate::predict::predict`].
 pub fn same_plate(table: &mut Table) -> Result<()> {
     let [panel, ..] = standard_specimens();
     let drawn = |scale: f64, mirror: f64, slope: f64| {

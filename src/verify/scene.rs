@@ -26,24 +26,17 @@ cycles_max = 1e14
 pub const PULL: &str = "[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n";
 
 /// Two millimetres thick, of these keys, pulled at its ends.
-#[must_use]
 pub fn pulled_plate(keys: &str) -> String {
     format!("[specimen]\nkind = \"plate\"\nthickness_mm = 2\n{keys}\n{PULL}{MATERIAL_AND_LAW}")
 }
 
 /// A case from its text, with keys overridden by `section.key=value`.
-///
-/// # Errors
-/// As [`Case::from_toml`].
 pub fn case(text: &str, set: &[&str]) -> Result<Case> {
     let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
     Case::from_toml(text, "verification", Path::new("."), &overrides)
 }
 
 /// A plate from the text of a case, which need not have a crack; its fatigue law is not read.
-///
-/// # Errors
-/// As [`Case::from_table`].
 pub fn plate_alone(text: &str, set: &[&str]) -> Result<Case> {
     let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
     let mut document = Document::parse(text, "verification", Path::new("."), &overrides)?;
@@ -52,24 +45,17 @@ pub fn plate_alone(text: &str, set: &[&str]) -> Result<Case> {
 }
 
 /// A case from text without fatigue law, with a fitted one and keys overridden.
-///
-/// # Errors
-/// As [`Case::from_table`] and [`Case::with_law`].
 pub fn case_with_law(text: &str, set: &[String], record: &FittedRecord) -> Result<Case> {
     let document = Document::parse(text, "verification", Path::new("."), set)?;
     Case::from_table(document.table.clone(), &document.name, &document.folder)?.with_law(record.clone())
 }
 
 /// The curve of a run as (cycles, crack length in m).
-#[must_use]
 pub fn points(run: &Prediction) -> Vec<(f64, f64)> {
     run.curve.iter().map(|point| (point.cycles, point.crack_length)).collect()
 }
 
 /// Life of a case from its text, cycles.
-///
-/// # Errors
-/// As [`case`] and [`predict`].
 pub fn life(text: &str, set: &[&str]) -> Result<f64> {
     Ok(predict(&case(text, set)?, &Silent)?.life_cycles())
 }

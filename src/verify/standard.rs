@@ -29,7 +29,6 @@ pub struct Standard {
 }
 
 /// M(T), C(T), SE(T) and DE(T), from a quarter to three quarters of their width about.
-#[must_use]
 pub fn standard_specimens() -> [Standard; 4] {
     let pulled =
         |keys: &str| format!("{keys}\nlength_mm = {}\nthickness_mm = 2\n{PULL}", if keys.contains("single") { 150 } else { 300 });
@@ -59,16 +58,12 @@ pub fn standard_specimens() -> [Standard; 4] {
 
 impl Standard {
     /// The same with another range of crack lengths, mm.
-    #[must_use]
     pub fn from_to(mut self, range: [f64; 2]) -> Self {
         self.range = range;
         self
     }
 
     /// Life over that by quadrature of the same law with K of finite elements, other keys set by `section.key=value`.
-    ///
-    /// # Errors
-    /// As [`predict`].
     pub fn over_quadrature(&self, set: &[&str]) -> Result<f64> {
         self.over_quadrature_watched(set, &Silent)
     }
@@ -109,17 +104,11 @@ impl Standard {
     }
 
     /// Life, cycles.
-    ///
-    /// # Errors
-    /// As [`predict`].
     pub fn life(&self, set: &[&str]) -> Result<f64> {
         Ok(predict(&self.case(set)?, &Silent)?.life_cycles())
     }
 
     /// Crack lengths, mm, with K_I of finite elements under the load of [`Standard::at`], Pa√m.
-    ///
-    /// # Errors
-    /// As [`predict`].
     pub fn factors_of_elements(&self) -> Result<Vec<[f64; 2]>> {
         let case = self.case(&[])?;
         let load = case.loading.maximum / load_of_table(&case.specimen);
@@ -127,18 +116,12 @@ impl Standard {
     }
 
     /// The case at a crack length, mm.
-    ///
-    /// # Errors
-    /// As [`Case::from_toml`].
     pub fn at(&self, length: f64, set: &[&str]) -> Result<Case> {
         // Grown by nothing to speak of.
         self.clone().from_to([length, 1.001 * length]).case(set)
     }
 
     /// Its case, other keys set by `section.key=value`.
-    ///
-    /// # Errors
-    /// As [`Case::from_toml`].
     pub fn case(&self, set: &[&str]) -> Result<Case> {
         let [from, to] = self.range;
         let range = [format!("specimen.crack_length_mm={from}"), format!("stop.crack_length_mm={to}")];

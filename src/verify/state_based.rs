@@ -18,9 +18,6 @@ const STATE_BASED: &str = "model.bond_law=state_based";
 const PUBLISHED_WORST: f64 = 3.25;
 
 /// Rows of the topic.
-///
-/// # Errors
-/// As [`crate::stress_intensity::stress_intensity`].
 pub fn rows(table: &mut Table) -> Result<()> {
     for nu in [0.34, 0.4] {
         let errors = plate(&LAW, nu)?;

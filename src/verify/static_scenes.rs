@@ -42,9 +42,6 @@ const SHEARED: &str = "the classical correction asks of points at the rim the en
      with one, two and three rows held; how the source holds its plate is lost";
 
 /// Rows of the topic.
-///
-/// # Errors
-/// No equilibrium.
 pub fn rows(table: &mut Table) -> Result<()> {
     for (nu, published, known) in STRETCH_FORM {
         let plate = Tension::of("one_bond_two_parameter", &steel(nu), nu)?;
@@ -119,9 +116,6 @@ pub struct Tension {
 impl Tension {
     /// The plate of a law whose springs stand for some elastic constants, solved as a scene and compared with what the steel of
     /// [`steel`] does that has this Poisson's ratio.
-    ///
-    /// # Errors
-    /// No equilibrium.
     pub fn of(law: &str, springs: &Material, poisson_ratio: f64) -> Result<Tension> {
         let strain = STRESS / steel(poisson_ratio).youngs_modulus;
         // As the article prints it; a bond-based law has no rotation to resist.

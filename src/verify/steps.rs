@@ -11,9 +11,6 @@ use crate::units::MM;
 const COMPARED: f64 = 0.99;
 
 /// Blocks of default length against blocks of a tenth of it: life, and path.
-///
-/// # Errors
-/// As [`predict`].
 pub fn rows(table: &mut Table) -> Result<()> {
     let panel = format!(
         "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 80\nlength_mm = 160\nthickness_mm = 2\ncrack_length_mm = 10\n{PULL}{MATERIAL_AND_LAW}"

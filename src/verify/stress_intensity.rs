@@ -46,9 +46,6 @@ pub(super) fn scene(specimen: &str, set: &[&str]) -> Result<Case> {
 }
 
 /// All rows of the topic.
-///
-/// # Errors
-/// As [`stress_intensity`].
 pub fn all(table: &mut Table) -> Result<()> {
     standard_specimens(table)?;
     models(table)?;
@@ -57,9 +54,6 @@ pub fn all(table: &mut Table) -> Result<()> {
 }
 
 /// K of the standard specimens and its independence of Poisson's ratio.
-///
-/// # Errors
-/// As [`stress_intensity`].
 pub fn standard_specimens(table: &mut Table) -> Result<()> {
     let mut of_nu: Vec<Vec<f64>> = vec![Vec::new(); StressIntensityMethod::ALL.len()];
     for nu in [0.0, 0.1, 0.2, 0.3, 0.3333] {
@@ -161,9 +155,6 @@ fn compare_tip(table: &mut Table, name: &str, tip: &TipResult, half_crack_spacin
 }
 
 /// Slanted cracks in a wide plate: `K_I = σ √(π a) sin²β`, `K_II = σ √(π a) sin β cos β`, β to the load.
-///
-/// # Errors
-/// As [`stress_intensity`].
 pub fn slanted_cracks(table: &mut Table) -> Result<()> {
     const HALF: f64 = 24.0;
     for to_horizontal in [30.0_f64, 45.0] {
@@ -177,9 +168,6 @@ pub fn slanted_cracks(table: &mut Table) -> Result<()> {
 }
 
 /// Two equal cracks on one line and two above each other, in wide plates.
-///
-/// # Errors
-/// As [`stress_intensity`].
 pub fn two_cracks(table: &mut Table) -> Result<()> {
     // Inner tips a half crack from the middle (c = 0.5, d = 1.5 crack lengths).
     let tips = plate(&[[[-3.0, 0.0], [-1.0, 0.0]], [[1.0, 0.0], [3.0, 0.0]]], HALF_CRACK, 24.0, StressIntensityMethod::ALL)?;

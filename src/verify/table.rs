@@ -36,13 +36,11 @@ pub struct KnownMiss {
 
 impl Row {
     /// Whether the error keeps its bound; an error that is not a number does not.
-    #[must_use]
     pub fn ok(&self) -> bool {
         self.error_percent.abs() <= self.bound_percent
     }
 
     /// Whether the row fails the verification: bound missed for no known reason, or by more than is known.
-    #[must_use]
     pub fn fails(&self) -> bool {
         !self.ok() && !self.known_miss.as_ref().is_some_and(|miss| self.error_percent.abs() <= miss.bound_percent)
     }
@@ -58,7 +56,6 @@ pub struct Table {
 
 impl Table {
     /// An empty table of a topic.
-    #[must_use]
     pub fn new(name: &'static str) -> Self {
         Table { name, rows: Vec::new(), last: Instant::now() }
     }
@@ -81,7 +78,6 @@ impl Table {
     }
 
     /// The rows, in the order in which they were computed.
-    #[must_use]
     pub fn into_rows(self) -> Vec<Row> {
         self.rows
     }

@@ -82,9 +82,6 @@ const KNOWN_MISSES: [(&str, &str, f64); 2] = [
 ];
 
 /// Rows of the topic.
-///
-/// # Errors
-/// No convergence of the solver.
 pub fn rows(table: &mut Table) -> Result<()> {
     for published in &PUBLISHED {
         let (law, nu) = (published.law(), published.poisson_ratio);
@@ -122,9 +119,6 @@ pub fn rows(table: &mut Table) -> Result<()> {
 }
 
 /// Errors of the plate of the study.
-///
-/// # Errors
-/// No convergence of the solver.
 pub fn plate(law: &BondLaw, poisson_ratio: f64) -> Result<Errors> {
     uniform_tension(&strip(SIZE[1], SIZE[0]), law, poisson_ratio, SPACING, HORIZON_RATIO, 0.0)
 }

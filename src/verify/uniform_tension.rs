@@ -26,9 +26,6 @@ pub struct Errors {
 
 /// Errors of a plate whose rim carries the traction of unit tension along y; E = 200 GPa, plane stress. The error of a point is
 /// relative to its own exact displacement, rigid motion taken off.
-///
-/// # Errors
-/// As [`Body::build`] and no solution.
 pub fn uniform_tension(
     specimen: &Specimen,
     law: &BondLaw,
@@ -42,9 +39,6 @@ pub fn uniform_tension(
 }
 
 /// [`uniform_tension`] by any solver, with or without symmetry; a lattice of `(spacing, horizon_ratio, angle)`.
-///
-/// # Errors
-/// As [`uniform_tension`].
 pub fn uniform_tension_with(
     (solver, symmetry): (SolverKind, Symmetry),
     specimen: &Specimen,
@@ -92,7 +86,6 @@ pub fn uniform_tension_with(
 }
 
 /// E = 200 GPa, plane stress.
-#[must_use]
 pub fn steel(poisson_ratio: f64) -> Material {
     Material::elastic(200e9, poisson_ratio, Plane::Stress)
 }
@@ -124,7 +117,6 @@ pub struct Shape {
 }
 
 /// Plates for a spacing of 1 mm.
-#[must_use]
 pub fn shapes() -> Vec<Shape> {
     let plain = || strip(60.0 * MM, 80.0 * MM);
     let shape = |name, specimen| Shape { name, specimen, angle: 0.0 };
@@ -152,7 +144,6 @@ pub fn shapes() -> Vec<Shape> {
 }
 
 /// A rectangle of thickness 1 m under unit tension on its ends y = ±length/2.
-#[must_use]
 pub fn strip(width: f64, length: f64) -> Specimen {
     Specimen::strip(SpecimenKind::Plate, width, length, 1.0)
 }

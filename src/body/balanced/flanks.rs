@@ -45,7 +45,6 @@ pub enum FlankRange {
 
 /// Bonds beside cracks that are cut, and their new multipliers, where these differ from those of `now`, ascending; `tips` are those of
 /// the cracks' ends that have not reached a rim, `ends` all.
-#[must_use]
 pub fn multipliers(
     body: &Body,
     now: &[f32],

@@ -68,19 +68,16 @@ struct Dual {
 
 impl<'a> Problem<'a> {
     /// Equations `Σ gain x = missing` of all points.
-    #[must_use]
     pub fn new(gains: &'a [BondGain], links: Vec<Link>, missing: Vec<Gain>) -> Self {
         Problem { gains, links, missing }
     }
 
     /// The changes within their bounds, with the smallest softness that Newton's method manages; `None` if it manages none.
-    #[must_use]
     pub fn solve(&self, bounds: [f64; 2]) -> Option<Vec<f64>> {
         self.solve_to(&SOFTNESS, bounds)
     }
 
     /// The same with other values of ε of the equations of force, the first of them that Newton's method manages.
-    #[must_use]
     pub fn solve_to(&self, softness: &[f64], bounds: [f64; 2]) -> Option<Vec<f64>> {
         let solve = |(points, links): (Vec<u32>, Vec<u32>)| {
             let part = Part::new(self, points, links)?;

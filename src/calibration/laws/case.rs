@@ -73,7 +73,6 @@ struct LawSlice {
 }
 
 /// Whether a calibration file asks for a law over K: it names tables of rates, or another law than that of Paris.
-#[must_use]
 pub fn is_law_fit(table: &Table) -> bool {
     let value = |section: &str, key: &str| table.get(section).and_then(|section| value_at(section, key));
     let law = value("fit", "law").and_then(Value::as_str);
@@ -82,9 +81,6 @@ pub fn is_law_fit(table: &Table) -> bool {
 
 impl LawCase {
     /// Reads the file and the tables it names.
-    ///
-    /// # Errors
-    /// Wrong input, or files that cannot be read.
     pub fn from_document(document: &Document) -> Result<Self> {
         Self::build(document).map_err(|error| document.locate(error))
     }
@@ -179,15 +175,11 @@ impl LawCase {
     }
 
     /// Fits all laws.
-    ///
-    /// # Errors
-    /// As [`fit_laws`].
     pub fn fit(&self) -> Result<LawFits> {
         fit_laws(&self.rows, self.law, &self.given)
     }
 
     /// Stress ratios of the rates, rising, those that agree to 0.005 as one.
-    #[must_use]
     pub fn ratios(&self) -> Vec<f64> {
         let mut ratios: Vec<f64> = self.rows.iter().map(|row| (row.ratio * 100.0).round() / 100.0).collect();
         ratios.sort_by(f64::total_cmp);
@@ -196,7 +188,6 @@ impl LawCase {
     }
 
     /// Smallest and largest ΔK, MPa√m.
-    #[must_use]
     pub fn delta_k_range(&self) -> [f64; 2] {
         let all = || self.rows.iter().map(|row| row.delta_k / MPA_SQRT_M);
         [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)]
@@ -239,9 +230,6 @@ fn alone(table: &Table) -> Result<String> {
 }
 
 /// The same from a file on disk.
-///
-/// # Errors
-/// As [`LawCase::from_document`].
 pub fn from_file(path: &Path, overrides: &[String]) -> Result<LawCase> {
     LawCase::from_document(&Document::read(path, overrides)?)
 }

@@ -47,7 +47,6 @@ impl LawFit {
     }
 
     /// Root mean square of the residuals.
-    #[must_use]
     pub fn rms(&self) -> f64 {
         (self.residuals.iter().map(|residual| residual * residual).sum::<f64>() / self.residuals.len() as f64).sqrt()
     }

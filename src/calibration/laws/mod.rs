@@ -68,7 +68,6 @@ pub struct LawFits {
 
 impl LawFits {
     /// The chosen law.
-    #[must_use]
     pub fn law(&self) -> &LawFit {
         &self.candidates[self.chosen]
     }

@@ -12,7 +12,6 @@ use crate::cells::field;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Content of `fit.json`.
-#[must_use]
 pub fn report(case: &LawCase, fits: &LawFits, wall_s: f64) -> Value {
     let best = fits.candidates.iter().filter(|law| law.left_out.is_none()).map(|law| law.aicc).fold(f64::INFINITY, f64::min);
     let candidate = |law: &LawFit| {
@@ -65,7 +64,6 @@ fn errors(law: &LawFit) -> Map<String, Value> {
 }
 
 /// The record that predictions read.
-#[must_use]
 pub fn record(case: &LawCase, fits: &LawFits) -> LawRecord {
     let law = fits.law();
     let mut fatigue = toml::Table::new();
@@ -90,7 +88,6 @@ pub fn record(case: &LawCase, fits: &LawFits) -> LawRecord {
 }
 
 /// `fit_rates.csv`: every rate beside that of the law.
-#[must_use]
 pub fn rates_csv(case: &LawCase, fits: &LawFits) -> String {
     let mut text = String::from("series,stress_ratio,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,da_dn_fitted_mm_per_cycle\n");
     for (row, residual) in case.rows.iter().zip(&fits.law().residuals) {
@@ -102,7 +99,6 @@ pub fn rates_csv(case: &LawCase, fits: &LawFits) -> String {
 }
 
 /// The fit in words, the chosen law first.
-#[must_use]
 pub fn summary(case: &LawCase, fits: &LawFits) -> Vec<String> {
     let law = fits.law();
     let [low, high] = case.delta_k_range();

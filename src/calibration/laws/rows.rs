@@ -36,13 +36,11 @@ pub struct RateRow {
 
 impl RateRow {
     /// K_max, Pa√m.
-    #[must_use]
     pub fn k_max(&self) -> f64 {
         self.delta_k / (1.0 - self.ratio.max(0.0))
     }
 
     /// ln of the rate in mm/cycle.
-    #[must_use]
     pub fn log_rate(&self) -> f64 {
         (self.rate / MM_PER_CYCLE).ln()
     }
@@ -152,7 +150,6 @@ fn read_rows(bytes: &[u8], file: &Path, given: Option<f64>) -> Result<RateTable>
 }
 
 /// Rates of the readings of a calibration, over steps of at least 0.25 mm (ASTM E647, 8.6.2), each at its own ΔK and R.
-#[must_use]
 pub fn of_readings(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64) -> Vec<RateRow> {
     let of_curve = |curve: &MeasuredCurve| -> Vec<RateRow> {
         let ratio_at = |reading: usize| {

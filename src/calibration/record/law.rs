@@ -40,13 +40,11 @@ pub struct LawRecord {
 
 impl LawRecord {
     /// Whether the content of a `fitted.toml` is such a record.
-    #[must_use]
     pub fn is_of(table: &Table) -> bool {
         table.contains_key("fatigue")
     }
 
     /// `growth_law`.
-    #[must_use]
     pub fn kind(&self) -> &str {
         self.fatigue.get("growth_law").and_then(Value::as_str).unwrap_or_default()
     }

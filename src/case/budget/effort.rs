@@ -59,19 +59,16 @@ impl Effort {
     pub const NONE: Effort = Effort { seconds: 0.0, power: 1.0, other_keys: "" };
 
     /// So many time steps, whose number goes with 1/Δ to a power.
-    #[must_use]
     pub fn of_steps(steps: f64, power: f64, points: f64, bonds: f64) -> Effort {
         Effort { seconds: steps * STEP * points * bonds / BONDS_USUAL, power: 2.0 + power, other_keys: "" }
     }
 
     /// So many solves by relaxation.
-    #[must_use]
     pub fn of_relaxation(solves: f64, points: f64, bonds: f64) -> Effort {
         Effort { seconds: solves * RELAXATION * points.powf(1.5) * bonds / BONDS_USUAL, power: 3.0, other_keys: "" }
     }
 
     /// So many solves that factorise all points.
-    #[must_use]
     pub fn of_factors(solves: f64, points: f64, bonds: f64) -> Effort {
         Effort { seconds: solves * FACTOR * points.powf(1.5) * bonds / BONDS_USUAL, power: 3.0, other_keys: "" }
     }
@@ -103,9 +100,6 @@ impl Effort {
 
 impl Budget {
     /// Refuses what would compute far longer than so many seconds of one core.
-    ///
-    /// # Errors
-    /// As [`Budget::within`].
     pub fn within_time(&self, seconds: f64) -> Result<()> {
         let Effort { seconds: about, power, other_keys } = self.effort;
         if about <= MARGIN * seconds {
@@ -121,7 +115,6 @@ impl Budget {
     }
 
     /// What it takes up, in words.
-    #[must_use]
     pub fn words(&self) -> String {
         let megabytes = |bytes: f64| if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { super::gigabytes(bytes) };
         let (time, memory, disk) = (duration(self.effort.seconds), megabytes(self.bytes), megabytes(self.disk_bytes));

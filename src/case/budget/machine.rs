@@ -5,7 +5,6 @@ use std::path::Path;
 
 /// Bytes free for this process: the least of what the machine has, what every control group around the process leaves it, and what
 /// `ulimit -v` leaves it.
-#[must_use]
 pub fn free_bytes() -> Option<f64> {
     let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
     let (memory, limits, status) = (read("/proc/meminfo"), read("/proc/self/limits"), read("/proc/self/status"));
@@ -18,13 +17,11 @@ pub fn free_bytes() -> Option<f64> {
 }
 
 /// `MemAvailable` of `/proc/meminfo`.
-#[must_use]
 pub fn of_machine(meminfo: &str) -> Option<f64> {
     kib(meminfo, "MemAvailable:")
 }
 
 /// What a control group leaves: its `memory.max` less `memory.current`, of which caches of files can be given back.
-#[must_use]
 pub fn of_group(max: &str, current: &str, stat: &str) -> Option<f64> {
     let [max, current] = [max, current].map(|text| text.trim().parse::<f64>().ok());
     let caches = stat.lines().find_map(|line| line.strip_prefix("inactive_file ")?.trim().parse::<f64>().ok());
@@ -32,7 +29,6 @@ pub fn of_group(max: &str, current: &str, stat: &str) -> Option<f64> {
 }
 
 /// What `ulimit -v` leaves: `Max address space` of `/proc/self/limits` less `VmSize` of `/proc/self/status`.
-#[must_use]
 pub fn of_process(limits: &str, status: &str) -> Option<f64> {
     let most =
         limits.lines().find_map(|line| line.strip_prefix("Max address space")?.split_whitespace().next()?.parse::<f64>().ok());

@@ -87,7 +87,6 @@ impl SweepFolder {
     }
 
     /// What came of a case, if it has been run: its number counts from 1.
-    #[must_use]
     pub fn outcome(&self, number: usize) -> Option<Outcome> {
         self.outcome_in(&self.plan, number)
     }
@@ -112,7 +111,6 @@ impl SweepFolder {
     }
 
     /// Whether nothing is left to do for a case; one without the files that are wanted is run again, unless it failed.
-    #[must_use]
     pub fn is_done(&self, number: usize, with_files: bool) -> bool {
         self.outcome(number).is_some_and(|outcome| match outcome.problem {
             Some(_) => !outcome.try_again,

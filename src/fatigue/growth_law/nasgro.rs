@@ -42,7 +42,6 @@ pub const RATIO_MIN: f64 = -2.0;
 
 impl Nasgro {
     /// f at a stress ratio, and A₀.
-    #[must_use]
     pub fn opening(&self, ratio: f64) -> (f64, f64) {
         let Nasgro { alpha, stress_over_flow: s, .. } = *self;
         let a0 = (0.825 - 0.34 * alpha + 0.05 * alpha * alpha) * (0.5 * PI * s).cos().powf(1.0 / alpha);
@@ -54,7 +53,6 @@ impl Nasgro {
     }
 
     /// ΔK_th at a stress ratio, Pa√m.
-    #[must_use]
     pub fn threshold_at(&self, ratio: f64) -> f64 {
         let (f, a0) = self.opening(ratio);
         let base = (1.0 - f) / ((1.0 - a0) * (1.0 - ratio));

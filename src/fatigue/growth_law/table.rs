@@ -51,7 +51,6 @@ impl Table {
     }
 
     /// Smallest and largest ΔK, Pa√m, that the table knows at a stress ratio.
-    #[must_use]
     pub fn range(&self, ratio: f64) -> [f64; 2] {
         let (from, to, share) = self.around(ratio);
         let ends = if share == 0.0 { [from.ends(); 2] } else { [from.ends(), to.ends()] };
@@ -59,7 +58,6 @@ impl Table {
     }
 
     /// Whether the table speaks about a stress ratio.
-    #[must_use]
     pub fn knows(&self, ratio: f64) -> bool {
         let [first, last] = [&self.curves[0], &self.curves[self.curves.len() - 1]].map(|curve| curve.ratio);
         self.curves.len() == 1 || (first..=last).contains(&ratio)

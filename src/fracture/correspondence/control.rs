@@ -49,13 +49,11 @@ impl Control {
     }
 
     /// Constant on η, N/m⁷.
-    #[must_use]
     pub fn on_relative(&self) -> f64 {
         if let Control::Relative(c) = self { *c } else { 0.0 }
     }
 
     /// Constant on η - H ξ, N/m⁷.
-    #[must_use]
     pub fn on_uneven(&self) -> f64 {
         if let Control::Uneven(c) = self { *c } else { 0.0 }
     }

@@ -103,7 +103,6 @@ impl Criterion {
 /// Critical stretch of a fracture energy in the plane, `s_c = √(G_c / ([6 G/π + 16 (K - 2G)/(9 π²)] δ))` with the bulk modulus
 /// of the plane state, `E/(2 (1-ν))` in plane stress and `E/(2 (1+ν)(1-2ν))` in plane strain (Madenci
 /// and Oterkus 2014).
-#[must_use]
 pub fn critical_stretch(material: &Material, fracture_energy: f64, horizon: f64) -> f64 {
     let (e, nu, shear) = (material.youngs_modulus, material.poisson_ratio, material.shear_modulus());
     let bulk = match material.plane {

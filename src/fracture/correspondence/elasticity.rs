@@ -15,14 +15,12 @@ pub struct Elasticity {
 
 impl Elasticity {
     /// Constants of a material: plane stress `C₁₁ = E/(1-ν²)`, `C₁₂ = ν C₁₁`, or plane strain; `G = E/(2 (1+ν))`.
-    #[must_use]
     pub fn of(material: &Material) -> Self {
         let [c11, c12] = plane_stiffness(material);
         Elasticity { c11, c12, shear: material.shear_modulus() }
     }
 
     /// Green strain `e = (H + Hᵀ + Hᵀ H)/2`, which a rotation leaves at zero.
-    #[must_use]
     #[inline(always)]
     pub fn green_strain(gradient: &Matrix2<f64>) -> Matrix2<f64> {
         0.5 * (gradient + gradient.transpose() + gradient.transpose() * gradient)
@@ -38,7 +36,6 @@ impl Elasticity {
     }
 
     /// First Piola-Kirchhoff stress `P = F S`, Pa, and energy density `S:e/2`, J/m³.
-    #[must_use]
     #[inline(always)]
     pub fn first_piola_kirchhoff(&self, gradient: &Matrix2<f64>) -> (Matrix2<f64>, f64) {
         let e = Self::green_strain(gradient);
@@ -47,21 +44,18 @@ impl Elasticity {
     }
 
     /// Cauchy stress `F S Fᵀ / det F`, Pa.
-    #[must_use]
     pub fn cauchy(&self, gradient: &Matrix2<f64>) -> Matrix2<f64> {
         let f = Matrix2::identity() + gradient;
         self.first_piola_kirchhoff(gradient).0 * f.transpose() / f.determinant()
     }
 
     /// Largest eigenvalue of C, Pa: `C₁₁ + C₁₂` in equal stretch, 2 G in shear.
-    #[must_use]
     pub fn largest(&self) -> f64 {
         (self.c11 + self.c12).max(2.0 * self.shear)
     }
 }
 
 /// First principal stress, Pa.
-#[must_use]
 #[inline(always)]
 pub fn first_principal(stress: &Matrix2<f64>) -> f64 {
     let (mean, half) = (0.5 * (stress[(0, 0)] + stress[(1, 1)]), 0.5 * (stress[(0, 0)] - stress[(1, 1)]));

@@ -31,21 +31,18 @@ pub struct State {
 
 impl State {
     /// The state with this displacement, forces of the bonds and strain energy.
-    #[must_use]
     pub fn new(full: &FullLoad, level: f64, u: &[f64], force: &[f64], strain: f64) -> Self {
         let [driven, pushed] = full.works(u, force);
         State { level, driven, pushed, strain }
     }
 
     /// The same with the forces of rigid bodies that the interaction moves by itself.
-    #[must_use]
     pub fn with_driven(mut self, driven: Option<Driven>) -> Self {
         self.driven += driven.map_or(0.0, |driven| driven.rate);
         self
     }
 
     /// The state on the ray to this one of full load.
-    #[must_use]
     pub fn at(self, level: f64) -> Self {
         State { level, driven: level * self.driven, pushed: level * self.pushed, strain: level * level * self.strain }
     }
@@ -77,22 +74,17 @@ impl Account {
     }
 
     /// Work that is neither strain nor fracture energy, over the largest work.
-    #[must_use]
     pub fn excess(&self) -> f64 {
         let nowhere = self.work - self.state.strain - self.fracture;
         if self.largest > 0.0 { nowhere / self.largest } else { 0.0 }
     }
 
     /// Whether the strain energy is not finite, or exceeds so many times all the work there ever was.
-    #[must_use]
     pub fn is_impossible(&self, times: f64) -> bool {
         self.state.strain.is_nan() || self.state.strain > times * self.largest
     }
 
     /// Takes down a row with this displacement and forces of the bonds.
-    ///
-    /// # Errors
-    /// A run that was cancelled.
     pub fn row(
         &mut self,
         to: &mut Recorder<'_, '_>,

@@ -40,7 +40,6 @@ pub struct Next {
 
 impl<'n> Control<'n> {
     /// Control of a law.
-    #[must_use]
     pub fn new(net: &'n Net, failure: &'n Failure) -> Self {
         Control { net, failure, last_share: failure.last_share(), measure: vec![0.0; net.bonds.len()] }
     }
@@ -60,7 +59,6 @@ impl<'n> Control<'n> {
     }
 
     /// The level at which a bond is damaged next.
-    #[must_use]
     pub fn next(&self, bonds: &BondState) -> Next {
         let level = |b: usize| self.failure.onset(self.net.bonds[b].from, bonds.share[b]) / self.measure[b];
         let least = |breaks: bool| {
@@ -75,7 +73,6 @@ impl<'n> Control<'n> {
 
     /// The level at which the largest damage has grown by `growth` from these shares, none has broken, and none is past its
     /// limit.
-    #[must_use]
     pub fn level_of_growth(&self, start: &[f64], growth: f64) -> f64 {
         self.least(|b| {
             if self.measure[b] == 0.0 {
@@ -147,7 +144,6 @@ impl<'n> Control<'n> {
 
     /// Level at which these bonds are at their limit with this displacement, on the average: where they have just lost their last
     /// force.
-    #[must_use]
     pub fn level_of(&self, broken: &[usize], u: &[f64]) -> f64 {
         let limit = |&b: &usize| {
             let measure = self.failure.measure(measures(self.net, b, u));
@@ -158,7 +154,6 @@ impl<'n> Control<'n> {
 
     /// Energy that the change from these shares to the present ones has taken along the curves of the law, J, with the shear
     /// that the displacement `u` of a level has.
-    #[must_use]
     pub fn taken(&self, start: &[f64], bonds: &BondState, u: &[f64], level: f64) -> f64 {
         let of = |b: usize| -> f64 {
             let (before, after) = (start[b], bonds.share[b]);

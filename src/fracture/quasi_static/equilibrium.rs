@@ -58,9 +58,6 @@ impl InternalForce for Frozen<'_, '_> {
 
 impl<'n> Equilibrium<'n> {
     /// A solver for a net with its loads, whose flanks touch across these cracks and those that grow from them.
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn new(net: &'n Net, cracks: &[Crack], full: &'n FullLoad) -> Result<Self> {
         let springs = Springs::new(net, Failure::Never, false);
         Ok(Equilibrium {
@@ -73,13 +70,11 @@ impl<'n> Equilibrium<'n> {
     }
 
     /// What solving has cost so far.
-    #[must_use]
     pub fn spent(&self) -> Spent {
         self.inner.spent
     }
 
     /// What it keeps where it is renewed.
-    #[must_use]
     pub fn kept(&self) -> Kept {
         Kept { pressed: self.contact.pressed(), spent: self.spent() }
     }
@@ -92,7 +87,6 @@ impl<'n> Equilibrium<'n> {
     }
 
     /// How its flanks stand at the last equilibrium.
-    #[must_use]
     pub fn touching(&self) -> Touching {
         self.contact.touching()
     }

@@ -41,14 +41,12 @@ impl FullLoad {
     }
 
     /// The loads as dynamic relaxation takes them.
-    #[must_use]
     pub fn loads(&self) -> Loads<'_> {
         Loads { held: &self.held, external: &self.external }
     }
 
     /// Work that the held unknowns would do on the way to full load against these forces of the bonds, and work of the given
     /// forces over this displacement, J.
-    #[must_use]
     pub fn works(&self, u: &[f64], force: &[f64]) -> [f64; 2] {
         let driven: f64 = self.motion.iter().zip(force).map(|(motion, force)| -motion * force).sum();
         let pushed: f64 = self.external.iter().zip(u).map(|(force, u)| force * u).sum();

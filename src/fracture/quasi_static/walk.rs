@@ -110,9 +110,6 @@ impl<'a, 'r, 'n> Walk<'a, 'r, 'n> {
     }
 
     /// Goes from state to state, up to the last.
-    ///
-    /// # Errors
-    /// A run that was cancelled.
     pub(super) fn run(&mut self, bonds: &mut BondState) -> Result<SceneEnd> {
         while self.at.states < self.path.settings.steps {
             if let Some(end) = self.next_state(bonds)? {

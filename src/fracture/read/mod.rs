@@ -80,25 +80,16 @@ const STRANGERS: &[ForeignSections] = &[
 
 impl Scene {
     /// Reads a scene file; `overrides` are `section.key=value`.
-    ///
-    /// # Errors
-    /// Wrong input, or a file that cannot be read.
     pub fn from_file(path: &Path, overrides: &[String]) -> Result<Self> {
         Self::from_document(&Document::read(path, overrides)?)
     }
 
     /// Reads a scene from text; files it names lie in `folder`.
-    ///
-    /// # Errors
-    /// Wrong input.
     pub fn from_toml(text: &str, name: &str, folder: impl Into<Folder>, overrides: &[String]) -> Result<Self> {
         Self::from_document(&Document::parse(text, name, folder, overrides)?)
     }
 
     /// Reads a scene from a parsed document, which gives errors their line.
-    ///
-    /// # Errors
-    /// Wrong input.
     pub fn from_document(document: &Document) -> Result<Self> {
         read(&document.table, &document.name, &document.folder).map_err(|error| document.locate(error))
     }
@@ -106,7 +97,6 @@ impl Scene {
 
 /// Whether a file describes a fracture scene rather than a fatigue case: by a section or a kind of loading that only scenes have.
 /// Displacements of cases have a maximum, or a range, and a ratio.
-#[must_use]
 pub fn is_scene(table: &Table) -> bool {
     const OF_CYCLES: [&str; 3] = ["displacement_max_mm", "displacement_range_mm", "stress_ratio"];
     let loading = table.get("loading").and_then(Value::as_table);

@@ -58,7 +58,6 @@ pub fn edge(edge: Edge, key: &str, depth: (&str, f64), range: (&str, Option<[f64
 }
 
 /// The box around a region, m: for a side, so deep as it holds and one `row` at the least.
-#[must_use]
 pub fn around(region: &Region, row: f64, specimen: &Specimen) -> (Point, Point) {
     match *region {
         Region::Box { low, high } => (low, high),

@@ -49,7 +49,6 @@ pub struct Front {
 
 impl Front {
     /// A tip at the start, of a crack that gives it this length, m.
-    #[must_use]
     pub fn new(end: LineEnd, length: f64) -> Self {
         Front {
             end,
@@ -70,25 +69,21 @@ impl Front {
     }
 
     /// Whether it grows under this load.
-    #[must_use]
     pub fn is_growing(&self) -> bool {
         self.state == TipState::Active && self.rate > 0.0
     }
 
     /// K_eq at maximum load, Pa√m; none where the load presses the tip shut.
-    #[must_use]
     pub fn equivalent(&self) -> f64 {
         if self.factors[0] <= 0.0 { 0.0 } else { equivalent_factor(self.factors) }
     }
 
     /// Whether its next step begins a kink.
-    #[must_use]
     pub fn begins_kink(&self) -> bool {
         self.corner == Some(self.growth)
     }
 
     /// Length of crack that its field knows of, m: since the last corner, if there is one.
-    #[must_use]
     pub fn own_length(&self) -> f64 {
         match self.corner {
             Some(corner) if self.growth > corner => self.growth - corner,

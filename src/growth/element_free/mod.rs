@@ -117,7 +117,6 @@ impl<'a> ElementFree<'a> {
 }
 
 /// The initial cracks of a specimen, and their tips as nodes see them; ends of slots are none.
-#[must_use]
 pub fn initial_cracks(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
     let lines = specimen.crack_lines();
     let ends = (0..specimen.tips.len()).filter_map(|tip| specimen.line_end(tip));
@@ -136,9 +135,6 @@ pub fn initial_plate(case: &Case) -> Result<Discretisation> {
 }
 
 /// K and T of the initial tips of a case at maximum load, in the order of `Specimen::tips`.
-///
-/// # Errors
-/// As [`ElementFree::start`] and [`CrackGrowth::open`].
 pub fn initial_tips(case: &Case) -> Result<Vec<TipRecord>> {
     let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
     let mut growth = ElementFree::start(case, Box::new(law))?;

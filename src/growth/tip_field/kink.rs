@@ -56,7 +56,6 @@ impl Kink {
 }
 
 /// F₁₁, F₁₂ and G₁ of a kink by θ, rad, up to m¹⁰ and m¹¹.
-#[must_use]
 pub fn coefficients(theta: f64) -> [f64; 3] {
     let pi = std::f64::consts::PI;
     let m = theta / pi;

@@ -146,7 +146,6 @@ impl TipFieldState {
     }
 
     /// Whether it may be a later state of the same cracks.
-    #[must_use]
     pub fn fits(&self, start: &TipFieldState) -> bool {
         let ends = |state: &TipFieldState| state.tips.iter().map(|tip| tip.end).collect::<Vec<_>>();
         self.lines.len() == start.lines.len() && ends(self) == ends(start)

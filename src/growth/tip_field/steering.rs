@@ -26,7 +26,6 @@ const HELD_HORIZONS: f64 = 1.15;
 const FOUND_HORIZONS: f64 = 1.0;
 
 /// Angle θ of the largest circumferential stress, rad, counter-clockwise from straight ahead.
-#[must_use]
 pub fn kink_angle([k_i, k_ii]: [f64; 2]) -> f64 {
     if k_ii == 0.0 {
         return 0.0;
@@ -36,7 +35,6 @@ pub fn kink_angle([k_i, k_ii]: [f64; 2]) -> f64 {
 }
 
 /// K_eq, Pa√m: the opening factor in the direction of [`kink_angle`]; none where the flanks are in contact.
-#[must_use]
 pub fn equivalent_factor(factors: [f64; 2]) -> f64 {
     let (k_i, k_ii) = (factors[0].max(0.0), factors[1]);
     let theta = kink_angle([k_i, k_ii]);
@@ -82,7 +80,6 @@ impl Steering {
     }
 
     /// Direction for the next `step` of growth, m: the aim at its middle.
-    #[must_use]
     pub fn direction(&self, growth: f64, step: f64, ahead: Point, horizon: f64) -> Point {
         if self.aims.is_empty() {
             return ahead;
@@ -94,7 +91,6 @@ impl Steering {
     }
 
     /// Curvature of the crack ahead, rad/m, counter-clockwise.
-    #[must_use]
     pub fn curvature(&self, horizon: f64) -> f64 {
         if self.aims.is_empty() { 0.0 } else { self.line(horizon).1 }
     }
@@ -108,13 +104,11 @@ impl Steering {
     }
 
     /// Whether a tip that has grown by `growth` has come round a corner so lately that its aims do not show yet how it curves.
-    #[must_use]
     pub fn is_turning(&self, growth: f64, horizon: f64) -> bool {
         self.held.is_some_and(|held| growth < held + FOUND_HORIZONS * horizon)
     }
 
     /// Growth at the last corner, m, while the direction after it is held.
-    #[must_use]
     pub fn corner(&self) -> Option<f64> {
         self.corner
     }

@@ -103,19 +103,16 @@ impl Levels {
     }
 
     /// The finest lattice.
-    #[must_use]
     pub fn finest(&self) -> &Lattice {
         &self.lattices[self.lattices.len() - 1]
     }
 
     /// Place of a point, m.
-    #[must_use]
     pub fn position(&self, leaf: Leaf) -> Point {
         position(&self.lattices[leaf.level], leaf.column, leaf.row)
     }
 
     /// The point at a place of a level; columns and rows may lie outside.
-    #[must_use]
     pub fn point_at(&self, level: usize, column: i64, row: i64) -> Option<usize> {
         let lattice = &self.lattices[level];
         let (column, row) = (usize::try_from(column).ok()?, usize::try_from(row).ok()?);
@@ -127,14 +124,12 @@ impl Levels {
     }
 
     /// The point whose cell a place of the finest level lies in.
-    #[must_use]
     pub fn point_over(&self, column: i64, row: i64) -> Option<usize> {
         let finest = self.lattices.len() - 1;
         (0..=finest).find_map(|up| self.point_at(finest - up, column >> up, row >> up))
     }
 
     /// Middle of a point's cell in halves of the finest spacing, which are whole numbers.
-    #[must_use]
     pub fn halves(&self, leaf: Leaf) -> [i64; 2] {
         let up = self.lattices.len() - 1 - leaf.level;
         [leaf.column, leaf.row].map(|i| (2 * i as i64 + 1) << up)

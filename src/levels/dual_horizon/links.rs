@@ -31,7 +31,6 @@ pub struct Linking<'a> {
 
 impl<'a> Linking<'a> {
     /// Bonds of a specimen's points.
-    #[must_use]
     pub fn new(
         specimen: &'a Specimen,
         levels: &'a Levels,
@@ -47,7 +46,6 @@ impl<'a> Linking<'a> {
     }
 
     /// Bonds between points of one level, each pair once.
-    #[must_use]
     pub fn within_levels(&self) -> Vec<NetBond> {
         let mut bonds = Vec::new();
         for (i, leaf) in self.levels.leaves.iter().enumerate() {
@@ -74,7 +72,6 @@ impl<'a> Linking<'a> {
     }
 
     /// Bonds from every point to those of the next coarser and the next finer level in its own horizon.
-    #[must_use]
     pub fn across_levels(&self) -> Vec<NetBond> {
         let mut bonds = Vec::new();
         for (i, &leaf) in self.levels.leaves.iter().enumerate() {

@@ -25,13 +25,11 @@ pub struct Sharing<'a> {
 
 impl<'a> Sharing<'a> {
     /// A rule.
-    #[must_use]
     pub fn new(levels: &'a Levels, positions: &'a [Point], consistent: Option<(Obstacles<'a>, usize)>) -> Self {
         Sharing { levels, positions, consistent }
     }
 
     /// Shares of a force on a piece of the rim; empty where no point lies near.
-    #[must_use]
     pub fn of(&self, facet: &Facet) -> Vec<(u32, f64)> {
         let Some(seat) = self.seat(facet) else { return Vec::new() };
         let linear = self.consistent.as_ref().and_then(|(obstacles, rows)| {
@@ -110,7 +108,6 @@ pub fn forces(specimen: &Specimen, sharing: &Sharing<'_>, floating: bool) -> Res
 }
 
 /// Points at whose rim a load acts, ascending.
-#[must_use]
 pub fn seats(specimen: &Specimen, sharing: &Sharing<'_>) -> Vec<u32> {
     let pieces = load_pieces(specimen, sharing.levels.finest().spacing);
     let mut seats: Vec<u32> = pieces.iter().filter_map(|piece| sharing.seat(&piece.facet)).map(|seat| seat as u32).collect();

@@ -72,13 +72,11 @@ impl<'s> Area<'s> {
     }
 
     /// An error about this area.
-    #[must_use]
     pub fn refusal(&self, problem: &str, remedy: &str) -> Error {
         input_missing(&format!("refinement.regions[{}]", self.index), problem, remedy)
     }
 
     /// Whether a place lies in the area.
-    #[must_use]
     pub fn holds(&self, at: Point) -> bool {
         match *self.region {
             RefinedRegion::Box { low, high } => (0..2).all(|i| at[i] >= low[i] && at[i] <= high[i]),

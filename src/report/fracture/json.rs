@@ -11,7 +11,6 @@ use crate::report::{model_words, provenance};
 use crate::units::MM;
 
 /// The whole object. A figure that does not exist is `null`.
-#[must_use]
 pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
     let figures = &fracture.figures;
     let peak = rows(fracture).max_by(|a, b| a.load.total_cmp(&b.load));

@@ -76,7 +76,6 @@ impl OutputFile {
     }
 
     /// Whether it will be a file, of which something can be said on standard output.
-    #[must_use]
     pub fn is_file(&self) -> bool {
         matches!(self.place, Place::File { .. })
     }

@@ -55,9 +55,6 @@ impl Finished {
 
 impl OutputFolder {
     /// Claims `path` for a run that read nothing and writes little.
-    ///
-    /// # Errors
-    /// As [`OutputFolder::claim`].
     pub fn create(path: &Path, kind: RunKind) -> Result<OutputFolder> {
         Self::claim(path, kind, &Provenance::default(), Room::default())
     }
@@ -125,28 +122,22 @@ impl OutputFolder {
     }
 
     /// Where to write until the folder is finished.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.partial
     }
 
     /// Where the results will stand, as the user named it.
-    #[must_use]
     pub fn name(&self) -> &Path {
         &self.name
     }
 
     /// What the user should know of the place before the run.
-    #[must_use]
     pub fn warning(&self) -> Option<&str> {
         self.warning.as_deref()
     }
 
     /// Has the files of the run written. If that fails, what there is stays under a visible name; where nothing could be written it is
     /// tried in the current folder, and in the one for temporary files.
-    ///
-    /// # Errors
-    /// What `write` fails with, and where what there is stands.
     pub fn fill<T>(&mut self, write: impl Fn(&Path) -> Result<T>) -> Result<T> {
         let error = match write(&self.partial) {
             Ok(done) => return Ok(done),

@@ -14,13 +14,11 @@ pub(super) const OLD: &str = "old";
 const LOCK: &str = "lock";
 
 /// The lock file of a name.
-#[must_use]
 pub fn lock_of(target: &Path) -> PathBuf {
     parent_of(target).join(format!(".{}.{LOCK}", name_of(target)))
 }
 
 /// Whether a name is one of those that this program gives for a while.
-#[must_use]
 pub fn is_temporary(name: &str) -> bool {
     let Some((stem, end)) = name.strip_prefix('.').and_then(|rest| rest.rsplit_once('.')) else { return false };
     !stem.is_empty() && (end == LOCK || end == PARTIAL) || stem_of(name).is_some()

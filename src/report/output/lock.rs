@@ -38,9 +38,6 @@ pub enum Share {
 
 impl Lock {
     /// Takes the lock file at `path`.
-    ///
-    /// # Errors
-    /// [`Refused`].
     pub fn take(path: &Path, share: Share) -> Result<Lock, Refused> {
         let (pending, (file, is_real)) = Pending::file_by(path, || Self::locked(path, share))?;
         Ok(Lock { file, path: path.to_path_buf(), is_real, _pending: pending })
@@ -79,13 +76,11 @@ impl Lock {
     }
 
     /// Whether the system keeps others out, which not every file system does.
-    #[must_use]
     pub fn is_real(&self) -> bool {
         self.is_real
     }
 
     /// Whether a lock file stands there whose holder is gone; it is removed then.
-    #[must_use]
     pub fn is_given_up(path: &Path) -> bool {
         let is_free = File::open(path).is_ok_and(|file| file.try_lock().is_ok());
         is_free && Lock::take(path, Share::Alone).is_ok_and(|lock| lock.is_real())

@@ -38,7 +38,6 @@ pub enum RunKind {
 
 impl RunKind {
     /// In words.
-    #[must_use]
     pub fn words(self) -> &'static str {
         match self {
             RunKind::Predict => "a prediction",
@@ -66,15 +65,11 @@ pub struct Marker {
 
 impl Marker {
     /// The marker of a folder; `None` where there is none, or one that lists no files.
-    #[must_use]
     pub fn read(folder: &Path) -> Option<Marker> {
         toml::from_str(&fs::read_to_string(folder.join(MARKER)).ok()?).ok()
     }
 
     /// A marker that lists all that a folder holds now.
-    ///
-    /// # Errors
-    /// The folder cannot be read.
     pub fn of(kind: RunKind, folder: &Path) -> io::Result<Marker> {
         let mut files = BTreeSet::new();
         list(folder, "", &mut files)?;
@@ -85,7 +80,6 @@ impl Marker {
     ///
     /// # Panics
     /// Never: names and text always have a form in TOML.
-    #[must_use]
     pub fn text(&self) -> String {
         let version = env!("CARGO_PKG_VERSION");
         let head =
@@ -94,7 +88,6 @@ impl Marker {
     }
 
     /// Whether a path in the folder is the marker or listed.
-    #[must_use]
     pub fn has(&self, path: &str) -> bool {
         path == MARKER || self.files.contains(path)
     }
@@ -129,9 +122,6 @@ impl Marker {
     }
 
     /// Removes the files of this run from a folder, and the folders that are empty then.
-    ///
-    /// # Errors
-    /// One that cannot be removed.
     pub fn remove_from(&self, folder: &Path) -> io::Result<()> {
         self.remove_files(folder)?;
         gone(fs::remove_file(folder.join(MARKER)))

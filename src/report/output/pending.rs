@@ -33,17 +33,11 @@ impl Pending {
     }
 
     /// Makes a file and keeps it on the list, so that the process is folded up before or after, not in between.
-    ///
-    /// # Errors
-    /// As `make`.
     pub(super) fn file_by<T, E>(path: &Path, make: impl FnOnce() -> Result<T, E>) -> Result<(Self, T), E> {
         Self::by(Thing::File(path.to_path_buf()), make)
     }
 
     /// Likewise a folder.
-    ///
-    /// # Errors
-    /// As `make`.
     pub(super) fn tree_by<T, E>(path: &Path, make: impl FnOnce() -> Result<T, E>) -> Result<(Self, T), E> {
         Self::by(Thing::Tree(path.to_path_buf()), make)
     }
@@ -72,7 +66,6 @@ impl Drop for Pending {
 }
 
 /// Keeps the process from being folded up while a result is put in its place.
-#[must_use]
 pub(super) fn hold() -> Held {
     // The list is whole at any moment, even that of a thread that died.
     Held(ALL.lock().unwrap_or_else(PoisonError::into_inner))

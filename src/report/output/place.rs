@@ -85,9 +85,6 @@ fn read_below(folder: &Path, read: &Provenance) -> Option<PathBuf> {
 }
 
 /// Why a folder must not be replaced by a run of this kind, and what to do.
-///
-/// # Errors
-/// It cannot be read.
 pub(super) fn occupied(target: &Path, kind: RunKind) -> io::Result<Option<(String, &'static str)>> {
     const ELSEWHERE: &str = "give a new or empty folder, or remove this one yourself";
     const MOVE_IT: &str = "give a new or empty folder, or move it out of this one";
@@ -125,9 +122,6 @@ pub(super) fn is_mounted(folder: &Path) -> bool {
 }
 
 /// Refuses a place without room for the tables of a run; what is to be said of one without room for all of it.
-///
-/// # Errors
-/// [`Error::File`].
 pub(super) fn room(name: &Path, folder: &Path, wanted: Room) -> Result<Option<String>> {
     // A file system that does not tell is taken as large enough.
     let Ok(there) = rustix::fs::statvfs(folder) else { return Ok(None) };

@@ -23,9 +23,6 @@ pub struct StandingFolder {
 
 impl StandingFolder {
     /// Opens the folder of an earlier call, or makes one with `marker` and these files.
-    ///
-    /// # Errors
-    /// As [`super::OutputFolder::claim`].
     pub fn open(path: &Path, marker: &Marker, read: &Provenance, share: Share, first: &[(&str, Vec<u8>)]) -> Result<Self> {
         let cannot = |error| Error::file(path, "cannot create the folder", error);
         let target = folder_for(path, marker.kind, read)?;
@@ -65,7 +62,6 @@ impl StandingFolder {
     }
 
     /// Where it is.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.target
     }
@@ -95,7 +91,6 @@ fn begin(name: &Path, target: &Path, marker: &Marker, first: &[(&str, Vec<u8>)])
 /// The marker of a folder of this kind whose files are known by name; folders of other runs end in `/`.
 impl Marker {
     /// Of a folder that will hold these.
-    #[must_use]
     pub fn listing(kind: RunKind, files: &[&str]) -> Marker {
         Marker { kind, files: files.iter().map(|file| (*file).to_owned()).collect() }
     }

@@ -19,9 +19,6 @@ const PATH: &str = "#0a8f3c";
 const RADII: usize = 3;
 
 /// SVG text of the nodes of a case for its initial cracks, and the path of every tip, m.
-///
-/// # Errors
-/// As [`initial_plate`].
 pub fn nodes_svg(case: &Case, paths: &[Vec<Point>]) -> Result<String> {
     let plate = initial_plate(case)?;
     let spacing = case.model.element_free.resolution.far / MM;
@@ -38,9 +35,6 @@ const TIP_PIXELS: f64 = 640.0;
 const TIP_SPACINGS: f64 = 14.0;
 
 /// SVG text of the nodes around the first tip; `None` of a case without one.
-///
-/// # Errors
-/// As [`initial_plate`].
 pub fn tip_svg(case: &Case, paths: &[Vec<Point>]) -> Result<Option<String>> {
     let plate = initial_plate(case)?;
     let Some(axes) = plate.axes.first() else { return Ok(None) };

@@ -15,7 +15,6 @@ const HELD_FILL: &str = "#c9d19a";
 /// SVG text of the plate of a scene; `procedure` says in words how it is worked through, `lines` what loads and holds it.
 ///
 /// Red: cracks. Blue: loads, with the points that are driven in a tinted box. Green: points that are held.
-#[must_use]
 pub fn scene_svg(scene: &Scene, procedure: &str, lines: &[String]) -> String {
     drawing(&scene.name, procedure, &scene.specimen, lines, |sketch| {
         for hold in &scene.holds {

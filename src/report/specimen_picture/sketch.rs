@@ -29,7 +29,6 @@ pub struct Sketch {
 
 impl Sketch {
     /// An empty one.
-    #[must_use]
     pub fn new(scale: f64, origin: Point) -> Self {
         Sketch { body: String::new(), scale, origin }
     }

@@ -20,7 +20,6 @@ p.textContent=d.text;const c=document.createElement('code');c.textContent=d.comm
 g.addEventListener('mouseenter',show);g.addEventListener('focus',show);g.addEventListener('click',show)}";
 
 /// The page.
-#[must_use]
 pub fn page(chart: &Chart, origin: &Origin, picture: &str) -> String {
     let mut data = Map::new();
     for point in &chart.points {

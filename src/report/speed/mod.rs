@@ -30,13 +30,11 @@ pub struct Origin {
 
 impl Origin {
     /// Of a command that ends now.
-    #[must_use]
     pub fn now(command: String) -> Origin {
         Origin { command, date: time::now() }
     }
 
     /// The line under chart and tables: command, machine, threads, version, date.
-    #[must_use]
     pub fn footer(&self, chart: &Chart) -> String {
         let reference = seconds(chart.reference_s);
         format!("`{}` · {} · reference run {reference} · {}", self.command, chart.machine, self.date)
@@ -44,9 +42,6 @@ impl Origin {
 }
 
 /// Writes all files.
-///
-/// # Errors
-/// [`crate::Error::File`] if one cannot be written.
 pub fn write(folder: &Path, chart: &Chart, origin: &Origin) -> Result<()> {
     let picture = svg(chart, origin);
     let texts = [csv(chart), picture.clone(), html::page(chart, origin, &picture), markdown(chart, origin)];
@@ -54,7 +49,6 @@ pub fn write(folder: &Path, chart: &Chart, origin: &Origin) -> Result<()> {
 }
 
 /// A time in the unit that suits it.
-#[must_use]
 pub fn seconds(value: f64) -> String {
     match value {
         v if v.is_nan() => "-".to_owned(),
@@ -65,7 +59,6 @@ pub fn seconds(value: f64) -> String {
 }
 
 /// Two significant digits, more of whole numbers.
-#[must_use]
 pub fn digits(value: f64) -> String {
     let size = value.abs();
     match size {

@@ -7,7 +7,6 @@ use crate::chart::summary::{Overall, WITHIN_PERCENT, beaten, fastest_within, nev
 use crate::chart::{Chart, Family, Point};
 
 /// The summary.
-#[must_use]
 pub fn markdown(chart: &Chart, origin: &Origin) -> String {
     // Writing to a String cannot fail.
     let mut text = "# What to use when\n\n".to_owned();
@@ -48,7 +47,6 @@ pub fn markdown(chart: &Chart, origin: &Origin) -> String {
 }
 
 /// The sentences that README repeats.
-#[must_use]
 fn sentences(chart: &Chart) -> Vec<String> {
     let mut all = Vec::new();
     let within: Vec<String> = WITHIN_PERCENT

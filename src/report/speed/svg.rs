@@ -37,7 +37,6 @@ struct Panel<'c> {
 }
 
 /// The picture.
-#[must_use]
 pub fn svg(chart: &Chart, origin: &Origin) -> String {
     let scenes = chart.scenes();
     let columns = scenes.len().clamp(1, COLUMNS);

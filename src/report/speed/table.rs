@@ -10,7 +10,6 @@ pub const COLUMNS: &str = "scene,method,driver,bond_law,solver,discretisation,sp
                            extrapolated,status,command,choice,on_front,reason";
 
 /// One row a point, in the order of scenes and choices.
-#[must_use]
 pub fn csv(chart: &Chart) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     // Writing into memory cannot fail.

@@ -130,7 +130,6 @@ struct Shared {
 
 impl App {
     /// A service on a store.
-    #[must_use]
     pub fn new(store: Store, limits: Limits, security: Security, workers: usize, wake: Arc<Notify>) -> Self {
         let limiter = |per_second: NonZeroU32| RateLimiter::keyed(Quota::per_second(per_second));
         let shared = Shared {
@@ -160,9 +159,6 @@ impl App {
     }
 
     /// A place for a stream of events, or a wait for the end of a job.
-    ///
-    /// # Errors
-    /// 429.
     pub fn stream(&self, caller: &Caller) -> Answer<[Place; 2]> {
         let own = self.streams.take(&caller.name).ok_or_else(|| {
             Problem::too_many(format!("{} streams of yours are open, which is all this server takes", self.streams.most()), 5)
@@ -174,13 +170,11 @@ impl App {
     }
 
     /// An address as others reach it.
-    #[must_use]
     pub fn public(&self, path: &str) -> String {
         format!("{}{path}", self.security.public_url.as_deref().unwrap_or_default())
     }
 
     /// Whether a caller may ask once more just now.
-    #[must_use]
     pub fn may_ask(&self, caller: Option<&str>, address: IpAddr, is_write: bool) -> bool {
         let key = caller.map_or_else(|| address.to_string(), |name| format!("token {name}"));
         let within = |limiter: &DefaultKeyedRateLimiter<String>| limiter.check_key(&key).is_ok();
@@ -210,9 +204,6 @@ impl App {
     }
 
     /// The token with this hash, if there is one that has not ended.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn token(&self, hash: &str) -> crate::service::store::Result<Option<Token>> {
         let found = self.store.token(hash).await?;
         let mut known = self.shared.tokens.write().await;
@@ -231,7 +222,6 @@ impl App {
     }
 
     /// Whether the service is about to stop.
-    #[must_use]
     pub fn is_stopping(&self) -> bool {
         self.shared.stopping.load(Ordering::Relaxed)
     }

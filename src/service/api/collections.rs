@@ -76,23 +76,16 @@ pub struct Part {
 }
 
 /// The kind of a collection's name in a URL.
-///
-/// # Errors
-/// 404.
 pub fn kind_of(collection: &str) -> Answer<JobKind> {
     JobKind::ALL.into_iter().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
 }
 
 /// Whether a job can have this id. Anything else never gets to the database.
-#[must_use]
 pub fn is_id(id: &str) -> bool {
     uuid::Uuid::try_parse(id).is_ok()
 }
 
 /// A job of a collection.
-///
-/// # Errors
-/// 404, 503.
 pub async fn job_of(app: &App, collection: &str, id: &str) -> Answer<Job> {
     let kind = kind_of(collection)?;
     if !is_id(id) {
@@ -105,9 +98,6 @@ pub async fn job_of(app: &App, collection: &str, id: &str) -> Answer<Job> {
 const IN_PATHS: AsciiSet = NON_ALPHANUMERIC.remove(b'.').remove(b'_').remove(b'-');
 
 /// What is shown of a job.
-///
-/// # Errors
-/// 503.
 pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
     let views = |entries: Vec<FileEntry>, place: &str| -> Vec<FileView> {
         let base = format!("/v1/{}/{}/{place}", job.kind.collection(), job.id);

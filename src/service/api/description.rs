@@ -29,7 +29,6 @@ const FORM: &str = "multipart/form-data";
 const EXAMPLE: &str = include_str!("../../../data/cases/hand_calculation.toml");
 
 /// The description of the handlers, completed.
-#[must_use]
 pub fn complete(handlers: &OpenApi) -> Value {
     // Without failure: its keys are text.
     let mut api = serde_json::to_value(handlers).unwrap_or_default();

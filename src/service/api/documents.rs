@@ -128,9 +128,6 @@ fn null_in(value: &Value, above: &str) -> Option<String> {
 }
 
 /// Reads a body.
-///
-/// # Errors
-/// 400, 413 and 415.
 pub async fn read(app: &App, caller: &Caller, request: Request) -> Answer<Body> {
     let room = app.bodies.wait(caller).await?;
     let kind = kind_of(&request)?;
@@ -217,9 +214,6 @@ fn refused(status: StatusCode, text: &str) -> Problem {
 }
 
 /// Reads a form; parts with a file name are files.
-///
-/// # Errors
-/// 400 and 413.
 pub async fn form(app: &App, request: Request) -> Answer<Fields> {
     tokio::time::timeout(BODY_WITHIN, parts_of_form(app, request)).await.map_err(|_| too_slow())?
 }
@@ -263,9 +257,6 @@ fn check_name(key: &str, name: &str) -> Answer<()> {
 }
 
 /// What was asked for as it can be stored and run.
-///
-/// # Errors
-/// What is wrong with it, as the command line would say it.
 pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> Answer<Submission> {
     let options = options(kind, &asked.options)?;
     let given = match asked.input {
@@ -404,9 +395,6 @@ async fn record_of(app: &App, id: &str) -> Answer<Vec<u8>> {
 }
 
 /// Whether it can be run as this kind of job within the limits of this server, as far as that shows without building the plate.
-///
-/// # Errors
-/// 422.
 pub fn check(submission: &Submission, kind: JobKind, limits: &Limits) -> Answer<()> {
     let document = submission.document()?;
     match kind {
@@ -441,9 +429,6 @@ pub fn check(submission: &Submission, kind: JobKind, limits: &Limits) -> Answer<
 }
 
 /// Refuses plates of more points than this server takes, and what would take up more memory or time, before anything is laid out.
-///
-/// # Errors
-/// 422.
 fn check_points(case: &Case, limits: &Limits) -> Answer<()> {
     in_time(&Budget::of(case), limits)
 }

@@ -29,19 +29,16 @@ pub struct Place {
 
 impl Places {
     /// So many for each key.
-    #[must_use]
     pub fn new(most: usize) -> Self {
         Places(Arc::new(Counted { most, taken: Mutex::default() }))
     }
 
     /// How many there are for each key.
-    #[must_use]
     pub fn most(&self) -> usize {
         self.0.most
     }
 
     /// A place of this key, if one is free.
-    #[must_use]
     pub fn take(&self, key: &str) -> Option<Place> {
         let mut taken = self.0.taken.lock().unwrap_or_else(PoisonError::into_inner);
         let count = taken.entry(key.to_owned()).or_default();
@@ -83,7 +80,6 @@ pub struct BodyPlace {
 
 impl BodyPlaces {
     /// As the limits say.
-    #[must_use]
     pub fn new(limits: &Limits) -> Self {
         BodyPlaces {
             most_of_caller: limits.bodies_of_caller,

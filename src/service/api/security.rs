@@ -31,9 +31,6 @@ pub struct Caller {
 
 impl Caller {
     /// Refuses who may not.
-    ///
-    /// # Errors
-    /// 403.
     pub fn must_be(&self, role: Role) -> Answer<()> {
         if self.role >= role {
             return Ok(());
@@ -43,9 +40,6 @@ impl Caller {
     }
 
     /// Refuses who may not do something with a job of this owner.
-    ///
-    /// # Errors
-    /// 403.
     pub fn must_own(&self, owner: &str) -> Answer<()> {
         self.must_be(if owner == self.name { Role::Run } else { Role::Admin })
     }

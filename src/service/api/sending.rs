@@ -41,7 +41,6 @@ impl Stored {
     }
 
     /// The answer to a request with these headers.
-    #[must_use]
     pub fn answer(self, headers: &HeaderMap) -> Response {
         let (tag, bytes) = (self.tag(), self.entry.bytes);
         let head = [(header::ETAG, tag.clone()), (header::ACCEPT_RANGES, "bytes".to_owned())];

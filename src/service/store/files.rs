@@ -42,7 +42,6 @@ impl Origin {
 }
 
 /// What a file of this name is.
-#[must_use]
 pub fn media_type(name: &str) -> String {
     match Path::new(name).extension().and_then(|extension| extension.to_str()) {
         // Not registered, so not guessed.
@@ -54,9 +53,6 @@ pub fn media_type(name: &str) -> String {
 
 impl Store {
     /// Files of a job, by name.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn file_entries(&self, job: &str, origin: Origin) -> Result<Vec<FileEntry>> {
         let rows = sqlx::query("SELECT name, media_type, size FROM job_files WHERE job = $1 AND origin = $2 ORDER BY name")
             .bind(job)
@@ -65,9 +61,6 @@ impl Store {
     }
 
     /// A file of a job, and its first part.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn open_file(&self, job: &str, origin: Origin, name: &str) -> Result<Option<(FileEntry, Vec<u8>)>> {
         let row = sqlx::query(
             "SELECT f.name, f.media_type, f.size, p.content FROM job_files f
@@ -79,9 +72,6 @@ impl Store {
     }
 
     /// A part of a file of a job; `None` behind the last.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn file_part(&self, job: &str, origin: Origin, name: &str, number: i64) -> Result<Option<Vec<u8>>> {
         sqlx::query_scalar("SELECT content FROM file_parts WHERE job = $1 AND origin = $2 AND name = $3 AND number = $4")
             .bind(job)
@@ -93,9 +83,6 @@ impl Store {
     }
 
     /// A whole file of a job.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn whole_file(&self, job: &str, origin: Origin, name: &str) -> Result<Option<Vec<u8>>> {
         let Some((entry, mut content)) = self.open_file(job, origin, name).await? else { return Ok(None) };
         let mut number = 1;

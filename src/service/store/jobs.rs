@@ -138,9 +138,6 @@ impl Store {
     }
 
     /// What an earlier request with this key has become, if there was one.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn submitted(&self, owner: &str, key: Option<&str>, fingerprint: &str) -> Result<Option<Submitted>> {
         if key.is_none() {
             return Ok(None);
@@ -149,9 +146,6 @@ impl Store {
     }
 
     /// A job.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn job(&self, kind: JobKind, id: &str) -> Result<Option<Job>> {
         let statement = format!("SELECT {COLUMNS} FROM jobs WHERE id = $1 AND kind = $2");
         let row = sqlx::query(self.sql(&statement)).bind(id).bind(kind.name()).fetch_optional(&self.pool).await?;
@@ -167,17 +161,11 @@ impl Store {
     }
 
     /// How often a job has changed; `None` if there is no such job.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn revision(&self, id: &str) -> Result<Option<i64>> {
         sqlx::query_scalar("SELECT revision FROM jobs WHERE id = $1").bind(id).fetch_optional(&self.pool).await
     }
 
     /// What was asked for.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn submission(&self, id: &str) -> Result<Option<Submission>> {
         let row = sqlx::query("SELECT content, options FROM submissions WHERE job = $1").bind(id);
         let Some(row) = row.fetch_optional(&self.pool).await? else { return Ok(None) };
@@ -189,9 +177,6 @@ impl Store {
     }
 
     /// Jobs of a kind, newest first, from behind the job `after` on.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn list(&self, kind: JobKind, state: Option<State>, after: Option<&str>, limit: u32) -> Result<Listing> {
         let statement = format!(
             "SELECT {COLUMNS} FROM jobs WHERE kind = $1 AND id < $3 AND ($4 = '' OR state = $4) ORDER BY id DESC LIMIT $2"
@@ -213,9 +198,6 @@ impl Store {
 
     /// Asks for the end of a job: one that waits, or whose worker is silent, ends at once, one that runs with the next sign of life.
     /// Whether there was one to end.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn cancel(&self, id: &str) -> Result<bool> {
         let changed = sqlx::query(self.sql(
             "UPDATE jobs SET cancel_asked = 1, revision = revision + 1,
@@ -231,9 +213,6 @@ impl Store {
     }
 
     /// Removes a job that no worker has, with all it has. Whether there was one.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn delete(&self, id: &str) -> Result<bool> {
         let statement = self.sql("DELETE FROM jobs WHERE id = $1 AND (state <> 'running' OR {orphaned})");
         Ok(sqlx::query(statement).bind(id).execute(&self.pool).await?.rows_affected() > 0)
@@ -241,9 +220,6 @@ impl Store {
 
     /// Removes jobs that ended longer than so many milliseconds of the counted clock ago, the oldest first and only so many at a time;
     /// returns how many.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn expire(&self, kept_ms: i64) -> Result<u64> {
         let gone = sqlx::query(self.sql(
             "DELETE FROM jobs WHERE id IN
@@ -253,18 +229,12 @@ impl Store {
     }
 
     /// Time for which the oldest job that waits has waited, ms; 0 if none does.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn queue_age_ms(&self) -> Result<i64> {
         let oldest = self.sql("SELECT {now} - COALESCE(MIN(created_ms), {now}) FROM jobs WHERE state = 'queued'");
         sqlx::query_scalar(oldest).fetch_one(&self.pool).await
     }
 
     /// Jobs in each state.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn counts(&self) -> Result<Vec<(String, i64)>> {
         let rows = sqlx::query("SELECT state, COUNT(*) FROM jobs GROUP BY state").fetch_all(&self.pool).await?;
         rows.iter().map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).collect()

@@ -88,7 +88,6 @@ impl Dialect {
 }
 
 /// URL of the database file of a data folder.
-#[must_use]
 pub fn url_of_file(path: &Path) -> String {
     const IN_FILES: AsciiSet = NON_ALPHANUMERIC.remove(b'/');
     format!("sqlite://{}?mode=rwc", percent_encode(path.as_os_str().as_encoded_bytes(), &IN_FILES))
@@ -186,9 +185,6 @@ impl Store {
     }
 
     /// Whether the database takes what is written, and its tables are of this version.
-    ///
-    /// # Errors
-    /// It does not, or they are not.
     pub async fn is_ready(&self) -> Result<()> {
         let mut transaction = self.begin().await?;
         schema::expect(&mut transaction).await?;
@@ -197,9 +193,6 @@ impl Store {
     }
 
     /// Lets the counted clock go on, and gives space of what was deleted back to the disk.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn tidy(&self) -> Result<()> {
         sqlx::query(self.sql("UPDATE clock SET counted_ms = counted_ms + {step}, seen_ms = {now}")).execute(&self.pool).await?;
         if self.dialect == Dialect::Sqlite {
@@ -236,7 +229,6 @@ impl Store {
 }
 
 /// Whether a statement failed because there is no connection, not because of what was asked: worth another try on a new one.
-#[must_use]
 pub fn is_gone(error: &sqlx::Error) -> bool {
     use sqlx::Error as E;
     match error {

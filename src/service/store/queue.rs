@@ -92,9 +92,6 @@ pub struct Told {
 
 impl Store {
     /// A job whose worker has given no sign of life for as long as it was granted, or else the next that waits.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn claim(&self, worker: &str, lease_ms: i64) -> Result<Option<Claim>> {
         // Within a transaction, since only its end tells that the claim has got to the disk.
         let mut transaction = self.begin().await?;
@@ -215,9 +212,6 @@ impl Store {
     }
 
     /// Pieces of the growing curve of a job from entry `from` on, of one claim or of all.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn growth(&self, id: &str, from: i64, fence: Option<i64>) -> Result<Vec<Growth>> {
         let pieces: Vec<String> = sqlx::query_scalar(
             "SELECT entries FROM growth WHERE job = $1 AND first >= $2 AND ($3 < 0 OR fence = $3) ORDER BY first",
@@ -231,18 +225,12 @@ impl Store {
     }
 
     /// Number of the latest picture of a job, and what is said of it.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn picture_about(&self, id: &str) -> Result<Option<(i64, String)>> {
         let row = sqlx::query("SELECT revision, about FROM pictures WHERE job = $1").bind(id).fetch_optional(&self.pool).await?;
         row.map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).transpose()
     }
 
     /// The latest picture of a job.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn picture(&self, id: &str) -> Result<Option<Vec<u8>>> {
         sqlx::query_scalar("SELECT content FROM pictures WHERE job = $1").bind(id).fetch_optional(&self.pool).await
     }
@@ -298,9 +286,6 @@ impl Store {
     }
 
     /// Gives a job back to the queue after an end that was not its fault, which is counted; nobody takes it before `wait` is over.
-    ///
-    /// # Errors
-    /// As [`Store::release`].
     pub async fn put_back(&self, claim: &Claim, wait: Duration) -> Result<()> {
         sqlx::query(self.sql(
             "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, failures = failures + 1,

@@ -24,7 +24,6 @@ pub enum Role {
 
 impl Role {
     /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Role::Read => "read",
@@ -67,13 +66,11 @@ const RANDOM_BYTES: usize = 32;
 const PREFIX: &str = "perilife_";
 
 /// What is kept of a token.
-#[must_use]
 pub fn hash(secret: &str) -> String {
     hex(&Sha256::digest(secret.as_bytes()))
 }
 
 /// Bytes as hexadecimal digits.
-#[must_use]
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -101,9 +98,6 @@ impl Store {
     }
 
     /// The token with this hash, if it has not ended.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn token(&self, hash: &str) -> Result<Option<Token>> {
         let statement = "SELECT name, role, created_ms, expires_ms FROM tokens
                          WHERE hash = $1 AND (expires_ms IS NULL OR expires_ms > {now})";
@@ -112,18 +106,12 @@ impl Store {
     }
 
     /// All tokens, by name.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn tokens(&self) -> Result<Vec<Token>> {
         let rows = sqlx::query("SELECT name, role, created_ms, expires_ms FROM tokens ORDER BY name");
         rows.fetch_all(&self.pool).await?.iter().map(token_of).collect()
     }
 
     /// Removes a token; whether there was one of this name.
-    ///
-    /// # Errors
-    /// The database does not answer.
     pub async fn remove_token(&self, name: &str) -> Result<bool> {
         Ok(sqlx::query("DELETE FROM tokens WHERE name = $1").bind(name).execute(&self.pool).await?.rows_affected() > 0)
     }

@@ -68,9 +68,6 @@ pub fn write(mut to: impl Write, value: &impl Serialize) -> io::Result<()> {
 }
 
 /// Reads a frame; `None` where the other side has closed, in the middle of a frame as well.
-///
-/// # Errors
-/// What comes is no frame of this program.
 pub fn read<T: DeserializeOwned>(mut from: impl Read) -> io::Result<Option<T>> {
     let mut length = [0; 4];
     let closed = |error: io::Error| match error.kind() {

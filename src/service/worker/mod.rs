@@ -105,9 +105,6 @@ pub struct Workers {
 
 impl Workers {
     /// Starts them; `wake` tells of new jobs. Must be called within a runtime, on which their statements to the store run.
-    ///
-    /// # Errors
-    /// The machine gives no threads.
     pub fn start(store: Store, settings: Settings, wake: Arc<Notify>) -> std::io::Result<Workers> {
         let name = format!("{}/{}/{}", host(), std::process::id(), uuid::Uuid::now_v7());
         let handle = Handle::current();
@@ -179,7 +176,6 @@ async fn tidy(shared: Arc<Shared>) {
 }
 
 /// Bytes that are free where a folder is; `None` where it is not there.
-#[must_use]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
     let about = rustix::fs::statvfs(folder).ok()?;
     Some(about.f_bavail.saturating_mul(about.f_frsize))

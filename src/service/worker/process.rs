@@ -56,9 +56,6 @@ pub enum Death {
 
 impl JobProcess {
     /// Starts the process with an order.
-    ///
-    /// # Errors
-    /// The machine gives no process.
     pub fn start(program: &Path, order: &Order, memory: u64) -> io::Result<JobProcess> {
         let (ours, theirs) = UnixStream::pair()?;
         let mut child = Command::new(program)
@@ -100,7 +97,6 @@ impl JobProcess {
     }
 
     /// The next news within a time.
-    #[must_use]
     pub fn look(&self, within: Duration) -> Look {
         match self.news.recv_timeout(within) {
             Ok(news) => Look::News(news),
@@ -110,7 +106,6 @@ impl JobProcess {
     }
 
     /// Most memory that it has had, bytes; `None` where the system does not tell.
-    #[must_use]
     pub fn memory(&self) -> Option<u64> {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -118,7 +113,6 @@ impl JobProcess {
     }
 
     /// How it ended; one that has nothing more to say and does not end is ended.
-    #[must_use]
     pub fn death(mut self) -> Death {
         // Its news end with it, so that this takes no time unless it hangs.
         for _ in 0..100 {

@@ -41,9 +41,6 @@ const FIGURES: [&str; 14] = [
 ];
 
 /// Judges a run and writes its files.
-///
-/// # Errors
-/// As [`run::judge`] and [`run::write`].
 pub fn of_run(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Value> {
     let judged = run::judge(case, prediction)?;
     let result = run::write(folder, case, prediction)?;
@@ -61,9 +58,6 @@ pub fn of_run(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Val
 }
 
 /// Fits a calibration and writes its files.
-///
-/// # Errors
-/// As [`calibrate`] and [`fit::write`].
 pub fn of_fit(folder: &Path, calibration: &CalibrationCase, teller: &Teller<'_>) -> Result<Value> {
     let started = Instant::now();
     let fitted = calibrate(calibration, teller)?;
@@ -85,9 +79,6 @@ pub fn of_fit(folder: &Path, calibration: &CalibrationCase, teller: &Teller<'_>)
 }
 
 /// Fits laws over K and writes their files.
-///
-/// # Errors
-/// As [`LawCase::fit`] and [`law_fit::write`].
 pub fn of_laws(folder: &Path, case: &LawCase) -> Result<Value> {
     let started = Instant::now();
     let fits = case.fit()?;
@@ -135,7 +126,6 @@ pub fn files(folder: &Path) -> Result<Vec<ResultFile>> {
 }
 
 /// Bytes of all files below a folder.
-#[must_use]
 pub fn bytes(folder: &Path) -> u64 {
     let within = |path: PathBuf| match std::fs::symlink_metadata(&path) {
         Ok(about) if about.is_dir() => bytes(&path),

@@ -27,7 +27,6 @@ pub struct LivePicture {
 
 impl LivePicture {
     /// What is said of the picture, JSON, and its PNG; `None` if it cannot be drawn.
-    #[must_use]
     pub fn draw(&self) -> Option<(String, Vec<u8>)> {
         let LivePicture { snapshot, grid, cracks, paths } = self;
         let caption = cycles_and_length(snapshot);
@@ -85,7 +84,6 @@ const OVER_COST: u32 = 20;
 
 impl<'a> Teller<'a> {
     /// For a run of a plate with these cracks, whose curve so far is `growth`.
-    #[must_use]
     pub fn new(cracks: &'a [Crack], growth: &Growth, keep: Option<Keep<'a>>, keep_every: Duration) -> Self {
         let tips = growth.tips.first().map_or(0, Vec::len);
         let path = |tip: usize| growth.tips.iter().filter_map(|entry| Some(entry.get(tip)?.map(|mm| mm * MM))).collect();
@@ -105,7 +103,6 @@ impl<'a> Teller<'a> {
     }
 
     /// What was told since the last time; a look stays where no picture is wanted.
-    #[must_use]
     pub fn news(&self, with_look: bool) -> Update {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         let elapsed_s = self.started.elapsed().as_secs_f64();

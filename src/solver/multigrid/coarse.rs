@@ -20,7 +20,6 @@ const COMMON: u32 = u32::MAX;
 const EMPTY: u32 = u32::MAX - 1;
 
 /// Block index of a neighbour within reach.
-#[must_use]
 pub fn block_of(dx: isize, dy: isize) -> usize {
     ((dy + REACH) * (2 * REACH + 1) + dx + REACH) as usize
 }
@@ -57,25 +56,21 @@ impl<const N: usize> CoarseOperator<N> {
     const CHUNK: usize = BLOCKS * N * N * LANES;
 
     /// Layout of its vectors.
-    #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
     /// The common stencil's block of a place with itself.
-    #[must_use]
     pub fn common_diagonal(&self) -> Option<[[f64; N]; N]> {
         self.common.as_ref().map(|common| common[block_of(0, 0)])
     }
 
     /// Whether all places of a chunk of a row have the common stencil.
-    #[must_use]
     pub fn is_common(&self, row: usize, chunk: usize) -> bool {
         self.slots[row * self.chunks + chunk] == COMMON
     }
 
     /// Block between a place and its neighbour.
-    #[must_use]
     pub fn block(&self, column: usize, row: usize, dx: isize, dy: isize) -> [[f64; N]; N] {
         let index = block_of(dx, dy);
         match (self.slots[row * self.chunks + column / LANES], &self.common) {

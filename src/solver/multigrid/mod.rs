@@ -78,7 +78,6 @@ fn first_factor(reach: usize, horizon_ratio: f64) -> usize {
 
 impl<const N: usize> Multigrid<N> {
     /// Builds the hierarchy for the present bonds.
-    #[must_use]
     pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
         // Who asked it to end is heard by the first equilibrium.
         let _ = watch::at(Stage::Solver, 0.0);
@@ -113,7 +112,6 @@ impl<const N: usize> Multigrid<N> {
 
     /// With one cycle on every level: two are no positive operator where one makes a motion more than twice as large as it is, as it can
     /// where a plate is nearly a mechanism.
-    #[must_use]
     pub fn cautious(self) -> Self {
         Multigrid { depth: Depth::Cautious, ..self }
     }

@@ -65,7 +65,6 @@ pub struct Work {
 
 impl Work {
     /// Zero vectors.
-    #[must_use]
     pub fn new(layout: &Layout) -> Self {
         let zeros = || vec![0.0; layout.len()];
         Work { r: zeros(), x: zeros(), d: zeros(), e: zeros() }

@@ -167,7 +167,6 @@ impl<const N: usize> Transfer<N> {
     }
 
     /// Coarse places whose rows of the coarse operator take in one of some fine places, the fine operator reaching so many places.
-    #[must_use]
     pub fn coarse_around(&self, fine: &[[usize; 2]], reach: usize) -> Vec<[usize; 2]> {
         let [columns, rows] = self.coarse_size();
         let reach = self.factor - 1 + reach;
@@ -257,25 +256,21 @@ impl<const N: usize> Transfer<N> {
     }
 
     /// Layout of the coarse level.
-    #[must_use]
     pub fn coarse(&self) -> &Layout {
         &self.coarse
     }
 
     /// Rows and columns of the coarse level.
-    #[must_use]
     pub fn coarse_size(&self) -> [usize; 2] {
         [self.coarse.columns, self.coarse.rows - 2 * self.coarse.padding]
     }
 
     /// Fine column and row (which may lie outside) of a coarse place.
-    #[must_use]
     pub fn seat(&self, coarse: [usize; 2]) -> [isize; 2] {
         [0, 1].map(|axis| (coarse[axis] * self.factor) as isize - self.offset[axis] as isize)
     }
 
     /// Coarse places (column, row) of a fine place with their interpolation blocks; empty entries have weight 0.
-    #[must_use]
     pub fn parents(&self, column: usize, row: usize) -> [([usize; 2], f64, [f64; 2]); 4] {
         let (lower, _) = self.corners([column, row]);
         let seat = |corner: usize| [lower[0] + (corner & 1), lower[1] + (corner >> 1)];
@@ -295,7 +290,6 @@ impl<const N: usize> Transfer<N> {
     }
 
     /// Whether all fine places of a chunk of a row use plain bilinear weights.
-    #[must_use]
     pub fn is_plain(&self, row: usize, chunk: usize) -> bool {
         self.slots[row * self.chunks + chunk] == PLAIN
     }

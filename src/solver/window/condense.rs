@@ -71,7 +71,6 @@ pub(in crate::solver) trait Plate<const M: usize>: Sync {
 /// Points held altogether, and not of the window, take part as ground only, so that a small part of a large plate costs no
 /// more than its size. A plate that floats is held at its window, at `pins` (indices of the window's vector): displacement is
 /// then relative to these, which strains do not feel.
-#[must_use]
 pub fn condense<const M: usize, A: Assembly<M>>(
     body: &Body,
     bonds: &Bonds,
@@ -83,7 +82,6 @@ pub fn condense<const M: usize, A: Assembly<M>>(
 }
 
 /// [`condense`] for any plate.
-#[must_use]
 pub(in crate::solver) fn condense_plate<const M: usize, P: Plate<M>>(
     plate: &P,
     window: &[u32],

@@ -42,13 +42,11 @@ pub struct Update {
 
 impl Update {
     /// Terms taken in so far.
-    #[must_use]
     pub fn rank(&self) -> usize {
         self.terms.len()
     }
 
     /// Takes in a term; `false` where the plate would not hold together.
-    #[must_use]
     pub fn add(&mut self, inverse: &Mat<f64>, base: &[f64], term: Term) -> bool {
         let product = |a: &Term, b: &Term| -> f64 {
             b.vector.iter().map(|&(j, wj)| wj * a.vector.iter().map(|&(i, wi)| wi * inverse[(i, j)]).sum::<f64>()).sum()
@@ -77,7 +75,6 @@ impl Update {
     }
 
     /// Displacement of the window from that before the breaks, and the gain of the load's work.
-    #[must_use]
     pub fn displacement(&self, inverse: &Mat<f64>, base: &[f64]) -> (Vec<f64>, f64) {
         // L z = b, D Lᵀ y = z.
         let mut y: Vec<f64> = Vec::with_capacity(self.rank());

@@ -27,9 +27,6 @@ pub struct Grown {
 }
 
 /// Grows the cracks of a case by fatigue bonds.
-///
-/// # Errors
-/// As [`crate::predict::predict`].
 pub fn grow(case: &Case) -> Result<Grown> {
     let mut growth = BondStrain::start(case, |horizon| bond_rates(case, horizon))?;
     growth.open()?;
@@ -51,7 +48,6 @@ pub fn grow(case: &Case) -> Result<Grown> {
 impl Grown {
     /// Centre of the broken bonds whose middle lies between two distances from a point, m, each weighted with the length of
     /// crack it stands for; NaN where none broke.
-    #[must_use]
     pub fn centre_of_broken(&self, around: Point, distances: std::ops::Range<f64>) -> Point {
         let (mut sum, mut weights) = ([0.0; 2], 0.0);
         for &bond in &self.broken {
@@ -66,13 +62,11 @@ impl Grown {
     }
 
     /// Places of a tip, from its initial one on.
-    #[must_use]
     pub fn path(&self, tip: usize) -> Vec<Point> {
         self.curve.iter().map(|point| point.tips[tip].position).collect()
     }
 
     /// Share of the bonds across the line between two points that still hold; 0 where there are none.
-    #[must_use]
     pub fn intact_across(&self, a: Point, b: Point) -> f64 {
         let across = bonds_across(&self.body, a, b);
         let holds = |bond: &&Bond| self.broken.binary_search(bond).is_err() && self.body.pre_cut.binary_search(bond).is_err();
@@ -80,7 +74,6 @@ impl Grown {
     }
 
     /// Broken bonds over those that clean cuts along the paths of all tips sever.
-    #[must_use]
     pub fn broken_over_cut(&self) -> f64 {
         let tips = self.curve.first().map_or(0, |point| point.tips.len());
         let severed: HashSet<Bond> = (0..tips)

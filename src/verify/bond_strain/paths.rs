@@ -20,9 +20,6 @@ use crate::verify::scene::{case, points};
 const EXPONENT: f64 = 2.87;
 
 /// All rows of the topic.
-///
-/// # Errors
-/// As [`predict`].
 pub fn all(table: &mut Table) -> Result<()> {
     kinks(table)?;
     collinear_cracks(table)?;
@@ -46,9 +43,6 @@ const KNOWN_KINKS: [(i32, f64, f64); 3] = [(0, 60.0, -27.0), (20, 45.0, -10.6), 
 /// The angle measured is that from the initial tip to the middle of the bonds that break between 1.5 and 2.5 horizons from it,
 /// mean of both tips: nearer than that the bonds of one zone break on all sides, farther away the crack has begun to bend
 /// (it is 12 horizons long).
-///
-/// # Errors
-/// As [`predict`].
 pub fn kinks(table: &mut Table) -> Result<()> {
     const HALF_MM: f64 = 36.0;
     const BOUND_DEGREES: f64 = 4.0;
@@ -99,9 +93,6 @@ fn circumferential_stress(k_i: f64, k_ii: f64) -> f64 {
 }
 
 /// Two collinear cracks that grow towards each other: life against quadrature, with C of a middle-tension panel.
-///
-/// # Errors
-/// As [`predict`].
 pub fn collinear_cracks(table: &mut Table) -> Result<()> {
     let panel = case(PANEL, &["specimen.crack_length_mm=20", "stop.crack_length_mm=27"])?;
     let run = predict(&panel, &Silent)?;
@@ -134,9 +125,6 @@ pub fn collinear_cracks(table: &mut Table) -> Result<()> {
 }
 
 /// Two offset cracks whose inner tips run past each other and turn in: do they join?
-///
-/// # Errors
-/// As [`predict`].
 pub fn offset_cracks(table: &mut Table) -> Result<()> {
     let ends: [Point; 4] = [[-20.0, -3.0], [-6.0, -3.0], [6.0, 3.0], [20.0, 3.0]];
     let crack = |from: Point, to: Point| format!("{{ from_mm = {from:?}, to_mm = {to:?} }}");
@@ -166,9 +154,6 @@ pub fn offset_cracks(table: &mut Table) -> Result<()> {
 /// length (Cotterell and Rice 1980, Int. J. Fract. 16:155, first order without the stress along the crack). These are
 /// taken from the domain integral of the same body, whose ring needs room, so that the comparison ends where the hole begins
 /// to draw.
-///
-/// # Errors
-/// As [`predict`].
 pub fn hole(table: &mut Table) -> Result<()> {
     const CENTRE: Point = [4.0 * MM, 9.0 * MM];
     const RADIUS: f64 = 6.0 * MM;

@@ -7,9 +7,6 @@ use crate::verify::Table;
 use crate::verify::scene::case;
 
 /// One A for all spacings at the default horizon ratio, and for wider horizons.
-///
-/// # Errors
-/// As [`predict`].
 pub fn spacing(table: &mut Table) -> Result<()> {
     let reference = life(&["model.spacing_mm=1"])?;
     for (spacing, ratio) in [(2.0, 3.015), (0.5, 3.015), (1.0, 4.015), (1.0, 5.015), (0.5, 4.015), (0.5, 5.015)] {
@@ -21,9 +18,6 @@ pub fn spacing(table: &mut Table) -> Result<()> {
 }
 
 /// Broken bonds over those that a cut along the path severs.
-///
-/// # Errors
-/// As [`predict`].
 pub fn clean_cracks(table: &mut Table) -> Result<()> {
     for p in ["2", "2.87", "4"] {
         let exponent = format!("fatigue.p={p}");

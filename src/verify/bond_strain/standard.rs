@@ -28,9 +28,6 @@ const SCENES: [(&str, f64, f64, f64, f64); 12] = [
 ];
 
 /// Rows of the topic.
-///
-/// # Errors
-/// As [`predict`].
 pub fn rows(table: &mut Table) -> Result<()> {
     for (name, p, nu, angle, ratio) in SCENES {
         let (specimen, stop) = match name {

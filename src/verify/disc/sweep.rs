@@ -42,9 +42,6 @@ pub struct Deviation {
 }
 
 /// The sweep, computed once in a process.
-///
-/// # Errors
-/// No equilibrium.
 pub fn sweep() -> Result<&'static Sweep> {
     static SWEPT: OnceLock<Sweep> = OnceLock::new();
     if let Some(known) = SWEPT.get() {
@@ -61,7 +58,6 @@ pub fn sweep() -> Result<&'static Sweep> {
 
 impl ElasticDisc {
     /// Displacement at a place of the horizontal diameter, m, linear between points.
-    #[must_use]
     pub fn displacement(&self, x: f64) -> f64 {
         let after = self.row.partition_point(|(at, _)| *at < x).clamp(1, self.row.len() - 1);
         let ((a, u), (b, v)) = (self.row[after - 1], self.row[after]);
@@ -69,7 +65,6 @@ impl ElasticDisc {
     }
 
     /// Deviation from another disc.
-    #[must_use]
     pub fn deviation(&self, from: &ElasticDisc) -> Deviation {
         let end = self.row.last().map_or(0.0, |row| row.0);
         let size = from.displacement(end).abs();
@@ -93,9 +88,6 @@ const AGREEMENT_PERCENT: f64 = 5.0;
 const BEST_SPRINGS: [(f64, f64); 3] = [(0.1e23, -12.19), (0.25e23, -10.64), (0.5e23, -10.64)];
 
 /// Rows of the elastic disc.
-///
-/// # Errors
-/// No equilibrium.
 pub fn rows(table: &mut Table) -> Result<()> {
     let Sweep { springs, silling, fine } = sweep()?;
     let nominal = |disc: &ElasticDisc| 2.0 * disc.load / (PI * DIAMETER * THICKNESS);

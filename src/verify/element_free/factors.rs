@@ -18,9 +18,6 @@ use crate::williams::Elasticity;
 use super::{METHOD, STRESS};
 
 /// All rows.
-///
-/// # Errors
-/// As [`initial_tips`].
 pub fn rows(table: &mut Table) -> Result<()> {
     standard(table)?;
     bending(table)?;

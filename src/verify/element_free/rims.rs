@@ -15,9 +15,6 @@ const SCATTER: &str = "strains of Gauss points err from node to node by 2 to 3 %
      leaves up to 0.07 σ at a hole";
 
 /// All rows.
-///
-/// # Errors
-/// As [`stressed`].
 pub fn rows(table: &mut Table) -> Result<()> {
     wide_plates(table)?;
     strips(table)?;
@@ -66,7 +63,6 @@ fn strips(table: &mut Table) -> Result<()> {
 
 /// Largest stress over that far away of a hole of d/W = x in a strip in tension: (3 - 3.14 x + 3.667 x² - 1.527 x³)/(1 - x), a fit to
 /// Howland 1930 within 0.5 % (Pilkey and Pilkey 2008).
-#[must_use]
 #[allow(clippy::approx_constant, reason = "a coefficient of the fit, not π")]
 pub fn concentration_of(x: f64) -> f64 {
     (3.0 - x * (3.14 - x * (3.667 - 1.527 * x))) / (1.0 - x)
