@@ -16,6 +16,7 @@ pub mod plastic_zone;
 pub mod record;
 pub mod residual_strength;
 mod snapshot;
+pub mod tip_factors;
 
 pub use outcome::{CrossCheck, CurvePoint, Observer, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
 

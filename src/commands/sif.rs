@@ -11,10 +11,10 @@ use crate::case::{Case, Method};
 use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
 use crate::input::Document;
+use crate::predict::tip_factors::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
 use crate::report::output::{OutputFolder, RunKind};
 use crate::report::stresses;
 use crate::stress_concentration::{Stressed, stressed};
-use crate::stress_intensity::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
 use crate::units::{MM, MPA, MPA_SQRT_M};
 
 /// Arguments of `perilife sif`.

@@ -25,10 +25,10 @@ use crate::kinds::KindLine;
 use crate::loading::LoadingKind;
 use crate::material::{Plane, library};
 use crate::predict::StopReason;
+use crate::predict::tip_factors::StressIntensityMethod;
 use crate::solver::{SolverKind, SolverUsed, Symmetry};
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
 use crate::stability::SWEEPS;
-use crate::stress_intensity::StressIntensityMethod;
 use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
 use crate::verify::all_topics;
 

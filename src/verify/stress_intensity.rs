@@ -6,7 +6,7 @@ use super::scene::case;
 use super::table::Table;
 use crate::case::Case;
 use crate::error::Result;
-use crate::stress_intensity::{StressIntensityMethod, TipResult, stress_intensity};
+use crate::predict::tip_factors::{StressIntensityMethod, TipResult, stress_intensity};
 
 /// Material, load and model of all scenes; cracks are at least six horizons long.
 const REST: &str = r#"

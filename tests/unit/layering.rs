@@ -3,14 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Uses against the order, each with its reason.
-const EXCEPTIONS: [(&str, &str); 3] = [
-    // K of `sif` is that of the first row of a run, read by nothing else.
-    ("stress_intensity", "growth::tip_field"),
-    ("stress_intensity", "growth::record"),
-    ("stress_intensity", "growth::element_free"),
-];
-
 #[test]
 fn rooms_use_only_rooms_above_them() {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
@@ -38,8 +30,7 @@ fn rooms_use_only_rooms_above_them() {
         let code: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
         for path in crate_paths(&code.join("\n")) {
             let Some(other) = place(path.split("::").next().unwrap()) else { continue };
-            let excepted = EXCEPTIONS.iter().any(|(from, to)| *from == room && path.starts_with(to));
-            assert!(other <= own || excepted, "{}: {room} uses {path}, which stands below it in lib.rs", file.display());
+            assert!(other <= own, "{}: {room} uses {path}, which stands below it in lib.rs", file.display());
             uses += 1;
         }
     }

@@ -8,9 +8,9 @@ use perilife::case::Case;
 use perilife::fatigue::crack_tip::TipState;
 use perilife::growth::record::CurvePoint;
 use perilife::growth::tip_field::initial_tips;
+use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::solver::{SolverKind, Symmetry};
-use perilife::stress_intensity::{StressIntensityMethod, stress_intensity};
 
 use crate::shared::shared;
 

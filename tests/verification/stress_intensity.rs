@@ -1,6 +1,6 @@
 //! K_I and K_II where `perilife verify stress_intensity` has no row: pins, clamped ends, places between columns, signs.
 
-use perilife::stress_intensity::{StressIntensityMethod, TipResult, stress_intensity};
+use perilife::predict::tip_factors::{StressIntensityMethod, TipResult, stress_intensity};
 
 use crate::plates::{PANEL, case};
 

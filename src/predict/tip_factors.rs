@@ -1,0 +1,182 @@
+//! K of the tips of the initial cracks at maximum load, by three methods, for `perilife sif`.
+//!
+//! An integral over a ring around the tip, that of the first row of a prediction ([`crate::growth::tip_field`]); the same on a plate of
+//! nodes, which shares nothing with points and bonds ([`crate::element_free`]); and the energy that crack growth releases
+//! ([`energy_release`]), which tells K_I of cracks that open only. A crack cut into bonds reaches up to half a spacing farther or less far
+//! than asked ([`crate::body::severed`]); both methods on points therefore look at other lengths, too: K belongs to the requested one.
+//!
+//! Signs, in the frame of a tip (x₁ ahead of the tip, x₂ a quarter turn counter-clockwise from it): K_I > 0 opens the
+//! crack, K_II > 0 slides the face on the side of x₂ > 0 towards x₁ > 0.
+
+mod energy_release;
+
+use std::time::Instant;
+
+use crate::case::Case;
+use crate::error::{Error, Result, input_missing};
+use crate::fatigue::crack_tip::TipState;
+use crate::growth::element_free;
+use crate::growth::record::TipRecord;
+use crate::growth::tip_field::{InitialTips, initial_tips};
+use crate::specimen::TipSeed;
+use crate::specimen::handbook::handbook;
+
+crate::kinds! {
+    /// Ways to the stress intensity factors.
+    pub enum StressIntensityMethod for "sif --method" {
+        Ring = "ring": "interaction integral over a ring around the tip, as predict reads it",
+        ElementFreeGalerkin = "element_free_galerkin": "interaction integral on a plate of nodes without elements: K_I and K_II independent of points and bonds",
+        EnergyRelease = "energy_release": "energy released between slightly different crack lengths: K_I where the plate is symmetric about the crack, an independent check",
+    }
+}
+
+/// K_I and K_II, Pa√m; `None` where a method cannot tell.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Intensity {
+    /// Opening mode.
+    pub k_i: Option<f64>,
+    /// In-plane sliding mode.
+    pub k_ii: Option<f64>,
+}
+
+impl Intensity {
+    /// Both modes known.
+    pub fn both([k_i, k_ii]: [f64; 2]) -> Self {
+        Intensity { k_i: Some(k_i), k_ii: Some(k_ii) }
+    }
+}
+
+/// A case without its slots, whose end faces have no K.
+fn sharp(case: &Case) -> Case {
+    let mut sharp = case.clone();
+    sharp.specimen.tips.retain(|tip| !tip.from_slot);
+    sharp
+}
+
+/// K of every sharp tip off its ring, with T: those of the first row of a prediction driven by K.
+fn by_ring(case: &Case) -> Result<Vec<MethodResult>> {
+    let started = Instant::now();
+    let InitialTips { tips, warnings, .. } = initial_tips(&sharp(case))?;
+    // What is to be said of several tips is said once.
+    let mut warnings = Some(warnings.join("; ")).filter(|warnings| !warnings.is_empty());
+    Ok(of_tips(StressIntensityMethod::Ring, started, &tips, |_| warnings.take()))
+}
+
+/// K of every sharp tip and T on a plate of nodes.
+fn by_nodes(case: &Case) -> Result<Vec<MethodResult>> {
+    let started = Instant::now();
+    let tips = element_free::initial_tips(&sharp(case))?;
+    let note = |is_closed: bool| is_closed.then(|| "faces overlap: nodes know no contact".to_owned());
+    Ok(of_tips(StressIntensityMethod::ElementFreeGalerkin, started, &tips, note))
+}
+
+/// What the tips of a first row say, with a note on every one that depends on whether it is closed.
+fn of_tips(
+    method: StressIntensityMethod,
+    started: Instant,
+    tips: &[TipRecord],
+    mut note: impl FnMut(bool) -> Option<String>,
+) -> Vec<MethodResult> {
+    let wall_s = started.elapsed().as_secs_f64() / tips.len().max(1) as f64;
+    let result = |tip: &TipRecord| {
+        let is_closed = tip.state == TipState::Closed;
+        MethodResult {
+            method,
+            intensity: tip.factors.map(Intensity::both).unwrap_or_default(),
+            t_stress: tip.t_stress,
+            note: note(is_closed),
+            is_closed,
+            wall_s,
+        }
+    };
+    tips.iter().map(result).collect()
+}
+
+/// K_I from the energy released, of plates whose flanks nothing presses together: the lengths in between are solved without contact.
+fn by_energy(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>> {
+    if case.loading.displacement().is_some() || case.specimen.crack_pressure > 0.0 {
+        let problem = "energy_release takes constant loads on rims and holes: use ring";
+        return Err(Error::Mechanics(format!("{}: {problem}", case.name)));
+    }
+    if initial_tips(&sharp(case))?.in_contact {
+        let problem = "the load presses flanks of cracks together, which the energy released between open cracks does not know";
+        return Err(Error::Mechanics(format!("{}: {problem}: use ring", case.name)));
+    }
+    energy_release::all_tips(case, tips)
+}
+
+/// What one method says about one tip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MethodResult {
+    /// The method.
+    pub method: StressIntensityMethod,
+    /// Its factors.
+    pub intensity: Intensity,
+    /// Stress along the crack T, Pa; `None` where a method cannot tell.
+    pub t_stress: Option<f64>,
+    /// Whether the load presses its flanks together.
+    pub is_closed: bool,
+    /// What is to be said of the tip, or why a factor is missing.
+    pub note: Option<String>,
+    /// Seconds for this tip, with the solutions it rests on.
+    pub wall_s: f64,
+}
+
+impl MethodResult {
+    /// A method that failed.
+    fn nothing(method: StressIntensityMethod, error: &Error) -> Self {
+        let note = Some(error.to_string());
+        MethodResult { method, intensity: Intensity::default(), t_stress: None, is_closed: false, note, wall_s: 0.0 }
+    }
+}
+
+/// A crack tip with its factors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TipResult {
+    /// Tip of the requested crack.
+    pub tip: TipSeed,
+    /// One entry a method, in the order asked for.
+    pub methods: Vec<MethodResult>,
+    /// K_I by the handbook, Pa√m, where there is a formula and it holds.
+    pub handbook_k_i: Option<f64>,
+}
+
+/// Stress intensity factors of every crack tip of a case at its maximum load.
+///
+/// End faces of slots are no crack tips and left out.
+///
+/// # Errors
+/// A case without crack tips, mechanics without equilibrium.
+pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Result<Vec<TipResult>> {
+    let tips: Vec<usize> = (0..case.specimen.tips.len()).filter(|&tip| !case.specimen.tips[tip].from_slot).collect();
+    if tips.is_empty() {
+        return Err(input_missing(
+            "specimen.cracks",
+            "is missing: only the tip of a sharp crack has stress intensity factors, a notch has none",
+            "give a crack that starts in the notch; stresses of a plate without cracks: --method element_free_galerkin alone",
+        ));
+    }
+    let handbook_k_i = handbook(&case.specimen)
+        .filter(|formula| formula.holds_at(case.specimen.crack_length) && case.loading.displacement().is_none())
+        .map(|formula| formula.k_i(case.specimen.crack_length, case.loading.maximum));
+    let mut results: Vec<TipResult> = tips
+        .iter()
+        .map(|&tip| TipResult { tip: case.specimen.tips[tip], methods: Vec::with_capacity(methods.len()), handbook_k_i })
+        .collect();
+    for &method in methods {
+        let columns = match method {
+            StressIntensityMethod::Ring => by_ring(case)?,
+            // Other looks at K: what they cannot tell does not hide the first.
+            StressIntensityMethod::ElementFreeGalerkin => by_nodes(case).or_else(|error| match methods {
+                [StressIntensityMethod::ElementFreeGalerkin] => Err(error),
+                _ => Ok(vec![MethodResult::nothing(method, &error); tips.len()]),
+            })?,
+            StressIntensityMethod::EnergyRelease => by_energy(case, &tips).or_else(|error| match methods {
+                [StressIntensityMethod::EnergyRelease] => Err(error),
+                _ => Ok(vec![MethodResult::nothing(method, &error); tips.len()]),
+            })?,
+        };
+        results.iter_mut().zip(columns).for_each(|(tip, result)| tip.methods.push(result));
+    }
+    Ok(results)
+}
