@@ -2,31 +2,31 @@
 
 mod boundaries;
 pub mod budget;
-mod choices;
 mod fatigue;
-pub mod first_load;
-pub mod growth_law;
+mod fatigue_keys;
+mod growth_law;
 mod law;
-mod law_record;
 mod law_source;
 pub mod model;
-mod nodes;
+mod model_keys;
 mod read;
 pub mod record;
 
-pub use choices::{Choices, Failure, Method};
-pub use law_source::{LAW_KEYS, fitted_record, remove_law};
+pub use boundaries::first_load;
+pub use fatigue_keys::{TableEnds, law_keys, remove_law};
+pub use law_source::fitted_record;
 pub use read::{RECORD, SECTIONS};
 
+use crate::body::Body;
 use crate::body::lattice::fitting_spacing;
-use crate::bond_law::{BondLaw, SurfaceCorrection};
+use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::case::record::{FittedRecord, LawRecord};
 use crate::element_free::resolution::ElementFreeSettings;
+use crate::error::Result;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
-use crate::fatigue::{FatigueLaw, FatigueSettings};
+use crate::fatigue::{Ageing, FatigueLaw, FatigueSettings};
 use crate::input::Provenance;
-use crate::levels::{Discretisation, Refinement};
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::{SolverKind, Symmetry};
@@ -41,6 +41,43 @@ pub const HORIZON_RATIO: f64 = 3.015;
 /// join, K of a row stands at another gap then, and is the same at an equal one.
 pub const RESIDUAL: f64 = 1e-5;
 
+crate::kinds! {
+    /// Numerical methods.
+    pub enum Method for "model.method" {
+        Peridynamics = "peridynamics": "points and bonds",
+        ElementFreeGalerkin = "element_free_galerkin": "nodes without elements, near-tip fields as unknowns; cracks driven by the K of their tips",
+        Handbook = "handbook": "hand calculation: handbook K(a) of a standard specimen, Paris law, quadrature",
+    }
+}
+
+crate::kinds! {
+    /// What spends the life of a bond.
+    pub enum Failure for "fatigue.failure" {
+        Stretch = "stretch": "bond stretch range",
+    }
+}
+
+/// What the input file chose explicitly. A fitted record supplies the rest and must agree with these.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Choices {
+    /// `model.bond_law`.
+    pub bond_law: Option<BondLawKind>,
+    /// `model.kernel`.
+    pub kernel: Option<Kernel>,
+    /// `model.rotation`.
+    pub rotation: Option<Rotation>,
+    /// `model.surface_correction`.
+    pub surface_correction: Option<SurfaceCorrection>,
+    /// `model.horizon_ratio`.
+    pub horizon_ratio: Option<f64>,
+    /// `fatigue.ageing`.
+    pub ageing: Option<Ageing>,
+    /// `fatigue.zone_radius_horizons`.
+    pub zone_radius_horizons: Option<f64>,
+    /// `fatigue.walker_gamma`.
+    pub walker_gamma: Option<f64>,
+}
+
 /// Model of a case: the method and, for peridynamics, points and bonds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
@@ -48,17 +85,12 @@ pub struct Model {
     pub method: Method,
     /// Bonds.
     pub bond_law: BondLaw,
-    /// Spacing asked for, m; the body takes the nearest one that fits. That of the finest level, on which cracks grow, where
-    /// there are several.
+    /// Spacing asked for, m; the body takes the nearest one that fits.
     pub spacing: f64,
     /// Horizon over spacing, m = δ/Δ.
     pub horizon_ratio: f64,
     /// Angle of the lattice rows against x, radians.
     pub lattice_angle: f64,
-    /// How points lie.
-    pub arrangement: Discretisation,
-    /// Where finer points lie, in an arrangement of several levels.
-    pub refinement: Option<Refinement>,
     /// Equilibrium solver.
     pub solver: SolverKind,
     /// Use of mirror symmetry.
@@ -74,24 +106,17 @@ impl Model {
     /// the plate is 1 % of K with `volume_and_surface` and 0.3 % with `balanced`, which knows one lattice. What of a dilatation is uniform is then in equilibrium, too
     /// ([`crate::solver::dilatation`]).
     fn take_most_accurate_rim(&mut self) {
-        if self.arrangement == Discretisation::Lattice {
-            self.bond_law.surface_correction = SurfaceCorrection::Balanced;
-        }
+        self.bond_law.surface_correction = SurfaceCorrection::Balanced;
     }
 
-    /// Finest spacings in a coarsest one.
-    fn coarsening(&self) -> f64 {
-        self.refinement.as_ref().map_or(1.0, |refinement| 2.0_f64.powi(refinement.deepest() as i32))
-    }
-
-    /// Spacing of the coarsest level asked for, m.
-    pub fn coarsest_spacing(&self) -> f64 {
-        self.coarsening() * self.spacing
-    }
-
-    /// The spacing that the body will have, m: the coarsest is moved to the nearest one that divides the gross width.
+    /// The spacing that the body will have, m: the nearest one that divides the gross width.
     pub fn fitting_spacing(&self, specimen: &Specimen) -> f64 {
-        fitting_spacing(specimen, self.coarsest_spacing(), self.lattice_angle) / self.coarsening()
+        fitting_spacing(specimen, self.spacing, self.lattice_angle)
+    }
+
+    /// The plate as points and bonds.
+    pub fn body(&self, specimen: &Specimen, material: &Material) -> Result<Body> {
+        Body::build(specimen, material, &self.bond_law, self.spacing, self.horizon_ratio, self.lattice_angle)
     }
 }
 

@@ -7,18 +7,16 @@
 
 pub mod checkpoint;
 pub mod factor_curve;
-pub mod guard;
 pub mod laws;
-pub mod memory;
 mod outcome;
-pub mod path_stability;
 pub mod plastic_zone;
 pub mod record;
 pub mod residual_strength;
 mod snapshot;
 pub mod tip_factors;
 
-pub use outcome::{CrossCheck, CurvePoint, Observer, Prediction, Progress, RunFigures, Silent, Snapshot, StopReason, TipRecord};
+pub use outcome::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord};
+pub use record::{Observer, Silent};
 
 pub use crate::levels::PointGrid;
 

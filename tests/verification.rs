@@ -81,8 +81,6 @@ mod crack_length;
 mod hand_calculation;
 #[path = "verification/dual_horizon.rs"]
 mod dual_horizon;
-#[path = "verification/fatigue_levels.rs"]
-mod fatigue_levels;
 #[path = "verification/fracture_relaxation.rs"]
 mod fracture_relaxation;
 #[path = "verification/quasi_static.rs"]

@@ -9,7 +9,7 @@ use crate::specimen::geometry::{bounding_box, distance_to_segment};
 use crate::specimen::{Hole, Load, Point, Specimen, Support};
 
 /// Stiffness of rigid grips over that of the plate.
-pub const GRIP_STIFFNESS: f32 = 1000.0;
+const GRIP_STIFFNESS: f32 = 1000.0;
 
 /// Forces on points at unit nominal load, held components and grips.
 #[derive(Debug, Clone, Default)]
@@ -92,18 +92,6 @@ impl Boundary {
         boundary.loaded.dedup();
         boundary.forces = force.into_iter().collect();
         Ok(boundary)
-    }
-
-    /// Loads and supports of a body that is the finest part of a plate of several levels, as far as they act on it: forces at unit
-    /// nominal load, places nearest to where loads act, places held, and places of grips, all in ascending order.
-    pub fn of_finest(
-        forces: Vec<(u32, [f64; 2])>,
-        loaded: Vec<u32>,
-        fixed: Vec<(u32, [bool; 3])>,
-        rigid: Vec<u32>,
-        floating: bool,
-    ) -> Boundary {
-        Boundary { forces, loaded, fixed, rigid, floating, ..Boundary::default() }
     }
 
     /// Removes the small resultant that sharing out the loads to points has left on a floating plate: the loaded points

@@ -117,11 +117,6 @@ impl Lattice {
         Lattice { columns, rows, spacing: 0.5 * self.spacing, origin: self.position_of(-0.25, -0.25), stride, ..self.clone() }
     }
 
-    /// The same lattice with so many places of padding.
-    pub fn padded(&self, padding: usize) -> Lattice {
-        Lattice { padding, stride: self.columns.next_multiple_of(LANES) + 2 * padding, ..self.clone() }
-    }
-
     /// Length of an array over all places, padding included.
     pub fn places(&self) -> usize {
         // One chunk more than the last padded row, so that whole chunks can be read at its end.

@@ -11,7 +11,6 @@
 
 use rayon::prelude::*;
 
-use super::beyond::CoarseNeighbours;
 use super::boundary::Boundary;
 use super::lattice::{LANES, Lattice};
 use super::{Body, Bond};
@@ -246,7 +245,6 @@ impl Part {
             bond_count: 0,
             thickness: whole.thickness,
             mirror,
-            beyond: CoarseNeighbours::default(),
             lattice,
         };
         for row in 0..rows {

@@ -5,7 +5,6 @@
 //! surface correction acts.
 
 pub mod balanced;
-pub mod beyond;
 pub mod boundary;
 mod couples;
 pub mod facets;
@@ -23,7 +22,6 @@ use crate::error::{Error, Result};
 use crate::material::Material;
 use crate::specimen::{Point, Specimen};
 use crate::watch::{self, Stage};
-use beyond::CoarseNeighbours;
 use boundary::Boundary;
 use lattice::Lattice;
 use mirror::{Flips, Mirror};
@@ -60,8 +58,6 @@ pub struct Body {
     pub thickness: f64,
     /// Lines of symmetry at which it ends, if it is part of a plate.
     pub mirror: Mirror,
-    /// What it is tied to if it is the finest part of a plate of several levels.
-    pub beyond: CoarseNeighbours,
 }
 
 impl Body {
@@ -127,7 +123,6 @@ impl Body {
             bond_count,
             thickness: specimen.thickness,
             mirror: Mirror::default(),
-            beyond: CoarseNeighbours::default(),
         };
         watch::at(Stage::Rim, 0.0)?;
         match law.surface_correction {

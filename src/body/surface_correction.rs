@@ -6,7 +6,7 @@ use crate::material::Material;
 
 /// Factor by which springs of the stencil fall short of the material's energy `C₁₁ e² V/2` under uniaxial strain e along the rows:
 /// what the sum over the lattice differs from the integral by.
-pub fn interior_gain(stencil: &Stencil, c11: f64, volume: f64) -> f64 {
+fn interior_gain(stencil: &Stencil, c11: f64, volume: f64) -> f64 {
     let interior: f64 = stencil.bonds.iter().map(|bond| 2.0 * shares(bond)[0]).sum();
     0.5 * c11 * volume / interior
 }

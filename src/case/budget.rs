@@ -13,15 +13,13 @@
 //! Z_l is bounded by the regions, each wider by the rings of levels around it. Coefficients are those of peak memory (`/usr/bin/time -v`) of
 //! `perilife predict` on a square of 100 mm with one slant crack, which no symmetry halves, and stand beside the runs they are of.
 
-pub mod effort;
 pub mod machine;
 
-use self::effort::Effort;
 use super::model::round_mm;
 use super::{Case, HORIZON_RATIO, Method};
 use crate::bond_law::SurfaceCorrection;
 use crate::error::{Result, input};
-use crate::levels::{Discretisation, RefinedRegion, Refinement};
+use crate::levels::{RefinedRegion, Refinement};
 use crate::solver::SolverKind;
 use crate::specimen::Specimen;
 use crate::specimen::geometry::{bounding_box, distance};
@@ -40,8 +38,6 @@ pub struct Budget {
     pub bytes: f64,
     /// Pictures, tables and ParaView files, bytes.
     pub disk_bytes: f64,
-    /// Computing time.
-    pub effort: Effort,
     /// Bytes that go with the square of 1/Δ.
     of_area: f64,
     /// Bytes that go with 1/Δ.
@@ -71,7 +67,7 @@ pub struct PointPlate<'a> {
 const BASE: f64 = 28e6;
 /// Bytes of a lattice place and of each of its bonds, of which a body and the state of its bonds keep four each. With surface correction
 /// `volume_and_surface` and the window: 59 and 127 MB at 4e4 and 1.6e5 points, m = 3.015; 76 and 172 MB at m = 6; 134 MB at 4e4 and m = 12.
-/// The formula gives 61, 130, 77, 189 and 147 MB. Multigrid: 59 MB at 4e4; relaxation: 40 MB at 1e4, m = 3.015.
+/// The formula gives 61, 130, 77, 189 and 147 MB. Multigrid: 59 MB at 4e4.
 const PLACE: f64 = 350.0;
 /// See [`PLACE`]. Of empty places alone (`check` of an I of thin arms, 1.78e6 places) 209 MB at m = 3.015 and 724 MB at m = 6.
 const PLACE_BOND: f64 = 8.0;
@@ -160,7 +156,7 @@ impl PointPlate<'_> {
         (length / self.finest()).min(self.points() / self.horizon_ratio)
     }
 
-    /// What it takes up but for its computing time, with so many bytes a bond of a net beside the lattice, and with or without a factor
+    /// What it takes up, with so many bytes a bond of a net beside the lattice, and with or without a factor
     /// of all points.
     pub fn budget(&self, correction: SurfaceCorrection, of_net_bond: f64, is_factorised: bool) -> Budget {
         let (points, places, bonds) = (self.points(), self.places(), self.bonds_of_point());
@@ -177,7 +173,7 @@ impl PointPlate<'_> {
         };
         let disk_bytes = DISK_BASE + DISK_POINT * points;
         let (bytes, bonds, spacing) = (BASE + of_area + of_rim, bonds * points, self.spacing);
-        Budget { points, places, bonds, bytes, disk_bytes, effort: Effort::NONE, of_area, of_rim, spacing, other_keys }
+        Budget { points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing, other_keys }
     }
 
     /// Spacing of the finest level, m.
@@ -221,17 +217,14 @@ impl Budget {
             Method::Handbook => Budget { bytes: BASE, disk_bytes: DISK_BASE, ..Budget::none() },
             Method::ElementFreeGalerkin => of_nodes(case),
             Method::Peridynamics => {
-                let is_factorised = model.solver == SolverKind::Direct || model.arrangement != Discretisation::Lattice;
-                let plate = plate_of(case);
-                let effort = Effort::of_case(case, plate.points(), plate.bonds_of_point());
-                Budget { effort, ..plate.budget(model.bond_law.surface_correction, 0.0, is_factorised) }
+                plate_of(case).budget(model.bond_law.surface_correction, 0.0, model.solver == SolverKind::Direct)
             }
         }
     }
 
     fn none() -> Budget {
         let [points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing] = [0.0; 8];
-        Budget { points, places, bonds, bytes, disk_bytes, effort: Effort::NONE, of_area, of_rim, spacing, other_keys: "" }
+        Budget { points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing, other_keys: "" }
     }
 
     /// Refuses what takes up more than so many bytes of memory.
@@ -281,10 +274,19 @@ impl Budget {
         Err(input("model.spacing_mm", round_mm(self.spacing), problem, format!("give about {wide} mm or more{other_keys}")))
     }
 
+    /// What it takes up, in words.
+    pub fn words(&self) -> String {
+        format!("a run takes about {} of memory and {} of files", megabytes(self.bytes), megabytes(self.disk_bytes))
+    }
+
     /// Refuses what takes up more memory than this process may still take ([`machine::free_bytes`]).
     pub fn within_machine(&self) -> Result<()> {
         machine::free_bytes().map_or(Ok(()), |free| self.within(free))
     }
+}
+
+fn megabytes(bytes: f64) -> String {
+    if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { gigabytes(bytes) }
 }
 
 fn gigabytes(bytes: f64) -> String {
@@ -296,10 +298,10 @@ fn plate_of(case: &Case) -> PointPlate<'_> {
     let model = &case.model;
     PointPlate {
         specimen: &case.specimen,
-        spacing: model.coarsest_spacing(),
+        spacing: model.spacing,
         horizon_ratio: model.horizon_ratio,
         lattice_angle: model.lattice_angle,
-        refinement: model.refinement.as_ref(),
+        refinement: None,
     }
 }
 
@@ -308,6 +310,5 @@ fn of_nodes(case: &Case) -> Budget {
     let far = case.model.element_free.resolution.far;
     let nodes = case.specimen.area() / (far * far);
     let (of_area, disk_bytes) = (NODE * nodes, DISK_BASE + DISK_NODE * nodes);
-    let effort = Effort::of_case(case, nodes, 0.0);
-    Budget { points: nodes, bytes: BASE + of_area, disk_bytes, effort, of_area, spacing: far, ..Budget::none() }
+    Budget { points: nodes, bytes: BASE + of_area, disk_bytes, of_area, spacing: far, ..Budget::none() }
 }

@@ -3,12 +3,10 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::choices::{Choices, Failure, Method};
-use super::growth_law::{FactorKeys, Setting, TableEnds};
-use super::law_source::LawKeys;
-use super::{LawSource, Stop};
+use super::fatigue_keys::FatigueKeys;
+use super::growth_law::Setting;
+use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
-use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::{
     Ageing, Driver, FatigueSettings, GrowthRate, OVERLOAD_STRETCH, Precrack, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS,
 };
@@ -18,45 +16,6 @@ use crate::material::Material;
 use crate::specimen::{LengthConvention, Specimen};
 
 const CYCLES_MAX: f64 = 1e9;
-
-/// Keys of `[fatigue]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    fitted: Option<String>,
-    a: Option<f64>,
-    p: Option<f64>,
-    horizon_mm: Option<f64>,
-    paris_c_mm_per_cycle: Option<f64>,
-    paris_m: Option<f64>,
-    driver: Option<Driver>,
-    growth_law: Option<GrowthLawKind>,
-    forman_c_mm_per_cycle: Option<f64>,
-    forman_m: Option<f64>,
-    nasgro_c_mm_per_cycle: Option<f64>,
-    nasgro_n: Option<f64>,
-    nasgro_p: Option<f64>,
-    nasgro_q: Option<f64>,
-    nasgro_alpha: Option<f64>,
-    nasgro_smax_over_flow: Option<f64>,
-    nasgro_delta_k_0_mpa_sqrt_m: Option<f64>,
-    nasgro_c_th: Option<f64>,
-    nasgro_c_th_negative: Option<f64>,
-    k_c_mpa_sqrt_m: Option<f64>,
-    growth_table: Option<String>,
-    growth_table_ends: Option<TableEnds>,
-    ageing: Option<Ageing>,
-    zone_radius_horizons: Option<f64>,
-    precrack: Option<Precrack>,
-    step_error_percent: Option<f64>,
-    critical_stretch: Option<f64>,
-    walker_gamma: Option<f64>,
-    delta_k_threshold_mpa_sqrt_m: Option<f64>,
-    growth_rate: Option<GrowthRate>,
-    allow_extrapolation: Option<bool>,
-    #[serde(rename = "failure")]
-    _failure: Option<Failure>,
-}
 
 /// `[fatigue]`, read.
 pub(super) struct Fatigue {
@@ -75,7 +34,7 @@ pub(super) fn from_value(
     folder: &Folder,
     choices: &mut Choices,
 ) -> Result<Fatigue> {
-    let input: Input = slice(value, "fatigue")?;
+    let input: FatigueKeys = slice(value, "fatigue")?;
     choices.ageing = input.ageing;
     choices.zone_radius_horizons =
         number("a radius in horizons", 0.05, 10.0).read_optional("fatigue.zone_radius_horizons", input.zone_radius_horizons)?;
@@ -97,45 +56,14 @@ pub(super) fn from_value(
         threshold: threshold.unwrap_or(0.0),
         growth_rate: read_growth_rate(&input)?,
     };
-    let factor = FactorKeys {
-        forman_c_mm_per_cycle: input.forman_c_mm_per_cycle,
-        forman_m: input.forman_m,
-        nasgro_c_mm_per_cycle: input.nasgro_c_mm_per_cycle,
-        nasgro_n: input.nasgro_n,
-        nasgro_p: input.nasgro_p,
-        nasgro_q: input.nasgro_q,
-        nasgro_alpha: input.nasgro_alpha,
-        nasgro_smax_over_flow: input.nasgro_smax_over_flow,
-        nasgro_delta_k_0_mpa_sqrt_m: input.nasgro_delta_k_0_mpa_sqrt_m,
-        nasgro_c_th: input.nasgro_c_th,
-        nasgro_c_th_negative: input.nasgro_c_th_negative,
-        k_c_mpa_sqrt_m: input.k_c_mpa_sqrt_m,
-        growth_table: input.growth_table,
-        growth_table_ends: input.growth_table_ends,
-    };
-    let setting = Setting {
-        material,
-        ratio: loading.ratio,
-        folder,
-        has_walker: input.walker_gamma.is_some(),
-        has_threshold: input.delta_k_threshold_mpa_sqrt_m.is_some(),
-    };
-    let law = LawKeys {
-        fitted: input.fitted,
-        a: input.a,
-        p: input.p,
-        horizon_mm: input.horizon_mm,
-        paris_c_mm_per_cycle: input.paris_c_mm_per_cycle,
-        paris_m: input.paris_m,
-    };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
-    let law = law.read(input.growth_law, (method, settings), (&factor, &setting))?;
+    let law = law_source::read((&input, value), (method, settings), Setting { material, ratio: loading.ratio, folder })?;
     Ok(Fatigue { settings, law, allow_extrapolation })
 }
 
 /// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of
 /// fatigue bonds do not go with tips that are driven by their K.
-fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Driver> {
+fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Result<Driver> {
     let of_bonds = [
         ("ageing", input.ageing.is_some()),
         ("zone_radius_horizons", input.zone_radius_horizons.is_some()),
@@ -170,7 +98,7 @@ fn read_driver(input: &Input, method: Method, specimen: &Specimen) -> Result<Dri
 }
 
 /// What sets the rate of fatigue bonds: K of their tip, unless they age where no tip is.
-fn read_growth_rate(slice: &Input) -> Result<GrowthRate> {
+fn read_growth_rate(slice: &FatigueKeys) -> Result<GrowthRate> {
     let everywhere = slice.ageing == Some(Ageing::Everywhere);
     match slice.growth_rate {
         Some(GrowthRate::StressIntensity) if everywhere => {
@@ -184,7 +112,7 @@ fn read_growth_rate(slice: &Input) -> Result<GrowthRate> {
 }
 
 /// Reads the error of a block of growth by K; bonds that break one by one are solved for after every break, without such an error.
-fn read_step_error(slice: &Input, driver: Driver) -> Result<f64> {
+fn read_step_error(slice: &FatigueKeys, driver: Driver) -> Result<f64> {
     const KEY: &str = "fatigue.step_error_percent";
     let error = number("an error in percent", 0.001, 10.0).read_optional(KEY, slice.step_error_percent)?;
     if let (Some(error), Driver::BondStrain) = (error, driver) {

@@ -1,7 +1,6 @@
 //! Laws over K that are no power of it, from `[fatigue]`.
 
-use super::LawSource;
-use super::law_source::{GivenLaw, shown};
+use super::fatigue_keys::{FatigueKeys, TableEnds};
 use crate::error::{Error, InputError, Result, input, input_missing};
 use crate::fatigue::growth_law::forman::Forman;
 use crate::fatigue::growth_law::nasgro::{Nasgro, RATIO_MIN};
@@ -11,75 +10,23 @@ use crate::input::{Folder, INTENSITY, number};
 use crate::material::Material;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
-crate::kinds! {
-    /// What K beyond the rows of a table of rates does.
-    pub enum TableEnds for "fatigue.growth_table_ends" {
-        Refused = "refused": "the run ends in an error",
-        Held = "held": "the crack grows at the rate of the last row; how much of the life that is stands in a warning",
-    }
-}
-
-/// Keys of `[fatigue]` that only these laws have.
-#[derive(Debug, Clone, Default)]
-pub(super) struct FactorKeys {
-    pub forman_c_mm_per_cycle: Option<f64>,
-    pub forman_m: Option<f64>,
-    pub nasgro_c_mm_per_cycle: Option<f64>,
-    pub nasgro_n: Option<f64>,
-    pub nasgro_p: Option<f64>,
-    pub nasgro_q: Option<f64>,
-    pub nasgro_alpha: Option<f64>,
-    pub nasgro_smax_over_flow: Option<f64>,
-    pub nasgro_delta_k_0_mpa_sqrt_m: Option<f64>,
-    pub nasgro_c_th: Option<f64>,
-    pub nasgro_c_th_negative: Option<f64>,
-    pub k_c_mpa_sqrt_m: Option<f64>,
-    pub growth_table: Option<String>,
-    pub growth_table_ends: Option<TableEnds>,
-}
-
 /// What these laws need to know about the rest of the case.
 pub(super) struct Setting<'a> {
     pub material: &'a Material,
     pub ratio: f64,
     pub folder: &'a Folder,
-    pub has_walker: bool,
-    pub has_threshold: bool,
 }
 
 const RATE: &str = "a rate in mm/cycle";
 
-impl FactorKeys {
-    /// The laws whose keys are given.
-    pub fn given(&self) -> impl Iterator<Item = GivenLaw> {
-        let forman = [("forman_c_mm_per_cycle", shown(&self.forman_c_mm_per_cycle)), ("forman_m", shown(&self.forman_m))];
-        let nasgro = [
-            ("nasgro_c_mm_per_cycle", shown(&self.nasgro_c_mm_per_cycle)),
-            ("nasgro_n", shown(&self.nasgro_n)),
-            ("nasgro_p", shown(&self.nasgro_p)),
-            ("nasgro_q", shown(&self.nasgro_q)),
-            ("nasgro_alpha", shown(&self.nasgro_alpha)),
-            ("nasgro_smax_over_flow", shown(&self.nasgro_smax_over_flow)),
-            ("nasgro_delta_k_0_mpa_sqrt_m", shown(&self.nasgro_delta_k_0_mpa_sqrt_m)),
-            ("nasgro_c_th", shown(&self.nasgro_c_th)),
-            ("nasgro_c_th_negative", shown(&self.nasgro_c_th_negative)),
-        ];
-        let table = [("growth_table", shown(&self.growth_table)), ("growth_table_ends", shown(&self.growth_table_ends))];
-        let laws = [
-            GivenLaw::of(&[GrowthLawKind::Forman], &forman),
-            GivenLaw::of(&[GrowthLawKind::Nasgro], &nasgro),
-            GivenLaw::of(&[GrowthLawKind::Table], &table),
-        ];
-        laws.into_iter().flatten()
-    }
-
+impl FatigueKeys {
     /// The law of this kind.
-    pub fn read(&self, kind: GrowthLawKind, setting: &Setting<'_>) -> Result<LawSource> {
-        if setting.has_walker {
+    pub fn factor_law(&self, kind: GrowthLawKind, setting: &Setting<'_>) -> Result<FactorLaw> {
+        if self.walker_gamma.is_some() {
             let remedy = "leave it out, or use growth_law = \"walker\"";
             return Err(input_missing("fatigue.walker_gamma", format!("does not go with growth_law \"{kind}\""), remedy));
         }
-        if setting.has_threshold && kind == GrowthLawKind::Nasgro {
+        if self.delta_k_threshold_mpa_sqrt_m.is_some() && kind == GrowthLawKind::Nasgro {
             let problem = "does not go with growth_law \"nasgro\", which has its own threshold";
             let remedy = "leave it out, and give nasgro_delta_k_0_mpa_sqrt_m";
             return Err(input_missing("fatigue.delta_k_threshold_mpa_sqrt_m", problem, remedy));
@@ -88,12 +35,11 @@ impl FactorKeys {
             let remedy = "leave it out, or give material.toughness_mpa_sqrt_m";
             return Err(input_missing("fatigue.k_c_mpa_sqrt_m", "is no constant of growth_law \"table\"", remedy));
         }
-        let law = match kind {
+        Ok(match kind {
             GrowthLawKind::Forman => FactorLaw::Forman(self.forman(setting)?),
             GrowthLawKind::Nasgro => FactorLaw::Nasgro(self.nasgro(setting)?),
             _ => FactorLaw::Table(self.table(setting)?),
-        };
-        Ok(LawSource::Factor(law))
+        })
     }
 
     fn forman(&self, setting: &Setting<'_>) -> Result<Forman> {

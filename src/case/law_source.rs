@@ -1,56 +1,24 @@
 //! The law of `[fatigue]`: inline constants, or a record that `perilife calibrate` wrote.
 //!
-//! A case has one law: a second one, however it is given, is refused. A driver that needs a law of the other kind, of bonds (A, p) or over
+//! A case has one law: a second one, however it is given, is refused. Of a record of a law over K the constants take the place of
+//! `fatigue.fitted`, as if they stood in the case. A driver that needs a law of the other kind, of bonds (A, p) or over
 //! K (C, m), takes what the given one stands for.
 
-use toml::{Table, Value};
+use toml::Value;
 
-use super::choices::Method;
-use super::growth_law::{FactorKeys, Setting};
-use super::{LawSource, law};
+use super::fatigue_keys::{FatigueKeys, LAWS, law_keys};
+use super::growth_law::Setting;
+use super::{LawSource, Method, law};
 use crate::case::record::{FittedRecord, LawRecord};
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{Driver, FatigueLaw, FatigueSettings, GrowthRate, STEADY_EXPONENTS, unsteady};
-use crate::input::{Folder, LENGTH, number, slice};
+use crate::input::{Folder, LENGTH, number, slice, value_at};
 use crate::units::MM_PER_CYCLE;
 
-/// Keys of `[fatigue]` that give a law.
-#[derive(Debug, Clone, Default)]
-pub(super) struct LawKeys {
-    pub fitted: Option<String>,
-    pub a: Option<f64>,
-    pub p: Option<f64>,
-    pub horizon_mm: Option<f64>,
-    pub paris_c_mm_per_cycle: Option<f64>,
-    pub paris_m: Option<f64>,
-}
-
-/// All keys that give a law, for those who take it out of a file.
-pub const LAW_KEYS: [&str; 21] = [
-    "fitted",
-    "a",
-    "p",
-    "horizon_mm",
-    "paris_c_mm_per_cycle",
-    "paris_m",
-    "growth_law",
-    "forman_c_mm_per_cycle",
-    "forman_m",
-    "nasgro_c_mm_per_cycle",
-    "nasgro_n",
-    "nasgro_p",
-    "nasgro_q",
-    "nasgro_alpha",
-    "nasgro_smax_over_flow",
-    "nasgro_delta_k_0_mpa_sqrt_m",
-    "nasgro_c_th",
-    "nasgro_c_th_negative",
-    "k_c_mpa_sqrt_m",
-    "growth_table",
-    "growth_table_ends",
-];
+/// Slack of a stress ratio against those of the rates.
+const RATIO_SLACK: f64 = 0.02;
 
 /// A law that the file gives.
 pub(super) struct GivenLaw {
@@ -62,108 +30,91 @@ pub(super) struct GivenLaw {
 }
 
 impl GivenLaw {
-    /// `None` where none of its keys has a value.
-    pub fn of(kinds: &'static [GrowthLawKind], keys: &[(&'static str, Option<String>)]) -> Option<Self> {
-        keys.iter().find_map(|(key, value)| Some(GivenLaw { kinds, key, value: value.clone()? }))
-    }
-
     fn refused(&self, problem: String, remedy: &str) -> Error {
         input(&format!("fatigue.{}", self.key), &self.value, problem, remedy)
     }
 }
 
-/// A value as the messages show it.
-pub(super) fn shown<T: ToString>(value: &Option<T>) -> Option<String> {
-    value.as_ref().map(T::to_string)
+/// The law of the case, of the kind that is asked for or else whose constants are given; `None` where the file gives none at all,
+/// as in a calibration.
+///
+/// # Errors
+/// Two laws, constants of another kind than `growth_law` or than the driver can have.
+pub(super) fn read(
+    (keys, fatigue): (&FatigueKeys, &Value),
+    (method, settings): (Method, FatigueSettings),
+    setting: Setting<'_>,
+) -> Result<Option<LawSource>> {
+    const KEY: &str = "fatigue.growth_law";
+    let by_bonds = method == Method::Peridynamics && settings.driver == Driver::BondStrain;
+    let by_strain = by_bonds && settings.growth_rate == GrowthRate::BondStrain;
+    let given = only_law(keys.growth_law, fatigue)?;
+    let kind = keys.growth_law.or(given.as_ref().and_then(|law| if let [only] = law.kinds { Some(*only) } else { None }));
+    if let Some(kind @ (GrowthLawKind::Forman | GrowthLawKind::Nasgro | GrowthLawKind::Table)) = kind {
+        if by_bonds {
+            let problem = "is no law of bonds, whose rate is a power of their strain";
+            let remedy = "use fatigue.driver = \"tip_field\", or model.method = \"handbook\"";
+            return Err(input(KEY, format!("\"{kind}\""), problem, remedy));
+        }
+        return keys.factor_law(kind, &setting).map(|law| Some(LawSource::Factor(law)));
+    }
+    if keys.k_c_mpa_sqrt_m.is_some() {
+        let remedy = "leave it out, or choose its law by fatigue.growth_law";
+        return Err(input_missing("fatigue.k_c_mpa_sqrt_m", "is no constant of this growth law", remedy));
+    }
+    let lacks = match kind {
+        Some(GrowthLawKind::Paris | GrowthLawKind::Walker) if given.is_none() => Some("paris_c_mm_per_cycle"),
+        Some(GrowthLawKind::Walker) if keys.walker_gamma.is_none() => Some("walker_gamma"),
+        Some(GrowthLawKind::BondLaw) if given.is_none() => Some("a"),
+        _ => None,
+    };
+    if let (Some(key), Some(kind)) = (lacks, kind) {
+        let problem = format!("is missing, and growth_law is \"{kind}\"");
+        return Err(input_missing(&format!("fatigue.{key}"), problem, "give all constants of the law"));
+    }
+    if let Some(fitted) = &keys.fitted {
+        return read_record(fitted, setting.folder).map(Some);
+    }
+    let law = keys.bond_law()?.map(LawSource::Inline).or(keys.paris_law()?.map(LawSource::Paris));
+    // What a driver cannot use as it is has to be translated.
+    match &law {
+        Some(LawSource::Inline(law)) if !by_strain && !STEADY_EXPONENTS.contains(&law.p) => Err(unsteady("fatigue.p", law.p)),
+        Some(LawSource::Paris(law)) if by_bonds && !STEADY_EXPONENTS.contains(&law.m) => Err(unsteady("fatigue.paris_m", law.m)),
+        _ => Ok(law),
+    }
 }
 
-impl LawKeys {
-    /// The law of the case, of the kind that is asked for or else whose constants are given; `None` where the file gives none at all,
-    /// as in a calibration.
-    ///
-    /// # Errors
-    /// Two laws, constants of another kind than `growth_law` or than the driver can have.
-    pub(super) fn read(
-        &self,
-        kind: Option<GrowthLawKind>,
-        (method, settings): (Method, FatigueSettings),
-        (factor, setting): (&FactorKeys, &Setting<'_>),
-    ) -> Result<Option<LawSource>> {
-        const KEY: &str = "fatigue.growth_law";
-        let by_bonds = method == Method::Peridynamics && settings.driver == Driver::BondStrain;
-        let by_strain = by_bonds && settings.growth_rate == GrowthRate::BondStrain;
-        let given = self.only_law(kind, factor)?;
-        let kind = kind.or(given.as_ref().and_then(|law| if let [only] = law.kinds { Some(*only) } else { None }));
-        if let Some(kind @ (GrowthLawKind::Forman | GrowthLawKind::Nasgro | GrowthLawKind::Table)) = kind {
-            if by_bonds {
-                let problem = "is no law of bonds, whose rate is a power of their strain";
-                let remedy = "use fatigue.driver = \"tip_field\", or model.method = \"handbook\"";
-                return Err(input(KEY, format!("\"{kind}\""), problem, remedy));
-            }
-            return factor.read(kind, setting).map(Some);
-        }
-        if factor.k_c_mpa_sqrt_m.is_some() {
-            let remedy = "leave it out, or choose its law by fatigue.growth_law";
-            return Err(input_missing("fatigue.k_c_mpa_sqrt_m", "is no constant of this growth law", remedy));
-        }
-        let lacks = match kind {
-            Some(GrowthLawKind::Paris | GrowthLawKind::Walker) if given.is_none() => Some("paris_c_mm_per_cycle"),
-            Some(GrowthLawKind::Walker) if !setting.has_walker => Some("walker_gamma"),
-            Some(GrowthLawKind::BondLaw) if given.is_none() => Some("a"),
-            _ => None,
-        };
-        if let (Some(key), Some(kind)) = (lacks, kind) {
-            let problem = format!("is missing, and growth_law is \"{kind}\"");
-            return Err(input_missing(&format!("fatigue.{key}"), problem, "give all constants of the law"));
-        }
-        if let Some(fitted) = &self.fitted {
-            return read_record(fitted, setting.folder).map(Some);
-        }
-        let law = self.bond_law()?.map(LawSource::Inline).or(self.paris_law()?.map(LawSource::Paris));
-        // What a driver cannot use as it is has to be translated.
-        match &law {
-            Some(LawSource::Inline(law)) if !by_strain && !STEADY_EXPONENTS.contains(&law.p) => Err(unsteady("fatigue.p", law.p)),
-            Some(LawSource::Paris(law)) if by_bonds && !STEADY_EXPONENTS.contains(&law.m) => {
-                Err(unsteady("fatigue.paris_m", law.m))
-            }
-            _ => Ok(law),
-        }
+/// The law that is given, if any: one, and of the kind asked for.
+fn only_law(kind: Option<GrowthLawKind>, fatigue: &Value) -> Result<Option<GivenLaw>> {
+    let mut laws = LAWS.iter().filter_map(|&(kinds, keys)| {
+        let (key, value) = keys.iter().find_map(|&key| Some((key, value_at(fatigue, key)?)))?;
+        Some(GivenLaw { kinds, key, value: shown(value) })
+    });
+    let Some(law) = laws.next() else { return Ok(None) };
+    if let Some(second) = laws.next() {
+        let problem = format!("stands beside fatigue.{}: the law is given twice", law.key);
+        return Err(second.refused(problem, "give one law: fitted, or the constants of one kind"));
     }
-
-    /// The law that is given, if any: one, and of the kind asked for.
-    fn only_law(&self, kind: Option<GrowthLawKind>, factor: &FactorKeys) -> Result<Option<GivenLaw>> {
-        use GrowthLawKind::{BondLaw, Paris, Walker};
-        let values = |keys: Vec<(&'static str, Option<f64>)>| {
-            keys.into_iter().map(|(key, value)| (key, shown(&value))).collect::<Vec<_>>()
-        };
-        let laws = [
-            GivenLaw::of(&[BondLaw, Paris, Walker], &[("fitted", self.fitted.clone())]),
-            GivenLaw::of(&[BondLaw], &values(self.bond())),
-            GivenLaw::of(&[Paris, Walker], &values(self.paris())),
-        ];
-        let mut laws = laws.into_iter().flatten().chain(factor.given());
-        let Some(law) = laws.next() else { return Ok(None) };
-        if let Some(second) = laws.next() {
-            let problem = format!("stands beside fatigue.{}: the law is given twice", law.key);
-            return Err(second.refused(problem, "give one law: fitted, or the constants of one kind"));
-        }
-        if let Some(kind) = kind.filter(|kind| !law.kinds.contains(kind)) {
-            let problem = format!("is no constant of fatigue.growth_law = \"{kind}\"");
-            return Err(law.refused(problem, "give the constants of that law, or leave growth_law out"));
-        }
-        Ok(Some(law))
+    if let Some(kind) = kind.filter(|kind| !law.kinds.contains(kind)) {
+        let problem = format!("is no constant of fatigue.growth_law = \"{kind}\"");
+        return Err(law.refused(problem, "give the constants of that law, or leave growth_law out"));
     }
+    Ok(Some(law))
+}
 
-    fn bond(&self) -> Vec<(&'static str, Option<f64>)> {
-        vec![("a", self.a), ("p", self.p), ("horizon_mm", self.horizon_mm)]
+/// A value as the messages show it.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Float(number) => number.to_string(),
+        other => other.to_string(),
     }
+}
 
-    fn paris(&self) -> Vec<(&'static str, Option<f64>)> {
-        vec![("paris_c_mm_per_cycle", self.paris_c_mm_per_cycle), ("paris_m", self.paris_m)]
-    }
-
+impl FatigueKeys {
     fn bond_law(&self) -> Result<Option<FatigueLaw>> {
-        let Some([a, p, horizon]) = together(self.bond(), "give a, p and horizon_mm together, or fitted")? else {
+        let keys = [("a", self.a), ("p", self.p), ("horizon_mm", self.horizon_mm)];
+        let Some([a, p, horizon]) = together(keys, "give a, p and horizon_mm together, or fitted")? else {
             return Ok(None);
         };
         Ok(Some(FatigueLaw {
@@ -174,7 +125,8 @@ impl LawKeys {
     }
 
     fn paris_law(&self) -> Result<Option<ParisLaw>> {
-        let Some([c, m]) = together(self.paris(), "give paris_c_mm_per_cycle and paris_m together, or fitted")? else {
+        let keys = [("paris_c_mm_per_cycle", self.paris_c_mm_per_cycle), ("paris_m", self.paris_m)];
+        let Some([c, m]) = together(keys, "give paris_c_mm_per_cycle and paris_m together, or fitted")? else {
             return Ok(None);
         };
         let c = number("a rate in mm/cycle at ΔK = 1 MPa√m", 1e-60, 1e3).read("fatigue.paris_c_mm_per_cycle", c)?;
@@ -183,7 +135,7 @@ impl LawKeys {
 }
 
 /// All of the keys or none of them.
-fn together<const N: usize>(keys: Vec<(&str, Option<f64>)>, remedy: &str) -> Result<Option<[f64; N]>> {
+fn together<const N: usize>(keys: [(&str, Option<f64>); N], remedy: &str) -> Result<Option<[f64; N]>> {
     if keys.iter().all(|(_, value)| value.is_none()) {
         return Ok(None);
     }
@@ -193,15 +145,6 @@ fn together<const N: usize>(keys: Vec<(&str, Option<f64>)>, remedy: &str) -> Res
         *slot = value.ok_or_else(|| input_missing(&format!("fatigue.{key}"), format!("is missing{why}"), remedy))?;
     }
     Ok(Some(values))
-}
-
-/// Takes the law out of the sections of a case that is to get another one, or needs none.
-pub fn remove_law(sections: &mut Table) {
-    if let Some(fatigue) = sections.get_mut("fatigue").and_then(Value::as_table_mut) {
-        for key in LAW_KEYS {
-            fatigue.remove(key);
-        }
-    }
 }
 
 /// Reads a `fitted.toml`; one that does not exist (yet) is [`LawSource::Missing`].
@@ -238,4 +181,48 @@ pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
         other => other,
     };
     record.map_err(|error| document.locate(at_top(error)))
+}
+
+/// `[fatigue]` with the constants of the record it names, and the record; `None` where it names none, one that does not exist, or one of
+/// A and p.
+///
+/// # Errors
+/// A record that cannot be read, beside constants of a law.
+pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value, Box<LawRecord>)>> {
+    let Some(name) = value_at(fatigue, "fitted").and_then(Value::as_str) else { return Ok(None) };
+    // One that cannot be read is refused, or not missed, where records of A and p are.
+    let Ok(document) = folder.document(name) else { return Ok(None) };
+    if !LawRecord::is_of(&document.table) {
+        return Ok(None);
+    }
+    let record = slice::<LawRecord>(&Value::Table(document.table.clone()), "record").map_err(|error| document.locate(error))?;
+    let mut table = fatigue.as_table().cloned().unwrap_or_default();
+    if let Some(asked) = table.get("growth_law").and_then(Value::as_str).filter(|asked| *asked != record.kind()) {
+        let problem = format!("is not the law that {name} holds, {}", record.kind());
+        return Err(input("fatigue.growth_law", format!("\"{asked}\""), problem, "leave it out, or give a record of that law"));
+    }
+    table.remove("fitted");
+    table.remove("growth_law");
+    let beside = law_keys().chain(["walker_gamma"]).find(|key| table.contains_key(*key));
+    if let Some(key) = beside {
+        let problem = "stands beside fatigue.fitted, which holds a law: it is given twice";
+        return Err(input_missing(&format!("fatigue.{key}"), problem, "give the record, or all constants in the case"));
+    }
+    table.extend(record.fatigue.clone());
+    Ok(Some((Value::Table(table), Box::new(record))))
+}
+
+/// Refuses a power of ΔK at another stress ratio than that of its rates; what is to be said of other laws there.
+pub(super) fn ratio_line(record: &LawRecord, ratio: f64) -> Result<Option<String>> {
+    let (low, high) = (record.stress_ratio_min, record.stress_ratio_max);
+    if (low - RATIO_SLACK..=high + RATIO_SLACK).contains(&ratio) {
+        return Ok(None);
+    }
+    if record.kind() == GrowthLawKind::Paris.name() {
+        let problem = format!(
+            "is outside the stress ratios that the law was fitted to, {low} to {high}, and ΔK alone says nothing about R"
+        );
+        return Err(input("loading.stress_ratio", ratio, problem, "fit walker, forman or nasgro to rates at several ratios"));
+    }
+    Ok(Some(format!("the law {} was fitted to stress ratios from {low} to {high} and is used at {ratio}", record.kind())))
 }

@@ -1,18 +1,12 @@
 //! `[model]` of an input file: how the plate becomes points and bonds.
 
-use serde::Deserialize;
 use toml::Value;
 
-use super::choices::{Choices, Method};
-use super::nodes::{NodeKeys, refuse_keys_of_points};
-use super::{Case, HORIZON_RATIO, Model, RESIDUAL};
+use super::model_keys::{ModelKeys, OF_NODES, OF_POINTS, refuse, too_fine};
+use super::{Case, Choices, HORIZON_RATIO, Method, Model, RESIDUAL};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
-use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::error::{Result, input};
-use crate::fatigue::Ageing;
 use crate::input::{LENGTH, number, slice};
-use crate::levels::dual_horizon::regions::Area;
-use crate::levels::{Discretisation, Refinement, read};
 use crate::material::Material;
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
@@ -24,70 +18,41 @@ const POINTS_MAX: f64 = 4e6;
 /// Fewer spacings than this across the plate say nothing about a crack in it.
 const COLUMNS_MIN: f64 = 8.0;
 
-/// Keys of `[model]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    method: Option<Method>,
-    discretisation: Option<Discretisation>,
-    symmetry: Option<Symmetry>,
-    bond_law: Option<BondLawKind>,
-    kernel: Option<Kernel>,
-    rotation: Option<Rotation>,
-    surface_correction: Option<SurfaceCorrection>,
-    spacing_mm: Option<f64>,
-    horizon_ratio: Option<f64>,
-    lattice_angle_deg: Option<f64>,
-    solver: Option<SolverKind>,
-    nodes: Option<f64>,
-    tolerance_percent: Option<f64>,
-    basis: Option<BasisKind>,
-    enrichment: Option<Enrichment>,
-    influence_radius: Option<f64>,
-}
-
-/// Reads `[model]` and, if there is one, `[refinement]`; what is left out gets the program's choice. Explicit choices go into
-/// `choices`, what is to be said of the program's into `warnings`.
-pub(super) fn from_values(
+/// Reads `[model]`; what is left out gets the program's choice. Explicit choices go into `choices`, what is to be said of the program's
+/// into `warnings`.
+pub(super) fn from_value(
     value: &Value,
-    refinement: Option<&Value>,
     specimen: &Specimen,
     material: &Material,
     choices: &mut Choices,
     warnings: &mut Vec<String>,
 ) -> Result<Model> {
-    let input: Input = slice(value, "model")?;
+    let input: ModelKeys = slice(value, "model")?;
     let method = input.method.unwrap_or(Method::Peridynamics);
-    let of_nodes = NodeKeys {
-        // Of points, where it is another method's.
-        spacing_mm: input.spacing_mm.filter(|_| method == Method::ElementFreeGalerkin),
-        nodes: input.nodes,
-        tolerance_percent: input.tolerance_percent,
-        basis: input.basis,
-        enrichment: input.enrichment,
-        influence_radius: input.influence_radius,
-    };
-    if method == Method::ElementFreeGalerkin {
-        refuse_keys_of_points(value, refinement)?;
-    } else {
-        of_nodes.refuse(method)?;
+    match method {
+        Method::ElementFreeGalerkin => {
+            let problem = "belongs to peridynamics, and model.method is \"element_free_galerkin\"";
+            refuse(value, OF_POINTS, problem, "leave it out, or use model.method = \"peridynamics\"")?;
+        }
+        Method::Peridynamics | Method::Handbook => {
+            let problem = format!("belongs to model.method = \"element_free_galerkin\", and the method is \"{method}\"");
+            refuse(value, OF_NODES, &problem, "leave it out, or choose that method")?;
+        }
     }
-    let arrangement = input.discretisation.unwrap_or(Discretisation::Lattice);
-    let refinement = refinement.map(|value| read::from_value(value, specimen)).transpose()?;
-    check_arrangement(arrangement, refinement.is_some(), input.solver)?;
     choices.bond_law = input.bond_law;
     choices.kernel = input.kernel;
     choices.rotation = input.rotation;
     choices.surface_correction = input.surface_correction;
     choices.horizon_ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
-    let levels = refinement.as_ref().map_or(0, Refinement::deepest);
-    let element_free = of_nodes.read(specimen)?;
-    if method == Method::ElementFreeGalerkin {
-        warnings.extend(of_nodes.too_fine(specimen, &element_free));
-    }
-    let of_points = input.spacing_mm.filter(|_| method != Method::ElementFreeGalerkin);
+    // A spacing is that of points, or of nodes far from cracks.
+    let (of_nodes, of_points) = match method {
+        Method::ElementFreeGalerkin => (input.spacing_mm, None),
+        Method::Peridynamics | Method::Handbook => (None, input.spacing_mm),
+    };
+    let element_free = input.element_free(of_nodes, specimen)?;
+    warnings.extend(of_nodes.and_then(|spacing| too_fine(spacing, specimen, &element_free)));
     let spacing = match LENGTH.read_optional("model.spacing_mm", of_points)? {
-        Some(coarsest) => coarsest / 2.0_f64.powi(levels as i32),
+        Some(spacing) => spacing,
         None => {
             let (spacing, warning) = default_spacing(specimen);
             warnings.extend(warning.filter(|_| method == Method::Peridynamics));
@@ -111,46 +76,13 @@ pub(super) fn from_values(
         symmetry: input.symmetry.unwrap_or(Symmetry::Auto),
         element_free,
         residual: RESIDUAL,
-        arrangement,
-        refinement,
     };
     match method {
-        Method::Peridynamics => {
-            check_spacing(spacing, levels, specimen)?;
-            check_columns(model.coarsest_spacing(), specimen)?;
-        }
+        Method::Peridynamics => check_spacing(spacing, specimen)?,
         Method::ElementFreeGalerkin => {}
         Method::Handbook => check_formula(specimen)?,
     }
     Ok(model)
-}
-
-/// Several levels need regions, regions need several levels, and both a solver that knows them.
-fn check_arrangement(arrangement: Discretisation, refined: bool, solver: Option<SolverKind>) -> Result<()> {
-    const KEY: &str = "model.discretisation";
-    let quoted = format!("\"{arrangement}\"");
-    match arrangement {
-        Discretisation::Lattice if refined => {
-            let problem = "has one spacing everywhere, and there is a section [refinement]";
-            return Err(input(KEY, quoted, problem, "use \"dual_horizon\", or remove the section"));
-        }
-        Discretisation::DualHorizon if !refined => {
-            let problem = "is points of several levels, and no section [refinement] says where they are fine";
-            return Err(input(KEY, quoted, problem, "give [refinement] with regions, or use \"lattice\""));
-        }
-        Discretisation::VariableHorizon => {
-            let problem = "belongs to fracture scenes, not to a fatigue case: without the dual horizon forces do not balance";
-            return Err(input(KEY, quoted, problem, "use \"dual_horizon\", or run `perilife fracture` on a scene"));
-        }
-        Discretisation::Lattice | Discretisation::DualHorizon => {}
-    }
-    match solver {
-        Some(solver @ (SolverKind::Multigrid | SolverKind::AdaptiveDynamicRelaxation)) if refined => {
-            let problem = "works on lattices of one spacing, and discretisation = \"dual_horizon\" has several levels";
-            Err(input("model.solver", format!("\"{solver}\""), problem, "use \"window\", or \"direct\""))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Hand calculation needs a formula for K(a).
@@ -205,21 +137,16 @@ pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
 ///
 /// # Errors
 /// `Error::Input` on `model.spacing_mm`.
-pub fn check_spacing(spacing: f64, levels: usize, specimen: &Specimen) -> Result<()> {
+pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
     const KEY: &str = "model.spacing_mm";
-    // The key is that of the coarsest level.
-    let coarsening = 2.0_f64.powi(levels as i32);
-    let coarsest = coarsening * spacing;
-    let (given, flaw) = (round_mm(coarsest), specimen.smallest_flaw());
+    let (given, flaw) = (round_mm(spacing), specimen.smallest_flaw());
     if spacing > flaw {
-        let refined = if levels > 0 { format!(" on {levels} finer levels") } else { String::new() };
-        let problem = format!("is larger{refined} than the crack ({} mm): no bond would be cut as it should", round_mm(flaw));
-        let remedy = format!("give a ninth of the crack or less on the finest level, {} mm", round_mm(coarsening * flaw / 9.0));
+        let problem = format!("is larger than the crack ({} mm): no bond would be cut as it should", round_mm(flaw));
+        let remedy = format!("give a ninth of the crack or less, {} mm", round_mm(flaw / 9.0));
         return Err(input(KEY, given, problem, remedy));
     }
     check_columns(spacing, specimen)?;
-    // Of the coarsest level at the least.
-    let points = specimen.area() / (coarsest * coarsest);
+    let points = specimen.area() / (spacing * spacing);
     if points > POINTS_MAX {
         let smallest = round_mm((specimen.area() / POINTS_MAX).sqrt());
         let problem = format!("would make about {points:.1e} points, more than {POINTS_MAX:.0e}");
@@ -243,24 +170,10 @@ pub fn round_mm(metres: f64) -> f64 {
     (metres / MM * 1e6).round() / 1e6
 }
 
-/// The bond law can represent the material, and its choices go together; levels of points go with law, horizon and ageing.
+/// The bond law can represent the material, and its choices go together.
 pub(super) fn check_law(case: &Case) -> Result<()> {
-    let (model, law) = (&case.model, &case.model.bond_law);
-    if model.method != Method::Peridynamics {
-        return Ok(());
+    match case.model.method {
+        Method::Peridynamics => stencil::check(&case.model.bond_law, &case.material),
+        Method::ElementFreeGalerkin | Method::Handbook => Ok(()),
     }
-    if model.arrangement != Discretisation::Lattice {
-        if law.kind == BondLawKind::StateBased {
-            let problem = format!("has a dilatation of every point, and \"{}\" joins points by springs only", model.arrangement);
-            let remedy = "use bond_based or two_parameter, or discretisation = \"lattice\"";
-            return Err(input("model.bond_law", format!("\"{}\"", law.kind), problem, remedy));
-        }
-        if case.fatigue.ageing == Ageing::Everywhere {
-            let problem = format!("ages all bonds, and with \"{}\" those of the finest level alone can break", model.arrangement);
-            let remedy = "use \"crack_tip\", or model.discretisation = \"lattice\"";
-            return Err(input("fatigue.ageing", format!("\"{}\"", case.fatigue.ageing), problem, remedy));
-        }
-    }
-    Area::all(&case.specimen, model.refinement.as_ref(), model.horizon_ratio)?;
-    stencil::check(law, &case.material)
 }

@@ -4,27 +4,25 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use super::choices::{Choices, Method};
-use super::{Case, LAW_KEYS, LawSource, boundaries, fatigue, first_load, law, law_record, model, remove_law};
+use super::{Case, Choices, LawSource, Method, boundaries, fatigue, law, law_keys, law_source, model, remove_law};
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
-use crate::input::{Document, Folder, ForeignSections, OF_SCENES, OpenedFile, Provenance, Sections, value_at};
-use crate::levels::Discretisation;
+use crate::input::{Document, Folder, ForeignSections, LEVELS_OF_SCENES, OF_SCENES, OpenedFile, Provenance, Sections, value_at};
 use crate::loading::LoadingKind;
-use crate::solver::SolverKind;
 use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use crate::{loading, material, specimen};
 
 /// What a record is called that came with no file.
 pub const RECORD: &str = "fitted.toml";
 /// Sections of a case file.
-pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "refinement", "fatigue", "stop"];
+pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "fatigue", "stop"];
 
 /// Sections of other files.
 const STRANGERS: &[ForeignSections] = &[
+    (&["refinement"], "belongs to a fracture scene: a fatigue case has points of one spacing", LEVELS_OF_SCENES),
     (
         &["measured", "fit"],
         "belongs to a calibration file, not to a case",
@@ -101,10 +99,8 @@ impl Case {
         let mut specimen = specimen::from_value(sections.required("specimen")?)?;
         let material = material::from_value(sections.required("material")?, folder, &mut warnings)?;
         let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
-        let refinement = sections.given("refinement");
-        let model = sections.optional("model");
-        let model = model::from_values(model, refinement, &specimen, &material, &mut choices, &mut warnings)?;
-        let (with_law, law_record) = law_record::expanded(sections.optional("fatigue"), folder)?.unzip();
+        let model = model::from_value(sections.optional("model"), &specimen, &material, &mut choices, &mut warnings)?;
+        let (with_law, law_record) = law_source::expanded(sections.optional("fatigue"), folder)?.unzip();
         let fatigue = fatigue::from_value(
             with_law.as_ref().unwrap_or(sections.optional("fatigue")),
             model.method,
@@ -145,7 +141,7 @@ impl Case {
         }
         model::check_law(&case)?;
         check_load(&case)?;
-        case.warnings.extend(first_load::warning(&case));
+        case.warnings.extend(boundaries::first_load_warning(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
         case.provenance = folder.opened().so_far();
@@ -159,7 +155,7 @@ impl Case {
         self.warnings.retain(|line| !before.contains(line));
         let fatigue = self.echo.as_object_mut().map(|case| case.entry("fatigue").or_insert_with(|| serde_json::json!({})));
         if let Some(keys) = fatigue.and_then(|fatigue| fatigue.as_object_mut()) {
-            for key in LAW_KEYS {
+            for key in law_keys() {
                 keys.shift_remove(key);
             }
             keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
@@ -190,7 +186,7 @@ fn refuse_scene(table: &Table) -> Result<()> {
     Err(input(KIND, format!("\"{kind}\""), problem, format!("run `perilife fracture`, or use one of {known}")))
 }
 
-/// Loads that only growth by K of the tips knows, on points of one spacing where they press on flanks.
+/// Loads that only growth by K of the tips on points knows.
 fn check_load(case: &Case) -> Result<()> {
     let pressed = case.specimen.crack_pressure > 0.0;
     let (key, value, what) = match case.loading.displacement() {
@@ -206,23 +202,12 @@ fn check_load(case: &Case) -> Result<()> {
         let problem = format!("{what} known to peridynamics driven by the field of every tip alone");
         return Err(input(key, value, problem, "use model.method = \"peridynamics\" and fatigue.driver = \"tip_field\""));
     }
-    if !pressed {
-        return Ok(());
-    }
-    if case.model.arrangement != Discretisation::Lattice {
-        let problem = format!("does not go with discretisation \"{}\"", case.model.arrangement);
-        return Err(input(key, value, problem, "use model.discretisation = \"lattice\""));
-    }
-    if case.model.solver == SolverKind::AdaptiveDynamicRelaxation {
-        let problem = format!("is not known to the solver \"{}\"", case.model.solver);
-        return Err(input(key, value, problem, "use model.solver = \"window\", \"multigrid\" or \"direct\""));
-    }
     Ok(())
 }
 
 /// What the user should know about law and horizon of this case.
 fn law_lines(case: &Case) -> Result<Vec<String>> {
-    let of_record = case.law_record.as_ref().map(|record| law_record::ratio_line(record, case.loading.ratio)).transpose()?;
+    let of_record = case.law_record.as_ref().map(|record| law_source::ratio_line(record, case.loading.ratio)).transpose()?;
     let mut lines: Vec<String> = of_record.flatten().into_iter().collect();
     match &case.law {
         LawSource::Inline(_) => lines.extend(inline_line(case)),

@@ -23,7 +23,6 @@ crate::kinds! {
         TipField = "tip_field": "points and bonds, cracks driven by the K of their tips: the default",
         ElementFree = "element_free_galerkin": "nodes without elements, cracks driven by the K of their tips",
         Handbook = "handbook": "quadrature of the growth law with K of a handbook",
-        DualHorizon = "dual_horizon": "points of two levels, cracks driven by the K of their tips",
         BondStrain = "bond_strain": "bonds that fail by their strain, at the rate of K",
         Published = "bond_strain_as_computed": "bonds that fail by their strain as computed: the published law",
         BondLaw = "bond_law": "another bond law, kernel or correction than the default",
@@ -47,9 +46,6 @@ const STUDIED: [&str; 4] = ["middle_tension", "single_edge", "slant_severance", 
 const SOLVED: [&str; 2] = ["middle_tension", "slant_severance"];
 /// Scenes where bonds that fail by their strain are run.
 const FATIGUE_BONDS: [&str; 4] = STUDIED;
-/// Scenes where the published law is measured with the published solver, extrapolated from some blocks.
-const EXTRAPOLATED: [&str; 2] = ["middle_tension", "slant_severance"];
-const RELAXATION: &str = "model.solver=adaptive_dynamic_relaxation";
 /// Bond laws beside the default one. The bond-based law has one Poisson's ratio.
 const LAWS: [(&str, &[&str]); 4] = [
     ("bond_based", &["model.bond_law=bond_based", "material.poisson_ratio=0.3333333333"]),
@@ -58,7 +54,7 @@ const LAWS: [(&str, &[&str]); 4] = [
     ("constant kernel", &["model.kernel=constant"]),
 ];
 /// Solvers beside the default one.
-const SOLVERS: [&str; 3] = ["multigrid", "direct", "adaptive_dynamic_relaxation"];
+const SOLVERS: [&str; 2] = ["multigrid", "direct"];
 
 /// The choices of a scene, the default first.
 pub fn choices(scene: &Scene) -> Result<Vec<Choice>> {
@@ -98,23 +94,17 @@ pub fn choices(scene: &Scene) -> Result<Vec<Choice>> {
             choice(Family::ElementFree, &format!("{nodes} nodes"), &[NODES_KEY, &set], false)
         }));
     }
-    if let Some([low, high]) = scene.way_mm {
-        let region = format!("refinement.regions=[{{ box_mm = [{low:?}, {high:?}], levels = 1 }}]");
-        let coarse = format!("model.spacing_mm={}", (2e4 * spacing).round() / 1e4);
-        let set = ["model.discretisation=dual_horizon", &coarse, &region];
-        all.push(choice(Family::DualHorizon, "", &set, false));
-    }
     if scene.has_formula() {
         all.push(choice(Family::Handbook, "", &["model.method=handbook"], true));
     }
     if FATIGUE_BONDS.contains(&scene.name) {
-        all.extend(fatigue_bonds(scene.name, spacing));
+        all.extend(fatigue_bonds(spacing));
     }
     Ok(all)
 }
 
 /// Bonds that fail by their strain.
-fn fatigue_bonds(scene: &str, spacing: f64) -> Vec<Choice> {
+fn fatigue_bonds(spacing: f64) -> Vec<Choice> {
     const DRIVER: &str = "fatigue.driver=bond_strain";
     let coarse = format!("model.spacing_mm={}", (2e4 * spacing).round() / 1e4);
     let mut all = Vec::new();
@@ -122,9 +112,6 @@ fn fatigue_bonds(scene: &str, spacing: f64) -> Vec<Choice> {
         let rate = format!("fatigue.growth_rate={rate}");
         all.push(choice(family, "", &[DRIVER, &rate], false));
         all.push(choice(family, "spacing × 2", &[DRIVER, &rate, &coarse], false));
-        if family == Family::Published && EXTRAPOLATED.contains(&scene) {
-            all.push(choice(family, "by relaxation", &[DRIVER, &rate, &coarse, RELAXATION], false));
-        }
     }
     all
 }

@@ -5,7 +5,6 @@
 //! reference runs. What is refused or fails is a point of the [`Chart`] as well, with its reason.
 
 pub mod choice;
-pub mod extrapolation;
 pub mod machine;
 pub mod pareto;
 pub mod run;

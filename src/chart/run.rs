@@ -4,20 +4,16 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::extrapolation::History;
 use super::scene::{Found, Scene};
 use crate::calibration::median::median;
+use crate::case::budget::machine;
 use crate::case::{Case, Method};
 use crate::error::Result;
 use crate::fatigue::Driver;
-use crate::predict::memory;
-use crate::solver::{SolverKind, Symmetry};
 use crate::units::MM;
 
 /// Seconds that a run shorter than them is repeated for.
 const SHORT_S: f64 = 0.05;
-/// Seconds for the measured blocks of a slow solver.
-const BLOCKS_S: f64 = 20.0;
 
 /// What a run took and found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,10 +57,6 @@ pub struct Model {
 
 /// Runs a scene with these keys in this process; its peak of memory is that of the process.
 pub fn once(scene: &Scene, set: &[String]) -> Result<Run> {
-    let case = scene.case(set)?;
-    if scene.grows() && case.fatigue.driver == Driver::BondStrain && case.model.solver == SolverKind::AdaptiveDynamicRelaxation {
-        return extrapolated(scene, &case);
-    }
     let timed = || -> Result<(Case, Found, f64)> {
         let started = Instant::now();
         let case = scene.case(set)?;
@@ -78,33 +70,13 @@ pub fn once(scene: &Scene, set: &[String]) -> Result<Run> {
     }
     Ok(Run {
         wall_s: median(&walls),
-        memory_mb: memory::peak_mb(),
+        memory_mb: machine::peak_mb(),
         error_percent: found.error_percent,
         path_rms_mm: found.path_rms_mm,
         points: found.points,
         solves: found.solves,
         model: Model::of(&case, scene.grows()),
         extrapolated_from_blocks: None,
-    })
-}
-
-/// A run with a solver too slow to wait for: its blocks are those of the default solver, which finds the same equilibria.
-fn extrapolated(scene: &Scene, case: &Case) -> Result<Run> {
-    let mut known = case.clone();
-    known.model.solver = SolverKind::Window;
-    known.model.symmetry = Symmetry::Off;
-    let (history, prediction) = History::of(&known)?;
-    let found = scene.judge(&prediction)?;
-    let sampled = history.sample(case.model.solver, case.loading.maximum, BLOCKS_S)?;
-    Ok(Run {
-        wall_s: sampled.whole(history.blocks()),
-        memory_mb: memory::peak_mb(),
-        error_percent: found.error_percent,
-        path_rms_mm: found.path_rms_mm,
-        points: found.points,
-        solves: history.blocks() + 1,
-        model: Model::of(case, scene.grows()),
-        extrapolated_from_blocks: Some(sampled.blocks.len()),
     })
 }
 
@@ -134,7 +106,7 @@ impl Model {
             "quadrature"
         };
         let discretisation = match (points, nodes) {
-            (true, _) => model.arrangement.name(),
+            (true, _) => "lattice",
             (false, true) => "nodes",
             _ => "",
         };

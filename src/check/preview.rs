@@ -9,7 +9,7 @@ use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::no_fail::stuck;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::growth::element_free::initial_plate;
-use crate::growth::plate::Plate;
+use crate::growth::plate;
 use crate::report::model_words;
 use crate::specimen::Specimen;
 use crate::state::Bonds;
@@ -66,19 +66,16 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
     let budget = Budget::of(case);
     if !is_quick(&budget, specimen) {
         let padding = model.horizon_ratio.floor() as usize;
-        let lattice = Lattice::over(specimen, model.coarsest_spacing(), model.lattice_angle, padding)?;
-        let most = if model.refinement.is_some() { "at most" } else { "about" };
-        let spacing = model.fitting_spacing(specimen);
-        let count = format!("{most} {:.0}", budget.points * (model.spacing / spacing).powi(2));
-        return Ok(Preview { points: points_line(case, &count, [spacing, lattice.spacing]), warnings: Vec::new() });
+        let lattice = Lattice::over(specimen, model.spacing, model.lattice_angle, padding)?;
+        let count = format!("about {:.0}", budget.points * (model.spacing / lattice.spacing).powi(2));
+        return Ok(Preview { points: points_line(case, &count, lattice.spacing), warnings: Vec::new() });
     }
-    let plate = Plate::build(specimen, specimen, &case.material, model).map_err(as_input)?;
-    let body = &plate.body;
+    let body = &model.body(specimen, &case.material).map_err(as_input)?;
     let mut bonds = Bonds::new(body);
     if remove_fragments(body, &mut bonds, &body.pre_cut) == Connectivity::Severed {
         return Err(as_input(Error::Mechanics("the initial cracks cut the plate in two".to_owned())));
     }
-    let count = built([plate.points(), plate.bonds(), plate.cut()]);
+    let count = built([body.points.len(), body.bond_count, body.pre_cut.len()]);
     let tips: Vec<CrackTip> = specimen.tips.iter().map(|seed| CrackTip::at(seed, body)).collect();
     let held = stuck(body, &bonds, &tips, &case.fatigue).into_iter().map(|tip| {
         let [x, y] = tips[tip].position.map(mm);
@@ -88,15 +85,13 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
             mm(body.horizon())
         )
     });
-    let warnings = plate.warnings().into_iter().chain(held).collect();
-    let fine = body.lattice.spacing;
-    Ok(Preview { points: points_line(case, &count, [fine, fine * model.coarsest_spacing() / model.spacing]), warnings })
+    let warnings = plate::warning(body).into_iter().chain(held).collect();
+    Ok(Preview { points: points_line(case, &count, body.lattice.spacing), warnings })
 }
 
-/// `spacings` of the finest and the coarsest level, m.
-fn points_line(case: &Case, count: &str, spacings: [f64; 2]) -> String {
-    let sizes = [case.model.spacing, spacings[0] * case.model.horizon_ratio];
-    points_words(count, spacings, sizes, &model_words::of_case(case, None))
+fn points_line(case: &Case, count: &str, spacing: f64) -> String {
+    let sizes = [case.model.spacing, spacing * case.model.horizon_ratio];
+    points_words(count, [spacing; 2], sizes, &model_words::of_case(case, None))
 }
 
 /// What a run would end with as mechanics is, seen before any run, input that has to change.

@@ -157,7 +157,6 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     let by_points = case.model.method == Method::Peridynamics;
     lines.extend(by_points.then(|| line("bonds", model_words::words(&chosen, &model_words::OF_BONDS))));
     lines.push(line("points", points));
-    lines.extend(case.model.refinement.as_ref().map(|refinement| line("refinement", refinement.words())));
     lines.push(line("fatigue", law_words(case)));
     lines.extend(by_points.then(|| line("driver", model_words::words(&chosen, &["driver"]))));
     if case.spends_bond_life() {

@@ -97,7 +97,6 @@ pub fn run(args: &Args) -> Result<()> {
         body_bytes: (args.body_mib as usize) << 20,
         points: f64::from(args.points),
         case_bytes: args.work.settings().memory as f64,
-        job_seconds: args.work.settings().time.as_secs_f64() * args.work.threads as f64,
         queued: i64::from(args.queued),
         quota_bytes: i64::from(args.quota_mib) << 20,
         connections: args.connections as usize,

@@ -24,7 +24,7 @@ pub fn remove_fragments(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Conn
     let least = if body.stencil.unknowns == 3 { 2 } else { 3 };
     let mut suspects: Vec<usize> = broken.iter().flat_map(|&b| [body.ends(b).1, body.ends(b).2]).collect();
     while let Some(place) = suspects.pop() {
-        if bonds.intact_at(body, place) < least && !body.beyond.is_rim(place) {
+        if bonds.intact_at(body, place) < least {
             for (bond, other) in intact_bonds(body, bonds, place) {
                 bonds.cut(body, bond);
                 aside.push(bond);
@@ -69,7 +69,7 @@ pub fn remove_fragments(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Conn
 fn loads_are_connected(body: &Body, bonds: &Bonds) -> bool {
     let loaded: Vec<usize> = loaded_nodes(body, bonds).collect();
     let Some(&first) = loaded.first() else { return false };
-    let mut seen = vec![false; body.places() + body.beyond.pieces()];
+    let mut seen = vec![false; body.places()];
     let mut front = vec![first];
     seen[first] = true;
     while let Some(node) = front.pop() {
@@ -82,17 +82,13 @@ fn loads_are_connected(body: &Body, bonds: &Bonds) -> bool {
     loaded.into_iter().all(|node| seen[node])
 }
 
-/// Loaded nodes that still carry: places with bonds, and behind the last place the pieces beyond the body.
+/// Loaded points that still have bonds.
 fn loaded_nodes<'a>(body: &'a Body, bonds: &'a Bonds) -> impl Iterator<Item = usize> + 'a {
-    let beyond = (0..body.beyond.pieces()).map(|piece| body.places() + piece).filter(|&node| is_loaded(body, node));
     let places = body.points.iter().map(|&place| place as usize);
-    places.filter(|&place| is_loaded(body, place) && bonds.intact_at(body, place) > 0).chain(beyond)
+    places.filter(|&place| is_loaded(body, place) && bonds.intact_at(body, place) > 0)
 }
 
 fn is_loaded(body: &Body, node: usize) -> bool {
-    if node >= body.places() {
-        return body.beyond.is_loaded(node - body.places());
-    }
     let place = node as u32;
     let boundary = &body.boundary;
     boundary.forces.binary_search_by_key(&place, |f| f.0).is_ok()
@@ -103,12 +99,7 @@ fn is_loaded(body: &Body, node: usize) -> bool {
 
 /// Calls `take` with all nodes that hang on one by intact bonds.
 fn for_neighbours(body: &Body, bonds: &Bonds, node: usize, mut take: impl FnMut(usize)) {
-    if node >= body.places() {
-        body.beyond.rim_of(node - body.places()).iter().for_each(|&place| take(place as usize));
-        return;
-    }
     intact_bonds(body, bonds, node).into_iter().for_each(|(_, other)| take(other));
-    body.beyond.pieces_at(node).for_each(|piece| take(body.places() + piece));
 }
 
 /// Intact bonds of a point with the other end.

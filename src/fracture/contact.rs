@@ -33,7 +33,7 @@ use super::scene::{Procedure, Scene, SceneLaw};
 use crate::body::pre_crack::cutting_line;
 use crate::body::sharing::{WIDEN, WIDENINGS, linear_shares};
 use crate::levels::Net;
-use crate::levels::equilibrium::Strut;
+use crate::levels::stiffness::Strut;
 use crate::specimen::geometry::segments_touch;
 use crate::specimen::{Crack, Point};
 use crate::units::MM;

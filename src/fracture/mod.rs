@@ -35,10 +35,10 @@ pub use scene::Scene;
 
 use crate::body::Body;
 use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
+use crate::case::budget::machine;
 use crate::error::{Result, input};
 use crate::levels::{MultiLevelSpec, Net, dual_horizon};
 use crate::parallel::in_pool;
-use crate::predict::memory;
 use crate::watch::{self, Stage, Watch};
 use bonds::BondState;
 use boundary::Boundary;
@@ -141,7 +141,7 @@ fn follow(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpo
     let overlap = contact::warning(scene, &net, &bonds, &fracture);
     fracture.warnings.extend(net.warnings.iter().cloned().chain(turning).chain(overlap));
     fracture.figures.wall_s = clock.seconds();
-    fracture.figures.memory_mb = memory::peak_mb();
+    fracture.figures.memory_mb = machine::peak_mb();
     Ok(fracture)
 }
 
@@ -166,20 +166,18 @@ pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
                 Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
             Ok((Net::of_body(&body), Some(body)))
         }
-        (SceneLaw::Bonds(law), Discretisation::DualHorizon | Discretisation::VariableHorizon) => {
+        (SceneLaw::Bonds(law), Discretisation::DualHorizon) => {
             let ask = MultiLevelSpec {
                 specimen: &scene.specimen,
-                flaws: &scene.specimen,
                 material: &scene.material,
                 law: &law,
                 spacing: model.spacing,
                 horizon_ratio: model.horizon_ratio,
                 lattice_angle: model.lattice_angle,
-                arrangement: model.arrangement,
                 refinement: scene.refinement.as_ref(),
                 floating: is_floating(scene),
             };
-            Ok((dual_horizon::build(&ask)?.net, None))
+            Ok((dual_horizon::build(&ask)?, None))
         }
         (SceneLaw::Correspondence { .. }, arrangement) => {
             let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";

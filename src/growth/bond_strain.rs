@@ -1,14 +1,12 @@
 //! Cracks that go where bonds break, each bond spending its life by its own strain.
 //!
 //! Per cycle block: take the cyclic strain of the fatigue bonds, spend their lives until the next one breaks, break it, find the new
-//! equilibrium, follow the tips. Cracks are first grown to their initial lengths (`start.rs`); N = 0 is there.
+//! equilibrium, follow the tips. Cracks are first grown to their initial lengths (`precrack`); N = 0 is there.
 
-mod run_state;
 mod overload;
 mod growth_rate_control;
 mod precrack;
 mod stop;
-mod tip_end;
 mod history;
 
 use std::sync::Arc;
@@ -17,10 +15,9 @@ use serde::{Deserialize, Serialize};
 
 use super::cross_check::CrossCheck;
 use super::end_of_life::{End, first_end};
-use super::plate::Plate;
 use super::record::{CurvePoint, StopReason};
 use super::tip_field::initial_factor;
-use super::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
+use super::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State, plate};
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::{Error, Result};
@@ -30,13 +27,11 @@ use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::fatigue::{FatigueLaw, FatigueSettings};
 use crate::solver::{Equilibrium, Focus, SolverUsed};
-use crate::state::Bonds;
 use growth_rate_control::{GrowthRateControl, TipRateControl};
-use history::History;
+use history::{History, RunState};
 use overload::{overstretched, stretched};
 use precrack::Precrack;
-use run_state::RunState;
-use tip_end::{break_through, retire_tips};
+use stop::{break_through, retire_tips};
 
 /// Growth of the load's work by overload within one block, at constant load, from which the plate counts as severed: it has
 /// lost half of its stiffness without a cycle, and what is left only gets softer.
@@ -55,7 +50,7 @@ pub struct BondRates {
 /// [`CrackGrowth`] by fatigue bonds.
 pub struct BondStrain<'a> {
     case: &'a Case,
-    plate: Arc<Plate>,
+    body: Arc<Body>,
     law: FatigueLaw,
     pace: Option<GrowthRateControl>,
     start: Precrack,
@@ -67,8 +62,6 @@ pub struct BondStrain<'a> {
     displacement: Vec<f64>,
     /// Bonds that may age in the next block.
     near: Vec<Bond>,
-    /// What broke in the last block.
-    last_broken: Vec<Bond>,
     /// These and others whose displacement has to be right after every break.
     watched: Vec<Bond>,
     is_closed: bool,
@@ -105,11 +98,10 @@ impl<'a> BondStrain<'a> {
     /// The plate with its cracks as they are cut, before its first equilibrium; the fatigue law is given the body's horizon, m.
     ///
     /// # Errors
-    /// As [`Plate::build`]; a crack too short to be grown, cracks that cut the plate in two, no fatigue law.
+    /// As [`Body::build`]; a crack too short to be grown, cracks that cut the plate in two, no fatigue law.
     pub fn start(case: &'a Case, rates: impl FnOnce(f64) -> Result<BondRates>) -> Result<Self> {
         let start = Precrack::of(case)?;
-        let plate = Plate::build(&start.specimen, &case.specimen, &case.material, &case.model)?;
-        let body = &plate.body;
+        let body = case.model.body(&start.specimen, &case.material)?;
         let BondRates { bonds: law, over_k } = rates(body.horizon())?;
         let share = strain_share(&case.loading, &case.fatigue);
         // A rate over K has its threshold in K.
@@ -117,10 +109,10 @@ impl<'a> BondStrain<'a> {
             Some(_) => 0.0,
             None => share * threshold_strain(&case.fatigue, &case.material, body.horizon()) / case.loading.range_share(),
         };
-        let pace = over_k.map(|over_k| GrowthRateControl::new(case, &start, body, over_k));
-        let mut run = RunState::start(case, body, start.tips(body));
-        if precrack::cuts_in_two(body, &run.bonds, case)
-            || remove_fragments(body, &mut run.bonds, &body.pre_cut) == Connectivity::Severed
+        let pace = over_k.map(|over_k| GrowthRateControl::new(case, &start, &body, over_k));
+        let mut run = RunState::start(case, &body, start.tips(&body));
+        if precrack::cuts_in_two(&body, &run.bonds, case)
+            || remove_fragments(&body, &mut run.bonds, &body.pre_cut) == Connectivity::Severed
         {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
@@ -131,32 +123,21 @@ impl<'a> BondStrain<'a> {
             start,
             end: first_end(case),
             range: (share, threshold),
-            equilibrium: solver(case, &plate, &run),
+            equilibrium: solver(case, &body, &run),
             run,
             displacement: Vec::new(),
             near: Vec::new(),
             watched: Vec::new(),
-            last_broken: Vec::new(),
             is_closed: false,
             first: None,
             warnings: Vec::new(),
-            plate: Arc::new(plate),
+            body: Arc::new(body),
         })
-    }
-
-    /// The plate, and its bonds as they stand.
-    pub fn plate_and_bonds(&self) -> (Body, Bonds) {
-        (self.plate.body.clone(), self.run.bonds.clone())
-    }
-
-    /// Bonds that broke in the last block.
-    pub fn last_broken(&self) -> &[Bond] {
-        &self.last_broken
     }
 
     /// The first equilibrium of the bonds as they stand.
     fn settle_first(&mut self) -> Result<()> {
-        self.run.iterations += self.equilibrium.solve(&self.plate.body, &self.run.bonds, &mut self.displacement)?;
+        self.run.iterations += self.equilibrium.solve(&self.body, &self.run.bonds, &mut self.displacement)?;
         self.run.solves += 1;
         Ok(())
     }
@@ -164,7 +145,7 @@ impl<'a> BondStrain<'a> {
     /// Lets cycles count where every crack has its initial length, and finds which bonds may age next and which others are watched.
     fn look_around(&mut self) {
         let (case, run) = (self.case, &mut self.run);
-        let body = &self.plate.body;
+        let body = &self.body;
         let counting = self.start.is_over(&run.tips);
         if counting && run.track.begin() {
             run.tips.iter_mut().for_each(CrackTip::leave_fixed_line);
@@ -181,7 +162,7 @@ impl<'a> BondStrain<'a> {
 
     /// The fatigue bonds, by the strains of the displacement at hand.
     fn ageing(&mut self) -> Vec<FatigueBond> {
-        let (body, run) = (&self.plate.body, &self.run);
+        let (body, run) = (&self.body, &self.run);
         // Growth to the initial lengths is none of the load's: no threshold holds it up.
         let (share, threshold) = self.range;
         let threshold = if run.track.is_counting() { threshold } else { 0.0 };
@@ -195,8 +176,8 @@ impl<'a> BondStrain<'a> {
     /// Breaks bonds, and finds the new equilibrium, until no bond is stretched beyond the critical stretch; all that broke, and
     /// why there is no equilibrium any more.
     fn break_bonds(&mut self, first: Vec<Bond>) -> (Vec<Bond>, Option<StopReason>) {
-        let plate = self.plate.clone();
-        let (body, case, run, equilibrium) = (&plate.body, self.case, &mut self.run, &mut self.equilibrium);
+        let body = &self.body.clone();
+        let (case, run, equilibrium) = (self.case, &mut self.run, &mut self.equilibrium);
         let work_before = equilibrium.work();
         let mut spent = first.clone();
         let mut newly = first;
@@ -236,8 +217,8 @@ impl<'a> BondStrain<'a> {
     /// # Errors
     /// No equilibrium before the block.
     pub fn next_break(&mut self) -> Result<Option<StopReason>> {
-        let plate = self.plate.clone();
-        let (case, body, settings) = (self.case, &plate.body, &self.case.fatigue);
+        let body = &self.body.clone();
+        let (case, settings) = (self.case, &self.case.fatigue);
         let counting = self.start.is_over(&self.run.tips);
 
         // By how much strain a cycle bonds age.
@@ -260,14 +241,9 @@ impl<'a> BondStrain<'a> {
             }
             ageing = self.ageing();
         }
-        self.last_broken.clear();
         let run = &mut self.run;
         if let Some(reason) = stop::before_block(case, self.end, &run.track, &run.tips, &ageing) {
             return Ok(Some(reason));
-        }
-        if let Some(tip) = stop::at_rim(body, &run.tips, settings) {
-            self.warnings.push(plate.left_refinement(tip, settings.zone_radius_horizons));
-            return Ok(Some(StopReason::LeftRefinement));
         }
 
         // Spend life over the block; bonds at the end of theirs break.
@@ -297,7 +273,6 @@ impl<'a> BondStrain<'a> {
             pace.follow(body, &run.tips, &records);
         }
         run.track.record(records, run.broken_bonds, work);
-        self.last_broken = spent;
         let reason = reason.or_else(|| stop::after_block(case, self.end, &run.track));
         if reason.is_none() {
             self.look_around();
@@ -327,31 +302,31 @@ impl CrackGrowth for BondStrain<'_> {
         }
     }
 
-    fn plate(&self) -> Option<Arc<Plate>> {
-        Some(self.plate.clone())
+    fn body(&self) -> Option<Arc<Body>> {
+        Some(self.body.clone())
     }
 
     fn fields(&mut self) -> Result<Option<Fields>> {
-        let (plate, bonds) = (&self.plate, &self.run.bonds);
+        let (body, bonds) = (&self.body, &self.run.bonds);
         if self.is_closed {
-            return Ok(Some(plate.fields(bonds, &self.displacement, &self.run.life.begun())));
+            return Ok(Some(plate::fields(body, bonds, &self.displacement, &self.run.life.begun())));
         }
-        let (picture, more) = self.equilibrium.picture(&plate.body, bonds)?;
+        let (picture, more) = self.equilibrium.picture(body, bonds)?;
         self.run.iterations += more;
-        Ok(Some(self.plate.fields(&self.run.bonds, &picture, &self.run.life.begun())))
+        Ok(Some(plate::fields(&self.body, &self.run.bonds, &picture, &self.run.life.begun())))
     }
 
     /// Where the solver has to work on the whole plate anyway.
     fn should_rebuild_solver(&self) -> bool {
-        self.equilibrium.should_rebuild(&self.plate.body, &self.watched)
+        self.equilibrium.should_rebuild(&self.body, &self.watched)
     }
 
     fn rebuild_solver(&mut self) -> Result<()> {
         tracing::debug!(solves = self.run.solves, "the solver begins anew from the bonds");
-        let (plate, run) = (&self.plate, &mut self.run);
-        self.equilibrium = solver(self.case, plate, run);
+        let (body, run) = (&self.body, &mut self.run);
+        self.equilibrium = solver(self.case, body, run);
         let before = std::mem::take(&mut self.displacement);
-        match self.equilibrium.solve(&plate.body, &run.bonds, &mut self.displacement) {
+        match self.equilibrium.solve(body, &run.bonds, &mut self.displacement) {
             Ok(more) => (run.solves, run.iterations) = (run.solves + 1, run.iterations + more),
             Err(error) => {
                 self.displacement = before;
@@ -365,7 +340,7 @@ impl CrackGrowth for BondStrain<'_> {
         let run = &self.run;
         State::Bonds(BondStrainState {
             law: constants(&self.law),
-            broken: run.bonds.broken(&self.plate.body),
+            broken: run.bonds.broken(&self.body),
             life: run.life.begun(),
             tips: run.tips.clone(),
             near_limit: run.near_limit.clone(),
@@ -378,8 +353,8 @@ impl CrackGrowth for BondStrain<'_> {
 
     fn restore(&mut self, state: State) -> Result<bool> {
         let State::Bonds(state) = state else { return Ok(false) };
-        let (plate, run) = (self.plate.clone(), &mut self.run);
-        let places = plate.body.multiplier.len();
+        let (body, run) = (self.body.clone(), &mut self.run);
+        let places = body.multiplier.len();
         let mut named = state.near_limit.iter().chain(state.life.iter().map(|(bond, _)| bond)).chain(&state.broken);
         let known = named.all(|&bond| (bond as usize) < places);
         let tips = run.tips.len();
@@ -395,21 +370,21 @@ impl CrackGrowth for BondStrain<'_> {
             }
             _ => return Ok(false),
         }
-        state.broken.iter().for_each(|&bond| run.bonds.cut(&plate.body, bond));
+        state.broken.iter().for_each(|&bond| run.bonds.cut(&body, bond));
         state.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));
         (run.tips, run.near_limit) = (state.tips, state.near_limit);
         run.track.go_on_from(state.past);
         (run.broken_bonds, run.solves, run.iterations) =
             (state.broken_bonds, state.statistics.solves, state.statistics.iterations);
         run.had_window = state.statistics.solver == Some(SolverUsed::Window);
-        self.equilibrium = solver(self.case, &plate, run);
+        self.equilibrium = solver(self.case, &body, run);
         self.settle_first()?;
         self.look_around();
         Ok(true)
     }
 
     fn close(&mut self, stop: StopReason) -> Result<StopReason> {
-        let (body, run) = (&self.plate.body, &mut self.run);
+        let (body, run) = (&self.body, &mut self.run);
         let stop = stop::settled(self.end, &run.track, stop);
         if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
             run.iterations += self.equilibrium.complete(body, &run.bonds, &mut self.displacement)?;
@@ -420,7 +395,7 @@ impl CrackGrowth for BondStrain<'_> {
     }
 
     fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
-        let (curve, zero) = self.run.track.curve(self.case, &self.plate.body, self.end);
+        let (curve, zero) = self.run.track.curve(self.case, &self.body, self.end);
         let range_share = self.case.loading.range_share();
         self.first = curve.first().map(|row| (row.delta_k / range_share, row.crack_length));
         (curve, zero)
@@ -435,7 +410,7 @@ impl CrackGrowth for BondStrain<'_> {
     fn statistics(&self) -> SolverStatistics {
         let RunState { solves, iterations, had_window, .. } = self.run;
         let solver = if had_window { SolverUsed::Window } else { self.equilibrium.used() };
-        SolverStatistics { points_solved: self.equilibrium.points(&self.plate.body), solves, iterations, solver: Some(solver) }
+        SolverStatistics { points_solved: self.equilibrium.points(&self.body), solves, iterations, solver: Some(solver) }
     }
 
     fn warnings(&self) -> Vec<String> {
@@ -444,8 +419,8 @@ impl CrackGrowth for BondStrain<'_> {
 }
 
 /// Solver of the bonds as they stand, which knows nothing of what went before.
-fn solver(case: &Case, plate: &Plate, run: &RunState) -> Equilibrium {
-    plate.equilibrium(&case.model, &run.bonds, case.loading.maximum)
+fn solver(case: &Case, body: &Body, run: &RunState) -> Equilibrium {
+    Equilibrium::new(case.model.solver, case.model.symmetry, body, &run.bonds, case.loading.maximum)
 }
 
 /// Where the solver has to expect the next breaks.

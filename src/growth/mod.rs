@@ -11,7 +11,6 @@ mod end_of_life;
 pub mod hand_calculation;
 pub mod plate;
 pub mod record;
-mod rows;
 pub mod tip_field;
 mod tip_ring;
 
@@ -19,12 +18,12 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::body::Body;
 use crate::error::Result;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
 use cross_check::CrossCheck;
-use plate::Plate;
 use record::{CurvePoint, StopReason, TipRecord};
 
 /// What drives the cracks of one plate. An implementor supplies the first row, where the run stands, its curve, and a state from which
@@ -48,14 +47,14 @@ pub trait CrackGrowth {
     /// Goes on from a state of an earlier run, in place of [`CrackGrowth::open`]; whether it is one of this plate and law.
     fn restore(&mut self, state: State) -> Result<bool>;
 
-    /// The discretised plate, where there is one.
-    fn plate(&self) -> Option<Arc<Plate>> {
+    /// The plate as points and bonds, where there is one.
+    fn body(&self) -> Option<Arc<Body>> {
         None
     }
 
     /// The points that pictures show, where there are any.
     fn grid(&self) -> Option<PointGrid> {
-        self.plate().map(|plate| plate.grid())
+        self.body().map(|body| PointGrid::of_body(&body))
     }
 
     /// Displacement and damage of its points as they stand.

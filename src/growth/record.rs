@@ -16,7 +16,6 @@ crate::kinds! {
         EnteredHole = "entered_hole": "the last crack tip ran into a hole: the life is a lower bound, cycles to the hole",
         CracksJoined = "cracks_joined": "the last crack tips have met, and no other grows: the life is a lower bound",
         LigamentUnresolved = "ligament_unresolved": "a crack tip passes a rim within a spacing: points do not resolve what is between them; the life is a lower bound",
-        LeftRefinement = "left_refinement": "a crack tip came to the rim of the finest level of points: the refined region is too small",
         NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
         NoGrowth = "no_growth": "bonds went on breaking, but no crack tip grew",
         RunOut = "run_out": "cycles_max was reached",

@@ -9,13 +9,11 @@
 //! begin anew with the K that the joined crack gives them.
 
 pub(in crate::growth) mod ahead;
-mod coalescence;
 mod contact;
 mod factors;
 mod increment;
 pub mod kink;
 mod readings;
-mod remaining_life;
 mod run;
 mod state;
 pub mod steering;
@@ -29,7 +27,6 @@ use std::sync::Arc;
 use super::CrackGrowth;
 use super::cross_check::EnergyBalance;
 use super::end_of_life::{End, first_end};
-use super::plate::Plate;
 use super::record::{CurvePoint, TipRecord};
 use super::tip_ring::DIRECTION_SPACINGS;
 use crate::body::pre_crack::bonds_across;
@@ -47,8 +44,6 @@ use crate::stress_intensity::ring::RingGeometry;
 use contact::Contact;
 use step::StepControl;
 
-/// Distance from coarser points, in horizons, at which a run ends: the ring, which must not reach them, would be too narrow.
-const RING_HORIZONS_IN_LEVELS: f64 = 1.5;
 /// Length, in horizons, by which cracks are shorter at first, to see how K changes with it; a quarter of a crack at the most.
 const PROBE_HORIZONS: f64 = 0.5;
 /// Turn of a crack from which strains at its corner are not uniform, rad.
@@ -59,7 +54,7 @@ const JOINED: f64 = 1e-9;
 /// Growth by the field of every tip.
 pub struct TipField<'a> {
     case: &'a Case,
-    plate: Arc<Plate>,
+    body: Arc<Body>,
     law: Box<dyn GrowthLaw>,
     surroundings: RingGeometry,
     steps: StepControl,
@@ -91,21 +86,16 @@ impl<'a> TipField<'a> {
     /// The plate with its initial cracks, before its first equilibrium ([`CrackGrowth::open`]).
     ///
     /// # Errors
-    /// As [`Plate::build`]; a specimen without sharp crack, cracks that cut the plate in two.
+    /// As [`Body::build`]; a specimen without sharp crack, cracks that cut the plate in two.
     pub fn start(case: &'a Case, law: Box<dyn GrowthLaw>) -> Result<Self> {
-        TipField::start_on(case, TipField::plate(case)?, law)
-    }
-
-    /// The discretised plate of a case.
-    pub fn plate(case: &Case) -> Result<Arc<Plate>> {
-        Plate::build(&case.specimen, &case.specimen, &case.material, &case.model).map(Arc::new)
+        TipField::start_on(case, Arc::new(case.model.body(&case.specimen, &case.material)?), law)
     }
 
     /// The same on a plate that stands.
     ///
     /// # Errors
     /// A specimen without sharp crack, cracks that cut the plate in two.
-    pub fn start_on(case: &'a Case, plate: Arc<Plate>, law: Box<dyn GrowthLaw>) -> Result<Self> {
+    pub fn start_on(case: &'a Case, body: Arc<Body>, law: Box<dyn GrowthLaw>) -> Result<Self> {
         let specimen = &case.specimen;
         let tip = |tip: usize| {
             let end = specimen.line_end(tip).ok_or_else(|| {
@@ -115,7 +105,6 @@ impl<'a> TipField<'a> {
             Ok(Tip::new(specimen, end))
         };
         let tips = (0..specimen.tips.len()).map(tip).collect::<Result<Vec<_>>>()?;
-        let body = &plate.body;
         let steps = StepControl::new(case, body.horizon());
         let state = TipFieldState {
             lines: specimen.crack_lines(),
@@ -124,16 +113,16 @@ impl<'a> TipField<'a> {
             balance: EnergyBalance::default(),
             remaining_life: Vec::new(),
         };
-        if remove_fragments(body, &mut Bonds::new(body), &body.pre_cut) == Connectivity::Severed {
+        if remove_fragments(&body, &mut Bonds::new(&body), &body.pre_cut) == Connectivity::Severed {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
-        let at_tips = bonds_at_tips(body, &state);
-        let mut bonds = Bonds::with_multipliers(body, body.multiplier.clone());
+        let at_tips = bonds_at_tips(&body, &state);
+        let mut bonds = Bonds::with_multipliers(&body, body.multiplier.clone());
         let cut: Vec<Bond> = body.pre_cut.iter().copied().filter(|bond| at_tips.binary_search(bond).is_err()).collect();
-        cut.iter().for_each(|&bond| bonds.cut(body, bond));
-        remove_fragments(body, &mut bonds, &cut);
-        let surroundings = RingGeometry::new(body, specimen, &case.material);
-        let equilibrium = solver(case, &plate, &bonds);
+        cut.iter().for_each(|&bond| bonds.cut(&body, bond));
+        remove_fragments(&body, &mut bonds, &cut);
+        let surroundings = RingGeometry::new(&body, specimen, &case.material);
+        let equilibrium = solver(case, &body, &bonds);
         let mut growth = TipField {
             case,
             law,
@@ -152,7 +141,7 @@ impl<'a> TipField<'a> {
             rows_at_rebuild: 0,
             corners: corners(&specimen.crack_lines()),
             warnings: Vec::new(),
-            plate,
+            body,
         };
         growth.warnings = growth.ring_warnings();
         Ok(growth)
@@ -185,7 +174,7 @@ impl<'a> TipField<'a> {
 
     /// Unit vector in which the crack of a tip points.
     fn heading(&self, end: LineEnd) -> Point {
-        heading(&self.plate.body, &self.state.lines, end)
+        heading(&self.body, &self.state.lines, end)
     }
 }
 
@@ -250,6 +239,7 @@ fn bonds_at_tips(body: &Body, state: &TipFieldState) -> Vec<Bond> {
 }
 
 /// Solver of a run.
-fn solver(case: &Case, plate: &Plate, bonds: &Bonds) -> Equilibrium {
-    plate.equilibrium(&case.model, bonds, case.loading.maximum).to_tolerance(case.model.residual)
+fn solver(case: &Case, body: &Body, bonds: &Bonds) -> Equilibrium {
+    let model = &case.model;
+    Equilibrium::new(model.solver, model.symmetry, body, bonds, case.loading.maximum).to_tolerance(model.residual)
 }

@@ -57,8 +57,7 @@ impl TipRings<'_> {
 
     /// Outer radius that the surroundings leave, m.
     fn radius(&self, lines: &[CrackLine], end: LineEnd) -> f64 {
-        let radius = self.geometry.radius(self.body, lines, end, self.active, RING_HORIZONS * self.body.horizon());
-        self.body.rim_distance(self.lines[end.line].end(end.at_last), radius).unwrap_or(radius)
+        self.geometry.radius(self.body, lines, end, self.active, RING_HORIZONS * self.body.horizon())
     }
 }
 

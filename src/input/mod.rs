@@ -17,7 +17,7 @@ pub use opened::{FileId, Opened, OpenedFile, Provenance, STREAM, sha256};
 pub use quantity::*;
 pub use sections::{ForeignSections, Sections};
 pub(crate) use slice::shorten;
-pub use slice::{OF_SCENES, PLANNED, slice, table_of, value_at};
+pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, slice, table_of, value_at};
 
 /// Bytes of a file as text.
 fn text_of(bytes: Vec<u8>, path: &std::path::Path) -> crate::Result<String> {

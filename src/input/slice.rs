@@ -14,8 +14,7 @@ pub const PLANNED: &[(&str, &[&str])] =
 /// Names that a fracture scene knows and a fatigue case does not. Looked at as [`PLANNED`] is.
 pub const OF_SCENES: &[(&str, &[&str])] = &[
     ("model.bond_law", &["correspondence"]),
-    ("model.discretisation", &["variable_horizon"]),
-    ("model.solver", &["velocity_verlet", "secant"]),
+    ("model.solver", &["velocity_verlet", "secant", "adaptive_dynamic_relaxation"]),
     ("loading.kind", &["traction", "velocity", "platens"]),
 ];
 
@@ -24,8 +23,12 @@ const REMOVED: &[(&str, &str)] = &[
     ("fatigue.block", ONE_BREAK),
     ("fatigue.block_cycles", ONE_BREAK),
     ("fatigue.bonds_per_block", ONE_BREAK),
+    ("model.discretisation", LEVELS_OF_SCENES),
     ("fatigue.block_error_percent", "leave it out; for growth by K of the tips fatigue.step_error_percent says the same"),
 ];
+/// Remedy of a fatigue case that asks for points of several levels.
+pub const LEVELS_OF_SCENES: &str = "leave it out: levels are for scenes without cycles (`perilife fracture`); for fatigue use method = \
+     \"element_free_galerkin\", whose nodes refine themselves";
 const ONE_BREAK: &str = "leave it out: driver \"bond_strain\" solves after every break";
 
 /// Reads `value`, found at `path` of the file, as a `T` that denies unknown fields.

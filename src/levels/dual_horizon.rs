@@ -1,4 +1,4 @@
-//! Points of several levels with horizon and dual horizon: the arrangements `dual_horizon` and `variable_horizon`.
+//! Points of several levels with horizon and dual horizon: the arrangement `dual_horizon`.
 //!
 //! Every refined point is split in four at ± a quarter of its spacing, again and again; the horizon is the same multiple of each
 //! point's own spacing. A point x pulls every x' in its horizon `H_x = {x' : |x' - x| ≤ δ_x}` with half of the micromodulus at
@@ -10,10 +10,10 @@
 //!
 //! (Ren, Zhuang, Cai and Rabczuk 2016, IJNME 108:1451; Ren, Zhuang and Rabczuk 2017, CMAME 318:762). A bond acts on both ends with
 //! opposite forces, so momentum is exact; springs lie along their bonds or act with the couple of [`NetBond::lever`], so angular
-//! momentum is exact too. Without the dual (`variable_horizon`), the full micromodulus acts on the owner alone, and a
-//! uniform strain at rest leaves a resultant: ghost forces.
+//! momentum is exact too. Without the dual, the full micromodulus would act on the owner alone, and a uniform strain leave a resultant:
+//! ghost forces.
 //!
-//! Uniform strain is in no equilibrium within a horizon of a change of level, dual or not: a point there sees more on one side
+//! Uniform strain is in no equilibrium within a horizon of a change of level: a point there sees more on one side
 //! than on the other, and the strain at rest is off by a quarter to a half. `surface_correction = "balanced"` takes that away
 //! (`dual_horizon/balanced.rs`); limits of damage know nothing of it, so changes of level belong where no crack starts.
 //!
@@ -24,9 +24,10 @@ pub mod levels;
 mod links;
 mod loads;
 pub mod regions;
-mod surface;
 
-use super::{Discretisation, Net, NetBond, PointGrid, Refinement};
+use rayon::prelude::*;
+
+use super::{Net, NetBond, PointGrid, Refinement};
 use crate::body::balanced::load_rows;
 use crate::body::lattice::Lattice;
 use crate::body::obstacles::Obstacles;
@@ -45,10 +46,8 @@ use regions::Area;
 /// What points of several levels are asked for.
 #[derive(Debug, Clone, Copy)]
 pub struct MultiLevelSpec<'a> {
-    /// Plate, its cracks as they are cut.
+    /// Plate.
     pub specimen: &'a Specimen,
-    /// The same plate, its cracks as regions around flaws mean them.
-    pub flaws: &'a Specimen,
     /// Material.
     pub material: &'a Material,
     /// Law of the bonds.
@@ -59,49 +58,30 @@ pub struct MultiLevelSpec<'a> {
     pub horizon_ratio: f64,
     /// Angle of the lattice rows against x, rad.
     pub lattice_angle: f64,
-    /// With or without the dual horizon.
-    pub arrangement: Discretisation,
     /// Where finer points lie; `None` leaves the coarsest level everywhere.
     pub refinement: Option<&'a Refinement>,
     /// Whether nothing holds the plate, so that its loads must balance.
     pub floating: bool,
 }
 
-/// Points of several levels.
-#[derive(Debug, Clone)]
-pub struct MultiLevelMesh {
-    /// Points and bonds.
-    pub net: Net,
-    /// The lattices they stand on.
-    pub levels: Levels,
-    /// Bonds and springs of the lattice of every level.
-    pub stencils: Vec<Stencil>,
-    /// Points at whose rim a load acts, ascending.
-    pub loaded: Vec<u32>,
-}
-
 /// Builds points and bonds.
 ///
 /// # Errors
 /// Wrong input, or choices that do not go together.
-pub fn build(ask: &MultiLevelSpec<'_>) -> Result<MultiLevelMesh> {
-    let MultiLevelSpec { specimen, law, arrangement, .. } = *ask;
+pub fn build(ask: &MultiLevelSpec<'_>) -> Result<Net> {
+    let MultiLevelSpec { specimen, law, .. } = *ask;
     if law.kind == BondLawKind::StateBased {
-        let problem = format!("has a dilatation of every point, and \"{arrangement}\" joins points by springs only");
+        let problem = "has a dilatation of every point, and \"dual_horizon\" joins points by springs only";
         return Err(input("model.bond_law", format!("\"{}\"", law.kind), problem, "use a bond-based or two-parameter law"));
-    }
-    if arrangement == Discretisation::VariableHorizon && law.surface_correction == SurfaceCorrection::Balanced {
-        let problem = format!("balances springs that pull both ends, and \"{arrangement}\" has others");
-        return Err(input("model.surface_correction", "\"balanced\"", problem, "use \"none\" or \"volume_and_surface\""));
     }
     let padding = 0;
     let lattice = Lattice::over(specimen, ask.spacing, ask.lattice_angle, padding)?;
-    let areas = Area::all(ask.flaws, ask.refinement, ask.horizon_ratio)?;
+    let areas = Area::all(specimen, ask.refinement, ask.horizon_ratio)?;
     let levels = Levels::over(specimen, lattice, &areas, ask.horizon_ratio)?;
     let stencil = |lattice: &Lattice| Stencil::new(law, ask.material, lattice.spacing, ask.horizon_ratio, specimen.thickness);
     let stencils = levels.lattices.iter().map(stencil).collect::<Result<Vec<Stencil>>>()?;
     let positions: Vec<_> = levels.leaves.iter().map(|&leaf| levels.position(leaf)).collect();
-    let linking = Linking::new(specimen, &levels, &stencils, &positions, arrangement);
+    let linking = Linking::new(specimen, &levels, &stencils, &positions);
     let mut bonds = linking.within_levels();
     let mutual = bonds.len();
     bonds.extend(linking.across_levels());
@@ -113,14 +93,12 @@ pub fn build(ask: &MultiLevelSpec<'_>) -> Result<MultiLevelMesh> {
     });
     let sharing = Sharing::new(&levels, &positions, consistent);
     let forces = loads::forces(specimen, &sharing, ask.floating)?;
-    let loaded = loads::seats(specimen, &sharing);
     let mut net = Net {
         pre_cut: cut_by(&through_mouths(specimen, finest), &bonds, &positions, finest),
         volumes: of_level(|stencil| stencil.spacing * stencil.spacing).into_iter().map(|a| a * specimen.thickness).collect(),
         spacings: of_level(|stencil| stencil.spacing),
         horizons: of_level(|stencil| stencil.horizon),
         mutual,
-        owner_only: arrangement == Discretisation::VariableHorizon,
         unknowns: stencils[0].unknowns,
         rotation_length: stencils[0].spacing,
         forces,
@@ -136,11 +114,11 @@ pub fn build(ask: &MultiLevelSpec<'_>) -> Result<MultiLevelMesh> {
         SurfaceCorrection::None => {}
         SurfaceCorrection::VolumeAndSurface => {
             let c11 = plane_stiffness(&spring_material(law, ask.material))[0];
-            surface::volume_and_surface(&mut net, &levels.lattices[0], c11);
+            volume_and_surface(&mut net, &levels.lattices[0], c11);
         }
         SurfaceCorrection::Balanced => balanced::balance(&mut net, specimen, &levels, &stencils, &sharing)?,
     }
-    Ok(MultiLevelMesh { net, levels, stencils, loaded })
+    Ok(net)
 }
 
 /// Bonds that cracks cut, ascending.
@@ -171,4 +149,40 @@ fn warnings(levels: &Levels) -> Vec<String> {
         )
     })
     .collect()
+}
+
+/// Classical surface correction on points of any arrangement: energy factors of Madenci and Oterkus (2014, Peridynamic Theory and Its Applications, ch. 4 and 7) on a net.
+///
+/// Under uniaxial strain e along the rows or columns of the lattice a point stores `W_d(x)` in the bonds of its own horizon (half of a bond of both ends,
+/// all of the half micromodulus of a bond of its own) instead of `W = C₁₁ e² V/2`; `g_d = W / W_d`. A bond with unit vector n
+/// gets the factor `[(n_x/G_x)² + (n_y/G_y)²]^(-1/2)`; G is the mean of both ends for a bond of both, as on a lattice, and the
+/// owner's own g for a bond in the owner's horizon alone: that bond is part of the owner's integral and of no other. The
+/// factors so serve two ends at once: cut-off horizons at a rim, and sums over cells of two sizes where levels meet.
+/// Computed once, on the uncracked plate. `c11` is that of the material that the springs stand for, Pa.
+fn volume_and_surface(net: &mut Net, lattice: &Lattice, c11: f64) {
+    let gains: Vec<[f64; 2]> = (0..net.len())
+        .into_par_iter()
+        .map(|i| {
+            let mut energy = [0.0; 2];
+            for (b, _) in net.family_of(i) {
+                let bond = &net.bonds[b];
+                let [nx, ny] = lattice.to_axes(bond.normal);
+                let share = if b < net.mutual { 0.5 } else { 1.0 };
+                let square = 0.5 * share * bond.length * bond.length;
+                for (axis, n) in energy.iter_mut().zip([nx, ny]) {
+                    *axis += square * (bond.k_n * n.powi(4) + bond.k_t * nx * nx * ny * ny);
+                }
+            }
+            let exact = 0.5 * c11 * net.volumes[i];
+            energy.map(|w| if w > 0.0 { exact / w } else { 1.0 })
+        })
+        .collect();
+    for (b, bond) in net.bonds.iter_mut().enumerate() {
+        let (own, other) = (gains[bond.from as usize], gains[bond.to as usize]);
+        let gain = |axis: usize| if b < net.mutual { 0.5 * (own[axis] + other[axis]) } else { own[axis] };
+        let [nx, ny] = lattice.to_axes(bond.normal);
+        let factor = ((nx / gain(0)).powi(2) + (ny / gain(1)).powi(2)).powf(-0.5);
+        bond.k_n *= factor;
+        bond.k_t *= factor;
+    }
 }

@@ -9,9 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Net;
 use super::rigid::minimal_constraints;
-use super::stiffness::Stiffness;
+use super::stiffness::{Stiffness, Strut};
 use crate::error::{Error, Result};
-use crate::specimen::Point;
 
 /// Iterations from which the factor is renewed for the next solve.
 const RENEW: usize = 12;
@@ -70,19 +69,6 @@ impl FullLoad {
             net.positions[at / net.unknowns][1] * 1e3,
         )))
     }
-}
-
-/// A spring along one direction between two points that need not have a bond.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Strut {
-    /// One end.
-    pub from: u32,
-    /// The other.
-    pub to: u32,
-    /// Unit vector along which it acts.
-    pub normal: Point,
-    /// Spring, N/m.
-    pub stiffness: f64,
 }
 
 /// Springs that the iteration works on.

@@ -7,20 +7,17 @@
 
 pub mod dual_horizon;
 pub mod equilibrium;
-pub mod grid;
-pub mod multi_level_body;
-pub mod read;
 pub mod refinement;
 pub mod rigid;
 pub mod stiffness;
 
 pub use dual_horizon::MultiLevelSpec;
-pub use grid::PointGrid;
 pub use refinement::{Discretisation, RefinedRegion, Refinement};
 
 use rayon::prelude::*;
 
 use crate::body::Body;
+use crate::body::lattice::Lattice;
 use crate::specimen::Point;
 
 /// Points that one task gathers forces of.
@@ -90,9 +87,6 @@ pub struct Net {
     /// So many bonds, the first, lie in the horizons of both ends and stand for both directions of a pair; the bonds behind them
     /// lie in the owner's alone. On a lattice all are of the first sort.
     pub mutual: usize,
-    /// Whether bonds in the owner's horizon alone pull at the owner only: the variable horizon without its dual, whose forces do
-    /// not balance and have no energy. Such bonds are no entries of their partner, so that the kernel need not ask.
-    pub owner_only: bool,
     /// Bonds that cracks cut.
     pub pre_cut: Vec<u32>,
     /// Unknowns of a point: two displacements, and where rotation is free θ = φ times [`Net::rotation_length`], m.
@@ -148,7 +142,6 @@ impl Net {
             spacings: vec![lattice.spacing; count],
             horizons: vec![body.horizon(); count],
             mutual: bonds.len(),
-            owner_only: false,
             pre_cut,
             unknowns: body.stencil.unknowns,
             rotation_length: lattice.spacing,
@@ -165,13 +158,10 @@ impl Net {
     /// Fills in [`Net::entries`] from the bonds.
     pub fn linked(mut self) -> Net {
         let count = self.positions.len();
-        let acting = |b: usize, bond: &NetBond| {
-            let sides = if self.owner_only && b >= self.mutual { 1 } else { 2 };
-            [(0, bond.from), (1, bond.to)].into_iter().take(sides)
-        };
+        let ends = |bond: &NetBond| [(0, bond.from), (1, bond.to)];
         let mut starts = vec![0_u32; count + 1];
-        for (b, bond) in self.bonds.iter().enumerate() {
-            acting(b, bond).for_each(|(_, end)| starts[end as usize + 1] += 1);
+        for (_, end) in self.bonds.iter().flat_map(ends) {
+            starts[end as usize + 1] += 1;
         }
         for i in 0..count {
             starts[i + 1] += starts[i];
@@ -179,7 +169,7 @@ impl Net {
         let mut next = starts.clone();
         let mut entries = vec![0_u32; starts[count] as usize];
         for (b, bond) in self.bonds.iter().enumerate() {
-            for (side, end) in acting(b, bond) {
+            for (side, end) in ends(bond) {
                 entries[next[end as usize] as usize] = 2 * b as u32 + side;
                 next[end as usize] += 1;
             }
@@ -251,5 +241,53 @@ impl Net {
             if whole > 0.0 { 1.0 - intact / whole } else { 1.0 }
         };
         (0..self.len()).map(of_point).collect()
+    }
+}
+
+/// Lattice of a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointGrid {
+    /// Lattice spacing, m; the finest one where there are several.
+    pub spacing: f64,
+    /// Columns and rows of the lattice that holds the body.
+    pub columns: usize,
+    /// Rows of the lattice.
+    pub rows: usize,
+    /// Position of lattice place (0, 0), m.
+    pub origin: Point,
+    /// Angle of the lattice rows against x, radians.
+    pub angle: f64,
+    /// For every lattice place (row by row), the index of its point or `None` outside the material. A point of a coarser level
+    /// covers all places of its cell.
+    pub point_at: Vec<Option<u32>>,
+}
+
+impl PointGrid {
+    /// That of a run without points.
+    pub fn none() -> PointGrid {
+        PointGrid { spacing: f64::NAN, columns: 0, rows: 0, origin: [0.0; 2], angle: 0.0, point_at: Vec::new() }
+    }
+
+    /// Lattice of a body.
+    pub fn of_body(body: &Body) -> PointGrid {
+        let lattice = &body.lattice;
+        let mut point_at = vec![None; lattice.columns * lattice.rows];
+        for (i, &place) in body.points.iter().enumerate() {
+            let (column, row) = lattice.column_row(place as usize);
+            point_at[row * lattice.columns + column] = Some(i as u32);
+        }
+        PointGrid::of_lattice(lattice, point_at)
+    }
+
+    /// A lattice with the points on its places, row by row.
+    fn of_lattice(lattice: &Lattice, point_at: Vec<Option<u32>>) -> PointGrid {
+        PointGrid {
+            spacing: lattice.spacing,
+            columns: lattice.columns,
+            rows: lattice.rows,
+            origin: lattice.origin,
+            angle: lattice.axis[1].atan2(lattice.axis[0]),
+            point_at,
+        }
     }
 }

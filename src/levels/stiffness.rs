@@ -5,13 +5,26 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
 
-use super::equilibrium::Strut;
 use super::{Net, NetBond};
 use crate::error::{Error, Result};
+use crate::specimen::Point;
 
 /// Shares of the largest diagonal entry that are added to all, so that points and fragments without hold leave the factor
 /// definite: the smaller the better it stands for the plate; the larger where round-off leaves no factor with the smaller.
 const SHIFTS: [f64; 2] = [1e-13, 1e-10];
+
+/// A spring along one direction between two points that need not have a bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strut {
+    /// One end.
+    pub from: u32,
+    /// The other.
+    pub to: u32,
+    /// Unit vector along which it acts.
+    pub normal: Point,
+    /// Spring, N/m.
+    pub stiffness: f64,
+}
 
 /// Stiffness between the free unknowns.
 pub struct Stiffness {

@@ -8,8 +8,8 @@
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::outcome::{Progress, Snapshot};
 use super::snapshot::Snapshots;
-use super::{Progress, Snapshot};
 use crate::case::Case;
 use crate::error::Result;
 use crate::growth::{CrackGrowth, State};

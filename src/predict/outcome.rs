@@ -1,20 +1,16 @@
 //! What a run gives and how it reports while it goes on.
 
-use std::sync::Arc;
-
 use serde::{Deserialize, Serialize};
 
-use super::checkpoint::Checkpoint;
-use super::memory;
+use crate::body::Body;
 use crate::case::Case;
+use crate::case::budget::machine;
 pub use crate::growth::cross_check::CrossCheck;
-use crate::growth::plate::Plate;
 pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
 use crate::growth::{CrackGrowth, GrowthStatus};
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
 use crate::units::MM;
-use crate::watch::Watch;
 
 /// Picture of the damaged plate at one moment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -63,20 +59,20 @@ pub struct RunFigures {
 impl RunFigures {
     /// Of a run that is over, after so many blocks and seconds.
     pub(super) fn of(growth: &dyn CrackGrowth, blocks: usize, wall_s: f64) -> Self {
-        let (plate, statistics) = (growth.plate(), growth.statistics());
-        let plate = plate.as_deref();
+        let (body, statistics) = (growth.body(), growth.statistics());
+        let body = body.as_deref();
         RunFigures {
-            points: plate.map_or(statistics.points_solved, Plate::points),
+            points: body.map_or(statistics.points_solved, |body| body.points.len()),
             points_solved: statistics.points_solved,
-            bonds: plate.map_or(0, Plate::bonds),
+            bonds: body.map_or(0, |body| body.bond_count),
             blocks,
             solves: statistics.solves,
             iterations: statistics.iterations,
             solver: statistics.solver,
-            spacing: plate.map_or(f64::NAN, |plate| plate.body.lattice.spacing),
-            horizon: plate.map_or(f64::NAN, |plate| plate.body.horizon()),
+            spacing: body.map_or(f64::NAN, |body| body.lattice.spacing),
+            horizon: body.map_or(f64::NAN, Body::horizon),
             wall_s,
-            memory_mb: memory::peak_mb(),
+            memory_mb: machine::peak_mb(),
         }
     }
 }
@@ -141,35 +137,5 @@ impl Progress {
         let end = if case.stop.crack_length.is_finite() { case.stop.crack_length } else { start + case.specimen.gross_width };
         let (by_length, by_cycles) = ((now.crack_length - start) / (end - start), now.cycles / case.stop.cycles_max);
         Progress { cycles: now.cycles, crack_length: now.crack_length, share: by_length.max(by_cycles).clamp(0.0, 1.0) }
-    }
-}
-
-/// Receives progress; the engine itself never prints. Returning `false` asks the run to stop.
-pub trait Observer: Sync {
-    /// Called after every cycle block.
-    fn block_done(&self, progress: &Progress) -> bool;
-    /// Where the run marks what it does before it has a first row to show, and where it looks whether it may go on; by default nowhere.
-    fn watch(&self) -> Option<Arc<Watch>> {
-        None
-    }
-    /// Called where the run could be taken up again ([`super::resume`]); `checkpoint` builds what that takes, so that nothing is
-    /// built where nobody wants it. By default nobody does.
-    ///
-    /// These places depend on the case alone, not on time and not on what the observer does.
-    fn may_keep(&self, _checkpoint: &dyn Fn() -> Checkpoint) {}
-    /// Called after every cycle block since N = 0, before [`Observer::block_done`], with where the tips are now.
-    fn grown(&self, _tips: &[TipRecord]) {}
-    /// Called with every picture that is taken while the run goes on. Its cycles count from the start of the run, which is before
-    /// N = 0 where the crack is first grown to its initial length.
-    fn looked(&self, _snapshot: &Snapshot, _grid: &PointGrid) {}
-}
-
-/// An observer that watches nothing.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Silent;
-
-impl Observer for Silent {
-    fn block_done(&self, _progress: &Progress) -> bool {
-        true
     }
 }

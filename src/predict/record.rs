@@ -1,15 +1,57 @@
 //! What goes along with a run and is no mechanics: snapshots, checkpoints, the observer, the guard, the account at the end.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::checkpoint::{self, Checkpoint};
-use super::guard::Guard;
 use super::snapshot::Snapshots;
-use super::{CurvePoint, Observer, Prediction, Progress, RunFigures, StopReason, laws, path_stability, plastic_zone};
+use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone};
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::growth::CrackGrowth;
+use crate::growth::{CrackGrowth, GrowthStatus, plate};
 use crate::levels::PointGrid;
+use crate::units::{MPA, MPA_SQRT_M};
+use crate::watch::Watch;
+
+/// Exponent from which small causes decide: an error of direction of a tenth of a degree has become some 10° at 2 e³.
+const DECISIVE: f64 = 3.0;
+/// |K_II| over K_I up to which a path counts as one in mode I.
+const STRAIGHT: f64 = 0.05;
+/// Share of the life, at its end, in which a path does not matter any more.
+const END: f64 = 0.05;
+/// Blocks in a row without growth of any tip at which a run ends. A block breaks at least one bond; a tip grows by a spacing with some
+/// ten to a hundred of them.
+pub const BLOCKS_WITHOUT_GROWTH: usize = 4096;
+
+/// Receives progress; the engine itself never prints. Returning `false` asks the run to stop.
+pub trait Observer: Sync {
+    /// Called after every cycle block.
+    fn block_done(&self, progress: &Progress) -> bool;
+    /// Where the run marks what it does before it has a first row to show, and where it looks whether it may go on; by default nowhere.
+    fn watch(&self) -> Option<Arc<Watch>> {
+        None
+    }
+    /// Called where the run could be taken up again ([`super::resume`]); `checkpoint` builds what that takes, so that nothing is
+    /// built where nobody wants it. By default nobody does.
+    ///
+    /// These places depend on the case alone, not on time and not on what the observer does.
+    fn may_keep(&self, _checkpoint: &dyn Fn() -> Checkpoint) {}
+    /// Called after every cycle block since N = 0, before [`Observer::block_done`], with where the tips are now.
+    fn grown(&self, _tips: &[TipRecord]) {}
+    /// Called with every picture that is taken while the run goes on. Its cycles count from the start of the run, which is before
+    /// N = 0 where the crack is first grown to its initial length.
+    fn looked(&self, _snapshot: &Snapshot, _grid: &PointGrid) {}
+}
+
+/// An observer that watches nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn block_done(&self, _progress: &Progress) -> bool {
+        true
+    }
+}
 
 /// A run at its start.
 pub struct Record<'a> {
@@ -19,7 +61,6 @@ pub struct Record<'a> {
     /// Hash of the case as it was given.
     hash: [u8; 32],
     checkpoint: Option<Checkpoint>,
-    is_checked: bool,
     observer: &'a dyn Observer,
 }
 
@@ -29,7 +70,7 @@ impl<'a> Record<'a> {
         let hash = checkpoint::hash(case);
         let mut case = case.clone();
         case.model.spacing = case.model.fitting_spacing(&case.specimen);
-        Record { started: Instant::now(), case, hash, checkpoint: None, is_checked: true, observer }
+        Record { started: Instant::now(), case, hash, checkpoint: None, observer }
     }
 
     /// The case that its run is of: the one given, with the spacing that its body has.
@@ -40,11 +81,6 @@ impl<'a> Record<'a> {
     /// Goes on from where an earlier run of the same case stood.
     pub(super) fn resumed_from(self, checkpoint: Checkpoint) -> Self {
         Record { checkpoint: Some(checkpoint), ..self }
-    }
-
-    /// Does not compare K with an independent one, which for fatigue bonds takes an equilibrium of its own.
-    pub fn unchecked(self) -> Self {
-        Record { is_checked: false, ..self }
     }
 
     /// Advances a run increment by increment, from the start or from where an earlier run stood, until there is a reason to stop.
@@ -59,7 +95,7 @@ impl<'a> Record<'a> {
         growth: &mut G,
         mut increment: impl FnMut(&mut G) -> Result<Option<StopReason>>,
     ) -> Result<Prediction> {
-        let Record { started, case, hash, checkpoint, is_checked, observer } = self;
+        let Record { started, case, hash, checkpoint, observer } = self;
         let case = &case;
         let (mut snapshots, earlier_s) = match checkpoint {
             Some(checkpoint) => checkpoint.restore(growth)?,
@@ -69,7 +105,9 @@ impl<'a> Record<'a> {
         let mut failure = None;
         let stop = loop {
             laws::check_within(case, growth)?;
-            snapshots.follow(growth, observer);
+            if let Some((snapshot, grid)) = snapshots.follow(growth) {
+                observer.looked(snapshot, &grid);
+            }
             if growth.should_rebuild_solver() {
                 let elapsed_s = earlier_s + started.elapsed().as_secs_f64();
                 let progress = Progress::of(case, &growth.now());
@@ -101,7 +139,7 @@ impl<'a> Record<'a> {
         snapshots.count_from(zero, &curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
-        let cross_check = is_checked.then(|| growth.cross_check(last)).flatten();
+        let cross_check = growth.cross_check(last);
         let mut warnings = warnings(case, growth, of_growth, &curve);
         warnings.extend(cross_check.and_then(|check| check.warning()));
         warnings.extend(failure);
@@ -132,10 +170,69 @@ fn end_of_mechanics(error: Error, failure: &mut Option<String>) -> Result<Option
 
 /// What the user should know about a run.
 fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve: &[CurvePoint]) -> Vec<String> {
-    let mut warnings = growth.plate().map_or_else(Vec::new, |plate| plate.warnings());
+    let mut warnings: Vec<String> = growth.body().and_then(|body| plate::warning(&body)).into_iter().collect();
     warnings.extend(of_growth);
     warnings.extend(growth.law().and_then(|law| laws::beyond_warning(case, law, curve)));
     warnings.extend(plastic_zone::warnings(case, curve));
-    warnings.extend(path_stability::warning(curve));
+    warnings.extend(unstable_path(curve));
     warnings
+}
+
+/// What the user should know of tips whose straight path is unstable, with T where it has become so.
+///
+/// A crack in mode I with a positive T leaves its line (Cotterell and Rice 1980, Int. J. Fract. 16:155): an error of direction grows with
+/// the way x as `exp(β² x)`, `β = 2√2 T/K_I`. Where T and K_I change, the exponent is `∫ 8 (T/K_I)² dx`.
+fn unstable_path(curve: &[CurvePoint]) -> Option<String> {
+    let tips = curve.first().map_or(0, |row| row.tips.len());
+    let counts = (1.0 - END) * curve.last().map_or(0.0, |row| row.cycles);
+    let unstable = |tip: usize| {
+        let mut exponent = 0.0;
+        curve.windows(2).take_while(|rows| rows[1].cycles <= counts).find_map(|rows| {
+            let [before, now] = [&rows[0].tips[tip], &rows[1].tips[tip]];
+            let ([k_i, k_ii], t_stress) = (now.factors?, now.t_stress?);
+            if t_stress > 0.0 && k_i > 0.0 && k_ii.abs() < STRAIGHT * k_i {
+                exponent += 8.0 * (t_stress / k_i).powi(2) * (now.growth - before.growth);
+            }
+            (exponent > DECISIVE).then_some((tip, k_i, t_stress))
+        })
+    };
+    (0..tips).find_map(unstable).map(|(tip, k_i, t_stress)| {
+        format!(
+            "tip {tip} grows straight with T = {:.1} MPa along it at K_I = {:.2} MPa√m, where a straight path is unstable (T > 0): small causes \
+             decide where it turns, in a test as in this run, and its mirror image is as likely",
+            t_stress / MPA,
+            k_i / MPA_SQRT_M
+        )
+    })
+}
+
+/// What no run may do: count cycles that are no number, or go on for ever without growth.
+#[derive(Debug, Default)]
+pub struct Guard {
+    /// Growth of all tips together at the last block that had some, m, and blocks since.
+    grown: Option<f64>,
+    idle: usize,
+}
+
+impl Guard {
+    /// Takes in the row after a block; the reason to stop where no tip has grown for too long. Runs without tips have none to watch.
+    ///
+    /// # Errors
+    /// [`Error::Mechanics`]: cycles or crack length that are no finite number, or cycles that fall.
+    pub fn check(&mut self, before: f64, now: &GrowthStatus<'_>) -> Result<Option<StopReason>> {
+        for (what, value) in [("cycles", now.cycles), ("crack length", now.crack_length)] {
+            if !value.is_finite() {
+                let problem = format!("the {what} after a block came out as {value} (crack length {:.6e} m)", now.crack_length);
+                return Err(Error::Mechanics(format!("{problem}; give a smaller model.spacing_mm, and report this case")));
+            }
+        }
+        if now.cycles_of_run < before {
+            let problem = format!("cycles fell from {before} to {}", now.cycles_of_run);
+            return Err(Error::Mechanics(format!("{problem}; report this case")));
+        }
+        let grown = now.growth();
+        self.idle = if now.tips.is_empty() || self.grown.is_none_or(|before| grown > before) { 0 } else { self.idle + 1 };
+        self.grown = Some(self.grown.map_or(grown, |before| before.max(grown)));
+        Ok((self.idle >= BLOCKS_WITHOUT_GROWTH).then_some(StopReason::NoGrowth))
+    }
 }

@@ -1,7 +1,9 @@
 //! Pictures of the damaged plate along a run.
 
-use super::{CurvePoint, Observer, Snapshot};
+use super::outcome::Snapshot;
+use crate::growth::record::CurvePoint;
 use crate::growth::{CrackGrowth, Fields, GrowthStatus};
+use crate::levels::PointGrid;
 
 /// Snapshots between the first and the last.
 const BETWEEN: f64 = 20.0;
@@ -18,21 +20,19 @@ pub struct Snapshots {
 }
 
 impl Snapshots {
-    /// Takes the plate at N = 0, and then whenever the cracks have grown enough; shows it to who watches the run.
-    pub fn follow(&mut self, growth: &mut dyn CrackGrowth, observer: &dyn Observer) {
+    /// Takes the plate at N = 0, and then whenever the cracks have grown enough.
+    pub fn follow(&mut self, growth: &mut dyn CrackGrowth) -> Option<(&Snapshot, PointGrid)> {
         let now = growth.now();
         let is_first = self.taken.is_empty();
         if !now.is_counting || !is_first && now.growth() < self.next {
-            return;
+            return None;
         }
-        let Some(grid) = growth.grid() else { return };
+        let grid = growth.grid()?;
         if is_first {
             self.step = grid.columns.min(grid.rows) as f64 * grid.spacing / BETWEEN;
         }
         self.next = now.growth() + self.step;
-        if let Some(snapshot) = self.take(growth) {
-            observer.looked(snapshot, &grid);
-        }
+        self.take(growth).map(|snapshot| (snapshot, grid))
     }
 
     /// Takes the last snapshot, where something has changed since the one before.

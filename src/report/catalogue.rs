@@ -9,7 +9,7 @@ use crate::calibration::decimal::Decimal;
 use crate::calibration::import::{CycleUnit, LengthUnit, LoadUnit};
 use crate::calibration::laws::FitLaw;
 use crate::calibration::rates::RateMethod;
-use crate::case::growth_law::TableEnds;
+use crate::case::TableEnds;
 use crate::case::record::Estimate;
 use crate::case::{Failure, Method};
 use crate::chart::{Family, SCENES, Status};

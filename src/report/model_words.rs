@@ -6,8 +6,7 @@ use super::json::clean;
 use crate::bond_law::BondLawKind;
 use crate::case::{Case, LawSource, Method};
 use crate::element_free::resolution::ElementFreeSettings;
-use crate::fracture::scene::{Scene, SceneLaw};
-use crate::levels::Refinement;
+use crate::fracture::scene::{Discretisation, Scene, SceneLaw};
 use crate::predict::RunFigures;
 use crate::solver::SolverUsed;
 use crate::specimen::handbook::handbook;
@@ -60,7 +59,6 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
     let (spacing, horizon) =
         figures.map_or((model.spacing, model.spacing * model.horizon_ratio), |run| (run.spacing, run.horizon));
     let used = figures.and_then(|run| run.solver);
-    let finest = if model.refinement.is_some() { "; that of the finest level, on which cracks grow" } else { "" };
     let moved = if ((model.spacing - spacing) / spacing).abs() > 1e-9 {
         format!("; moved from {:.6} to {:.6} so that it divides the width", model.spacing / MM, spacing / MM)
     } else {
@@ -86,10 +84,8 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
         chosen("kernel", law.kernel.name().into(), "default: of those tried, its crack growth depends least on the lattice", ""),
         chosen("rotation", law.rotation.name().into(), "default: rigid rotation of crack flanks must cost no energy", ""),
         chosen("surface_correction", law.surface_correction.name().into(), "default: the most accurate one built", ""),
-        chosen("discretisation", model.arrangement.name().into(), "default: one spacing everywhere", ""),
-        follows("levels", (1 + model.refinement.as_ref().map_or(0, Refinement::deepest)).into()),
-        chosen("spacing_mm", clean(spacing / MM).into(), SPACING, &format!("{finest}{moved}")),
-        follows("spacing_coarsest_mm", clean(spacing * model.coarsest_spacing() / model.spacing / MM).into()),
+        follows("discretisation", Discretisation::Lattice.name().into()),
+        chosen("spacing_mm", clean(spacing / MM).into(), SPACING, &moved),
         chosen("horizon_ratio", model.horizon_ratio.into(), RATIO, ""),
         follows("horizon_mm", clean(horizon / MM).into()),
         chosen("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into(), ANGLE, ""),

@@ -12,10 +12,9 @@ use super::output::{Room, write_file};
 use super::specimen_picture::{nodes_svg, tip_svg};
 use super::{fit_use, json, provenance, vtk};
 use crate::case::budget::Budget;
-use crate::case::first_load;
-use crate::case::{Case, Method, RECORD};
+use crate::case::{Case, Method, RECORD, first_load};
 use crate::error::{Error, Result, input};
-use crate::predict::guard::BLOCKS_WITHOUT_GROWTH;
+use crate::predict::record::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::{Prediction, StopReason};
 use crate::specimen::Point;
 use crate::specimen::geometry::distance;
@@ -70,9 +69,6 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
             let why = "nothing grows: every crack stays closed or below the threshold of its growth law";
             warnings.push(why.to_owned());
         }
-        StopReason::LeftRefinement if !grown => {
-            return no_curve("the crack tip came to the rim of the finest level", "give refinement.regions around its whole way");
-        }
         StopReason::NothingAges | StopReason::LeftPlate | StopReason::EnteredHole | StopReason::CracksJoined if !grown => {
             let why = format!("no bond that can fail is strained at a crack tip (stopped: {})", prediction.stop);
             return no_curve(
@@ -92,7 +88,7 @@ fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
     let load = case.loading.share(row.work) * case.loading.maximum;
     let k_max = row.delta_k / case.loading.range_share();
     // A limit that is reached but for round-off has no words of its own.
-    let words = || first_load::words(case, load, Some(k_max).filter(|k| *k > 0.0));
+    let words = || first_load(case, load, Some(k_max).filter(|k| *k > 0.0));
     prediction.stop.is_strength().then(|| words().unwrap_or_else(|| format!("{} at the first load", prediction.stop.meaning())))
 }
 

@@ -2,56 +2,10 @@
 
 use super::dilatation::Dilatation;
 use super::product::Product;
+use super::spring::Blocks;
 use crate::body::Body;
 use crate::body::mirror::{Flips, signs};
 use crate::state::Bonds;
-
-/// Block of a point with itself and with the other end of a bond.
-pub type Blocks<const M: usize> = ([[f64; M]; M], [[f64; M]; M]);
-
-/// A spring in the plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spring {
-    /// Normal stiffness, N/m.
-    pub k_n: f64,
-    /// Tangential stiffness, N/m.
-    pub k_t: f64,
-    /// Unit vector from owner to other end.
-    pub n: [f64; 2],
-    /// The same turned by +90°.
-    pub t: [f64; 2],
-    /// Lever of the rotation unknowns on the shear.
-    pub lever: f64,
-}
-
-impl Spring {
-    /// Blocks of its stiffness, `share` of it, with N unknowns a point: of the owner (`sign` +1) or the other end (-1) with itself
-    /// and with the opposite end.
-    pub fn blocks<const N: usize>(&self, sign: f64, share: f64) -> Blocks<N> {
-        let (mut own, mut off) = ([[0.0; N]; N], [[0.0; N]; N]);
-        for i in 0..2 {
-            for j in 0..2 {
-                let a = share * (self.k_n * self.n[i] * self.n[j] + self.k_t * self.t[i] * self.t[j]);
-                own[i][j] = a;
-                off[i][j] = -a;
-            }
-        }
-        if N == 3 {
-            let couple = share * self.k_t * self.lever;
-            for i in 0..2 {
-                let c = sign * couple * self.t[i];
-                // ∂²/∂u_i∂θ_i = ∂²/∂u_i∂θ_j = +c at the owner, -c at the other end.
-                own[i][2] = c;
-                own[2][i] = c;
-                off[i][2] = c;
-                off[2][i] = -c;
-            }
-            own[2][2] = couple * self.lever;
-            off[2][2] = couple * self.lever;
-        }
-        (own, off)
-    }
-}
 
 /// Entries of a stiffness with M unknowns a point.
 pub trait Assembly<const M: usize>: Sync {

@@ -6,7 +6,7 @@ use super::field::{Layout, dot, dots, lane_sum};
 use super::multigrid::Multigrid;
 use super::product::{Into, Product};
 use super::rigid_motion::RigidMotion;
-use super::{LinearSolver, Solved, SolverUsed, System};
+use super::system::{LinearSolver, Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;

@@ -30,13 +30,18 @@
 use nalgebra::Matrix2;
 use rayon::prelude::*;
 
-use super::field::Layout;
-use super::ghosts::Ghosts;
-use super::product::{End, Into, Lanes, ROWS_PER_TASK, load, load_f32};
-use super::window::update::Term;
+use super::field::{Ghosts, Layout};
+use super::kernel::{self, Into};
+use super::spring::{End, Term};
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::state::Bonds;
+
+/// Rows that one task takes.
+const ROWS_PER_TASK: usize = 8;
+
+/// A value for each of [`LANES`] neighbouring places.
+type Lanes = [f64; LANES];
 
 /// One stencil bond as the dilatation uses it.
 #[derive(Debug, Clone, Copy)]
@@ -251,7 +256,7 @@ impl Dilatation {
         let places = self.gain.len();
         for (k, arm) in self.arms.iter().enumerate() {
             for (sign, step, owner) in [(1.0, arm.step, place), (-1.0, -arm.step, place.wrapping_add_signed(-arm.place_step))] {
-                take(arm, sign, step, load_f32(multiplier, k * places + owner));
+                take(arm, sign, step, kernel::load::<f32, LANES>(multiplier, k * places + owner).map(f64::from));
             }
         }
     }
@@ -271,11 +276,6 @@ impl Dilatation {
     /// 1/c of a place, N/m.
     pub(super) fn compliance(&self, bonds: &Bonds, place: usize) -> f64 {
         self.family(bonds, place) / self.gain[place]
-    }
-
-    /// c Q of a place, dimensionless: by `D² ≤ Q Σ m k_n (n·η)²` its dilatation stores at most this times what its normal springs do.
-    pub(super) fn gain(&self, place: usize) -> f64 {
-        self.gain[place]
     }
 
     /// Sign of κ.
@@ -309,4 +309,9 @@ impl Dilatation {
         }
         terms
     }
+}
+
+#[inline(always)]
+fn load(x: &[f64], at: usize) -> Lanes {
+    kernel::load(x, at)
 }

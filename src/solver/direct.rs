@@ -8,11 +8,11 @@ use faer::sparse::linalg::LltError;
 use faer::sparse::{SparseColMat, Triplet};
 
 use super::assembly::{Assembly, MIXED, Mixed, Springs, for_joints};
-use super::contact::GapSpring;
 use super::field::dot;
 use super::product::Product;
 use super::rigid_motion::RigidMotion;
-use super::{LinearSolver, Solved, SolverUsed, System};
+use super::spring::GapSpring;
+use super::system::{LinearSolver, Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;

@@ -4,7 +4,12 @@
 //! its components is one slice (rows are what threads share out) and a component along a row is contiguous (what
 //! vector units read).
 
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+use crate::body::Body;
 use crate::body::lattice::{LANES, Lattice};
+use crate::body::mirror::{Line, signs};
 
 /// Places of a task, about.
 const PLACES_PER_TASK: usize = 1 << 12;
@@ -114,4 +119,102 @@ pub(super) fn lane_sum<T: Copy + Into<f64>>(a: &[f64], b: &[T]) -> f64 {
         }
     }
     sums.iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(a, &b)| a * b.into()).sum::<f64>()
+}
+
+/// Precision of the values of a vector: double for a solution, single for what preconditions.
+pub trait Real:
+    Copy
+    + Debug
+    + Default
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// Rounded from double precision.
+    fn of(value: f64) -> Self;
+    /// From the multiplier of a bond, exactly.
+    fn of_share(value: f32) -> Self;
+    /// self a + b, rounded once.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn of_share(value: f32) -> Self {
+        f64::from(value)
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self.mul_add(a, b)
+    }
+}
+
+impl Real for f32 {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value as f32
+    }
+    #[inline(always)]
+    fn of_share(value: f32) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self.mul_add(a, b)
+    }
+}
+
+/// Where images stand in vectors of a layout, and what they are images of.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ghosts {
+    layout: Layout,
+    lines: [Option<Line>; 2],
+    /// Signs of the components mirrored along the rows, and along the columns.
+    signs: [[f64; 3]; 2],
+}
+
+impl Ghosts {
+    /// Images of displacements and rotations.
+    pub(super) fn of_motion(body: &Body, layout: Layout) -> Self {
+        Ghosts { layout, lines: body.mirror.lines, signs: [signs([true, false]), signs([false, true])] }
+    }
+
+    /// Images of one scalar a place.
+    pub(super) fn of_scalar(body: &Body, layout: Layout) -> Self {
+        Ghosts { layout: Layout { unknowns: 1, ..layout }, lines: body.mirror.lines, signs: [[1.0; 3]; 2] }
+    }
+
+    /// Puts the images into the padding.
+    pub(super) fn fill<T: Real>(&self, x: &mut [T]) {
+        let Layout { unknowns, stride, rows, padding, .. } = self.layout;
+        let row_len = self.layout.row_len();
+        if let Some(line) = self.lines[0] {
+            for (component, values) in x[..rows * row_len].chunks_exact_mut(stride).enumerate() {
+                let sign = T::of(self.signs[0][component % unknowns]);
+                for steps in 1..=padding {
+                    values[padding - steps] = sign * values[padding + line.source(steps)];
+                }
+            }
+        }
+        if let Some(line) = self.lines[1] {
+            for steps in 1..=padding {
+                let (before, after) = x.split_at_mut(padding * row_len);
+                let target = &mut before[(padding - steps) * row_len..][..row_len];
+                let source = &after[line.source(steps) * row_len..][..row_len];
+                for (component, (target, source)) in target.chunks_mut(stride).zip(source.chunks(stride)).enumerate() {
+                    let sign = T::of(self.signs[1][component]);
+                    target.iter_mut().zip(source).for_each(|(target, source)| *target = sign * *source);
+                }
+            }
+        }
+    }
 }

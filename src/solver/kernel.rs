@@ -8,65 +8,10 @@
 //! force   -A (u' - u) + c (θ + θ')        couple   -c·(u' - u) + k_t r² (θ + θ')
 //! ```
 
-use std::fmt::Debug;
-use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
-
-use super::field::Layout;
+use super::field::{Layout, Real};
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::state::Bonds;
-
-/// Precision of the values of a vector: double for a solution, single for what preconditions.
-pub trait Real:
-    Copy
-    + Debug
-    + Default
-    + Send
-    + Sync
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Neg<Output = Self>
-    + AddAssign
-    + SubAssign
-{
-    /// Rounded from double precision.
-    fn of(value: f64) -> Self;
-    /// From the multiplier of a bond, exactly.
-    fn of_share(value: f32) -> Self;
-    /// self a + b, rounded once.
-    fn mul_add(self, a: Self, b: Self) -> Self;
-}
-
-impl Real for f64 {
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn of_share(value: f32) -> Self {
-        f64::from(value)
-    }
-    #[inline(always)]
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        self.mul_add(a, b)
-    }
-}
-
-impl Real for f32 {
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value as f32
-    }
-    #[inline(always)]
-    fn of_share(value: f32) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        self.mul_add(a, b)
-    }
-}
 
 /// What is done with K x.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,8 +2,9 @@
 //!
 //! Bonds break in mirror images of each other as long as the plate is symmetric. When they do not, the whole plate takes over.
 
-use super::contact::GapSpring;
-use super::{EquilibriumBackend, Focus, SolverKind, SolverUsed, sides};
+use super::sides;
+use super::spring::GapSpring;
+use super::system::{EquilibriumBackend, Focus, SolverKind, SolverUsed};
 use crate::body::mirror::{Mirror, Part, signs};
 use crate::body::{Body, Bond};
 use crate::error::Result;
@@ -155,7 +156,7 @@ impl EquilibriumBackend for Mirrored {
         self.inner.work()
     }
 
-    fn set_contact(&mut self, body: &Body, contact: &[GapSpring]) -> Result<()> {
+    fn set_contact(&mut self, body: &Body, contact: &[GapSpring]) {
         if self.is_lost {
             return self.inner.set_contact(body, contact);
         }
@@ -166,7 +167,7 @@ impl EquilibriumBackend for Mirrored {
             stiffness: share * spring.stiffness,
             force: share * spring.force,
         };
-        self.inner.set_contact(&self.part.body, &contact.iter().map(of_part).collect::<Vec<_>>())
+        self.inner.set_contact(&self.part.body, &contact.iter().map(of_part).collect::<Vec<_>>());
     }
 
     fn reach(

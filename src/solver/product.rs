@@ -4,46 +4,16 @@
 //! with multiplier m and lever r = |ξ|/(2Δ); θ = φ Δ is the point's rotation in units of length. Its gradient, summed
 //! over the bonds of a point, is one row of K x. Without free rotation the θ terms are absent.
 
-pub mod sweep;
-
 use rayon::prelude::*;
 
-use super::assembly::{Blocks, Spring};
-use super::contact::GapSpring;
 use super::dilatation::Dilatation;
-use super::field::Layout;
-use super::ghosts::Ghosts;
+use super::field::{Ghosts, Layout, Real};
 pub use super::kernel::Into;
-use super::kernel::{Kernel, Real};
-use super::window::update::Term;
+use super::kernel::Kernel;
+use super::spring::{Blocks, End, GapSpring, Spring, Term};
 use crate::body::Body;
-use crate::body::lattice::LANES;
 use crate::bond_law::stencil::StencilBond;
 use crate::state::Bonds;
-
-/// End of a bond in a window's vector.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct End {
-    /// Its place, or that of which it is the image.
-    pub place: usize,
-    /// Index of that place's first unknown.
-    pub first: usize,
-    /// Signs of its unknowns there.
-    pub signs: [f64; 3],
-}
-
-impl End {
-    /// An entry of a vector for component c of this end.
-    pub fn entry(&self, c: usize, value: f64) -> (usize, f64) {
-        (self.first + c, self.signs[c] * value)
-    }
-}
-
-/// A value for each of [`LANES`] neighbouring places.
-pub(super) type Lanes = [f64; LANES];
-
-/// Rows that one task takes.
-pub(super) const ROWS_PER_TASK: usize = 8;
 
 /// Springs in double precision, for solutions. Two blocks side by side would overflow the registers.
 type Double<const N: usize> = Kernel<f64, N, 1, 8>;
@@ -206,20 +176,4 @@ impl<const N: usize> Product<N> {
     pub(super) fn bond_blocks(&self, k: usize, sign: f64, share: f64) -> Blocks<N> {
         self.springs[k].blocks(sign, share)
     }
-}
-
-#[inline(always)]
-pub(super) fn load(x: &[f64], at: usize) -> Lanes {
-    let mut lanes = [0.0; LANES];
-    lanes.copy_from_slice(&x[at..at + LANES]);
-    lanes
-}
-
-#[inline(always)]
-pub(super) fn load_f32(x: &[f32], at: usize) -> Lanes {
-    let mut lanes = [0.0; LANES];
-    for (lane, &value) in lanes.iter_mut().zip(&x[at..at + LANES]) {
-        *lane = f64::from(value);
-    }
-    lanes
 }

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::field::Layout;
-use super::kernel::Real;
+use super::field::Real;
 use crate::body::Body;
 use crate::state::Bonds;
 

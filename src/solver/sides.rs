@@ -1,19 +1,14 @@
 //! Both sides of K u = f for a body: load, held components, grips, and the linear solver that keeps them equal.
 
-use std::sync::Arc;
-
-use super::adaptive_dynamic_relaxation::DynamicRelaxation;
 use super::conjugate_gradient::MultigridSolver;
-use super::contact::GapSpring;
 use super::direct::DirectSolver;
 use super::field::{self, Layout};
-use super::levels::Levels;
 use super::product::{Into, Product};
+use super::spring::GapSpring;
+use super::system::{EquilibriumBackend, Focus, LinearSolver, SolverKind, SolverUsed, System};
 use super::window::WindowSolver;
-use super::{EquilibriumBackend, Focus, LinearSolver, SolverKind, SolverUsed, System, no_contact};
 use crate::body::{Body, Bond};
 use crate::error::Result;
-use crate::levels::multi_level_body::MultiLevelBody;
 use crate::state::Bonds;
 
 /// Load, held components and the linear solver of a body with N unknowns a point.
@@ -49,20 +44,6 @@ pub(super) fn balance(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -
     match body.stencil.unknowns {
         3 => Box::new(ConstrainedSystem::<3>::new(kind, body, bonds, load)),
         _ => Box::new(ConstrainedSystem::<2>::new(kind, body, bonds, load)),
-    }
-}
-
-/// The same for a plate of several levels, `body` being its finest points.
-pub(super) fn balance_levels(
-    kind: SolverKind,
-    plate: Arc<MultiLevelBody>,
-    body: &Body,
-    bonds: &Bonds,
-    load: f64,
-) -> Box<dyn EquilibriumBackend> {
-    match body.stencil.unknowns {
-        3 => Box::new(ConstrainedSystem::<3>::of_levels(kind, plate, body, bonds, load)),
-        _ => Box::new(ConstrainedSystem::<2>::of_levels(kind, plate, body, bonds, load)),
     }
 }
 
@@ -111,33 +92,11 @@ impl<const N: usize> ConstrainedSystem<N> {
             SolverKind::Window => Box::new(WindowSolver::new(body, bonds, &product)),
             SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product)),
             SolverKind::Direct => Box::new(DirectSolver::default()),
-            SolverKind::AdaptiveDynamicRelaxation => Box::new(DynamicRelaxation::new(body, bonds, &product)),
         };
         let (u, points) = (layout.zeros(), body.points.len());
         ConstrainedSystem { product, solver, f, without_pressure: None, grips, u, work: 0.0, points }
     }
 
-    /// A plate of several levels: its loads and supports are not those of the body, which is a part of it.
-    fn of_levels(kind: SolverKind, plate: Arc<MultiLevelBody>, body: &Body, bonds: &Bonds, load: f64) -> Self {
-        let product = Product::<N>::new(body, Vec::new());
-        let layout = Layout::of(&body.lattice, N);
-        let (points, size) = (plate.net.len(), layout.len() + N * (plate.numbers() - body.places()));
-        // The solver moves the grips itself and gives minus twice the strain energy for work; nothing else moves with them.
-        let grips = plate.grip_force.map(|force| Grips {
-            field: vec![0.0; size],
-            force: load * force,
-            drag: vec![0.0; size],
-            constant: 0.0,
-            scale: 1.0,
-        });
-        let levels = Levels::new(plate, body, bonds, load);
-        let solver: Box<dyn LinearSolver<N>> = Box::new(WindowSolver::of_whole(levels, kind == SolverKind::Direct));
-        let f = layout.zeros();
-        ConstrainedSystem { product, solver, f, without_pressure: None, grips, u: vec![0.0; size], work: 0.0, points }
-    }
-}
-
-impl<const N: usize> ConstrainedSystem<N> {
     /// The solver and the system it works on, with its unknown.
     fn parts<'a>(
         &'a mut self,
@@ -213,10 +172,8 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
         self.work
     }
 
-    fn set_contact(&mut self, _: &Body, contact: &[GapSpring]) -> Result<()> {
-        if !contact.is_empty() && !self.solver.knows_contact() {
-            return Err(no_contact(self.solver.used()));
-        }
+    fn set_contact(&mut self, _: &Body, contact: &[GapSpring]) {
+        debug_assert!(contact.is_empty() || self.solver.window().is_none(), "a condensed window knows no contact");
         if self.without_pressure.is_some() || contact.iter().any(|spring| spring.force != 0.0) {
             let without = self.without_pressure.get_or_insert_with(|| self.f.clone());
             self.f.clone_from(without);
@@ -225,7 +182,6 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
             self.product.fixed().iter().for_each(|&index| self.f[index] = 0.0);
         }
         self.product.set_contact(contact.iter().filter(|spring| spring.stiffness > 0.0).cloned().collect());
-        Ok(())
     }
 
     fn reach(

@@ -5,7 +5,7 @@ use toml::Value;
 
 use super::design::DesignKind;
 use super::distribution::Distribution;
-use crate::case::{LAW_KEYS, SECTIONS};
+use crate::case::{SECTIONS, law_keys};
 use crate::error::{Result, input, input_missing};
 use crate::input::slice;
 
@@ -85,7 +85,7 @@ fn check_key(key: &str, path: &str, kind: DesignKind) -> Result<()> {
         let remedy = format!("write section.key, for example specimen.crack_length_mm; sections: {}", SECTIONS.join(", "));
         return Err(input(&place, format!("\"{key}\""), "is not a key of a case", remedy));
     }
-    if kind == DesignKind::FittedScatter && section == "fatigue" && LAW_KEYS.contains(&rest) {
+    if kind == DesignKind::FittedScatter && section == "fatigue" && law_keys().any(|key| key == rest) {
         let remedy = format!("leave it out, or use design.kind = \"{}\"", DesignKind::LatinHypercube);
         return Err(input(&place, format!("\"{key}\""), format!("is drawn by design.kind = \"{kind}\" already"), remedy));
     }

@@ -67,32 +67,6 @@ const fn plate(old: &'static str, new: &'static str, words: &'static [&'static s
 }
 
 /// The panel on points of two levels.
-const LEVELS: &str = r#"[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 12.0
-[material]
-name = "al2024-t3"
-[loading]
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[model]
-discretisation = "dual_horizon"
-spacing_mm = 2.0
-[refinement]
-regions = [{ around_flaws_mm = 9, levels = 1 }]
-[fatigue]
-a = 6450.0
-p = 2.86
-horizon_mm = 3.015
-"#;
-
-const fn levelled(old: &'static str, new: &'static str, words: &'static [&'static str]) -> Bad {
-    Bad { good: LEVELS, old, new, words }
-}
-
 const BAD: &[Bad] = &[
     // Keys, sections, types
     panel("width_mm = 152.4", "widht_mm = 152.4", &[":3:", "specimen.widht_mm", "not a known key", "width_mm"]),
@@ -250,28 +224,22 @@ const BAD: &[Bad] = &[
     panel("spacing_mm = 1.0", "horizon_ratio = 0.5", &["model.horizon_ratio", "between 1.5 and"]),
     panel("spacing_mm = 1.0", "bond_law = \"springs\"", &["model.bond_law", "springs", "bond_based, two_parameter"]),
     panel("spacing_mm = 1.0", "bond_law = \"correspondence\"", &["model.bond_law", "fracture scenes", "perilife fracture"]),
-    // Points of several levels
-    panel("[stop]", "[refinement]\nlevel = 2\n[stop]", &["refinement.level", "not a known key", "regions"]),
+    // Points of several levels, and relaxation, belong to scenes
     panel(
         "[stop]",
         "[refinement]\nregions = [{ around_flaws_mm = 9, levels = 1 }]\n[stop]",
-        &["model.discretisation", "lattice", "[refinement]", "dual_horizon"],
+        &["refinement", "fracture scene", "perilife fracture", "element_free_galerkin", "refine themselves"],
     ),
-    panel("spacing_mm = 1.0", "discretisation = \"dual_horizon\"", &["model.discretisation", "no section [refinement]"]),
-    panel("spacing_mm = 1.0", "discretisation = \"variable_horizon\"", &["model.discretisation", "scenes", "perilife fracture"]),
-    levelled("levels = 1", "levels = 9", &["refinement.regions[0].levels", "9", "1 to 4"]),
-    levelled("levels = 1", "level = 1", &["refinement.regions[0].level", "not a known key"]),
-    levelled("around_flaws_mm = 9, levels", "levels", &["refinement.regions[0]", "box_mm", "around_flaws_mm"]),
-    levelled("around_flaws_mm = 9", "box_mm = [[90, 0], [99, 9]]", &["refinement.regions[0].box_mm", "outside the plate"]),
-    levelled("spacing_mm = 2.0", "solver = \"multigrid\"", &["model.solver", "multigrid", "dual_horizon", "window"]),
-    levelled(
-        "spacing_mm = 2.0",
-        "bond_law = \"state_based\"",
-        &["model.bond_law", "state_based", "dual_horizon", "two_parameter"],
+    panel(
+        "spacing_mm = 1.0",
+        "discretisation = \"dual_horizon\"",
+        &[":13:", "model.discretisation", "no key any more", "perilife fracture", "element_free_galerkin", "refine themselves"],
     ),
-    levelled("a = 6450.0", "a = 6450.0\nageing = \"everywhere\"", &["fatigue.ageing", "everywhere", "dual_horizon", "crack_tip"]),
-    levelled("spacing_mm = 2.0", "horizon_ratio = 1.5", &["model.horizon_ratio", "do not overlap"]),
-    levelled("spacing_mm = 2.0", "spacing_mm = 20.0", &["model.spacing_mm", "20", "fewer than 8 points"]),
+    panel(
+        "spacing_mm = 1.0",
+        "solver = \"adaptive_dynamic_relaxation\"",
+        &[":13:", "model.solver", "fracture scenes", "perilife fracture", "window, multigrid, direct"],
+    ),
     plate(
         "[fatigue]",
         "[model]\nbond_law = \"bond_based\"\n[fatigue]",

@@ -16,8 +16,6 @@ use crate::slurm::Slurm;
 
 /// Spacing over that of the example: the doors are tried, not the model.
 const COARSER: f64 = 3.0;
-/// The same where there are levels, whose coarsest is coarse enough.
-const COARSER_LEVELS: f64 = 1.0;
 
 /// An example as this test runs it: its name, its text, the files that it names by their names there.
 pub struct Example {
@@ -37,9 +35,8 @@ pub fn examples() -> Vec<Example> {
         .map(|path| {
             let mut table: Table = fs::read_to_string(path).unwrap().parse().unwrap();
             let model = table["model"].as_table_mut().unwrap();
-            let factor = if model.contains_key("discretisation") { COARSER_LEVELS } else { COARSER };
             if let Some(spacing) = model.get("spacing_mm").and_then(toml::Value::as_float) {
-                model.insert("spacing_mm".to_owned(), (factor * spacing).into());
+                model.insert("spacing_mm".to_owned(), (COARSER * spacing).into());
             }
             // Growth by a few rows tells as much as a whole life.
             let length = table["specimen"].get("crack_length_mm").and_then(toml::Value::as_float);

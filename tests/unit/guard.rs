@@ -3,7 +3,7 @@
 use perilife::error::Error;
 use perilife::growth::GrowthStatus;
 use perilife::growth::record::{StopReason, TipRecord};
-use perilife::predict::guard::{BLOCKS_WITHOUT_GROWTH, Guard};
+use perilife::predict::record::{BLOCKS_WITHOUT_GROWTH, Guard};
 
 fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
     GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k: 1.0, tips, is_counting: true }

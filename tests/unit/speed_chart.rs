@@ -1,19 +1,14 @@
 //! The speed-accuracy chart around its measurements: order of runs, tables, picture, page, summary. Speed itself is never asserted.
 
 use std::cell::RefCell;
-use std::path::Path;
 
 use perilife::Error;
-use perilife::case::Case;
 use perilife::chart::choice::choices;
-use perilife::chart::extrapolation::History;
 use perilife::chart::run::Model;
 use perilife::chart::schedule::{Effort, Outcome, Record, Request, measure};
 use perilife::chart::summary::{beaten, fastest_within, never_on_front};
 use perilife::chart::{Chart, Family, Run, SCENES, Status, scenes};
-use perilife::predict::{Silent, predict};
 use perilife::report::speed::{COLUMNS, Origin, csv, markdown, svg};
-use perilife::solver::SolverKind;
 use perilife::verify::element_free::rims::concentration_of;
 
 /// A run that took and found so much.
@@ -174,57 +169,4 @@ fn unknown_scenes_are_answered_with_the_known_ones() {
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().contains("nothing") && error.to_string().contains("slant_severance"), "{error}");
     assert_eq!(scenes(&[]).unwrap().len(), SCENES.len());
-}
-
-const SMALL: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 30.0
-length_mm = 40.0
-thickness_mm = 2.0
-crack_length_mm = 6.0
-[material]
-youngs_modulus_gpa = 72.0
-poisson_ratio = 0.3
-[loading]
-stress_max_mpa = 50.0
-stress_ratio = 0.1
-[model]
-spacing_mm = 1.0
-symmetry = "off"
-[fatigue]
-a = 1e5
-p = 3.0
-horizon_mm = 3.015
-# The curve then counts all bonds that break.
-precrack = "none"
-[stop]
-crack_length_mm = 9.0
-"#;
-
-#[test]
-fn a_replayed_run_is_the_run() {
-    let case = Case::from_toml(SMALL, "small", Path::new("."), &[]).unwrap();
-    let (history, _) = History::of(&case).unwrap();
-    assert!(history.blocks() >= 20, "{}", history.blocks());
-    // The curve is averaged over a spacing of growth and ends that much earlier than the run: a longer one has the state looked for.
-    let longer = Case::from_toml(SMALL, "small", Path::new("."), &["stop.crack_length_mm=12".to_owned()]).unwrap();
-    let longer = predict(&longer, &Silent).unwrap().curve;
-    // No time to spend: the fewest blocks.
-    let samples: Vec<_> =
-        SolverKind::ALL.iter().map(|&kind| (kind, history.sample(kind, case.loading.maximum, 0.0).unwrap())).collect();
-    let exact = samples.iter().find(|(kind, _)| *kind == SolverKind::Direct).unwrap().1.work;
-    for (kind, sampled) in &samples {
-        assert_eq!(sampled.blocks.len(), 5, "{kind}");
-        assert!(sampled.blocks.windows(2).all(|pair| pair[0].0 < pair[1].0) && sampled.blocks[4].0 < history.blocks());
-        assert!(sampled.whole(history.blocks()) > sampled.start_s && sampled.start_s > 0.0, "{kind}");
-        // The run went through the same state, whatever solver finds it again. Its curve is averaged over a spacing of growth,
-        // 1 mm, and work rises with growth: that of the state lies between rows a spacing before and after.
-        let of_run = longer.iter().find(|row| row.broken_bonds >= sampled.broken_bonds).unwrap();
-        assert_eq!(of_run.broken_bonds, sampled.broken_bonds, "{kind}");
-        let before = longer.iter().rfind(|row| row.crack_length <= of_run.crack_length - 1e-3).unwrap().work;
-        let after = longer.iter().find(|row| row.crack_length >= of_run.crack_length + 1e-3).unwrap().work;
-        assert!((before..after).contains(&sampled.work), "{kind}: {} J not within {before} and {after} J", sampled.work);
-        assert!((sampled.work / exact - 1.0).abs() < 1e-5, "{kind}: {} J against {exact} J", sampled.work);
-    }
 }

@@ -144,11 +144,8 @@ impl Draw {
             if self.chance(0.2) {
                 text += &format!("kernel = \"{}\"\n", self.one_of(&["constant", "conical"]));
             }
-            if law == "two_parameter" && self.chance(0.4) {
-                text += "discretisation = \"dual_horizon\"\n[refinement]\nregions = [{ around_flaws_mm = 4.0, levels = 1 }]\n";
-            } else if self.chance(0.5) {
-                text +=
-                    &format!("solver = \"{}\"\n", self.one_of(&["window", "multigrid", "direct", "adaptive_dynamic_relaxation"]));
+            if self.chance(0.5) {
+                text += &format!("solver = \"{}\"\n", self.one_of(&["window", "multigrid", "direct"]));
             } else if self.chance(0.4) {
                 text += &format!("surface_correction = \"{}\"\n", self.one_of(&["none", "volume_and_surface", "balanced"]));
             }

@@ -77,7 +77,6 @@ const MIDDLE: &str = "kind=\"middle_tension\"\nwidth_mm=120\nlength_mm=120\nthic
 const CLAMPED: &str =
     "kind=\"single_edge_tension\"\nends=\"clamped\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\ncrack_length_mm=16\n";
 const SLANT: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\ncracks=[{from_mm=[-7,-5],to_mm=[7,5]}]\n";
-const BROAD: &str = "kind=\"plate\"\nwidth_mm=90\nlength_mm=80\nthickness_mm=2\ncracks=[{from_mm=[-9,-5],to_mm=[7,4]}]\n";
 const TWO: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n\
                    cracks=[{from_mm=[-16,-3],to_mm=[-7,-3]},{from_mm=[6,3],to_mm=[17,3]}]\n";
 const HOLE: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n\
@@ -87,7 +86,6 @@ const FINE: &str = "model.spacing_mm=1";
 const TIPS: &str = "fatigue.driver=tip_field";
 /// Short steps, so that a crack across a small plate takes some hundred blocks.
 const SHORT: &str = "fatigue.step_error_percent=0.03";
-const LEVELS: [&str; 2] = ["model.discretisation=dual_horizon", "refinement.regions=[{box_mm=[[-45,-24],[45,24]],levels=1}]"];
 
 /// Name, `[specimen]`, settings; every one has a checkpoint at least.
 fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
@@ -96,12 +94,6 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
         ("window, clamped, grown", CLAMPED, vec![FINE, "fatigue.precrack=grown", "model.symmetry=off"]),
         ("window, slant", SLANT, vec![FINE, "stop.crack_length_mm=40"]),
         ("window, state-based", SLANT, vec![FINE, "model.bond_law=state_based", "stop.crack_length_mm=40"]),
-        ("window, levels", BROAD, vec![LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=30"]),
-        (
-            "direct, levels",
-            BROAD,
-            vec![LEVELS[0], LEVELS[1], "model.spacing_mm=3", "model.solver=direct", "stop.crack_length_mm=19.5"],
-        ),
         (
             "multigrid, clamped, grown",
             CLAMPED,
@@ -117,16 +109,10 @@ fn scenes() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
         ("tips, two cracks, state-based", TWO, vec![TIPS, SHORT, FINE, "model.bond_law=state_based"]),
         ("tips, hole, window", HOLE, vec![TIPS, SHORT, "model.spacing_mm=0.8", "model.solver=window"]),
         (
-            "tips, levels",
-            BROAD,
-            vec![TIPS, "fatigue.step_error_percent=0.01", LEVELS[0], LEVELS[1], "model.spacing_mm=2", "stop.crack_length_mm=45"],
-        ),
-        (
             "nodes, slant",
             SLANT,
             vec!["model.method=element_free_galerkin", TIPS, "model.spacing_mm=5", "stop.crack_length_mm=40"],
         ),
-        ("relaxation, hole", HOLE, vec!["model.spacing_mm=2", "model.solver=adaptive_dynamic_relaxation"]),
     ]
 }
 

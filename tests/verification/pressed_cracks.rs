@@ -60,10 +60,6 @@ fn contact_is_the_same_by_every_solver() {
             assert!(differs < 1e-5 * reference[0].max(1e6), "{solver}, {symmetry}: {tip:?}, {reference:?}");
         }
     }
-    let mut refused = case.clone();
-    refused.model.solver = SolverKind::AdaptiveDynamicRelaxation;
-    let error = stress_intensity(&refused, &[StressIntensityMethod::Ring]).unwrap_err().to_string();
-    assert!(error.contains("presses flanks of cracks together") && error.contains("multigrid"), "{error}");
 }
 
 /// An open crack towards a closed one: it lives as long as right, and the closed one stands until it has come to the edge.
@@ -82,11 +78,11 @@ fn a_closed_crack_ahead_stands_still() {
     assert!((through.cycles / 86e3 - 1.0).abs() < 0.01, "{}", through.cycles);
 }
 
-/// K of `sif` is that of the first row of `predict`, with closed tips and on several levels.
+/// K of `sif` is that of the first row of `predict`, with closed tips too.
 #[test]
 fn sif_reads_what_predict_reads() {
     let folder = Path::new("data/cases");
-    let names = ["slant_crack_plate", "compact_tension", "two_cracks_plate", "dual_horizon_panel"];
+    let names = ["slant_crack_plate", "compact_tension", "two_cracks_plate"];
     let cases = names.map(|name| Case::from_file(&folder.join(format!("{name}.toml")), &[]).unwrap());
     for mut case in cases.into_iter().chain(pressed("closed_above")) {
         let tips = stress_intensity(&case, &[StressIntensityMethod::Ring]).unwrap();

@@ -6,7 +6,7 @@ use std::path::Path;
 use perilife::bond_law::{BondLawKind, Rotation, SurfaceCorrection};
 use perilife::fracture::scene::PointLaw;
 use perilife::fracture::{Scene, rotation, run};
-use perilife::growth::plate::Plate;
+use perilife::growth::plate;
 use perilife::predict::Silent;
 
 use crate::plates::try_case;
@@ -99,15 +99,14 @@ fn what_resists_a_turn_is_told_with_its_cost() {
     assert!(cost(&scene) > 1e-3 && warnings.iter().any(|w| w.contains("zero_energy_control = \"spring\"")), "{warnings:?}");
 }
 
-/// Plates of `predict`: every law, correction and arrangement; none resists unless it was asked to.
+/// Plates of `predict`: every law and correction; none resists unless it was asked to.
 #[test]
 fn a_rigid_turn_of_a_plate_costs_nothing() {
     const SLANT: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=80\nthickness_mm=2\ncracks=[{from_mm=[-7,-5],to_mm=[7,5]}]\n";
-    let levels = ["model.discretisation=dual_horizon", "refinement.regions=[{box_mm=[[-25,-22],[25,22]],levels=1}]"];
     let mut counted = 0;
     for kind in BondLawKind::ALL {
         for correction in SurfaceCorrection::ALL {
-            for way in [&[][..], &["model.lattice_angle_deg=20"], &levels] {
+            for way in [&[][..], &["model.lattice_angle_deg=20"]] {
                 let nu = if *kind == BondLawKind::BondBased { "0.3333333333333333" } else { "0.2" };
                 let keys = [
                     format!("model.bond_law={kind}"),
@@ -119,15 +118,15 @@ fn a_rigid_turn_of_a_plate_costs_nothing() {
                     let key = rotation.map(|rotation| format!("model.rotation={rotation}"));
                     let set: Vec<&str> = given.iter().copied().chain(key.as_deref()).collect();
                     let Ok(case) = try_case(SLANT, &set) else { continue };
-                    let plate = Plate::build(&case.specimen, &case.specimen, &case.material, &case.model).unwrap();
-                    let cost = plate.turning_cost().unwrap();
+                    let body = case.model.body(&case.specimen, &case.material).unwrap();
+                    let cost = plate::turning_cost(&body).unwrap();
                     let resists = rotation == Some(Rotation::Resisted) && kind.is_two_parameter();
-                    let is_told = plate.warnings().iter().any(|w| w.contains("model.rotation = \"resisted\""));
+                    let is_told = plate::warning(&body).is_some_and(|w| w.contains("model.rotation = \"resisted\""));
                     assert_eq!((cost.abs() > ROUND_OFF, is_told), (resists, resists), "{set:?}: {cost:e}");
                     counted += 1;
                 }
             }
         }
     }
-    assert!(counted > 60, "{counted} plates");
+    assert!(counted > 40, "{counted} plates");
 }

@@ -11,7 +11,6 @@ use perilife::body::{Body, Bond};
 use perilife::case::{Case, RESIDUAL};
 use perilife::fatigue::growth_law::Walker;
 use perilife::growth::CrackGrowth;
-use perilife::growth::plate::Plate;
 use perilife::growth::tip_field::TipField;
 use perilife::growth::tip_field::kink::coefficients;
 use perilife::growth::tip_field::steering::{equivalent_factor, kink_angle};
@@ -183,16 +182,16 @@ fn no_bond_is_left_across_the_crack() {
             "kind = \"plate\"\nwidth_mm = 40\nlength_mm = 60\nthickness_mm = 2\nholes = [{{ x_mm = 6, y_mm = 7, diameter_mm = 8 }}]\ncracks = [{{ from_mm = [-20, {y}], to_mm = [-8, {y}] }}]"
         );
         let case = case(&specimen, PULL, &["model.spacing_mm=1", &format!("model.lattice_angle_deg={lattice}")]);
-        let plate = Arc::new(Plate::build(&case.specimen, &case.specimen, &case.material, &case.model).unwrap());
+        let body = Arc::new(case.model.body(&case.specimen, &case.material).unwrap());
         let law = Walker { paris: case.paris_law().unwrap(), gamma: 1.0, threshold: 0.0 };
-        let mut growth = TipField::start_on(&case, plate.clone(), Box::new(law)).unwrap();
+        let mut growth = TipField::start_on(&case, body.clone(), Box::new(law)).unwrap();
         growth.open().unwrap();
         let mut turned = 0.0_f64;
         let mut goes_on = true;
         while goes_on {
             goes_on = increment(&mut growth).is_none();
             let line = &growth.state.lines[0];
-            let across: Vec<Bond> = line.pieces().flat_map(|[a, b]| bonds_across(&plate.body, a, b)).collect();
+            let across: Vec<Bond> = line.pieces().flat_map(|[a, b]| bonds_across(&body, a, b)).collect();
             assert!(!across.is_empty() && across.iter().all(|&bond| !growth.bonds.is_intact(bond)), "{line:?}");
             turned = turned.max(line.direction(true)[1].abs());
         }

@@ -1,9 +1,15 @@
-//! Memory that this process may still take, as Linux tells it; `None` where nothing does.
+//! Memory that this process has taken and may still take, as Linux tells it.
 
 use std::fs;
 use std::path::Path;
 
-/// Bytes free for this process: the least of what the machine has, what every control group around the process leaves it, and what
+/// Peak resident memory of this process, MB; NaN where the system does not tell.
+pub fn peak_mb() -> f64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    kib(&status, "VmHWM:").map_or(f64::NAN, |bytes| bytes / 1e6)
+}
+
+/// Bytes free for this process; `None` where the system does not tell: the least of what the machine has, what every control group around the process leaves it, and what
 /// `ulimit -v` leaves it.
 pub fn free_bytes() -> Option<f64> {
     let read = |path: &str| fs::read_to_string(path).unwrap_or_default();

@@ -10,7 +10,8 @@ use super::super::springs::Springs;
 use crate::error::Result;
 use crate::levels::Net;
 pub use crate::levels::equilibrium::Shape;
-use crate::levels::equilibrium::{self, FullLoad, InternalForce, Spent, Strut};
+use crate::levels::equilibrium::{self, FullLoad, InternalForce, Spent};
+use crate::levels::stiffness::Strut;
 use crate::specimen::Crack;
 
 /// Residual over load at which a solve ends: damage of mirror twins shall agree to 1e-9.

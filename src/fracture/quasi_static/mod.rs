@@ -20,7 +20,7 @@ use super::failure::Failure;
 use super::interaction::Interaction;
 use super::log::Log;
 use super::outcome::{Fracture, SceneFigures};
-use super::scene::{DamageLaw, Discretisation, Procedure, Scene, SceneLaw, SceneSolver};
+use super::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
 use crate::error::{Result, input};
 use crate::levels::Net;
 use account::Recorder;
@@ -114,9 +114,6 @@ fn secant_law<'f>(scene: &Scene, failure: Option<&'f Failure>) -> Result<&'f Fai
     let Some(failure) = failure else {
         return Err(refuse("needs springs in bonds, and the law has none"));
     };
-    if scene.model.arrangement == Discretisation::VariableHorizon {
-        return Err(refuse("needs forces with an energy, and those of discretisation = \"variable_horizon\" have none"));
-    }
     if scene.model.finite {
         return Err(refuse("is linear in the displacement, and kinematics is \"finite\""));
     }

@@ -74,7 +74,7 @@ fn check_arrangement(scene: &Scene) -> Result<()> {
             let problem = "has one spacing everywhere, and there is a section [refinement]";
             Err(input(KEY, format!("\"{arrangement}\""), problem, "use \"dual_horizon\", or remove the section"))
         }
-        (Discretisation::DualHorizon | Discretisation::VariableHorizon, SceneLaw::Correspondence { .. }) => {
+        (Discretisation::DualHorizon, SceneLaw::Correspondence { .. }) => {
             let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";
             Err(input(KEY, format!("\"{arrangement}\""), problem, "use \"lattice\", or a law of bonds"))
         }

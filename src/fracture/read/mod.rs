@@ -55,7 +55,7 @@ use toml::{Table, Value};
 use super::scene::{Scene, SceneLaw};
 use crate::error::Result;
 use crate::input::{Document, Folder, ForeignSections, Provenance, Sections};
-use crate::levels::read as refinement;
+use crate::levels::refinement;
 use crate::{material, specimen};
 
 /// Sections of a scene file.

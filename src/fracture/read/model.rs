@@ -43,12 +43,12 @@ struct Input {
 pub fn from_value(value: &Value, specimen: &Specimen, material: &Material, procedure: &Procedure) -> Result<SceneModel> {
     let input: Input = slice(value, "model")?;
     let spacing = LENGTH.read_optional("model.spacing_mm", input.spacing_mm)?.unwrap_or_else(|| default_spacing(specimen).0);
-    check_spacing(spacing, 0, specimen)?;
+    check_spacing(spacing, specimen)?;
     let ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
     let angle = number("an angle in degrees", -90.0, 90.0).read_optional("model.lattice_angle_deg", input.lattice_angle_deg)?;
     let law = law(&input, material)?;
     let arrangement = input.discretisation.unwrap_or(Discretisation::Lattice);
-    let solver = solver(input.solver, law, arrangement, *procedure)?;
+    let solver = solver(input.solver, law, *procedure)?;
     Ok(SceneModel {
         finite: finite(&input, law, solver)?,
         law,
@@ -163,15 +163,13 @@ fn check_sign(factor: f64) -> Result<f64> {
     Err(input("model.zero_energy_factor", factor, problem, "give zero or more"))
 }
 
-/// The solver of procedure, law and arrangement, or the one asked for where it suits them.
-fn solver(asked: Option<SceneSolver>, law: SceneLaw, arrangement: Discretisation, procedure: Procedure) -> Result<SceneSolver> {
+/// The solver of procedure and law, or the one asked for where it suits them.
+fn solver(asked: Option<SceneSolver>, law: SceneLaw, procedure: Procedure) -> Result<SceneSolver> {
     const KEY: &str = "model.solver";
     let timed = matches!(procedure, Procedure::Dynamic { .. });
     let by_points = matches!(law, SceneLaw::Correspondence { .. });
     let marches = matches!(procedure, Procedure::QuasiStatic { iterations: Some(_), .. });
-    // Forces that pull at one end of a bond only have neither energy nor a symmetric stiffness.
-    let one_sided = arrangement == Discretisation::VariableHorizon;
-    let usual = match (timed, by_points || one_sided || marches) {
+    let usual = match (timed, by_points || marches) {
         (true, _) => SceneSolver::VelocityVerlet,
         (false, true) => SceneSolver::AdaptiveDynamicRelaxation,
         (false, false) => SceneSolver::Secant,
@@ -193,10 +191,6 @@ fn solver(asked: Option<SceneSolver>, law: SceneLaw, arrangement: Discretisation
         SceneSolver::Secant if by_points => refuse(
             "works on springs in bonds, which bond_law = \"correspondence\" has not",
             "use \"adaptive_dynamic_relaxation\"",
-        ),
-        SceneSolver::Secant if one_sided => refuse(
-            "needs forces with an energy, and those of discretisation = \"variable_horizon\" have none",
-            "use \"adaptive_dynamic_relaxation\", or discretisation = \"dual_horizon\"",
         ),
         _ => Ok(asked),
     }

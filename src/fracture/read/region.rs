@@ -6,7 +6,7 @@ use toml::Value;
 use crate::error::{Result, input};
 use crate::fracture::scene::Region;
 use crate::input::{number, point, slice};
-pub use crate::levels::read::{corners, overlap};
+pub use crate::levels::refinement::{corners, overlap};
 use crate::specimen::geometry::bounding_box;
 use crate::specimen::{Edge, Point, Specimen};
 use crate::units::MM;

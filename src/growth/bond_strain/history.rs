@@ -1,16 +1,20 @@
-//! The growing a-N curve of a run.
+//! What a run carries from block to block, its growing a-N curve first. The displacement is not among it: the solver makes it of the
+//! bonds.
 
 use serde::{Deserialize, Serialize};
 
-use crate::body::Body;
+use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::fatigue::GrowthRate;
+use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::growth_rate::{Rate, Sample, rates, release_rate_at_end};
 use crate::fatigue::length_average::LengthAverage;
+use crate::fatigue::remaining_life::BondLife;
 use crate::growth::end_of_life::End;
 use crate::growth::record::{CurvePoint, TipRecord};
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::specimen::{LengthConvention, Specimen};
+use crate::state::Bonds;
 
 /// Growth, in horizons, over which rates are taken.
 const RATE_SPAN_HORIZONS: f64 = 1.0;
@@ -308,5 +312,45 @@ fn end_at(rows: &mut Vec<Row>, crack_length: f64) {
     for (tip, old) in row.tips.iter_mut().zip(&before.tips) {
         tip.growth = between(old.growth, tip.growth);
         tip.position = [0, 1].map(|i| between(old.position[i], tip.position[i]));
+    }
+}
+
+/// Where a run stands.
+pub(super) struct RunState {
+    /// Which bonds carry.
+    pub bonds: Bonds,
+    /// What life is left to them.
+    pub life: BondLife,
+    /// Tips of the cracks.
+    pub tips: Vec<CrackTip>,
+    /// Bonds that come near the critical stretch, also away from the tips.
+    pub near_limit: Vec<Bond>,
+    /// The curve so far.
+    pub track: GrowthHistory,
+    /// Bonds broken since the start, those set aside not counted.
+    pub broken_bonds: usize,
+    /// Equilibrium solves.
+    pub solves: usize,
+    /// Solver iterations.
+    pub iterations: usize,
+    /// Whether a window was condensed; a solver that is built anew has none at first.
+    pub had_window: bool,
+}
+
+impl RunState {
+    /// The start of a run with these tips, all bonds but those of the initial cracks whole.
+    pub(super) fn start(case: &Case, body: &Body, tips: Vec<CrackTip>) -> Self {
+        let bonds = Bonds::new(body);
+        RunState {
+            life: BondLife::whole(bonds.multiplier.len()),
+            track: GrowthHistory::new(case),
+            near_limit: Vec::new(),
+            broken_bonds: 0,
+            solves: 0,
+            iterations: 0,
+            had_window: false,
+            bonds,
+            tips,
+        }
     }
 }

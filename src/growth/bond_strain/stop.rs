@@ -1,15 +1,16 @@
-//! Reasons to stop a run.
+//! Tips that come to an edge or a hole, and reasons to stop a run.
 
 use super::history::GrowthHistory;
-use crate::body::Body;
+use crate::body::pre_crack::bonds_across;
+use crate::body::{Body, Bond};
 use crate::case::Case;
-use crate::fatigue::FatigueSettings;
 use crate::fatigue::ageing::FatigueBond;
 use crate::fatigue::crack_tip::{CrackTip, TipState};
 use crate::growth::end_of_life::End;
 use crate::growth::record::StopReason;
-use crate::levels::multi_level_body::clear_way;
-use crate::specimen::Point;
+use crate::specimen::Specimen;
+use crate::specimen::geometry::distance;
+use crate::state::Bonds;
 
 /// Reasons that show before a block: the crack is too long for its load, no tip is left, or nothing ages.
 pub(super) fn before_block(
@@ -36,13 +37,6 @@ pub(super) fn before_block(
     ageing.is_empty().then_some(StopReason::NothingAges)
 }
 
-/// Where an active tip has come so near the rim of the finest level that its growth would not be that on fine points, m; `None` in
-/// a plate of one level.
-pub(super) fn at_rim(body: &Body, tips: &[CrackTip], settings: &FatigueSettings) -> Option<Point> {
-    let reach = clear_way(body.horizon(), settings.zone_radius_horizons);
-    tips.iter().find(|tip| tip.is_active() && body.is_near_rim(tip.position, reach)).map(|tip| tip.position)
-}
-
 /// Reasons that show after a block: a known end is passed. The run goes on for a spacing more, so that the length averaged over
 /// a spacing of growth is known up to the end; the curve stops there.
 pub(super) fn after_block(case: &Case, end: Option<End>, track: &GrowthHistory) -> Option<StopReason> {
@@ -52,4 +46,35 @@ pub(super) fn after_block(case: &Case, end: Option<End>, track: &GrowthHistory) 
 /// The reason that counts where a run had passed a known end before it stopped for another reason.
 pub(super) fn settled(end: Option<End>, track: &GrowthHistory, stop: StopReason) -> StopReason {
     end.filter(|end| track.last().crack_length >= end.crack_length).map_or(stop, |end| end.reason)
+}
+
+/// Bonds between tips and an edge or hole less than one spacing ahead; those tips end.
+pub(super) fn break_through(tips: &mut [CrackTip], body: &Body, bonds: &Bonds, specimen: &Specimen) -> Vec<Bond> {
+    let mut through = Vec::new();
+    for tip in tips.iter_mut().filter(|tip| tip.is_active()) {
+        if tip.retire(specimen, body.lattice.spacing) {
+            let along = |way: f64| [0, 1].map(|i| tip.position[i] + way * tip.direction[i]);
+            let across = bonds_across(body, along(-body.horizon()), along(body.horizon()));
+            through.extend(across.into_iter().filter(|&bond| bonds.is_intact(bond) && body.can_fail(bond)));
+        }
+    }
+    through.sort_unstable();
+    through.dedup();
+    through
+}
+
+/// Ends the tips at an edge or hole around which no bond is left.
+pub(super) fn retire_tips(
+    tips: &mut [CrackTip],
+    body: &Body,
+    specimen: &Specimen,
+    candidates: &[Bond],
+    zone_radius_horizons: f64,
+) {
+    let radius = zone_radius_horizons * body.horizon();
+    for tip in tips.iter_mut().filter(|tip| tip.is_active()) {
+        if !candidates.iter().any(|&bond| distance(body.middle(bond), tip.position) <= radius) {
+            tip.retire(specimen, body.horizon());
+        }
+    }
 }

@@ -9,10 +9,11 @@ use crate::element_free::resolution::room;
 use crate::element_free::solve::solve;
 use crate::error::Error;
 use crate::fatigue::crack_tip::TipState;
+use crate::growth::cross_check::ReleasedEnergy;
+use crate::growth::end_of_life::gone;
 use crate::growth::record::StopReason;
-use crate::growth::rows::gone;
 use crate::growth::tip_field::step::cycles;
-use crate::growth::{TipGrowth, rows};
+use crate::growth::{TipGrowth, end_of_life};
 use crate::specimen::geometry::distance;
 
 /// Compliance over that at the start from which a plate is as good as severed.
@@ -101,7 +102,7 @@ impl TipGrowth for ElementFree<'_> {
     fn reason_to_stop(&self) -> Option<StopReason> {
         let states: Vec<TipState> = self.state.fronts.iter().map(|front| front.state).collect();
         let last = &self.curve[self.curve.len() - 1];
-        rows::reason_to_stop(self.case, self.end, last, &states, self.fastest().is_some())
+        end_of_life::reason_to_stop(self.case, self.end, last, &states, self.fastest().is_some())
     }
 
     fn increments(&self) -> Increment {
@@ -215,7 +216,8 @@ impl TipGrowth for ElementFree<'_> {
             self.compare_energies(&step, cycles);
         }
         let work = if is_over { f64::NAN } else { self.load_work() };
-        let (row, reason) = rows::row_after(self.case, &self.curve[self.curve.len() - 1], self.row(cycles, work), step.end);
+        let (row, reason) =
+            end_of_life::row_after(self.case, &self.curve[self.curve.len() - 1], self.row(cycles, work), step.end);
         if cycles > 0.0 {
             self.curve.push(row);
         }
@@ -230,4 +232,26 @@ fn cycles_of_kink(grown: f64, rate: f64, rate_then: f64) -> f64 {
     let mean =
         if gain.abs() < 1e-4 { 1.0 - 2.0 / 3.0 * gain } else { 2.0 * (1.0 - (-gain).exp() * (1.0 + gain)) / (gain * gain) };
     grown / rate * mean
+}
+
+impl ElementFree<'_> {
+    /// K_eq²/E' of every tip, J/m², and work of the loads, J.
+    pub(super) fn energies(&self) -> (Vec<f64>, f64) {
+        let modulus = self.case.material.plane_modulus();
+        let of_front = |front: &Front| {
+            let factor = if front.begins_kink() { kinked(front) } else { front.equivalent() };
+            factor.powi(2) / modulus
+        };
+        (self.state.fronts.iter().map(of_front).collect(), self.load_work())
+    }
+
+    /// Compares the energy that the new segments released by their K with what the plate did.
+    pub(super) fn compare_energies(&mut self, step: &Increment, cycles: f64) {
+        let ((now, work_now), (before, work)) = (self.energies(), &step.before);
+        let growths: Vec<f64> = step.moves.iter().map(|step| step.0).collect();
+        let released: f64 = growths.iter().zip(before).zip(now).map(|((growth, then), now)| 0.5 * (then + now) * growth).sum();
+        let grown: Vec<f64> = self.state.fronts.iter().map(|front| front.growth).collect();
+        let (block, length) = ReleasedEnergy::of_block(self.case, released, &growths, &grown, [*work, work_now], cycles);
+        self.state.balance.take(block, length, 0.2 * self.settings.resolution.far);
+    }
 }

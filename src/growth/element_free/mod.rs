@@ -3,12 +3,10 @@
 //! As [`super::tip_field`], with what a plate without lattice allows: nodes are placed anew for every equilibrium, as fine as the room of
 //! every tip asks for, so that a tip is read where it stands, kinks are resolved whatever their length, and nothing is extrapolated.
 
-mod energy;
 mod front;
 mod increment;
 mod run;
 mod step;
-mod targets;
 
 pub use front::Front;
 pub use run::FrontsState;

@@ -2,7 +2,7 @@
 
 use crate::fatigue::crack_tip::TipState;
 use crate::specimen::geometry::{along, distance, edges, meeting_share, segments_touch};
-use crate::specimen::{CrackLine, Point, Specimen};
+use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
 
 /// What a tip meets, and what it becomes by that.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,6 +71,16 @@ pub(in crate::growth) fn beside(
     let cracks = others.flat_map(|(index, line)| line.pieces().map(move |[a, b]| of_segment(a, b, Encounter::crack(index))));
     let all = outline.chain(slots).chain(holes).chain(cracks).map(|near| (distance(at, near.0), near));
     all.filter(|(gap, _)| *gap < reach).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, near)| near)
+}
+
+/// Whether a rim or another crack lies within `reach` straight ahead of a tip or 45° to either side.
+pub(in crate::growth) fn is_near_rim(specimen: &Specimen, lines: &[CrackLine], end: LineEnd, reach: f64) -> bool {
+    let (from, [x, y]) = (lines[end.line].end(end.at_last), lines[end.line].direction(end.at_last));
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    [[x, y], [half * (x - y), half * (x + y)], [half * (x + y), half * (y - x)]]
+        .into_iter()
+        .map(|[x, y]| [from[0] + reach * x, from[1] + reach * y])
+        .any(|to| first_rim(specimen, lines, end.line, from, to).is_some())
 }
 
 fn nearest_of_segment(p: Point, a: Point, b: Point) -> Point {

@@ -1,12 +1,10 @@
 //! K_I and K_II of every tip off its ring, what they say of its rate, and where it aims.
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use super::coalescence::GAP_HORIZONS;
 use super::kink::Kink;
+use super::readings::{GAP_HORIZONS, Reading, Sliding};
 use super::steering::equivalent_factor;
-use super::step::is_near_rim;
 use super::{PROBE_HORIZONS, Tip, TipField, ahead, heading};
 use crate::body::severed::represented_excess;
 use crate::fatigue::crack_tip::TipState;
@@ -41,53 +39,15 @@ const PASSING: f64 = 0.5;
 
 /// Cosine of the angle between a tip and the way to another one within which they face each other.
 const FACING: f64 = 0.94;
-/// |K_II| over the |K_I| that the load presses a tip with, below which it is noise of the reading.
-const STANDING: f64 = 0.01;
-
-/// What the ring of a tip says.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct Reading {
-    /// K_I and K_II, Pa√m.
-    factors: [f64; 2],
-    /// T, Pa.
-    t_stress: f64,
-    /// How far ahead of the end of its line the crack is that has them, m.
-    length_offset: f64,
-    /// Whether flanks are in contact up to the tip.
-    is_closed: bool,
-    /// What the pressure between flanks adds to K_I, Pa√m.
-    of_pressure: f64,
-    /// Of a tip of both modes.
-    sliding: Option<Sliding>,
-}
-
-/// K_II where the field of a tip stands in mode II.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Sliding {
-    /// How far ahead of the end of its line the crack is that has it, m.
-    offset: f64,
-    /// Pa√m.
-    factor: f64,
-    /// The same at the end of the line.
-    at_line: f64,
-}
-
-impl Reading {
-    /// Whether the load presses the tip shut, and its flanks do not slide but for the noise of the reading.
-    fn stands(&self) -> bool {
-        let pressed = if self.is_closed { self.of_pressure } else { self.factors[0] };
-        self.factors[0] <= 0.0 && self.factors[1].abs() < STANDING * pressed.abs()
-    }
-}
 
 impl TipField<'_> {
     /// What the user should know about the rings of the initial tips.
     pub(super) fn ring_warnings(&self) -> Vec<String> {
-        let horizon = self.plate.body.horizon();
+        let horizon = self.body.horizon();
         let ends: Vec<LineEnd> = self.state.tips.iter().map(|tip| tip.end).collect();
         let short = ends.iter().filter(|&&end| {
             let wanted = RING_HORIZONS * horizon;
-            self.surroundings.radius(&self.plate.body, &self.state.lines, end, &ends, wanted) < RING_HORIZONS_MIN * horizon
+            self.surroundings.radius(&self.body, &self.state.lines, end, &ends, wanted) < RING_HORIZONS_MIN * horizon
         });
         let words = |count: usize| {
             format!(
@@ -125,7 +85,7 @@ impl TipField<'_> {
 
     /// What the rings of the active tips of `lines` say, in order.
     fn read_rings(&self, lines: &[CrackLine]) -> Vec<Reading> {
-        let body = &self.plate.body;
+        let body = &self.body;
         let horizon = body.horizon();
         let tips: Vec<&Tip> = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).collect();
         let active: Vec<LineEnd> = tips.iter().map(|tip| tip.end).collect();
@@ -189,7 +149,7 @@ impl TipField<'_> {
 
     /// K of the initial cracks drawn back ([`TipFieldState::drawn_back`]): with that of the cracks it tells how K changes.
     pub(super) fn read_slopes(&mut self) {
-        let horizon = self.plate.body.horizon();
+        let horizon = self.body.horizon();
         let lines = self.state.drawn_back(PROBE_HORIZONS * horizon);
         let readings = self.read_rings(&lines);
         for (tip, Reading { factors: read, length_offset, sliding, .. }) in self.state.tips.iter_mut().zip(readings) {
@@ -218,7 +178,7 @@ impl TipField<'_> {
 
     /// Whether a tip has come so near to another that its K is not read any more.
     pub(super) fn is_closing(&self, tip: &Tip) -> bool {
-        self.gap(tip).is_some_and(|gap| gap < GAP_HORIZONS * self.plate.body.horizon())
+        self.gap(tip).is_some_and(|gap| gap < GAP_HORIZONS * self.body.horizon())
     }
 
     /// What the rings of all active tips say of the displacement at hand.
@@ -231,7 +191,7 @@ impl TipField<'_> {
 
     /// The first of the tips that pass a rim so near that points do not resolve what is between them, and that distance, m.
     pub(super) fn unresolved_ligament(&self) -> Option<(usize, f64)> {
-        let reach = PASSING_SPACINGS * self.plate.body.lattice.spacing;
+        let reach = PASSING_SPACINGS * self.body.lattice.spacing;
         let passes = |tip: &Tip| {
             let (at, ahead) = (self.position(tip), self.heading(tip.end));
             let (nearest, _) = ahead::beside(&self.case.specimen, &[], 0, at, reach)?;
@@ -244,7 +204,7 @@ impl TipField<'_> {
 
     /// Lets every active tip choose its direction.
     pub(super) fn choose_directions(&mut self) {
-        let horizon = self.plate.body.horizon();
+        let horizon = self.body.horizon();
         for tip in &mut self.state.tips {
             let Some(reading @ Reading { factors, .. }) = tip.reading else { continue };
             tip.is_closed = reading.stands();
@@ -252,14 +212,14 @@ impl TipField<'_> {
             if tip.is_closed {
                 continue;
             }
-            let ahead = heading(&self.plate.body, &self.state.lines, tip.end);
+            let ahead = heading(&self.body, &self.state.lines, tip.end);
             tip.steering.read(factors, tip.growth, ahead, horizon);
         }
     }
 
     /// K at the length of every line, and da/dN of it.
     pub(super) fn choose_rates(&mut self) {
-        let horizon = self.plate.body.horizon();
+        let horizon = self.body.horizon();
         let gaps: Vec<Option<f64>> = self.state.tips.iter().map(|tip| self.gap(tip)).collect();
         for (tip, gap) in self.state.tips.iter_mut().zip(gaps) {
             tip.rate = 0.0;
@@ -303,7 +263,7 @@ impl TipField<'_> {
                 || self.case.specimen.rim_distance(self.state.lines[tip.end.line].end(tip.end.at_last)) > CORE_HORIZONS * horizon;
             let is_near = !pressed_shut
                 && tip.growth > 0.0
-                && is_near_rim(&self.case.specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
+                && ahead::is_near_rim(&self.case.specimen, &self.state.lines, tip.end, CORE_HORIZONS * horizon);
             let has_risen = equivalent_factor(factors) >= tip.equivalent();
             if is_read && (has_risen || !is_near) {
                 tip.factors = factors;

@@ -11,8 +11,8 @@ use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::growth::TipGrowth;
 use crate::growth::cross_check::ReleasedEnergy;
+use crate::growth::end_of_life::gone;
 use crate::growth::record::StopReason;
-use crate::growth::rows::gone;
 use crate::growth::tip_ring::DIRECTION_SPACINGS;
 use crate::solver::field::Layout;
 use crate::specimen::geometry::{along, distance};
@@ -138,8 +138,7 @@ impl TipGrowth for TipField<'_> {
     }
 
     fn part_plate(&mut self, step: &mut Increment) {
-        let plate = self.plate.clone();
-        let body = &plate.body;
+        let body = &self.body.clone();
         let tips = self.state.tips.iter().zip(&step.segments);
         let across =
             |(tip, segment): (&Tip, &Option<Segment>)| segment.as_ref().map(|segment| across(body, segment, tip.end.at_last));
@@ -233,7 +232,7 @@ impl TipGrowth for TipField<'_> {
         if step.end.is_none()
             && let Some((tip, ligament)) = self.unresolved_ligament()
         {
-            let spacing = self.plate.body.lattice.spacing;
+            let spacing = self.body.lattice.spacing;
             self.warnings.push(format!(
                 "tip {tip} passes a rim at {:.3} mm, less than the spacing of {:.3} mm: the run ends there; model.spacing_mm = {:.4} would \
                  resolve what is between them",
@@ -268,12 +267,12 @@ impl TipField<'_> {
         let released: f64 = growths.iter().zip(before).zip(now).map(of_tip).sum();
         let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();
         let (block, length) = ReleasedEnergy::of_block(self.case, released, &growths, &grown, [*work, work_now], cycles);
-        self.state.balance.take(block, length, self.plate.body.horizon());
+        self.state.balance.take(block, length, self.body.horizon());
     }
 
     /// Joins cracks that have met, and lets the tips that are left forget what they were: the crack that they end is another one.
     fn join(&mut self, segments: &[Option<Segment>]) {
-        let reach = JOINED_HORIZONS * self.plate.body.horizon();
+        let reach = JOINED_HORIZONS * self.body.horizon();
         for (tip, segment) in segments.iter().enumerate() {
             let Some(Segment { from, to, meets: Some(met), .. }) = segment else { continue };
             let heading = [to[0] - from[0], to[1] - from[1]];
@@ -292,7 +291,7 @@ impl TipField<'_> {
 
     /// The next segment of crack at a tip: straight on, up to a rim or another crack if one lies on the way or right beside its end.
     fn segment(&self, tip: &Tip, length: f64) -> Segment {
-        let (specimen, lines, body) = (&self.case.specimen, &self.state.lines, &self.plate.body);
+        let (specimen, lines, body) = (&self.case.specimen, &self.state.lines, &self.body);
         let spacing = body.lattice.spacing;
         let (from, ahead) = (self.position(tip), self.heading(tip.end));
         let direction = tip.steering.direction(tip.growth, length, ahead, body.horizon());
@@ -312,14 +311,14 @@ impl TipField<'_> {
     /// Bonds beside the flanks of the cracks that are cut; gives those that changed.
     pub(super) fn correct_flanks(&mut self, lines: &[CrackLine], range: FlankRange) -> Vec<Bond> {
         let is_balanced = self.case.model.bond_law.surface_correction == SurfaceCorrection::Balanced;
-        if !is_balanced || self.plate.is_of_levels() {
+        if !is_balanced {
             return Vec::new();
         }
         let end = |tip: &Tip| lines[tip.end.line].end(tip.end.at_last);
         let ends: Vec<Point> = self.state.tips.iter().map(end).collect();
         let active = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).map(end);
         let tips: Vec<Point> = active.chain(self.corners.iter().copied()).collect();
-        let body = &self.plate.body;
+        let body = &self.body;
         let changed = flanks::multipliers(body, &self.bonds.multiplier, lines, &tips, &ends, range);
         changed.iter().for_each(|&(bond, multiplier)| self.bonds.set(body, bond, multiplier));
         changed.into_iter().map(|(bond, _)| bond).collect()
@@ -328,18 +327,14 @@ impl TipField<'_> {
     /// Equilibrium after bonds were cut or corrected, with flanks that do not overlap; the displacement stays as it was where there is
     /// none.
     pub(super) fn settle(&mut self, changed: &[Bond], lines: &[CrackLine]) -> Result<()> {
-        let plate = self.plate.clone();
-        let body = &plate.body;
+        let body = &self.body.clone();
         self.equilibrium.bonds_changed(body, &self.bonds, changed);
         let blunted = self.blunted(lines);
         self.contact.follow(body, &blunted, self.case.material.plane_modulus());
         let before = self.displacement.clone();
         for solve in 1..=CONTACT_SOLVES_MOST {
-            let solved = self
-                .equilibrium
-                .set_contact(body, &self.contact.springs(self.crack_pressure(), body.thickness))
-                .and_then(|()| self.equilibrium.solve(body, &self.bonds, &mut self.displacement));
-            match solved {
+            self.equilibrium.set_contact(body, &self.contact.springs(self.crack_pressure(), body.thickness));
+            match self.equilibrium.solve(body, &self.bonds, &mut self.displacement) {
                 Ok(iterations) => self.iterations += iterations,
                 Err(error) => {
                     self.displacement = before;
@@ -367,7 +362,7 @@ impl TipField<'_> {
         let mut blunted = lines.to_vec();
         for Tip { end, .. } in &self.state.tips {
             let line = &mut blunted[end.line];
-            *line = line.blunted(end.at_last, DIRECTION_SPACINGS * self.plate.body.lattice.spacing);
+            *line = line.blunted(end.at_last, DIRECTION_SPACINGS * self.body.lattice.spacing);
         }
         blunted
     }
@@ -379,7 +374,7 @@ impl TipField<'_> {
     }
 
     pub(super) fn layout(&self) -> Layout {
-        Layout::of(&self.plate.body.lattice, self.plate.body.stencil.unknowns)
+        Layout::of(&self.body.lattice, self.body.stencil.unknowns)
     }
 }
 

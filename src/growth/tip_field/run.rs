@@ -3,17 +3,21 @@
 use std::sync::Arc;
 
 use super::contact::Contact;
-use super::{PROBE_HORIZONS, RING_HORIZONS_IN_LEVELS, Tip, TipField, TipsState, solver};
+use super::{PROBE_HORIZONS, Tip, TipField, TipsState, solver};
 use crate::body::balanced::flanks::FlankRange;
+use crate::body::pre_crack::bonds_across;
+use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
+use crate::fatigue::ZONE_RADIUS_HORIZONS;
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::remove_fragments;
 use crate::growth::cross_check::CrossCheck;
-use crate::growth::plate::Plate;
+use crate::growth::end_of_life;
+use crate::growth::plate;
 use crate::growth::record::{CurvePoint, StopReason, TipRecord};
-use crate::growth::rows;
 use crate::growth::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
+use crate::specimen::geometry::meeting_share;
 use crate::units::MM;
 
 /// Increments after which the solver is built anew from the bonds, so that a run can be resumed there. That takes as long as three to
@@ -50,17 +54,10 @@ impl TipField<'_> {
         }
     }
 
-    /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or grows, or
-    /// one has come to the rim of the finest points.
+    /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or grows.
     pub(super) fn reason_before(&self) -> Option<StopReason> {
         let states: Vec<TipState> = self.state.tips.iter().map(|tip| tip.state).collect();
-        if let Some(reason) = rows::reason_to_stop(self.case, self.end, self.last(), &states, self.fastest().is_some()) {
-            return Some(reason);
-        }
-        let active = || self.state.tips.iter().filter(|tip| tip.state == TipState::Active);
-        let body = &self.plate.body;
-        let reach = RING_HORIZONS_IN_LEVELS * body.horizon();
-        active().any(|tip| body.is_near_rim(self.position(tip), reach)).then_some(StopReason::LeftRefinement)
+        end_of_life::reason_to_stop(self.case, self.end, self.last(), &states, self.fastest().is_some())
     }
 
     /// The row after an increment of so many cycles, and the reason to stop: run-out and toughness end the run between two rows, `end`
@@ -74,21 +71,49 @@ impl TipField<'_> {
     ) -> (CurvePoint, Option<StopReason>) {
         let last = self.last();
         let next = self.row(last.cycles + cycles, work, last.broken_bonds + broken_bonds);
-        rows::row_after(self.case, last, next, end)
+        end_of_life::row_after(self.case, last, next, end)
+    }
+
+    /// Lets the bonds ahead of all active tips lose remaining life λ up to where the tips are now; broken bonds are left out.
+    ///
+    /// The law of a bond, `dλ/dN = -A ε^p`, makes a tip grow steadily at `da/dN = β A δ^(1-p/2) (K_eq/E')^p`
+    /// ([`crate::fatigue::rate_constant`]): on the length ℓ of the fatigue zone ahead of the tip a bond that the line crosses loses its whole
+    /// remaining life. Here the rate is known from K, so that these bonds lose it at `dλ/dN = -(da/dN)/ℓ`: λ is 1 where the line crosses
+    /// them ℓ ahead of the tip and falls linearly to 0 at the tip. Remaining life never rises: bonds beside a crack that has turned away
+    /// keep what they have left.
+    pub(super) fn update_remaining_life(&mut self) {
+        let body = &self.body;
+        let length = ZONE_RADIUS_HORIZONS * body.horizon();
+        let ahead = |tip: &Tip| {
+            let (from, [x, y]) = (self.position(tip), self.heading(tip.end));
+            let to = [from[0] + length * x, from[1] + length * y];
+            let life = move |bond: Bond| {
+                let (_, a, b) = body.ends(bond);
+                let fraction = meeting_share(from, to, body.lattice.position(a), body.lattice.position(b))?;
+                Some((bond, fraction.clamp(0.0, 1.0)))
+            };
+            bonds_across(body, from, to).into_iter().filter_map(life).collect::<Vec<_>>()
+        };
+        let new = self.state.tips.iter().filter(|tip| tip.state == TipState::Active).flat_map(ahead);
+        let mut lives: Vec<(Bond, f64)> = self.state.remaining_life.iter().copied().chain(new).collect();
+        lives.retain(|&(bond, _)| self.bonds.is_intact(bond));
+        // Of equal bonds the least life comes first and stays.
+        lives.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        lives.dedup_by_key(|(bond, _)| *bond);
+        self.state.remaining_life = lives;
     }
 }
 
 impl CrackGrowth for TipField<'_> {
     fn open(&mut self) -> Result<()> {
         // What is read belongs to a length that differs from the one asked for by part of a spacing: that takes the slope of K.
-        let drawn_back = self.state.drawn_back(PROBE_HORIZONS * self.plate.body.horizon());
+        let drawn_back = self.state.drawn_back(PROBE_HORIZONS * self.body.horizon());
         let changed = self.correct_flanks(&drawn_back, FlankRange::All);
         self.settle(&changed, &drawn_back)?;
         self.read_slopes();
         let mut cut = std::mem::take(&mut self.at_tips);
-        let plate = self.plate.clone();
-        cut.iter().for_each(|&bond| self.bonds.cut(&plate.body, bond));
-        remove_fragments(&plate.body, &mut self.bonds, &cut);
+        cut.iter().for_each(|&bond| self.bonds.cut(&self.body, bond));
+        remove_fragments(&self.body, &mut self.bonds, &cut);
         let lines = self.state.lines.clone();
         cut.extend(self.correct_flanks(&lines, FlankRange::All));
         self.settle(&cut, &lines)?;
@@ -111,14 +136,14 @@ impl CrackGrowth for TipField<'_> {
         GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true }
     }
 
-    fn plate(&self) -> Option<Arc<Plate>> {
-        Some(self.plate.clone())
+    fn body(&self) -> Option<Arc<Body>> {
+        Some(self.body.clone())
     }
 
     fn fields(&mut self) -> Result<Option<Fields>> {
         let share = self.load_share();
         let displacement: Vec<f64> = self.displacement.iter().map(|u| share * u).collect();
-        Ok(Some(self.plate.fields(&self.bonds, &displacement, &self.state.remaining_life)))
+        Ok(Some(plate::fields(&self.body, &self.bonds, &displacement, &self.state.remaining_life)))
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {
@@ -131,7 +156,7 @@ impl CrackGrowth for TipField<'_> {
 
     fn rebuild_solver(&mut self) -> Result<()> {
         self.rows_at_rebuild = self.curve.len();
-        self.equilibrium = solver(self.case, &self.plate, &self.bonds);
+        self.equilibrium = solver(self.case, &self.body, &self.bonds);
         let lines = self.state.lines.clone();
         self.settle(&[], &lines)
     }
@@ -139,8 +164,8 @@ impl CrackGrowth for TipField<'_> {
     fn state(&self) -> State {
         State::Tips(TipsState {
             growth: self.state.clone(),
-            broken: self.bonds.broken(&self.plate.body),
-            scaled: self.bonds.scaled(&self.plate.body),
+            broken: self.bonds.broken(&self.body),
+            scaled: self.bonds.scaled(&self.body),
             closed: self.contact.closed_places().collect(),
             displacement: self.displacement.clone(),
             curve: self.curve.clone(),
@@ -152,8 +177,7 @@ impl CrackGrowth for TipField<'_> {
         let State::Tips(TipsState { growth, broken, scaled, closed, displacement, curve, statistics }) = state else {
             return Ok(false);
         };
-        let plate = self.plate.clone();
-        let places = plate.body.multiplier.len();
+        let places = self.body.multiplier.len();
         let fits = growth.fits(&self.state)
             && !curve.is_empty()
             && broken
@@ -164,8 +188,8 @@ impl CrackGrowth for TipField<'_> {
         if !fits {
             return Ok(false);
         }
-        broken.iter().chain(&self.at_tips).for_each(|&bond| self.bonds.cut(&plate.body, bond));
-        scaled.iter().for_each(|&(bond, multiplier)| self.bonds.set(&plate.body, bond, multiplier));
+        broken.iter().chain(&self.at_tips).for_each(|&bond| self.bonds.cut(&self.body, bond));
+        scaled.iter().for_each(|&(bond, multiplier)| self.bonds.set(&self.body, bond, multiplier));
         (self.state, self.displacement, self.curve) = (growth, displacement, curve);
         self.contact = Contact::resumed(closed);
         (self.solves, self.iterations) = (statistics.solves, statistics.iterations);
@@ -177,7 +201,7 @@ impl CrackGrowth for TipField<'_> {
     }
 
     fn statistics(&self) -> SolverStatistics {
-        let points_solved = self.equilibrium.points(&self.plate.body);
+        let points_solved = self.equilibrium.points(&self.body);
         SolverStatistics {
             points_solved,
             solves: self.solves,

@@ -2,11 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::coalescence::Coalescence;
 use super::contact::ClosedPlace;
-use super::factors::Reading;
 use super::kink::Kink;
-use super::readings::Readings;
+use super::readings::{Coalescence, Reading, Readings};
 use super::steering::{Steering, equivalent_factor};
 use crate::body::Bond;
 use crate::fatigue::crack_tip::TipState;

@@ -8,7 +8,7 @@
 use super::{Tip, TipField, TipFieldState, ahead};
 use crate::case::Case;
 use crate::fatigue::STEP_ERROR_PERCENT;
-use crate::specimen::{CrackLine, LineEnd, Specimen};
+use crate::specimen::Specimen;
 
 /// Growth of a tip in the first block, in horizons: nothing is known yet of how its rate changes.
 const STEP_FIRST_HORIZONS: f64 = 0.15;
@@ -65,7 +65,7 @@ impl StepControl {
 
     /// Growth of a tip at the most in its surroundings, m.
     fn of_tip(&self, specimen: &Specimen, state: &TipFieldState, tip: &Tip) -> f64 {
-        let most = if is_near_rim(specimen, &state.lines, tip.end, NEAR_HORIZONS * self.horizon) {
+        let most = if ahead::is_near_rim(specimen, &state.lines, tip.end, NEAR_HORIZONS * self.horizon) {
             STEP_NEAR_HORIZONS * self.measure
         } else if tip.steering.is_turning(tip.growth, self.horizon) {
             state.step.min(STEP_TURNING_HORIZONS * self.measure)
@@ -121,7 +121,7 @@ impl TipField<'_> {
     fn last_way(&self, tip: usize) -> Option<f64> {
         let tip = &self.state.tips[tip];
         let (from, [x, y]) = (self.position(tip), self.heading(tip.end));
-        let reach = LEFT_HORIZONS * self.plate.body.horizon();
+        let reach = LEFT_HORIZONS * self.body.horizon();
         let to = [from[0] + reach * x, from[1] + reach * y];
         ahead::first_rim(&self.case.specimen, &self.state.lines, tip.end.line, from, to).map(|(share, _)| share * reach)
     }
@@ -133,16 +133,6 @@ pub(in crate::growth) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f6
     let curvature_share = past.map_or(0.0, |[before, way]| curvature_share([before, rate, rate_then], [way, grown]));
     let counted = if curvature_share.abs() < CURVATURE_SHARE_MOST { curvature_share } else { 0.0 };
     (grown * mean_inverse(rate, rate_then) * (1.0 + counted), curvature_share)
-}
-
-/// Whether a rim or another crack lies within `reach` straight ahead of a tip or 45° to either side.
-pub(in crate::growth) fn is_near_rim(specimen: &Specimen, lines: &[CrackLine], end: LineEnd, reach: f64) -> bool {
-    let (from, [x, y]) = (lines[end.line].end(end.at_last), lines[end.line].direction(end.at_last));
-    let half = std::f64::consts::FRAC_1_SQRT_2;
-    [[x, y], [half * (x - y), half * (x + y)], [half * (x + y), half * (y - x)]]
-        .into_iter()
-        .map(|[x, y]| [from[0] + reach * x, from[1] + reach * y])
-        .any(|to| ahead::first_rim(specimen, lines, end.line, from, to).is_some())
 }
 
 /// Mean of 1/r between two rates with ln r linear between them, cycles/m.

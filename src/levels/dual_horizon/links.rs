@@ -3,13 +3,15 @@
 use super::levels::{Leaf, Levels};
 use crate::body::obstacles::Obstacles;
 use crate::bond_law::stencil::Stencil;
-use crate::levels::{Discretisation, NetBond};
+use crate::levels::NetBond;
 use crate::specimen::{Point, Specimen};
 
 /// Relative round-off of a distance against a horizon.
 const ROUND_OFF: f64 = 1e-12;
 /// Stiffness over that of the strongest bond of the level that is none.
 const NO_STIFFNESS: f64 = 1e-9;
+/// Share of the micromodulus at its owner's horizon that a bond to a point of another level has; the dual bond has the other half.
+const DUAL_SHARE: f64 = 0.5;
 
 /// What bonds follow from.
 pub struct Linking<'a> {
@@ -21,8 +23,6 @@ pub struct Linking<'a> {
     pub positions: &'a [Point],
     /// Voids as every level sees them.
     obstacles: Vec<Obstacles<'a>>,
-    /// Share of the micromodulus at its owner's horizon that a bond to a point of another level has.
-    share: f64,
     /// Strongest spring of a level, N/m.
     strongest: Vec<f64>,
     /// Length by which rotations are scaled, m.
@@ -31,18 +31,10 @@ pub struct Linking<'a> {
 
 impl<'a> Linking<'a> {
     /// Bonds of a specimen's points.
-    pub fn new(
-        specimen: &'a Specimen,
-        levels: &'a Levels,
-        stencils: &'a [Stencil],
-        positions: &'a [Point],
-        arrangement: Discretisation,
-    ) -> Self {
+    pub fn new(specimen: &'a Specimen, levels: &'a Levels, stencils: &'a [Stencil], positions: &'a [Point]) -> Self {
         let obstacles = stencils.iter().map(|s| Obstacles::of(specimen, s.spacing, s.horizon)).collect();
         let strongest = stencils.iter().map(|s| s.bonds.iter().fold(0.0, |k: f64, bond| k.max(bond.k_n))).collect();
-        // Half here, the other half from the dual bond; all of it where there is no dual.
-        let share = if arrangement == Discretisation::VariableHorizon { 1.0 } else { 0.5 };
-        Linking { levels, stencils, positions, obstacles, share, strongest, rotation_length: stencils[0].spacing }
+        Linking { levels, stencils, positions, obstacles, strongest, rotation_length: stencils[0].spacing }
     }
 
     /// Bonds between points of one level, each pair once.
@@ -109,7 +101,7 @@ impl<'a> Linking<'a> {
                 {
                     continue;
                 }
-                let [k_n, k_t] = stencil.spring(length, normal, lattice.spacing).map(|k| self.share * volume * k);
+                let [k_n, k_t] = stencil.spring(length, normal, lattice.spacing).map(|k| DUAL_SHARE * volume * k);
                 if k_n > NO_STIFFNESS * self.strongest[leaf.level] {
                     bonds.push(NetBond {
                         from: i as u32,

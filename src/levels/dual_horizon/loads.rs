@@ -106,12 +106,3 @@ pub fn forces(specimen: &Specimen, sharing: &Sharing<'_>, floating: bool) -> Res
     }
     Ok(forces)
 }
-
-/// Points at whose rim a load acts, ascending.
-pub fn seats(specimen: &Specimen, sharing: &Sharing<'_>) -> Vec<u32> {
-    let pieces = load_pieces(specimen, sharing.levels.finest().spacing);
-    let mut seats: Vec<u32> = pieces.iter().filter_map(|piece| sharing.seat(&piece.facet)).map(|seat| seat as u32).collect();
-    seats.sort_unstable();
-    seats.dedup();
-    seats
-}

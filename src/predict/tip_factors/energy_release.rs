@@ -128,10 +128,7 @@ struct Field {
 
 impl<'a> CrackedPlate<'a> {
     fn new(case: &'a Case) -> Result<Self> {
-        let model = &case.model;
-        let (spacing, ratio, angle) = (model.spacing, model.horizon_ratio, model.lattice_angle);
-        let body = Body::build(&case.specimen, &case.material, &model.bond_law, spacing, ratio, angle)?;
-        Ok(CrackedPlate { case, body })
+        Ok(CrackedPlate { case, body: case.model.body(&case.specimen, &case.material)? })
     }
 
     /// Growths for [`CrackedPlate::solve`]: every crack tip by the same, m.

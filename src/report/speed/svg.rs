@@ -21,8 +21,7 @@ const SCATTER_PERCENT: f64 = 12.3;
 const LABEL: f64 = 11.0;
 
 /// Colours of the families, in their order; told apart without red and green (Okabe and Ito 2008).
-const COLOURS: [&str; Family::ALL.len()] =
-    ["#0072b2", "#d55e00", "#222222", "#009e73", "#8a6d00", "#cc79a7", "#56b4e9", "#0072b2"];
+const COLOURS: [&str; Family::ALL.len()] = ["#0072b2", "#d55e00", "#222222", "#8a6d00", "#cc79a7", "#56b4e9", "#0072b2"];
 
 /// Scales of all panels.
 struct Scales {
@@ -353,7 +352,6 @@ fn short_name(point: &Point) -> String {
         Family::TipField => "tips",
         Family::ElementFree => "nodes",
         Family::Handbook => "handbook",
-        Family::DualHorizon => "two levels",
         Family::BondStrain => "bond strain",
         Family::Published => "published law",
         Family::BondLaw | Family::Solver => "",

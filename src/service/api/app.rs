@@ -27,8 +27,6 @@ pub struct Limits {
     pub points: f64,
     /// Memory that a case may take up, bytes.
     pub case_bytes: f64,
-    /// Computing time that a job may take, s of one core.
-    pub job_seconds: f64,
     /// Jobs of one owner that wait.
     pub queued: i64,
     /// Bytes of the files of one owner, inputs and results.
@@ -60,7 +58,6 @@ impl Default for Limits {
             files: 64,
             points: 1e6,
             case_bytes: 4.0 * 1024.0 * 1024.0 * 1024.0,
-            job_seconds: 86_400.0,
             queued: 1000,
             quota_bytes: 100 << 30,
             requests_per_second: READS,

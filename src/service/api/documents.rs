@@ -21,7 +21,7 @@ use super::{App, Limits};
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::laws::case::{LawCase, is_law_fit};
 use crate::case::Case;
-use crate::case::budget::{Budget, effort};
+use crate::case::budget::Budget;
 use crate::check::is_calibration;
 use crate::error::input;
 use crate::fracture::Scene;
@@ -401,19 +401,16 @@ pub fn check(submission: &Submission, kind: JobKind, limits: &Limits) -> Answer<
         JobKind::Prediction => check_points(&Case::from_document(&document)?, limits),
         JobKind::Calibration if is_law_fit(&document.table) => Ok(LawCase::from_document(&document).map(drop)?),
         JobKind::Calibration => check_points(&CalibrationCase::from_document(document)?.case, limits),
-        JobKind::Scene => in_time(&Scene::from_document(&document)?.budget(), limits),
+        JobKind::Scene => within(&Scene::from_document(&document)?.budget(), limits),
         JobKind::Sweep => {
             let sweep = Sweep::with_overrides(document, &[], CASES_MAX)?;
             let cases = sweep.cases()?;
             // A few of very many: each runs within the memory of the job all the same.
             let step = cases.len().div_ceil(LOOKED_AT).max(1);
-            let mut seconds = 0.0;
             for case in cases.iter().step_by(step) {
-                let budget = Budget::of(&DrawnCase::read(case)?);
-                within(&budget, limits)?;
-                seconds += budget.effort.seconds * step as f64;
+                within(&Budget::of(&DrawnCase::read(case)?), limits)?;
             }
-            Ok(effort::within_time_of_sweep(cases.len(), seconds, limits.job_seconds)?)
+            Ok(())
         }
         JobKind::Sif => {
             for name in submission.options.iter().filter_map(|option| option.strip_prefix("method=")) {
@@ -428,14 +425,9 @@ pub fn check(submission: &Submission, kind: JobKind, limits: &Limits) -> Answer<
     }
 }
 
-/// Refuses plates of more points than this server takes, and what would take up more memory or time, before anything is laid out.
+/// Refuses plates of more points than this server takes, and what would take up more memory, before anything is laid out.
 fn check_points(case: &Case, limits: &Limits) -> Answer<()> {
-    in_time(&Budget::of(case), limits)
-}
-
-fn in_time(budget: &Budget, limits: &Limits) -> Answer<()> {
-    within(budget, limits)?;
-    Ok(budget.within_time(limits.job_seconds)?)
+    within(&Budget::of(case), limits)
 }
 
 fn within(budget: &Budget, limits: &Limits) -> Answer<()> {

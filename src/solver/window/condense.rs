@@ -2,7 +2,7 @@
 //! others e.
 //!
 //! Substructuring by recursive bisection (George 1973, nested dissection): a region of the plate is cut by a separator that no
-//! bond crosses (in a lattice a strip as wide as the bonds reach), both halves are condensed onto their surroundings, and the
+//! bond crosses (a strip as wide as the bonds reach), both halves are condensed onto their surroundings, and the
 //! separator is eliminated from their sum. Only the dense matrices of the branch at hand are in memory; window points are never eliminated.
 
 use std::sync::{Mutex, PoisonError};
@@ -16,13 +16,13 @@ use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use crate::body::Body;
-use crate::solver::assembly::{Assembly, Joint, for_joints};
+use crate::solver::assembly::{Assembly, for_joints};
 use crate::state::Bonds;
 
-/// Lattice places, or points, of a region that is eliminated at once.
-pub(in crate::solver) const LEAF: usize = 64;
-/// Lattice places, or points, of a region whose halves are worth two threads.
-pub(in crate::solver) const FORK: usize = 1024;
+/// Lattice places of a region that is eliminated at once.
+const LEAF: usize = 64;
+/// Lattice places of a region whose halves are worth two threads.
+const FORK: usize = 1024;
 /// Products of numbers in an operation on matrices whose halves are worth two threads.
 const FORK_PRODUCTS: usize = 1 << 25;
 
@@ -33,36 +33,6 @@ pub struct Condensed {
     pub places: Vec<u32>,
     /// (S⁻¹)_ij, M unknowns a point, both triangles.
     pub inverse: Mat<f64>,
-}
-
-/// A plate as condensing needs it: points by number, bonds between them, and how it falls into parts.
-pub(in crate::solver) trait Plate<const M: usize>: Sync {
-    /// A part of its points.
-    type Region: Copy + Send + Sync;
-    /// Numbers of points lie below this.
-    fn places(&self) -> usize;
-    /// Whether an unknown of a point is held.
-    fn is_held(&self, place: usize, component: usize) -> bool;
-    /// Sign of the pivots of a component.
-    fn pivot_sign(&self, component: usize) -> f64;
-    /// What a point brings by itself to the diagonal of its last unknown.
-    fn point(&self, place: usize) -> f64;
-    /// Points that take part as ground only: held altogether.
-    fn ground(&self) -> Vec<u32>;
-    /// Calls `take` for every intact bond of a point, and whether the point owns it.
-    fn for_joints(&self, place: usize, take: impl FnMut(Joint<M>, bool));
-    /// Calls `take` with the point at, or behind, the other end of every intact bond of a point.
-    fn for_neighbours(&self, place: usize, take: impl FnMut(usize));
-    /// The region of all points that are not `ground`.
-    fn whole(&self, ground: &[bool]) -> Self::Region;
-    /// Two parts without a bond between them, and the separator that is left; `None` for a region not worth it.
-    fn split(&self, region: Self::Region) -> Option<[Self::Region; 3]>;
-    /// Whether its parts are worth two threads.
-    fn is_large(&self, region: Self::Region) -> bool;
-    /// Whether a point belongs to a region.
-    fn has(&self, region: Self::Region, place: usize) -> bool;
-    /// Points of a region that have a bond, ascending.
-    fn carrying(&self, region: Self::Region) -> Vec<u32>;
 }
 
 /// Condenses the plate with its present bonds onto `window` (ascending places, each with a bond). `None` where the
@@ -78,23 +48,14 @@ pub fn condense<const M: usize, A: Assembly<M>>(
     window: &[u32],
     pins: &[usize],
 ) -> Option<Condensed> {
-    condense_plate(&OnLattice { body, bonds, assembly }, window, pins)
-}
-
-/// [`condense`] for any plate.
-pub(in crate::solver) fn condense_plate<const M: usize, P: Plate<M>>(
-    plate: &P,
-    window: &[u32],
-    pins: &[usize],
-) -> Option<Condensed> {
-    let mut kept = vec![false; plate.places()];
+    let mut kept = vec![false; body.places()];
     window.iter().for_each(|&place| kept[place as usize] = true);
-    let mut ground = vec![false; plate.places()];
-    for place in plate.ground().into_iter().map(|place| place as usize) {
-        ground[place] = !kept[place];
+    let mut ground = vec![false; body.places()];
+    for place in body.points.iter().map(|&place| place as usize) {
+        ground[place] = !kept[place] && (0..M).all(|c| assembly.is_held(place, c));
     }
-    let condenser = Condenser { plate, kept, ground, pool: Pool::default() };
-    let rest = condenser.eliminate(plate.whole(&condenser.ground))?;
+    let condenser = Condenser { body, bonds, assembly, kept, ground, pool: Pool::default() };
+    let rest = condenser.eliminate(condenser.around_moving())?;
 
     // What is left couples window points only; bonds among them come in now.
     let mut sum = condenser.front(window, &[]);
@@ -113,85 +74,6 @@ pub(in crate::solver) fn condense_plate<const M: usize, P: Plate<M>>(
     ldlt::inverse::inverse(inverse.as_mut(), factors, factors.diagonal(), Par::Seq, MemStack::new(&mut memory));
     complete_upper(&mut inverse);
     Some(Condensed { places: window.to_vec(), inverse })
-}
-
-/// A body on its lattice, in rectangles.
-struct OnLattice<'a, A> {
-    body: &'a Body,
-    bonds: &'a Bonds,
-    assembly: &'a A,
-}
-
-impl<const M: usize, A: Assembly<M>> Plate<M> for OnLattice<'_, A> {
-    type Region = Rectangle;
-
-    fn places(&self) -> usize {
-        self.body.places()
-    }
-
-    fn is_held(&self, place: usize, component: usize) -> bool {
-        self.assembly.is_held(place, component)
-    }
-
-    fn pivot_sign(&self, component: usize) -> f64 {
-        self.assembly.pivot_sign(component)
-    }
-
-    fn point(&self, place: usize) -> f64 {
-        self.assembly.point(place)
-    }
-
-    fn ground(&self) -> Vec<u32> {
-        let is_held = |place: &u32| (0..M).all(|c| self.assembly.is_held(*place as usize, c));
-        self.body.points.iter().copied().filter(is_held).collect()
-    }
-
-    fn for_joints(&self, place: usize, take: impl FnMut(Joint<M>, bool)) {
-        for_joints(self.assembly, self.body, self.bonds, place, take);
-    }
-
-    fn for_neighbours(&self, place: usize, mut take: impl FnMut(usize)) {
-        let places = self.body.places();
-        for (k, &step) in self.body.steps.iter().enumerate() {
-            let (ahead, behind) = (place.wrapping_add_signed(step), place.wrapping_add_signed(-step));
-            if self.bonds.multiplier[k * places + place] > 0.0 {
-                take(self.body.behind(ahead).0);
-            }
-            if self.bonds.multiplier[k * places + behind] > 0.0 {
-                take(self.body.behind(behind).0);
-            }
-        }
-    }
-
-    fn whole(&self, ground: &[bool]) -> Rectangle {
-        let moving = self.body.points.iter().map(|&place| place as usize).filter(|&place| !ground[place]);
-        let none = Rectangle { columns: (usize::MAX, 0), rows: (usize::MAX, 0) };
-        let around = moving.map(|place| self.body.lattice.column_row(place)).fold(none, |all, (column, row)| Rectangle {
-            columns: (all.columns.0.min(column), all.columns.1.max(column + 1)),
-            rows: (all.rows.0.min(row), all.rows.1.max(row + 1)),
-        });
-        if around.columns.1 == 0 { Rectangle { columns: (0, 0), rows: (0, 0) } } else { around }
-    }
-
-    fn split(&self, region: Rectangle) -> Option<[Rectangle; 3]> {
-        region.split(self.body.lattice.padding)
-    }
-
-    fn is_large(&self, region: Rectangle) -> bool {
-        region.places() >= FORK
-    }
-
-    fn has(&self, region: Rectangle, place: usize) -> bool {
-        region.contains(self.body.lattice.column_row(place))
-    }
-
-    fn carrying(&self, region: Rectangle) -> Vec<u32> {
-        let lattice = &self.body.lattice;
-        let places = (region.rows.0..region.rows.1)
-            .flat_map(|row| (region.columns.0..region.columns.1).map(move |column| lattice.place(column, row)));
-        let carries = |&p: &usize| self.body.is_point[p] && self.bonds.intact_at(self.body, p) > 0;
-        places.filter(carries).map(|place| place as u32).collect()
-    }
 }
 
 /// Columns and rows of the lattice, each from..to.
@@ -360,21 +242,34 @@ impl<const N: usize> Front<N> {
     }
 }
 
-struct Condenser<'a, const M: usize, P: Plate<M>> {
-    plate: &'a P,
+struct Condenser<'a, const M: usize, A> {
+    body: &'a Body,
+    bonds: &'a Bonds,
+    assembly: &'a A,
     kept: Vec<bool>,
     /// Points held in all components, the window's not counted.
     ground: Vec<bool>,
     pool: Pool,
 }
 
-impl<const M: usize, P: Plate<M>> Condenser<'_, M, P> {
+impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
+    /// The region of all points that are not ground.
+    fn around_moving(&self) -> Rectangle {
+        let moving = self.body.points.iter().map(|&place| place as usize).filter(|&place| !self.ground[place]);
+        let none = Rectangle { columns: (usize::MAX, 0), rows: (usize::MAX, 0) };
+        let around = moving.map(|place| self.body.lattice.column_row(place)).fold(none, |all, (column, row)| Rectangle {
+            columns: (all.columns.0.min(column), all.columns.1.max(column + 1)),
+            rows: (all.rows.0.min(row), all.rows.1.max(row + 1)),
+        });
+        if around.columns.1 == 0 { Rectangle { columns: (0, 0), rows: (0, 0) } } else { around }
+    }
+
     /// Condenses all points of a region but the window's onto their surroundings and the window.
-    fn eliminate(&self, region: P::Region) -> Option<Front<M>> {
-        let (below, own) = match self.plate.split(region) {
+    fn eliminate(&self, region: Rectangle) -> Option<Front<M>> {
+        let (below, own) = match region.split(self.body.lattice.padding) {
             None => (Vec::new(), region),
             Some([a, b, separator]) => {
-                let (a, b) = if self.plate.is_large(region) {
+                let (a, b) = if region.places() >= FORK {
                     rayon::join(|| self.eliminate(a), || self.eliminate(b))
                 } else {
                     (self.eliminate(a), self.eliminate(b))
@@ -384,10 +279,13 @@ impl<const M: usize, P: Plate<M>> Condenser<'_, M, P> {
         };
         let inner = self.carrying(own);
         // Done are the points of both halves; bonds to them were taken in there.
-        let done = |place: usize| self.plate.has(region, place) && !self.plate.has(own, place) && !self.kept[place];
+        let done = |place: usize| {
+            let at = self.body.lattice.column_row(place);
+            region.contains(at) && !own.contains(at) && !self.kept[place]
+        };
         let mut outer: Vec<u32> = below.iter().flat_map(|front| &front.points[front.inner..]).copied().collect();
         for &place in &inner {
-            self.plate.for_neighbours(place as usize, |other| {
+            self.for_neighbours(place as usize, |other| {
                 if !done(other) && !self.ground[other] {
                     outer.push(other as u32);
                 }
@@ -417,11 +315,27 @@ impl<const M: usize, P: Plate<M>> Condenser<'_, M, P> {
         Front { points, inner: inner.len(), matrix: Square::zeros(order, self.pool.take(order * order)) }
     }
 
-    /// Points of a region, outside the window, that have a bond.
-    fn carrying(&self, region: P::Region) -> Vec<u32> {
-        let mut points = self.plate.carrying(region);
-        points.retain(|&place| !self.kept[place as usize] && !self.ground[place as usize]);
-        points
+    /// Points of a region, outside the window, that have a bond, ascending.
+    fn carrying(&self, region: Rectangle) -> Vec<u32> {
+        let lattice = &self.body.lattice;
+        let places = (region.rows.0..region.rows.1)
+            .flat_map(|row| (region.columns.0..region.columns.1).map(move |column| lattice.place(column, row)));
+        let carries = |&p: &usize| self.body.is_point[p] && self.bonds.intact_at(self.body, p) > 0;
+        places.filter(|p| carries(p) && !self.kept[*p] && !self.ground[*p]).map(|place| place as u32).collect()
+    }
+
+    /// Calls `take` with the point at, or behind, the other end of every intact bond of a point.
+    fn for_neighbours(&self, place: usize, mut take: impl FnMut(usize)) {
+        let places = self.body.places();
+        for (k, &step) in self.body.steps.iter().enumerate() {
+            let (ahead, behind) = (place.wrapping_add_signed(step), place.wrapping_add_signed(-step));
+            if self.bonds.multiplier[k * places + place] > 0.0 {
+                take(self.body.behind(ahead).0);
+            }
+            if self.bonds.multiplier[k * places + behind] > 0.0 {
+                take(self.body.behind(behind).0);
+            }
+        }
     }
 
     /// Adds the stiffness of the bonds of `points` (ascending) to those points that `counts`; bonds among `points` once.
@@ -429,8 +343,8 @@ impl<const M: usize, P: Plate<M>> Condenser<'_, M, P> {
         for &place in points {
             let a = front.at(place);
             let last = M * a + M - 1;
-            front.matrix.add(last, last, self.plate.point(place as usize));
-            self.plate.for_joints(place as usize, |joint, owned| {
+            front.matrix.add(last, last, self.assembly.point(place as usize));
+            for_joints(self.assembly, self.body, self.bonds, place as usize, |joint, owned| {
                 let other = joint.other;
                 // A bond across a line of symmetry is met from both of its ends, each time as that between a point and an image.
                 let is_second = if joint.is_image { other < place as usize } else { !owned };
@@ -459,7 +373,7 @@ impl<const M: usize, P: Plate<M>> Condenser<'_, M, P> {
 
     /// Takes held components of a point out of the system.
     fn hold(&self, matrix: &mut Square, at: usize, place: u32) {
-        for c in (0..M).filter(|&c| self.plate.is_held(place as usize, c)) {
+        for c in (0..M).filter(|&c| self.assembly.is_held(place as usize, c)) {
             matrix.hold(M * at + c);
         }
     }
@@ -471,7 +385,7 @@ impl<const M: usize, P: Plate<M>> Condenser<'_, M, P> {
         let regularization = ldlt::factor::LdltRegularization::default();
         let stack = MemStack::new(&mut memory);
         ldlt::factor::cholesky_in_place(matrix.rb_mut(), regularization, par, stack, faer::Spec::default()).ok()?;
-        let is_right = |i: usize| matrix[(i, i)] * self.plate.pivot_sign(i % M) > 0.0 || matrix[(i, i)] == 1.0;
+        let is_right = |i: usize| matrix[(i, i)] * self.assembly.pivot_sign(i % M) > 0.0 || matrix[(i, i)] == 1.0;
         (0..order).all(is_right).then_some(())
     }
 

@@ -11,15 +11,16 @@ pub mod update;
 use super::assembly::{MIXED, Mixed, Springs};
 use super::conjugate_gradient::MultigridSolver;
 use super::direct::{DirectSolver, pinned_components};
-use super::product::{End, Product};
-use super::{Focus, LinearSolver, SOLVES_MOST, Solved, SolverUsed, System};
+use super::product::Product;
+use super::spring::{End, Term};
+use super::system::{Focus, LinearSolver, SOLVES_MOST, Solved, SolverUsed, System};
 use crate::body::mirror::signs;
 use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
 use condense::{Condensed, condense};
-use update::{Term, Update};
+use update::Update;
 
 /// Least length of the window ahead of a tip, in horizons.
 const AHEAD_HORIZONS: f64 = 8.0;
@@ -42,61 +43,10 @@ const UPDATES_MOST: usize = 4096;
 /// Residual over load of a displacement for a picture.
 const PICTURE_TOLERANCE: f64 = 1e-4;
 
-/// The plate as a whole: how it is solved, and how it is condensed.
-pub(in crate::solver) trait Whole<const N: usize>: Send {
-    /// Improves `u` until the whole plate is in equilibrium.
-    fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
-    /// The same to a residual of `tolerance` times the load.
-    fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved>;
-    /// Told to what residual over load to solve.
-    fn set_tolerance(&mut self, _: f64) {}
-    /// Told which bonds broke.
-    fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]);
-    /// What it solves by.
-    const USED: SolverUsed;
-    /// Whether it knows springs between flanks in contact.
-    const KNOWS_CONTACT: bool = false;
-    /// Condenses the plate with its present bonds onto some places; `None` where that cannot be done in these digits.
-    fn condense(&self, system: System<'_, N>, places: &[u32]) -> Option<Condensed>;
-}
-
-/// A body alone: multigrid, or a factorisation where that breaks down.
-pub(in crate::solver) struct SingleLattice<const N: usize>(MultigridSolver<N>);
-
-impl<const N: usize> Whole<N> for SingleLattice<N> {
-    const USED: SolverUsed = SolverUsed::Multigrid;
-    const KNOWS_CONTACT: bool = true;
-
-    fn set_tolerance(&mut self, tolerance: f64) {
-        self.0.set_tolerance(tolerance);
-    }
-
-    fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        // A part that hangs on a few bonds is nearly a mechanism, on which the iteration breaks down; a factorisation does not.
-        self.0.solve(system, u).or_else(|error| factorised(error, system, u))
-    }
-
-    fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        self.0.solve_to(tolerance, system, u).or_else(|error| factorised(error, system, u))
-    }
-
-    fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
-        self.0.broke(body, bonds, product, broken);
-    }
-
-    fn condense(&self, system: System<'_, N>, places: &[u32]) -> Option<Condensed> {
-        let System { body, bonds, product, .. } = system;
-        let pins = pins(body, bonds, places, width(product));
-        match product.dilatation() {
-            None => condense::<N, _>(body, bonds, &Springs::new(product), places, &pins),
-            Some(dilatation) => condense::<MIXED, _>(body, bonds, &Mixed::new(product, dilatation, bonds), places, &pins),
-        }
-    }
-}
-
 /// Solves of the whole plate, a condensed window between them.
-pub(in crate::solver) struct WindowSolver<const N: usize, W> {
-    whole: W,
+pub(in crate::solver) struct WindowSolver<const N: usize> {
+    /// Solves the whole plate.
+    whole: MultigridSolver<N>,
     window: Option<Window>,
     /// Whether there was one at any time.
     had_window: bool,
@@ -123,23 +73,16 @@ struct Window {
     springs: usize,
 }
 
-impl<const N: usize> WindowSolver<N, SingleLattice<N>> {
-    /// Starts without a window on a body alone.
+impl<const N: usize> WindowSolver<N> {
+    /// Starts without a window.
     pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
-        WindowSolver::of_whole(SingleLattice(MultigridSolver::for_few_solves(body, bonds, product)), false)
-    }
-}
-
-impl<const N: usize, W: Whole<N>> WindowSolver<N, W> {
-    /// Starts without a window; never has one if it `is_off`.
-    pub(in crate::solver) fn of_whole(whole: W, is_off: bool) -> Self {
         WindowSolver {
-            whole,
+            whole: MultigridSolver::for_few_solves(body, bonds, product),
             window: None,
             had_window: false,
             broken: Vec::new(),
             is_whole: false,
-            is_off,
+            is_off: false,
             work: 0.0,
             picture: None,
         }
@@ -147,7 +90,8 @@ impl<const N: usize, W: Whole<N>> WindowSolver<N, W> {
 
     /// Solves the whole plate; a window that is up to date takes its new base from it.
     fn solve_whole(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        let solved = self.whole.solve(system, u)?;
+        // A part that hangs on a few bonds is nearly a mechanism, on which the iteration breaks down; a factorisation does not.
+        let solved = self.whole.solve(system, u).or_else(|error| factorised(error, system, u))?;
         self.picture = None;
         // The work of the loads by the window's account against that by the whole system: the error of the window in energy.
         let drift = (self.work / solved.work - 1.0).abs();
@@ -185,7 +129,12 @@ impl<const N: usize, W: Whole<N>> WindowSolver<N, W> {
             }
             places = farther;
         }
-        let Some(condensed) = self.whole.condense(system, &places) else {
+        let pins = pins(body, bonds, &places, width);
+        let condensed = match product.dilatation() {
+            None => condense::<N, _>(body, bonds, &Springs::new(product), &places, &pins),
+            Some(dilatation) => condense::<MIXED, _>(body, bonds, &Mixed::new(product, dilatation, bonds), &places, &pins),
+        };
+        let Some(condensed) = condensed else {
             self.is_off = true;
             return None;
         };
@@ -194,7 +143,7 @@ impl<const N: usize, W: Whole<N>> WindowSolver<N, W> {
     }
 }
 
-impl<const N: usize, W: Whole<N>> LinearSolver<N> for WindowSolver<N, W> {
+impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let broken = std::mem::take(&mut self.broken);
         if let Some(window) = &mut self.window {
@@ -215,18 +164,13 @@ impl<const N: usize, W: Whole<N>> LinearSolver<N> for WindowSolver<N, W> {
         self.solve_whole(system, u)
     }
 
-    fn knows_contact(&self) -> bool {
-        // A condensed window does not.
-        W::KNOWS_CONTACT && self.window.is_none()
-    }
-
     fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
         self.whole.broke(body, bonds, product, broken);
         self.broken.extend(broken);
     }
 
     fn used(&self) -> SolverUsed {
-        if self.had_window { SolverUsed::Window } else { W::USED }
+        if self.had_window { SolverUsed::Window } else { SolverUsed::Multigrid }
     }
 
     fn set_tolerance(&mut self, tolerance: f64) {
@@ -264,7 +208,10 @@ impl<const N: usize, W: Whole<N>> LinearSolver<N> for WindowSolver<N, W> {
                 (0..N).map(|c| first + c * layout.stride).for_each(|index| picture[index] = u[index]);
             }
         }
-        let solved = self.whole.solve_to(PICTURE_TOLERANCE, system, &mut picture)?;
+        let solved = self
+            .whole
+            .solve_to(PICTURE_TOLERANCE, system, &mut picture)
+            .or_else(|error| factorised(error, system, &mut picture))?;
         self.picture = Some(picture.clone());
         Ok(Some((picture, solved.iterations)))
     }

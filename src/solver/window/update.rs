@@ -15,18 +15,10 @@ use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, Mat, Par};
 
 use super::condense::complete_upper;
+use crate::solver::spring::Term;
 
 /// Pivot of C below which the window is about to lose a part of itself.
 const PIVOT_MIN: f64 = 1e-9;
-
-/// One term s w wᵀ of a broken bond.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Term {
-    /// s, 1 or -1.
-    pub sign: f64,
-    /// w: index in the window's vector and value.
-    pub vector: Vec<(usize, f64)>,
-}
 
 /// Terms since the inverse was made.
 #[derive(Debug, Default)]

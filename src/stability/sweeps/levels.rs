@@ -3,7 +3,6 @@
 use super::super::{Method, Run, Sweep};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::Result;
-use crate::fracture::scene::Discretisation;
 use crate::verify::dual_horizon::{self, PUBLISHED};
 
 /// The law whose changes of level are balanced.
@@ -26,8 +25,7 @@ pub const LEVEL_JUMP: Sweep = Sweep {
     is_continuous: false,
     bound_percent: 1.0,
     methods: &[
-        Method { name: "dual_horizon: resultant", measure: |jump, _: &Run| resultant(jump, Discretisation::DualHorizon) },
-        Method { name: "variable_horizon: resultant", measure: |jump, _: &Run| resultant(jump, Discretisation::VariableHorizon) },
+        Method { name: "dual_horizon: resultant", measure: |jump, _: &Run| resultant(jump) },
         Method { name: "dual_horizon as published: displacement", measure: |jump, _: &Run| displacement(jump, PUBLISHED) },
         Method { name: "dual_horizon balanced: displacement", measure: |jump, _: &Run| displacement(jump, BALANCED) },
     ],
@@ -37,8 +35,8 @@ fn levels(jump: f64) -> usize {
     jump.log2().round() as usize
 }
 
-fn resultant(jump: f64, arrangement: Discretisation) -> Result<f64> {
-    Ok(100.0 * dual_horizon::ghost(PUBLISHED, arrangement, levels(jump))?)
+fn resultant(jump: f64) -> Result<f64> {
+    Ok(100.0 * dual_horizon::ghost(PUBLISHED, levels(jump))?)
 }
 
 fn displacement(jump: f64, law: BondLaw) -> Result<f64> {

@@ -8,7 +8,7 @@ use axum::Router;
 use axum::body::Body;
 use axum::extract::ConnectInfo;
 use axum::http::Request;
-use perilife::predict::memory::peak_mb;
+use perilife::case::budget::machine::peak_mb;
 use perilife::service::api::{App, Limits, Security, router};
 use perilife::service::store::{Store, Upgrade, url_of_file};
 use serde_json::json;

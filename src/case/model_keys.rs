@@ -1,13 +1,16 @@
-//! Keys of `[model]` that belong to the element-free Galerkin method: what is left out the program chooses.
+//! Keys of `[model]`, and what those of the element-free Galerkin method say.
 
+use serde::Deserialize;
 use toml::Value;
 
 use super::Method;
+use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::element_free::resolution::{ElementFreeSettings, Resolution};
 use crate::element_free::sources::IN_RADIUS;
 use crate::error::{Result, input, input_missing};
 use crate::input::{LENGTH, number};
+use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
 use crate::specimen::geometry::bounding_box;
 
@@ -24,56 +27,62 @@ const HOLD: f64 = 3.0;
 /// Radius of influence of a node in its spacings, of linear and quadratic polynomials.
 const INFLUENCE: [f64; 2] = [2.5, 3.5];
 
-/// The keys as given.
-pub(super) struct NodeKeys {
-    pub(super) spacing_mm: Option<f64>,
-    pub(super) nodes: Option<f64>,
-    pub(super) tolerance_percent: Option<f64>,
-    pub(super) basis: Option<BasisKind>,
-    pub(super) enrichment: Option<Enrichment>,
-    pub(super) influence_radius: Option<f64>,
+/// Keys of `[model]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelKeys {
+    pub method: Option<Method>,
+    pub symmetry: Option<Symmetry>,
+    pub bond_law: Option<BondLawKind>,
+    pub kernel: Option<Kernel>,
+    pub rotation: Option<Rotation>,
+    pub surface_correction: Option<SurfaceCorrection>,
+    pub spacing_mm: Option<f64>,
+    pub horizon_ratio: Option<f64>,
+    pub lattice_angle_deg: Option<f64>,
+    pub solver: Option<SolverKind>,
+    pub nodes: Option<f64>,
+    pub tolerance_percent: Option<f64>,
+    pub basis: Option<BasisKind>,
+    pub enrichment: Option<Enrichment>,
+    pub influence_radius: Option<f64>,
 }
 
-impl NodeKeys {
-    /// None of them goes with another method.
-    pub(super) fn refuse(&self, method: Method) -> Result<()> {
-        let given = [
-            ("nodes", self.nodes.is_some()),
-            ("tolerance_percent", self.tolerance_percent.is_some()),
-            ("basis", self.basis.is_some()),
-            ("enrichment", self.enrichment.is_some()),
-            ("influence_radius", self.influence_radius.is_some()),
-        ];
-        match given.iter().find(|(_, given)| *given) {
-            None => Ok(()),
-            Some((key, _)) => {
-                let problem = format!("belongs to model.method = \"element_free_galerkin\", and the method is \"{method}\"");
-                Err(input_missing(&format!("model.{key}"), problem, "leave it out, or choose that method"))
-            }
-        }
-    }
+/// Keys that belong to the element-free Galerkin method.
+pub(super) const OF_NODES: &[&str] = &["nodes", "tolerance_percent", "basis", "enrichment", "influence_radius"];
+/// Keys that belong to points and bonds.
+pub(super) const OF_POINTS: &[&str] =
+    &["symmetry", "bond_law", "kernel", "rotation", "surface_correction", "horizon_ratio", "lattice_angle_deg", "solver"];
 
-    /// What is to be said of a spacing that was meant for points: nodes are refined by themselves.
-    pub(super) fn too_fine(&self, specimen: &Specimen, settings: &ElementFreeSettings) -> Option<String> {
-        let spacing = self.spacing_mm?;
-        let nodes = specimen.area() / settings.resolution.far.powi(2);
-        (nodes > NODES_USUAL).then(|| {
-            format!(
-                "model.spacing_mm = {spacing} makes some {nodes:.0} nodes far from cracks: nodes are refined by themselves where tips, rims and \
-                 ligaments ask for it; leave the key out"
-            )
-        })
+/// Refuses a key of `[model]` that does not go with the method.
+pub(super) fn refuse(model: &Value, keys: &[&str], problem: &str, remedy: &str) -> Result<()> {
+    match keys.iter().find(|key| model.get(**key).is_some()) {
+        None => Ok(()),
+        Some(key) => Err(input_missing(&format!("model.{key}"), problem, remedy)),
     }
+}
 
-    /// What the keys say, and the choice of the program where they say nothing.
-    pub(super) fn read(&self, specimen: &Specimen) -> Result<ElementFreeSettings> {
+/// What is to be said of a spacing that was meant for points: nodes are refined by themselves.
+pub(super) fn too_fine(spacing_mm: f64, specimen: &Specimen, settings: &ElementFreeSettings) -> Option<String> {
+    let nodes = specimen.area() / settings.resolution.far.powi(2);
+    (nodes > NODES_USUAL).then(|| {
+        format!(
+            "model.spacing_mm = {spacing_mm} makes some {nodes:.0} nodes far from cracks: nodes are refined by themselves where tips, rims and \
+             ligaments ask for it; leave the key out"
+        )
+    })
+}
+
+impl ModelKeys {
+    /// What the keys of nodes say, and the choice of the program where they say nothing; `spacing_mm` is that far from cracks.
+    pub(super) fn element_free(&self, spacing_mm: Option<f64>, specimen: &Specimen) -> Result<ElementFreeSettings> {
         let tolerance = number("an error in percent", 0.5, 20.0)
             .read("model.tolerance_percent", self.tolerance_percent.unwrap_or(TOLERANCE_PERCENT))?;
         let (_, across, step_share) =
             RUNGS.into_iter().find(|(percent, ..)| tolerance <= *percent).unwrap_or(RUNGS[RUNGS.len() - 1]);
         let [low, high] = bounding_box(&specimen.outline);
         let [width, height] = [0, 1].map(|i| high[i] - low[i]);
-        let far = match (self.spacing_mm, self.nodes) {
+        let far = match (spacing_mm, self.nodes) {
             (Some(_), Some(nodes)) => {
                 let problem = "stands beside model.spacing_mm, which says the same in other words";
                 return Err(input("model.nodes", nodes, problem, "leave one of them out"));
@@ -107,31 +116,5 @@ impl NodeKeys {
             },
             step_share,
         })
-    }
-}
-
-/// Keys of points and bonds do not go with nodes.
-pub(super) fn refuse_keys_of_points(value: &Value, refinement: Option<&Value>) -> Result<()> {
-    const OF_POINTS: [&str; 9] = [
-        "discretisation",
-        "symmetry",
-        "bond_law",
-        "kernel",
-        "rotation",
-        "surface_correction",
-        "horizon_ratio",
-        "lattice_angle_deg",
-        "solver",
-    ];
-    let remedy = "leave it out, or use model.method = \"peridynamics\"";
-    if refinement.is_some() {
-        return Err(input_missing("refinement", "belongs to peridynamics: nodes are refined by themselves", remedy));
-    }
-    match OF_POINTS.iter().find(|key| value.get(**key).is_some()) {
-        None => Ok(()),
-        Some(key) => {
-            let problem = "belongs to peridynamics, and model.method is \"element_free_galerkin\"";
-            Err(input_missing(&format!("model.{key}"), problem, remedy))
-        }
     }
 }
