@@ -15,6 +15,7 @@ use super::shape::Value;
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{bounding_box, distance};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
+use crate::units::{MM, place_mm};
 use crate::williams::Elasticity;
 
 /// Distance from a tip, in its spacings, within which nodes carry its fields.
@@ -223,10 +224,9 @@ pub struct Tip {
 /// What is said where nodes in reach of a point, with radii of influence up to `radius`, m, do not span the basis.
 pub fn singular(at: Point, radius: f64) -> Error {
     Error::Mechanics(format!(
-        "too few nodes are in reach of ({:.4}, {:.4}) mm to span the basis, with radii of influence up to {:.4} mm; give a larger model.influence_radius, or more \
-         model.nodes",
-        at[0] * 1e3,
-        at[1] * 1e3,
-        radius * 1e3
+        "too few nodes are in reach of {} to span the basis, with radii of influence up to {:.4} mm; give a larger \
+         model.influence_radius, or more model.nodes",
+        place_mm(at),
+        radius / MM
     ))
 }

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use super::crack::TipAxes;
 use super::cuts::Cut;
 use super::grid::Grid;
-use super::rims::{Side, stretches};
-use crate::specimen::geometry::{along, direction, distance, distance_to_segment};
+use super::rims::{Side, Stretch, stretches};
+use crate::specimen::geometry::{along, direction, distance, distance_to_segment, nearest_of_segment};
 use crate::specimen::{Point, Specimen};
 
 /// Distance from a rim, in spacings, within which corners of cells give way to nodes on the rim.
@@ -60,7 +60,7 @@ impl Nodes {
             }
         }
         for (_, stretch) in stretches(specimen) {
-            let least = if matches!(stretch, super::rims::Stretch::Circle(_)) { PIECES_LEAST } else { 1 };
+            let least = if matches!(stretch, Stretch::Circle(_)) { PIECES_LEAST } else { 1 };
             let shares = stretch.divided(grid, least, 1.0);
             // The last of a stretch is the first of the next one.
             for share in &shares[..shares.len() - 1] {
@@ -98,9 +98,7 @@ impl Nodes {
                 parted.push(at, spacing);
                 continue;
             };
-            let [x, y] = direction(a, b);
-            let share = ((at[0] - a[0]) * x + (at[1] - a[1]) * y) / distance(a, b);
-            let foot = along(a, b, share.clamp(0.0, 1.0));
+            let ([x, y], foot) = (direction(a, b), nearest_of_segment(at, a, b));
             for side in [-reach, reach] {
                 let beside = [foot[0] - side * y, foot[1] + side * x];
                 if specimen.contains(beside) {
@@ -125,13 +123,9 @@ fn is_on_plate(specimen: &Specimen, at: Point, [x, y]: Point, grid: &Grid) -> bo
 
 /// The point of a rim nearest to a place.
 fn nearest_on_rim(specimen: &Specimen, at: Point) -> Point {
-    let nearest = |stretch: super::rims::Stretch| match stretch {
-        super::rims::Stretch::Straight([a, b]) => {
-            let [x, y] = direction(a, b);
-            let share = ((at[0] - a[0]) * x + (at[1] - a[1]) * y) / distance(a, b);
-            along(a, b, share.clamp(0.0, 1.0))
-        }
-        super::rims::Stretch::Circle(hole) => along(hole.centre, at, hole.radius / distance(hole.centre, at)),
+    let nearest = |stretch: Stretch| match stretch {
+        Stretch::Straight([a, b]) => nearest_of_segment(at, a, b),
+        Stretch::Circle(hole) => along(hole.centre, at, hole.radius / distance(hole.centre, at)),
     };
     let all = stretches(specimen).into_iter().map(|(_, stretch)| nearest(stretch));
     all.min_by(|a, b| distance(*a, at).total_cmp(&distance(*b, at))).unwrap_or(at)

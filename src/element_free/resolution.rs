@@ -11,7 +11,7 @@ use super::sources::ACROSS_LIGAMENT;
 use crate::error::{Error, Result};
 use crate::specimen::geometry::bounding_box;
 use crate::specimen::{CrackLine, Specimen};
-use crate::units::MM;
+use crate::units::{MM, place_mm};
 
 /// Reach of a tip, in spacings of the coarser level.
 const TIP_REACH: f64 = 4.0;
@@ -68,10 +68,10 @@ impl Resolution {
 
 /// What is said where a gap asks for more cells than there may be.
 fn too_narrow(finest: &Source) -> Error {
-    let [x, y] = finest.at.map(|x| x / MM);
     Error::Mechanics(format!(
-        "cracks or rims near ({x:.4}, {y:.4}) mm ask for nodes {:.2e} mm apart, and for more than {CELLS_MOST} cells of integration in all: \
+        "cracks or rims near {} ask for nodes {:.2e} mm apart, and for more than {CELLS_MOST} cells of integration in all: \
          move apart, or join, what lies {:.2e} mm from each other there",
+        place_mm(finest.at),
         finest.spacing / MM,
         ACROSS_LIGAMENT * finest.spacing / MM
     ))

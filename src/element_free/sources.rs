@@ -4,7 +4,7 @@ use super::field::Tip;
 use super::grid::Source;
 use super::resolution::Resolution;
 use super::rims::stretches;
-use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges, meeting_share, segments_touch};
+use crate::specimen::geometry::{along, circle_shares, direction, distance, edges, meeting_share, segments_touch};
 use crate::specimen::{CrackLine, Point, Specimen};
 
 /// Spacings in the radius of a hole or fillet that K of a crack nearby asks for.
@@ -54,7 +54,7 @@ impl Resolution {
                 }
                 let straight = walls.iter().filter(|[a, b]| segments_touch(start, to, *a, *b));
                 let straight = straight.filter_map(|[a, b]| meeting_share(start, to, *a, *b));
-                let round = specimen.holes.iter().filter_map(|hole| first_in_hole(start, to, hole.centre, hole.radius));
+                let round = specimen.holes.iter().filter_map(|hole| Some(circle_shares(start, to, hole.centre, hole.radius)?[0]));
                 let nearest = straight.chain(round).filter(|share| *share > 0.0).fold(2.0, f64::min);
                 if nearest <= 1.0 {
                     let width = nearest * reach;
@@ -156,13 +156,3 @@ pub fn turn_at(before: Point, at: Point, after: Point) -> f64 {
     (ax * by - ay * bx).atan2(ax * bx + ay * by)
 }
 
-/// Share of a segment at which it first comes into a hole.
-fn first_in_hole(from: Point, to: Point, centre: Point, radius: f64) -> Option<f64> {
-    if distance_to_segment(centre, from, to) >= radius {
-        return None;
-    }
-    let (d, f) = ([to[0] - from[0], to[1] - from[1]], [from[0] - centre[0], from[1] - centre[1]]);
-    let (dd, df, ff) = (d[0] * d[0] + d[1] * d[1], d[0] * f[0] + d[1] * f[1], f[0] * f[0] + f[1] * f[1]);
-    let share = (-df - (df * df - dd * (ff - radius * radius)).sqrt()) / dd;
-    (share > 0.0).then_some(share)
-}

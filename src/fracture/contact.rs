@@ -36,7 +36,7 @@ use crate::levels::Net;
 use crate::levels::equilibrium::Strut;
 use crate::specimen::geometry::segments_touch;
 use crate::specimen::{Crack, Point};
-use crate::units::MM;
+use crate::units::{MM, place_mm};
 
 /// Approach over the largest change of length of all columns from which one becomes pressed: below, mirror images and round-off decide.
 const SLACK: f64 = 1e-3;
@@ -403,10 +403,10 @@ pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, fracture: &Fracture)
         _ if !springs => ("bond_law = \"correspondence\"".to_owned(), "laws of bonds have it, by solver = \"secant\""),
         _ => (format!("solver = \"{}\"", scene.model.solver), "solver = \"secant\" has it"),
     };
-    let [x, y] = at.map(|x| x / MM);
     Some(format!(
-        "flanks of a crack have passed through each other near ({x:.4}, {y:.4}) mm, by up to {:.3e} mm, {:.2} % of the spacing: {what} has no \
+        "flanks of a crack have passed through each other near {}, by up to {:.3e} mm, {:.2} % of the spacing: {what} has no \
          contact of flanks, and the load and the stresses there are those of a crack that closes without force; {remedy}",
+        place_mm(at),
         overlap / MM,
         100.0 * overlap / spacing
     ))

@@ -43,12 +43,8 @@ pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Spec
     }
     if parallel_ratio != 0.0 {
         if specimen.load_measure == LoadMeasure::Force {
-            return Err(crate::error::input(
-                "loading.stress_parallel_ratio",
-                parallel_ratio,
-                format!("does not go with {kind}"),
-                "leave it out",
-            ));
+            let problem = format!("does not go with {kind}");
+            return Err(crate::error::input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out"));
         }
         push_edge_loads(specimen, &[Edge::Left, Edge::Right], parallel_ratio);
     }
@@ -60,11 +56,8 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
     let by_forces = forces::KEYS.into_iter().zip([&input_.pins, &input_.rollers]).find(|(_, given)| given.is_some());
     let area = match by_forces {
         Some((key, _)) if input_.edges.is_some() => {
-            return Err(input_missing(
-                key,
-                "stands beside edges: one nominal load cannot be both",
-                "give edges, or pins and rollers",
-            ));
+            let remedy = "give edges, or pins and rollers";
+            return Err(input_missing(key, "stands beside edges: one nominal load cannot be both", remedy));
         }
         Some((key, _)) if input_.direction.is_some() => {
             let problem = format!("stands beside {key}: it is that of the traction on edges");
@@ -79,12 +72,8 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
             forces::read_pins(input_.pins.as_deref().unwrap_or_default(), specimen)?;
             forces::read_rollers(input_.rollers.as_deref().unwrap_or_default(), specimen)?;
             if specimen.loads.is_empty() {
-                return Err(input(
-                    key,
-                    "[]",
-                    "loads nothing",
-                    "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }",
-                ));
+                let remedy = "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }";
+                return Err(input(key, "[]", "loads nothing", remedy));
             }
             1.0
         }
@@ -125,12 +114,8 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
 fn stretches(edge: Edge, specimen: &Specimen, key: &str) -> Result<Vec<(Point, Point)>> {
     let found = edge.stretches(specimen);
     if found.is_empty() {
-        return Err(input(
-            key,
-            edge,
-            "is no straight side of this outline",
-            "an edge is what lies on the bounding box of the outline",
-        ));
+        let remedy = "an edge is what lies on the bounding box of the outline";
+        return Err(input(key, edge, "is no straight side of this outline", remedy));
     }
     Ok(found)
 }
@@ -144,12 +129,8 @@ fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_r
         None => [Edge::Top, Edge::Bottom].into_iter().filter(|edge| !held.contains(edge)).collect(),
         Some(asked) => {
             if let Some(edge) = asked.iter().find(|edge| held.contains(edge)) {
-                return Err(input(
-                    KEY,
-                    edge,
-                    "is held by [supports], so it cannot be loaded",
-                    "load another side, or do not hold this one",
-                ));
+                let remedy = "load another side, or do not hold this one";
+                return Err(input(KEY, edge, "is held by [supports], so it cannot be loaded", remedy));
             }
             if let Some((i, edge)) = asked.iter().enumerate().find(|(i, edge)| asked[..*i].contains(edge)) {
                 return Err(input(&format!("{KEY}[{i}]"), edge, "stands twice", "name each side once"));
@@ -158,11 +139,8 @@ fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_r
         }
     };
     let Some(first) = loaded.first().copied() else {
-        return Err(input_missing(
-            KEY,
-            "is empty: nothing is loaded",
-            "name the loaded sides, for example [\"top\", \"bottom\"]",
-        ));
+        let remedy = "name the loaded sides, for example [\"top\", \"bottom\"]";
+        return Err(input_missing(KEY, "is empty: nothing is loaded", remedy));
     };
     let mut areas = Vec::new();
     for edge in &loaded {
@@ -186,12 +164,8 @@ fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_r
         let vertical = first.normal()[0] == 0.0;
         let across = if vertical { [Edge::Left, Edge::Right] } else { [Edge::Bottom, Edge::Top] };
         if loaded.iter().any(|edge| across.contains(edge)) {
-            return Err(input(
-                "loading.stress_parallel_ratio",
-                parallel_ratio,
-                "loads sides that edges loads already",
-                "leave one of them out",
-            ));
+            let remedy = "leave one of them out";
+            return Err(input("loading.stress_parallel_ratio", parallel_ratio, "loads sides that edges loads already", remedy));
         }
         let free: Vec<Edge> = across.into_iter().filter(|edge| !held.contains(edge)).collect();
         for edge in &free {

@@ -76,22 +76,14 @@ pub(super) fn read_rollers(rollers: &[Value], specimen: &mut Specimen) -> Result
         let share = read_share(&path, roller.share)?;
         let sides = (0..specimen.outline.len()).map(|i| [i, (i + 1) % specimen.outline.len()].map(|i| specimen.outline[i]));
         let Some([from, to]) = sides.into_iter().find(|[from, to]| distance_to_segment(at, *from, *to) < ON_OUTLINE) else {
-            return Err(input(
-                &format!("{path}.at_mm"),
-                given,
-                "does not lie on the outline",
-                "give [x, y] of the middle of the contact",
-            ));
+            let remedy = "give [x, y] of the middle of the contact";
+            return Err(input(&format!("{path}.at_mm"), given, "does not lie on the outline", remedy));
         };
         let (side, place) = (distance(from, to), distance(from, at));
         if place < width / 2.0 - ON_OUTLINE || side - place < width / 2.0 - ON_OUTLINE {
             let problem = "reaches beyond the end of the straight side it lies on";
-            return Err(input(
-                &width_key,
-                roller.contact_width_mm,
-                problem,
-                "give a narrower contact, or place it farther from the corner",
-            ));
+            let remedy = "give a narrower contact, or place it farther from the corner";
+            return Err(input(&width_key, roller.contact_width_mm, problem, remedy));
         }
         // The outline runs counter-clockwise: the plate lies to its left.
         let inward = [-(to[1] - from[1]) / side, (to[0] - from[0]) / side];

@@ -162,12 +162,8 @@ fn refuse_by_name(loading: &Value) -> Result<()> {
         let path = format!("loading.{key}");
         if SEQUENCES.contains(&key.as_str()) {
             let problem = "is a load sequence, which is not supported yet (and would never be averaged)";
-            return Err(input(
-                &path,
-                shorten(value),
-                problem,
-                "give constant amplitude: stress_range_mpa or stress_max_mpa with stress_ratio",
-            ));
+            let remedy = "give constant amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
+            return Err(input(&path, shorten(value), problem, remedy));
         }
         if BARE.contains(&key.as_str()) {
             let problem = "does not say whether the maximum or the range is meant";
@@ -241,12 +237,8 @@ impl Magnitude {
             [(key, given, quantity, of)] => {
                 let path = format!("loading.{key}");
                 if (of == Of::Displacement) != (kind == LoadingKind::Displacement) {
-                    return Err(input(
-                        &path,
-                        given,
-                        format!("does not go with kind = \"{kind}\""),
-                        format!("give exactly one of {wanted}"),
-                    ));
+                    let remedy = format!("give exactly one of {wanted}");
+                    return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
                 }
                 let value = quantity.read(&path, given)?;
                 Ok(Magnitude { key: path, given, value, is_range: key.contains("range"), of })

@@ -13,7 +13,7 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::read::check_crack;
+use super::net_section::check_crack;
 use super::{Crack, Hole, Load, LoadMeasure, Specimen, SpecimenKind, TipSeed};
 use crate::error::Result;
 use crate::input::{LENGTH, slice};

@@ -1,4 +1,4 @@
-//! Plane geometry: polygons, segments, and the questions the body asks of a specimen.
+//! Plane geometry: polygons, segments, the four sides of a plate, and the questions the body asks of a specimen.
 
 use super::{Point, Slot, Specimen};
 
@@ -44,12 +44,30 @@ pub fn meeting_share(a: Point, b: Point, c: Point, d: Point) -> Option<f64> {
     share.is_finite().then_some(share)
 }
 
-/// Distance of `p` from the closed segment ab, m.
-pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+/// Shares of the way from `a` to `b` at which the line through them comes into a circle and leaves it; `None` if it passes the circle.
+pub fn circle_shares(a: Point, b: Point, centre: Point, radius: f64) -> Option<[f64; 2]> {
+    // |f + t d| = radius
+    let (d, f) = ([b[0] - a[0], b[1] - a[1]], [a[0] - centre[0], a[1] - centre[1]]);
+    let (dd, df, ff) = (d[0] * d[0] + d[1] * d[1], d[0] * f[0] + d[1] * f[1], f[0] * f[0] + f[1] * f[1]);
+    let square = df * df - dd * (ff - radius * radius);
+    (square >= 0.0).then(|| [-1.0, 1.0].map(|sign| (sign * square.sqrt() - df) / dd))
+}
+
+/// Share of the way from `a` to `b` at which the closed segment ab is nearest to `p`.
+pub fn nearest_share(p: Point, a: Point, b: Point) -> f64 {
     let (ab, ap) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let squared = ab[0] * ab[0] + ab[1] * ab[1];
-    let t = if squared > 0.0 { ((ap[0] * ab[0] + ap[1] * ab[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    distance(p, along(a, b, t))
+    if squared > 0.0 { ((ap[0] * ab[0] + ap[1] * ab[1]) / squared).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// The point of the closed segment ab that is nearest to `p`.
+pub fn nearest_of_segment(p: Point, a: Point, b: Point) -> Point {
+    along(a, b, nearest_share(p, a, b))
+}
+
+/// Distance of `p` from the closed segment ab, m.
+pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+    distance(p, nearest_of_segment(p, a, b))
 }
 
 /// Edges of a closed polygon, last point to first included.
@@ -161,5 +179,48 @@ impl Specimen {
             (Some(share), false) => 1.0 - share,
         };
         share * distance(from, to)
+    }
+}
+
+crate::kinds! {
+    /// Sides of a plate: the straight stretches of the outline that lie on its bounding box.
+    pub enum Edge for "loading.edges" {
+        Top = "top": "side at the largest y",
+        Bottom = "bottom": "side at the smallest y",
+        Left = "left": "side at the smallest x",
+        Right = "right": "side at the largest x",
+    }
+}
+
+crate::kinds! {
+    /// Components a support holds.
+    pub enum Component for "supports.fix" {
+        X = "x": "no displacement along x",
+        Y = "y": "no displacement along y",
+    }
+}
+
+impl Edge {
+    /// Unit vector out of the plate.
+    pub fn normal(self) -> Point {
+        match self {
+            Edge::Top => [0.0, 1.0],
+            Edge::Bottom => [0.0, -1.0],
+            Edge::Left => [-1.0, 0.0],
+            Edge::Right => [1.0, 0.0],
+        }
+    }
+
+    /// Stretches of the outline on this side; empty where only a corner touches the bounding box.
+    pub fn stretches(self, specimen: &Specimen) -> Vec<(Point, Point)> {
+        let [low, high] = bounding_box(&specimen.outline);
+        let (axis, place) = match self {
+            Edge::Top => (1, high[1]),
+            Edge::Bottom => (1, low[1]),
+            Edge::Left => (0, low[0]),
+            Edge::Right => (0, high[0]),
+        };
+        let near = 1e-9 * (high[0] - low[0]).max(high[1] - low[1]);
+        edges(&specimen.outline).filter(|(a, b)| (a[axis] - place).abs() <= near && (b[axis] - place).abs() <= near).collect()
     }
 }

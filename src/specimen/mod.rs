@@ -5,18 +5,16 @@
 
 mod compact_tension;
 mod crack_line;
-mod edge;
-mod edge_tension;
 pub mod geometry;
 pub mod handbook;
-mod middle_tension;
 pub mod net_section;
 mod placement;
 mod plate;
 mod read;
+mod tension;
 
 pub use crack_line::{CrackLine, LineEnd};
-pub use edge::{Component, Edge};
+pub use geometry::{Component, Edge};
 pub use read::{PART_THROUGH, from_value};
 
 /// A point of the plate, metres.

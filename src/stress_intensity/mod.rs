@@ -159,11 +159,10 @@ pub struct TipResult {
 pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Result<Vec<TipResult>> {
     let tips: Vec<usize> = (0..case.specimen.tips.len()).filter(|&tip| !case.specimen.tips[tip].from_slot).collect();
     if tips.is_empty() {
-        return Err(input_missing(
-            "specimen.cracks",
-            "is missing: only the tip of a sharp crack has stress intensity factors, a notch has none",
-            "give a crack that starts in the notch; stresses of a plate without cracks: --method element_free_galerkin alone",
-        ));
+        let problem = "is missing: only the tip of a sharp crack has stress intensity factors, a notch has none";
+        let remedy =
+            "give a crack that starts in the notch; stresses of a plate without cracks: --method element_free_galerkin alone";
+        return Err(input_missing("specimen.cracks", problem, remedy));
     }
     let handbook_k_i = handbook(&case.specimen)
         .filter(|formula| formula.holds_at(case.specimen.crack_length) && case.loading.displacement().is_none())

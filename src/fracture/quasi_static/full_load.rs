@@ -15,12 +15,8 @@ impl FullLoad {
         let mut full = FullLoad::none(net);
         for held in &boundary.held {
             let Motion::Displacement(value) = held.motion else {
-                return Err(input(
-                    "loading.kind",
-                    "\"velocity\"",
-                    "needs time, and the scene has none",
-                    "give loading.duration_s, or kind = \"displacement\" with displacement_mm",
-                ));
+                let remedy = "give loading.duration_s, or kind = \"displacement\" with displacement_mm";
+                return Err(input("loading.kind", "\"velocity\"", "needs time, and the scene has none", remedy));
             };
             let at = held.point as usize * net.unknowns + held.component;
             (full.held[at], full.motion[at]) = (true, value);

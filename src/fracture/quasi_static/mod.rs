@@ -71,12 +71,8 @@ pub fn run(
             path.follow(bonds, recorder)?
         }
         SceneSolver::VelocityVerlet => {
-            return Err(input(
-                "model.solver",
-                "\"velocity_verlet\"",
-                "needs time, and the scene has none",
-                "give loading.duration_s, or solver = \"secant\" or \"adaptive_dynamic_relaxation\"",
-            ));
+            let remedy = "give loading.duration_s, or solver = \"secant\" or \"adaptive_dynamic_relaxation\"";
+            return Err(input("model.solver", "\"velocity_verlet\"", "needs time, and the scene has none", remedy));
         }
     };
     let Walked { end, u, account, evaluations, touching } = walked;
