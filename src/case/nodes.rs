@@ -4,8 +4,7 @@ use toml::Value;
 
 use super::Method;
 use crate::element_free::basis::{BasisKind, Enrichment};
-use crate::element_free::resolution::{ElementFreeSettings, Resolution};
-use crate::element_free::sources::IN_RADIUS;
+use crate::element_free::resolution::{ElementFreeSettings, IN_RADIUS, Resolution};
 use crate::error::{Result, input, input_missing};
 use crate::input::{LENGTH, number};
 use crate::specimen::Specimen;

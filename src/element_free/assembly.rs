@@ -5,8 +5,7 @@
 
 use super::cells::QuadraturePoint;
 use super::field::{Discretisation, Local, TipFields, singular};
-use super::front::Front;
-use super::matrix::{lower_product, whole_product};
+use super::front::{Front, lower_product, whole_product};
 use super::shape::Value;
 use crate::error::Result;
 

@@ -5,7 +5,7 @@
 //! reproduce rigid motions and the springs take up no force.
 
 use super::field::{Discretisation, Local, singular};
-use super::matrix::Square;
+use super::rims::Stretch;
 use crate::body::boundary::load_pieces;
 use crate::error::Result;
 use crate::specimen::geometry::{along, bounding_box, direction, distance};
@@ -22,6 +22,17 @@ const HELD_IN_SPACING: f64 = 3.0;
 
 /// Unknowns of a grip: two displacements and a turn.
 pub const UNKNOWNS_OF_GRIP: usize = 3;
+
+/// `factor v vᵀ` of some unknowns: a support.
+#[derive(Debug, Clone, Default)]
+pub struct Square {
+    /// Unknowns, ascending.
+    pub unknowns: Vec<u32>,
+    /// v.
+    pub v: Vec<f64>,
+    /// Its factor.
+    pub factor: f64,
+}
 
 /// Loads and supports.
 #[derive(Debug, Clone, Default)]
@@ -214,7 +225,7 @@ fn layers(plate: &Discretisation, [from, to]: [Point; 2], depth: f64) -> Vec<[Po
 
 /// Middles and lengths of the pieces of a held stretch.
 fn pieces(plate: &Discretisation, [from, to]: [Point; 2]) -> Vec<(Point, f64)> {
-    let stretch = super::rims::Stretch::Straight([from, to]);
+    let stretch = Stretch::Straight([from, to]);
     let shares = stretch.divided(&plate.grid, 1, 1.0 / HELD_IN_SPACING);
     let length = stretch.length();
     shares.windows(2).map(|pair| (stretch.at(0.5 * (pair[0] + pair[1])), (pair[1] - pair[0]) * length)).collect()

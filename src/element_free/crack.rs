@@ -14,6 +14,15 @@ const BEYOND: f64 = 1e-6;
 /// Corners within this of a straight line, in spacings at the tip, are none.
 const STRAIGHT: f64 = 0.005;
 
+/// A tip as nodes see it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tip {
+    /// Which end of which crack.
+    pub end: LineEnd,
+    /// Length of its crack, half of it with two tips, or growth since the last kink if that is less, m.
+    pub length: f64,
+}
+
 /// Axes of a tip: x₁ along the crack, out of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TipAxes {

@@ -48,9 +48,10 @@ pub fn read(plate: &Discretisation, u: &[f64], tip: usize, room: f64, pressure: 
     let axes = &plate.axes[tip];
     let mut local = Local::default();
     let field = |at: Point| {
-        plate.displacement(u, at, &mut local).map(|(_, gradient)| axes.gradient_to_axes(gradient)).ok_or_else(|| {
-            Error::Mechanics(format!("no displacement is known at {}: too few nodes are in reach", place_mm(at)))
-        })
+        plate
+            .displacement(u, at, &mut local)
+            .map(|(_, gradient)| axes.gradient_to_axes(gradient))
+            .ok_or_else(|| Error::Mechanics(format!("no displacement is known at {}: too few nodes are in reach", place_mm(at))))
     };
     let radius = room.min(RADIUS_SPACINGS * axes.spacing);
     integral(axes, plate.elasticity(), radius, pressure, field)

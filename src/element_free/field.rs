@@ -5,12 +5,12 @@
 //! 4 % wrong with 900 nodes, with them 0.1 %.
 
 use super::basis::{AnyBasis, Enrichment};
-use super::crack::{TipAxes, cracks};
+use super::crack::{Tip, TipAxes, cracks};
 use super::cuts::{Near, Obstacles};
 use super::grid::Grid;
 use super::nodes::Nodes;
 use super::resolution::Resolution;
-use super::rims::{Side, sides};
+use super::rims::sides;
 use super::shape::Value;
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{bounding_box, distance};
@@ -38,7 +38,7 @@ pub struct Discretisation {
     /// Radius of influence of every node, m.
     pub supports: Vec<f64>,
     /// Sides of rims.
-    pub sides: Vec<Side>,
+    pub sides: Vec<[Point; 2]>,
     /// What parts nodes from points.
     pub obstacles: Obstacles,
     /// Axes of the tips.
@@ -96,7 +96,7 @@ impl Discretisation {
         enriched.iter().for_each(|tips| first.push(first[first.len() - 1] + 2 + 2 * tips.len() as u32));
         let mut plate = Discretisation {
             leaves: vec![Neighbourhood::default(); grid.len()],
-            basis: AnyBasis::new(resolution, &axes),
+            basis: AnyBasis::new(resolution.basis, resolution.enrichment, &axes),
             grid,
             nodes,
             supports,
@@ -210,15 +210,6 @@ impl Discretisation {
 /// Adds a multiple of a vector.
 fn add(sum: &mut Point, factor: f64, vector: &Point) {
     sum.iter_mut().zip(vector).for_each(|(sum, component)| *sum += factor * component);
-}
-
-/// A tip as nodes see it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tip {
-    /// Which end of which crack.
-    pub end: LineEnd,
-    /// Length of its crack, half of it with two tips, or growth since the last kink if that is less, m.
-    pub length: f64,
 }
 
 /// What is said where nodes in reach of a point, with radii of influence up to `radius`, m, do not span the basis.

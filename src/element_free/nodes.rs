@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::crack::TipAxes;
 use super::cuts::Cut;
 use super::grid::Grid;
-use super::rims::{Side, Stretch, stretches};
+use super::rims::{Stretch, stretches};
 use crate::specimen::geometry::{along, direction, distance, distance_to_segment, nearest_of_segment};
 use crate::specimen::{Point, Specimen};
 
@@ -30,9 +30,9 @@ pub struct Nodes {
 
 impl Nodes {
     /// Nodes of a plate in these cells.
-    pub fn place(specimen: &Specimen, grid: &Grid, sides: &[Side], cuts: &[Cut], axes: &[TipAxes]) -> Self {
+    pub fn place(specimen: &Specimen, grid: &Grid, sides: &[[Point; 2]], cuts: &[Cut], axes: &[TipAxes]) -> Self {
         let mut nodes = Nodes::default();
-        let near_sides = by_leaf(grid, sides.iter().map(|side| side.ends), RIM_SHARE);
+        let near_sides = by_leaf(grid, sides.iter().copied(), RIM_SHARE);
         let mut corners: HashMap<[i64; 2], (f64, bool)> = HashMap::new();
         let mut order = Vec::new();
         for leaf in grid.leaves() {
@@ -41,7 +41,7 @@ impl Nodes {
                 let at = grid.position(corner);
                 let beside = near_sides.get(&leaf).is_some_and(|near| {
                     near.iter().any(|&side| {
-                        let [a, b] = sides[side as usize].ends;
+                        let [a, b] = sides[side as usize];
                         distance_to_segment(at, a, b) < RIM_SHARE * spacing
                     })
                 });
@@ -59,7 +59,7 @@ impl Nodes {
                 nodes.push(at, spacing);
             }
         }
-        for (_, stretch) in stretches(specimen) {
+        for stretch in stretches(specimen) {
             let least = if matches!(stretch, Stretch::Circle(_)) { PIECES_LEAST } else { 1 };
             let shares = stretch.divided(grid, least, 1.0);
             // The last of a stretch is the first of the next one.
@@ -127,7 +127,7 @@ fn nearest_on_rim(specimen: &Specimen, at: Point) -> Point {
         Stretch::Straight([a, b]) => nearest_of_segment(at, a, b),
         Stretch::Circle(hole) => along(hole.centre, at, hole.radius / distance(hole.centre, at)),
     };
-    let all = stretches(specimen).into_iter().map(|(_, stretch)| nearest(stretch));
+    let all = stretches(specimen).into_iter().map(nearest);
     all.min_by(|a, b| distance(*a, at).total_cmp(&distance(*b, at))).unwrap_or(at)
 }
 

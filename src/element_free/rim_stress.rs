@@ -6,7 +6,7 @@
 //! second one along the rim, over eight spacings, evens out what is left from place to place.
 
 use super::field::{Discretisation, Local};
-use super::sources::{ARC_TURN, turn_at};
+use super::resolution::{ARC_TURN, turn_at};
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges};
 use crate::specimen::{Hole, Point, Specimen, Support};

@@ -1,13 +1,11 @@
 //! Equilibrium of a plate of nodes.
 
 use super::assembly::{Scratch, add_cell};
-use super::boundary::{Boundary, UNKNOWNS_OF_GRIP};
-use super::cells::QuadraturePoint;
+use super::boundary::{Boundary, Square, UNKNOWNS_OF_GRIP};
+use super::cells::{QuadraturePoint, quadrature};
 use super::dissection::{Factor, Matrices, Member};
 use super::field::Discretisation;
 use super::front::Front;
-use super::integration::quadrature;
-use super::matrix::Square;
 use crate::error::Result;
 use crate::specimen::Specimen;
 

@@ -10,17 +10,14 @@ use sha2::{Digest, Sha256};
 
 use super::SceneProgress;
 use super::bonds::KeptBonds;
-use super::dynamics;
-use super::interaction::Memory;
 use super::log::Records;
-use super::quasi_static::{equilibrium, marching, steps, walk};
 use super::scene::Scene;
 use crate::error::{Error, Result};
 use crate::sealed::{Seal, refused};
 
 /// First bytes of a checkpoint.
 pub const SIGN: &[u8] = b"perilife scene checkpoint\n";
-const SEAL: Seal = Seal { of: "a scene of this program", magic: SIGN, form: 1 };
+const SEAL: Seal = Seal { of: "a scene of this program", magic: SIGN, form: 2 };
 
 /// State of a scene after one of its steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,20 +30,8 @@ pub struct SceneCheckpoint {
     pub(super) wall_s: f64,
     pub(super) records: Records,
     pub(super) bonds: KeptBonds,
-    pub(super) place: Place,
-}
-
-/// Where the procedure of a scene stands, with what its interaction keeps.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Place {
-    /// Motion in time.
-    Motion(dynamics::Standing, Memory),
-    /// Relaxation to rest, load step by load step.
-    Rest(steps::Standing, Memory),
-    /// Load steps of a fixed number of iterations.
-    March(marching::Standing, Memory),
-    /// A path of equilibrium, with what its solver keeps where it begins anew.
-    Path(walk::Standing, equilibrium::Kept),
+    /// Where its procedure stands, with what its interaction or its solver keeps, as bytes: the scene says which procedure it is.
+    pub(super) place: Vec<u8>,
 }
 
 impl SceneCheckpoint {

@@ -28,12 +28,12 @@
 use std::collections::HashMap;
 
 use super::bonds::BondState;
-use super::outcome::Fracture;
 use super::scene::{Procedure, Scene, SceneLaw};
 use crate::body::pre_crack::cutting_line;
 use crate::body::sharing::{WIDEN, WIDENINGS, linear_shares};
 use crate::levels::Net;
 use crate::levels::equilibrium::Strut;
+use crate::predict::Snapshot;
 use crate::specimen::geometry::segments_touch;
 use crate::specimen::{Crack, Point};
 use crate::units::{MM, place_mm};
@@ -382,13 +382,10 @@ impl<'n> Contact<'n> {
 
 /// What is to be said of a scene whose procedure has no contact, where flanks have passed through each other: looked for in all its
 /// pictures.
-pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, fracture: &Fracture) -> Option<String> {
-    if fracture.figures.touching.is_some() {
-        return None;
-    }
+pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, pictures: &[Snapshot]) -> Option<String> {
     let mut contact = Contact::new(net, &scene.specimen.cracks);
-    let last = fracture.snapshots.len().saturating_sub(1);
-    let overlaps = fracture.snapshots.iter().enumerate().filter_map(|(i, picture)| {
+    let last = pictures.len().saturating_sub(1);
+    let overlaps = pictures.iter().enumerate().filter_map(|(i, picture)| {
         // Which bonds had broken is known of the last picture alone.
         contact.overlap(bonds, i == last, |point| picture.displacement[point as usize])
     });

@@ -1,9 +1,12 @@
-//! The course of a run: who hears how far it is, and where it was taken up.
+//! The course of a run: what is taken down of it, who hears how far it is, and where it was taken up.
 
 use std::time::Instant;
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use super::bonds::BondState;
-use super::checkpoint::{Place, SceneCheckpoint, hash, of_another};
+use super::checkpoint::{SceneCheckpoint, hash, of_another};
 use super::log::Log;
 use super::scene::Scene;
 use super::{SceneObserver, SceneProgress};
@@ -31,6 +34,8 @@ impl Clock {
 
 /// Course of a run.
 pub struct Course<'a> {
+    /// What is taken down.
+    pub log: Log<'a>,
     observer: &'a dyn SceneObserver,
     clock: Clock,
     scene: [u8; 32],
@@ -42,8 +47,14 @@ pub struct Course<'a> {
 
 impl<'a> Course<'a> {
     /// The course of a run of a scene, from a checkpoint of it if there is one.
-    pub fn new(scene: &Scene, observer: &'a dyn SceneObserver, clock: Clock, from: Option<SceneCheckpoint>) -> Self {
-        Course { observer, clock, scene: hash(scene), share: 0.0, from }
+    pub fn new(
+        scene: &Scene,
+        log: Log<'a>,
+        observer: &'a dyn SceneObserver,
+        clock: Clock,
+        from: Option<SceneCheckpoint>,
+    ) -> Self {
+        Course { log, observer, clock, scene: hash(scene), share: 0.0, from }
     }
 
     /// Puts log and bonds where the run stood, and tells where its procedure did; `None`, and nothing is touched, at the beginning of
@@ -51,10 +62,11 @@ impl<'a> Course<'a> {
     ///
     /// # Errors
     /// A checkpoint of another plate.
-    pub fn take_up(&mut self, log: &mut Log<'_>, bonds: &mut BondState) -> Result<Option<Place>> {
+    pub fn take_up<T: DeserializeOwned>(&mut self, bonds: &mut BondState) -> Result<Option<T>> {
         let Some(SceneCheckpoint { share, records, bonds: kept, place, .. }) = self.from.take() else { return Ok(None) };
         self.share = share;
-        if log.restore(records) && bonds.restore(&kept) { Ok(Some(place)) } else { Err(of_another()) }
+        let fits = self.log.restore(records) && bonds.restore(&kept);
+        postcard::from_bytes(&place).ok().filter(|_| fits).map(Some).ok_or_else(of_another)
     }
 
     /// Tells how far the run is.
@@ -66,15 +78,16 @@ impl<'a> Course<'a> {
         Err(Error::Mechanics("the run was cancelled".to_owned()))
     }
 
-    /// Offers what it takes to go on from here.
-    pub fn may_keep(&self, log: &Log<'_>, bonds: &BondState, place: &dyn Fn() -> Place) {
+    /// Offers what it takes to go on from here, the procedure standing at this place.
+    pub fn may_keep<T: Serialize>(&self, bonds: &BondState, place: impl Fn() -> T) {
         self.observer.may_keep(&|| SceneCheckpoint {
             scene: self.scene,
             share: self.share,
             wall_s: self.clock.seconds(),
-            records: log.records(),
+            records: self.log.records(),
             bonds: bonds.kept(),
-            place: place(),
+            // Numbers, lists and options of known length can always be written to memory.
+            place: postcard::to_stdvec(&place()).unwrap_or_default(),
         });
     }
 }

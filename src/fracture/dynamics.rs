@@ -14,10 +14,9 @@ use serde::{Deserialize, Serialize};
 
 use super::bonds::BondState;
 use super::boundary::{Boundary, Held};
-use super::checkpoint::{Place, of_another};
+use super::checkpoint::of_another;
 use super::course::Course;
 use super::interaction::{Damaging, Driven, Interaction, Reaction};
-use super::log::Log;
 use super::outcome::{HistoryRow, SceneEnd};
 use super::scene::LoadRamp;
 use crate::error::{Result, input};
@@ -123,16 +122,15 @@ impl Run<'_> {
         &self,
         interaction: &mut dyn Interaction,
         bonds: &mut BondState,
-        log: &mut Log<'_>,
-        mut course: Course<'_>,
+        course: &mut Course<'_>,
     ) -> Result<(SceneEnd, Motion, usize)> {
         let unknowns = interaction.unknowns();
         let size = self.masses.len();
         let held: Vec<(usize, Held)> =
             self.boundary.held.iter().map(|held| (held.point as usize * unknowns + held.component, *held)).collect();
-        let mut at = match course.take_up(log, bonds)? {
+        let mut at = match course.take_up(bonds)? {
             None => self.start(interaction, bonds, &held),
-            Some(Place::Motion(at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
+            Some((at, memory)) if Standing::has(&at, size) && interaction.restore(&memory, bonds) => at,
             Some(_) => return Err(of_another()),
         };
         let pushes = self.pushes(unknowns);
@@ -171,7 +169,7 @@ impl Run<'_> {
             at.work += driven + pushed;
             let platens = interaction.driven();
             at.fracture += reaction.released;
-            log.broke(step, reaction.broken);
+            course.log.broke(step, reaction.broken);
             let look = step % WATCH == 0 || step % stride == 0 || step == self.steps;
             if look {
                 let all_work = at.work + platens.map_or(0.0, |driven| driven.work);
@@ -185,9 +183,9 @@ impl Run<'_> {
                     break;
                 }
                 if step % stride == 0 || step == self.steps {
-                    log.row(row, &at.motion.u, bonds);
+                    course.log.row(row, &at.motion.u, bonds);
                     course.step_done(step as f64 / self.steps as f64)?;
-                    course.may_keep(log, bonds, &|| Place::Motion(at.clone(), interaction.memory()));
+                    course.may_keep(bonds, || (&at, interaction.memory()));
                 }
             }
         }

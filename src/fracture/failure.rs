@@ -1,8 +1,10 @@
 //! When a bond is damaged: the limits that follow from strength and fracture energy, and what they do to a bond.
 
-use super::scene::{DamageLaw, Scene, Softening};
-use crate::bond_law::stencil::Stencil;
+use super::scene::{DamageLaw, Scene, SceneLaw, Softening};
+use crate::bond_law::BondLaw;
+use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::error::{Result, input_missing};
+use crate::levels::Net;
 
 /// A bond's measures at which laws look: stretch s and shear angle γ, and the ratio k_t / k_n of its springs.
 ///
@@ -36,32 +38,28 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The law of a scene on the bonds of so many points (`principal_stress` belongs to correspondence); `critical` is the
-    /// critical stretch of every point from its fracture energy, or `None` without one.
+    /// The law of a scene on the springs of its net; bonds of correspondence have one of their own.
     ///
     /// # Errors
     /// A missing fracture energy or missing constants.
-    pub fn of(scene: &Scene, points: usize, critical: Option<Vec<f64>>) -> Result<Failure> {
-        let limits = || {
-            let given = scene.damage.stretch.map(|stretch| vec![stretch; points]);
-            given.or(critical.clone()).ok_or_else(|| {
-                input_missing(
-                    "material.fracture_energy_j_m2",
-                    "is missing: the critical stretch follows from it",
-                    "give it, or damage.critical_stretch",
-                )
-            })
+    pub fn of(scene: &Scene, net: &Net) -> Result<Failure> {
+        let SceneLaw::Bonds(law) = scene.model.law else { return Ok(Failure::Never) };
+        let limits = || match (scene.damage.stretch, scene.material.fracture_energy) {
+            (Some(stretch), _) => Ok(vec![stretch; net.len()]),
+            (None, Some(energy)) => critical_stretches(scene, &law, net, energy),
+            (None, None) => {
+                let problem = "is missing: the critical stretch follows from it";
+                Err(input_missing("material.fracture_energy_j_m2", problem, "give it, or damage.critical_stretch"))
+            }
         };
         match scene.damage.law {
             DamageLaw::None | DamageLaw::PrincipalStress => Ok(Failure::Never),
             DamageLaw::CriticalStretch => Ok(Failure::Stretch(limits()?)),
             DamageLaw::CriticalEnergy => Ok(Failure::Energy(limits()?)),
             DamageLaw::NonlinearTwoParameter => scene.damage.nonlinear.map(Failure::Softening).ok_or_else(|| {
-                input_missing(
-                    "damage.elastic_stretch",
-                    "is missing: the nonlinear law has no limits",
-                    "give elastic_stretch, peak_stretch and final_stretch, or material.yield_strength_mpa and tensile_strength_mpa",
-                )
+                let remedy =
+                    "give elastic_stretch, peak_stretch and final_stretch, or material.yield_strength_mpa and tensile_strength_mpa";
+                input_missing("damage.elastic_stretch", "is missing: the nonlinear law has no limits", remedy)
             }),
         }
     }
@@ -186,6 +184,23 @@ impl Softening {
         let gradual = curve(after.max(last)) - curve(before.max(last));
         gradual + (before.min(last) - after.min(last)) * self.last * self.last
     }
+}
+
+/// Critical stretch of every point of a net.
+fn critical_stretches(scene: &Scene, law: &BondLaw, net: &Net, energy: f64) -> Result<Vec<f64>> {
+    let (material, thickness) = (spring_material(law, &scene.material), scene.specimen.thickness);
+    // Few levels, many points.
+    let mut known: Vec<(f64, f64)> = Vec::new();
+    let of_point = |&spacing: &f64| {
+        if let Some((_, stretch)) = known.iter().find(|(of, _)| *of == spacing) {
+            return Ok(*stretch);
+        }
+        let stencil = Stencil::new(law, &material, spacing, scene.model.horizon_ratio, thickness)?;
+        let stretch = critical_stretch(&stencil, plane_stiffness(&material)[0], energy, thickness);
+        known.push((spacing, stretch));
+        Ok(stretch)
+    };
+    net.spacings.iter().map(of_point).collect()
 }
 
 /// Critical stretch of a fracture energy on a lattice, from the bonds that a crack between two rows cuts:

@@ -1,7 +1,8 @@
 //! Whether holes, slots and cracks of a plate fit into it and beside each other, and where cracks can grow.
 
 use super::geometry::{
-    along, circle_shares, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share, point_in_polygon, segments_touch,
+    along, circle_shares, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share, point_in_polygon,
+    segments_touch,
 };
 use super::{Crack, CrackLine, Hole, Point, Slot, Specimen, TipSeed};
 use crate::error::{Result, input_missing};
@@ -25,11 +26,19 @@ pub(super) fn check_holes(specimen: &Specimen) -> Result<()> {
         let inside = point_in_polygon(hole.centre, &specimen.outline);
         if !inside || distance_to_polygon(hole.centre, &specimen.outline) < hole.radius + TOUCH {
             let problem = format!("reaches beyond the outline (centre {}, radius {} mm)", words(hole.centre), round(hole.radius));
-            return Err(input_missing(&format!("specimen.holes[{i}]"), problem, "move it inside, or draw the opening into outline_mm"));
+            return Err(input_missing(
+                &format!("specimen.holes[{i}]"),
+                problem,
+                "move it inside, or draw the opening into outline_mm",
+            ));
         }
         for (j, other) in specimen.holes[..i].iter().enumerate() {
             if distance(hole.centre, other.centre) < hole.radius + other.radius + TOUCH {
-                return Err(input_missing(&format!("specimen.holes[{i}]"), format!("overlaps holes[{j}]"), "move the holes apart"));
+                return Err(input_missing(
+                    &format!("specimen.holes[{i}]"),
+                    format!("overlaps holes[{j}]"),
+                    "move the holes apart",
+                ));
             }
         }
     }
@@ -57,7 +66,9 @@ pub(super) fn place_slots(specimen: &mut Specimen, slots: Vec<Slot>) -> Result<V
             [true, true] if walls > 0 || !corners_fit => {
                 return Err(input_missing(&key, "touches the outline", "move it inside, or let it start on an edge"));
             }
-            _ if !corners_fit => return Err(input_missing(&key, "has an end face that sticks out of the plate", "shorten or narrow it")),
+            _ if !corners_fit => {
+                return Err(input_missing(&key, "has an end face that sticks out of the plate", "shorten or narrow it"));
+            }
             _ => {}
         }
         if let Some(j) = specimen.holes.iter().position(|hole| slot_meets_hole(&slot, hole)) {
@@ -136,7 +147,11 @@ pub(super) fn place_cracks(specimen: &mut Specimen, paths: Vec<Vec<Point>>, mut 
             || lines.iter().enumerate().any(|(other, crack)| other != i && line.pieces().any(|[a, b]| crack.meets(a, b, TOUCH)));
         if specimen.tips_of(line) == 0 && !is_joined() {
             let remedy = "end it inside the plate";
-            return Err(input_missing(&format!("specimen.cracks[{i}]"), "has no end inside the material that could grow", remedy));
+            return Err(input_missing(
+                &format!("specimen.cracks[{i}]"),
+                "has no end inside the material that could grow",
+                remedy,
+            ));
         }
     }
     Ok(())

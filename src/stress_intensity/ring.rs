@@ -321,7 +321,8 @@ impl RingIntegral<'_> {
         let normal = self.frame.vector(facet.normal);
         let elasticity = &self.surroundings.elasticity;
         let gradient = if is_free { without_traction(&gradient, normal, elasticity) } else { gradient };
-        self.auxiliary(r, theta).map(|auxiliary| -elasticity.interaction_on_face(&gradient, &auxiliary, normal) * q * facet.length)
+        self.auxiliary(r, theta)
+            .map(|auxiliary| -elasticity.interaction_on_face(&gradient, &auxiliary, normal) * q * facet.length)
     }
 
     /// The same of a load on the rim: -t_i u^aux_i,1 q.

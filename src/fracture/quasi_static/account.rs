@@ -7,12 +7,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::bonds::BondState;
-use super::super::boundary::Boundary;
-use super::super::checkpoint::Place;
+use super::super::contact::Touching;
 use super::super::course::Course;
 use super::super::interaction::Driven;
-use super::super::log::Log;
-use super::super::outcome::HistoryRow;
+use super::super::outcome::{HistoryRow, SceneEnd};
 use super::full_load::FullLoad;
 use crate::error::Result;
 
@@ -87,14 +85,14 @@ impl Account {
     /// Takes down a row with this displacement and forces of the bonds.
     pub fn row(
         &mut self,
-        to: &mut Recorder<'_, '_>,
+        course: &mut Course<'_>,
         u: &[f64],
         force: &[f64],
         driven: Option<Driven>,
         bonds: &BondState,
     ) -> Result<()> {
         self.rows += 1;
-        let of_points = || to.boundary.measure(to.unknowns, self.state.level, u, force);
+        let of_points = || course.log.boundary.measure(course.log.net.unknowns, self.state.level, u, force);
         let (displacement, load) = driven.map_or_else(of_points, |driven| (driven.displacement, driven.load));
         let row = HistoryRow {
             step: self.rows,
@@ -105,34 +103,21 @@ impl Account {
             work: self.work,
             ..HistoryRow::default()
         };
-        to.log.row(row, u, bonds);
-        to.course.step_done(self.state.level)
+        course.log.row(row, u, bonds);
+        course.step_done(self.state.level)
     }
 }
 
-/// Where rows go.
-pub struct Recorder<'r, 'n> {
-    /// Log of the run.
-    pub log: &'r mut Log<'n>,
-    /// Hears of every row.
-    pub course: Course<'r>,
-    /// Loads whose displacement and force a row holds.
-    pub boundary: &'r Boundary,
-    /// Unknowns of a point.
-    pub unknowns: usize,
-}
-
-impl Recorder<'_, '_> {
-    /// Puts log and bonds where the run is taken up (`Course::take_up`).
-    ///
-    /// # Errors
-    /// A checkpoint of another plate.
-    pub fn take_up(&mut self, bonds: &mut BondState) -> Result<Option<Place>> {
-        self.course.take_up(self.log, bonds)
-    }
-
-    /// Offers what it takes to go on from here.
-    pub fn may_keep(&self, bonds: &BondState, place: &dyn Fn() -> Place) {
-        self.course.may_keep(self.log, bonds, place);
-    }
+/// Where a procedure without time ended.
+pub struct Walked {
+    /// Why.
+    pub end: SceneEnd,
+    /// Last displacement, m.
+    pub u: Vec<f64>,
+    /// Energies.
+    pub account: Account,
+    /// Evaluations of the forces.
+    pub evaluations: usize,
+    /// How flanks stand at the end, where they are kept apart.
+    pub touching: Option<Touching>,
 }

@@ -7,13 +7,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::bonds::BondState;
-use super::super::checkpoint::{Place, of_another};
+use super::super::checkpoint::of_another;
+use super::super::course::Course;
 use super::super::interaction::Interaction;
 use super::super::outcome::SceneEnd;
-use super::account::{Account, Recorder, State};
+use super::account::{Account, State, Walked};
 use super::full_load::FullLoad;
 use super::relaxation::{Loads, Relaxation, RestEnd, Rested};
-use super::walk::Walked;
 use crate::error::Result;
 
 /// Smallest step over the nominal one.
@@ -49,11 +49,11 @@ pub fn follow(
     relaxation: &Relaxation,
     interaction: &mut dyn Interaction,
     bonds: &mut BondState,
-    mut recorder: Recorder<'_, '_>,
+    course: &mut Course<'_>,
 ) -> Result<Walked> {
     let relaxation = &Relaxation { broken: BROKEN, ..*relaxation };
     let (nominal, size) = (1.0 / steps as f64, full.held.len());
-    let mut at = match recorder.take_up(bonds)? {
+    let mut at: Standing = match course.take_up(bonds)? {
         None => Standing {
             u: vec![0.0; size],
             account: Account::default(),
@@ -62,7 +62,7 @@ pub fn follow(
             peak: 0.0,
             breaking: false,
         },
-        Some(Place::Rest(at, memory)) if at.u.len() == size && interaction.restore(&memory, bonds) => at,
+        Some((at, memory)) if at.u.len() == size && interaction.restore(&memory, bonds) => at,
         Some(_) => return Err(of_another()),
     };
     let mut end = SceneEnd::Done;
@@ -87,12 +87,12 @@ pub fn follow(
             break;
         }
         at.account.fracture += reaction.released;
-        recorder.log.broke(at.account.rows + 1, reaction.broken);
+        course.log.broke(at.account.rows + 1, reaction.broken);
         at.breaking = rested.end == RestEnd::Breaking;
         let driven = interaction.driven();
         at.account.go(State::new(full, level, &at.u, &rested.force, reaction.strain).with_driven(driven));
-        at.account.row(&mut recorder, &at.u, &rested.force, driven, bonds)?;
-        if recorder.log.is_separated() {
+        at.account.row(course, &at.u, &rested.force, driven, bonds)?;
+        if course.log.is_separated() {
             end = SceneEnd::Separated;
             break;
         }
@@ -105,7 +105,7 @@ pub fn follow(
         if reaction.broken == 0 && 2.0 * reaction.damaged < DAMAGED {
             at.step = (2.0 * at.step).min(nominal);
         }
-        recorder.may_keep(bonds, &|| Place::Rest(at.clone(), interaction.memory()));
+        course.may_keep(bonds, || (&at, interaction.memory()));
     }
     let Standing { u, account, evaluations, .. } = at;
     Ok(Walked { end, u, account, evaluations, touching: None })
