@@ -16,7 +16,7 @@ use super::bonds::BondState;
 use super::boundary::{Boundary, Held};
 use super::checkpoint::of_another;
 use super::course::Course;
-use super::interaction::{Damaging, Driven, Interaction, Reaction};
+use super::interaction::{Damaging, Driven, Interaction, Memory, Reaction};
 use super::outcome::{HistoryRow, SceneEnd};
 use super::scene::LoadRamp;
 use crate::error::{Result, input};
@@ -128,9 +128,9 @@ impl Run<'_> {
         let size = self.masses.len();
         let held: Vec<(usize, Held)> =
             self.boundary.held.iter().map(|held| (held.point as usize * unknowns + held.component, *held)).collect();
-        let mut at = match course.take_up(bonds)? {
+        let mut at = match course.take_up::<(Standing, Memory)>(bonds)? {
             None => self.start(interaction, bonds, &held),
-            Some((at, memory)) if Standing::has(&at, size) && interaction.restore(&memory, bonds) => at,
+            Some((at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
             Some(_) => return Err(of_another()),
         };
         let pushes = self.pushes(unknowns);

@@ -20,6 +20,18 @@ pub struct Reaction {
     pub damaged: f64,
 }
 
+impl Reaction {
+    /// Both together.
+    pub fn and(self, other: Reaction) -> Reaction {
+        Reaction {
+            strain: self.strain + other.strain,
+            released: self.released + other.released,
+            broken: self.broken + other.broken,
+            damaged: self.damaged.max(other.damaged),
+        }
+    }
+}
+
 /// Rigid bodies that an interaction moves by itself (platens), as its last evaluation found them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Driven {

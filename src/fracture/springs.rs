@@ -120,18 +120,6 @@ struct Task<'t> {
     may_fail: &'t [bool],
 }
 
-impl Reaction {
-    /// Both together.
-    pub fn and(self, other: Reaction) -> Reaction {
-        Reaction {
-            strain: self.strain + other.strain,
-            released: self.released + other.released,
-            broken: self.broken + other.broken,
-            damaged: self.damaged.max(other.damaged),
-        }
-    }
-}
-
 impl Interaction for Springs<'_> {
     fn unknowns(&self) -> usize {
         self.net.unknowns

@@ -1,5 +1,7 @@
 //! Plane geometry: polygons, segments, the four sides of a plate, and the questions the body asks of a specimen.
 
+use std::collections::HashMap;
+
 use super::{Point, Slot, Specimen};
 
 /// Distance between two points, m.
@@ -125,6 +127,45 @@ pub fn self_intersection(polygon: &[Point]) -> Option<(usize, usize)> {
         }
     }
     None
+}
+
+/// Places by square cells, so that those near one are found at once.
+#[derive(Debug, Default)]
+pub struct Places {
+    width: f64,
+    places: Vec<Point>,
+    cells: HashMap<[i64; 2], Vec<u32>>,
+}
+
+impl Places {
+    /// Places by cells of a width, m.
+    pub fn of(width: f64, places: impl Iterator<Item = Point>) -> Self {
+        let mut cells = Places { width, places: places.collect(), cells: HashMap::new() };
+        for (i, &place) in cells.places.iter().enumerate() {
+            let cell = place.map(|x| (x / width).floor() as i64);
+            cells.cells.entry(cell).or_default().push(i as u32);
+        }
+        cells
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// Numbers of the places in cells within `reach` of one, m, in an order that depends on the places alone.
+    pub fn near(&self, at: Point, reach: f64) -> impl Iterator<Item = u32> + '_ {
+        let range = |x: f64| ((x - reach) / self.width).floor() as i64..=((x + reach) / self.width).floor() as i64;
+        let columns = range(at[0]);
+        let cells = range(at[1]).flat_map(move |row| columns.clone().map(move |column| [column, row]));
+        cells.flat_map(|cell| self.cells.get(&cell).into_iter().flatten().copied())
+    }
+
+    /// Way from a position to a place, m.
+    pub fn away(&self, place: u32, from: Point) -> Point {
+        let [x, y] = self.places[place as usize];
+        [x - from[0], y - from[1]]
+    }
 }
 
 impl Slot {

@@ -39,7 +39,7 @@ use crate::body::facets::{Facet, facets};
 use crate::body::pre_crack::{as_cut, places_near};
 use crate::material::Material;
 use crate::solver::field::Layout;
-use crate::specimen::geometry::{distance, distance_to_segment};
+use crate::specimen::geometry::{Places, distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen, Support};
 use crate::state::Bonds;
 use crate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
@@ -136,13 +136,10 @@ impl RingGeometry {
         });
         let loads = load_pieces(specimen, spacing);
         // Loaded pieces by cells of one spacing: on a long rim, all pairs take longer than an equilibrium.
-        let cell = |at: Point| at.map(|metres| (metres / spacing).floor() as i64);
-        let mut loaded: HashMap<[i64; 2], Vec<Point>> = HashMap::new();
-        loads.iter().for_each(|load| loaded.entry(cell(load.facet.at)).or_default().push(load.facet.at));
+        let loaded = Places::of(spacing, loads.iter().map(|load| load.facet.at));
         let is_free = |facet: &Facet| {
-            let [column, row] = cell(facet.at);
-            let cells = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [column + i, row + j]));
-            cells.filter_map(|cell| loaded.get(&cell)).flatten().all(|&at| distance(at, facet.at) > 0.25 * spacing)
+            let near = loaded.near(facet.at, 0.25 * spacing).map(|load| loaded.away(load, facet.at));
+            near.into_iter().all(|[x, y]| x.hypot(y) > 0.25 * spacing)
         };
         let rim: Vec<(Facet, bool)> = facets(specimen, spacing).into_iter().map(|facet| (facet, is_free(&facet))).collect();
         RingGeometry {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::super::bonds::BondState;
 use super::super::checkpoint::of_another;
 use super::super::course::Course;
-use super::super::interaction::{Damaging, Interaction};
+use super::super::interaction::{Damaging, Interaction, Memory};
 use super::super::outcome::SceneEnd;
 use super::account::{Account, State, Walked};
 use super::full_load::FullLoad;
@@ -48,11 +48,11 @@ pub fn follow(
     let size = full.held.len();
     // Damage only softens the plate: what is stable for it whole stays so.
     let mobility = mobility(interaction, bonds, &full.held);
-    let mut at = match course.take_up(bonds)? {
+    let mut at = match course.take_up::<(Standing, Memory)>(bonds)? {
         None => {
             Standing { step: 0, u: vec![0.0; size], swing: Swing::at_rest(size), account: Account::default(), evaluations: 0 }
         }
-        Some((at, memory)) if Standing::has(&at, size) && interaction.restore(&memory, bonds) => at,
+        Some((at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
         Some(_) => return Err(of_another()),
     };
     let mut force = vec![0.0; size];

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::super::bonds::BondState;
 use super::super::checkpoint::of_another;
 use super::super::course::Course;
-use super::super::interaction::Interaction;
+use super::super::interaction::{Interaction, Memory};
 use super::super::outcome::SceneEnd;
 use super::account::{Account, State, Walked};
 use super::full_load::FullLoad;
@@ -53,7 +53,7 @@ pub fn follow(
 ) -> Result<Walked> {
     let relaxation = &Relaxation { broken: BROKEN, ..*relaxation };
     let (nominal, size) = (1.0 / steps as f64, full.held.len());
-    let mut at: Standing = match course.take_up(bonds)? {
+    let mut at = match course.take_up::<(Standing, Memory)>(bonds)? {
         None => Standing {
             u: vec![0.0; size],
             account: Account::default(),

@@ -234,7 +234,8 @@ fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<(Reg
             }
             let of_box = |(i, value): (usize, &Value)| {
                 let key = format!("{regions_key}[{i}]");
-                Ok((region::box_from_value(value, &key, specimen)?, key))
+                let (low, high) = region::box_from_value(value, &key, specimen)?;
+                Ok((Region::Box { low, high }, key))
             };
             regions.iter().enumerate().map(of_box).collect()
         }
