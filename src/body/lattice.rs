@@ -57,9 +57,7 @@ impl Lattice {
     /// and columns are laid so that a crack along them falls between two of them.
     ///
     /// With an angle the lattice covers the bounding circle and keeps the requested spacing.
-    ///
-    /// # Errors
-    /// More places than memory can sensibly hold, or a spacing wider than the plate.
+    /// Errors: more places than memory can sensibly hold, or a spacing wider than the plate.
     pub fn over(specimen: &Specimen, spacing: f64, angle: f64, padding: usize) -> Result<Self> {
         let [low, high] = bounding_box(&specimen.outline);
         let upright = angle == 0.0;

@@ -66,9 +66,7 @@ pub struct Body {
 
 impl Body {
     /// Discretises a specimen.
-    ///
-    /// # Errors
-    /// Poisson's ratio outside the law's range, a spacing that does not suit the plate, more bonds than fit.
+    /// Errors: Poisson's ratio outside the law's range, a spacing that does not suit the plate, more bonds than fit.
     pub fn build(
         specimen: &Specimen,
         material: &Material,

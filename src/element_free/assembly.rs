@@ -139,9 +139,7 @@ impl Scratch {
 ///
 /// With `P = Σ ∇Φ ∇Φᵀ dA` of all pairs of gradients that of unknowns without fields is made of its entries; those with fields take all
 /// of `∫ e_aᵀ D e_b dA`.
-///
-/// # Errors
-/// Nodes in reach of a point do not span the basis.
+/// Errors: nodes in reach of a point do not span the basis.
 pub fn add_cell(
     plate: &Discretisation,
     thickness: f64,

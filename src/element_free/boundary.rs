@@ -54,9 +54,7 @@ struct Grip {
 
 impl Boundary {
     /// Of a plate with cracks under its loads.
-    ///
-    /// # Errors
-    /// Nodes in reach of a load or support do not span the basis.
+    /// Errors: nodes in reach of a load or support do not span the basis.
     pub fn new(specimen: &Specimen, plate: &Discretisation, far: f64) -> Result<Self> {
         let mut boundary = Boundary { forces: vec![0.0; plate.unknowns()], ..Boundary::default() };
         let grips = boundary.grips(specimen, plate)?;

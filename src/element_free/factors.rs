@@ -41,9 +41,7 @@ pub struct TipFactors {
 type Gradient = [[f64; 2]; 2];
 
 /// Reads a tip of a plate with the unknowns `u` in a ring within `room`, m; `pressure` acts on the faces, Pa.
-///
-/// # Errors
-/// [`Error::Mechanics`] where nodes in reach do not span the basis.
+/// Errors: [`Error::Mechanics`] where nodes in reach do not span the basis.
 pub fn read(plate: &Discretisation, u: &[f64], tip: usize, room: f64, pressure: f64) -> Result<TipFactors> {
     let axes = &plate.axes[tip];
     let mut local = Local::default();

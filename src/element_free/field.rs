@@ -66,9 +66,7 @@ pub struct Local {
 
 impl Discretisation {
     /// Nodes for these cracks; `tips` are the ends of lines that lie in the material.
-    ///
-    /// # Errors
-    /// [`Error::Mechanics`] where more nodes would be needed than are allowed.
+    /// Errors: [`Error::Mechanics`] where more nodes would be needed than are allowed.
     pub fn new(
         specimen: &Specimen,
         elasticity: Elasticity,

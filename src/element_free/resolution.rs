@@ -55,9 +55,7 @@ pub struct Resolution {
 
 impl Resolution {
     /// Cells of a plate with these cracks, and the spacing asked for at every tip, m.
-    ///
-    /// # Errors
-    /// [`Error::Mechanics`] where the plate would have too many cells.
+    /// Errors: [`Error::Mechanics`] where the plate would have too many cells.
     pub fn grid(&self, specimen: &Specimen, lines: &[CrackLine], tips: &[Tip]) -> Result<(Grid, Vec<f64>)> {
         let bounds = bounding_box(&specimen.outline);
         let [width, height] = [0, 1].map(|i| bounds[1][i] - bounds[0][i]);

@@ -70,9 +70,7 @@ impl RimStress {
 }
 
 /// Stress along every rim, the unknowns `u` being those of the nominal load, of which the plate has the `share`.
-///
-/// # Errors
-/// [`Error::Mechanics`] where nodes in reach span the basis nowhere on a rim.
+/// Errors: [`Error::Mechanics`] where nodes in reach span the basis nowhere on a rim.
 pub fn rim_stresses(specimen: &Specimen, plate: &Discretisation, u: &[f64], share: f64) -> Result<Vec<RimStress>> {
     let reader = Reader { specimen, plate, u, share };
     let mut rims = Vec::new();

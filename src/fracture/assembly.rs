@@ -35,9 +35,7 @@ pub struct Assembly<'s> {
 
 impl<'s> Assembly<'s> {
     /// The parts of a scene.
-    ///
-    /// # Errors
-    /// Wrong input that shows only now, choices that do not go together.
+    /// Errors: wrong input that shows only now, choices that do not go together.
     pub fn of(scene: &'s Scene) -> Result<Self> {
         let (net, body) = build(scene)?;
         let boundary = Boundary::of(scene, &net)?;

@@ -79,9 +79,7 @@ pub struct Boundary {
 
 impl Boundary {
     /// Loads and supports of a scene; platens act through the interaction, not here.
-    ///
-    /// # Errors
-    /// A region without points; as [`build`] where tractions rise at different times.
+    /// Errors: a region without points; as [`build`] where tractions rise at different times.
     pub fn of(scene: &Scene, net: &Net) -> Result<Boundary> {
         let mut boundary = Boundary {
             held: Vec::new(),
@@ -213,9 +211,7 @@ fn pushes(scene: &Scene, net: &Net) -> Result<Vec<Push>> {
 }
 
 /// Points of a region, ascending.
-///
-/// # Errors
-/// A region without points; `key` names it.
+/// Errors: a region without points; `key` names it.
 fn points_of(region: &Region, key: &str, scene: &Scene, net: &Net) -> Result<Vec<u32>> {
     let points = region.points(net, &scene.specimen);
     if points.is_empty() {

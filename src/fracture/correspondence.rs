@@ -90,9 +90,7 @@ impl Deformation {
 
 impl<'n> Correspondence<'n> {
     /// The law of a scene on its net.
-    ///
-    /// # Errors
-    /// A damage law that correspondence does not have, a missing strength or fracture energy, a factor of the control below 0.
+    /// Errors: a damage law that correspondence does not have, a missing strength or fracture energy, a factor of the control below 0.
     pub fn new(scene: &Scene, net: &'n Net, control: ZeroEnergyControl, factor: f64) -> Result<Self> {
         let neighbours = Neighbours::of(net);
         let all_at_once = matches!(scene.procedure, Procedure::Dynamic { .. });

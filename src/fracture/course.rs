@@ -59,9 +59,7 @@ impl<'a> Course<'a> {
 
     /// Puts log and bonds where the run stood, and tells where its procedure did; `None`, and nothing is touched, at the beginning of
     /// a run.
-    ///
-    /// # Errors
-    /// A checkpoint of another plate.
+    /// Errors: a checkpoint of another plate.
     pub fn take_up<T: DeserializeOwned>(&mut self, bonds: &mut BondState) -> Result<Option<T>> {
         let Some(SceneCheckpoint { share, records, bonds: kept, place, .. }) = self.from.take() else { return Ok(None) };
         self.share = share;

@@ -79,9 +79,7 @@ pub fn stable_step(net: &Net, density: f64, bound: &[[f64; 2]]) -> f64 {
 }
 
 /// The time step: the one asked for, or the program's own.
-///
-/// # Errors
-/// A step above the stable one.
+/// Errors: a step above the stable one.
 pub fn time_step(asked: Option<f64>, stable: f64) -> Result<f64> {
     match asked {
         Some(step) if step > stable => {
@@ -115,9 +113,7 @@ pub struct Run<'a> {
 impl Run<'_> {
     /// Follows the motion from rest, or from where it is taken up; returns why it ended, the last state, and the evaluations of the
     /// forces.
-    ///
-    /// # Errors
-    /// A run that was cancelled, a checkpoint of another one.
+    /// Errors: a run that was cancelled, a checkpoint of another one.
     pub fn follow(
         &self,
         interaction: &mut dyn Interaction,

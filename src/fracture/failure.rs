@@ -39,9 +39,7 @@ pub enum Failure {
 
 impl Failure {
     /// The law of a scene on the springs of its net; bonds of correspondence have one of their own.
-    ///
-    /// # Errors
-    /// A missing fracture energy or missing constants.
+    /// Errors: a missing fracture energy or missing constants.
     pub fn of(scene: &Scene, net: &Net) -> Result<Failure> {
         let SceneLaw::Bonds(law) = scene.model.law else { return Ok(Failure::Never) };
         let limits = || match (scene.damage.stretch, scene.material.fracture_energy) {

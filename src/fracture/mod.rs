@@ -71,9 +71,7 @@ impl SceneObserver for crate::predict::Silent {
 }
 
 /// Runs a scene.
-///
-/// # Errors
-/// Wrong input that shows only now, choices that do not go together, a run that was cancelled.
+/// Errors: wrong input that shows only now, choices that do not go together, a run that was cancelled.
 pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
     watched(scene, observer, None)
 }
@@ -87,9 +85,7 @@ fn watched(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckp
 
 /// Goes on with a run of a scene from a checkpoint of it; gives what [`run`] gives, bit for bit, its wall time counted from the start
 /// of the first run.
-///
-/// # Errors
-/// As [`run`]; [`crate::Error::Input`] if the checkpoint is not one of this scene.
+/// Errors: as [`run`]; [`crate::Error::Input`] if the checkpoint is not one of this scene.
 pub fn resume(scene: &Scene, checkpoint: SceneCheckpoint, observer: &dyn SceneObserver) -> Result<Fracture> {
     checkpoint.check(scene)?;
     watched(scene, observer, Some(checkpoint))

@@ -12,9 +12,7 @@ use crate::specimen::{Edge, Load, Point, Specimen};
 use crate::units::MM;
 
 /// Points and bonds of a scene, and the lattice body behind them if there is one.
-///
-/// # Errors
-/// Wrong input that shows only now, choices that do not go together.
+/// Errors: wrong input that shows only now, choices that do not go together.
 pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
     let model = &scene.model;
     match (model.law, model.arrangement) {

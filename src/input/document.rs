@@ -75,9 +75,7 @@ impl Document {
     }
 
     /// Applies overrides on top of those that it was read with.
-    ///
-    /// # Errors
-    /// One that is no `section.key=value`, or names no place for a value.
+    /// Errors: one that is no `section.key=value`, or names no place for a value.
     pub fn set_all(&mut self, overrides: &[String]) -> Result<()> {
         overrides.iter().try_for_each(|text| self.set(text))
     }
@@ -104,9 +102,7 @@ impl Document {
     }
 
     /// Gives a key (`section.key`, below a list by number) another value.
-    ///
-    /// # Errors
-    /// What is wrong with the key, in words that go behind it; nothing but tables above it may have been made then.
+    /// Errors: what is wrong with the key, in words that go behind it; nothing but tables above it may have been made then.
     pub fn put(&mut self, key: &str, value: Value) -> std::result::Result<(), &'static str> {
         const NO_TABLE: &str = "names a key below something that is not a table";
         let steps = path_steps(key);

@@ -56,9 +56,7 @@ impl Folder {
     }
 
     /// Content of a file.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it cannot be read from disk; [`Error::Input`] if it is not at hand.
+    /// Errors: [`Error::File`] if it cannot be read from disk; [`Error::Input`] if it is not at hand.
     pub fn read(&self, name: &str) -> Result<Vec<u8>> {
         if let Some(content) = self.at_hand.get(name) {
             let file = OpenedFile { name: name.to_owned(), path: None, id: None, content: content.clone().into() };
@@ -75,9 +73,7 @@ impl Folder {
     }
 
     /// Content of a file that need not exist.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it is there and cannot be read.
+    /// Errors: [`Error::File`] if it is there and cannot be read.
     pub fn read_if_there(&self, name: &str) -> Result<Option<Vec<u8>>> {
         match self.read(name) {
             Ok(content) => Ok(Some(content)),
@@ -88,17 +84,13 @@ impl Folder {
     }
 
     /// A TOML file.
-    ///
-    /// # Errors
-    /// As [`Folder::read`]; content that is not TOML.
+    /// Errors: as [`Folder::read`]; content that is not TOML.
     pub fn document(&self, name: &str) -> Result<Document> {
         self.document_with(name, &[])
     }
 
     /// A TOML file with overrides; the files that it names lie beside it.
-    ///
-    /// # Errors
-    /// As [`Folder::document`]; overrides that are none.
+    /// Errors: as [`Folder::document`]; overrides that are none.
     pub fn document_with(&self, name: &str, overrides: &[String]) -> Result<Document> {
         let path = self.path(name);
         let text = text_of(self.read(name)?, &path)?;

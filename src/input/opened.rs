@@ -105,9 +105,7 @@ impl Opened {
     }
 
     /// Reads a file and remembers it; `-` is standard input.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it cannot be read; [`Error::Input`] for standard input a second time.
+    /// Errors: [`Error::File`] if it cannot be read; [`Error::Input`] for standard input a second time.
     pub fn read(&self, path: &Path, name: &str) -> Result<Vec<u8>> {
         let (content, id) = if path == Path::new(STREAM) { (stdin()?, None) } else { read(path)? };
         let on_disk = (path != Path::new(STREAM)).then(|| path.to_path_buf());

@@ -16,9 +16,7 @@ pub struct Sections<'t> {
 
 impl<'t> Sections<'t> {
     /// Looks at the sections of a file.
-    ///
-    /// # Errors
-    /// Anything but a table under one of the `known` names; `strangers` get words of their own.
+    /// Errors: anything but a table under one of the `known` names; `strangers` get words of their own.
     pub fn of(table: &'t Table, known: &[&str], strangers: &[ForeignSections]) -> Result<Self> {
         for (name, value) in table {
             if !known.contains(&name.as_str()) {
@@ -51,9 +49,7 @@ impl<'t> Sections<'t> {
     }
 
     /// The whole input as results repeat it.
-    ///
-    /// # Errors
-    /// Values that JSON has not.
+    /// Errors: values that JSON has not.
     pub fn echo(&self) -> Result<serde_json::Value> {
         serde_json::to_value(self.table).map_err(|error| input_missing("file", error.to_string(), "write it as plain TOML"))
     }

@@ -83,9 +83,7 @@ impl<'a> CrackedPlate<'a> {
     }
 
     /// Equilibrium at maximum load with every tip moved by its growth, m.
-    ///
-    /// # Errors
-    /// A tip that leaves the material, cracks that cut the plate in two, a solver that does not converge.
+    /// Errors: a tip that leaves the material, cracks that cut the plate in two, a solver that does not converge.
     pub fn solve(&mut self, growth_of_tips: &[f64]) -> Result<Field> {
         let (specimen, bonds) = self.cut(growth_of_tips)?;
         let mut displacement = Vec::new();

@@ -93,9 +93,7 @@ pub enum Control {
 
 impl Control {
     /// Control of a body; the horizon is that of the net's first point (lattices have one).
-    ///
-    /// # Errors
-    /// A factor below zero or not finite.
+    /// Errors: a factor below zero or not finite.
     pub fn new(kind: ZeroEnergyControl, factor: f64, material: &Material, thickness: f64, net: &Net) -> Result<Control> {
         if !(factor >= 0.0 && factor.is_finite()) {
             let remedy = "give a factor H of 0 or more for \"silling\", c_I in N/m^7 of 0 or more for \"spring\"";

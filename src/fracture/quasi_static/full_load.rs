@@ -8,9 +8,7 @@ pub use crate::levels::equilibrium::FullLoad;
 
 impl FullLoad {
     /// Loads and supports of a boundary.
-    ///
-    /// # Errors
-    /// A prescribed velocity: there is no time.
+    /// Errors: a prescribed velocity: there is no time.
     pub fn of(net: &Net, boundary: &Boundary) -> Result<Self> {
         let mut full = FullLoad::none(net);
         for held in &boundary.held {

@@ -35,9 +35,7 @@ pub struct Standing {
 }
 
 /// Follows the load to its full value in so many steps of so many iterations of relaxation, or until the plate is in two, from rest or from where the run is taken up.
-///
-/// # Errors
-/// A run that was cancelled, a checkpoint of another one.
+/// Errors: a run that was cancelled, a checkpoint of another one.
 pub fn follow(
     full: &FullLoad,
     [steps, iterations]: [usize; 2],

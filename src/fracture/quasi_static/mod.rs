@@ -38,9 +38,7 @@ pub fn rows(procedure: Procedure) -> usize {
 }
 
 /// Runs a scene without time.
-///
-/// # Errors
-/// Choices that do not go together, loads that do not balance, a run that was cancelled.
+/// Errors: choices that do not go together, loads that do not balance, a run that was cancelled.
 pub fn run(
     scene: &Scene,
     failure: &Failure,

@@ -55,9 +55,7 @@ const STATES_MAX: usize = 100_000;
 
 /// Follows the path of a law of damage, not in its printed form, from rest to full load or until the plate is in two, or from where the
 /// run is taken up; flanks of these cracks may touch. There is a row at least every so many-th of the full load, `steps`.
-///
-/// # Errors
-/// A run that was cancelled, no equilibrium at the start, a checkpoint of another run.
+/// Errors: a run that was cancelled, no equilibrium at the start, a checkpoint of another run.
 pub fn follow(
     cracks: &[Crack],
     full: &FullLoad,

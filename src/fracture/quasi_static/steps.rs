@@ -40,9 +40,7 @@ pub struct Standing {
 }
 
 /// Works through load steps, from rest or from where the run is taken up.
-///
-/// # Errors
-/// A run that was cancelled, a checkpoint of another one.
+/// Errors: a run that was cancelled, a checkpoint of another one.
 pub fn follow(
     full: &FullLoad,
     steps: usize,
