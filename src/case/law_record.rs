@@ -6,7 +6,7 @@ use super::law_source::LAW_KEYS;
 use crate::calibration::record::law::LawRecord;
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
-use crate::input::{Folder, slice, value_at};
+use crate::input::{Document, Folder, slice, value_at};
 
 /// Slack of a stress ratio against those of the rates.
 const RATIO_SLACK: f64 = 0.02;
@@ -19,7 +19,7 @@ const RATIO_SLACK: f64 = 0.02;
 pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value, Box<LawRecord>)>> {
     let Some(name) = value_at(fatigue, "fitted").and_then(Value::as_str) else { return Ok(None) };
     // One that cannot be read is refused, or not missed, where records of A and p are.
-    let Ok(document) = folder.document(name) else { return Ok(None) };
+    let Ok(document) = Document::in_folder(folder, name, &[]) else { return Ok(None) };
     if !LawRecord::is_of(&document.table) {
         return Ok(None);
     }

@@ -14,7 +14,7 @@ use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{Driver, FatigueLaw, FatigueSettings, GrowthRate, STEADY_EXPONENTS, unsteady};
-use crate::input::{Folder, LENGTH, number, slice};
+use crate::input::{Document, Folder, LENGTH, number, slice};
 use crate::units::MM_PER_CYCLE;
 
 /// Keys of `[fatigue]` that give a law.
@@ -221,7 +221,7 @@ fn read_record(name: &str, folder: &Folder) -> Result<LawSource> {
 /// # Errors
 /// A file that cannot be read, or is no such record.
 pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
-    let document = folder.document(name)?;
+    let document = Document::in_folder(folder, name, &[])?;
     if LawRecord::is_of(&document.table) {
         let problem = "holds a law over K that was fitted to rates, not A and p";
         return Err(input("fitted", format!("\"{name}\""), problem, "give a record of a fit to a-N readings"));

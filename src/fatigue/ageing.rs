@@ -109,3 +109,22 @@ pub fn fatigue_bonds(body: &Body, candidates: &[Bond], displacement: &[f64], (sh
         .filter(|ageing| ageing.strain > threshold.max(0.0))
         .collect()
 }
+
+/// Indices of the active tips that cannot grow because every intact bond of their ageing zone touches a no-fail zone. Bonds near loads and
+/// supports never break (point loads on a lattice would tear out otherwise), so a crack that starts or arrives there stands still for a
+/// reason that lies in the model and not in the plate.
+pub fn stuck(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &FatigueSettings) -> Vec<usize> {
+    // Where all bonds age, growth of one tip is still told by the bonds around it.
+    let near = FatigueSettings { ageing: Ageing::CrackTip, ..*settings };
+    let is_stuck = |tip: &CrackTip| {
+        let zone = std::slice::from_ref(tip);
+        tip.is_active() && candidates(body, bonds, zone, &near).is_empty() && touches_no_fail(body, tip, &near)
+    };
+    (0..tips.len()).filter(|&tip| is_stuck(&tips[tip])).collect()
+}
+
+/// Whether a no-fail place lies so near a tip that it takes bonds of its ageing zone.
+fn touches_no_fail(body: &Body, tip: &CrackTip, settings: &FatigueSettings) -> bool {
+    let reach = (0.5 + settings.zone_radius_horizons) * body.horizon();
+    places_near(body, tip.position, tip.position, reach).any(|place| body.no_fail[place])
+}

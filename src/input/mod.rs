@@ -6,23 +6,11 @@
 
 mod document;
 mod folder;
-mod opened;
 mod quantity;
-mod sections;
 mod slice;
 
-pub use document::Document;
-pub use folder::Folder;
-pub use opened::{FileId, Opened, OpenedFile, Provenance, STREAM, sha256};
+pub use document::{Document, ForeignSections, Sections};
+pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256};
 pub use quantity::*;
-pub use sections::{ForeignSections, Sections};
 pub(crate) use slice::shorten;
 pub use slice::{OF_SCENES, PLANNED, slice, table_of, value_at};
-
-/// Bytes of a file as text.
-fn text_of(bytes: Vec<u8>, path: &std::path::Path) -> crate::Result<String> {
-    String::from_utf8(bytes).map_err(|error| {
-        let message = format!("is not UTF-8 text (byte {})", error.utf8_error().valid_up_to() + 1);
-        crate::error::input_missing("file", message, "save it as plain UTF-8 text").in_file(path)
-    })
-}
