@@ -14,8 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bonds::BondState;
 use super::boundary::{Boundary, Held};
-use super::checkpoint::of_another;
-use super::course::Course;
+use super::checkpoint::{Course, of_another};
 use super::interaction::{Damaging, Driven, Interaction, Memory, Reaction};
 use super::outcome::{HistoryRow, SceneEnd};
 use super::scene::LoadRamp;

@@ -10,14 +10,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::bonds::BondState;
-use super::super::checkpoint::of_another;
-use super::super::course::Course;
+use super::super::checkpoint::{Course, of_another};
 use super::super::interaction::{Damaging, Interaction, Memory};
 use super::super::outcome::SceneEnd;
 use super::account::{Account, State, Walked};
-use super::full_load::FullLoad;
 use super::relaxation::{Loads, Swing, mobility};
 use crate::error::Result;
+use crate::levels::equilibrium::FullLoad;
 
 /// Rows at the most; with more steps every so many-th is kept, and only there is separation looked for.
 const ROWS: usize = 4000;

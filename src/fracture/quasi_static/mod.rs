@@ -6,21 +6,20 @@
 pub mod account;
 pub mod control;
 pub mod equilibrium;
-pub mod full_load;
 pub mod marching;
 pub mod path;
 pub mod relaxation;
 pub mod steps;
 
 use super::bonds::BondState;
-use super::course::Course;
+use super::checkpoint::Course;
 use super::failure::Failure;
 use super::interaction::Interaction;
 use super::outcome::{Fracture, SceneFigures};
 use super::scene::{DamageLaw, Discretisation, Procedure, Scene, SceneLaw, SceneSolver};
 use crate::error::{Result, input};
+use crate::levels::equilibrium::FullLoad;
 use account::Walked;
-use full_load::FullLoad;
 use relaxation::Relaxation;
 
 /// Rows between two pictures of a run, times those of a run with `SNAPSHOTS` of them.

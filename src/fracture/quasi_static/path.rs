@@ -22,15 +22,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::bonds::BondState;
-use super::super::checkpoint::of_another;
-use super::super::course::Course;
+use super::super::checkpoint::{Course, of_another};
 use super::super::failure::Failure;
 use super::super::outcome::SceneEnd;
 use super::account::{Account, State, Walked};
 use super::control::Control;
 use super::equilibrium::{Equilibrium, Kept, Shape};
-use super::full_load::FullLoad;
 use crate::error::{Error, Result};
+use crate::levels::equilibrium::FullLoad;
 use crate::specimen::Crack;
 
 /// States after which the solver begins anew. That takes one factorisation, as much as some twelve iterations, and a state takes

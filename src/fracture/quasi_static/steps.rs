@@ -7,14 +7,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::bonds::BondState;
-use super::super::checkpoint::of_another;
-use super::super::course::Course;
+use super::super::checkpoint::{Course, of_another};
 use super::super::interaction::{Interaction, Memory};
 use super::super::outcome::SceneEnd;
 use super::account::{Account, State, Walked};
-use super::full_load::FullLoad;
 use super::relaxation::{Loads, Relaxation, RestEnd, Rested};
 use crate::error::Result;
+use crate::levels::equilibrium::FullLoad;
 
 /// Smallest step over the nominal one.
 const LEAST: f64 = 1.0 / 16.0;
