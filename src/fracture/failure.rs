@@ -22,6 +22,14 @@ pub struct Measures {
     pub ratio: f64,
 }
 
+impl Measures {
+    /// `s² + (k_t/k_n) γ²`: the energy of the whole bond over that of unit stretch.
+    #[inline(always)]
+    pub fn square(&self) -> f64 {
+        self.stretch * self.stretch + self.ratio * self.shear * self.shear
+    }
+}
+
 /// Law of damage with its limits.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Failure {
@@ -65,23 +73,17 @@ impl Failure {
     /// Share of its stiffness that a bond of an owner has at these measures, and its history; never more than before.
     #[inline(always)]
     pub fn share(&self, owner: u32, at: Measures, share: f64, peak: &mut f64) -> f64 {
+        // Debris that moves past stores little energy in linear measures; a bond so long is none.
+        if self.is_overlong(owner, at.elongation) {
+            return 0.0;
+        }
         match self {
-            Failure::Never => share,
-            Failure::Stretch(limits) => {
-                let limit = limits[owner as usize];
-                if at.elongation >= limit * (2.0 + limit) { 0.0 } else { share }
-            }
+            Failure::Never | Failure::Stretch(_) => share,
             Failure::Energy(limits) => {
-                let limit = limits[owner as usize];
-                let energy = at.elongation > 0.0 && at.stretch * at.stretch + at.ratio * at.shear * at.shear >= limit * limit;
-                // Debris that moves past stores little energy in linear measures; a bond so long is none.
-                let overlong = at.elongation >= limit * (2.0 + limit);
-                if energy || overlong { 0.0 } else { share }
+                let is_beyond = at.elongation > 0.0 && at.square() >= limits[owner as usize].powi(2);
+                if is_beyond { 0.0 } else { share }
             }
             Failure::Softening(law) => {
-                if at.elongation >= law.last * (2.0 + law.last) {
-                    return 0.0;
-                }
                 if at.stretch <= *peak {
                     return share;
                 }
@@ -114,7 +116,7 @@ impl Failure {
         match self {
             Failure::Never => 0.0,
             Failure::Stretch(_) | Failure::Softening(_) => at.stretch.max(0.0),
-            Failure::Energy(_) if at.stretch > 0.0 => (at.stretch * at.stretch + at.ratio * at.shear * at.shear).sqrt(),
+            Failure::Energy(_) if at.stretch > 0.0 => at.square().sqrt(),
             Failure::Energy(_) => 0.0,
         }
     }

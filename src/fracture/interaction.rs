@@ -73,14 +73,10 @@ pub trait Interaction: Send {
     fn unknowns(&self) -> usize;
 
     /// Told of the share of the full load before forces at it are asked for, for interactions that bring loads themselves.
-    fn load_to(&mut self, level: f64) {
-        let _ = level;
-    }
+    fn load_to(&mut self, _level: f64) {}
 
     /// The same for motion in time, where every load rises by itself: told of the time, s.
-    fn load_at(&mut self, time: f64) {
-        let _ = time;
-    }
+    fn load_at(&mut self, _time: f64) {}
 
     /// Writes the internal forces -dW/du at displacement `u` into `force`, after damage by `u` where that is allowed.
     fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction;

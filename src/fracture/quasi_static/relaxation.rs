@@ -12,7 +12,7 @@
 //! change of F over a step, and lowered by a fixed factor, since such a quotient lies above the lowest frequency
 //! ([`crate::solver`] measures both choices on lattices).
 //!
-//! Bonds are damaged at rest by default, never on the way: the swing overshoots equilibrium (up to twofold without damping) and
+//! Bonds are damaged at rest, never on the way: the swing overshoots equilibrium (up to twofold without damping) and
 //! would break bonds that no load breaks. What is damaged at rest disturbs the rest, so relaxation and damage alternate until
 //! nothing is damaged any more.
 
@@ -38,8 +38,6 @@ pub enum Breaking {
     /// At rest, over and over until nothing more is damaged.
     #[default]
     AtRest,
-    /// In every iteration, as published examples do; the result then depends on how the motion swings.
-    EveryStep,
 }
 
 /// What holds and pushes the points; layout of [`Interaction`].
@@ -149,7 +147,7 @@ impl Relaxation {
         }
     }
 
-    /// To rest, with bonds that keep their state or are damaged on the way.
+    /// To rest, with bonds that keep their state.
     fn settle(
         &self,
         interaction: &mut dyn Interaction,
@@ -159,17 +157,15 @@ impl Relaxation {
         u: &mut [f64],
         rested: &mut Rested,
     ) {
-        let damaging = if self.breaking == Breaking::EveryStep { Damaging::Allowed } else { Damaging::Frozen };
         let mut swing = Swing::at_rest(u.len());
         let mut start = 0.0_f64;
         for iteration in 0..self.iterations {
-            let reaction = interaction.internal_force(u, bonds, damaging, &mut rested.force);
+            let reaction = interaction.internal_force(u, bonds, Damaging::Frozen, &mut rested.force);
             rested.evaluations += 1;
             rested.add(reaction);
-            let disturbed = reaction.broken > 0 || reaction.damaged > self.quiet;
             let sums = swing.take(loads, mobility, &rested.force);
-            if iteration == 0 || disturbed {
-                start = start.max(sums.acceleration);
+            if iteration == 0 {
+                start = sums.acceleration;
             }
             if sums.acceleration.is_nan() || sums.acceleration > BLOWN_UP * BLOWN_UP * start {
                 rested.end = RestEnd::BlownUp;
@@ -178,7 +174,7 @@ impl Relaxation {
             let brought = interaction.driven().map_or(0.0, |driven| driven.load);
             let load = sums.load.sqrt().max(brought).max(self.least_load);
             rested.residual = if sums.square == 0.0 { 0.0 } else { sums.square.sqrt() / load };
-            if rested.residual <= self.tolerance && !disturbed {
+            if rested.residual <= self.tolerance {
                 return;
             }
             swing.step(mobility, (iteration > 0).then(|| sums.damping()), u);
