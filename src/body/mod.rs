@@ -11,7 +11,6 @@ mod couples;
 pub mod facets;
 pub mod lattice;
 pub mod mirror;
-pub mod obstacles;
 pub mod pre_crack;
 pub mod severed;
 pub mod sharing;
@@ -25,9 +24,9 @@ use crate::specimen::{Point, Specimen};
 use crate::watch::{self, Stage};
 use beyond::CoarseNeighbours;
 use boundary::Boundary;
+use facets::Obstacles;
 use lattice::Lattice;
 use mirror::{Flips, Mirror};
-use obstacles::Obstacles;
 use sharing::Sharing;
 
 /// A bond: `k x places + place` of its owner.

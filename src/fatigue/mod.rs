@@ -7,7 +7,6 @@ pub mod growth_rate;
 pub mod paris;
 pub mod pieces;
 pub mod rate_constant;
-pub mod remaining_life;
 
 use crate::error::{Error, input};
 

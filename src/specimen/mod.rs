@@ -3,7 +3,6 @@
 //! Lengths in metres, the load direction of the standard specimens is y. A [`Specimen`] is fixed once built:
 //! nothing in a run changes it. Cracks go through the thickness; part-through and corner cracks are refused by name.
 
-mod compact_tension;
 mod crack_line;
 pub mod geometry;
 pub mod handbook;
@@ -11,7 +10,7 @@ pub mod net_section;
 mod placement;
 mod plate;
 mod read;
-mod tension;
+mod standard;
 
 pub use crack_line::{CrackLine, LineEnd};
 pub use geometry::{Component, Edge};

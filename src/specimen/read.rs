@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-use super::{Specimen, SpecimenKind, compact_tension, plate, tension};
+use super::{Specimen, SpecimenKind, plate, standard};
 use crate::error::{Result, input, input_missing};
 use crate::input::{shorten, table_of};
 use crate::kinds::KindLine;
@@ -69,9 +69,9 @@ pub fn from_value(value: &Value) -> Result<Specimen> {
         return Err(input(&key, shorten(&table[&key[9..]]), "describes a crack that does not go through", ONLY_THROUGH));
     }
     match kind.parse()? {
-        kind @ (SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension) => tension::from_value(kind, value),
-        SpecimenKind::SingleEdgeTension => tension::single_edge_from_value(value),
-        SpecimenKind::CompactTension => compact_tension::from_value(value),
+        kind @ (SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension) => standard::from_value(kind, value),
+        SpecimenKind::SingleEdgeTension => standard::single_edge_from_value(value),
+        SpecimenKind::CompactTension => standard::compact_from_value(value),
         SpecimenKind::Plate => plate::from_value(value),
     }
 }

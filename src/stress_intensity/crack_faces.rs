@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::TipFrame;
+use super::gradient::TipFrame;
 use crate::body::Body;
 use crate::body::facets::Facet;
 use crate::body::pre_crack::as_cut;

@@ -14,7 +14,6 @@ mod cut_cells;
 mod energy_release;
 mod gradient;
 pub mod ring;
-mod tip_frame;
 
 use std::time::Instant;
 
@@ -27,8 +26,7 @@ use crate::growth::tip_field::{InitialTips, initial_tips};
 use crate::specimen::TipSeed;
 use crate::specimen::handbook::handbook;
 pub use cracked_plate::{CrackedPlate, Field};
-pub use gradient::{Derivatives, derivatives_at};
-pub use tip_frame::TipFrame;
+pub use gradient::{Derivatives, TipFrame, derivatives_at};
 
 crate::kinds! {
     /// Ways to the stress intensity factors.

@@ -29,10 +29,9 @@
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
-use super::TipFrame;
 use super::crack_faces::{CrackFaces, continued, faces};
 use super::cut_cells::{Part, cells_along, cells_at, parts};
-use super::gradient::{Derivatives, derivatives_at};
+use super::gradient::{Derivatives, TipFrame, derivatives_at};
 use crate::body::Body;
 use crate::body::boundary::{LoadPiece, load_pieces};
 use crate::body::facets::{Facet, facets};

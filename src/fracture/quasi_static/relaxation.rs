@@ -30,6 +30,11 @@ const DAMPING_MAX: f64 = 1.9;
 /// steps suffice to see it.
 const BLOWN_UP: f64 = 10.0;
 
+/// Growth of damage in a bond that disturbs the rest.
+const QUIET: f64 = 1e-4;
+/// Alternations of rest and damage after which there is no rest.
+const PASSES: usize = 20_000;
+
 /// When bonds may be damaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Breaking {
@@ -58,10 +63,6 @@ pub struct Relaxation {
     pub iterations: usize,
     /// When bonds may be damaged.
     pub breaking: Breaking,
-    /// Growth of damage in a bond that disturbs the rest.
-    pub quiet: f64,
-    /// Alternations of rest and damage after which there is no rest.
-    pub passes: usize,
     /// Bonds after whose break the state is handed back although it is not at rest.
     pub broken: usize,
     /// Load, N, that the residual is compared with at the least.
@@ -70,15 +71,7 @@ pub struct Relaxation {
 
 impl Default for Relaxation {
     fn default() -> Self {
-        Relaxation {
-            tolerance: 1e-6,
-            iterations: 40_000,
-            breaking: Breaking::AtRest,
-            quiet: 1e-4,
-            passes: 20_000,
-            broken: usize::MAX,
-            least_load: 0.0,
-        }
+        Relaxation { tolerance: 1e-6, iterations: 40_000, breaking: Breaking::AtRest, broken: usize::MAX, least_load: 0.0 }
     }
 }
 
@@ -102,8 +95,6 @@ pub struct Rested {
     pub end: RestEnd,
     /// Evaluations of the forces.
     pub evaluations: usize,
-    /// Alternations of rest and damage.
-    pub passes: usize,
     /// Residual over load.
     pub residual: f64,
     /// Energies and breaks, summed over the relaxation; the strain energy is the last.
@@ -118,29 +109,29 @@ impl Relaxation {
         let mut rested = Rested {
             end: RestEnd::AtRest,
             evaluations: 0,
-            passes: 0,
             residual: 0.0,
             reaction: Reaction::default(),
             force: vec![0.0; u.len()],
         };
+        let mut passes = 0;
         loop {
             let mobility = mobility(interaction, bonds, loads.held);
             self.settle(interaction, bonds, loads, &mobility, u, &mut rested);
-            rested.passes += 1;
+            passes += 1;
             if self.breaking != Breaking::AtRest || rested.end != RestEnd::AtRest {
                 return rested;
             }
             let damage = interaction.internal_force(u, bonds, Damaging::Allowed, &mut rested.force);
             rested.evaluations += 1;
             rested.add(damage);
-            if damage.broken == 0 && damage.damaged <= self.quiet {
+            if damage.broken == 0 && damage.damaged <= QUIET {
                 return rested;
             }
             if rested.reaction.broken > self.broken {
                 rested.end = RestEnd::Breaking;
                 return rested;
             }
-            if rested.passes >= self.passes {
+            if passes >= PASSES {
                 rested.end = RestEnd::NoConvergence;
                 return rested;
             }

@@ -3,8 +3,8 @@
 use super::history::GrowthHistory;
 use crate::body::{Body, Bond};
 use crate::case::Case;
+use crate::fatigue::ageing::BondLife;
 use crate::fatigue::crack_tip::CrackTip;
-use crate::fatigue::remaining_life::BondLife;
 use crate::state::Bonds;
 
 /// Where a run stands.
