@@ -47,17 +47,6 @@ pub struct QuadraturePoint {
     pub area: f64,
 }
 
-/// What divides a cell.
-#[derive(Debug, Clone, Copy)]
-struct Dividers<'a> {
-    /// Sides of rims.
-    sides: &'a [[Point; 2]],
-    /// Pieces of cracks.
-    cracks: &'a [[Point; 2]],
-    /// Tips.
-    tips: &'a [(Point, Point)],
-}
-
 /// Points of integration of every cell with material.
 pub fn quadrature(specimen: &Specimen, plate: &Discretisation) -> Vec<(usize, Vec<QuadraturePoint>)> {
     let grid = &plate.grid;
@@ -76,14 +65,15 @@ pub fn quadrature(specimen: &Specimen, plate: &Discretisation) -> Vec<(usize, Ve
     }
     let leaves: Vec<usize> = grid.leaves().collect();
     let of_leaf = |&leaf: &usize| {
-        let sides: Vec<[Point; 2]> =
-            near_sides.get(&leaf).into_iter().flatten().map(|&side| plate.sides[side as usize]).collect();
-        let cracks: Vec<[Point; 2]> = near_pieces.get(&leaf).into_iter().flatten().map(|&piece| pieces[piece as usize]).collect();
+        let of_leaf = |near: &HashMap<usize, Vec<u32>>, all: &[[Point; 2]]| -> Vec<[Point; 2]> {
+            near.get(&leaf).into_iter().flatten().map(|&index| all[index as usize]).collect()
+        };
+        let (sides, cracks) = (of_leaf(&near_sides, &plate.sides), of_leaf(&near_pieces, &pieces));
         let at_tips = tips.get(&leaf).cloned().unwrap_or_default();
         let points = if sides.is_empty() && cracks.is_empty() && at_tips.is_empty() {
             if specimen.contains(grid.middle(leaf)) { whole(grid, leaf) } else { Vec::new() }
         } else {
-            divided(specimen, grid, leaf, Dividers { sides: &sides, cracks: &cracks, tips: &at_tips })
+            divided(specimen, grid, leaf, [&sides, &cracks], &at_tips)
         };
         (!points.is_empty()).then_some((leaf, points))
     };
@@ -98,37 +88,39 @@ fn whole(grid: &Grid, leaf: usize) -> Vec<QuadraturePoint> {
     points
 }
 
-/// Points of a cell by what divides it.
-fn divided(specimen: &Specimen, grid: &Grid, leaf: usize, dividers: Dividers<'_>) -> Vec<QuadraturePoint> {
+/// Points of a cell that sides of rims and pieces of cracks divide, and tips with the directions ahead of them.
+fn divided(
+    specimen: &Specimen,
+    grid: &Grid,
+    leaf: usize,
+    [sides, cracks]: [&[[Point; 2]]; 2],
+    tips: &[(Point, Point)],
+) -> Vec<QuadraturePoint> {
     let [low, high] = grid.bounds(leaf);
     let spacing = grid.spacing(leaf);
     let least = SLIVER * spacing * spacing;
     let mut pieces = vec![vec![low, [high[0], low[1]], high, [low[0], high[1]]]];
-    for &side in dividers.sides {
+    for &side in sides {
         divide(&mut pieces, side, least);
     }
     pieces.retain(|piece| specimen.contains(middle(piece)));
-    for &crack in dividers.cracks {
+    for &crack in cracks {
         divide(&mut pieces, crack, least);
     }
-    for &(tip, [x, y]) in dividers.tips {
+    for &(tip, [x, y]) in tips {
         let reach = 2.0 * spacing;
         for [x, y] in [[x, y], [-y, x]] {
             let across = [[tip[0] - reach * x, tip[1] - reach * y], [tip[0] + reach * x, tip[1] + reach * y]];
-            let mut others = Vec::new();
-            let mut holding = Vec::new();
-            pieces
-                .into_iter()
-                .for_each(|piece| if holds(&piece, tip, AT_TIP * spacing) { holding.push(piece) } else { others.push(piece) });
+            let (mut holding, others): (Vec<_>, Vec<_>) =
+                pieces.into_iter().partition(|piece| holds(piece, tip, AT_TIP * spacing));
             divide(&mut holding, across, least);
-            others.extend(holding);
-            pieces = others;
+            pieces = [others, holding].concat();
         }
     }
     let mut points = Vec::new();
     for piece in pieces {
         let corner = |tip: &Point| piece.iter().position(|corner| distance(*corner, *tip) < AT_TIP * spacing);
-        match dividers.tips.iter().find_map(|(tip, _)| corner(tip)) {
+        match tips.iter().find_map(|(tip, _)| corner(tip)) {
             Some(corner) => fan(&piece, corner, &mut points),
             None => convex(&piece, spacing, &mut points),
         }

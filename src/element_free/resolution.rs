@@ -67,7 +67,7 @@ impl Resolution {
         for tip in tips {
             let spacing = room(specimen, lines, tip) / self.hold;
             let at = lines[tip.end.line].end(tip.end.at_last);
-            sources.push(Source { at, radius: 0.0, spacing, reach: TIP_REACH });
+            sources.push(Source::point(at, spacing, TIP_REACH));
         }
         sources.extend(self.of_rims(specimen));
         sources.extend(self.of_cracks(specimen, lines, tips));
@@ -83,12 +83,10 @@ impl Resolution {
 
     /// Holes by their radius, and ligaments between rims by the way straight into the material.
     fn of_rims(&self, specimen: &Specimen) -> Vec<Source> {
-        let holes = specimen.holes.iter().map(|hole| Source {
-            at: hole.centre,
-            radius: hole.radius,
-            spacing: hole.radius / self.in_radius,
-            reach: RIM_REACH,
-        });
+        let holes = specimen
+            .holes
+            .iter()
+            .map(|hole| Source { radius: hole.radius, ..Source::point(hole.centre, hole.radius / self.in_radius, RIM_REACH) });
         let mut sources: Vec<Source> = holes.collect();
         sources.extend(self.of_arcs(&specimen.outline));
         let rims = stretches(specimen);
@@ -114,7 +112,7 @@ impl Resolution {
                 if nearest <= 1.0 {
                     let width = nearest * reach;
                     let at = [from[0] + 0.5 * width * x, from[1] + 0.5 * width * y];
-                    sources.push(Source { at, radius: 0.0, spacing: width / ACROSS_LIGAMENT, reach: RIM_REACH });
+                    sources.push(Source::point(at, width / ACROSS_LIGAMENT, RIM_REACH));
                 }
             }
         }
@@ -136,7 +134,7 @@ impl Resolution {
             for end in [before, after] {
                 let share = 0.5 * side / distance(at, end);
                 let place = |i: usize| along(at, end, share * i as f64 / count as f64);
-                sources.extend((0..count).map(|i| Source { at: place(i), radius: 0.0, spacing, reach: RIM_REACH }));
+                sources.extend((0..count).map(|i| Source::point(place(i), spacing, RIM_REACH)));
             }
         }
         sources
@@ -175,12 +173,7 @@ impl Resolution {
                     if narrow >= reach {
                         continue;
                     }
-                    sources.push(Source {
-                        at: along(a, b, middle),
-                        radius: 0.0,
-                        spacing: narrow / ACROSS_LIGAMENT,
-                        reach: RIM_REACH,
-                    });
+                    sources.push(Source::point(along(a, b, middle), narrow / ACROSS_LIGAMENT, RIM_REACH));
                     let stretch = (to - from) * length;
                     // Beside a line that crosses, the gap goes to nothing: what is fine there helps nobody.
                     let is_alongside = || gap(from).min(gap(to)) > ALONGSIDE * narrow;
