@@ -65,10 +65,10 @@ pub fn quadrature(specimen: &Specimen, plate: &Discretisation) -> Vec<(usize, Ve
     }
     let leaves: Vec<usize> = grid.leaves().collect();
     let of_leaf = |&leaf: &usize| {
-        let of_leaf = |near: &HashMap<usize, Vec<u32>>, all: &[[Point; 2]]| -> Vec<[Point; 2]> {
+        let beside = |near: &HashMap<usize, Vec<u32>>, all: &[[Point; 2]]| -> Vec<[Point; 2]> {
             near.get(&leaf).into_iter().flatten().map(|&index| all[index as usize]).collect()
         };
-        let (sides, cracks) = (of_leaf(&near_sides, &plate.sides), of_leaf(&near_pieces, &pieces));
+        let (sides, cracks) = (beside(&near_sides, &plate.sides), beside(&near_pieces, &pieces));
         let at_tips = tips.get(&leaf).cloned().unwrap_or_default();
         let points = if sides.is_empty() && cracks.is_empty() && at_tips.is_empty() {
             if specimen.contains(grid.middle(leaf)) { whole(grid, leaf) } else { Vec::new() }

@@ -3,7 +3,7 @@
 use crate::body::Body;
 use crate::body::balanced::flanks::{self, FlankRange};
 use crate::body::pre_crack::bonds_cut_by;
-use crate::body::severed::{RepresentedEnd, represented_end};
+use crate::body::severed::represented_excess;
 use crate::bond_law::SurfaceCorrection;
 use crate::case::Case;
 use crate::error::{Error, Result, input};
@@ -11,7 +11,7 @@ use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::levels::Discretisation;
 use crate::solver::{Equilibrium, SolverKind};
 use crate::specimen::geometry::distance;
-use crate::specimen::{Crack, Point, Specimen};
+use crate::specimen::{Crack, CrackLine, Point, Specimen};
 use crate::state::Bonds;
 use crate::units::MM;
 
@@ -99,10 +99,10 @@ impl<'a> CrackedPlate<'a> {
         Ok(Field { specimen, bonds, displacement, work })
     }
 
-    /// Where the crack of `specimen` that a tip ends reaches once cut into bonds.
-    pub fn represented(&self, specimen: &Specimen, tip: usize) -> RepresentedEnd {
-        let own = own_crack(specimen, tip);
-        represented_end(&self.body, &own.crack, own.at_to, own.length)
+    /// How much farther the crack of `specimen` that a tip ends reaches once cut into bonds, m.
+    pub fn represented(&self, specimen: &Specimen, tip: usize) -> f64 {
+        let Own { crack, at_to, length } = own_crack(specimen, tip);
+        represented_excess(&self.body, &CrackLine::straight(crack.from, crack.to), at_to, length)
     }
 
     /// Length of straight crack behind a tip up to its middle, where both its ends are tips, or its mouth, m.

@@ -60,7 +60,7 @@ pub fn all_tips(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>> {
 fn opening_factor(plate: &mut CrackedPlate, tips: &[usize], unmoved: &Field) -> Result<f64> {
     let count = tips.len() as f64;
     let excess = |plate: &CrackedPlate, field: &Field| {
-        tips.iter().map(|&tip| plate.represented(&field.specimen, tip).excess).sum::<f64>() / count
+        tips.iter().map(|&tip| plate.represented(&field.specimen, tip)).sum::<f64>() / count
     };
     let step = step(plate, tips[0]);
     let mut works = [(excess(plate, unmoved), unmoved.work); 3];
