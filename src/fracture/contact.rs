@@ -152,11 +152,7 @@ impl<'n> Contact<'n> {
 
     /// Adds the forces of the pressed columns at a displacement; returns their energy, J.
     pub fn push(&self, u: &[f64], force: &mut [f64]) -> f64 {
-        let unknowns = self.net.unknowns;
-        let at = |point: u32| {
-            let i = point as usize * unknowns;
-            [u[i], u[i + 1]]
-        };
+        let (unknowns, at) = (self.net.unknowns, moved(self.net, u));
         let mut energy = 0.0;
         for (column, _) in self.columns.iter().zip(&self.pressed).filter(|(_, pressed)| **pressed) {
             let gap = column.gap(&at);
@@ -175,11 +171,7 @@ impl<'n> Contact<'n> {
 
     /// Looks which columns are pressed at an equilibrium; whether others are than before.
     pub fn settle(&mut self, bonds: &BondState, u: &[f64]) -> bool {
-        let unknowns = self.net.unknowns;
-        let at = |point: u32| {
-            let i = point as usize * unknowns;
-            [u[i], u[i + 1]]
-        };
+        let at = moved(self.net, u);
         if self.struts.is_empty() && !self.may_touch(bonds, &at) {
             return false;
         }
@@ -405,6 +397,12 @@ pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, pictures: &[Snapshot
         overlap / MM,
         100.0 * overlap / spacing
     ))
+}
+
+/// Displacement of the points of a net, m, of its unknowns.
+fn moved<'u>(net: &Net, u: &'u [f64]) -> impl Fn(u32) -> Point + use<'u> {
+    let unknowns = net.unknowns;
+    move |point| [u[point as usize * unknowns], u[point as usize * unknowns + 1]]
 }
 
 /// Middle of a bond, m.

@@ -7,11 +7,10 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::forces;
-use super::read::Input;
+use super::{Input, forces};
 use crate::error::{Result, input, input_missing};
 use crate::input::{number, shorten, slice, table_of};
-use crate::specimen::geometry::distance;
+use crate::specimen::geometry::{bounding_box, distance, unit};
 use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
 use crate::units::MM;
 
@@ -96,7 +95,7 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
             return Err(input(&format!("{path}.fix"), "[]", "holds nothing", "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]"));
         }
         let depth = number("a depth in mm", 0.0, 1e5).read(&format!("{path}.rows_mm"), entry.rows_mm)? * MM;
-        let [low, high] = crate::specimen::geometry::bounding_box(&specimen.outline);
+        let [low, high] = bounding_box(&specimen.outline);
         let (x, y) = (entry.fix.contains(&Component::X), entry.fix.contains(&Component::Y));
         let along_normal = if edge.normal()[0] == 0.0 { (y, high[1] - low[1]) } else { (x, high[0] - low[0]) };
         if depth >= along_normal.1 / 2.0 {
@@ -193,11 +192,7 @@ fn directions(given: &Value, loaded: &[Edge]) -> Result<Vec<Point>> {
     if vectors.len() != loaded.len() {
         return Err(wrong(format!("names {} directions for {} sides", vectors.len(), loaded.len())));
     }
-    let unit = |&[x, y]: &Point| {
-        let size = x.hypot(y);
-        (1e-9..1e9).contains(&size).then(|| [x / size, y / size])
-    };
-    vectors.iter().map(unit).collect::<Option<_>>().ok_or_else(|| wrong("has no direction".into()))
+    vectors.into_iter().map(unit).collect::<Option<_>>().ok_or_else(|| wrong("has no direction".into()))
 }
 
 /// Traction `share` along the outward normal on all stretches of these sides.

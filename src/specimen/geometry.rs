@@ -20,6 +20,12 @@ pub fn direction(a: Point, b: Point) -> Point {
     if length > 0.0 { [(b[0] - a[0]) / length, (b[1] - a[1]) / length] } else { [0.0, 0.0] }
 }
 
+/// The direction of a vector that was given, of length 1; `None` for one that shows none.
+pub fn unit([x, y]: Point) -> Option<Point> {
+    let size = x.hypot(y);
+    (1e-9..1e9).contains(&size).then(|| [x / size, y / size])
+}
+
 /// Twice the signed area of the triangle abc: positive where a, b, c turn counter-clockwise.
 pub fn turn(a: Point, b: Point, c: Point) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
