@@ -30,9 +30,7 @@ impl Seal {
     }
 
     /// From what [`Seal::to_bytes`] gave.
-    ///
-    /// # Errors
-    /// [`Error::Input`] that says what is wrong: no such checkpoint at all, one of another version of the program, or a damaged
+    /// Errors: [`Error::Input`] that says what is wrong: no such checkpoint at all, one of another version of the program, or a damaged
     /// one.
     pub fn read<T: DeserializeOwned>(self, bytes: &[u8]) -> Result<T> {
         let damaged = || refused("is damaged");

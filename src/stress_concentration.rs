@@ -68,9 +68,7 @@ impl Stressed {
 }
 
 /// The plate of a case at its maximum load.
-///
-/// # Errors
-/// As [`solve`]; [`Error::Mechanics`] where cracks or supports leave a mechanism.
+/// Errors: as [`solve`]; [`Error::Mechanics`] where cracks or supports leave a mechanism.
 pub fn stressed(case: &Case) -> Result<Stressed> {
     let specimen = &case.specimen;
     let (lines, tips) = initial_cracks(specimen);

@@ -22,6 +22,12 @@ pub const MPA_SQRT_M: f64 = 1e6;
 /// m/cycle in a mm/cycle.
 pub const MM_PER_CYCLE: f64 = 1e-3;
 
+/// A place, m, in words: its coordinates in mm.
+pub fn place_mm(place: [f64; 2]) -> String {
+    let [x, y] = place.map(|metres| metres / MM);
+    format!("({x:.4}, {y:.4}) mm")
+}
+
 /// A number in writing that nobody takes its decimal point for a separator of thousands in: 12.345 becomes 12.3450.
 pub fn unmistakable(number: &str) -> String {
     match number.split_once('.') {

@@ -45,6 +45,27 @@ impl Elasticity {
         let pressure = (3.0 - self.kappa) / (2.0 * (self.kappa - 1.0)) * (xx + yy);
         [two_g * (xx + pressure), two_g * (yy + pressure), 0.5 * two_g * (xy + yx)]
     }
+
+    /// `P_j q_,j` of the interaction integral, with `P_j = σ_ij u^aux_i,1 + σ^aux_ij u_i,1 - σ_ik ε^aux_ik δ_1j`, of two displacement
+    /// gradients in the axes of a tip.
+    pub fn interaction(&self, field: &[[f64; 2]; 2], auxiliary: &[[f64; 2]; 2], q: [f64; 2]) -> f64 {
+        let (stress, stress_aux) = (self.stress(field), self.stress(auxiliary));
+        let flow = |s: [f64; 3], h: &[[f64; 2]; 2]| [s[0] * h[0][0] + s[2] * h[1][0], s[2] * h[0][0] + s[1] * h[1][0]];
+        let (a, b) = (flow(stress, auxiliary), flow(stress_aux, field));
+        (a[0] + b[0] - mutual_energy(&stress, auxiliary)) * q[0] + (a[1] + b[1]) * q[1]
+    }
+
+    /// `P_j m_j` on a face without traction, or with that of `field`: `σ^aux_ij m_j u_i,1 - σ_ik ε^aux_ik m_1`.
+    pub fn interaction_on_face(&self, field: &[[f64; 2]; 2], auxiliary: &[[f64; 2]; 2], [m1, m2]: [f64; 2]) -> f64 {
+        let [xx, yy, xy] = self.stress(auxiliary);
+        let traction = [xx * m1 + xy * m2, xy * m1 + yy * m2];
+        traction[0] * field[0][0] + traction[1] * field[1][0] - mutual_energy(&self.stress(field), auxiliary) * m1
+    }
+}
+
+/// `σ_ik ε^aux_ik`.
+fn mutual_energy(stress: &[f64; 3], auxiliary: &[[f64; 2]; 2]) -> f64 {
+    stress[0] * auxiliary[0][0] + stress[1] * auxiliary[1][1] + stress[2] * (auxiliary[0][1] + auxiliary[1][0])
 }
 
 /// An eigenfunction: order n and symmetry.

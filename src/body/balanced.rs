@@ -47,9 +47,7 @@ pub(crate) fn load_rows(stencil: &Stencil) -> usize {
 }
 
 /// Sets the multipliers of the bonds near the rim of the uncracked body.
-///
-/// # Errors
-/// No multipliers within the bounds come near equilibrium.
+/// Errors: no multipliers within the bounds come near equilibrium.
 pub(super) fn balance(body: &mut Body, rim: &[Facet], sharing: &Sharing) -> Result<()> {
     let places = body.places();
     let near_rim = near_rim(body);

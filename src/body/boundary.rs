@@ -96,9 +96,7 @@ impl Boundary {
 
     /// Removes the small resultant that sharing out the loads to points has left on a floating plate: the loaded points
     /// take the smallest change of forces (least squares) after which force and moment vanish.
-    ///
-    /// # Errors
-    /// Loads far out of balance on a plate that nothing holds.
+    /// Errors: loads far out of balance on a plate that nothing holds.
     pub(super) fn balance(&mut self, lattice: &Lattice) -> Result<()> {
         if !self.floating {
             return Ok(());
@@ -176,9 +174,7 @@ impl Boundary {
 
 /// Changes forces on seats by the smallest amounts (least squares) after which their resultant and their moment, that of couples
 /// included, vanish.
-///
-/// # Errors
-/// Forces far out of balance.
+/// Errors: forces far out of balance.
 pub(crate) fn balance(seated: &mut [(Point, Point)], couples: f64) -> Result<()> {
     let scale: f64 = seated.iter().map(|(_, f)| f[0].abs() + f[1].abs()).sum();
     if scale == 0.0 {

@@ -6,14 +6,13 @@
 //! its own traction `t = σ n`, so the couple is written as `Σ w (B n)·t` over the rim near the point, with the smallest B
 //! for which that is M : σ in every uniform stress.
 
-use std::collections::BTreeMap;
-
 use super::Body;
 use super::boundary::LoadPiece;
 use super::facets::Facet;
 use crate::bond_law::stencil::plane_stiffness;
 use crate::material::Material;
 use crate::specimen::Point;
+use crate::specimen::geometry::Places;
 
 /// Ratio of the principal values of `Σ w n nᵀ` below which the rim near a point counts as straight.
 const STRAIGHT: f64 = 1e-6;
@@ -24,21 +23,20 @@ const BALANCED: f64 = 1e-9;
 pub(super) fn couples(body: &Body, material: &Material, rim: &[Facet], loads: &[LoadPiece]) -> Vec<(u32, f64)> {
     // Points out of balance lie up to two reaches behind the rim; both sides of a corner must be seen from there.
     let radius = 2.0 * body.stencil.reach as f64 + 2.0;
-    let seats = |facets: &[Facet]| facets.iter().map(|facet| body.lattice.locate(facet.at)).collect::<Vec<_>>();
-    let rim_cells = Cells::of(seats(rim), radius);
-    let load_cells = Cells::of(loads.iter().map(|load| body.lattice.locate(load.facet.at)).collect(), radius);
+    let rim_seats = Places::of(radius, rim.iter().map(|facet| body.lattice.locate(facet.at)));
+    let load_seats = Places::of(radius, loads.iter().map(|load| body.lattice.locate(load.facet.at)));
     let [c11, c12] = plane_stiffness(material);
     let least = BALANCED * body.stencil.bonds.iter().map(|bond| bond.k_t * bond.lever * bond.length).sum::<f64>();
     let couple = |&place: &u32| -> Option<(u32, f64)> {
         let (column, row) = body.lattice.column_row(place as usize);
         let at = [column as f64, row as f64];
-        load_cells.near(at).next()?;
+        near(&load_seats, at, radius).next()?;
         let turning = turning(body, place as usize);
         if turning.iter().all(|t| t.abs() <= least) {
             return None;
         }
         let mut spread = [0.0; 3];
-        for (i, weight) in rim_cells.near(at) {
+        for (i, weight) in near(&rim_seats, at, radius) {
             let [x, y] = body.lattice.to_axes(rim[i].normal);
             let area = weight * rim[i].length * body.thickness;
             spread = [spread[0] + area * x * x, spread[1] + area * x * y, spread[2] + area * y * y];
@@ -48,7 +46,7 @@ pub(super) fn couples(body: &Body, material: &Material, rim: &[Facet], loads: &[
             let ([x, y], t) = (body.lattice.to_axes(loads[i].facet.normal), body.lattice.to_axes(loads[i].force));
             weight * ((b[0][0] * x + b[0][1] * y) * t[0] + (b[1][0] * x + b[1][1] * y) * t[1])
         };
-        Some((place, load_cells.near(at).map(share).sum()))
+        Some((place, near(&load_seats, at, radius).map(share).sum()))
     };
     body.points.iter().filter_map(couple).filter(|couple| couple.1 != 0.0).collect()
 }
@@ -93,33 +91,11 @@ fn smallest([a, b]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Option<[[f64; 2]; 2]> {
     Some([[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]])
 }
 
-/// Positions (in spacings) sorted into squares, so that those within a radius are found at once.
-struct Cells {
-    radius: f64,
-    positions: Vec<Point>,
-    squares: BTreeMap<(i64, i64), Vec<usize>>,
-}
-
-impl Cells {
-    fn of(positions: Vec<Point>, radius: f64) -> Self {
-        let mut squares = BTreeMap::<_, Vec<usize>>::new();
-        for (i, &position) in positions.iter().enumerate() {
-            squares.entry(square(position, radius)).or_default().push(i);
-        }
-        Cells { radius, positions, squares }
-    }
-
-    /// Positions within the radius with a weight that falls smoothly to 0 there.
-    fn near(&self, at: Point) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let (x, y) = square(at, self.radius);
-        let squares = (y - 1..=y + 1).flat_map(move |row| (x - 1..=x + 1).map(move |column| (column, row)));
-        squares.filter_map(|key| self.squares.get(&key)).flatten().filter_map(move |&i| {
-            let away = (self.positions[i][0] - at[0]).hypot(self.positions[i][1] - at[1]) / self.radius;
-            (away < 1.0).then(|| (i, (1.0 - away * away).powi(2)))
-        })
-    }
-}
-
-fn square(position: Point, size: f64) -> (i64, i64) {
-    ((position[0] / size).floor() as i64, (position[1] / size).floor() as i64)
+/// Places, in spacings, within a radius with a weight that falls smoothly to 0 there.
+fn near(places: &Places, at: Point, radius: f64) -> impl Iterator<Item = (usize, f64)> + '_ {
+    places.near(at, radius).filter_map(move |i| {
+        let [x, y] = places.away(i, at);
+        let away = x.hypot(y) / radius;
+        (away < 1.0).then(|| (i as usize, (1.0 - away * away).powi(2)))
+    })
 }

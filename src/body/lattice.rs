@@ -57,21 +57,15 @@ impl Lattice {
     /// and columns are laid so that a crack along them falls between two of them.
     ///
     /// With an angle the lattice covers the bounding circle and keeps the requested spacing.
-    ///
-    /// # Errors
-    /// More places than memory can sensibly hold, or a spacing wider than the plate.
+    /// Errors: more places than memory can sensibly hold, or a spacing wider than the plate.
     pub fn over(specimen: &Specimen, spacing: f64, angle: f64, padding: usize) -> Result<Self> {
         let [low, high] = bounding_box(&specimen.outline);
         let upright = angle == 0.0;
         let across = across(specimen, spacing);
         let spacing = fitting_spacing(specimen, spacing, angle);
         if across < 4.0 {
-            return Err(input(
-                "model.spacing_mm",
-                spacing * 1e3,
-                "leaves fewer than 4 points across the plate",
-                "give a smaller spacing",
-            ));
+            let remedy = "give a smaller spacing";
+            return Err(input("model.spacing_mm", spacing * 1e3, "leaves fewer than 4 points across the plate", remedy));
         }
         let (columns, rows, origin) = if upright {
             // Half a spacing to either side of a crack plane, as many as have their middle inside the plate or on its edge.
@@ -98,12 +92,9 @@ impl Lattice {
             (columns, rows, [centre[0] + s * cos - t * sin, centre[1] + s * sin + t * cos])
         };
         if columns * rows > 2e8 {
-            return Err(input(
-                "model.spacing_mm",
-                spacing * 1e3,
-                format!("asks for {:.0} million lattice places", columns * rows / 1e6),
-                "give a larger spacing (200 million places at the most)",
-            ));
+            let problem = format!("asks for {:.0} million lattice places", columns * rows / 1e6);
+            let remedy = "give a larger spacing (200 million places at the most)";
+            return Err(input("model.spacing_mm", spacing * 1e3, problem, remedy));
         }
         let (columns, rows) = (columns as usize, rows as usize);
         let stride = columns.next_multiple_of(LANES) + 2 * padding;

@@ -9,6 +9,8 @@
 //! Where the line runs through a row of points, each bond along it belongs half to either side, a point of it keeps the bonds to
 //! its own side alone, and its motion across the line and its rotation are held at zero.
 
+use std::collections::HashMap;
+
 use rayon::prelude::*;
 
 use super::boundary::Boundary;
@@ -145,8 +147,14 @@ impl Reflection {
     /// Whether the points, loads and supports of a plate are their own image.
     fn keeps(&self, body: &Body) -> bool {
         let boundary = &body.boundary;
+        // Couples change their sign in any mirror.
+        let couples: Vec<(u32, [f64; 2])> = boundary
+            .couples
+            .iter()
+            .map(|&(place, couple)| (place, [0, 1].map(|c| if c == self.axis { couple } else { 0.0 })))
+            .collect();
         let points = body.points.iter().all(|&place| body.is_point[self.place(place as usize)]);
-        points && self.keeps_vectors(&boundary.forces) && self.keeps_scalars(&boundary.couples) && self.keeps_supports(body)
+        points && self.keeps_vectors(&boundary.forces) && self.keeps_vectors(&couples) && self.keeps_supports(body)
     }
 
     /// Whether `same(bond, image)` for every bond of the plate.
@@ -167,9 +175,10 @@ impl Reflection {
         })
     }
 
+    /// Whether every vector has its image, the component across the mirror turned over.
     fn keeps_vectors(&self, vectors: &[(u32, [f64; 2])]) -> bool {
         let largest = vectors.iter().map(|(_, v)| v[0].hypot(v[1])).fold(0.0, f64::max);
-        let at: std::collections::HashMap<u32, [f64; 2]> = vectors.iter().copied().collect();
+        let at: HashMap<u32, [f64; 2]> = vectors.iter().copied().collect();
         vectors.iter().all(|&(place, mut vector)| {
             vector[self.axis] = -vector[self.axis];
             let image = at.get(&(self.place(place as usize) as u32)).copied().unwrap_or([0.0; 2]);
@@ -177,21 +186,11 @@ impl Reflection {
         })
     }
 
-    /// Scalars that change their sign in a mirror, as couples do.
-    fn keeps_scalars(&self, scalars: &[(u32, f64)]) -> bool {
-        let largest = scalars.iter().map(|(_, s)| s.abs()).fold(0.0, f64::max);
-        let at: std::collections::HashMap<u32, f64> = scalars.iter().copied().collect();
-        scalars.iter().all(|&(place, scalar)| {
-            let image = at.get(&(self.place(place as usize) as u32)).copied().unwrap_or(0.0);
-            close(-scalar, image, largest)
-        })
-    }
-
     fn keeps_supports(&self, body: &Body) -> bool {
         let up = body.lattice.to_axes([0.0, 1.0]);
         let grips: Vec<(u32, [f64; 2])> =
             body.boundary.clamped.iter().map(|&(place, side)| (place, up.map(|u| side * u))).collect();
-        let held: std::collections::HashMap<u32, [bool; 3]> = body.boundary.fixed.iter().copied().collect();
+        let held: HashMap<u32, [bool; 3]> = body.boundary.fixed.iter().copied().collect();
         let supports = held.iter().all(|(&place, held_here)| held.get(&(self.place(place as usize) as u32)) == Some(held_here));
         supports && self.keeps_vectors(&grips)
     }

@@ -10,7 +10,6 @@ mod couples;
 pub mod facets;
 pub mod lattice;
 pub mod mirror;
-pub mod obstacles;
 pub mod pre_crack;
 pub mod severed;
 pub mod sharing;
@@ -23,9 +22,9 @@ use crate::material::Material;
 use crate::specimen::{Point, Specimen};
 use crate::watch::{self, Stage};
 use boundary::Boundary;
+use facets::Obstacles;
 use lattice::Lattice;
 use mirror::{Flips, Mirror};
-use obstacles::Obstacles;
 use sharing::Sharing;
 
 /// A bond: `k x places + place` of its owner.
@@ -62,9 +61,7 @@ pub struct Body {
 
 impl Body {
     /// Discretises a specimen.
-    ///
-    /// # Errors
-    /// Poisson's ratio outside the law's range, a spacing that does not suit the plate, more bonds than fit.
+    /// Errors: Poisson's ratio outside the law's range, a spacing that does not suit the plate, more bonds than fit.
     pub fn build(
         specimen: &Specimen,
         material: &Material,

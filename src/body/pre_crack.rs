@@ -35,17 +35,13 @@ pub fn through_mouths(specimen: &Specimen, spacing: f64) -> Vec<Crack> {
     specimen.cracks.iter().map(|crack| Crack::straight(longer(crack.from, crack.to), longer(crack.to, crack.from))).collect()
 }
 
-/// How far a crack from `a` to `b` is shifted, to its left, before bonds are cut, m.
-pub fn tie_break(body: &Body, a: Point, b: Point) -> Point {
-    aside(body.lattice.spacing, a, b)
-}
-
-/// A piece of crack where it cuts the bonds: shifted aside by [`tie_break`].
+/// A piece of crack where it cuts the bonds: shifted a trifle aside.
 pub fn as_cut(body: &Body, [a, b]: [Point; 2]) -> [Point; 2] {
-    let shift = tie_break(body, a, b);
+    let shift = aside(body.lattice.spacing, a, b);
     [a, b].map(|p| [p[0] + shift[0], p[1] + shift[1]])
 }
 
+/// How far a crack from `a` to `b` is shifted, to its left, before bonds are cut, m.
 fn aside(spacing: f64, a: Point, b: Point) -> Point {
     let [x, y] = direction(a, b);
     let shift = TIE_BREAK * spacing;

@@ -6,8 +6,8 @@
 
 use super::pre_crack::bonds_across;
 use super::{Body, Bond};
-use crate::specimen::geometry::{along, direction, distance, meeting_share, turn};
-use crate::specimen::{Crack, CrackLine, Point};
+use crate::specimen::geometry::{along, direction, distance, meeting_share};
+use crate::specimen::{CrackLine, Point};
 
 /// Length of crack before its end, in horizons, over which severed bonds are counted at the most.
 const WINDOW_HORIZONS: f64 = 4.0;
@@ -30,47 +30,16 @@ pub fn severed_per_length(body: &Body, normal: Point) -> f64 {
     (0..bonds.len()).map(severed).sum::<f64>() / body.lattice.spacing.powi(2)
 }
 
-/// Where a straight crack cut into the bonds really ends, against where it was asked to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RepresentedEnd {
-    /// How much farther the crack reaches, m; between about plus and minus half a spacing.
-    pub excess: f64,
-    /// How far the middle of the gap lies to the left of the crack line, seen towards the end, m: a crack through points
-    /// leaves them all on one side.
-    pub aside: f64,
-}
-
-/// The end `to` (or `from`) of a crack as the bonds it cuts represent it.
-///
-/// `length` is the length of crack that belongs to this end: all of it, or half where both ends are tips. Bonds are counted
-/// over a window before the end that fades in smoothly, so that where it starts does not matter; their middles show where
-/// the gap lies.
-pub fn represented_end(body: &Body, crack: &Crack, at_to: bool, length: f64) -> RepresentedEnd {
-    let window = length.min(WINDOW_HORIZONS * body.horizon());
-    let (tip, other) = if at_to { (crack.to, crack.from) } else { (crack.from, crack.to) };
-    let start = along(tip, other, window / distance(crack.from, crack.to));
-    // In the sense of the crack: a crack through points leaves them on the side that this sense decides.
-    let across = if at_to { bonds_across(body, start, tip) } else { bonds_across(body, tip, start) };
-    let (mut counted, mut moment) = (0.0, 0.0);
-    for bond in across {
-        let weight = severed_weight(body, body.ends(bond).0) * smooth_step(crossing(body, bond, start, tip) / FADE);
-        counted += weight;
-        moment += weight * turn(start, tip, body.middle(bond)) / window;
-    }
-    let ahead = body.lattice.to_axes(direction(start, tip));
-    let excess = counted / severed_per_length(body, [-ahead[1], ahead[0]]) - (1.0 - 0.5 * FADE) * window;
-    RepresentedEnd { excess, aside: if counted > 0.0 { moment / counted } else { 0.0 } }
-}
-
 /// Turn between two pieces of a line, rad, from which bonds around the corner no longer count as those of a straight crack.
 const CORNER: f64 = 0.1;
 /// Least straight length before an end, in horizons, whose bonds tell where it reaches.
 const STRAIGHT_HORIZONS: f64 = 0.7;
 
-/// How much farther a crack reaches at one of its ends, once cut into bonds, than its line does, m: [`represented_end`] of a line
-/// that may bend. Zero where the line has a corner so near that its bonds do not tell.
+/// How much farther a crack reaches at one of its ends, once cut into bonds, than its line does, m; between about plus and minus half a
+/// spacing, and zero where the line has a corner so near that its bonds do not tell.
 ///
-/// `length` is the length of crack that belongs to this end, as there.
+/// `length` is the length of crack that belongs to this end: all of it, or half where both ends are tips. Bonds are counted over a
+/// window before the end that fades in smoothly, so that where it starts does not matter.
 pub fn represented_excess(body: &Body, line: &CrackLine, at_last: bool, length: f64) -> f64 {
     let mut pieces: Vec<[Point; 2]> = line.pieces().collect();
     if at_last {

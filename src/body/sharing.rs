@@ -6,9 +6,8 @@
 //! (Lancaster and Salkauskas 1981, Math. Comp. 37:141) over points behind the rim, as deep as the longest bond and one
 //! spacing to either side; the last row of a straight edge takes about 1.15, the third about -0.35.
 
-use super::facets::{Facet, behind};
+use super::facets::{Facet, Obstacles, behind};
 use super::lattice::Lattice;
-use super::obstacles::Obstacles;
 use crate::specimen::Point;
 
 /// Factor by which the region is widened while its points do not determine a linear field.

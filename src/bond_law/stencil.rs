@@ -107,9 +107,7 @@ pub fn is_within_springs(material: &Material) -> bool {
 ///
 /// Two-parameter: tangential modulus proportional to 1-3ν (plane stress) or 1-4ν (plane strain) must not be negative.
 /// Bond-based: ν is 1/3 or 1/4 (Silling 2000; Gerstle, Sau and Silling 2005 for the plane). State-based: any.
-///
-/// # Errors
-/// `Error::Input` on `material.poisson_ratio`.
+/// Errors: `Error::Input` on `material.poisson_ratio`.
 pub fn check(law: &BondLaw, material: &Material) -> Result<(), Error> {
     const KEY: &str = "material.poisson_ratio";
     let (kind, nu, limit) = (law.kind, material.poisson_ratio, poisson_limit(material.plane));

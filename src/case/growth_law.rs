@@ -2,10 +2,9 @@
 
 use super::fatigue_keys::{FatigueKeys, TableEnds};
 use crate::error::{Error, InputError, Result, input, input_missing};
-use crate::fatigue::growth_law::forman::Forman;
 use crate::fatigue::growth_law::nasgro::{Nasgro, RATIO_MIN};
 use crate::fatigue::growth_law::table::{Curve, Table};
-use crate::fatigue::growth_law::{FactorLaw, GrowthLawKind};
+use crate::fatigue::growth_law::{FactorLaw, Forman, GrowthLawKind};
 use crate::input::{Folder, INTENSITY, number};
 use crate::material::Material;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};

@@ -14,7 +14,7 @@ use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{Driver, FatigueLaw, FatigueSettings, GrowthRate, STEADY_EXPONENTS, unsteady};
-use crate::input::{Folder, LENGTH, number, slice, value_at};
+use crate::input::{Document, Folder, LENGTH, number, slice, value_at};
 use crate::units::MM_PER_CYCLE;
 
 /// Slack of a stress ratio against those of the rates.
@@ -163,7 +163,7 @@ fn read_record(name: &str, folder: &Folder) -> Result<LawSource> {
 /// # Errors
 /// A file that cannot be read, or is no such record.
 pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
-    let document = folder.document(name)?;
+    let document = Document::in_folder(folder, name, &[])?;
     if LawRecord::is_of(&document.table) {
         let problem = "holds a law over K that was fitted to rates, not A and p";
         return Err(input("fitted", format!("\"{name}\""), problem, "give a record of a fit to a-N readings"));
@@ -191,7 +191,7 @@ pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
 pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value, Box<LawRecord>)>> {
     let Some(name) = value_at(fatigue, "fitted").and_then(Value::as_str) else { return Ok(None) };
     // One that cannot be read is refused, or not missed, where records of A and p are.
-    let Ok(document) = folder.document(name) else { return Ok(None) };
+    let Ok(document) = Document::in_folder(folder, name, &[]) else { return Ok(None) };
     if !LawRecord::is_of(&document.table) {
         return Ok(None);
     }

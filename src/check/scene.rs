@@ -4,7 +4,7 @@ use super::preview::{as_input, is_quick};
 use super::understood::{self, Line, line, mm, plate_lines, points_words, short};
 use crate::error::Result;
 use crate::fracture::Scene;
-use crate::fracture::preview::preview;
+use crate::fracture::assembly::preview;
 use crate::fracture::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSupport};
 use crate::report::model_words;
 use crate::report::specimen_picture::scene_svg;

@@ -5,8 +5,7 @@
 
 use super::cells::QuadraturePoint;
 use super::field::{Discretisation, Local, TipFields, singular};
-use super::front::Front;
-use super::matrix::{lower_product, whole_product};
+use super::front::{Front, lower_product, whole_product};
 use super::shape::Value;
 use crate::error::Result;
 
@@ -140,9 +139,7 @@ impl Scratch {
 ///
 /// With `P = Σ ∇Φ ∇Φᵀ dA` of all pairs of gradients that of unknowns without fields is made of its entries; those with fields take all
 /// of `∫ e_aᵀ D e_b dA`.
-///
-/// # Errors
-/// Nodes in reach of a point do not span the basis.
+/// Errors: nodes in reach of a point do not span the basis.
 pub fn add_cell(
     plate: &Discretisation,
     thickness: f64,

@@ -2,7 +2,6 @@
 
 use super::crack::TipAxes;
 use super::cuts::Near;
-use super::resolution::Resolution;
 use super::shape::{Basis, Linear, Quadratic, Value, shape_functions};
 use crate::specimen::Point;
 use crate::specimen::geometry::distance;
@@ -85,9 +84,8 @@ impl Basis<7> for Intrinsic<'_> {
 
 impl AnyBasis {
     /// Of a plate with these tips.
-    pub fn new(resolution: &Resolution, axes: &[TipAxes]) -> Self {
-        let tips = if resolution.enrichment == Enrichment::Intrinsic { axes.to_vec() } else { Vec::new() };
-        AnyBasis { kind: resolution.basis, tips }
+    pub fn new(kind: BasisKind, enrichment: Enrichment, axes: &[TipAxes]) -> Self {
+        AnyBasis { kind, tips: if enrichment == Enrichment::Intrinsic { axes.to_vec() } else { Vec::new() } }
     }
 
     /// Shape functions at a point ([`shape_functions`]). Around a tip with an enriched basis they are `R Φ^e + (1 - R) Φ`, R falling

@@ -5,7 +5,7 @@
 //! reproduce rigid motions and the springs take up no force.
 
 use super::field::{Discretisation, Local, singular};
-use super::matrix::Square;
+use super::rims::Stretch;
 use crate::body::boundary::load_pieces;
 use crate::error::Result;
 use crate::specimen::geometry::{along, bounding_box, direction, distance};
@@ -22,6 +22,25 @@ const HELD_IN_SPACING: f64 = 3.0;
 
 /// Unknowns of a grip: two displacements and a turn.
 pub const UNKNOWNS_OF_GRIP: usize = 3;
+
+/// `factor v vᵀ` of some unknowns: a support.
+#[derive(Debug, Clone, Default)]
+pub struct Square {
+    /// Unknowns, ascending.
+    pub unknowns: Vec<u32>,
+    /// v.
+    pub v: Vec<f64>,
+    /// Its factor.
+    pub factor: f64,
+}
+
+impl Square {
+    /// A spring on one component of what unknowns move together.
+    fn of(motions: &[(u32, Point)], axis: usize, factor: f64) -> Self {
+        let (unknowns, v) = motions.iter().map(|(unknown, motion)| (*unknown, motion[axis])).unzip();
+        Square { unknowns, v, factor }
+    }
+}
 
 /// Loads and supports.
 #[derive(Debug, Clone, Default)]
@@ -43,9 +62,7 @@ struct Grip {
 
 impl Boundary {
     /// Of a plate with cracks under its loads.
-    ///
-    /// # Errors
-    /// Nodes in reach of a load or support do not span the basis.
+    /// Errors: nodes in reach of a load or support do not span the basis.
     pub fn new(specimen: &Specimen, plate: &Discretisation, far: f64) -> Result<Self> {
         let mut boundary = Boundary { forces: vec![0.0; plate.unknowns()], ..Boundary::default() };
         let grips = boundary.grips(specimen, plate)?;
@@ -115,12 +132,8 @@ impl Boundary {
     /// Holds components of the displacement on a stretch of the outline.
     fn hold(&mut self, specimen: &Specimen, plate: &Discretisation, ends: [Point; 2], held: [bool; 2]) -> Result<()> {
         for (at, length) in pieces(plate, ends).into_iter().filter(|(at, _)| specimen.has_point_at(*at, TOUCH)) {
-            let motions = motions(plate, at)?;
-            for axis in (0..2).filter(|axis| held[*axis]) {
-                let v = motions.iter().map(|motion| motion.1[axis]).collect();
-                let unknowns = motions.iter().map(|motion| motion.0).collect();
-                self.held.push(Square { unknowns, v, factor: penalty(specimen, plate, at) * length });
-            }
+            let (motions, factor) = (motions(plate, at)?, penalty(specimen, plate, at) * length);
+            (0..2).filter(|axis| held[*axis]).for_each(|axis| self.held.push(Square::of(&motions, axis, factor)));
         }
         Ok(())
     }
@@ -140,19 +153,15 @@ impl Boundary {
             self.of_grips += UNKNOWNS_OF_GRIP;
             for (at, length) in pieces(plate, stretch) {
                 let arm = at[0] - middle[0];
-                let factor = penalty(specimen, plate, at) * length;
-                let mut motions = motions(plate, at)?;
+                let (mut motions, factor) = (motions(plate, at)?, penalty(specimen, plate, at) * length);
                 motions.extend([(first as u32, [-1.0, 0.0]), (first as u32 + 1, [0.0, -1.0]), (first as u32 + 2, [0.0, -arm])]);
-                for axis in 0..2 {
-                    let v = motions.iter().map(|motion| motion.1[axis]).collect();
-                    self.held.push(Square { unknowns: motions.iter().map(|motion| motion.0).collect(), v, factor });
-                }
+                self.held.extend([0, 1].map(|axis| Square::of(&motions, axis, factor)));
             }
             grips.push(Grip { first, middle, turns: !clamped });
         }
         for grip in grips.iter().filter(|grip| !grip.turns) {
             let [width, size] = [high[0] - low[0], penalty(specimen, plate, grip.middle)];
-            self.held.push(Square { unknowns: vec![grip.first as u32 + 2], v: vec![1.0], factor: size * width.powi(3) });
+            self.held.push(Square::of(&[(grip.first as u32 + 2, [1.0; 2])], 0, size * width.powi(3)));
         }
         Ok(grips)
     }
@@ -168,23 +177,15 @@ impl Boundary {
         let across = u32::from(way[0] >= way[1]);
         let mut pinned: Vec<u32> = (0..2).filter(|axis| !held[*axis as usize]).map(|axis| first(a) + axis).collect();
         // A straight side that is held along its normal cannot turn.
-        let turns = |support: &Support| match support {
-            Support::Fixed { from, to, x, y, .. } => {
-                if (to[1] - from[1]).abs() < (to[0] - from[0]).abs() {
-                    *y
-                } else {
-                    *x
-                }
-            }
+        let turns = |support: &Support| match *support {
+            Support::Fixed { from, to, x, y, .. } => [x, y][usize::from((to[1] - from[1]).abs() < (to[0] - from[0]).abs())],
             _ => false,
         };
         if !clamped && !supports.iter().any(turns) {
             pinned.push(first(b) + across);
         }
         let size = plate.elasticity().plane_modulus;
-        for unknown in pinned {
-            self.held.push(Square { unknowns: vec![unknown], v: vec![1.0], factor: size * PIN });
-        }
+        self.held.extend(pinned.into_iter().map(|unknown| Square::of(&[(unknown, [1.0; 2])], 0, size * PIN)));
     }
 }
 
@@ -214,7 +215,7 @@ fn layers(plate: &Discretisation, [from, to]: [Point; 2], depth: f64) -> Vec<[Po
 
 /// Middles and lengths of the pieces of a held stretch.
 fn pieces(plate: &Discretisation, [from, to]: [Point; 2]) -> Vec<(Point, f64)> {
-    let stretch = super::rims::Stretch::Straight([from, to]);
+    let stretch = Stretch::Straight([from, to]);
     let shares = stretch.divided(&plate.grid, 1, 1.0 / HELD_IN_SPACING);
     let length = stretch.length();
     shares.windows(2).map(|pair| (stretch.at(0.5 * (pair[0] + pair[1])), (pair[1] - pair[0]) * length)).collect()

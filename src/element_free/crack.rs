@@ -1,7 +1,9 @@
 //! Cracks of a plate as cuts, and the axes of their tips.
 
 use super::cuts::{Cut, lengthened, simplified};
-use crate::specimen::geometry::{along, direction, distance, distance_to_polygon, edges, meeting_share, segments_touch};
+use crate::specimen::geometry::{
+    along, bounding_box, direction, distance, distance_to_polygon, edges, meeting_share, nearest_share, segments_touch,
+};
 use crate::specimen::{CrackLine, LineEnd, Point, Slot, Specimen};
 use crate::williams::{Eigenfunction, Elasticity};
 
@@ -11,6 +13,15 @@ const TOUCH: f64 = 1e-7;
 const BEYOND: f64 = 1e-6;
 /// Corners within this of a straight line, in spacings at the tip, are none.
 const STRAIGHT: f64 = 0.005;
+
+/// A tip as nodes see it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tip {
+    /// Which end of which crack.
+    pub end: LineEnd,
+    /// Length of its crack, half of it with two tips, or growth since the last kink if that is less, m.
+    pub length: f64,
+}
 
 /// Axes of a tip: x₁ along the crack, out of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +38,7 @@ pub struct TipAxes {
 
 /// Cuts of a plate and the axes of its tips, in the order of `tips`: line end and spacing at it, m.
 pub fn cracks(specimen: &Specimen, lines: &[CrackLine], tips: &[(LineEnd, f64)], far: f64) -> (Vec<Cut>, Vec<TipAxes>) {
-    let [low, high] = crate::specimen::geometry::bounding_box(&specimen.outline);
+    let [low, high] = bounding_box(&specimen.outline);
     let size = distance(low, high);
     let spacing = |line: usize| tips.iter().filter(|tip| tip.0.line == line).map(|tip| tip.1).fold(far, f64::min);
     let drawn: Vec<Vec<Point>> =
@@ -95,7 +106,7 @@ fn beyond_mouth(
     let slot = specimen.slots.iter().position(|slot| slot.contains(mouth) || distance_to_polygon(mouth, &slot.corners()) < touch);
     if let Some(index) = slot {
         let Slot { from, to, .. } = specimen.slots[index];
-        let share = meeting_foot(mouth, from, to);
+        let share = nearest_share(mouth, from, to);
         let foot = along(from, to, share);
         if distance(foot, mouth) > touch {
             points.push(foot);
@@ -119,12 +130,6 @@ fn beyond_mouth(
     let back = edges(&specimen.outline).filter(|(a, b)| segments_touch(from, end, *a, *b));
     let share = back.filter_map(|(a, b)| meeting_share(from, end, a, b)).fold(2.0, f64::min);
     lengthened(points, (0.5 * share).min(1.0) * far)
-}
-
-/// Share of a segment at which it is nearest to a point.
-fn meeting_foot(at: Point, from: Point, to: Point) -> f64 {
-    let [x, y] = [to[0] - from[0], to[1] - from[1]];
-    (((at[0] - from[0]) * x + (at[1] - from[1]) * y) / (x * x + y * y)).clamp(0.0, 1.0)
 }
 
 impl TipAxes {

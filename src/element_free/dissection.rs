@@ -26,9 +26,7 @@ pub struct Member {
 /// Adds members, by their index, to a front, in which the unknowns of a node of theirs begin at `places[node]`.
 pub trait Matrices: Sync {
     /// Adds the members.
-    ///
-    /// # Errors
-    /// A matrix cannot be computed.
+    /// Errors: a matrix cannot be computed.
     fn add(&self, members: &[u32], places: &[u32], front: &mut Front) -> Result<()>;
 }
 
@@ -67,9 +65,7 @@ struct Dissection<'a, M> {
 
 impl Factor {
     /// Of the sum of all members; the unknowns of node i are those from `first[i]` to `first[i + 1]`.
-    ///
-    /// # Errors
-    /// [`Error::LossOfStiffness`] where the sum is not positive definite; those of the matrices.
+    /// Errors: [`Error::LossOfStiffness`] where the sum is not positive definite; those of the matrices.
     pub fn of(members: &[Member], first: &[u32], matrices: &impl Matrices) -> Result<Self> {
         let nodes = first.len() - 1;
         let mut order: Vec<u32> = (0..members.len() as u32).collect();

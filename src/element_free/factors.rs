@@ -4,11 +4,13 @@
 //! from face to face, so that a crack that bends divides no point from its side. Faces that leave the line straight behind the tip, and those
 //! that a pressure acts on, give the second integral.
 
+use super::cells::EIGHT;
 use super::crack::TipAxes;
 use super::field::{Discretisation, Local};
 use crate::error::{Error, Result};
 use crate::specimen::Point;
-use crate::specimen::geometry::{along, direction, distance};
+use crate::specimen::geometry::{along, circle_shares, direction, distance};
+use crate::units::place_mm;
 use crate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
 
 /// Outer radius at the most, in spacings of the tip.
@@ -23,8 +25,6 @@ const BESIDE: f64 = 1e-5;
 const ON_FACE: f64 = 1e-7;
 /// Angle from the line behind a tip below which a face is straight, as sine.
 const STRAIGHT: f64 = 1e-9;
-/// Gauss points on [0, 1] of order 8.
-const EIGHT: [(f64, f64); 8] = super::cells::EIGHT;
 
 /// What a tip has.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,17 +41,15 @@ pub struct TipFactors {
 type Gradient = [[f64; 2]; 2];
 
 /// Reads a tip of a plate with the unknowns `u` in a ring within `room`, m; `pressure` acts on the faces, Pa.
-///
-/// # Errors
-/// [`Error::Mechanics`] where nodes in reach do not span the basis.
+/// Errors: [`Error::Mechanics`] where nodes in reach do not span the basis.
 pub fn read(plate: &Discretisation, u: &[f64], tip: usize, room: f64, pressure: f64) -> Result<TipFactors> {
     let axes = &plate.axes[tip];
     let mut local = Local::default();
     let field = |at: Point| {
-        plate.displacement(u, at, &mut local).map(|(_, gradient)| axes.gradient_to_axes(gradient)).ok_or_else(|| {
-            let [x, y] = at.map(|metres| 1e3 * metres);
-            Error::Mechanics(format!("no displacement is known at ({x:.4}, {y:.4}) mm: too few nodes are in reach"))
-        })
+        plate
+            .displacement(u, at, &mut local)
+            .map(|(_, gradient)| axes.gradient_to_axes(gradient))
+            .ok_or_else(|| Error::Mechanics(format!("no displacement is known at {}: too few nodes are in reach", place_mm(at))))
     };
     let radius = room.min(RADIUS_SPACINGS * axes.spacing);
     integral(axes, plate.elasticity(), radius, pressure, field)
@@ -80,7 +78,7 @@ pub fn integral(
                 let gradient = field([axes.at[0] + x, axes.at[1] + y])?;
                 let area = of_radius * (outer - inner) * of_angle * panel * r;
                 for (sum, auxiliary) in sums.iter_mut().zip(auxiliaries(elasticity, r, theta)) {
-                    *sum += area * interaction(elasticity, &gradient, &auxiliary, [slope * cos, slope * sin]);
+                    *sum += area * elasticity.interaction(&gradient, &auxiliary, [slope * cos, slope * sin]);
                 }
             }
         }
@@ -96,13 +94,8 @@ pub fn integral(
 fn face_angle(axes: &TipAxes, r: f64) -> f64 {
     for piece in axes.back.windows(2) {
         let (near, far) = (distance(axes.at, piece[0]), distance(axes.at, piece[1]));
-        if near <= r && far >= r {
-            let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..60 {
-                let middle = 0.5 * (low + high);
-                if distance(axes.at, along(piece[0], piece[1], middle)) < r { low = middle } else { high = middle }
-            }
-            let at = along(piece[0], piece[1], low);
+        if let Some([_, leaves]) = circle_shares(piece[0], piece[1], axes.at, r).filter(|_| near <= r && far >= r) {
+            let at = along(piece[0], piece[1], leaves);
             let [x, y] = axes.to_axes([at[0] - axes.at[0], at[1] - axes.at[1]]);
             return y.atan2(x).rem_euclid(std::f64::consts::TAU);
         }
@@ -117,19 +110,6 @@ fn auxiliaries(elasticity: Elasticity, r: f64, theta: f64) -> [Gradient; 3] {
         Eigenfunction { order: 1, symmetry }.gradient(elasticity.kappa, r, theta).map(|row| row.map(|g| scale * g))
     });
     [opening, sliding, force_gradient(elasticity, r, theta)]
-}
-
-/// `P_j q_,j` with `P_j = σ_ij u^aux_i,1 + σ^aux_ij u_i,1 - σ_ik ε^aux_ik δ_1j`.
-fn interaction(elasticity: Elasticity, field: &Gradient, auxiliary: &Gradient, q: [f64; 2]) -> f64 {
-    let (stress, stress_aux) = (elasticity.stress(field), elasticity.stress(auxiliary));
-    let flow = |s: [f64; 3], h: &Gradient| [s[0] * h[0][0] + s[2] * h[1][0], s[2] * h[0][0] + s[1] * h[1][0]];
-    let (a, b) = (flow(stress, auxiliary), flow(stress_aux, field));
-    (a[0] + b[0] - mutual_energy(&stress, auxiliary)) * q[0] + (a[1] + b[1]) * q[1]
-}
-
-/// `σ_ik ε^aux_ik`.
-fn mutual_energy(stress: &[f64; 3], auxiliary: &Gradient) -> f64 {
-    stress[0] * auxiliary[0][0] + stress[1] * auxiliary[1][1] + stress[2] * (auxiliary[0][1] + auxiliary[1][0])
 }
 
 /// `-∫ P_j m_j q ds` over both faces of the crack within the ring.
@@ -177,11 +157,7 @@ fn faces(
                     for (sum, auxiliary) in sums.iter_mut().zip(auxiliaries(elasticity, r, theta)) {
                         let mut flow = traction[0] * auxiliary[0][0] + traction[1] * auxiliary[1][0];
                         if let Some(gradient) = &gradient {
-                            let stress = elasticity.stress(gradient);
-                            let [xx, yy, xy] = elasticity.stress(&auxiliary);
-                            let of_aux = [xx * normal[0] + xy * normal[1], xy * normal[0] + yy * normal[1]];
-                            flow += of_aux[0] * gradient[0][0] + of_aux[1] * gradient[1][0]
-                                - mutual_energy(&stress, &auxiliary) * normal[0];
+                            flow += elasticity.interaction_on_face(gradient, &auxiliary, normal);
                         }
                         *sum -= flow * q * ds;
                     }

@@ -5,16 +5,17 @@
 //! 4 % wrong with 900 nodes, with them 0.1 %.
 
 use super::basis::{AnyBasis, Enrichment};
-use super::crack::{TipAxes, cracks};
+use super::crack::{Tip, TipAxes, cracks};
 use super::cuts::{Near, Obstacles};
 use super::grid::Grid;
 use super::nodes::Nodes;
 use super::resolution::Resolution;
-use super::rims::{Side, sides};
+use super::rims::sides;
 use super::shape::Value;
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{bounding_box, distance};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
+use crate::units::{MM, place_mm};
 use crate::williams::Elasticity;
 
 /// Distance from a tip, in its spacings, within which nodes carry its fields.
@@ -37,7 +38,7 @@ pub struct Discretisation {
     /// Radius of influence of every node, m.
     pub supports: Vec<f64>,
     /// Sides of rims.
-    pub sides: Vec<Side>,
+    pub sides: Vec<[Point; 2]>,
     /// What parts nodes from points.
     pub obstacles: Obstacles,
     /// Axes of the tips.
@@ -65,9 +66,7 @@ pub struct Local {
 
 impl Discretisation {
     /// Nodes for these cracks; `tips` are the ends of lines that lie in the material.
-    ///
-    /// # Errors
-    /// [`Error::Mechanics`] where more nodes would be needed than are allowed.
+    /// Errors: [`Error::Mechanics`] where more nodes would be needed than are allowed.
     pub fn new(
         specimen: &Specimen,
         elasticity: Elasticity,
@@ -95,7 +94,7 @@ impl Discretisation {
         enriched.iter().for_each(|tips| first.push(first[first.len() - 1] + 2 + 2 * tips.len() as u32));
         let mut plate = Discretisation {
             leaves: vec![Neighbourhood::default(); grid.len()],
-            basis: AnyBasis::new(resolution, &axes),
+            basis: AnyBasis::new(resolution.basis, resolution.enrichment, &axes),
             grid,
             nodes,
             supports,
@@ -211,22 +210,12 @@ fn add(sum: &mut Point, factor: f64, vector: &Point) {
     sum.iter_mut().zip(vector).for_each(|(sum, component)| *sum += factor * component);
 }
 
-/// A tip as nodes see it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tip {
-    /// Which end of which crack.
-    pub end: LineEnd,
-    /// Length of its crack, half of it with two tips, or growth since the last kink if that is less, m.
-    pub length: f64,
-}
-
 /// What is said where nodes in reach of a point, with radii of influence up to `radius`, m, do not span the basis.
 pub fn singular(at: Point, radius: f64) -> Error {
     Error::Mechanics(format!(
-        "too few nodes are in reach of ({:.4}, {:.4}) mm to span the basis, with radii of influence up to {:.4} mm; give a larger model.influence_radius, or more \
-         model.nodes",
-        at[0] * 1e3,
-        at[1] * 1e3,
-        radius * 1e3
+        "too few nodes are in reach of {} to span the basis, with radii of influence up to {:.4} mm; give a larger \
+         model.influence_radius, or more model.nodes",
+        place_mm(at),
+        radius / MM
     ))
 }

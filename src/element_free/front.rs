@@ -1,10 +1,11 @@
-//! A front: the dense matrix of the unknowns of a part of the plate, of which some are eliminated.
+//! A front: the dense matrix of the unknowns of a part of the plate, of which some are eliminated; products of dense rows.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltRegularization, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, MatMut, Par, Spec};
+use faer::{Accum, MatMut, MatRef, Par, Spec};
 
 /// A symmetric matrix by its lower triangle, the unknowns that are eliminated first.
 ///
@@ -132,4 +133,27 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
         sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
     }
     rest + sums.iter().sum::<f64>()
+}
+
+/// Lower triangle of the columns of `Aᵀ B`, both of `rows` rows of length `n` that follow one another.
+pub fn lower_product(a: &[f64], b: &[f64], [rows, n]: [usize; 2], product: &mut Vec<f64>) {
+    product.resize(n * n, 0.0);
+    triangular::matmul(
+        MatMut::from_column_major_slice_mut(product, n, n),
+        BlockStructure::TriangularLower,
+        Accum::Replace,
+        MatRef::from_row_major_slice(a, rows, n).transpose(),
+        BlockStructure::Rectangular,
+        MatRef::from_row_major_slice(b, rows, n),
+        BlockStructure::Rectangular,
+        1.0,
+        Par::Seq,
+    );
+}
+
+/// Columns of `Aᵀ B`, of `rows` rows of lengths m and n.
+pub fn whole_product(a: &[f64], b: &[f64], [rows, m, n]: [usize; 3], product: &mut Vec<f64>) {
+    product.resize(m * n, 0.0);
+    let (a, b) = (MatRef::from_row_major_slice(a, rows, m), MatRef::from_row_major_slice(b, rows, n));
+    matmul(MatMut::from_column_major_slice_mut(product, m, n), Accum::Replace, a.transpose(), b, 1.0, Par::Seq);
 }

@@ -23,6 +23,11 @@ pub struct Source {
 }
 
 impl Source {
+    /// A point.
+    pub fn point(at: Point, spacing: f64, reach: f64) -> Self {
+        Source { at, radius: 0.0, spacing, reach }
+    }
+
     fn divides(&self, middle: Point, size: f64) -> bool {
         self.spacing < size * (1.0 - 1e-9) && (distance(middle, self.at) - self.radius).abs() < self.reach * size
     }

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use super::crack::TipAxes;
 use super::cuts::Cut;
 use super::grid::Grid;
-use super::rims::{Side, stretches};
-use crate::specimen::geometry::{along, direction, distance, distance_to_segment};
+use super::rims::{Stretch, stretches};
+use crate::specimen::geometry::{along, direction, distance, distance_to_segment, nearest_of_segment};
 use crate::specimen::{Point, Specimen};
 
 /// Distance from a rim, in spacings, within which corners of cells give way to nodes on the rim.
@@ -30,9 +30,9 @@ pub struct Nodes {
 
 impl Nodes {
     /// Nodes of a plate in these cells.
-    pub fn place(specimen: &Specimen, grid: &Grid, sides: &[Side], cuts: &[Cut], axes: &[TipAxes]) -> Self {
+    pub fn place(specimen: &Specimen, grid: &Grid, sides: &[[Point; 2]], cuts: &[Cut], axes: &[TipAxes]) -> Self {
         let mut nodes = Nodes::default();
-        let near_sides = by_leaf(grid, sides.iter().map(|side| side.ends), RIM_SHARE);
+        let near_sides = by_leaf(grid, sides.iter().copied(), RIM_SHARE);
         let mut corners: HashMap<[i64; 2], (f64, bool)> = HashMap::new();
         let mut order = Vec::new();
         for leaf in grid.leaves() {
@@ -41,7 +41,7 @@ impl Nodes {
                 let at = grid.position(corner);
                 let beside = near_sides.get(&leaf).is_some_and(|near| {
                     near.iter().any(|&side| {
-                        let [a, b] = sides[side as usize].ends;
+                        let [a, b] = sides[side as usize];
                         distance_to_segment(at, a, b) < RIM_SHARE * spacing
                     })
                 });
@@ -59,8 +59,8 @@ impl Nodes {
                 nodes.push(at, spacing);
             }
         }
-        for (_, stretch) in stretches(specimen) {
-            let least = if matches!(stretch, super::rims::Stretch::Circle(_)) { PIECES_LEAST } else { 1 };
+        for stretch in stretches(specimen) {
+            let least = if matches!(stretch, Stretch::Circle(_)) { PIECES_LEAST } else { 1 };
             let shares = stretch.divided(grid, least, 1.0);
             // The last of a stretch is the first of the next one.
             for share in &shares[..shares.len() - 1] {
@@ -98,9 +98,7 @@ impl Nodes {
                 parted.push(at, spacing);
                 continue;
             };
-            let [x, y] = direction(a, b);
-            let share = ((at[0] - a[0]) * x + (at[1] - a[1]) * y) / distance(a, b);
-            let foot = along(a, b, share.clamp(0.0, 1.0));
+            let ([x, y], foot) = (direction(a, b), nearest_of_segment(at, a, b));
             for side in [-reach, reach] {
                 let beside = [foot[0] - side * y, foot[1] + side * x];
                 if specimen.contains(beside) {
@@ -125,15 +123,11 @@ fn is_on_plate(specimen: &Specimen, at: Point, [x, y]: Point, grid: &Grid) -> bo
 
 /// The point of a rim nearest to a place.
 fn nearest_on_rim(specimen: &Specimen, at: Point) -> Point {
-    let nearest = |stretch: super::rims::Stretch| match stretch {
-        super::rims::Stretch::Straight([a, b]) => {
-            let [x, y] = direction(a, b);
-            let share = ((at[0] - a[0]) * x + (at[1] - a[1]) * y) / distance(a, b);
-            along(a, b, share.clamp(0.0, 1.0))
-        }
-        super::rims::Stretch::Circle(hole) => along(hole.centre, at, hole.radius / distance(hole.centre, at)),
+    let nearest = |stretch: Stretch| match stretch {
+        Stretch::Straight([a, b]) => nearest_of_segment(at, a, b),
+        Stretch::Circle(hole) => along(hole.centre, at, hole.radius / distance(hole.centre, at)),
     };
-    let all = stretches(specimen).into_iter().map(|(_, stretch)| nearest(stretch));
+    let all = stretches(specimen).into_iter().map(nearest);
     all.min_by(|a, b| distance(*a, at).total_cmp(&distance(*b, at))).unwrap_or(at)
 }
 

@@ -5,18 +5,36 @@
 //! outline to R/2.4; across every ligament to a third of it.
 
 use super::basis::{BasisKind, Enrichment};
-use super::field::Tip;
+use super::crack::Tip;
 use super::grid::{Grid, Source};
-use super::sources::ACROSS_LIGAMENT;
+use super::rims::stretches;
 use crate::error::{Error, Result};
-use crate::specimen::geometry::bounding_box;
-use crate::specimen::{CrackLine, Specimen};
-use crate::units::MM;
+use crate::specimen::geometry::{along, bounding_box, circle_shares, direction, distance, edges, meeting_share, segments_touch};
+use crate::specimen::{CrackLine, Point, Specimen};
+use crate::units::{MM, place_mm};
 
 /// Reach of a tip, in spacings of the coarser level.
 const TIP_REACH: f64 = 4.0;
 /// Cells at the most.
 const CELLS_MOST: usize = 200_000;
+
+/// Spacings in the radius of a hole or fillet that K of a crack nearby asks for.
+pub const IN_RADIUS: f64 = 2.4;
+/// Turn of a re-entrant corner of the outline up to which it belongs to an arc drawn as a polygon, rad; beyond, the corner is sharp.
+pub const ARC_TURN: f64 = 0.45;
+/// Reach of rims and ligaments, in spacings of the coarser level.
+const RIM_REACH: f64 = 1.5;
+/// Spacings across a ligament.
+const ACROSS_LIGAMENT: f64 = 3.0;
+/// Gap over the way along a crack to its mouth below which it is the wedge between the crack and the rim that it starts from: no load
+/// goes there.
+const WEDGE: f64 = 0.7;
+/// Stretch of a crack for which one place stands, over the gap beside it.
+const STRETCH_OF_GAP: f64 = 2.0;
+/// The same over the far spacing at the least.
+const STRETCH_LEAST: f64 = 1e-3;
+/// Gap at the ends of a stretch over that at its middle above which the gap runs along it.
+const ALONGSIDE: f64 = 0.5;
 
 /// How fine nodes are, and what they carry.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,9 +55,7 @@ pub struct Resolution {
 
 impl Resolution {
     /// Cells of a plate with these cracks, and the spacing asked for at every tip, m.
-    ///
-    /// # Errors
-    /// [`Error::Mechanics`] where the plate would have too many cells.
+    /// Errors: [`Error::Mechanics`] where the plate would have too many cells.
     pub fn grid(&self, specimen: &Specimen, lines: &[CrackLine], tips: &[Tip]) -> Result<(Grid, Vec<f64>)> {
         let bounds = bounding_box(&specimen.outline);
         let [width, height] = [0, 1].map(|i| bounds[1][i] - bounds[0][i]);
@@ -51,7 +67,7 @@ impl Resolution {
         for tip in tips {
             let spacing = room(specimen, lines, tip) / self.hold;
             let at = lines[tip.end.line].end(tip.end.at_last);
-            sources.push(Source { at, radius: 0.0, spacing, reach: TIP_REACH });
+            sources.push(Source::point(at, spacing, TIP_REACH));
         }
         sources.extend(self.of_rims(specimen));
         sources.extend(self.of_cracks(specimen, lines, tips));
@@ -64,17 +80,129 @@ impl Resolution {
         let spacings = tips.iter().map(at_tip).collect();
         Ok((grid, spacings))
     }
+
+    /// Holes by their radius, and ligaments between rims by the way straight into the material.
+    fn of_rims(&self, specimen: &Specimen) -> Vec<Source> {
+        let holes = specimen
+            .holes
+            .iter()
+            .map(|hole| Source { radius: hole.radius, ..Source::point(hole.centre, hole.radius / self.in_radius, RIM_REACH) });
+        let mut sources: Vec<Source> = holes.collect();
+        sources.extend(self.of_arcs(&specimen.outline));
+        let rims = stretches(specimen);
+        let reach = ACROSS_LIGAMENT * self.far;
+        let walls: Vec<[Point; 2]> = edges(&specimen.outline)
+            .chain(specimen.slots.iter().flat_map(|slot| edges(&slot.corners()).collect::<Vec<_>>()))
+            .map(|(a, b)| [a, b])
+            .collect();
+        for stretch in &rims {
+            let count = (2.0 * stretch.length() / self.far).ceil().clamp(2.0, 400.0) as usize;
+            for k in 0..count {
+                let share = (k as f64 + 0.5) / count as f64;
+                let (from, [x, y]) = (stretch.at(share), stretch.inward(share));
+                let start = [from[0] + 1e-6 * reach * x, from[1] + 1e-6 * reach * y];
+                let to = [from[0] + reach * x, from[1] + reach * y];
+                if !specimen.contains(start) {
+                    continue;
+                }
+                let straight = walls.iter().filter(|[a, b]| segments_touch(start, to, *a, *b));
+                let straight = straight.filter_map(|[a, b]| meeting_share(start, to, *a, *b));
+                let round = specimen.holes.iter().filter_map(|hole| Some(circle_shares(start, to, hole.centre, hole.radius)?[0]));
+                let nearest = straight.chain(round).filter(|share| *share > 0.0).fold(2.0, f64::min);
+                if nearest <= 1.0 {
+                    let width = nearest * reach;
+                    let at = [from[0] + 0.5 * width * x, from[1] + 0.5 * width * y];
+                    sources.push(Source::point(at, width / ACROSS_LIGAMENT, RIM_REACH));
+                }
+            }
+        }
+        sources
+    }
+
+    /// Concave arcs of the outline by their radius: the length of the shorter side at a corner over its turn.
+    fn of_arcs(&self, outline: &[Point]) -> Vec<Source> {
+        let mut sources = Vec::new();
+        for (k, &at) in outline.iter().enumerate() {
+            let [before, after] = [(k + outline.len() - 1) % outline.len(), (k + 1) % outline.len()].map(|k| outline[k]);
+            let turn = turn_at(before, at, after);
+            if !(-ARC_TURN..-1e-6).contains(&turn) {
+                continue;
+            }
+            let side = distance(before, at).min(distance(at, after));
+            let spacing = side / -turn / self.in_radius;
+            let count = (0.5 * side / spacing).ceil().min(100.0) as usize;
+            for end in [before, after] {
+                let share = 0.5 * side / distance(at, end);
+                let place = |i: usize| along(at, end, share * i as f64 / count as f64);
+                sources.extend((0..count).map(|i| Source::point(place(i), spacing, RIM_REACH)));
+            }
+        }
+        sources
+    }
+
+    /// Gaps between cracks and rims, and between cracks.
+    fn of_cracks(&self, specimen: &Specimen, lines: &[CrackLine], tips: &[Tip]) -> Vec<Source> {
+        let mut sources = Vec::new();
+        let rims = stretches(specimen);
+        let reach = ACROSS_LIGAMENT * self.far;
+        for (own, line) in lines.iter().enumerate() {
+            let is_tip = |at_last: bool| tips.iter().any(|tip| tip.end.line == own && tip.end.at_last == at_last);
+            let mouths: Vec<(bool, Point)> =
+                [false, true].into_iter().filter(|end| !is_tip(*end)).map(|end| (end, line.end(end))).collect();
+            let (total, mut way) = (line.length(), 0.0);
+            for [a, b] in line.pieces() {
+                let length = distance(a, b);
+                let gap = |share: f64| {
+                    let at = along(a, b, share);
+                    let passed = way + share * length;
+                    // Whether something at this distance from the crack forms a wedge with it.
+                    let is_wedge = |gap: f64, from: &dyn Fn(Point) -> f64| {
+                        let way = |at_last: bool| if at_last { total - passed } else { passed };
+                        mouths.iter().any(|&(end, mouth)| from(mouth) < 1e-6 * total && gap < WEDGE * way(end))
+                    };
+                    let gap = |from: &dyn Fn(Point) -> f64| if is_wedge(from(at), from) { f64::INFINITY } else { from(at) };
+                    let of_rims = rims.iter().map(|rim| gap(&|at| rim.distance(at)));
+                    let others = lines.iter().enumerate().filter(|(other, _)| *other != own);
+                    of_rims.chain(others.map(|(_, other)| gap(&|at| other.distance(at)))).fold(f64::INFINITY, f64::min)
+                };
+                let count = (2.0 * length / self.far).ceil().max(1.0) as usize;
+                let mut stretches: Vec<[f64; 2]> = (0..count).map(|k| [k, k + 1].map(|k| k as f64 / count as f64)).collect();
+                while let Some([from, to]) = stretches.pop() {
+                    let middle = 0.5 * (from + to);
+                    let narrow = gap(middle);
+                    if narrow >= reach {
+                        continue;
+                    }
+                    sources.push(Source::point(along(a, b, middle), narrow / ACROSS_LIGAMENT, RIM_REACH));
+                    let stretch = (to - from) * length;
+                    // Beside a line that crosses, the gap goes to nothing: what is fine there helps nobody.
+                    let is_alongside = || gap(from).min(gap(to)) > ALONGSIDE * narrow;
+                    if stretch > STRETCH_OF_GAP * narrow && stretch > STRETCH_LEAST * self.far && is_alongside() {
+                        stretches.extend([[from, middle], [middle, to]]);
+                    }
+                }
+                way += length;
+            }
+        }
+        sources
+    }
 }
 
 /// What is said where a gap asks for more cells than there may be.
 fn too_narrow(finest: &Source) -> Error {
-    let [x, y] = finest.at.map(|x| x / MM);
     Error::Mechanics(format!(
-        "cracks or rims near ({x:.4}, {y:.4}) mm ask for nodes {:.2e} mm apart, and for more than {CELLS_MOST} cells of integration in all: \
+        "cracks or rims near {} ask for nodes {:.2e} mm apart, and for more than {CELLS_MOST} cells of integration in all: \
          move apart, or join, what lies {:.2e} mm from each other there",
+        place_mm(finest.at),
         finest.spacing / MM,
         ACROSS_LIGAMENT * finest.spacing / MM
     ))
+}
+
+/// Turn of the way from `before` over `at` to `after`, rad, negative where a counter-clockwise outline is concave.
+pub fn turn_at(before: Point, at: Point, after: Point) -> f64 {
+    let ([ax, ay], [bx, by]) = (direction(before, at), direction(at, after));
+    (ax * by - ay * bx).atan2(ax * bx + ay * by)
 }
 
 /// Room of a tip, m.

@@ -6,7 +6,7 @@
 //! second one along the rim, over eight spacings, evens out what is left from place to place.
 
 use super::field::{Discretisation, Local};
-use super::sources::{ARC_TURN, turn_at};
+use super::resolution::{ARC_TURN, turn_at};
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges};
 use crate::specimen::{Hole, Point, Specimen, Support};
@@ -70,9 +70,7 @@ impl RimStress {
 }
 
 /// Stress along every rim, the unknowns `u` being those of the nominal load, of which the plate has the `share`.
-///
-/// # Errors
-/// [`Error::Mechanics`] where nodes in reach span the basis nowhere on a rim.
+/// Errors: [`Error::Mechanics`] where nodes in reach span the basis nowhere on a rim.
 pub fn rim_stresses(specimen: &Specimen, plate: &Discretisation, u: &[f64], share: f64) -> Result<Vec<RimStress>> {
     let reader = Reader { specimen, plate, u, share };
     let mut rims = Vec::new();

@@ -9,15 +9,6 @@ const SIDES_IN_SPACING: f64 = 4.0;
 /// Sides of a hole at the least.
 const SIDES_LEAST: usize = 32;
 
-/// A straight side of a rim.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Side {
-    /// Its ends, m.
-    pub ends: [Point; 2],
-    /// Number of the rim: sides of the outline by themselves, then holes, then slots.
-    pub rim: usize,
-}
-
 /// A stretch of rim that nodes are spread on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stretch {
@@ -101,28 +92,27 @@ impl Stretch {
     }
 }
 
-/// All stretches of rim with their numbers; slots lose what lies outside the outline.
-pub fn stretches(specimen: &Specimen) -> Vec<(usize, Stretch)> {
+/// All stretches of rim.
+pub fn stretches(specimen: &Specimen) -> Vec<Stretch> {
     let outline = edges(&specimen.outline).map(|(a, b)| Stretch::Straight([a, b]));
     let holes = specimen.holes.iter().map(|hole| Stretch::Circle(*hole));
-    let mut all: Vec<(usize, Stretch)> = outline.chain(holes).enumerate().collect();
-    let first = all.len();
-    for (k, slot) in specimen.slots.iter().enumerate() {
+    let mut all: Vec<Stretch> = outline.chain(holes).collect();
+    for slot in &specimen.slots {
         // Counter-clockwise around the slot, so that the material is on the right: turned over.
-        all.extend(edges(&slot.corners()).map(|(a, b)| (first + k, Stretch::Straight([b, a]))));
+        all.extend(edges(&slot.corners()).map(|(a, b)| Stretch::Straight([b, a])));
     }
     all
 }
 
-/// Sides that cells are cut along.
-pub fn sides(specimen: &Specimen, grid: &Grid) -> Vec<Side> {
+/// Straight sides of rims, by their ends, m, that cells are cut along.
+pub fn sides(specimen: &Specimen, grid: &Grid) -> Vec<[Point; 2]> {
     let mut sides = Vec::new();
-    for (rim, stretch) in stretches(specimen) {
+    for stretch in stretches(specimen) {
         match stretch {
-            Stretch::Straight(ends) => sides.push(Side { ends, rim }),
+            Stretch::Straight(ends) => sides.push(ends),
             Stretch::Circle(_) => {
                 let shares = stretch.divided(grid, SIDES_LEAST, 1.0 / SIDES_IN_SPACING);
-                sides.extend(shares.windows(2).map(|pair| Side { ends: [stretch.at(pair[0]), stretch.at(pair[1])], rim }));
+                sides.extend(shares.windows(2).map(|pair| [stretch.at(pair[0]), stretch.at(pair[1])]));
             }
         }
     }

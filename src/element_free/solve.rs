@@ -1,13 +1,11 @@
 //! Equilibrium of a plate of nodes.
 
 use super::assembly::{Scratch, add_cell};
-use super::boundary::{Boundary, UNKNOWNS_OF_GRIP};
-use super::cells::QuadraturePoint;
+use super::boundary::{Boundary, Square, UNKNOWNS_OF_GRIP};
+use super::cells::{QuadraturePoint, quadrature};
 use super::dissection::{Factor, Matrices, Member};
 use super::field::Discretisation;
 use super::front::Front;
-use super::integration::quadrature;
-use super::matrix::Square;
 use crate::error::Result;
 use crate::specimen::Specimen;
 
@@ -79,9 +77,7 @@ impl Matrices for Stiffness<'_> {
 }
 
 /// Solves `K u = f` at the nominal load `load`, Pa or N, by a Cholesky factor.
-///
-/// # Errors
-/// [`crate::error::Error::LossOfStiffness`] where some part moves freely; nodes in reach of a point that do not span the basis.
+/// Errors: [`crate::error::Error::LossOfStiffness`] where some part moves freely; nodes in reach of a point that do not span the basis.
 pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -> Result<Solution> {
     let cells = quadrature(specimen, plate);
     let Boundary { mut forces, held, of_grips } = Boundary::new(specimen, plate, far)?;

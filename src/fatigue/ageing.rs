@@ -1,9 +1,12 @@
-//! Which bonds age, and by how much strain a cycle.
+//! Which bonds age, by how much strain a cycle, and what that spends of their life.
+//!
+//! Over a cycle block `λ ← λ - ΔN A ε^p`; a bond with λ ≤ 0 breaks (Silling and Askari 2014, SAND2014-18590; block until the next break
+//! after Zhang et al. 2016, Eng. Fract. Mech. 162:76).
 
 use serde::{Deserialize, Serialize};
 
 use super::crack_tip::{CrackTip, ROUND_OFF};
-use super::{Ageing, FatigueSettings};
+use super::{Ageing, FatigueLaw, FatigueSettings};
 use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
 use crate::loading::Loading;
@@ -108,4 +111,80 @@ pub fn fatigue_bonds(body: &Body, candidates: &[Bond], displacement: &[f64], (sh
         .map(|&bond| FatigueBond { bond, strain: share * stretch(body, &layout, displacement, bond) })
         .filter(|ageing| ageing.strain > threshold.max(0.0))
         .collect()
+}
+
+/// Indices of the active tips that cannot grow because every intact bond of their ageing zone touches a no-fail zone. Bonds near loads and
+/// supports never break (point loads on a lattice would tear out otherwise), so a crack that starts or arrives there stands still for a
+/// reason that lies in the model and not in the plate.
+pub fn stuck(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &FatigueSettings) -> Vec<usize> {
+    // Where all bonds age, growth of one tip is still told by the bonds around it.
+    let near = FatigueSettings { ageing: Ageing::CrackTip, ..*settings };
+    let is_stuck = |tip: &CrackTip| {
+        let zone = std::slice::from_ref(tip);
+        tip.is_active() && candidates(body, bonds, zone, &near).is_empty() && touches_no_fail(body, tip, &near)
+    };
+    (0..tips.len()).filter(|&tip| is_stuck(&tips[tip])).collect()
+}
+
+/// Whether a no-fail place lies so near a tip that it takes bonds of its ageing zone.
+fn touches_no_fail(body: &Body, tip: &CrackTip, settings: &FatigueSettings) -> bool {
+    let reach = (0.5 + settings.zone_radius_horizons) * body.horizon();
+    places_near(body, tip.position, tip.position, reach).any(|place| body.no_fail[place])
+}
+
+/// Share of a bond's whole life within which bonds break together: mirror twins differ by round-off only.
+pub const TOGETHER: f64 = 1e-9;
+
+/// Remaining life λ of every bond.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BondLife {
+    life: Vec<f64>,
+}
+
+impl BondLife {
+    /// Whole lives for `bonds` bond numbers.
+    pub fn whole(bonds: usize) -> Self {
+        BondLife { life: vec![1.0; bonds] }
+    }
+
+    /// Remaining life λ of a bond, 1 at first.
+    pub fn of(&self, bond: Bond) -> f64 {
+        self.life[bond as usize]
+    }
+
+    /// Sets the life a bond starts with.
+    pub fn set(&mut self, bond: Bond, life: f64) {
+        self.life[bond as usize] = life;
+    }
+
+    /// The bonds that have spent some of their life, ascending, and what remains of it.
+    pub fn begun(&self) -> Vec<(Bond, f64)> {
+        self.life.iter().enumerate().filter(|(_, life)| **life != 1.0).map(|(bond, life)| (bond as Bond, *life)).collect()
+    }
+
+    /// The block until the next break: its cycles, and the bonds that break together at its end. Strains are constant until then, so
+    /// the block is exact.
+    pub fn until_next_break(&self, law: &FatigueLaw, ageing: &[FatigueBond]) -> (f64, Vec<Bond>) {
+        let rates: Vec<f64> = ageing.iter().map(|b| law.a * b.strain.powf(law.p)).collect();
+        let left = ageing.iter().zip(&rates).map(|(b, &rate)| self.of(b.bond).max(0.0) / rate);
+        let cycles = left.fold(f64::INFINITY, f64::min);
+        let spent =
+            ageing.iter().zip(&rates).filter(|(b, rate)| self.of(b.bond) - cycles * *rate <= TOGETHER).map(|(b, _)| b.bond);
+        (cycles, spent.collect())
+    }
+
+    /// Largest share of a whole life that a bond spends until the next break; none where nothing ages.
+    pub fn share_to_next_break(&self, law: &FatigueLaw, ageing: &[FatigueBond]) -> f64 {
+        let rates = || ageing.iter().map(|b| law.a * b.strain.powf(law.p));
+        let cycles = ageing.iter().zip(rates()).map(|(b, rate)| self.of(b.bond).max(0.0) / rate).fold(f64::INFINITY, f64::min);
+        // Before a first reading of K nothing may age yet.
+        if ageing.is_empty() { f64::INFINITY } else { cycles * rates().fold(0.0, f64::max) }
+    }
+
+    /// Takes the block's spending off every fatigue bond.
+    pub fn spend(&mut self, law: &FatigueLaw, cycles: f64, ageing: &[FatigueBond]) {
+        for bond in ageing {
+            self.life[bond.bond as usize] -= cycles * law.a * bond.strain.powf(law.p);
+        }
+    }
 }

@@ -4,12 +4,9 @@ pub mod ageing;
 pub mod crack_tip;
 pub mod growth_law;
 pub mod growth_rate;
-pub mod length_average;
-pub mod no_fail;
 pub mod paris;
 pub mod pieces;
 pub mod rate_constant;
-pub mod remaining_life;
 
 use crate::error::{Error, input};
 

@@ -32,9 +32,7 @@ static SERIES: LazyLock<HashMap<String, Vec<f64>>> =
 const STEP: f64 = 1e-3;
 
 /// β at an exponent.
-///
-/// # Errors
-/// p outside [`STEADY_EXPONENTS`].
+/// Errors: p outside [`STEADY_EXPONENTS`].
 pub fn rate_constant(kernel: Kernel, p: f64) -> Result<f64> {
     if !STEADY_EXPONENTS.contains(&p) {
         return Err(unsteady("fatigue.p", p));

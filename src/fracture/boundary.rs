@@ -1,5 +1,7 @@
 //! Loads and supports of a scene on the points of its net.
 
+use super::bonds::BondState;
+use super::points::build;
 use super::scene::{Action, LoadRamp, Region, Scene};
 use crate::error::{Result, input};
 use crate::levels::Net;
@@ -77,9 +79,7 @@ pub struct Boundary {
 
 impl Boundary {
     /// Loads and supports of a scene; platens act through the interaction, not here.
-    ///
-    /// # Errors
-    /// A region without points; as [`super::build`] where tractions rise at different times.
+    /// Errors: a region without points; as [`build`] where tractions rise at different times.
     pub fn of(scene: &Scene, net: &Net) -> Result<Boundary> {
         let mut boundary = Boundary {
             held: Vec::new(),
@@ -166,6 +166,24 @@ impl Boundary {
         }
         (displacement, load / counted().count().max(1) as f64)
     }
+
+    /// Whether no way of intact bonds leads from the first load to some other load or support.
+    pub fn is_separated(&self, net: &Net, bonds: &BondState) -> bool {
+        let Some(&start) = self.groups.first().and_then(|group| group.points.first()) else { return false };
+        let mut reached = vec![false; net.len()];
+        let mut open = vec![start as usize];
+        reached[start as usize] = true;
+        while let Some(point) = open.pop() {
+            for (b, other, _) in net.bonds_of(point) {
+                if bonds.share[b] > 0.0 && !reached[other] {
+                    reached[other] = true;
+                    open.push(other);
+                }
+            }
+        }
+        let others = self.groups.iter().flat_map(|group| &group.points).chain(self.held.iter().map(|held| &held.point));
+        others.into_iter().any(|&point| !reached[point as usize])
+    }
 }
 
 /// Forces of the tractions by how they rise. Forces of one rise are those of the net; those of several are found by putting the
@@ -187,15 +205,13 @@ fn pushes(scene: &Scene, net: &Net) -> Result<Vec<Push>> {
             tractions().filter(|drive| drive.rise == rise).flat_map(|drive| drive.loads(&scene.specimen)).collect();
         // Some of the loads need not balance by themselves.
         alone.specimen.supports = vec![Support::Elsewhere];
-        Ok(Push { rise, forces: super::build(&alone)?.0.forces })
+        Ok(Push { rise, forces: build(&alone)?.0.forces })
     };
     rises.into_iter().map(of_rise).collect()
 }
 
 /// Points of a region, ascending.
-///
-/// # Errors
-/// A region without points; `key` names it.
+/// Errors: a region without points; `key` names it.
 fn points_of(region: &Region, key: &str, scene: &Scene, net: &Net) -> Result<Vec<u32>> {
     let points = region.points(net, &scene.specimen);
     if points.is_empty() {

@@ -25,18 +25,16 @@
 //! middles of the broken bonds around (largest principal axis within `AROUND` horizons); where they lie on no line (a cloud of
 //! broken bonds, a branch) there is no plane and no column.
 
-use std::collections::HashMap;
-
 use super::bonds::BondState;
-use super::outcome::Fracture;
 use super::scene::{Procedure, Scene, SceneLaw};
 use crate::body::pre_crack::cutting_line;
 use crate::body::sharing::{WIDEN, WIDENINGS, linear_shares};
 use crate::levels::Net;
 use crate::levels::stiffness::Strut;
-use crate::specimen::geometry::segments_touch;
+use crate::predict::Snapshot;
+use crate::specimen::geometry::{Places, segments_touch};
 use crate::specimen::{Crack, Point};
-use crate::units::MM;
+use crate::units::{MM, place_mm};
 
 /// Approach over the largest change of length of all columns from which one becomes pressed: below, mirror images and round-off decide.
 const SLACK: f64 = 1e-3;
@@ -113,9 +111,9 @@ pub struct Contact<'n> {
     pieces: Vec<[Point; 2]>,
     is_initial: Vec<bool>,
     /// Points by cells as wide as the coarsest spacing.
-    seats: Cells,
+    seats: Places,
     /// Middles of the broken bonds when columns were last built, by cells as wide as they are looked at.
-    middles: Cells,
+    middles: Places,
     /// Broken bonds that the columns stand for.
     known: usize,
     columns: Vec<Column>,
@@ -131,8 +129,8 @@ impl<'n> Contact<'n> {
         Contact {
             pieces: cracks.iter().map(|crack| cutting_line(net.grid.spacing, crack.from, crack.to)).collect(),
             is_initial,
-            seats: Cells::default(),
-            middles: Cells::default(),
+            seats: Places::default(),
+            middles: Places::default(),
             known: 0,
             columns: Vec::new(),
             pressed: Vec::new(),
@@ -154,11 +152,7 @@ impl<'n> Contact<'n> {
 
     /// Adds the forces of the pressed columns at a displacement; returns their energy, J.
     pub fn push(&self, u: &[f64], force: &mut [f64]) -> f64 {
-        let unknowns = self.net.unknowns;
-        let at = |point: u32| {
-            let i = point as usize * unknowns;
-            [u[i], u[i + 1]]
-        };
+        let (unknowns, at) = (self.net.unknowns, moved(self.net, u));
         let mut energy = 0.0;
         for (column, _) in self.columns.iter().zip(&self.pressed).filter(|(_, pressed)| **pressed) {
             let gap = column.gap(&at);
@@ -177,11 +171,7 @@ impl<'n> Contact<'n> {
 
     /// Looks which columns are pressed at an equilibrium; whether others are than before.
     pub fn settle(&mut self, bonds: &BondState, u: &[f64]) -> bool {
-        let unknowns = self.net.unknowns;
-        let at = |point: u32| {
-            let i = point as usize * unknowns;
-            [u[i], u[i + 1]]
-        };
+        let at = moved(self.net, u);
         if self.struts.is_empty() && !self.may_touch(bonds, &at) {
             return false;
         }
@@ -273,10 +263,10 @@ impl<'n> Contact<'n> {
         self.known = broken.len();
         if self.seats.is_empty() {
             let coarsest = net.spacings.iter().fold(0.0, |most: f64, spacing| most.max(*spacing));
-            self.seats = Cells::of(coarsest, net.positions.iter().copied());
+            self.seats = Places::of(coarsest, net.positions.iter().copied());
         }
         let widest = net.horizons.iter().fold(0.0, |most: f64, horizon| most.max(*horizon));
-        self.middles = Cells::of(AROUND * widest, broken.iter().map(|&b| middle(net, b)));
+        self.middles = Places::of(AROUND * widest, broken.iter().map(|&b| middle(net, b)));
         let columns: Vec<Column> = broken.iter().flat_map(|&b| self.columns_of(b)).collect();
         self.pressed = columns.iter().map(|column| held.binary_search(&column.id).is_ok()).collect();
         self.columns = columns;
@@ -349,8 +339,8 @@ impl<'n> Contact<'n> {
         }
         let (at, reach) = (middle(net, b), AROUND * net.horizons[bond.from as usize]);
         let (mut count, mut sum, mut squares) = (0.0, [0.0; 2], [0.0; 3]);
-        for place in self.middles.places_near(at, reach) {
-            let [x, y] = [place[0] - at[0], place[1] - at[1]];
+        for place in self.middles.near(at, reach) {
+            let [x, y] = self.middles.away(place, at);
             if x * x + y * y <= reach * reach {
                 count += 1.0;
                 (sum[0], sum[1]) = (sum[0] + x, sum[1] + y);
@@ -382,13 +372,10 @@ impl<'n> Contact<'n> {
 
 /// What is to be said of a scene whose procedure has no contact, where flanks have passed through each other: looked for in all its
 /// pictures.
-pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, fracture: &Fracture) -> Option<String> {
-    if fracture.figures.touching.is_some() {
-        return None;
-    }
+pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, pictures: &[Snapshot]) -> Option<String> {
     let mut contact = Contact::new(net, &scene.specimen.cracks);
-    let last = fracture.snapshots.len().saturating_sub(1);
-    let overlaps = fracture.snapshots.iter().enumerate().filter_map(|(i, picture)| {
+    let last = pictures.len().saturating_sub(1);
+    let overlaps = pictures.iter().enumerate().filter_map(|(i, picture)| {
         // Which bonds had broken is known of the last picture alone.
         contact.overlap(bonds, i == last, |point| picture.displacement[point as usize])
     });
@@ -403,13 +390,19 @@ pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, fracture: &Fracture)
         _ if !springs => ("bond_law = \"correspondence\"".to_owned(), "laws of bonds have it, by solver = \"secant\""),
         _ => (format!("solver = \"{}\"", scene.model.solver), "solver = \"secant\" has it"),
     };
-    let [x, y] = at.map(|x| x / MM);
     Some(format!(
-        "flanks of a crack have passed through each other near ({x:.4}, {y:.4}) mm, by up to {:.3e} mm, {:.2} % of the spacing: {what} has no \
+        "flanks of a crack have passed through each other near {}, by up to {:.3e} mm, {:.2} % of the spacing: {what} has no \
          contact of flanks, and the load and the stresses there are those of a crack that closes without force; {remedy}",
+        place_mm(at),
         overlap / MM,
         100.0 * overlap / spacing
     ))
+}
+
+/// Displacement of the points of a net, m, of its unknowns.
+fn moved<'u>(net: &Net, u: &'u [f64]) -> impl Fn(u32) -> Point + use<'u> {
+    let unknowns = net.unknowns;
+    move |point| [u[point as usize * unknowns], u[point as usize * unknowns + 1]]
 }
 
 /// Middle of a bond, m.
@@ -417,41 +410,4 @@ fn middle(net: &Net, b: usize) -> Point {
     let bond = &net.bonds[b];
     let (a, b) = (net.positions[bond.from as usize], net.positions[bond.to as usize]);
     [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
-}
-
-/// Places by square cells.
-#[derive(Debug, Default)]
-struct Cells {
-    width: f64,
-    places: Vec<Point>,
-    cells: HashMap<[i64; 2], Vec<u32>>,
-}
-
-impl Cells {
-    fn of(width: f64, places: impl Iterator<Item = Point>) -> Self {
-        let mut cells = Cells { width, places: places.collect(), cells: HashMap::new() };
-        for (i, &place) in cells.places.iter().enumerate() {
-            let cell = place.map(|x| (x / width).floor() as i64);
-            cells.cells.entry(cell).or_default().push(i as u32);
-        }
-        cells
-    }
-
-    fn is_empty(&self) -> bool {
-        self.places.is_empty()
-    }
-
-    /// Numbers of the places in cells within `reach` of one, in an order that depends on the places alone.
-    fn near(&self, at: Point, reach: f64) -> impl Iterator<Item = u32> + '_ {
-        let range = |x: f64| ((x - reach) / self.width).floor() as i64..=((x + reach) / self.width).floor() as i64;
-        let columns = range(at[0]);
-        range(at[1]).flat_map(move |row| columns.clone().map(move |column| [column, row])).flat_map(|cell| {
-            let places = self.cells.get(&cell);
-            places.into_iter().flatten().copied()
-        })
-    }
-
-    fn places_near(&self, at: Point, reach: f64) -> impl Iterator<Item = Point> + '_ {
-        self.near(at, reach).map(|i| self.places[i as usize])
-    }
 }

@@ -11,7 +11,7 @@
 //! T⟨ξ⟩ = w P K⁻¹ ξ                  force state, N/m⁶ (5); force on x: Σ (T[x]⟨ξ⟩ - T[x']⟨-ξ⟩) V V'
 //! ```
 //!
-//! The energy is `Σ V S:e/2`, to which the control of zero-energy modes adds its own ([`control`]). Linear fields are exact
+//! The energy is `Σ V S:e/2`, to which the control of zero-energy modes adds its own ([`elasticity::Control`]). Linear fields are exact
 //! at every point, those at the rim among them, so there is no surface correction.
 //!
 //! Where broken bonds enter ([`DamageEntry`]) decides what a crack does to the stress beside it. In the influence function
@@ -24,11 +24,8 @@
 //! ones of such a point break too. Else pairs of long bonds would bridge a crack by a point in its middle for good: half of
 //! their mean stress is that point's, which is zero.
 
-mod bound;
-pub mod control;
 pub mod criterion;
 pub mod elasticity;
-pub(crate) mod neighbours;
 mod shape;
 
 use nalgebra::{Matrix2, Vector2};
@@ -36,18 +33,19 @@ use rayon::prelude::*;
 
 use super::bonds::BondState;
 use super::interaction::{Damaging, Interaction, Memory, Reaction};
-use super::scene::{DamageEntry, Procedure, Scene, ZeroEnergyControl};
+use super::scene::{Procedure, Scene, ZeroEnergyControl};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::Result;
 use crate::levels::Net;
-use control::Control;
 use criterion::Criterion;
-use elasticity::Elasticity;
-use neighbours::Neighbours;
-use shape::Shape;
+use elasticity::{Control, Elasticity};
+use shape::{Neighbour, Neighbours, Shape};
 
 /// Points that one task works through.
 const TASK: usize = 256;
+
+/// Allowance for finite strain in the bound of the stiffness: `|F|²` up to a strain of 5 %.
+const FINITE_STRAIN: f64 = 1.1;
 
 /// Law whose body has the points and bonds of correspondence. Its springs are not used, and any Poisson's ratio suits it.
 pub const NET_LAW: BondLaw = BondLaw {
@@ -92,9 +90,7 @@ impl Deformation {
 
 impl<'n> Correspondence<'n> {
     /// The law of a scene on its net.
-    ///
-    /// # Errors
-    /// A damage law that correspondence does not have, a missing strength or fracture energy, a factor of the control below 0.
+    /// Errors: a damage law that correspondence does not have, a missing strength or fracture energy, a factor of the control below 0.
     pub fn new(scene: &Scene, net: &'n Net, control: ZeroEnergyControl, factor: f64) -> Result<Self> {
         let neighbours = Neighbours::of(net);
         let all_at_once = matches!(scene.procedure, Procedure::Dynamic { .. });
@@ -126,7 +122,7 @@ impl<'n> Correspondence<'n> {
     /// First Piola-Kirchhoff stress as the forces of a point's own bonds carry it, `Σ T⟨ξ⟩ ⊗ ξ V'`, Pa.
     pub fn carried(&self, u: &[f64], point: usize) -> Matrix2<f64> {
         let at = &self.points[point];
-        let state = |n: &neighbours::Neighbour| {
+        let state = |n: &Neighbour| {
             let kept = if at.whole { self.control.on_uneven() } else { 0.0 };
             let eta = relative(u, point, n.other as usize);
             let own = at.pull * n.xi + 0.5 * (kept + self.control.on_relative()) * eta;
@@ -228,10 +224,44 @@ impl Interaction for Correspondence<'_> {
         reaction
     }
 
+    /// A bound of every point, N/m.
+    ///
+    /// `H = Σ u' ⊗ g` with `g = V' K⁻¹ ξ`, and `-Σ g` at the point itself, so the block of two points in the energy `V H:C:H/2` of
+    /// a third is at the most `V λ |g| |g'|`, λ the largest eigenvalue of C. The rows sum to `λ Σ V |g| Σ |g'|` over the
+    /// neighbourhoods to which a point belongs. Springs of stiffness `c V V'` add twice their sum; those on the uneven part, a
+    /// projection, at the most as much.
     fn stiffness_bound(&self, bonds: &BondState) -> Vec<[f64; 2]> {
+        let (net, neighbours) = (self.net, &self.neighbours);
         let mut shape = self.shape.clone();
-        shape.follow(self.net, &self.neighbours, bonds);
-        bound::of_points(self.net, &self.neighbours, &shape, &self.elasticity, &self.control)
+        shape.follow(net, neighbours, bonds);
+        // |g| at the point itself, and Σ |g| over its neighbourhood with itself.
+        let sums = |i: usize| {
+            let Some(inverse) = shape.inverse(i) else { return [0.0; 2] };
+            let (mut whole, mut lengths) = (nalgebra::Vector2::zeros(), 0.0);
+            for n in neighbours.of_point(i).iter().filter(|n| shape.counts(n.bond)) {
+                let g = net.volumes[n.other as usize] * inverse * n.xi;
+                whole += g;
+                lengths += g.norm();
+            }
+            [whole.norm(), lengths + whole.norm()]
+        };
+        let sums: Vec<[f64; 2]> = (0..net.len()).into_par_iter().with_min_len(256).map(sums).collect();
+        let spring = self.control.on_relative() + self.control.on_uneven();
+        let of_point = |i: usize| {
+            let volume = net.volumes[i];
+            let (mut rows, mut springs) = (volume * sums[i][0] * sums[i][1], 0.0);
+            for n in neighbours.of_point(i) {
+                let other = n.other as usize;
+                if let Some(inverse) = shape.inverse(other).filter(|_| shape.counts(n.bond)) {
+                    rows += net.volumes[other] * volume * (inverse * n.xi).norm() * sums[other][1];
+                }
+                if shape.bears(n.bond) {
+                    springs += 2.0 * spring * volume * net.volumes[other];
+                }
+            }
+            [FINITE_STRAIN * self.elasticity.largest() * rows + springs, 0.0]
+        };
+        (0..net.len()).into_par_iter().with_min_len(256).map(of_point).collect()
     }
 
     /// Nothing: shape tensors follow the bonds before every evaluation, and those of a point are always summed up whole.
@@ -241,13 +271,5 @@ impl Interaction for Correspondence<'_> {
 
     fn restore(&mut self, memory: &Memory, _: &BondState) -> bool {
         *memory == Memory::default()
-    }
-}
-
-/// Whether damage enters K and F.
-fn in_shape(enters: DamageEntry) -> bool {
-    match enters {
-        DamageEntry::Force => false,
-        DamageEntry::Influence => true,
     }
 }

@@ -14,10 +14,8 @@ use serde::{Deserialize, Serialize};
 
 use super::bonds::BondState;
 use super::boundary::{Boundary, Held};
-use super::checkpoint::{Place, of_another};
-use super::course::Course;
-use super::interaction::{Damaging, Driven, Interaction, Reaction};
-use super::log::Log;
+use super::checkpoint::{Course, of_another};
+use super::interaction::{Damaging, Interaction, Memory};
 use super::outcome::{HistoryRow, SceneEnd};
 use super::scene::LoadRamp;
 use crate::error::{Result, input};
@@ -80,9 +78,7 @@ pub fn stable_step(net: &Net, density: f64, bound: &[[f64; 2]]) -> f64 {
 }
 
 /// The time step: the one asked for, or the program's own.
-///
-/// # Errors
-/// A step above the stable one.
+/// Errors: a step above the stable one.
 pub fn time_step(asked: Option<f64>, stable: f64) -> Result<f64> {
     match asked {
         Some(step) if step > stable => {
@@ -101,10 +97,11 @@ impl Standing {
     }
 }
 
+/// How forces rise, and what they are at full size by unknowns, N.
+type Push = (LoadRamp, Vec<(usize, f64)>);
+
 /// A motion to be followed.
 pub struct Run<'a> {
-    /// Loads.
-    pub boundary: &'a Boundary,
     /// Masses of all unknowns, kg.
     pub masses: &'a [f64],
     /// Time step, s.
@@ -116,26 +113,24 @@ pub struct Run<'a> {
 impl Run<'_> {
     /// Follows the motion from rest, or from where it is taken up; returns why it ended, the last state, and the evaluations of the
     /// forces.
-    ///
-    /// # Errors
-    /// A run that was cancelled, a checkpoint of another one.
+    /// Errors: a run that was cancelled, a checkpoint of another one.
     pub fn follow(
         &self,
         interaction: &mut dyn Interaction,
         bonds: &mut BondState,
-        log: &mut Log<'_>,
-        mut course: Course<'_>,
+        course: &mut Course<'_>,
     ) -> Result<(SceneEnd, Motion, usize)> {
+        let boundary = course.log.boundary;
         let unknowns = interaction.unknowns();
         let size = self.masses.len();
         let held: Vec<(usize, Held)> =
-            self.boundary.held.iter().map(|held| (held.point as usize * unknowns + held.component, *held)).collect();
-        let mut at = match course.take_up(log, bonds)? {
+            boundary.held.iter().map(|held| (held.point as usize * unknowns + held.component, *held)).collect();
+        let mut at = match course.take_up::<(Standing, Memory)>(bonds)? {
             None => self.start(interaction, bonds, &held),
-            Some(Place::Motion(at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
+            Some((at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
             Some(_) => return Err(of_another()),
         };
-        let pushes = self.pushes(unknowns);
+        let pushes = pushes(boundary, unknowns);
         let mut external = vec![0.0; size];
         push_at(&pushes, at.step as f64 * self.step, &mut external);
         let stride = self.steps.div_ceil(ROWS).max(1);
@@ -171,11 +166,15 @@ impl Run<'_> {
             at.work += driven + pushed;
             let platens = interaction.driven();
             at.fracture += reaction.released;
-            log.broke(step, reaction.broken);
+            course.log.broke(step, reaction.broken);
             let look = step % WATCH == 0 || step % stride == 0 || step == self.steps;
             if look {
                 let all_work = at.work + platens.map_or(0.0, |driven| driven.work);
-                let row = self.row(step, &at.motion, &reaction, (at.fracture, all_work), platens, unknowns);
+                let of_points = || boundary.measure_at(unknowns, time, &at.motion.u, &at.motion.force);
+                let (displacement, load) = platens.map_or_else(of_points, |driven| (driven.displacement, driven.load));
+                let (kinetic, strain, fracture) = (self.kinetic(&at.motion.v), reaction.strain, at.fracture);
+                let row =
+                    HistoryRow { step, time, displacement, load, broken_bonds: 0, kinetic, strain, fracture, work: all_work };
                 at.largest = at.largest.max(row.kinetic.max(row.strain).max(row.work.abs()));
                 let nowhere = (row.kinetic + row.strain + row.fracture - row.work).abs();
                 // A negated comparison, so that NaN counts as blown up.
@@ -185,9 +184,9 @@ impl Run<'_> {
                     break;
                 }
                 if step % stride == 0 || step == self.steps {
-                    log.row(row, &at.motion.u, bonds);
+                    course.log.row(row, &at.motion.u, bonds);
                     course.step_done(step as f64 / self.steps as f64)?;
-                    course.may_keep(log, bonds, &|| Place::Motion(at.clone(), interaction.memory()));
+                    course.may_keep(bonds, || (&at, interaction.memory()));
                 }
             }
         }
@@ -206,15 +205,6 @@ impl Run<'_> {
         let work = self.kinetic(&motion.v);
         interaction.internal_force(&motion.u, bonds, Damaging::Frozen, &mut motion.force);
         Standing { step: 0, motion, work, fracture: 0.0, largest: 0.0 }
-    }
-
-    /// Forces of the loads at full size by unknowns, N, with how they rise.
-    fn pushes(&self, unknowns: usize) -> Vec<(LoadRamp, Vec<(usize, f64)>)> {
-        let by_unknown = |&(point, force): &(u32, Point)| {
-            let at = point as usize * unknowns;
-            [(at, force[0]), (at + 1, force[1])]
-        };
-        self.boundary.pushes.iter().map(|push| (push.rise, push.forces.iter().flat_map(by_unknown).collect())).collect()
     }
 
     /// First half: velocity to the half step, displacement to the new step.
@@ -237,8 +227,8 @@ impl Run<'_> {
     }
 
     /// Work of the given forces over a step with these half-step velocities, J.
-    fn pushed(&self, pushes: &[(LoadRamp, Vec<(usize, f64)>)], v: &[f64], [before, time]: [f64; 2]) -> f64 {
-        let power = |(rise, forces): &(LoadRamp, Vec<(usize, f64)>)| {
+    fn pushed(&self, pushes: &[Push], v: &[f64], [before, time]: [f64; 2]) -> f64 {
+        let power = |(rise, forces): &Push| {
             let whole: f64 = forces.iter().map(|&(i, force)| force * v[i]).sum();
             0.5 * (rise.share(before) + rise.share(time)) * whole
         };
@@ -247,8 +237,8 @@ impl Run<'_> {
 
     /// Kinetic energy before its work, J: forces that come in from one step to the next have moved the points half a step ahead of
     /// what they have worked, `Δt²/8 Σ f²/m`. All there is in the first step of a load that rises from nothing.
-    fn lag(&self, pushes: &[(LoadRamp, Vec<(usize, f64)>)], time: f64) -> f64 {
-        let of_push = |(rise, forces): &(LoadRamp, Vec<(usize, f64)>)| {
+    fn lag(&self, pushes: &[Push], time: f64) -> f64 {
+        let of_push = |(rise, forces): &Push| {
             let squares: f64 = forces.iter().map(|&(i, force)| force * force / self.masses[i]).sum();
             rise.share(time).powi(2) * squares
         };
@@ -264,35 +254,19 @@ impl Run<'_> {
             .collect();
         parts.iter().sum()
     }
+}
 
-    fn row(
-        &self,
-        step: usize,
-        motion: &Motion,
-        reaction: &Reaction,
-        sums: (f64, f64),
-        platens: Option<Driven>,
-        unknowns: usize,
-    ) -> HistoryRow {
-        let time = step as f64 * self.step;
-        let of_points = || self.boundary.measure_at(unknowns, time, &motion.u, &motion.force);
-        let (displacement, load) = platens.map_or_else(of_points, |driven| (driven.displacement, driven.load));
-        HistoryRow {
-            step,
-            time,
-            displacement,
-            load,
-            broken_bonds: 0,
-            kinetic: self.kinetic(&motion.v),
-            strain: reaction.strain,
-            fracture: sums.0,
-            work: sums.1,
-        }
-    }
+/// Forces of the loads at full size by unknowns, N, with how they rise.
+fn pushes(boundary: &Boundary, unknowns: usize) -> Vec<Push> {
+    let by_unknown = |&(point, force): &(u32, Point)| {
+        let at = point as usize * unknowns;
+        [(at, force[0]), (at + 1, force[1])]
+    };
+    boundary.pushes.iter().map(|push| (push.rise, push.forces.iter().flat_map(by_unknown).collect())).collect()
 }
 
 /// Writes the forces of the loads at a time, s, into those on all unknowns, N.
-fn push_at(pushes: &[(LoadRamp, Vec<(usize, f64)>)], time: f64, external: &mut [f64]) {
+fn push_at(pushes: &[Push], time: f64, external: &mut [f64]) {
     for (_, forces) in pushes {
         forces.iter().for_each(|&(i, _)| external[i] = 0.0);
     }

@@ -1,8 +1,10 @@
 //! When a bond is damaged: the limits that follow from strength and fracture energy, and what they do to a bond.
 
-use super::scene::{DamageLaw, Scene, Softening};
-use crate::bond_law::stencil::Stencil;
+use super::scene::{DamageLaw, Scene, SceneLaw, Softening};
+use crate::bond_law::BondLaw;
+use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::error::{Result, input_missing};
+use crate::levels::Net;
 
 /// A bond's measures at which laws look: stretch s and shear angle γ, and the ratio k_t / k_n of its springs.
 ///
@@ -18,6 +20,14 @@ pub struct Measures {
     pub shear: f64,
     /// Tangential over normal spring.
     pub ratio: f64,
+}
+
+impl Measures {
+    /// `s² + (k_t/k_n) γ²`: the energy of the whole bond over that of unit stretch.
+    #[inline(always)]
+    pub fn square(&self) -> f64 {
+        self.stretch * self.stretch + self.ratio * self.shear * self.shear
+    }
 }
 
 /// Law of damage with its limits.
@@ -36,32 +46,26 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The law of a scene on the bonds of so many points (`principal_stress` belongs to correspondence); `critical` is the
-    /// critical stretch of every point from its fracture energy, or `None` without one.
-    ///
-    /// # Errors
-    /// A missing fracture energy or missing constants.
-    pub fn of(scene: &Scene, points: usize, critical: Option<Vec<f64>>) -> Result<Failure> {
-        let limits = || {
-            let given = scene.damage.stretch.map(|stretch| vec![stretch; points]);
-            given.or(critical.clone()).ok_or_else(|| {
-                input_missing(
-                    "material.fracture_energy_j_m2",
-                    "is missing: the critical stretch follows from it",
-                    "give it, or damage.critical_stretch",
-                )
-            })
+    /// The law of a scene on the springs of its net; bonds of correspondence have one of their own.
+    /// Errors: a missing fracture energy or missing constants.
+    pub fn of(scene: &Scene, net: &Net) -> Result<Failure> {
+        let SceneLaw::Bonds(law) = scene.model.law else { return Ok(Failure::Never) };
+        let limits = || match (scene.damage.stretch, scene.material.fracture_energy) {
+            (Some(stretch), _) => Ok(vec![stretch; net.len()]),
+            (None, Some(energy)) => critical_stretches(scene, &law, net, energy),
+            (None, None) => {
+                let problem = "is missing: the critical stretch follows from it";
+                Err(input_missing("material.fracture_energy_j_m2", problem, "give it, or damage.critical_stretch"))
+            }
         };
         match scene.damage.law {
             DamageLaw::None | DamageLaw::PrincipalStress => Ok(Failure::Never),
             DamageLaw::CriticalStretch => Ok(Failure::Stretch(limits()?)),
             DamageLaw::CriticalEnergy => Ok(Failure::Energy(limits()?)),
             DamageLaw::NonlinearTwoParameter => scene.damage.nonlinear.map(Failure::Softening).ok_or_else(|| {
-                input_missing(
-                    "damage.elastic_stretch",
-                    "is missing: the nonlinear law has no limits",
-                    "give elastic_stretch, peak_stretch and final_stretch, or material.yield_strength_mpa and tensile_strength_mpa",
-                )
+                let remedy =
+                    "give elastic_stretch, peak_stretch and final_stretch, or material.yield_strength_mpa and tensile_strength_mpa";
+                input_missing("damage.elastic_stretch", "is missing: the nonlinear law has no limits", remedy)
             }),
         }
     }
@@ -69,23 +73,17 @@ impl Failure {
     /// Share of its stiffness that a bond of an owner has at these measures, and its history; never more than before.
     #[inline(always)]
     pub fn share(&self, owner: u32, at: Measures, share: f64, peak: &mut f64) -> f64 {
+        // Debris that moves past stores little energy in linear measures; a bond so long is none.
+        if self.is_overlong(owner, at.elongation) {
+            return 0.0;
+        }
         match self {
-            Failure::Never => share,
-            Failure::Stretch(limits) => {
-                let limit = limits[owner as usize];
-                if at.elongation >= limit * (2.0 + limit) { 0.0 } else { share }
-            }
+            Failure::Never | Failure::Stretch(_) => share,
             Failure::Energy(limits) => {
-                let limit = limits[owner as usize];
-                let energy = at.elongation > 0.0 && at.stretch * at.stretch + at.ratio * at.shear * at.shear >= limit * limit;
-                // Debris that moves past stores little energy in linear measures; a bond so long is none.
-                let overlong = at.elongation >= limit * (2.0 + limit);
-                if energy || overlong { 0.0 } else { share }
+                let is_beyond = at.elongation > 0.0 && at.square() >= limits[owner as usize].powi(2);
+                if is_beyond { 0.0 } else { share }
             }
             Failure::Softening(law) => {
-                if at.elongation >= law.last * (2.0 + law.last) {
-                    return 0.0;
-                }
                 if at.stretch <= *peak {
                     return share;
                 }
@@ -118,7 +116,7 @@ impl Failure {
         match self {
             Failure::Never => 0.0,
             Failure::Stretch(_) | Failure::Softening(_) => at.stretch.max(0.0),
-            Failure::Energy(_) if at.stretch > 0.0 => (at.stretch * at.stretch + at.ratio * at.shear * at.shear).sqrt(),
+            Failure::Energy(_) if at.stretch > 0.0 => at.square().sqrt(),
             Failure::Energy(_) => 0.0,
         }
     }
@@ -186,6 +184,23 @@ impl Softening {
         let gradual = curve(after.max(last)) - curve(before.max(last));
         gradual + (before.min(last) - after.min(last)) * self.last * self.last
     }
+}
+
+/// Critical stretch of every point of a net.
+fn critical_stretches(scene: &Scene, law: &BondLaw, net: &Net, energy: f64) -> Result<Vec<f64>> {
+    let (material, thickness) = (spring_material(law, &scene.material), scene.specimen.thickness);
+    // Few levels, many points.
+    let mut known: Vec<(f64, f64)> = Vec::new();
+    let of_point = |&spacing: &f64| {
+        if let Some((_, stretch)) = known.iter().find(|(of, _)| *of == spacing) {
+            return Ok(*stretch);
+        }
+        let stencil = Stencil::new(law, &material, spacing, scene.model.horizon_ratio, thickness)?;
+        let stretch = critical_stretch(&stencil, plane_stiffness(&material)[0], energy, thickness);
+        known.push((spacing, stretch));
+        Ok(stretch)
+    };
+    net.spacings.iter().map(of_point).collect()
 }
 
 /// Critical stretch of a fracture energy on a lattice, from the bonds that a crack between two rows cuts:

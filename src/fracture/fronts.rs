@@ -135,15 +135,8 @@ impl<'n> Fronts<'n> {
             }
             if moves.is_empty() {
                 let Some((first, front)) = self.new_front(&left, time) else { break };
-                let position = front.at;
-                self.standing.path.push(PathPoint {
-                    tip: self.standing.fronts.len(),
-                    step,
-                    time,
-                    position,
-                    damage: damage[first],
-                    speed: 0.0,
-                });
+                let (tip, position) = (self.standing.fronts.len(), front.at);
+                self.standing.path.push(PathPoint { tip, step, time, position, damage: damage[first], speed: 0.0 });
                 self.standing.fronts.push(front);
                 left.retain(|&i| i != first);
             }
@@ -170,14 +163,10 @@ impl<'n> Fronts<'n> {
         let mut best: Vec<Option<(f64, usize)>> = vec![None; self.standing.fronts.len()];
         for &i in points {
             let (at, spacing, horizon) = (self.net.positions[i], self.net.spacings[i], self.net.horizons[i]);
-            let near = self
-                .standing
-                .fronts
-                .iter()
-                .enumerate()
-                .filter_map(|(tip, front)| Some((tip, front.ahead(at, spacing, horizon)?)));
-            let nearest = near
-                .min_by(|a, b| distance(self.standing.fronts[a.0].at, at).total_cmp(&distance(self.standing.fronts[b.0].at, at)));
+            let fronts = self.standing.fronts.iter().enumerate();
+            let near = fronts.filter_map(|(tip, front)| Some((tip, front.ahead(at, spacing, horizon)?)));
+            let away = |tip: usize| distance(self.standing.fronts[tip].at, at);
+            let nearest = near.min_by(|a, b| away(a.0).total_cmp(&away(b.0)));
             if let Some((tip, forward)) = nearest
                 && best[tip].is_none_or(|(most, _)| forward > most)
             {

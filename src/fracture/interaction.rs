@@ -20,6 +20,18 @@ pub struct Reaction {
     pub damaged: f64,
 }
 
+impl Reaction {
+    /// Both together.
+    pub fn and(self, other: Reaction) -> Reaction {
+        Reaction {
+            strain: self.strain + other.strain,
+            released: self.released + other.released,
+            broken: self.broken + other.broken,
+            damaged: self.damaged.max(other.damaged),
+        }
+    }
+}
+
 /// Rigid bodies that an interaction moves by itself (platens), as its last evaluation found them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Driven {
@@ -61,14 +73,10 @@ pub trait Interaction: Send {
     fn unknowns(&self) -> usize;
 
     /// Told of the share of the full load before forces at it are asked for, for interactions that bring loads themselves.
-    fn load_to(&mut self, level: f64) {
-        let _ = level;
-    }
+    fn load_to(&mut self, _level: f64) {}
 
     /// The same for motion in time, where every load rises by itself: told of the time, s.
-    fn load_at(&mut self, time: f64) {
-        let _ = time;
-    }
+    fn load_at(&mut self, _time: f64) {}
 
     /// Writes the internal forces -dW/du at displacement `u` into `force`, after damage by `u` where that is allowed.
     fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction;

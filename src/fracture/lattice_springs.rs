@@ -13,6 +13,7 @@ use super::interaction::{Damaging, Interaction, Memory, Reaction};
 use super::springs::stiffness_bound;
 use crate::body::Body;
 use crate::body::lattice::{LANES, Lattice};
+use crate::bond_law::stencil::StencilBond;
 use crate::levels::Net;
 
 /// Rows of a band.
@@ -21,55 +22,46 @@ const BAND: usize = 16;
 /// A value for each of [`LANES`] neighbouring places.
 type Lanes = [f64; LANES];
 
-/// One stencil bond.
-#[derive(Debug, Clone, Copy)]
-struct Spring {
-    /// Distance in memory to the other end.
-    step: usize,
-    /// Bond vector in lattice axes, m.
-    xi: [f64; 2],
-    length: f64,
-    normal: [f64; 2],
-    k_n: f64,
-    k_t: f64,
-}
-
-impl Spring {
-    /// Normal and tangential strain of the bond of a place, one at a time.
-    fn strain<const FINITE: bool>(&self, u: &[Vec<f64>; 2], place: usize) -> (f64, f64) {
-        let eta = [0, 1].map(|c| u[c][place + self.step] - u[c][place]);
-        let n = self.normal;
-        if FINITE {
-            ((self.xi[0] + eta[0]).hypot(self.xi[1] + eta[1]) - self.length, 0.0)
-        } else {
-            (eta[0] * n[0] + eta[1] * n[1], eta[1] * n[0] - eta[0] * n[1])
-        }
+/// Normal and tangential strain of the bond of a place whose other end is `step` farther in memory, one at a time.
+fn strain_of<const FINITE: bool>(bond: &StencilBond, step: usize, u: &[Vec<f64>; 2], place: usize) -> (f64, f64) {
+    let eta = [0, 1].map(|c| u[c][place + step] - u[c][place]);
+    let n = bond.normal;
+    if FINITE {
+        let y = [0, 1].map(|c| n[c] * bond.length + eta[c]);
+        (y[0].hypot(y[1]) - bond.length, 0.0)
+    } else {
+        (eta[0] * n[0] + eta[1] * n[1], eta[1] * n[0] - eta[0] * n[1])
     }
 }
 
-/// When a bond breaks.
+/// When a bond breaks: from this stretch on, or from its energy on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Limit {
-    Never,
-    Stretch(f64),
-    Energy(f64),
+struct Limit {
+    stretch: f64,
+    by_energy: bool,
+}
+
+/// What a kernel works on and does not change.
+struct Fixed {
+    lattice: Lattice,
+    /// Bonds of a point with the distance in memory to the other end.
+    springs: Vec<(usize, StencilBond)>,
+    limit: Option<Limit>,
+    finite: bool,
+    /// Number of the bond in the net, row by row, in a row bond by bond.
+    numbers: Vec<u32>,
+    may_fail: Vec<bool>,
 }
 
 /// Springs of a lattice body.
 pub struct LatticeSprings<'n> {
     net: &'n Net,
-    lattice: Lattice,
-    springs: Vec<Spring>,
-    limit: Limit,
-    finite: bool,
+    fixed: Fixed,
     /// Memory index of every point, and the first point of every row.
     places: Vec<u32>,
     row_starts: Vec<usize>,
-    /// Stiffness multiplier of the bonds, row by row, in a row bond by bond; 0 absent or broken.
+    /// Stiffness multiplier of the bonds, ordered as their numbers; 0 absent or broken.
     carry: Vec<f32>,
-    /// Number of the bond in the net; at the same index.
-    numbers: Vec<u32>,
-    may_fail: Vec<bool>,
     /// Displacement over the places, lattice axes, and that of the last evaluation.
     u: [Vec<f64>; 2],
     last: [Vec<f64>; 2],
@@ -88,25 +80,18 @@ impl<'n> LatticeSprings<'n> {
     pub fn new(net: &'n Net, body: &Body, bonds: &BondState, failure: &Failure, finite: bool) -> Option<Self> {
         let uniform = |limits: &[f64]| limits.first().copied().filter(|first| limits.iter().all(|limit| limit == first));
         let limit = match failure {
-            Failure::Never => Limit::Never,
-            Failure::Stretch(limits) => Limit::Stretch(uniform(limits)?),
-            Failure::Energy(limits) => Limit::Energy(uniform(limits)?),
+            Failure::Never => None,
+            Failure::Stretch(limits) => Some(Limit { stretch: uniform(limits)?, by_energy: false }),
+            Failure::Energy(limits) => Some(Limit { stretch: uniform(limits)?, by_energy: true }),
             Failure::Softening(_) => return None,
         };
         if net.unknowns != 2 || body.stencil.dilatation != 0.0 {
             return None;
         }
         let lattice = body.lattice.clone();
-        let spring = |bond: &crate::bond_law::stencil::StencilBond| Spring {
-            // Never negative: a bond is owned by its lower end, or along a row by the left one.
-            step: lattice.step(bond.dx, bond.dy) as usize,
-            xi: bond.normal.map(|n| n * bond.length),
-            length: bond.length,
-            normal: bond.normal,
-            k_n: bond.k_n,
-            k_t: bond.k_t,
-        };
-        let springs: Vec<Spring> = body.stencil.bonds.iter().map(spring).collect();
+        // Steps are never negative: a bond is owned by its lower end, or along a row by the left one.
+        let spring = |bond: &StencilBond| (lattice.step(bond.dx, bond.dy) as usize, *bond);
+        let springs: Vec<(usize, StencilBond)> = body.stencil.bonds.iter().map(spring).collect();
         let (kinds, stride) = (springs.len(), lattice.stride);
         let mut carry = vec![0.0_f32; lattice.rows * kinds * stride];
         let mut numbers = vec![u32::MAX; carry.len()];
@@ -139,27 +124,14 @@ impl<'n> LatticeSprings<'n> {
         let bands = (0..lattice.rows.div_ceil(BAND)).map(|_| band()).collect();
         let u = [0, 1].map(|_| vec![0.0; lattice.places()]);
         let last = u.clone();
-        let (places, may_fail) = (body.points.clone(), bonds.may_fail.clone());
-        Some(LatticeSprings {
-            net,
-            lattice,
-            springs,
-            limit,
-            finite,
-            places,
-            row_starts,
-            carry,
-            numbers,
-            may_fail,
-            u,
-            last,
-            bands,
-        })
+        let places = body.points.clone();
+        let fixed = Fixed { lattice, springs, limit, finite, numbers, may_fail: bonds.may_fail.clone() };
+        Some(LatticeSprings { net, fixed, places, row_starts, carry, u, last, bands })
     }
 
     /// Puts the displacement of the points on the places, in lattice axes.
     fn spread(&mut self, u: &[f64]) {
-        let (lattice, starts, places) = (&self.lattice, &self.row_starts, &self.places);
+        let (lattice, starts, places) = (&self.fixed.lattice, &self.row_starts, &self.places);
         let first = lattice.padding * lattice.stride;
         let [x, y] = &mut self.u;
         let rows = x[first..].par_chunks_mut(lattice.stride).zip(y[first..].par_chunks_mut(lattice.stride));
@@ -175,7 +147,7 @@ impl<'n> LatticeSprings<'n> {
 
     /// Adds the pulls of all bands into the forces of the points, in plate axes.
     fn collect(&self, force: &mut [f64]) {
-        let lattice = &self.lattice;
+        let lattice = &self.fixed.lattice;
         let mut rows: Vec<&mut [f64]> = Vec::with_capacity(lattice.rows);
         let mut rest = force;
         for row in 0..lattice.rows {
@@ -203,14 +175,11 @@ impl<'n> LatticeSprings<'n> {
 
 /// Work of one band, compiled for every vector width and run with the widest the processor has.
 struct BandWork<'a> {
-    lattice: &'a Lattice,
-    springs: &'a [Spring],
-    limit: Limit,
-    finite: bool,
+    fixed: &'a Fixed,
+    /// `None` where bonds keep their state.
+    limit: Option<Limit>,
     u: &'a [Vec<f64>; 2],
     last: &'a [Vec<f64>; 2],
-    numbers: &'a [u32],
-    may_fail: &'a [bool],
     first: usize,
     carry: &'a mut [f32],
     band: &'a mut Band,
@@ -221,27 +190,16 @@ impl pulp::WithSimd for BandWork<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        match (self.finite, self.limit) {
-            (true, Limit::Never) => self.rows::<true, 0>(),
-            (true, Limit::Stretch(_)) => self.rows::<true, 1>(),
-            (true, Limit::Energy(_)) => self.rows::<true, 2>(),
-            (false, Limit::Never) => self.rows::<false, 0>(),
-            (false, Limit::Stretch(_)) => self.rows::<false, 1>(),
-            (false, Limit::Energy(_)) => self.rows::<false, 2>(),
-        }
+        if self.fixed.finite { self.rows::<true>() } else { self.rows::<false>() }
     }
 }
 
 impl BandWork<'_> {
-    /// `LAW`: 0 no limit, 1 stretch, 2 energy.
     #[inline(always)]
-    fn rows<const FINITE: bool, const LAW: u8>(self) {
-        let Lattice { stride, padding, columns, .. } = *self.lattice;
-        let kinds = self.springs.len();
-        let critical = match self.limit {
-            Limit::Never => f64::INFINITY,
-            Limit::Stretch(limit) | Limit::Energy(limit) => limit,
-        };
+    fn rows<const FINITE: bool>(self) {
+        let Fixed { lattice, springs, numbers, may_fail, .. } = self.fixed;
+        let Lattice { stride, padding, columns, .. } = *lattice;
+        let kinds = springs.len();
         let Band { pull: [pull_x, pull_y], reaction, broken } = self.band;
         pull_x.fill(0.0);
         pull_y.fill(0.0);
@@ -254,17 +212,18 @@ impl BandWork<'_> {
                 let (at, out) = (place + column, row * stride + padding + column);
                 let (here_x, here_y) = (load(&self.u[0], at), load(&self.u[1], at));
                 let (mut sum_x, mut sum_y): (Lanes, Lanes) = ([0.0; LANES], [0.0; LANES]);
-                for (k, spring) in self.springs.iter().enumerate() {
+                for (k, (step, spring)) in springs.iter().enumerate() {
                     let shares = k * stride + padding + column;
-                    let there_x = load(&self.u[0], at + spring.step);
-                    let there_y = load(&self.u[1], at + spring.step);
+                    let there_x = load(&self.u[0], at + step);
+                    let there_y = load(&self.u[1], at + step);
                     let (mut share, mut e_n, mut e_t): (Lanes, Lanes, Lanes) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
                     let (mut n_x, mut n_y) = ([spring.normal[0]; LANES], [spring.normal[1]; LANES]);
                     for lane in 0..LANES {
                         share[lane] = f64::from(carry[shares + lane]);
                         let (eta_x, eta_y) = (there_x[lane] - here_x[lane], there_y[lane] - here_y[lane]);
                         if FINITE {
-                            let (y_x, y_y) = (spring.xi[0] + eta_x, spring.xi[1] + eta_y);
+                            let xi = spring.normal.map(|n| n * spring.length);
+                            let (y_x, y_y) = (xi[0] + eta_x, xi[1] + eta_y);
                             let length = (y_x * y_x + y_y * y_y).sqrt();
                             let inverse = 1.0 / length;
                             e_n[lane] = length - spring.length;
@@ -274,30 +233,29 @@ impl BandWork<'_> {
                             e_t[lane] = eta_y * spring.normal[0] - eta_x * spring.normal[1];
                         }
                     }
-                    if LAW > 0 {
-                        let limit = critical * spring.length;
-                        let (ratio, longest) =
-                            (spring.k_t / spring.k_n, critical * (2.0 + critical) * spring.length * spring.length);
+                    if let Some(Limit { stretch, by_energy }) = self.limit {
+                        let (limit, ratio) = (stretch * spring.length, spring.k_t / spring.k_n);
+                        let longest = stretch * (2.0 + stretch) * spring.length * spring.length;
                         let mut beyond: Lanes = [0.0; LANES];
                         for lane in 0..LANES {
                             let (e_n, e_t) = (e_n[lane], e_t[lane]);
                             // True length squared, less that at rest.
                             let longer = e_n * (2.0 * spring.length + e_n) + e_t * e_t;
-                            let measure = if LAW == 1 {
-                                longer - longest
-                            } else {
+                            let measure = if by_energy {
                                 let square = e_n * e_n + ratio * e_t * e_t - limit * limit;
                                 let energy = if longer > 0.0 { square } else { -1.0 };
                                 if longer >= longest { 1.0 } else { energy }
+                            } else {
+                                longer - longest
                             };
                             beyond[lane] = if share[lane] > 0.0 { measure } else { -1.0 };
                         }
                         if largest(&beyond) >= 0.0 {
                             for lane in 0..LANES {
                                 let (e_n, e_t) = (e_n[lane], e_t[lane]);
-                                let number = self.numbers[((self.first + row) * kinds * stride) + shares + lane];
-                                if beyond[lane] >= 0.0 && self.may_fail[number as usize] {
-                                    let (l_n, l_t) = spring.strain::<FINITE>(self.last, at + lane);
+                                let number = numbers[((self.first + row) * kinds * stride) + shares + lane];
+                                if beyond[lane] >= 0.0 && may_fail[number as usize] {
+                                    let (l_n, l_t) = strain_of::<FINITE>(spring, *step, self.last, at + lane);
                                     released += 0.5 * share[lane] * (spring.k_n * e_n * l_n + spring.k_t * e_t * l_t);
                                     broken.push(number);
                                     carry[shares + lane] = 0.0;
@@ -321,8 +279,8 @@ impl BandWork<'_> {
                         sum_x[lane] += f_x[lane];
                         sum_y[lane] += f_y[lane];
                     }
-                    subtract(pull_x, out + spring.step, &f_x);
-                    subtract(pull_y, out + spring.step, &f_y);
+                    subtract(pull_x, out + step, &f_x);
+                    subtract(pull_y, out + step, &f_y);
                 }
                 for (pull, sum) in [(&mut *pull_x, &sum_x), (&mut *pull_y, &sum_y)] {
                     let target = &mut pull[out..out + LANES];
@@ -373,14 +331,12 @@ impl Interaction for LatticeSprings<'_> {
     fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
         std::mem::swap(&mut self.u, &mut self.last);
         self.spread(u);
-        let limit = if damaging == Damaging::Allowed { self.limit } else { Limit::Never };
-        let (lattice, springs, finite) = (&self.lattice, &self.springs[..], self.finite);
-        let (u, last) = (&self.u, &self.last);
-        let (numbers, may_fail) = (&self.numbers[..], &self.may_fail[..]);
+        let (fixed, u, last) = (&self.fixed, &self.u, &self.last);
+        let limit = fixed.limit.filter(|_| damaging == Damaging::Allowed);
         let arch = pulp::Arch::new();
-        let carries = self.carry.par_chunks_mut(BAND * springs.len() * lattice.stride);
+        let carries = self.carry.par_chunks_mut(BAND * fixed.springs.len() * fixed.lattice.stride);
         carries.zip(&mut self.bands).enumerate().for_each(|(i, (carry, band))| {
-            arch.dispatch(BandWork { lattice, springs, limit, finite, u, last, numbers, may_fail, first: i * BAND, carry, band });
+            arch.dispatch(BandWork { fixed, limit, u, last, first: i * BAND, carry, band });
         });
         self.collect(force);
         for band in &self.bands {
@@ -408,7 +364,7 @@ impl Interaction for LatticeSprings<'_> {
             (x[place as usize], y[place as usize]) = (at[0], at[1]);
         }
         // Springs without a bond have no number.
-        for (carry, &number) in self.carry.iter_mut().zip(&self.numbers) {
+        for (carry, &number) in self.carry.iter_mut().zip(&self.fixed.numbers) {
             if bonds.share.get(number as usize).is_some_and(|share| *share == 0.0) {
                 *carry = 0.0;
             }

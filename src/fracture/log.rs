@@ -6,7 +6,6 @@ use super::bonds::BondState;
 use super::boundary::Boundary;
 use super::fronts::{self, CRACKED, Fronts, LOGGED};
 use super::outcome::{Fracture, HistoryRow, SceneEnd, SceneFigures};
-use super::pieces::is_separated;
 use super::scene::Scene;
 use crate::levels::Net;
 use crate::predict::Snapshot;
@@ -18,8 +17,8 @@ const LOOKS: usize = 400;
 
 /// Collects the outcome of a run.
 pub struct Log<'a> {
-    net: &'a Net,
-    boundary: &'a Boundary,
+    pub(super) net: &'a Net,
+    pub(super) boundary: &'a Boundary,
     steps: usize,
     fronts: Fronts<'a>,
     cracking: Fronts<'a>,
@@ -113,7 +112,7 @@ impl<'a> Log<'a> {
             self.cracking.advance(row.step, row.time, &damage);
             if self.taken.broken > self.taken.asked
                 && self.taken.separated.is_none()
-                && is_separated(self.net, self.boundary, bonds)
+                && self.boundary.is_separated(self.net, bonds)
             {
                 self.taken.separated = Some(row.step);
             }

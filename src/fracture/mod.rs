@@ -4,13 +4,13 @@
 //! procedure. What changes is the state of the bonds ([`bonds`], written by the interaction) and the motion (written by the
 //! procedure).
 
+pub mod assembly;
 pub mod bonds;
 pub mod boundary;
 mod budget;
 pub mod checkpoint;
 pub mod contact;
 pub mod correspondence;
-mod course;
 pub mod dynamics;
 pub mod failure;
 pub mod fronts;
@@ -18,41 +18,28 @@ pub mod interaction;
 pub mod lattice_springs;
 mod log;
 pub mod outcome;
-pub mod pieces;
 pub mod platens;
-pub mod preview;
+mod points;
 pub mod quasi_static;
 pub mod read;
-mod region;
-pub mod rotation;
 pub mod scene;
 pub mod springs;
 
 use std::sync::Arc;
 
 pub use outcome::{Fracture, SceneEnd};
+pub use points::build;
 pub use scene::Scene;
 
-use crate::body::Body;
-use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::case::budget::machine;
-use crate::error::{Result, input};
-use crate::levels::{MultiLevelSpec, Net, dual_horizon};
+use crate::error::{Result, input_missing};
 use crate::parallel::in_pool;
 use crate::watch::{self, Stage, Watch};
-use bonds::BondState;
-use boundary::Boundary;
-use checkpoint::SceneCheckpoint;
-use correspondence::Correspondence;
-use course::{Clock, Course};
-use failure::{Failure, critical_stretch};
-use interaction::Interaction;
-use lattice_springs::LatticeSprings;
+use assembly::Assembly;
+use checkpoint::{Clock, Course, SceneCheckpoint};
 use log::Log;
 use outcome::SceneFigures;
-use platens::{Platen, Pressed};
-use scene::{Action, Discretisation, Procedure, SceneLaw};
-use springs::Springs;
+use scene::Procedure;
 
 /// What a scene reports while it goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,9 +69,7 @@ impl SceneObserver for crate::predict::Silent {
 }
 
 /// Runs a scene.
-///
-/// # Errors
-/// Wrong input that shows only now, choices that do not go together, a run that was cancelled.
+/// Errors: wrong input that shows only now, choices that do not go together, a run that was cancelled.
 pub fn run(scene: &Scene, observer: &dyn SceneObserver) -> Result<Fracture> {
     watched(scene, observer, None)
 }
@@ -98,9 +83,7 @@ fn watched(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckp
 
 /// Goes on with a run of a scene from a checkpoint of it; gives what [`run`] gives, bit for bit, its wall time counted from the start
 /// of the first run.
-///
-/// # Errors
-/// As [`run`]; [`crate::Error::Input`] if the checkpoint is not one of this scene.
+/// Errors: as [`run`]; [`crate::Error::Input`] if the checkpoint is not one of this scene.
 pub fn resume(scene: &Scene, checkpoint: SceneCheckpoint, observer: &dyn SceneObserver) -> Result<Fracture> {
     checkpoint.check(scene)?;
     watched(scene, observer, Some(checkpoint))
@@ -108,147 +91,41 @@ pub fn resume(scene: &Scene, checkpoint: SceneCheckpoint, observer: &dyn SceneOb
 
 fn follow(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpoint>) -> Result<Fracture> {
     let clock = Clock::start(from.as_ref());
-    let course = Course::new(scene, observer, clock, from);
     watch::at(Stage::Points, 0.0)?;
-    let (net, body) = build(scene)?;
-    let boundary = Boundary::of(scene, &net)?;
-    let mut bonds = BondState::new(&net, &boundary.no_fail);
-    let failure = failure(scene, &net)?;
-    let body = of_motion(scene, body);
-    let turning = rotation::warning(scene, &net, body.as_ref(), &bonds, failure.as_ref())?;
-    let mut interaction = interact(scene, &net, body.as_ref(), &bonds, failure.as_ref())?;
+    let assembly = Assembly::of(scene)?;
+    let (net, boundary) = (&assembly.net, &assembly.boundary);
+    let warnings = assembly.warnings()?;
+    let (mut bonds, mut interaction) = (assembly.bonds(), assembly.interaction()?);
+    let course = |steps: usize| Course::new(scene, Log::new(scene, net, boundary, steps), observer, clock, from);
     let mut fracture = match scene.procedure {
         Procedure::Dynamic { duration, time_step } => {
-            let density = scene.material.density.ok_or_else(|| {
-                crate::error::input_missing("material.density_kg_m3", "is missing: motion needs mass", "give it")
-            })?;
+            let density = scene
+                .material
+                .density
+                .ok_or_else(|| input_missing("material.density_kg_m3", "is missing: motion needs mass", "give it"))?;
             // With all that will ever press: the time step is chosen once.
             interaction.load_to(1.0);
             let bound = interaction.stiffness_bound(&bonds);
-            let step = dynamics::time_step(time_step, dynamics::stable_step(&net, density, &bound))?;
-            let masses = dynamics::masses(&net, density, &bound);
+            let step = dynamics::time_step(time_step, dynamics::stable_step(net, density, &bound))?;
+            let masses = dynamics::masses(net, density, &bound);
             let steps = (duration / step).round().max(1.0) as usize;
-            let run = dynamics::Run { boundary: &boundary, masses: &masses, step, steps };
-            let mut log = Log::new(scene, &net, &boundary, steps);
-            let (end, motion, evaluations) = run.follow(interaction.as_mut(), &mut bonds, &mut log, course)?;
+            let mut course = course(steps);
+            let run = dynamics::Run { masses: &masses, step, steps };
+            let (end, motion, evaluations) = run.follow(interaction.as_mut(), &mut bonds, &mut course)?;
             let figures = SceneFigures { evaluations, time_step: step, ..SceneFigures::default() };
-            log.close(end, &motion.u, &bonds, figures)
+            course.log.close(end, &motion.u, &bonds, figures)
         }
         Procedure::Static | Procedure::QuasiStatic { .. } => {
-            quasi_static::run(scene, &net, &boundary, interaction.as_mut(), failure.as_ref(), &mut bonds, course)?
+            let course = course(quasi_static::rows(scene.procedure));
+            quasi_static::run(scene, &assembly.failure, interaction.as_mut(), &mut bonds, course)?
         }
     };
-    let overlap = contact::warning(scene, &net, &bonds, &fracture);
-    fracture.warnings.extend(net.warnings.iter().cloned().chain(turning).chain(overlap));
+    let overlap = match fracture.figures.touching {
+        Some(_) => None,
+        None => contact::warning(scene, net, &bonds, &fracture.snapshots),
+    };
+    fracture.warnings.extend(warnings.into_iter().chain(overlap));
     fracture.figures.wall_s = clock.seconds();
     fracture.figures.memory_mb = machine::peak_mb();
     Ok(fracture)
-}
-
-/// The body whose springs the fast kernel works through: only explicit motion leaves the state of the bonds to it alone.
-fn of_motion(scene: &Scene, body: Option<Body>) -> Option<Body> {
-    body.filter(|_| matches!(scene.procedure, Procedure::Dynamic { .. }))
-}
-
-/// Points and bonds of a scene, and the lattice body behind them if there is one.
-///
-/// # Errors
-/// Wrong input that shows only now, choices that do not go together.
-pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
-    let model = &scene.model;
-    match (model.law, model.arrangement) {
-        (law, Discretisation::Lattice) => {
-            let law = match law {
-                SceneLaw::Bonds(law) => law,
-                SceneLaw::Correspondence { .. } => correspondence::NET_LAW,
-            };
-            let body =
-                Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
-            Ok((Net::of_body(&body), Some(body)))
-        }
-        (SceneLaw::Bonds(law), Discretisation::DualHorizon) => {
-            let ask = MultiLevelSpec {
-                specimen: &scene.specimen,
-                material: &scene.material,
-                law: &law,
-                spacing: model.spacing,
-                horizon_ratio: model.horizon_ratio,
-                lattice_angle: model.lattice_angle,
-                refinement: scene.refinement.as_ref(),
-                floating: is_floating(scene),
-            };
-            Ok((dual_horizon::build(&ask)?, None))
-        }
-        (SceneLaw::Correspondence { .. }, arrangement) => {
-            let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";
-            Err(input("model.discretisation", format!("\"{arrangement}\""), problem, "use \"lattice\""))
-        }
-    }
-}
-
-/// Whether nothing holds the plate, so that its loads must balance.
-fn is_floating(scene: &Scene) -> bool {
-    scene.specimen.supports.is_empty()
-        && scene.holds.is_empty()
-        && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_)))
-}
-
-/// Law of damage of the springs; `None` where there are none.
-fn failure(scene: &Scene, net: &Net) -> Result<Option<Failure>> {
-    let SceneLaw::Bonds(law) = scene.model.law else { return Ok(None) };
-    let critical = scene.material.fracture_energy.map(|energy| {
-        let at = |spacing: f64| -> Result<f64> {
-            let thickness = scene.specimen.thickness;
-            let material = spring_material(&law, &scene.material);
-            let stencil = Stencil::new(&law, &material, spacing, scene.model.horizon_ratio, thickness)?;
-            Ok(critical_stretch(&stencil, plane_stiffness(&material)[0], energy, thickness))
-        };
-        // Few levels, many points.
-        let mut known: Vec<(f64, f64)> = Vec::new();
-        let of_point = |&spacing: &f64| match known.iter().find(|(of, _)| *of == spacing) {
-            Some((_, stretch)) => Ok(*stretch),
-            None => {
-                let stretch = at(spacing)?;
-                known.push((spacing, stretch));
-                Ok(stretch)
-            }
-        };
-        net.spacings.iter().map(of_point).collect::<Result<Vec<f64>>>()
-    });
-    Failure::of(scene, net.len(), critical.transpose()?).map(Some)
-}
-
-/// Forces on the points of a scene, those of platens among them.
-fn interact<'n>(
-    scene: &Scene,
-    net: &'n Net,
-    body: Option<&Body>,
-    bonds: &BondState,
-    failure: Option<&Failure>,
-) -> Result<Box<dyn Interaction + 'n>> {
-    let law = interact_by_law(scene, net, body, bonds, failure)?;
-    let platens = Platen::all(scene, net);
-    Ok(if platens.is_empty() { law } else { Box::new(Pressed::new(law, net, platens)) })
-}
-
-/// Forces between the points of a scene.
-fn interact_by_law<'n>(
-    scene: &Scene,
-    net: &'n Net,
-    body: Option<&Body>,
-    bonds: &BondState,
-    failure: Option<&Failure>,
-) -> Result<Box<dyn Interaction + 'n>> {
-    match (scene.model.law, failure) {
-        (SceneLaw::Bonds(_), Some(failure)) => {
-            let finite = scene.model.finite;
-            let fast = body.and_then(|body| LatticeSprings::new(net, body, bonds, failure, finite));
-            Ok(match fast {
-                Some(fast) => Box::new(fast),
-                None => Box::new(Springs::new(net, failure.clone(), finite)),
-            })
-        }
-        (SceneLaw::Correspondence { control, factor }, _) => Ok(Box::new(Correspondence::new(scene, net, control, factor)?)),
-        (SceneLaw::Bonds(_), None) => Ok(Box::new(Springs::new(net, Failure::Never, scene.model.finite))),
-    }
 }

@@ -120,18 +120,6 @@ struct Task<'t> {
     may_fail: &'t [bool],
 }
 
-impl Reaction {
-    /// Both together.
-    pub fn and(self, other: Reaction) -> Reaction {
-        Reaction {
-            strain: self.strain + other.strain,
-            released: self.released + other.released,
-            broken: self.broken + other.broken,
-            damaged: self.damaged.max(other.damaged),
-        }
-    }
-}
-
 impl Interaction for Springs<'_> {
     fn unknowns(&self) -> usize {
         self.net.unknowns
@@ -139,22 +127,15 @@ impl Interaction for Springs<'_> {
 
     fn internal_force(&mut self, u: &[f64], bonds: &mut BondState, damaging: Damaging, force: &mut [f64]) -> Reaction {
         let reaction = match (self.finite, self.net.unknowns) {
-            (true, _) => {
-                let reaction = self.pull_all::<true, 2>(u, bonds, damaging);
-                self.net.gather::<2>(&self.pulls, force);
-                reaction
-            }
-            (false, 2) => {
-                let reaction = self.pull_all::<false, 2>(u, bonds, damaging);
-                self.net.gather::<2>(&self.pulls, force);
-                reaction
-            }
-            (false, _) => {
-                let reaction = self.pull_all::<false, 3>(u, bonds, damaging);
-                self.net.gather::<3>(&self.pulls, force);
-                reaction
-            }
+            (true, _) => self.pull_all::<true, 2>(u, bonds, damaging),
+            (false, 2) => self.pull_all::<false, 2>(u, bonds, damaging),
+            (false, _) => self.pull_all::<false, 3>(u, bonds, damaging),
         };
+        if self.net.unknowns == 3 {
+            self.net.gather::<3>(&self.pulls, force)
+        } else {
+            self.net.gather::<2>(&self.pulls, force)
+        }
         self.last.copy_from_slice(u);
         reaction
     }

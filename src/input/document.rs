@@ -1,4 +1,4 @@
-//! An input file as text and table, with overrides, and the line of every key.
+//! An input file as text and table, with overrides, the line of every key, and its sections.
 
 use std::path::{Path, PathBuf};
 
@@ -6,9 +6,9 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
+use super::folder::{Folder, OpenedFile, STREAM, text_of};
 use super::slice::{path_steps, shorten};
-use super::{Folder, OpenedFile, STREAM};
-use crate::error::{Error, InputError, Result, input};
+use crate::error::{Error, InputError, Result, input, input_missing};
 
 /// A parsed input file that still knows where everything stands in the text.
 #[derive(Debug, Clone)]
@@ -30,12 +30,21 @@ impl Document {
         // What comes through a pipe lies nowhere: its names start from the current folder.
         let is_pipe = ["/dev", "/proc"].iter().any(|system| path.starts_with(system));
         let folder: Folder = if is_pipe { Path::new("") } else { path.parent().unwrap_or(Path::new("")) }.into();
-        let text = super::text_of(folder.opened().read(path, &path.display().to_string())?, path)?;
+        let text = text_of(folder.opened().read(path, &path.display().to_string())?, path)?;
         Self::of_file(text, path, folder, overrides)
     }
 
+    /// A TOML file in a folder, with overrides; the files that it names lie beside it.
+    ///
+    /// Errors: one that cannot be read, or is not TOML; overrides that are none.
+    pub fn in_folder(folder: &Folder, name: &str, overrides: &[String]) -> Result<Self> {
+        let path = folder.path(name);
+        let text = text_of(folder.read(name)?, &path)?;
+        Self::of_file(text, &path, folder.beside(&path), overrides)
+    }
+
     /// The text of a file; the files it names lie in `folder`.
-    pub(super) fn of_file(text: String, path: &Path, folder: Folder, overrides: &[String]) -> Result<Self> {
+    fn of_file(text: String, path: &Path, folder: Folder, overrides: &[String]) -> Result<Self> {
         // Standard input has no name.
         let stem = path.file_stem().filter(|stem| *stem != STREAM);
         let name = stem.map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
@@ -75,9 +84,7 @@ impl Document {
     }
 
     /// Applies overrides on top of those that it was read with.
-    ///
-    /// # Errors
-    /// One that is no `section.key=value`, or names no place for a value.
+    /// Errors: one that is no `section.key=value`, or names no place for a value.
     pub fn set_all(&mut self, overrides: &[String]) -> Result<()> {
         overrides.iter().try_for_each(|text| self.set(text))
     }
@@ -104,9 +111,7 @@ impl Document {
     }
 
     /// Gives a key (`section.key`, below a list by number) another value.
-    ///
-    /// # Errors
-    /// What is wrong with the key, in words that go behind it; nothing but tables above it may have been made then.
+    /// Errors: what is wrong with the key, in words that go behind it; nothing but tables above it may have been made then.
     pub fn put(&mut self, key: &str, value: Value) -> std::result::Result<(), &'static str> {
         const NO_TABLE: &str = "names a key below something that is not a table";
         let steps = path_steps(key);
@@ -184,4 +189,54 @@ fn line_of_key(text: &str, key: &str) -> Option<usize> {
         }
     }
     Some(line_at(text, offset))
+}
+
+/// Sections of another sort of file: their names, what is wrong with them here, what would be right.
+pub type ForeignSections = (&'static [&'static str], &'static str, &'static str);
+
+/// The sections of one file, all of them known and tables.
+pub struct Sections<'t> {
+    table: &'t Table,
+    empty: Value,
+}
+
+impl<'t> Sections<'t> {
+    /// Looks at the sections of a file.
+    /// Errors: anything but a table under one of the `known` names; `strangers` get words of their own.
+    pub fn of(table: &'t Table, known: &[&str], strangers: &[ForeignSections]) -> Result<Self> {
+        for (name, value) in table {
+            if !known.contains(&name.as_str()) {
+                if let Some((_, problem, remedy)) = strangers.iter().find(|(names, ..)| names.contains(&name.as_str())) {
+                    return Err(input(name, shorten(value), *problem, *remedy));
+                }
+                let what = if value.is_table() { "is not a known section" } else { "stands in no section" };
+                return Err(input(name, shorten(value), what, format!("known sections: {}", known.join(", "))));
+            }
+            if !value.is_table() {
+                return Err(input(name, shorten(value), "is not a section", format!("write [{name}] and its keys below")));
+            }
+        }
+        Ok(Sections { table, empty: Value::Table(Table::new()) })
+    }
+
+    /// A section that must be there.
+    pub fn required(&self, section: &str) -> Result<&Value> {
+        self.given(section).ok_or_else(|| input_missing(section, "is missing", format!("write a section [{section}]")))
+    }
+
+    /// A section, without keys where it is left out.
+    pub fn optional(&self, section: &str) -> &Value {
+        self.given(section).unwrap_or(&self.empty)
+    }
+
+    /// A section that may be left out.
+    pub fn given(&self, section: &str) -> Option<&Value> {
+        self.table.get(section)
+    }
+
+    /// The whole input as results repeat it.
+    /// Errors: values that JSON has not.
+    pub fn echo(&self) -> Result<serde_json::Value> {
+        serde_json::to_value(self.table).map_err(|error| input_missing("file", error.to_string(), "write it as plain TOML"))
+    }
 }

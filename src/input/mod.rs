@@ -6,16 +6,12 @@
 
 mod document;
 mod folder;
-mod opened;
 mod quantity;
-mod sections;
 mod slice;
 
-pub use document::Document;
-pub use folder::Folder;
-pub use opened::{FileId, Opened, OpenedFile, Provenance, STREAM, sha256};
+pub use document::{Document, ForeignSections, Sections};
+pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256};
 pub use quantity::*;
-pub use sections::{ForeignSections, Sections};
 pub(crate) use slice::shorten;
 pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, slice, table_of, value_at};
 

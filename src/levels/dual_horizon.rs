@@ -29,8 +29,8 @@ use rayon::prelude::*;
 
 use super::{Net, NetBond, PointGrid, Refinement};
 use crate::body::balanced::load_rows;
+use crate::body::facets::Obstacles;
 use crate::body::lattice::Lattice;
-use crate::body::obstacles::Obstacles;
 use crate::body::pre_crack::{cutting_line, through_mouths};
 use crate::bond_law::stencil::{Stencil, plane_stiffness, spring_material};
 use crate::bond_law::{BondLaw, BondLawKind, SurfaceCorrection};

@@ -7,11 +7,10 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::forces;
-use super::read::Input;
+use super::{Input, forces};
 use crate::error::{Result, input, input_missing};
 use crate::input::{number, shorten, slice, table_of};
-use crate::specimen::geometry::distance;
+use crate::specimen::geometry::{bounding_box, distance, unit};
 use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
 use crate::units::MM;
 
@@ -43,12 +42,8 @@ pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Spec
     }
     if parallel_ratio != 0.0 {
         if specimen.load_measure == LoadMeasure::Force {
-            return Err(crate::error::input(
-                "loading.stress_parallel_ratio",
-                parallel_ratio,
-                format!("does not go with {kind}"),
-                "leave it out",
-            ));
+            let problem = format!("does not go with {kind}");
+            return Err(crate::error::input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out"));
         }
         push_edge_loads(specimen, &[Edge::Left, Edge::Right], parallel_ratio);
     }
@@ -60,11 +55,8 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
     let by_forces = forces::KEYS.into_iter().zip([&input_.pins, &input_.rollers]).find(|(_, given)| given.is_some());
     let area = match by_forces {
         Some((key, _)) if input_.edges.is_some() => {
-            return Err(input_missing(
-                key,
-                "stands beside edges: one nominal load cannot be both",
-                "give edges, or pins and rollers",
-            ));
+            let remedy = "give edges, or pins and rollers";
+            return Err(input_missing(key, "stands beside edges: one nominal load cannot be both", remedy));
         }
         Some((key, _)) if input_.direction.is_some() => {
             let problem = format!("stands beside {key}: it is that of the traction on edges");
@@ -79,12 +71,8 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
             forces::read_pins(input_.pins.as_deref().unwrap_or_default(), specimen)?;
             forces::read_rollers(input_.rollers.as_deref().unwrap_or_default(), specimen)?;
             if specimen.loads.is_empty() {
-                return Err(input(
-                    key,
-                    "[]",
-                    "loads nothing",
-                    "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }",
-                ));
+                let remedy = "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }";
+                return Err(input(key, "[]", "loads nothing", remedy));
             }
             1.0
         }
@@ -107,7 +95,7 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
             return Err(input(&format!("{path}.fix"), "[]", "holds nothing", "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]"));
         }
         let depth = number("a depth in mm", 0.0, 1e5).read(&format!("{path}.rows_mm"), entry.rows_mm)? * MM;
-        let [low, high] = crate::specimen::geometry::bounding_box(&specimen.outline);
+        let [low, high] = bounding_box(&specimen.outline);
         let (x, y) = (entry.fix.contains(&Component::X), entry.fix.contains(&Component::Y));
         let along_normal = if edge.normal()[0] == 0.0 { (y, high[1] - low[1]) } else { (x, high[0] - low[0]) };
         if depth >= along_normal.1 / 2.0 {
@@ -125,12 +113,8 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
 fn stretches(edge: Edge, specimen: &Specimen, key: &str) -> Result<Vec<(Point, Point)>> {
     let found = edge.stretches(specimen);
     if found.is_empty() {
-        return Err(input(
-            key,
-            edge,
-            "is no straight side of this outline",
-            "an edge is what lies on the bounding box of the outline",
-        ));
+        let remedy = "an edge is what lies on the bounding box of the outline";
+        return Err(input(key, edge, "is no straight side of this outline", remedy));
     }
     Ok(found)
 }
@@ -144,12 +128,8 @@ fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_r
         None => [Edge::Top, Edge::Bottom].into_iter().filter(|edge| !held.contains(edge)).collect(),
         Some(asked) => {
             if let Some(edge) = asked.iter().find(|edge| held.contains(edge)) {
-                return Err(input(
-                    KEY,
-                    edge,
-                    "is held by [supports], so it cannot be loaded",
-                    "load another side, or do not hold this one",
-                ));
+                let remedy = "load another side, or do not hold this one";
+                return Err(input(KEY, edge, "is held by [supports], so it cannot be loaded", remedy));
             }
             if let Some((i, edge)) = asked.iter().enumerate().find(|(i, edge)| asked[..*i].contains(edge)) {
                 return Err(input(&format!("{KEY}[{i}]"), edge, "stands twice", "name each side once"));
@@ -158,11 +138,8 @@ fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_r
         }
     };
     let Some(first) = loaded.first().copied() else {
-        return Err(input_missing(
-            KEY,
-            "is empty: nothing is loaded",
-            "name the loaded sides, for example [\"top\", \"bottom\"]",
-        ));
+        let remedy = "name the loaded sides, for example [\"top\", \"bottom\"]";
+        return Err(input_missing(KEY, "is empty: nothing is loaded", remedy));
     };
     let mut areas = Vec::new();
     for edge in &loaded {
@@ -186,12 +163,8 @@ fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_r
         let vertical = first.normal()[0] == 0.0;
         let across = if vertical { [Edge::Left, Edge::Right] } else { [Edge::Bottom, Edge::Top] };
         if loaded.iter().any(|edge| across.contains(edge)) {
-            return Err(input(
-                "loading.stress_parallel_ratio",
-                parallel_ratio,
-                "loads sides that edges loads already",
-                "leave one of them out",
-            ));
+            let remedy = "leave one of them out";
+            return Err(input("loading.stress_parallel_ratio", parallel_ratio, "loads sides that edges loads already", remedy));
         }
         let free: Vec<Edge> = across.into_iter().filter(|edge| !held.contains(edge)).collect();
         for edge in &free {
@@ -219,11 +192,7 @@ fn directions(given: &Value, loaded: &[Edge]) -> Result<Vec<Point>> {
     if vectors.len() != loaded.len() {
         return Err(wrong(format!("names {} directions for {} sides", vectors.len(), loaded.len())));
     }
-    let unit = |&[x, y]: &Point| {
-        let size = x.hypot(y);
-        (1e-9..1e9).contains(&size).then(|| [x / size, y / size])
-    };
-    vectors.iter().map(unit).collect::<Option<_>>().ok_or_else(|| wrong("has no direction".into()))
+    vectors.into_iter().map(unit).collect::<Option<_>>().ok_or_else(|| wrong("has no direction".into()))
 }
 
 /// Traction `share` along the outward normal on all stretches of these sides.

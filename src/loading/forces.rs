@@ -5,7 +5,7 @@ use toml::Value;
 
 use crate::error::{Result, input};
 use crate::input::{number, slice};
-use crate::specimen::geometry::{along, distance, distance_to_segment};
+use crate::specimen::geometry::{along, distance, distance_to_segment, unit};
 use crate::specimen::{Load, Point, SNUG_PIN, Specimen};
 use crate::units::MM;
 
@@ -54,7 +54,7 @@ pub(super) fn read_pins(pins: &[Value], specimen: &mut Specimen) -> Result<()> {
             return Err(input(&format!("{path}.hole"), pin.hole, problem, "count specimen.holes from 0"));
         }
         let force = read_share(&path, pin.share)?;
-        let direction = unit(&path, pin.direction)?;
+        let direction = direction_of(&path, pin.direction)?;
         let contact = number("an angle in degrees, 90 for a pin that fills its hole", 1.0, 90.0)
             .read_optional(&format!("{path}.contact_half_angle_deg"), pin.contact_half_angle_deg)?
             .map_or(SNUG_PIN, f64::to_radians);
@@ -76,26 +76,18 @@ pub(super) fn read_rollers(rollers: &[Value], specimen: &mut Specimen) -> Result
         let share = read_share(&path, roller.share)?;
         let sides = (0..specimen.outline.len()).map(|i| [i, (i + 1) % specimen.outline.len()].map(|i| specimen.outline[i]));
         let Some([from, to]) = sides.into_iter().find(|[from, to]| distance_to_segment(at, *from, *to) < ON_OUTLINE) else {
-            return Err(input(
-                &format!("{path}.at_mm"),
-                given,
-                "does not lie on the outline",
-                "give [x, y] of the middle of the contact",
-            ));
+            let remedy = "give [x, y] of the middle of the contact";
+            return Err(input(&format!("{path}.at_mm"), given, "does not lie on the outline", remedy));
         };
         let (side, place) = (distance(from, to), distance(from, at));
         if place < width / 2.0 - ON_OUTLINE || side - place < width / 2.0 - ON_OUTLINE {
             let problem = "reaches beyond the end of the straight side it lies on";
-            return Err(input(
-                &width_key,
-                roller.contact_width_mm,
-                problem,
-                "give a narrower contact, or place it farther from the corner",
-            ));
+            let remedy = "give a narrower contact, or place it farther from the corner";
+            return Err(input(&width_key, roller.contact_width_mm, problem, remedy));
         }
         // The outline runs counter-clockwise: the plate lies to its left.
         let inward = [-(to[1] - from[1]) / side, (to[0] - from[0]) / side];
-        let direction = roller.direction.map_or(Ok(inward), |direction| unit(&path, direction))?;
+        let direction = roller.direction.map_or(Ok(inward), |direction| direction_of(&path, direction))?;
         if direction[0] * inward[0] + direction[1] * inward[1] <= 0.0 {
             let given = roller.direction.map_or(String::new(), |[x, y]| format!("[{x}, {y}]"));
             return Err(input(&format!("{path}.direction"), given, "pulls at the plate", "a roller pushes: turn it round"));
@@ -122,11 +114,9 @@ fn read_share(path: &str, share: f64) -> Result<f64> {
 }
 
 /// Direction of a force, of length 1.
-fn unit(path: &str, [x, y]: [f64; 2]) -> Result<Point> {
-    let size = x.hypot(y);
-    if !(1e-9..1e9).contains(&size) {
+fn direction_of(path: &str, given: [f64; 2]) -> Result<Point> {
+    unit(given).ok_or_else(|| {
         let remedy = "give [x, y] of the force on the plate, for example [0, 1]";
-        return Err(input(&format!("{path}.direction"), format!("[{x}, {y}]"), "has no direction", remedy));
-    }
-    Ok([x / size, y / size])
+        input(&format!("{path}.direction"), format!("[{}, {}]", given[0], given[1]), "has no direction", remedy)
+    })
 }

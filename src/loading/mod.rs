@@ -7,12 +7,39 @@ mod read;
 pub use boundary::{Imbalance, imbalance};
 pub use read::from_values;
 
+use serde::Deserialize;
+use toml::Value;
+
+use crate::specimen::Edge;
+
 crate::kinds! {
     /// Load histories.
     pub enum LoadingKind for "loading.kind" {
         ConstantAmplitude = "constant_amplitude": "sinusoidal or triangular cycles of one range and one stress ratio",
         Displacement = "displacement": "cycles of one displacement of the loaded places: the load falls as the cracks make the plate compliant",
     }
+}
+
+/// Keys of `[loading]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    kind: Option<LoadingKind>,
+    stress_max_mpa: Option<f64>,
+    stress_range_mpa: Option<f64>,
+    force_max_n: Option<f64>,
+    force_range_n: Option<f64>,
+    force_max_kn: Option<f64>,
+    force_range_kn: Option<f64>,
+    displacement_max_mm: Option<f64>,
+    displacement_range_mm: Option<f64>,
+    crack_pressure_mpa: Option<f64>,
+    stress_ratio: Option<f64>,
+    stress_parallel_ratio: Option<f64>,
+    edges: Option<Vec<Edge>>,
+    direction: Option<Value>,
+    pins: Option<Vec<Value>>,
+    rollers: Option<Vec<Value>>,
 }
 
 /// What every cycle repeats.

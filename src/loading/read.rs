@@ -4,10 +4,10 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::boundary;
-use super::{LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
+use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
 use crate::error::{self, Result, input, input_missing};
 use crate::input::{FORCE, FORCE_KN, Quantity, STRESS, number, shorten, slice, table_of};
-use crate::specimen::{Edge, LoadMeasure, Specimen, SpecimenKind};
+use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
 use crate::units::MM;
 
 /// Keys that ask for a load history.
@@ -38,28 +38,6 @@ const DISPLACEMENTS: &str = "displacement_max_mm, displacement_range_mm";
 struct KindInput {
     #[serde(rename = "kind")]
     _kind: LoadingKind,
-}
-
-/// Keys of `[loading]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Input {
-    kind: Option<LoadingKind>,
-    stress_max_mpa: Option<f64>,
-    stress_range_mpa: Option<f64>,
-    force_max_n: Option<f64>,
-    force_range_n: Option<f64>,
-    force_max_kn: Option<f64>,
-    force_range_kn: Option<f64>,
-    displacement_max_mm: Option<f64>,
-    displacement_range_mm: Option<f64>,
-    crack_pressure_mpa: Option<f64>,
-    stress_ratio: Option<f64>,
-    stress_parallel_ratio: Option<f64>,
-    pub(super) edges: Option<Vec<Edge>>,
-    pub(super) direction: Option<Value>,
-    pub(super) pins: Option<Vec<Value>>,
-    pub(super) rollers: Option<Vec<Value>>,
 }
 
 /// Reads `[loading]` and `[supports]`, puts loads and supports of a `plate` on `specimen`, and gives the cycles.
@@ -162,12 +140,8 @@ fn refuse_by_name(loading: &Value) -> Result<()> {
         let path = format!("loading.{key}");
         if SEQUENCES.contains(&key.as_str()) {
             let problem = "is a load sequence, which is not supported yet (and would never be averaged)";
-            return Err(input(
-                &path,
-                shorten(value),
-                problem,
-                "give constant amplitude: stress_range_mpa or stress_max_mpa with stress_ratio",
-            ));
+            let remedy = "give constant amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
+            return Err(input(&path, shorten(value), problem, remedy));
         }
         if BARE.contains(&key.as_str()) {
             let problem = "does not say whether the maximum or the range is meant";
@@ -241,12 +215,8 @@ impl Magnitude {
             [(key, given, quantity, of)] => {
                 let path = format!("loading.{key}");
                 if (of == Of::Displacement) != (kind == LoadingKind::Displacement) {
-                    return Err(input(
-                        &path,
-                        given,
-                        format!("does not go with kind = \"{kind}\""),
-                        format!("give exactly one of {wanted}"),
-                    ));
+                    let remedy = format!("give exactly one of {wanted}");
+                    return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
                 }
                 let value = quantity.read(&path, given)?;
                 Ok(Magnitude { key: path, given, value, is_range: key.contains("range"), of })

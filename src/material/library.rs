@@ -66,7 +66,7 @@ pub fn names() -> Vec<String> {
 /// Finds a material by the name of a built-in file, or by the path of an own `.toml` file in `folder`.
 pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
     if name.ends_with(".toml") || name.contains(['/', '\\']) {
-        let document = folder.document(name)?;
+        let document = Document::in_folder(folder, name, &[])?;
         return read(&document).map_err(|error| document.locate(error));
     }
     let text = FILES.get_file(format!("{name}.toml")).and_then(|file| file.contents_utf8());

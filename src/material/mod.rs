@@ -1,9 +1,15 @@
 //! What the plate is made of: elastic constants and strengths.
+//!
+//! `[material]` of an input file: a name, or constants written inline, or both (inline ones win).
 
 pub mod library;
-mod read;
 
-pub use read::from_value;
+use serde::Deserialize;
+use toml::Value;
+
+use crate::error::{Result, input_missing};
+use crate::input::{DENSITY, FRACTURE_ENERGY, Folder, INTENSITY, MODULUS, Quantity, STRESS, number, slice};
+use library::{MaterialFile, Property};
 
 crate::kinds! {
     /// Plane state of the plate.
@@ -64,4 +70,62 @@ impl Material {
             Plane::Strain => self.youngs_modulus / (1.0 - self.poisson_ratio * self.poisson_ratio),
         }
     }
+}
+
+/// Keys of `[material]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    name: Option<String>,
+    youngs_modulus_gpa: Option<f64>,
+    poisson_ratio: Option<f64>,
+    yield_strength_mpa: Option<f64>,
+    toughness_mpa_sqrt_m: Option<f64>,
+    fracture_energy_j_m2: Option<f64>,
+    density_kg_m3: Option<f64>,
+    tensile_strength_mpa: Option<f64>,
+    plane: Option<Plane>,
+}
+
+/// Reads `[material]`; own material files are looked for from `folder`. Pushes a line for every constant of the named
+/// material that the case replaces.
+pub fn from_value(value: &Value, folder: &Folder, warnings: &mut Vec<String>) -> Result<Material> {
+    let input: Input = slice(value, "material")?;
+    let file = input.name.as_deref().map(|name| library::find(name, folder)).transpose()?;
+    let name = input.name.unwrap_or_else(|| "inline".to_owned());
+    let mut pick = |key: &str, given: Option<f64>, quantity: Quantity, of: fn(&MaterialFile) -> Option<&Property>| {
+        let listed = file.as_ref().and_then(of).map(|listed| listed.value);
+        if let (Some(given), Some(listed)) = (given, listed)
+            && given != listed
+        {
+            warnings.push(format!("material.{key} = {given} is used instead of {listed} of {name}"));
+        }
+        quantity.read_optional(&format!("material.{key}"), given.or(listed))
+    };
+    // ν = 0.5 is an incompressible material: its moduli are infinite in plane strain.
+    let ratio = number("a Poisson's ratio", 0.0, 0.499);
+    let youngs_modulus = pick("youngs_modulus_gpa", input.youngs_modulus_gpa, MODULUS, |of| Some(&of.youngs_modulus_gpa))?;
+    let poisson_ratio = pick("poisson_ratio", input.poisson_ratio, ratio, |of| Some(&of.poisson_ratio))?;
+    let yield_strength = pick("yield_strength_mpa", input.yield_strength_mpa, STRESS, |of| of.yield_strength_mpa.as_ref())?;
+    let toughness = pick("toughness_mpa_sqrt_m", input.toughness_mpa_sqrt_m, INTENSITY, |of| of.toughness_mpa_sqrt_m.as_ref())?;
+    let fracture_energy =
+        pick("fracture_energy_j_m2", input.fracture_energy_j_m2, FRACTURE_ENERGY, |of| of.fracture_energy_j_m2.as_ref())?;
+    let density = pick("density_kg_m3", input.density_kg_m3, DENSITY, |of| of.density_kg_m3.as_ref())?;
+    let tensile_strength =
+        pick("tensile_strength_mpa", input.tensile_strength_mpa, STRESS, |of| of.tensile_strength_mpa.as_ref())?;
+    let missing = |key: &str| {
+        let remedy = format!("give it, or the name of a material: {}", library::names().join(", "));
+        input_missing(&format!("material.{key}"), "is missing", remedy)
+    };
+    Ok(Material {
+        youngs_modulus: youngs_modulus.ok_or_else(|| missing("youngs_modulus_gpa"))?,
+        poisson_ratio: poisson_ratio.ok_or_else(|| missing("poisson_ratio"))?,
+        plane: input.plane.unwrap_or(Plane::Stress),
+        yield_strength,
+        toughness,
+        fracture_energy,
+        density,
+        tensile_strength,
+        name,
+    })
 }

@@ -1,4 +1,6 @@
-//! Plane geometry: polygons, segments, and the questions the body asks of a specimen.
+//! Plane geometry: polygons, segments, the four sides of a plate, and the questions the body asks of a specimen.
+
+use std::collections::HashMap;
 
 use super::{Point, Slot, Specimen};
 
@@ -16,6 +18,12 @@ pub fn along(a: Point, b: Point, t: f64) -> Point {
 pub fn direction(a: Point, b: Point) -> Point {
     let length = distance(a, b);
     if length > 0.0 { [(b[0] - a[0]) / length, (b[1] - a[1]) / length] } else { [0.0, 0.0] }
+}
+
+/// The direction of a vector that was given, of length 1; `None` for one that shows none.
+pub fn unit([x, y]: Point) -> Option<Point> {
+    let size = x.hypot(y);
+    (1e-9..1e9).contains(&size).then(|| [x / size, y / size])
 }
 
 /// Twice the signed area of the triangle abc: positive where a, b, c turn counter-clockwise.
@@ -44,12 +52,30 @@ pub fn meeting_share(a: Point, b: Point, c: Point, d: Point) -> Option<f64> {
     share.is_finite().then_some(share)
 }
 
-/// Distance of `p` from the closed segment ab, m.
-pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+/// Shares of the way from `a` to `b` at which the line through them comes into a circle and leaves it; `None` if it passes the circle.
+pub fn circle_shares(a: Point, b: Point, centre: Point, radius: f64) -> Option<[f64; 2]> {
+    // |f + t d| = radius
+    let (d, f) = ([b[0] - a[0], b[1] - a[1]], [a[0] - centre[0], a[1] - centre[1]]);
+    let (dd, df, ff) = (d[0] * d[0] + d[1] * d[1], d[0] * f[0] + d[1] * f[1], f[0] * f[0] + f[1] * f[1]);
+    let square = df * df - dd * (ff - radius * radius);
+    (square >= 0.0).then(|| [-1.0, 1.0].map(|sign| (sign * square.sqrt() - df) / dd))
+}
+
+/// Share of the way from `a` to `b` at which the closed segment ab is nearest to `p`.
+pub fn nearest_share(p: Point, a: Point, b: Point) -> f64 {
     let (ab, ap) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let squared = ab[0] * ab[0] + ab[1] * ab[1];
-    let t = if squared > 0.0 { ((ap[0] * ab[0] + ap[1] * ab[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    distance(p, along(a, b, t))
+    if squared > 0.0 { ((ap[0] * ab[0] + ap[1] * ab[1]) / squared).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// The point of the closed segment ab that is nearest to `p`.
+pub fn nearest_of_segment(p: Point, a: Point, b: Point) -> Point {
+    along(a, b, nearest_share(p, a, b))
+}
+
+/// Distance of `p` from the closed segment ab, m.
+pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+    distance(p, nearest_of_segment(p, a, b))
 }
 
 /// Edges of a closed polygon, last point to first included.
@@ -109,6 +135,45 @@ pub fn self_intersection(polygon: &[Point]) -> Option<(usize, usize)> {
     None
 }
 
+/// Places by square cells, so that those near one are found at once.
+#[derive(Debug, Default)]
+pub struct Places {
+    width: f64,
+    places: Vec<Point>,
+    cells: HashMap<[i64; 2], Vec<u32>>,
+}
+
+impl Places {
+    /// Places by cells of a width, m.
+    pub fn of(width: f64, places: impl Iterator<Item = Point>) -> Self {
+        let mut cells = Places { width, places: places.collect(), cells: HashMap::new() };
+        for (i, &place) in cells.places.iter().enumerate() {
+            let cell = place.map(|x| (x / width).floor() as i64);
+            cells.cells.entry(cell).or_default().push(i as u32);
+        }
+        cells
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// Numbers of the places in cells within `reach` of one, m, in an order that depends on the places alone.
+    pub fn near(&self, at: Point, reach: f64) -> impl Iterator<Item = u32> + '_ {
+        let range = |x: f64| ((x - reach) / self.width).floor() as i64..=((x + reach) / self.width).floor() as i64;
+        let columns = range(at[0]);
+        let cells = range(at[1]).flat_map(move |row| columns.clone().map(move |column| [column, row]));
+        cells.flat_map(|cell| self.cells.get(&cell).into_iter().flatten().copied())
+    }
+
+    /// Way from a position to a place, m.
+    pub fn away(&self, place: u32, from: Point) -> Point {
+        let [x, y] = self.places[place as usize];
+        [x - from[0], y - from[1]]
+    }
+}
+
 impl Slot {
     /// Corners of the slot, counter-clockwise: right of `from`, right of `to`, left of `to`, left of `from`.
     pub fn corners(&self) -> [Point; 4] {
@@ -161,5 +226,48 @@ impl Specimen {
             (Some(share), false) => 1.0 - share,
         };
         share * distance(from, to)
+    }
+}
+
+crate::kinds! {
+    /// Sides of a plate: the straight stretches of the outline that lie on its bounding box.
+    pub enum Edge for "loading.edges" {
+        Top = "top": "side at the largest y",
+        Bottom = "bottom": "side at the smallest y",
+        Left = "left": "side at the smallest x",
+        Right = "right": "side at the largest x",
+    }
+}
+
+crate::kinds! {
+    /// Components a support holds.
+    pub enum Component for "supports.fix" {
+        X = "x": "no displacement along x",
+        Y = "y": "no displacement along y",
+    }
+}
+
+impl Edge {
+    /// Unit vector out of the plate.
+    pub fn normal(self) -> Point {
+        match self {
+            Edge::Top => [0.0, 1.0],
+            Edge::Bottom => [0.0, -1.0],
+            Edge::Left => [-1.0, 0.0],
+            Edge::Right => [1.0, 0.0],
+        }
+    }
+
+    /// Stretches of the outline on this side; empty where only a corner touches the bounding box.
+    pub fn stretches(self, specimen: &Specimen) -> Vec<(Point, Point)> {
+        let [low, high] = bounding_box(&specimen.outline);
+        let (axis, place) = match self {
+            Edge::Top => (1, high[1]),
+            Edge::Bottom => (1, low[1]),
+            Edge::Left => (0, low[0]),
+            Edge::Right => (0, high[0]),
+        };
+        let near = 1e-9 * (high[0] - low[0]).max(high[1] - low[1]);
+        edges(&specimen.outline).filter(|(a, b)| (a[axis] - place).abs() <= near && (b[axis] - place).abs() <= near).collect()
     }
 }

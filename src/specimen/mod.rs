@@ -3,20 +3,17 @@
 //! Lengths in metres, the load direction of the standard specimens is y. A [`Specimen`] is fixed once built:
 //! nothing in a run changes it. Cracks go through the thickness; part-through and corner cracks are refused by name.
 
-mod compact_tension;
 mod crack_line;
-mod edge;
-mod edge_tension;
 pub mod geometry;
 pub mod handbook;
-mod middle_tension;
 pub mod net_section;
 mod placement;
 mod plate;
 mod read;
+mod standard;
 
 pub use crack_line::{CrackLine, LineEnd};
-pub use edge::{Component, Edge};
+pub use geometry::{Component, Edge};
 pub use read::{PART_THROUGH, from_value};
 
 /// A point of the plate, metres.

@@ -3,7 +3,8 @@
 
 use std::f64::consts::PI;
 
-use super::{Specimen, SpecimenKind, Support};
+use super::{Load, LoadMeasure, Specimen, SpecimenKind, Support};
+use crate::error::{Result, input};
 
 impl Specimen {
     /// Largest crack length the specimen has room for, m, and its name.
@@ -53,8 +54,8 @@ impl Specimen {
 
     /// Largest stress that a `plate` carries whatever its cracks: that on its edges, Pa; `None` under forces on points.
     pub fn gross_stress(&self, load: f64) -> Option<f64> {
-        let pulled = self.loads.iter().any(|load| matches!(load, super::Load::Edge { .. }));
-        (pulled && self.load_measure == super::LoadMeasure::Stress).then_some(load)
+        let pulled = self.loads.iter().any(|load| matches!(load, Load::Edge { .. }));
+        (pulled && self.load_measure == LoadMeasure::Stress).then_some(load)
     }
 
     /// Whether the ligament is large enough for K to describe the crack, see [`small_scale_yielding`]; for a standard kind.
@@ -65,8 +66,8 @@ impl Specimen {
     /// Force over thickness, N/m, of a nominal load.
     fn force_per_thickness(&self, load: f64) -> f64 {
         match self.load_measure {
-            super::LoadMeasure::Stress => load * self.width,
-            super::LoadMeasure::Force => load / self.thickness,
+            LoadMeasure::Stress => load * self.width,
+            LoadMeasure::Force => load / self.thickness,
         }
     }
 }
@@ -98,4 +99,13 @@ fn ligament(kind: SpecimenKind, width: f64, crack_length: f64) -> f64 {
         SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => width - 2.0 * crack_length,
         SpecimenKind::SingleEdgeTension | SpecimenKind::CompactTension | SpecimenKind::Plate => width - crack_length,
     }
+}
+
+/// Refuses a crack that would leave no ligament: `crack_length` against the length at which the plate is in two.
+pub(super) fn check_crack(crack_length_mm: f64, limit_mm: f64, limit_name: &str) -> Result<()> {
+    if crack_length_mm < limit_mm {
+        return Ok(());
+    }
+    let problem = format!("is not below {limit_name} {limit_mm} mm: the crack would go through the whole plate");
+    Err(input("specimen.crack_length_mm", crack_length_mm, problem, "give a shorter crack or a wider plate"))
 }

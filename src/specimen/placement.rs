@@ -1,18 +1,15 @@
 //! Whether holes, slots and cracks of a plate fit into it and beside each other, and where cracks can grow.
 
 use super::geometry::{
-    along, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share, point_in_polygon, segments_touch,
+    along, circle_shares, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share, point_in_polygon,
+    segments_touch,
 };
 use super::{Crack, CrackLine, Hole, Point, Slot, Specimen, TipSeed};
-use crate::error::{Error, Result, input_missing};
+use crate::error::{Result, input_missing};
 use crate::units::MM;
 
 /// What lies closer than this counts as touching, m: far below any spacing, far above round-off.
 const TOUCH: f64 = 1e-7;
-
-fn refuse(key: String, problem: impl Into<String>, remedy: &str) -> Error {
-    input_missing(&key, problem, remedy)
-}
 
 /// A point in words, mm.
 fn words(p: Point) -> String {
@@ -29,11 +26,19 @@ pub(super) fn check_holes(specimen: &Specimen) -> Result<()> {
         let inside = point_in_polygon(hole.centre, &specimen.outline);
         if !inside || distance_to_polygon(hole.centre, &specimen.outline) < hole.radius + TOUCH {
             let problem = format!("reaches beyond the outline (centre {}, radius {} mm)", words(hole.centre), round(hole.radius));
-            return Err(refuse(format!("specimen.holes[{i}]"), problem, "move it inside, or draw the opening into outline_mm"));
+            return Err(input_missing(
+                &format!("specimen.holes[{i}]"),
+                problem,
+                "move it inside, or draw the opening into outline_mm",
+            ));
         }
         for (j, other) in specimen.holes[..i].iter().enumerate() {
             if distance(hole.centre, other.centre) < hole.radius + other.radius + TOUCH {
-                return Err(refuse(format!("specimen.holes[{i}]"), format!("overlaps holes[{j}]"), "move the holes apart"));
+                return Err(input_missing(
+                    &format!("specimen.holes[{i}]"),
+                    format!("overlaps holes[{j}]"),
+                    "move the holes apart",
+                ));
             }
         }
     }
@@ -55,23 +60,22 @@ pub(super) fn place_slots(specimen: &mut Specimen, slots: Vec<Slot>) -> Result<V
         let walls = edges(&corners).filter(|(a, b)| edges(&specimen.outline).any(|(c, d)| segments_touch(*a, *b, c, d))).count();
         match closed {
             [false, false] => {
-                return Err(refuse(
-                    key,
-                    "has no end inside the plate",
-                    "end it in the material: a slot across the whole plate cuts it in two",
-                ));
+                let remedy = "end it in the material: a slot across the whole plate cuts it in two";
+                return Err(input_missing(&key, "has no end inside the plate", remedy));
             }
             [true, true] if walls > 0 || !corners_fit => {
-                return Err(refuse(key, "touches the outline", "move it inside, or let it start on an edge"));
+                return Err(input_missing(&key, "touches the outline", "move it inside, or let it start on an edge"));
             }
-            _ if !corners_fit => return Err(refuse(key, "has an end face that sticks out of the plate", "shorten or narrow it")),
+            _ if !corners_fit => {
+                return Err(input_missing(&key, "has an end face that sticks out of the plate", "shorten or narrow it"));
+            }
             _ => {}
         }
         if let Some(j) = specimen.holes.iter().position(|hole| slot_meets_hole(&slot, hole)) {
-            return Err(refuse(key, format!("overlaps holes[{j}]"), "move them apart"));
+            return Err(input_missing(&key, format!("overlaps holes[{j}]"), "move them apart"));
         }
         if let Some(j) = specimen.slots.iter().position(|other| slots_meet(&slot, other)) {
-            return Err(refuse(key, format!("overlaps notches[{j}]"), "move them apart"));
+            return Err(input_missing(&key, format!("overlaps notches[{j}]"), "move them apart"));
         }
         for (end, other, is_closed) in [(slot.from, slot.to, closed[0]), (slot.to, slot.from, closed[1])] {
             if is_closed {
@@ -105,7 +109,7 @@ pub(super) fn place_cracks(specimen: &mut Specimen, paths: Vec<Vec<Point>>, mut 
         };
         let pieces = || corners.windows(2).map(|piece| [piece[0], piece[1]]);
         if !path.windows(2).zip(pieces()).all(|(asked, left)| is_left([asked[0], asked[1]], left)) {
-            return Err(refuse(key, "does not reach into the material", "end it inside the plate, beyond hole and slot"));
+            return Err(input_missing(&key, "does not reach into the material", "end it inside the plate, beyond hole and slot"));
         }
         let cracks: Vec<Crack> = pieces().enumerate().map(|(j, [from, to])| Crack { from, to, continues: j > 0 }).collect();
         for &crack in &cracks {
@@ -114,7 +118,7 @@ pub(super) fn place_cracks(specimen: &mut Specimen, paths: Vec<Vec<Point>>, mut 
                 let line =
                     specimen.crack_lines().iter().position(|line| line.pieces().any(|piece| piece == [other.from, other.to]));
                 let problem = format!("lies along cracks[{}] over some length", line.unwrap_or(0));
-                return Err(refuse(key, problem, "give both as one crack"));
+                return Err(input_missing(&key, problem, "give both as one crack"));
             }
         }
         // A crack that starts from the end face of a slot takes the place of that face's seed.
@@ -142,10 +146,11 @@ pub(super) fn place_cracks(specimen: &mut Specimen, paths: Vec<Vec<Point>>, mut 
         let is_joined =
             || lines.iter().enumerate().any(|(other, crack)| other != i && line.pieces().any(|[a, b]| crack.meets(a, b, TOUCH)));
         if specimen.tips_of(line) == 0 && !is_joined() {
-            return Err(refuse(
-                format!("specimen.cracks[{i}]"),
+            let remedy = "end it inside the plate";
+            return Err(input_missing(
+                &format!("specimen.cracks[{i}]"),
                 "has no end inside the material that could grow",
-                "end it inside the plate",
+                remedy,
             ));
         }
     }
@@ -207,24 +212,16 @@ fn trimmed_end(specimen: &Specimen, end: Point, other: Point, key: &str) -> Resu
         return Ok((end, true));
     }
     if !point_in_polygon(end, &specimen.outline) {
-        return Err(refuse(
-            key.to_owned(),
-            format!("ends outside the plate at {}", words(end)),
-            "end it inside the plate or exactly on its edge",
-        ));
+        let remedy = "end it inside the plate or exactly on its edge";
+        return Err(input_missing(key, format!("ends outside the plate at {}", words(end)), remedy));
     }
     Ok((end, false))
 }
 
 /// Point where the way from `end`, in the hole, to `other` leaves the circle.
 fn leave_hole(hole: &Hole, end: Point, other: Point) -> Point {
-    let [dx, dy] = direction(end, other);
-    let (x, y) = (end[0] - hole.centre[0], end[1] - hole.centre[1]);
-    // |end - centre + t d| = radius, larger root.
-    let along_way = x * dx + y * dy;
-    let inside = along_way * along_way - (x * x + y * y) + hole.radius * hole.radius;
-    let t = (inside.max(0.0).sqrt() - along_way).max(0.0);
-    [end[0] + t * dx, end[1] + t * dy]
+    let leaves = circle_shares(end, other, hole.centre, hole.radius).map_or(0.0, |[_, leaves]| leaves.max(0.0));
+    along(end, other, leaves)
 }
 
 /// Point where the way from `end`, in the slot, to `other` leaves the slot.
@@ -243,25 +240,16 @@ fn check_path(specimen: &Specimen, crack: Crack, key: &str) -> Result<()> {
     let (from, to) = (along(crack.from, crack.to, shrink), along(crack.from, crack.to, 1.0 - shrink));
     let middle = along(from, to, 0.5);
     if edges(&specimen.outline).any(|(a, b)| segments_touch(from, to, a, b)) || !point_in_polygon(middle, &specimen.outline) {
-        return Err(refuse(
-            key.to_owned(),
-            "leaves the plate between its ends",
-            "give the parts inside the plate as cracks of their own",
-        ));
+        let remedy = "give the parts inside the plate as cracks of their own";
+        return Err(input_missing(key, "leaves the plate between its ends", remedy));
     }
     if let Some(i) = specimen.holes.iter().position(|hole| distance_to_segment(hole.centre, from, to) < hole.radius - TOUCH) {
-        return Err(refuse(
-            key.to_owned(),
-            format!("runs through holes[{i}]"),
-            "give one crack on each side that starts in the hole",
-        ));
+        let remedy = "give one crack on each side that starts in the hole";
+        return Err(input_missing(key, format!("runs through holes[{i}]"), remedy));
     }
     if let Some(i) = specimen.slots.iter().position(|slot| edges(&slot.corners()).any(|(a, b)| segments_touch(from, to, a, b))) {
-        return Err(refuse(
-            key.to_owned(),
-            format!("runs through notches[{i}]"),
-            "give one crack on each side that starts in the notch",
-        ));
+        let remedy = "give one crack on each side that starts in the notch";
+        return Err(input_missing(key, format!("runs through notches[{i}]"), remedy));
     }
     Ok(())
 }

@@ -111,12 +111,8 @@ fn outline(input: &Input) -> Result<Vec<Point>> {
     if let Some(diameter) = input.diameter_mm {
         if input.outline_mm.is_some() || input.width_mm.is_some() || input.length_mm.is_some() {
             let problem = "stands beside outline_mm, width_mm or length_mm";
-            return Err(crate::error::input(
-                "specimen.diameter_mm",
-                diameter,
-                problem,
-                "give one of outline, rectangle and diameter",
-            ));
+            let remedy = "give one of outline, rectangle and diameter";
+            return Err(crate::error::input("specimen.diameter_mm", diameter, problem, remedy));
         }
         return Ok(disc(LENGTH.read("specimen.diameter_mm", diameter)? / 2.0));
     }
@@ -130,11 +126,8 @@ fn outline(input: &Input) -> Result<Vec<Point>> {
         return Ok(vec![[-x, -y], [x, -y], [x, y], [-x, y]]);
     };
     if input.width_mm.is_some() || input.length_mm.is_some() {
-        return Err(input_missing(
-            "specimen.outline_mm",
-            "stands beside width_mm or length_mm",
-            "give either the outline or the rectangle",
-        ));
+        let remedy = "give either the outline or the rectangle";
+        return Err(input_missing("specimen.outline_mm", "stands beside width_mm or length_mm", remedy));
     }
     polygon(corners)
 }
@@ -172,12 +165,8 @@ fn polygon(corners: &[Value]) -> Result<Vec<Point>> {
         outline.pop();
     }
     if outline.len() < 3 || outline.len() > ITEMS_MAX {
-        return Err(input(
-            KEY,
-            format!("{} points", corners.len()),
-            "is no outline",
-            format!("give 3 to {ITEMS_MAX} corners in order"),
-        ));
+        let remedy = format!("give 3 to {ITEMS_MAX} corners in order");
+        return Err(input(KEY, format!("{} points", corners.len()), "is no outline", remedy));
     }
     if let Some(i) = (0..outline.len()).find(|&i| distance(outline[i], outline[(i + 1) % outline.len()]) < 1e-9) {
         return Err(input(KEY, format!("corner {i}"), "stands twice in a row", "leave one of them out"));
@@ -189,12 +178,8 @@ fn polygon(corners: &[Value]) -> Result<Vec<Point>> {
     let area = polygon_area(&outline);
     let [low, high] = bounding_box(&outline);
     if area.abs() < 1e-6 * (high[0] - low[0]).max(high[1] - low[1]).powi(2) {
-        return Err(input(
-            KEY,
-            format!("{} points", outline.len()),
-            "encloses no area",
-            "give the corners in order around the plate",
-        ));
+        let remedy = "give the corners in order around the plate";
+        return Err(input(KEY, format!("{} points", outline.len()), "encloses no area", remedy));
     }
     if area < 0.0 {
         outline.reverse();

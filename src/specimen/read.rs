@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-use super::{Specimen, SpecimenKind, compact_tension, edge_tension, middle_tension, plate};
+use super::{Specimen, SpecimenKind, plate, standard};
 use crate::error::{Result, input, input_missing};
 use crate::input::{shorten, table_of};
 use crate::kinds::KindLine;
@@ -38,9 +38,7 @@ impl SpecimenKind {
 
 impl Specimen {
     /// Whether something can grow in it.
-    ///
-    /// # Errors
-    /// [`Error::Input`](crate::Error::Input) on `specimen.cracks` of a plate without crack and slot.
+    /// Errors: [`Error::Input`](crate::Error::Input) on `specimen.cracks` of a plate without crack and slot.
     pub fn check_growth(&self) -> Result<()> {
         if self.cracks.is_empty() && self.slots.is_empty() {
             let problem = "is missing, and there is no notch either: nothing can grow";
@@ -71,19 +69,9 @@ pub fn from_value(value: &Value) -> Result<Specimen> {
         return Err(input(&key, shorten(&table[&key[9..]]), "describes a crack that does not go through", ONLY_THROUGH));
     }
     match kind.parse()? {
-        SpecimenKind::MiddleTension => middle_tension::from_value(value),
-        SpecimenKind::SingleEdgeTension => edge_tension::single_from_value(value),
-        SpecimenKind::DoubleEdgeTension => edge_tension::double_from_value(value),
-        SpecimenKind::CompactTension => compact_tension::from_value(value),
+        kind @ (SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension) => standard::from_value(kind, value),
+        SpecimenKind::SingleEdgeTension => standard::single_edge_from_value(value),
+        SpecimenKind::CompactTension => standard::compact_from_value(value),
         SpecimenKind::Plate => plate::from_value(value),
     }
-}
-
-/// Refuses a crack that would leave no ligament: `crack_length` against the length at which the plate is in two.
-pub(super) fn check_crack(crack_length_mm: f64, limit_mm: f64, limit_name: &str) -> Result<()> {
-    if crack_length_mm < limit_mm {
-        return Ok(());
-    }
-    let problem = format!("is not below {limit_name} {limit_mm} mm: the crack would go through the whole plate");
-    Err(input("specimen.crack_length_mm", crack_length_mm, problem, "give a shorter crack or a wider plate"))
 }

@@ -2,11 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::TipFrame;
+use super::gradient::TipFrame;
 use crate::body::Body;
 use crate::body::facets::Facet;
 use crate::body::pre_crack::as_cut;
-use crate::specimen::geometry::{direction, distance, distance_to_segment};
+use crate::specimen::geometry::{along, circle_shares, direction, distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point};
 
 /// Pieces of a crack face per spacing.
@@ -54,8 +54,7 @@ pub(super) fn faces(body: &Body, piece: [Point; 2]) -> impl Iterator<Item = Face
     let count = (PIECES_PER_SPACING * length / body.lattice.spacing).ceil().max(1.0);
     let [x, y] = [0, 1].map(|i| (b[i] - a[i]) / length.max(f64::MIN_POSITIVE));
     (0..count as usize).flat_map(move |i| {
-        let share = (i as f64 + 0.5) / count;
-        let at = [0, 1].map(|i| a[i] + share * (b[i] - a[i]));
+        let at = along(a, b, (i as f64 + 0.5) / count);
         // Outward from the material on the left of the line is to its right, and the other way round.
         [[y, -x], [-y, x]].map(|normal| Facet { at, normal, length: length / count })
     })
@@ -86,11 +85,7 @@ impl CrackFaces {
         // The mouth lies outside the ring, or there is no material behind it.
         let piece = self.pieces.iter().find(|[_, far]| size(*far) >= r).or(self.pieces.last());
         let Some(&[a, b]) = piece else { return 0.0 };
-        let d = [b[0] - a[0], b[1] - a[1]];
-        // |a + t d| = r, the later of both.
-        let (aa, ad, dd) = (a[0] * a[0] + a[1] * a[1], a[0] * d[0] + a[1] * d[1], d[0] * d[0] + d[1] * d[1]);
-        let t = (-ad + (ad * ad + dd * (r * r - aa)).max(0.0).sqrt()) / dd;
-        let at = [a[0] + t * d[0], a[1] + t * d[1]];
+        let at = along(a, b, circle_shares(a, b, [0.0; 2], r).map_or(0.0, |[_, leaves]| leaves));
         (-at[1]).atan2(-at[0])
     }
 

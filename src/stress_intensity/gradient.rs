@@ -6,7 +6,6 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::TipFrame;
 use crate::body::{Body, Bond};
 use crate::solver::field::Layout;
 use crate::specimen::Point;
@@ -17,6 +16,34 @@ use crate::state::Bonds;
 const REACH_SPACINGS: f64 = 0.9;
 /// Unknowns of the quadratic: two of the gradient, three of the curvature.
 const TERMS: usize = 5;
+
+/// The frame of a crack tip: origin at the tip, x₁ ahead of it, x₂ a quarter turn counter-clockwise from x₁.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TipFrame {
+    /// The tip, m.
+    pub origin: Point,
+    /// Unit vector x₁.
+    pub ahead: Point,
+}
+
+impl TipFrame {
+    /// A vector of the plate in the frame.
+    pub fn vector(&self, v: Point) -> Point {
+        let [c, s] = self.ahead;
+        [v[0] * c + v[1] * s, v[1] * c - v[0] * s]
+    }
+
+    /// A vector of the frame in the plate.
+    pub fn in_plate(&self, v: Point) -> Point {
+        let [c, s] = self.ahead;
+        [v[0] * c - v[1] * s, v[0] * s + v[1] * c]
+    }
+
+    /// A place of the plate in the frame.
+    pub fn local(&self, point: Point) -> Point {
+        self.vector([point[0] - self.origin[0], point[1] - self.origin[1]])
+    }
+}
 
 /// Displacement of a place in a frame's axes, m.
 fn displacement_at(body: &Body, layout: &Layout, displacement: &[f64], frame: &TipFrame, place: usize) -> Point {

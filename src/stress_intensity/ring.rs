@@ -29,17 +29,16 @@
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
-use super::TipFrame;
 use super::crack_faces::{CrackFaces, continued, faces};
 use super::cut_cells::{Part, cells_along, cells_at, parts};
-use super::gradient::{Derivatives, derivatives_at};
+use super::gradient::{Derivatives, TipFrame, derivatives_at};
 use crate::body::Body;
 use crate::body::boundary::{LoadPiece, load_pieces};
 use crate::body::facets::{Facet, facets};
 use crate::body::pre_crack::{as_cut, places_near};
 use crate::material::Material;
 use crate::solver::field::Layout;
-use crate::specimen::geometry::{distance, distance_to_segment};
+use crate::specimen::geometry::{Places, distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen, Support};
 use crate::state::Bonds;
 use crate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
@@ -136,13 +135,10 @@ impl RingGeometry {
         });
         let loads = load_pieces(specimen, spacing);
         // Loaded pieces by cells of one spacing: on a long rim, all pairs take longer than an equilibrium.
-        let cell = |at: Point| at.map(|metres| (metres / spacing).floor() as i64);
-        let mut loaded: HashMap<[i64; 2], Vec<Point>> = HashMap::new();
-        loads.iter().for_each(|load| loaded.entry(cell(load.facet.at)).or_default().push(load.facet.at));
+        let loaded = Places::of(spacing, loads.iter().map(|load| load.facet.at));
         let is_free = |facet: &Facet| {
-            let [column, row] = cell(facet.at);
-            let cells = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [column + i, row + j]));
-            cells.filter_map(|cell| loaded.get(&cell)).flatten().all(|&at| distance(at, facet.at) > 0.25 * spacing)
+            let near = loaded.near(facet.at, 0.25 * spacing).map(|load| loaded.away(load, facet.at));
+            near.into_iter().all(|[x, y]| x.hypot(y) > 0.25 * spacing)
         };
         let rim: Vec<(Facet, bool)> = facets(specimen, spacing).into_iter().map(|facet| (facet, is_free(&facet))).collect();
         RingGeometry {
@@ -305,7 +301,8 @@ impl RingIntegral<'_> {
         let Some(gradient) = self.gradient_towards(at, place) else { return [0.0; 5] };
         let q = [slope * theta.cos(), slope * theta.sin()];
         let area = share * spacing * spacing;
-        self.auxiliary(r, theta).map(|auxiliary| area * self.interaction(&gradient, &auxiliary, q))
+        let elasticity = &self.surroundings.elasticity;
+        self.auxiliary(r, theta).map(|auxiliary| area * elasticity.interaction(&gradient, &auxiliary, q))
     }
 
     /// -P_j m_j q of a piece of free rim times its length.
@@ -317,16 +314,11 @@ impl RingIntegral<'_> {
         let Some(gradient) = self.place_behind(facet).and_then(|place| self.gradient_towards(facet.at, place)) else {
             return [0.0; 5];
         };
-        let normal @ [m1, m2] = self.frame.vector(facet.normal);
+        let normal = self.frame.vector(facet.normal);
         let elasticity = &self.surroundings.elasticity;
         let gradient = if is_free { without_traction(&gradient, normal, elasticity) } else { gradient };
-        let stress = elasticity.stress(&gradient);
-        self.auxiliary(r, theta).map(|auxiliary| {
-            let [xx, yy, xy] = elasticity.stress(&auxiliary);
-            let traction = [xx * m1 + xy * m2, xy * m1 + yy * m2];
-            let flow = traction[0] * gradient[0][0] + traction[1] * gradient[1][0] - mutual_energy(&stress, &auxiliary) * m1;
-            -flow * q * facet.length
-        })
+        self.auxiliary(r, theta)
+            .map(|auxiliary| -elasticity.interaction_on_face(&gradient, &auxiliary, normal) * q * facet.length)
     }
 
     /// The same of a load on the rim: -t_i u^aux_i,1 q.
@@ -367,15 +359,6 @@ impl RingIntegral<'_> {
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, place)| place)
     }
-
-    /// `P_j q_,j`.
-    fn interaction(&self, field: &[[f64; 2]; 2], auxiliary: &[[f64; 2]; 2], q: [f64; 2]) -> f64 {
-        let elasticity = &self.surroundings.elasticity;
-        let (stress, stress_aux) = (elasticity.stress(field), elasticity.stress(auxiliary));
-        let flow = |s: [f64; 3], h: &[[f64; 2]; 2]| [s[0] * h[0][0] + s[2] * h[1][0], s[2] * h[0][0] + s[1] * h[1][0]];
-        let (a, b) = (flow(stress, auxiliary), flow(stress_aux, field));
-        (a[0] + b[0] - mutual_energy(&stress, auxiliary)) * q[0] + (a[1] + b[1]) * q[1]
-    }
 }
 
 /// The gradient on a rim without traction: derivatives along it as they are, those across it from `σ m = 0`. Close to a rim the
@@ -388,9 +371,4 @@ fn without_traction(gradient: &[[f64; 2]; 2], [m1, m2]: [f64; 2], elasticity: &E
     let across = (elasticity.kappa - 3.0) / (elasticity.kappa + 1.0) * stretch;
     let normal = [across * m1 - turn * t1, across * m2 - turn * t2];
     [0, 1].map(|i| [along[i] * t1 + normal[i] * m1, along[i] * t2 + normal[i] * m2])
-}
-
-/// `σ_ik ε^aux_ik`.
-fn mutual_energy(stress: &[f64; 3], auxiliary: &[[f64; 2]; 2]) -> f64 {
-    stress[0] * auxiliary[0][0] + stress[1] * auxiliary[1][1] + stress[2] * (auxiliary[0][1] + auxiliary[1][0])
 }

@@ -107,7 +107,7 @@ impl Sweep {
             Ok((input.case, read_design(&input.design, &input.vary, most)?))
         };
         let (case, design) = read().map_err(|error| document.locate(error))?;
-        let base = document.folder.document_with(&case, of_case)?;
+        let base = Document::in_folder(&document.folder, &case, of_case)?;
         Ok(Sweep { name: document.name.clone(), document, base, design })
     }
 }

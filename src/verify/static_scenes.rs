@@ -11,9 +11,9 @@ use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection}
 use crate::error::Result;
 use crate::fracture::bonds::BondState;
 use crate::fracture::quasi_static::equilibrium::{Equilibrium, Shape};
-use crate::fracture::quasi_static::full_load::FullLoad;
 use crate::fracture::{self, Scene};
 use crate::levels::Net;
+use crate::levels::equilibrium::FullLoad;
 use crate::material::{Material, Plane};
 use crate::predict::Silent;
 use crate::specimen::Point;

@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use perilife::case::{Case, LawSource};
-use perilife::fatigue::growth_law::forman::Forman;
 use perilife::fatigue::growth_law::nasgro::Nasgro;
 use perilife::fatigue::growth_law::table::{Curve, Table};
-use perilife::fatigue::growth_law::{GrowthLaw, GrowthLawKind};
+use perilife::fatigue::growth_law::{Forman, GrowthLaw, GrowthLawKind};
 use perilife::input::Folder;
 use perilife::predict::{Silent, predict};
 use perilife::quadrature::integrate;

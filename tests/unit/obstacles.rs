@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use perilife::body::obstacles::Obstacles;
+use perilife::body::facets::Obstacles;
 use perilife::case::Case;
 use perilife::specimen::Specimen;
 

@@ -6,7 +6,7 @@ use perilife::Error;
 use perilife::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use perilife::case::Case;
 use perilife::fracture::Scene;
-use perilife::fracture::preview::preview;
+use perilife::fracture::assembly::preview;
 use perilife::fracture::read::is_scene;
 use perilife::fracture::scene::{
     Action, DamageEntry, DamageLaw, Discretisation, LoadRamp, Procedure, RefinedRegion, Region, SceneLaw, SceneSolver,

@@ -75,7 +75,6 @@ fn a_swing_breaks_no_bond_that_equilibrium_spares() {
         rested.reaction.broken
     };
     assert_eq!(broken(Breaking::AtRest, 1.01), 0);
-    assert!(broken(Breaking::EveryStep, 1.01) > 0, "the ends start from rest and pull at once: the swing overshoots");
     assert!(broken(Breaking::AtRest, 0.99) > 0);
     assert_eq!(broken(Breaking::Never, 0.5), 0);
 }

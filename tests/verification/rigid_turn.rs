@@ -4,9 +4,12 @@
 use std::path::Path;
 
 use perilife::bond_law::{BondLawKind, Rotation, SurfaceCorrection};
+use perilife::fracture::assembly::Assembly;
 use perilife::fracture::scene::PointLaw;
 use perilife::fracture::{Scene, rotation, run};
 use perilife::growth::plate;
+use perilife::fracture::{Scene, run};
+use perilife::growth::plate::Plate;
 use perilife::predict::Silent;
 
 use crate::plates::try_case;
@@ -30,7 +33,7 @@ fn scene(set: &[&str]) -> Option<Scene> {
 }
 
 fn cost(scene: &Scene) -> f64 {
-    rotation::cost(scene).unwrap().expect("an extension costs energy")
+    Assembly::of(scene).unwrap().turning_cost().unwrap().expect("an extension costs energy")
 }
 
 /// Every law by default: at rest, in steps, in motion, on turned rows and on several levels.

@@ -7,9 +7,8 @@ use std::collections::BTreeMap;
 
 use super::rows::RateRow;
 use crate::error::{Result, input};
-use crate::fatigue::growth_law::forman::Forman;
 use crate::fatigue::growth_law::nasgro::{Nasgro, RATIO_MIN};
-use crate::fatigue::growth_law::{GrowthLaw, GrowthLawKind, Walker};
+use crate::fatigue::growth_law::{Forman, GrowthLaw, GrowthLawKind, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{INTENSITY, Quantity, number};
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};

@@ -36,9 +36,7 @@ pub struct Criterion {
 
 impl Criterion {
     /// Criterion of a scene.
-    ///
-    /// # Errors
-    /// A law that correspondence does not have; a missing strength or fracture energy.
+    /// Errors: a law that correspondence does not have; a missing strength or fracture energy.
     pub fn of(scene: &Scene, net: &Net, all_at_once: bool) -> Result<Criterion> {
         let limit = match scene.damage.law {
             DamageLaw::None => Limit::Never,

@@ -1,16 +1,52 @@
-//! Shape tensors of all points, and which bonds count in them.
+//! The bonds of every point as it sees them, its shape tensor, and which bonds count in that.
 
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 use rayon::prelude::*;
 
-use super::in_shape;
-use super::neighbours::Neighbours;
 use crate::fracture::bonds::BondState;
 use crate::fracture::scene::DamageEntry;
 use crate::levels::Net;
 
+/// A bond seen from one of its ends.
+#[derive(Debug, Clone, Copy)]
+pub struct Neighbour {
+    /// Other end.
+    pub other: u32,
+    /// Bond of the net.
+    pub bond: u32,
+    /// ξ from this end to the other, m.
+    pub xi: Vector2<f64>,
+}
+
 /// `det K / (tr K)²` below which the bonds of a point lie along one line (1/4 in a whole neighbourhood).
 const SINGULAR: f64 = 1e-6;
+
+/// Bonds by points: a compact copy of the lists of a net, for sums over neighbourhoods.
+#[derive(Debug, Clone)]
+pub struct Neighbours {
+    list: Vec<Neighbour>,
+    starts: Vec<u32>,
+}
+
+impl Neighbours {
+    /// Lists of a net.
+    pub fn of(net: &Net) -> Self {
+        let seen = |i: usize| {
+            net.bonds_of(i).map(|(b, other, owned)| {
+                let bond = &net.bonds[b];
+                let length = if owned { bond.length } else { -bond.length };
+                Neighbour { other: other as u32, bond: b as u32, xi: Vector2::from(bond.normal) * length }
+            })
+        };
+        Neighbours { list: (0..net.len()).flat_map(seen).collect(), starts: net.starts.clone() }
+    }
+
+    /// Bonds of a point.
+    #[inline(always)]
+    pub fn of_point(&self, point: usize) -> &[Neighbour] {
+        &self.list[self.starts[point] as usize..self.starts[point + 1] as usize]
+    }
+}
 
 /// K⁻¹ of all points for the present bonds.
 #[derive(Debug, Clone)]
@@ -42,7 +78,7 @@ impl Shape {
             let intact = share > 0.0;
             if intact != *bears {
                 *bears = intact;
-                if in_shape(self.enters) {
+                if self.enters == DamageEntry::Influence {
                     self.counts[b] = intact;
                     touched.extend([net.bonds[b].from, net.bonds[b].to]);
                 }

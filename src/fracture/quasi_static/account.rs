@@ -1,4 +1,4 @@
-//! Energies of a scene without time, and its rows.
+//! Loads of a scene without time, all of which grow in proportion, its energies, and its rows.
 //!
 //! Work between two states of equilibrium by the trapezoidal rule, `½ (R + R')·Δū + ½ (f + f')·Δu`: on a ray of elastic loading
 //! it is exact. What is neither strain nor fracture energy has become motion that a scene without time does not follow: the
@@ -7,14 +7,51 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::bonds::BondState;
-use super::super::boundary::Boundary;
-use super::super::checkpoint::Place;
-use super::super::course::Course;
+use super::super::boundary::{Boundary, Motion};
+use super::super::checkpoint::Course;
+use super::super::contact::Touching;
 use super::super::interaction::Driven;
-use super::super::log::Log;
-use super::super::outcome::HistoryRow;
-use super::full_load::FullLoad;
-use crate::error::Result;
+use super::super::outcome::{HistoryRow, SceneEnd};
+use crate::error::{Result, input};
+use crate::levels::Net;
+use crate::levels::equilibrium::FullLoad;
+
+impl FullLoad {
+    /// Loads and supports of a boundary.
+    /// Errors: a prescribed velocity: there is no time.
+    pub fn of(net: &Net, boundary: &Boundary) -> Result<Self> {
+        let mut full = FullLoad::none(net);
+        for held in &boundary.held {
+            let Motion::Displacement(value) = held.motion else {
+                let remedy = "give loading.duration_s, or kind = \"displacement\" with displacement_mm";
+                return Err(input("loading.kind", "\"velocity\"", "needs time, and the scene has none", remedy));
+            };
+            let at = held.point as usize * net.unknowns + held.component;
+            (full.held[at], full.motion[at]) = (true, value);
+        }
+        for &(point, force) in &boundary.forces {
+            for (component, force) in force.into_iter().enumerate() {
+                let at = point as usize * net.unknowns + component;
+                full.external[at] += if full.held[at] { 0.0 } else { force };
+            }
+        }
+        full.pin(net);
+        Ok(full)
+    }
+
+    /// Lets the plate float after all: something that is not among these loads holds it.
+    pub fn release(&mut self) {
+        std::mem::take(&mut self.pins).into_iter().for_each(|at| self.held[at] = false);
+    }
+
+    /// Work that the held unknowns would do on the way to full load against these forces of the bonds, and work of the given
+    /// forces over this displacement, J.
+    pub fn works(&self, u: &[f64], force: &[f64]) -> [f64; 2] {
+        let driven: f64 = self.motion.iter().zip(force).map(|(motion, force)| -motion * force).sum();
+        let pushed: f64 = self.external.iter().zip(u).map(|(force, u)| force * u).sum();
+        [driven, pushed]
+    }
+}
 
 /// A state of equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -87,14 +124,14 @@ impl Account {
     /// Takes down a row with this displacement and forces of the bonds.
     pub fn row(
         &mut self,
-        to: &mut Recorder<'_, '_>,
+        course: &mut Course<'_>,
         u: &[f64],
         force: &[f64],
         driven: Option<Driven>,
         bonds: &BondState,
     ) -> Result<()> {
         self.rows += 1;
-        let of_points = || to.boundary.measure(to.unknowns, self.state.level, u, force);
+        let of_points = || course.log.boundary.measure(course.log.net.unknowns, self.state.level, u, force);
         let (displacement, load) = driven.map_or_else(of_points, |driven| (driven.displacement, driven.load));
         let row = HistoryRow {
             step: self.rows,
@@ -105,34 +142,21 @@ impl Account {
             work: self.work,
             ..HistoryRow::default()
         };
-        to.log.row(row, u, bonds);
-        to.course.step_done(self.state.level)
+        course.log.row(row, u, bonds);
+        course.step_done(self.state.level)
     }
 }
 
-/// Where rows go.
-pub struct Recorder<'r, 'n> {
-    /// Log of the run.
-    pub log: &'r mut Log<'n>,
-    /// Hears of every row.
-    pub course: Course<'r>,
-    /// Loads whose displacement and force a row holds.
-    pub boundary: &'r Boundary,
-    /// Unknowns of a point.
-    pub unknowns: usize,
-}
-
-impl Recorder<'_, '_> {
-    /// Puts log and bonds where the run is taken up (`Course::take_up`).
-    ///
-    /// # Errors
-    /// A checkpoint of another plate.
-    pub fn take_up(&mut self, bonds: &mut BondState) -> Result<Option<Place>> {
-        self.course.take_up(self.log, bonds)
-    }
-
-    /// Offers what it takes to go on from here.
-    pub fn may_keep(&self, bonds: &BondState, place: &dyn Fn() -> Place) {
-        self.course.may_keep(self.log, bonds, place);
-    }
+/// Where a procedure without time ended.
+pub struct Walked {
+    /// Why.
+    pub end: SceneEnd,
+    /// Last displacement, m.
+    pub u: Vec<f64>,
+    /// Energies.
+    pub account: Account,
+    /// Evaluations of the forces.
+    pub evaluations: usize,
+    /// How flanks stand at the end, where they are kept apart.
+    pub touching: Option<Touching>,
 }

@@ -134,8 +134,7 @@ impl<'n> Control<'n> {
         let torn: Vec<usize> = (0..self.measure.len()).into_par_iter().with_min_len(4096).filter(is_torn).collect();
         let held = |&b: &usize| {
             let (bond, at) = (&self.net.bonds[b], measures(self.net, b, &now));
-            let square = at.stretch * at.stretch + at.ratio * at.shear * at.shear;
-            0.5 * bonds.share[b] * bond.k_n * bond.length * bond.length * square
+            0.5 * bonds.share[b] * bond.k_n * bond.length * bond.length * at.square()
         };
         let energy = torn.iter().map(held).sum();
         torn.iter().for_each(|&b| bonds.share[b] = 0.0);

@@ -93,9 +93,7 @@ impl<'n> Equilibrium<'n> {
     }
 
     /// Moves `shape` to the equilibrium with these bonds.
-    ///
-    /// # Errors
-    /// No convergence: nothing holds what the loads pull at, nor does contact.
+    /// Errors: no convergence: nothing holds what the loads pull at, nor does contact.
     pub fn solve(&mut self, bonds: &mut BondState, shape: &mut Shape) -> Result<()> {
         let mut has_pressed_all = false;
         for _ in 0..LOOKS {

@@ -10,29 +10,18 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::bonds::BondState;
-use super::super::checkpoint::{Place, of_another};
-use super::super::interaction::{Damaging, Interaction};
+use super::super::checkpoint::{Course, of_another};
+use super::super::interaction::{Damaging, Interaction, Memory};
 use super::super::outcome::SceneEnd;
-use super::account::{Account, Recorder, State};
-use super::full_load::FullLoad;
+use super::account::{Account, State, Walked};
 use super::relaxation::{Loads, Swing, mobility};
-use super::walk::Walked;
 use crate::error::Result;
+use crate::levels::equilibrium::FullLoad;
 
 /// Rows at the most; with more steps every so many-th is kept, and only there is separation looked for.
 const ROWS: usize = 4000;
 /// Strain energy over the largest work from which the motion counts as blown up: all energy comes from the loads.
 const BLOWN_UP: f64 = 2.0;
-
-/// A march.
-pub struct March<'a> {
-    /// Loads.
-    pub full: &'a FullLoad,
-    /// Load steps.
-    pub steps: usize,
-    /// Iterations of relaxation in each.
-    pub iterations: usize,
-}
 
 /// Where a march stands after a row: all that its next steps depend on beside bonds and interaction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -44,67 +33,64 @@ pub struct Standing {
     evaluations: usize,
 }
 
-impl March<'_> {
-    /// Follows the load to its full value, or until the plate is in two, from rest or from where the run is taken up.
-    ///
-    /// # Errors
-    /// A run that was cancelled, a checkpoint of another one.
-    pub fn follow(
-        &self,
-        interaction: &mut dyn Interaction,
-        bonds: &mut BondState,
-        mut recorder: Recorder<'_, '_>,
-    ) -> Result<Walked> {
-        let (full, size) = (self.full, self.full.held.len());
-        // Damage only softens the plate: what is stable for it whole stays so.
-        let mobility = mobility(interaction, bonds, &full.held);
-        let mut at = match recorder.take_up(bonds)? {
-            None => {
-                Standing { step: 0, u: vec![0.0; size], swing: Swing::at_rest(size), account: Account::default(), evaluations: 0 }
-            }
-            Some(Place::March(at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
-            Some(_) => return Err(of_another()),
-        };
-        let mut force = vec![0.0; size];
-        let mut end = SceneEnd::Done;
-        let stride = self.steps.div_ceil(ROWS);
-        'march: for step in at.step + 1..=self.steps {
-            let level = step as f64 / self.steps as f64;
-            at.step = step;
-            at.u.iter_mut()
-                .zip(&full.motion)
-                .zip(&full.held)
-                .filter(|(_, held)| **held)
-                .for_each(|((u, motion), _)| *u = level * motion);
-            let external: Vec<f64> = full.external.iter().map(|force| level * force).collect();
-            let loads = Loads { held: &full.held, external: &external };
-            for _ in 0..self.iterations {
-                let reaction = interaction.internal_force(&at.u, bonds, Damaging::Allowed, &mut force);
-                at.account.fracture += reaction.released;
-                recorder.log.broke(step, reaction.broken);
-                at.account.go(State::new(full, level, &at.u, &force, reaction.strain));
-                let sums = at.swing.take(loads, &mobility, &force);
-                if at.account.is_impossible(BLOWN_UP) {
-                    end = SceneEnd::Unstable;
-                    break 'march;
-                }
-                at.swing.step(&mobility, (at.evaluations > 0).then(|| sums.damping()), &mut at.u);
-                at.evaluations += 1;
-            }
-            if step % stride != 0 && step != self.steps {
-                continue;
-            }
-            at.account.rows = step - 1;
-            at.account.row(&mut recorder, &at.u, &force, None, bonds)?;
-            if recorder.log.is_separated() {
-                end = SceneEnd::Separated;
-                break;
-            }
-            recorder.may_keep(bonds, &|| Place::March(at.clone(), interaction.memory()));
+/// Follows the load to its full value in so many steps of so many iterations of relaxation, or until the plate is in two, from rest or from where the run is taken up.
+/// Errors: a run that was cancelled, a checkpoint of another one.
+pub fn follow(
+    full: &FullLoad,
+    [steps, iterations]: [usize; 2],
+    interaction: &mut dyn Interaction,
+    bonds: &mut BondState,
+    course: &mut Course<'_>,
+) -> Result<Walked> {
+    let size = full.held.len();
+    // Damage only softens the plate: what is stable for it whole stays so.
+    let mobility = mobility(interaction, bonds, &full.held);
+    let mut at = match course.take_up::<(Standing, Memory)>(bonds)? {
+        None => {
+            Standing { step: 0, u: vec![0.0; size], swing: Swing::at_rest(size), account: Account::default(), evaluations: 0 }
         }
-        let Standing { u, account, evaluations, .. } = at;
-        Ok(Walked { end, u, account, evaluations, touching: None })
+        Some((at, memory)) if at.has(size) && interaction.restore(&memory, bonds) => at,
+        Some(_) => return Err(of_another()),
+    };
+    let mut force = vec![0.0; size];
+    let mut end = SceneEnd::Done;
+    let stride = steps.div_ceil(ROWS);
+    'march: for step in at.step + 1..=steps {
+        let level = step as f64 / steps as f64;
+        at.step = step;
+        at.u.iter_mut()
+            .zip(&full.motion)
+            .zip(&full.held)
+            .filter(|(_, held)| **held)
+            .for_each(|((u, motion), _)| *u = level * motion);
+        let external: Vec<f64> = full.external.iter().map(|force| level * force).collect();
+        let loads = Loads { held: &full.held, external: &external };
+        for _ in 0..iterations {
+            let reaction = interaction.internal_force(&at.u, bonds, Damaging::Allowed, &mut force);
+            at.account.fracture += reaction.released;
+            course.log.broke(step, reaction.broken);
+            at.account.go(State::new(full, level, &at.u, &force, reaction.strain));
+            let sums = at.swing.take(loads, &mobility, &force);
+            if at.account.is_impossible(BLOWN_UP) {
+                end = SceneEnd::Unstable;
+                break 'march;
+            }
+            at.swing.step(&mobility, (at.evaluations > 0).then(|| sums.damping()), &mut at.u);
+            at.evaluations += 1;
+        }
+        if step % stride != 0 && step != steps {
+            continue;
+        }
+        at.account.rows = step - 1;
+        at.account.row(course, &at.u, &force, None, bonds)?;
+        if course.log.is_separated() {
+            end = SceneEnd::Separated;
+            break;
+        }
+        course.may_keep(bonds, || (&at, interaction.memory()));
     }
+    let Standing { u, account, evaluations, .. } = at;
+    Ok(Walked { end, u, account, evaluations, touching: None })
 }
 
 impl Standing {

@@ -6,49 +6,46 @@
 pub mod account;
 pub mod control;
 pub mod equilibrium;
-pub mod full_load;
 pub mod marching;
 pub mod path;
 pub mod relaxation;
 pub mod steps;
-pub mod walk;
 
 use super::bonds::BondState;
-use super::boundary::Boundary;
-use super::course::Course;
+use super::checkpoint::Course;
 use super::failure::Failure;
 use super::interaction::Interaction;
-use super::log::Log;
 use super::outcome::{Fracture, SceneFigures};
 use super::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
 use crate::error::{Result, input};
-use crate::levels::Net;
-use account::Recorder;
-use full_load::FullLoad;
-use marching::March;
-use path::{Path, Settings};
+use crate::levels::equilibrium::FullLoad;
+use account::Walked;
 use relaxation::Relaxation;
-use walk::Walked;
 
 /// Rows between two pictures of a run, times those of a run with `SNAPSHOTS` of them.
 const ROWS_EXPECTED: usize = 1000;
 /// Excess over the largest work that is told of.
 const EXCESS_TOLD: f64 = 0.005;
 
-/// Runs a scene without time on a net with its loads.
-///
-/// # Errors
-/// Choices that do not go together, loads that do not balance, a run that was cancelled.
+/// Rows to expect of a scene without time; relaxation to rest and the path have some between the nominal steps.
+pub fn rows(procedure: Procedure) -> usize {
+    match procedure {
+        Procedure::QuasiStatic { steps, iterations: None } if steps > 1 => steps.max(ROWS_EXPECTED),
+        Procedure::QuasiStatic { steps, .. } => steps.max(1),
+        _ => 1,
+    }
+}
+
+/// Runs a scene without time.
+/// Errors: choices that do not go together, loads that do not balance, a run that was cancelled.
 pub fn run(
     scene: &Scene,
-    net: &Net,
-    boundary: &Boundary,
+    failure: &Failure,
     interaction: &mut dyn Interaction,
-    failure: Option<&Failure>,
     bonds: &mut BondState,
-    course: Course<'_>,
+    mut course: Course<'_>,
 ) -> Result<Fracture> {
-    let mut full = FullLoad::of(net, boundary)?;
+    let mut full = FullLoad::of(course.log.net, course.log.boundary)?;
     if interaction.driven().is_some() {
         full.release();
     }
@@ -56,31 +53,24 @@ pub fn run(
         Procedure::QuasiStatic { steps, iterations } => (steps.max(1), iterations),
         _ => (1, None),
     };
-    // Relaxation to rest and the path have rows between the nominal steps.
-    let rows = if iterations.is_some() || steps == 1 { steps } else { steps.max(ROWS_EXPECTED) };
-    let mut log = Log::new(scene, net, boundary, rows);
-    let recorder = Recorder { log: &mut log, course, boundary, unknowns: net.unknowns };
-    let walked = match scene.model.solver {
-        SceneSolver::AdaptiveDynamicRelaxation => match iterations {
-            Some(iterations) => March { full: &full, steps, iterations }.follow(interaction, bonds, recorder)?,
-            None => steps::follow(&full, steps, &relaxation(scene), interaction, bonds, recorder)?,
-        },
-        SceneSolver::Secant => {
-            let failure = secant_law(scene, failure)?;
-            let path = Path { net, cracks: &scene.specimen.cracks, full: &full, failure, steps, settings: Settings::default() };
-            path.follow(bonds, recorder)?
+    let walked = match (scene.model.solver, iterations) {
+        (SceneSolver::AdaptiveDynamicRelaxation, Some(iterations)) => {
+            marching::follow(&full, [steps, iterations], interaction, bonds, &mut course)?
         }
-        SceneSolver::VelocityVerlet => {
-            return Err(input(
-                "model.solver",
-                "\"velocity_verlet\"",
-                "needs time, and the scene has none",
-                "give loading.duration_s, or solver = \"secant\" or \"adaptive_dynamic_relaxation\"",
-            ));
+        (SceneSolver::AdaptiveDynamicRelaxation, None) => {
+            steps::follow(&full, steps, &relaxation(scene), interaction, bonds, &mut course)?
+        }
+        (SceneSolver::Secant, _) => {
+            check_secant(scene)?;
+            path::follow(&scene.specimen.cracks, &full, failure, steps, bonds, &mut course)?
+        }
+        (SceneSolver::VelocityVerlet, _) => {
+            let remedy = "give loading.duration_s, or solver = \"secant\" or \"adaptive_dynamic_relaxation\"";
+            return Err(input("model.solver", "\"velocity_verlet\"", "needs time, and the scene has none", remedy));
         }
     };
     let Walked { end, u, account, evaluations, touching } = walked;
-    let mut fracture = log.close(end, &u, bonds, SceneFigures { evaluations, touching, ..SceneFigures::default() });
+    let mut fracture = course.log.close(end, &u, bonds, SceneFigures { evaluations, touching, ..SceneFigures::default() });
     let excess = account.excess();
     if iterations.is_some() {
         fracture.warnings.push(format!(
@@ -106,19 +96,16 @@ fn relaxation(scene: &Scene) -> Relaxation {
     }
 }
 
-/// The law of damage, if the path of its springs can be followed.
-fn secant_law<'f>(scene: &Scene, failure: Option<&'f Failure>) -> Result<&'f Failure> {
-    let refuse =
-        |problem: &str| input("model.solver", "\"secant\"", problem.to_owned(), "use solver = \"adaptive_dynamic_relaxation\"");
-    let failure = failure.filter(|_| matches!(scene.model.law, SceneLaw::Bonds(_)));
-    let Some(failure) = failure else {
-        return Err(refuse("needs springs in bonds, and the law has none"));
+/// Whether the path of a scene's springs can be followed.
+fn check_secant(scene: &Scene) -> Result<()> {
+    let problem = if !matches!(scene.model.law, SceneLaw::Bonds(_)) {
+        "needs springs in bonds, and the law has none"
+    } else if scene.model.finite {
+        "is linear in the displacement, and kinematics is \"finite\""
+    } else if scene.damage.law == DamageLaw::NonlinearTwoParameter && scene.damage.nonlinear.is_some_and(|law| law.printed) {
+        "needs stiffness that never comes back, and that of the printed law does"
+    } else {
+        return Ok(());
     };
-    if scene.model.finite {
-        return Err(refuse("is linear in the displacement, and kinematics is \"finite\""));
-    }
-    if scene.damage.law == DamageLaw::NonlinearTwoParameter && scene.damage.nonlinear.is_some_and(|law| law.printed) {
-        return Err(refuse("needs stiffness that never comes back, and that of the printed law does"));
-    }
-    Ok(failure)
+    Err(input("model.solver", "\"secant\"", problem, "use solver = \"adaptive_dynamic_relaxation\""))
 }

@@ -12,7 +12,7 @@
 //! change of F over a step, and lowered by a fixed factor, since such a quotient lies above the lowest frequency
 //! ([`crate::solver`] measures both choices on lattices).
 //!
-//! Bonds are damaged at rest by default, never on the way: the swing overshoots equilibrium (up to twofold without damping) and
+//! Bonds are damaged at rest, never on the way: the swing overshoots equilibrium (up to twofold without damping) and
 //! would break bonds that no load breaks. What is damaged at rest disturbs the rest, so relaxation and damage alternate until
 //! nothing is damaged any more.
 
@@ -30,6 +30,11 @@ const DAMPING_MAX: f64 = 1.9;
 /// steps suffice to see it.
 const BLOWN_UP: f64 = 10.0;
 
+/// Growth of damage in a bond that disturbs the rest.
+const QUIET: f64 = 1e-4;
+/// Alternations of rest and damage after which there is no rest.
+const PASSES: usize = 20_000;
+
 /// When bonds may be damaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Breaking {
@@ -38,8 +43,6 @@ pub enum Breaking {
     /// At rest, over and over until nothing more is damaged.
     #[default]
     AtRest,
-    /// In every iteration, as published examples do; the result then depends on how the motion swings.
-    EveryStep,
 }
 
 /// What holds and pushes the points; layout of [`Interaction`].
@@ -60,10 +63,6 @@ pub struct Relaxation {
     pub iterations: usize,
     /// When bonds may be damaged.
     pub breaking: Breaking,
-    /// Growth of damage in a bond that disturbs the rest.
-    pub quiet: f64,
-    /// Alternations of rest and damage after which there is no rest.
-    pub passes: usize,
     /// Bonds after whose break the state is handed back although it is not at rest.
     pub broken: usize,
     /// Load, N, that the residual is compared with at the least.
@@ -72,15 +71,7 @@ pub struct Relaxation {
 
 impl Default for Relaxation {
     fn default() -> Self {
-        Relaxation {
-            tolerance: 1e-6,
-            iterations: 40_000,
-            breaking: Breaking::AtRest,
-            quiet: 1e-4,
-            passes: 20_000,
-            broken: usize::MAX,
-            least_load: 0.0,
-        }
+        Relaxation { tolerance: 1e-6, iterations: 40_000, breaking: Breaking::AtRest, broken: usize::MAX, least_load: 0.0 }
     }
 }
 
@@ -104,8 +95,6 @@ pub struct Rested {
     pub end: RestEnd,
     /// Evaluations of the forces.
     pub evaluations: usize,
-    /// Alternations of rest and damage.
-    pub passes: usize,
     /// Residual over load.
     pub residual: f64,
     /// Energies and breaks, summed over the relaxation; the strain energy is the last.
@@ -120,36 +109,36 @@ impl Relaxation {
         let mut rested = Rested {
             end: RestEnd::AtRest,
             evaluations: 0,
-            passes: 0,
             residual: 0.0,
             reaction: Reaction::default(),
             force: vec![0.0; u.len()],
         };
+        let mut passes = 0;
         loop {
             let mobility = mobility(interaction, bonds, loads.held);
             self.settle(interaction, bonds, loads, &mobility, u, &mut rested);
-            rested.passes += 1;
+            passes += 1;
             if self.breaking != Breaking::AtRest || rested.end != RestEnd::AtRest {
                 return rested;
             }
             let damage = interaction.internal_force(u, bonds, Damaging::Allowed, &mut rested.force);
             rested.evaluations += 1;
             rested.add(damage);
-            if damage.broken == 0 && damage.damaged <= self.quiet {
+            if damage.broken == 0 && damage.damaged <= QUIET {
                 return rested;
             }
             if rested.reaction.broken > self.broken {
                 rested.end = RestEnd::Breaking;
                 return rested;
             }
-            if rested.passes >= self.passes {
+            if passes >= PASSES {
                 rested.end = RestEnd::NoConvergence;
                 return rested;
             }
         }
     }
 
-    /// To rest, with bonds that keep their state or are damaged on the way.
+    /// To rest, with bonds that keep their state.
     fn settle(
         &self,
         interaction: &mut dyn Interaction,
@@ -159,17 +148,15 @@ impl Relaxation {
         u: &mut [f64],
         rested: &mut Rested,
     ) {
-        let damaging = if self.breaking == Breaking::EveryStep { Damaging::Allowed } else { Damaging::Frozen };
         let mut swing = Swing::at_rest(u.len());
         let mut start = 0.0_f64;
         for iteration in 0..self.iterations {
-            let reaction = interaction.internal_force(u, bonds, damaging, &mut rested.force);
+            let reaction = interaction.internal_force(u, bonds, Damaging::Frozen, &mut rested.force);
             rested.evaluations += 1;
             rested.add(reaction);
-            let disturbed = reaction.broken > 0 || reaction.damaged > self.quiet;
             let sums = swing.take(loads, mobility, &rested.force);
-            if iteration == 0 || disturbed {
-                start = start.max(sums.acceleration);
+            if iteration == 0 {
+                start = sums.acceleration;
             }
             if sums.acceleration.is_nan() || sums.acceleration > BLOWN_UP * BLOWN_UP * start {
                 rested.end = RestEnd::BlownUp;
@@ -178,7 +165,7 @@ impl Relaxation {
             let brought = interaction.driven().map_or(0.0, |driven| driven.load);
             let load = sums.load.sqrt().max(brought).max(self.least_load);
             rested.residual = if sums.square == 0.0 { 0.0 } else { sums.square.sqrt() / load };
-            if rested.residual <= self.tolerance && !disturbed {
+            if rested.residual <= self.tolerance {
                 return;
             }
             swing.step(mobility, (iteration > 0).then(|| sums.damping()), u);

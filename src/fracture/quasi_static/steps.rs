@@ -7,14 +7,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::bonds::BondState;
-use super::super::checkpoint::{Place, of_another};
-use super::super::interaction::Interaction;
+use super::super::checkpoint::{Course, of_another};
+use super::super::interaction::{Interaction, Memory};
 use super::super::outcome::SceneEnd;
-use super::account::{Account, Recorder, State};
-use super::full_load::FullLoad;
+use super::account::{Account, State, Walked};
 use super::relaxation::{Loads, Relaxation, RestEnd, Rested};
-use super::walk::Walked;
 use crate::error::Result;
+use crate::levels::equilibrium::FullLoad;
 
 /// Smallest step over the nominal one.
 const LEAST: f64 = 1.0 / 16.0;
@@ -40,20 +39,18 @@ pub struct Standing {
 }
 
 /// Works through load steps, from rest or from where the run is taken up.
-///
-/// # Errors
-/// A run that was cancelled, a checkpoint of another one.
+/// Errors: a run that was cancelled, a checkpoint of another one.
 pub fn follow(
     full: &FullLoad,
     steps: usize,
     relaxation: &Relaxation,
     interaction: &mut dyn Interaction,
     bonds: &mut BondState,
-    mut recorder: Recorder<'_, '_>,
+    course: &mut Course<'_>,
 ) -> Result<Walked> {
     let relaxation = &Relaxation { broken: BROKEN, ..*relaxation };
     let (nominal, size) = (1.0 / steps as f64, full.held.len());
-    let mut at = match recorder.take_up(bonds)? {
+    let mut at = match course.take_up::<(Standing, Memory)>(bonds)? {
         None => Standing {
             u: vec![0.0; size],
             account: Account::default(),
@@ -62,7 +59,7 @@ pub fn follow(
             peak: 0.0,
             breaking: false,
         },
-        Some(Place::Rest(at, memory)) if at.u.len() == size && interaction.restore(&memory, bonds) => at,
+        Some((at, memory)) if at.u.len() == size && interaction.restore(&memory, bonds) => at,
         Some(_) => return Err(of_another()),
     };
     let mut end = SceneEnd::Done;
@@ -87,12 +84,12 @@ pub fn follow(
             break;
         }
         at.account.fracture += reaction.released;
-        recorder.log.broke(at.account.rows + 1, reaction.broken);
+        course.log.broke(at.account.rows + 1, reaction.broken);
         at.breaking = rested.end == RestEnd::Breaking;
         let driven = interaction.driven();
         at.account.go(State::new(full, level, &at.u, &rested.force, reaction.strain).with_driven(driven));
-        at.account.row(&mut recorder, &at.u, &rested.force, driven, bonds)?;
-        if recorder.log.is_separated() {
+        at.account.row(course, &at.u, &rested.force, driven, bonds)?;
+        if course.log.is_separated() {
             end = SceneEnd::Separated;
             break;
         }
@@ -105,7 +102,7 @@ pub fn follow(
         if reaction.broken == 0 && 2.0 * reaction.damaged < DAMAGED {
             at.step = (2.0 * at.step).min(nominal);
         }
-        recorder.may_keep(bonds, &|| Place::Rest(at.clone(), interaction.memory()));
+        course.may_keep(bonds, || (&at, interaction.memory()));
     }
     let Standing { u, account, evaluations, .. } = at;
     Ok(Walked { end, u, account, evaluations, touching: None })

@@ -7,6 +7,7 @@ use super::region;
 use crate::error::{Result, input, input_missing};
 use crate::fracture::scene::{Action, LoadRamp, Region, SceneLoad};
 use crate::input::{Quantity, number, slice};
+use crate::specimen::geometry::unit;
 use crate::specimen::{Edge, Point, Specimen};
 use crate::units::{MM, MPA};
 
@@ -169,15 +170,15 @@ fn size(load: &LoadInput, path: &str) -> Result<f64> {
 /// Unit vector of `direction`.
 fn direction(load: &LoadInput, path: &str) -> Result<Option<Point>> {
     let Some([x, y]) = load.direction else { return Ok(None) };
-    let (key, size) = (format!("{path}.direction"), x.hypot(y));
-    if !(1e-9..1e9).contains(&size) {
-        return Err(input(&key, format!("[{x}, {y}]"), "has no direction", "give [x, y], for example [0, 1]"));
-    }
+    let (key, given) = (format!("{path}.direction"), format!("[{x}, {y}]"));
+    let Some(direction) = unit([x, y]) else {
+        return Err(input(&key, given, "has no direction", "give [x, y], for example [0, 1]"));
+    };
     if load.kind == LoadKind::Platens {
         let problem = "does not go with platens, which move against the side that they press on";
-        return Err(input(&key, format!("[{x}, {y}]"), problem, "leave it out"));
+        return Err(input(&key, given, problem, "leave it out"));
     }
-    Ok(Some([x / size, y / size]))
+    Ok(Some(direction))
 }
 
 /// Keys that the kind of load has no use for.
@@ -234,7 +235,8 @@ fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<(Reg
             }
             let of_box = |(i, value): (usize, &Value)| {
                 let key = format!("{regions_key}[{i}]");
-                Ok((region::box_from_value(value, &key, specimen)?, key))
+                let (low, high) = region::box_from_value(value, &key, specimen)?;
+                Ok((Region::Box { low, high }, key))
             };
             regions.iter().enumerate().map(of_box).collect()
         }

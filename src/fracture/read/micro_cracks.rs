@@ -5,7 +5,7 @@ use toml::Value;
 
 use super::checks::box_of;
 use super::loading::whole;
-use super::region::{corners, overlap};
+use super::region::{self, overlap};
 use crate::error::{Result, input, input_missing};
 use crate::fracture::scene::Scene;
 use crate::input::{number, slice};
@@ -31,13 +31,6 @@ struct Input {
     angle_min_deg: Option<f64>,
     angle_max_deg: Option<f64>,
     regions: Option<Vec<Value>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RegionInput {
-    from_mm: [f64; 2],
-    to_mm: [f64; 2],
 }
 
 /// What the cracks are drawn from: uniform in length, angle against x, and place of the middle.
@@ -108,9 +101,7 @@ fn field(given: &Input, scene: &Scene) -> Result<Field> {
         }
         Some(regions) => {
             let one = |(i, value): (usize, &Value)| {
-                let path = format!("micro_cracks.regions[{i}]");
-                let given: RegionInput = slice(value, &path)?;
-                corners(&path, [given.from_mm, given.to_mm], &scene.specimen)
+                region::box_from_value(value, &format!("micro_cracks.regions[{i}]"), &scene.specimen)
             };
             regions.iter().enumerate().map(one).collect::<Result<_>>()?
         }

@@ -42,7 +42,6 @@ mod loading;
 pub mod micro_cracks;
 mod model;
 mod region;
-mod supports;
 
 pub use load::{LoadKind, Transverse};
 pub use model::Kinematics;
@@ -117,7 +116,7 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
     specimen.supports.clear();
     let material = material::from_value(sections.required("material")?, folder, &mut warnings)?;
     let loading = loading::from_value(sections.required("loading")?, &mut specimen)?;
-    let holds = supports::from_value(sections.optional("supports"), &specimen)?;
+    let holds = region::supports(sections.optional("supports"), &specimen)?;
     let model = model::from_value(sections.optional("model"), &specimen, &material, &loading.procedure)?;
     let damage = damage::from_value(sections.optional("damage"), &material)?;
     let refinement = sections.given("refinement").map(|value| refinement::from_value(value, &specimen)).transpose()?;

@@ -7,7 +7,7 @@ use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection,
 use crate::case::HORIZON_RATIO;
 use crate::case::model::{check_spacing, default_spacing};
 use crate::error::{Error, Result, input, input_missing};
-use crate::fracture::correspondence::control::SILLING_FACTOR;
+use crate::fracture::correspondence::elasticity::SILLING_FACTOR;
 use crate::fracture::scene::{Discretisation, PointLaw, Procedure, SceneLaw, SceneModel, SceneSolver, ZeroEnergyControl};
 use crate::input::{LENGTH, number, slice};
 use crate::material::Material;

@@ -1,14 +1,15 @@
-//! Where a load or a support takes hold: a side of the plate, or an upright box.
+//! Where a load or a support takes hold: a side of the plate, or an upright box. `[supports]`: sides or boxes whose points stay where they
+//! are.
 
 use serde::Deserialize;
 use toml::Value;
 
-use crate::error::{Result, input};
-use crate::fracture::scene::Region;
-use crate::input::{number, point, slice};
+use crate::error::{Result, input, input_missing};
+use crate::fracture::scene::{Region, SceneSupport};
+use crate::input::{number, point, shorten, slice, table_of};
 pub use crate::levels::refinement::{corners, overlap};
 use crate::specimen::geometry::bounding_box;
-use crate::specimen::{Edge, Point, Specimen};
+use crate::specimen::{Component, Edge, Point, Specimen};
 use crate::units::MM;
 
 /// Keys of an upright box.
@@ -20,10 +21,9 @@ struct BoxInput {
 }
 
 /// Reads `{ from_mm = [x, y], to_mm = [x, y] }`, two opposite corners of a box that meets the plate.
-pub fn box_from_value(value: &Value, path: &str, specimen: &Specimen) -> Result<Region> {
+pub fn box_from_value(value: &Value, path: &str, specimen: &Specimen) -> Result<(Point, Point)> {
     let input: BoxInput = slice(value, path)?;
-    let (low, high) = corners(path, [input.from_mm, input.to_mm], specimen)?;
-    Ok(Region::Box { low, high })
+    corners(path, [input.from_mm, input.to_mm], specimen)
 }
 
 /// A side with the depth of the hold and, where it is not the whole side, the part of it.
@@ -74,4 +74,55 @@ pub fn around(region: &Region, row: f64, specimen: &Specimen) -> (Point, Point) 
             (low, high)
         }
     }
+}
+
+/// A held side.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SideInput {
+    #[serde(default)]
+    rows_mm: f64,
+    range_mm: Option<[f64; 2]>,
+    fix: Vec<Component>,
+}
+
+/// A held box.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HeldBoxInput {
+    from_mm: [f64; 2],
+    to_mm: [f64; 2],
+    fix: Vec<Component>,
+}
+
+/// Reads `[supports]`: `bottom = { rows_mm, range_mm, fix }`, or under any other name `{ from_mm, to_mm, fix }`.
+pub fn supports(value: &Value, specimen: &Specimen) -> Result<Vec<SceneSupport>> {
+    let mut holds = Vec::new();
+    for (name, value) in table_of(value, "supports")? {
+        let path = format!("supports.{name}");
+        let (region, fix, key) = match name.parse::<Edge>() {
+            Ok(side) => {
+                let entry: SideInput = slice(value, &path)?;
+                let (depth, range) = (format!("{path}.rows_mm"), format!("{path}.range_mm"));
+                let region = edge(side, &path, (&depth, entry.rows_mm), (&range, entry.range_mm), specimen)?;
+                (region, entry.fix, range)
+            }
+            Err(_) if value.as_table().is_some_and(|table| table.contains_key("rows_mm") || !table.contains_key("from_mm")) => {
+                let remedy = "known sides: top, bottom, left, right; a box has from_mm, to_mm and fix";
+                return Err(input(&path, shorten(value), "is neither a side of the plate nor a box", remedy));
+            }
+            Err(_) => {
+                let entry: HeldBoxInput = slice(value, &path)?;
+                let (low, high) = corners(&path, [entry.from_mm, entry.to_mm], specimen)?;
+                (Region::Box { low, high }, entry.fix, path.clone())
+            }
+        };
+        if fix.is_empty() {
+            let remedy = "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]";
+            return Err(input_missing(&format!("{path}.fix"), "holds nothing", remedy));
+        }
+        let components = [Component::X, Component::Y].map(|component| fix.contains(&component));
+        holds.push(SceneSupport { region, components, key });
+    }
+    Ok(holds)
 }

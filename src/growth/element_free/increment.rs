@@ -3,8 +3,9 @@
 use super::ElementFree;
 use super::front::{Front, kinked};
 use super::step::Move;
+use crate::element_free::crack::Tip;
 use crate::element_free::factors;
-use crate::element_free::field::{Discretisation, Tip};
+use crate::element_free::field::Discretisation;
 use crate::element_free::resolution::room;
 use crate::element_free::solve::solve;
 use crate::error::Error;

@@ -1,7 +1,7 @@
 //! What lies ahead of a tip: the outline, a hole, a slot, another crack.
 
 use crate::fatigue::crack_tip::TipState;
-use crate::specimen::geometry::{along, distance, edges, meeting_share, segments_touch};
+use crate::specimen::geometry::{along, circle_shares, distance, edges, meeting_share, nearest_of_segment, segments_touch};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
 
 /// What a tip meets, and what it becomes by that.
@@ -36,12 +36,8 @@ pub(in crate::growth) fn first_rim(
     let outline = walls(&specimen.outline, Encounter::EDGE);
     let slots = specimen.slots.iter().flat_map(|slot| walls(&slot.corners(), Encounter::HOLE));
     let holes = specimen.holes.iter().filter_map(|hole| {
-        let (d, f) = ([to[0] - from[0], to[1] - from[1]], [from[0] - hole.centre[0], from[1] - hole.centre[1]]);
-        let (dd, df, ff) = (d[0] * d[0] + d[1] * d[1], d[0] * f[0] + d[1] * f[1], f[0] * f[0] + f[1] * f[1]);
-        let root = (df * df - dd * (ff - hole.radius * hole.radius)).sqrt();
-        // NaN where the line passes the hole.
-        let share = (-df - root) / dd;
-        (0.0..=1.0).contains(&share).then_some((share, Encounter::HOLE))
+        let [enters, _] = circle_shares(from, to, hole.centre, hole.radius)?;
+        (0.0..=1.0).contains(&enters).then_some((enters, Encounter::HOLE))
     });
     let cracks = lines.iter().enumerate().filter(|(index, _)| *index != own).flat_map(|(index, line)| {
         let meets = line.pieces().filter(|[a, b]| segments_touch(from, to, *a, *b));
@@ -81,11 +77,4 @@ pub(in crate::growth) fn is_near_rim(specimen: &Specimen, lines: &[CrackLine], e
         .into_iter()
         .map(|[x, y]| [from[0] + reach * x, from[1] + reach * y])
         .any(|to| first_rim(specimen, lines, end.line, from, to).is_some())
-}
-
-fn nearest_of_segment(p: Point, a: Point, b: Point) -> Point {
-    let ab = [b[0] - a[0], b[1] - a[1]];
-    let squared = ab[0] * ab[0] + ab[1] * ab[1];
-    let t = if squared > 0.0 { (((p[0] - a[0]) * ab[0] + (p[1] - a[1]) * ab[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    along(a, b, t)
 }

@@ -1,7 +1,7 @@
 //! Bonds between points of several levels, as each point's own lattice of every level finds them.
 
 use super::levels::{Leaf, Levels};
-use crate::body::obstacles::Obstacles;
+use crate::body::facets::Obstacles;
 use crate::bond_law::stencil::Stencil;
 use crate::levels::NetBond;
 use crate::specimen::{Point, Specimen};

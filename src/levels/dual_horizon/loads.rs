@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::levels::Levels;
 use crate::body::boundary::{balance, load_pieces};
+use crate::body::facets::Obstacles;
 use crate::body::facets::{Facet, behind};
-use crate::body::obstacles::Obstacles;
 use crate::body::sharing::{WIDEN, WIDENINGS, linear_shares};
 use crate::error::{Error, Result};
 use crate::specimen::{Point, Specimen};

@@ -12,14 +12,14 @@ use crate::body::Body;
 use crate::body::balanced::flanks::{self, FlankRange};
 use crate::body::mirror::Mirror;
 use crate::body::pre_crack::bonds_cut_by;
-use crate::body::severed::{RepresentedEnd, represented_end};
+use crate::body::severed::represented_excess;
 use crate::bond_law::SurfaceCorrection;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::solver::{Equilibrium, SolverKind};
 use crate::specimen::geometry::distance;
-use crate::specimen::{Crack, Point, Specimen, SpecimenKind};
+use crate::specimen::{Crack, CrackLine, Point, Specimen, SpecimenKind};
 use crate::state::Bonds;
 use crate::units::MM;
 
@@ -72,7 +72,7 @@ pub(super) fn all_tips(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>>
 fn opening_factor(plate: &mut CrackedPlate, tips: &[usize], unmoved: &Field) -> Result<f64> {
     let count = tips.len() as f64;
     let excess = |plate: &CrackedPlate, field: &Field| {
-        tips.iter().map(|&tip| plate.represented(&field.specimen, tip).excess).sum::<f64>() / count
+        tips.iter().map(|&tip| plate.represented(&field.specimen, tip)).sum::<f64>() / count
     };
     let step = step(plate, tips[0]);
     let mut works = [(excess(plate, unmoved), unmoved.work); 3];
@@ -181,10 +181,10 @@ impl<'a> CrackedPlate<'a> {
         Ok(Field { specimen, bonds, work })
     }
 
-    /// Where the crack of `specimen` that a tip ends reaches once cut into bonds.
-    fn represented(&self, specimen: &Specimen, tip: usize) -> RepresentedEnd {
-        let own = own_crack(specimen, tip);
-        represented_end(&self.body, &own.crack, own.at_to, own.length)
+    /// How much farther the crack of `specimen` that a tip ends reaches once cut into bonds, m.
+    fn represented(&self, specimen: &Specimen, tip: usize) -> f64 {
+        let Own { crack, at_to, length } = own_crack(specimen, tip);
+        represented_excess(&self.body, &CrackLine::straight(crack.from, crack.to), at_to, length)
     }
 
     /// Length of straight crack behind a tip up to its middle, where both its ends are tips, or its mouth, m.

@@ -1,12 +1,56 @@
-//! Where loads and supports take hold: points, stretches of the outline, words.
+//! Points and bonds of a scene, and where loads and supports take hold of them: points, stretches of the outline, words.
 
 use std::fmt;
 
-use super::scene::{Action, LoadRamp, Region, SceneLoad};
-use crate::levels::Net;
+use super::correspondence::NET_LAW;
+use super::scene::{Action, Discretisation, LoadRamp, Region, Scene, SceneLaw, SceneLoad};
+use crate::body::Body;
+use crate::error::{Result, input};
+use crate::levels::{MultiLevelSpec, Net, dual_horizon};
 use crate::specimen::geometry::{along, bounding_box};
 use crate::specimen::{Edge, Load, Point, Specimen};
 use crate::units::MM;
+
+/// Points and bonds of a scene, and the lattice body behind them if there is one.
+/// Errors: wrong input that shows only now, choices that do not go together.
+pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
+    let model = &scene.model;
+    match (model.law, model.arrangement) {
+        (law, Discretisation::Lattice) => {
+            let law = match law {
+                SceneLaw::Bonds(law) => law,
+                SceneLaw::Correspondence { .. } => NET_LAW,
+            };
+            let body =
+                Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
+            Ok((Net::of_body(&body), Some(body)))
+        }
+        (SceneLaw::Bonds(law), Discretisation::DualHorizon) => {
+            let ask = MultiLevelSpec {
+                specimen: &scene.specimen,
+                material: &scene.material,
+                law: &law,
+                spacing: model.spacing,
+                horizon_ratio: model.horizon_ratio,
+                lattice_angle: model.lattice_angle,
+                refinement: scene.refinement.as_ref(),
+                floating: is_floating(scene),
+            };
+            Ok((dual_horizon::build(&ask)?, None))
+        }
+        (SceneLaw::Correspondence { .. }, arrangement) => {
+            let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";
+            Err(input("model.discretisation", format!("\"{arrangement}\""), problem, "use \"lattice\""))
+        }
+    }
+}
+
+/// Whether nothing holds the plate, so that its loads must balance.
+fn is_floating(scene: &Scene) -> bool {
+    scene.specimen.supports.is_empty()
+        && scene.holds.is_empty()
+        && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_)))
+}
 
 impl Region {
     /// The outermost row of a whole side.
