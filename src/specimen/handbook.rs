@@ -136,3 +136,8 @@ impl HandbookFormula {
         }
     }
 }
+
+/// ΔK by the handbook, Pa√m; `None` where there is no formula for the specimen.
+pub fn delta_k(specimen: &Specimen, crack_length: f64, load_max: f64, range_share: f64) -> Option<f64> {
+    Some(handbook(specimen)?.delta_k(crack_length, load_max, range_share))
+}
