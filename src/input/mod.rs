@@ -14,11 +14,3 @@ pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256}
 pub use quantity::*;
 pub(crate) use slice::shorten;
 pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, slice, table_of, value_at};
-
-/// Bytes of a file as text.
-fn text_of(bytes: Vec<u8>, path: &std::path::Path) -> crate::Result<String> {
-    String::from_utf8(bytes).map_err(|error| {
-        let message = format!("is not UTF-8 text (byte {})", error.utf8_error().valid_up_to() + 1);
-        crate::error::input_missing("file", message, "save it as plain UTF-8 text").in_file(path)
-    })
-}
