@@ -9,10 +9,10 @@ use serde_json::{Value, json};
 use tempfile::{TempDir, tempdir};
 use toml::Table;
 
-use crate::cli::{perilife, texts};
-use crate::daily::{PANEL, READINGS};
-use crate::server::{Server, in_folder};
-use crate::slurm::Slurm;
+use crate::interface::cli::{perilife, texts};
+use crate::support::daily::{PANEL, READINGS};
+use crate::support::server::{Server, in_folder};
+use crate::support::slurm::Slurm;
 
 /// Spacing over that of the example: the doors are tried, not the model.
 const COARSER: f64 = 3.0;

@@ -159,7 +159,7 @@ fn runs_that_take_too_long_are_refused_with_what_would_fit() {
 
 /// Estimates of computing time against runs: a factor of three is what refusals leave them.
 #[test]
-#[ignore = "long: some minutes, times runs; cargo test --test unit -- --ignored computing_time --nocapture"]
+#[ignore = "long: some minutes, times runs; cargo test computing_time -- --ignored --nocapture"]
 fn computing_time_is_within_a_factor_of_three() {
     let models = [
         "spacing_mm = 0.6",

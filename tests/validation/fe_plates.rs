@@ -14,7 +14,7 @@ use perilife::input::Document;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::verify::references::{Compared, REFERENCES, compare, tips_of_table};
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 fn grown(file: &Path, set: &[String]) -> Prediction {
     predict(&Case::from_document(&Document::read(file, set).unwrap()).unwrap(), &Silent).unwrap()

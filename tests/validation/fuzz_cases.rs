@@ -246,7 +246,7 @@ fn random_cases_end_in_a_result_or_a_named_refusal() {
 }
 
 #[test]
-#[ignore = "long: some ten minutes; cargo test --test validation fuzz_cases -- --ignored --nocapture"]
+#[ignore = "long: some ten minutes; cargo test fuzz_cases -- --ignored --nocapture"]
 fn two_hundred_random_cases_end_in_a_result_or_a_named_refusal() {
     fuzz(0..200);
 }

@@ -7,7 +7,7 @@ use perilife::case::Case;
 use perilife::predict::checkpoint::Checkpoint;
 use perilife::predict::{Observer, Prediction, Progress, Silent, predict, resume};
 
-use crate::plates::case;
+use crate::support::plates::case;
 
 /// Keeps every checkpoint as the bytes of its file, and the blocks before it.
 #[derive(Default)]

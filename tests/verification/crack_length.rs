@@ -4,8 +4,8 @@ use perilife::predict::{Silent, predict};
 use perilife::solver::SolverKind;
 use perilife::units::MM;
 
-use crate::plates::case;
-use crate::statics::loaded;
+use crate::support::plates::case;
+use crate::support::statics::loaded;
 
 fn panel(length: f64) -> String {
     format!("kind=\"middle_tension\"\nwidth_mm=90\nlength_mm=120\nthickness_mm=2\ncrack_length_mm={length}\n")

@@ -5,7 +5,7 @@ use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::solver::SolverKind;
 use perilife::units::MM;
 
-use crate::plates::case;
+use crate::support::plates::case;
 
 const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=12\n";
 const SLANT: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncracks=[{from_mm=[-8,-5],to_mm=[8,5]}]\n";

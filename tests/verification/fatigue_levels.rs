@@ -12,7 +12,7 @@ use perilife::specimen::geometry::{distance, distance_to_segment};
 use perilife::state::Bonds;
 use perilife::stress_intensity::CrackedPlate;
 
-use crate::plates::try_case;
+use crate::support::plates::try_case;
 
 const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=96\nlength_mm=160\nthickness_mm=2\ncrack_length_mm=12\n";
 const SLANT: &str = "kind=\"plate\"\nwidth_mm=64\nlength_mm=128\nthickness_mm=2\ncracks=[{from_mm=[-7,-5],to_mm=[7,5]}]\n";
@@ -24,7 +24,7 @@ fn case(specimen: &str, set: &[&str]) -> Case {
     let given = |key: &&&str| set.iter().any(|other| other.split('=').next() == key.split('=').next());
     let usual = ["model.surface_correction=volume_and_surface", "fatigue.growth_rate=bond_strain"];
     let more: Vec<&str> = usual.iter().filter(|key| !given(key)).copied().collect();
-    crate::plates::case(specimen, &[set, &more].concat())
+    crate::support::plates::case(specimen, &[set, &more].concat())
 }
 
 /// Keys of a coarsest spacing, a region with levels, and more.

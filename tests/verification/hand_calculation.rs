@@ -7,8 +7,8 @@ use perilife::predict::{Silent, StopReason, predict};
 use perilife::specimen::handbook::handbook;
 use perilife::units::MM;
 
-use crate::hand_cases::{ALL, PANEL, hand_case, hand_run};
-use crate::plates::case;
+use crate::support::hand_cases::{ALL, PANEL, hand_case, hand_run};
+use crate::support::plates::case;
 
 /// Paris growth of a crack in a plate without end, `N = (a_1^(1-m/2) - a_0^(1-m/2)) / (C (Δσ √π)^m (1 - m/2))`.
 #[test]

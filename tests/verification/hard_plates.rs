@@ -9,7 +9,7 @@ use perilife::predict::{Silent, predict};
 use perilife::specimen::Point;
 use perilife::specimen::geometry::{distance, distance_to_segment};
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 /// Cycles and place (mm) of a tip with its growth, mm.
 type Row = (f64, f64, Point);
@@ -98,13 +98,13 @@ fn mouths_on_holes_and_kinks_of_short_cracks() {
 }
 
 #[test]
-#[ignore = "long: cargo test --test verification hard_plates -- --ignored (two minutes)"]
+#[ignore = "long: cargo test hard_plates -- --ignored (two minutes)"]
 fn gaps_and_rims_near_a_tip() {
     check(&LONG, &|_| Vec::new());
 }
 
 #[test]
-#[ignore = "long: cargo test --test verification hard_plates -- --ignored (two minutes)"]
+#[ignore = "long: cargo test hard_plates -- --ignored (two minutes)"]
 fn hard_plates_on_nodes_without_elements() {
     // The spacing of some files is that of points: nodes are refined by themselves.
     check(&NODES, &|case| {

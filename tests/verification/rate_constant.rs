@@ -72,7 +72,7 @@ fn stored_rate_constants_are_those_of_the_reference_crack() {
 
 /// Prints the rows of the file: the first terms of the interpolation at the roots of a Chebyshev polynomial.
 #[test]
-#[ignore = "long: cargo test --test verification -- --ignored --nocapture coefficients_of_rate_constants"]
+#[ignore = "long: cargo test coefficients_of_rate_constants -- --ignored --nocapture"]
 fn coefficients_of_rate_constants() {
     let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
     let angle = |j: usize| PI * (j as f64 + 0.5) / NODES as f64;

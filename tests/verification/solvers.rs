@@ -11,8 +11,8 @@ use perilife::solver::field::Layout;
 use perilife::solver::{Equilibrium, SolverKind, Symmetry};
 use perilife::state::Bonds;
 
-use crate::plates::case;
-use crate::statics::{Loaded, body, loaded, loaded_with};
+use crate::support::plates::case;
+use crate::support::statics::{Loaded, body, loaded, loaded_with};
 
 /// Solvers that iterate over the whole plate. The window's first solve is multigrid's.
 const ITERATING: [SolverKind; 2] = [SolverKind::Multigrid, SolverKind::AdaptiveDynamicRelaxation];

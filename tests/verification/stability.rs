@@ -19,7 +19,7 @@
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::units::MM;
 
-use crate::plates::case;
+use crate::support::plates::case;
 
 const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=48\nlength_mm=60\nthickness_mm=2\ncrack_length_mm=9\n";
 const PLATE: &str = "kind=\"plate\"\nwidth_mm=40\nlength_mm=48\nthickness_mm=2\n";

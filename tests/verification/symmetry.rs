@@ -5,8 +5,8 @@ use perilife::predict::{Silent, predict};
 use perilife::solver::{Equilibrium, SolverKind, Symmetry};
 use perilife::state::Bonds;
 
-use crate::plates::{case, try_case};
-use crate::statics::{Loaded, body, loaded, loaded_with};
+use crate::support::plates::{case, try_case};
+use crate::support::statics::{Loaded, body, loaded, loaded_with};
 
 /// Share of the plate that is left where columns and rows are even in number; a line through a row of points leaves half a row more.
 struct Scene {

@@ -8,10 +8,10 @@ use tempfile::tempdir;
 
 use super::jobs::with_each_store;
 use super::{QUICK, SLOW, of};
-use crate::cli::perilife;
-use crate::noise::Noise;
-use crate::postgres::Postgres;
-use crate::server::{PATIENCE, Server};
+use crate::interface::cli::perilife;
+use crate::support::noise::Noise;
+use crate::support::postgres::Postgres;
+use crate::support::server::{PATIENCE, Server};
 
 /// The a-N curve of an undisturbed run by the command line.
 pub fn undisturbed(folder: &Path, text: &str) -> Vec<u8> {
@@ -138,7 +138,7 @@ fn a_full_disk_loses_nothing() {
     let Some(disk) = SmallDisk::mounted() else { return };
     let dir = tempdir().unwrap();
     let jobs = mixed(dir.path(), 4);
-    let place = crate::server::in_folder(disk.0.path());
+    let place = crate::support::server::in_folder(disk.0.path());
     let service = Server::start(&[&place[0], &place[1]], &EAGER);
     let addresses = submit(&service, &jobs);
     let ballast = disk.0.path().join("ballast");

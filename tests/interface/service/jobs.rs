@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::{QUICK, SLOW, of};
-use crate::postgres::Postgres;
-use crate::server::{PATIENCE, Server, in_folder};
+use crate::support::postgres::Postgres;
+use crate::support::server::{PATIENCE, Server, in_folder};
 
 /// Does a test with each store that this machine has.
 pub fn with_each_store(name: &str, test: impl Fn(&[&str])) {

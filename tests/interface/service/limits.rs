@@ -12,8 +12,8 @@ use super::crashes::SmallDisk;
 use super::jobs::with_each_store;
 use super::queue::{on_store, token};
 use super::{QUICK, SLOW, of};
-use crate::cli::perilife;
-use crate::server::{PATIENCE, Server, in_folder};
+use crate::interface::cli::perilife;
+use crate::support::server::{PATIENCE, Server, in_folder};
 
 /// The quick plate with points of another spacing.
 pub fn spaced(spacing_mm: f64) -> String {
@@ -247,7 +247,7 @@ fn streams_of_one_shut_nobody_out() {
     service.get("/healthz").expect(200);
     service.get(&job).expect(200);
     let removed = perilife(dir.path(), &[&["token", "remove", "reader"], &place[..]].concat());
-    assert!(removed.status.success(), "{}", crate::cli::texts(&removed).1);
+    assert!(removed.status.success(), "{}", crate::interface::cli::texts(&removed).1);
     let begun = Instant::now();
     // The last piece of an answer in pieces is empty (RFC 9112, 7.1); the connection stays for the next request.
     let mut pieces = streams.swap_remove(0).0.lines();

@@ -5,8 +5,8 @@ use tempfile::tempdir;
 
 use super::jobs::with_each_store;
 use super::{QUICK, of};
-use crate::cli::{assert_refused, perilife, texts};
-use crate::server::{Answer, Server};
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::server::{Answer, Server};
 
 /// A token of this name and role in the store at `place`.
 pub fn token(place: &[&str], name: &str, role: &str) -> String {
