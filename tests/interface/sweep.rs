@@ -10,7 +10,7 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
-use crate::interface::service::jobs::with_each_store;
+use crate::interface::service::jobs::with_store;
 use crate::support::server::{PATIENCE, Server, in_folder};
 use crate::support::slurm::Slurm;
 
@@ -213,7 +213,7 @@ fn shards_and_collect_give_the_same_table() {
 
 #[test]
 fn workers_of_a_service_give_the_same_table() {
-    with_each_store("swept", |place| {
+    with_store("swept", |place| {
         let dir = folder_with(GRID);
         let here = dir.path();
         done(here, &["sweep", "sweep.toml", "--out", "local"]);

@@ -22,7 +22,7 @@ spacing_mm = 2
 [fatigue]
 paris_c_mm_per_cycle = 1e-8
 paris_m = 3.0
-step_error_percent = 0.02
+step_error_percent = 0.1
 ";
 
 /// Name, `[specimen]`, crack length at which the run ends, mm, and whether the plate has a mirror image.
@@ -107,7 +107,7 @@ fn every_solver_by_every_law_gives_one_life_and_one_path() {
                 let common: Vec<&str> =
                     [stop].into_iter().chain(of_lattice.iter().copied()).chain(law_keys.iter().map(|key| &**key)).collect();
                 let reference = grow(specimen, &common);
-                assert!(reference.curve.len() > 8 && reference.life_cycles() > 0.0, "{plate}, {lattice}, {law}: a run");
+                assert!(reference.curve.len() > 4 && reference.life_cycles() > 0.0, "{plate}, {lattice}, {law}: a run");
                 // Points of several levels have two ways of solving.
                 let solvers = if of_lattice.is_empty() { SolverKind::ALL } else { &[SolverKind::Window, SolverKind::Direct][..] };
                 let symmetries: &[&str] = if is_symmetric { &["auto", "off"] } else { &["auto"] };
