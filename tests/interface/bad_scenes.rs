@@ -7,19 +7,14 @@ use perilife::case::Case;
 use perilife::fracture::Scene;
 use proptest::prelude::*;
 
-use crate::bad_toml::any_value;
-use crate::cli::{self, perilife, texts};
+use crate::interface::bad_toml::any_value;
+use crate::interface::cli::{self, perilife, texts};
 use files::{Bad, PRESSED, PULLED, REFINED, THROWN};
 
-#[path = "bad_scenes/files.rs"]
 mod files;
-#[path = "bad_scenes/keys.rs"]
 mod keys;
-#[path = "bad_scenes/laws.rs"]
 mod laws;
-#[path = "bad_scenes/loads.rs"]
 mod loads;
-#[path = "bad_scenes/points.rs"]
 mod points;
 
 /// All broken files.

@@ -1,7 +1,7 @@
 //! Sweep files that are wrong: refused before anything is run, with words.
 
-use crate::cli::{assert_refused, perilife};
-use crate::sweep::{GRID, folder_with};
+use crate::interface::cli::{assert_refused, perilife};
+use crate::interface::sweep::{GRID, folder_with};
 
 #[test]
 fn bad_designs_are_refused_before_anything_runs() {

@@ -6,7 +6,7 @@ use perilife::Error;
 use perilife::case::Case;
 use proptest::prelude::*;
 
-use crate::cli::{self, perilife, texts};
+use crate::interface::cli::{self, perilife, texts};
 
 const PANEL: &str = r#"[specimen]
 kind = "middle_tension"

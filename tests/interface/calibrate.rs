@@ -8,7 +8,7 @@ use perilife::report::csv::read_a_n;
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
-use crate::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife, texts};
 
 /// Makes the calibration coarse: a longer first crack keeps six points in front of the load line of a 3 mm lattice.
 const COARSE: [&str; 6] =

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife, texts};
 
 #[test]
 fn a_quick_scene_leaves_table_picture_page_and_summary() {

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use tempfile::tempdir;
 
-use crate::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
 
 #[test]
 fn a_case_is_told_in_words_and_in_json() {

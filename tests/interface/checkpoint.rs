@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use assert_cmd::cargo::cargo_bin;
 use tempfile::tempdir;
 
-use crate::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife, texts};
 
 /// A slant crack that takes seconds, its window moving several times.
 const CASE: &str = r#"
@@ -106,7 +106,7 @@ fn a_killed_run_goes_on_to_the_same_curve() {
 fn torn() -> String {
     let finer =
         [("spacing_mm = 1", "spacing_mm = 0.5"), ("[-10, 0], to_mm = [0, 0]", "[-10, 0.3], to_mm = [0, 0.3]"), ("2e-5", "3e-5")];
-    finer.into_iter().fold(crate::fracture::SCENE.to_owned(), |text, (old, new)| {
+    finer.into_iter().fold(crate::interface::fracture::SCENE.to_owned(), |text, (old, new)| {
         assert!(text.contains(old), "{old}");
         text.replacen(old, new, 1)
     })
@@ -157,7 +157,7 @@ fn a_killed_scene_goes_on_to_the_same_files() {
 
 #[test]
 fn places_and_times_for_a_checkpoint_are_checked_first() {
-    for (command, input) in [("predict", CASE), ("fracture", crate::fracture::SCENE)] {
+    for (command, input) in [("predict", CASE), ("fracture", crate::interface::fracture::SCENE)] {
         let dir = tempdir().unwrap();
         fs::write(dir.path().join("case.toml"), input).unwrap();
         fs::create_dir(dir.path().join("folder")).unwrap();

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::cli::{perilife, texts};
+use crate::interface::cli::{perilife, texts};
 
 const CASE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 100\nthickness_mm = 2\n\
                     cracks = [{ from_mm = [-7, -5], to_mm = [7, 5] }]\n\

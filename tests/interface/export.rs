@@ -7,8 +7,8 @@ use perilife::report::csv::{self, Row};
 use perilife::report::resample::cycles_over_length;
 use tempfile::{TempDir, tempdir};
 
-use crate::cli::{assert_refused, perilife, texts};
-use crate::made_up_run;
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::made_up_run;
 
 /// A folder with the made-up run in `run/`.
 fn fabricated() -> TempDir {

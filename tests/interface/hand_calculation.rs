@@ -6,7 +6,7 @@ use perilife::report::csv::read_a_n;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
 
 const PANEL: &str = r#"
 [specimen]

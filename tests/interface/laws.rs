@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
-use crate::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife, texts};
 
 const SHEET: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 6\n\
                      [material]\nyoungs_modulus_gpa = 71\npoisson_ratio = 0.33\n[model]\nmethod = \"handbook\"\n";

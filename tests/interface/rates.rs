@@ -4,8 +4,8 @@ use std::fs;
 
 use tempfile::tempdir;
 
-use crate::cli::{assert_refused, perilife, texts};
-use crate::fatigue_test::{calibration, lengths, readings};
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::fatigue_test::{calibration, lengths, readings};
 
 /// Writes a test by `row` of cycles and length in mm, read every `step` mm, and its specimen.
 fn folder(step: f64, header: &str, force: impl Fn(f64) -> f64, row: impl Fn(f64, f64) -> String) -> tempfile::TempDir {

@@ -1,34 +1,19 @@
 //! The service as a client sees it.
 
-#[path = "service/budget.rs"]
 mod budget;
-#[path = "service/crashes.rs"]
 mod crashes;
-#[path = "service/deploy.rs"]
 mod deploy;
-#[path = "service/description.rs"]
 mod description;
-#[path = "service/doors.rs"]
 mod doors;
-#[path = "service/fuzzed.rs"]
 mod fuzzed;
-#[path = "service/jobs.rs"]
 pub mod jobs;
-#[path = "service/limits.rs"]
 mod limits;
-#[path = "service/long_use.rs"]
 mod long_use;
-#[path = "service/page.rs"]
 mod page;
-#[path = "service/queue.rs"]
 mod queue;
-#[path = "service/reader.rs"]
 mod reader;
-#[path = "service/refusals.rs"]
 mod refusals;
-#[path = "service/results.rs"]
 mod results;
-#[path = "service/tokens.rs"]
 mod tokens;
 
 use serde_json::{Value, json};

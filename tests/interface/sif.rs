@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
 
 /// A slant crack in a plate that no handbook covers.
 const SLANT: &str = "cracks = [{ from_mm = [-13, -7.5], to_mm = [13, 7.5] }]\n";

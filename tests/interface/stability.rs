@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife, texts};
 
 /// Columns that users rely on, a row a run, pictures, and a name that is no sweep.
 #[test]

@@ -9,10 +9,10 @@ use assert_cmd::cargo::cargo_bin;
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
-use crate::cli::{SMALL_CASE, assert_refused, perilife, texts};
-use crate::server::{PATIENCE, Server, in_folder};
-use crate::service::jobs::with_each_store;
-use crate::slurm::Slurm;
+use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::interface::service::jobs::with_store;
+use crate::support::server::{PATIENCE, Server, in_folder};
+use crate::support::slurm::Slurm;
 
 const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\n\
     crack_length_mm = 9\n[material]\nyoungs_modulus_gpa = 73.1\npoisson_ratio = 0.33\n[loading]\nstress_range_mpa = 48.28\n\
@@ -213,7 +213,7 @@ fn shards_and_collect_give_the_same_table() {
 
 #[test]
 fn workers_of_a_service_give_the_same_table() {
-    with_each_store("swept", |place| {
+    with_store("swept", |place| {
         let dir = folder_with(GRID);
         let here = dir.path();
         done(here, &["sweep", "sweep.toml", "--out", "local"]);

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use tempfile::tempdir;
 
-use crate::cli::{assert_refused, perilife, texts};
-use crate::daily::{PANEL, SCENE, names, write_inputs};
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::{PANEL, SCENE, names, write_inputs};
 
 #[test]
 fn a_run_ends_when_its_time_is_over() {

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::cli::{SMALL_CASE, assert_refused, perilife, texts};
+use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
 
 const PLATE: &str = r#"
 [specimen]

@@ -5,8 +5,8 @@ use std::fs;
 use perilife::input::sha256;
 use serde_json::{Value, json};
 
-use crate::cli::{perilife, texts};
-use crate::doors::{answer, done, examples, written};
+use crate::interface::cli::{perilife, texts};
+use crate::interface::doors::{answer, done, examples, written};
 
 /// Hashes of all that was read, the texts, overrides, time with zone, commit; a fracture scene and a calibration are repeated by their
 /// echoes as well.
@@ -45,7 +45,7 @@ fn a_result_says_what_made_it() {
     assert_eq!(answer(&here.join("again")), answer(&here.join("run")));
     done(here, &["check", "run/case.toml"]);
 
-    crate::daily::write_inputs(here);
+    crate::support::daily::write_inputs(here);
     for (command, input, table) in [("fracture", "scene.toml", "history.csv"), ("calibrate", "fit.toml", "fitted.toml")] {
         done(here, &[command, input, "--out", command, "-q"]);
         let echo = format!("{command}/case.toml");
@@ -87,10 +87,14 @@ fn a_sweep_takes_along_what_its_cases_read() {
     }
     fs::remove_file(here.join("data/rates.csv")).unwrap();
     let output = perilife(here, &["sweep", "sweep.toml", "--out", "out", "-q"]);
-    crate::cli::assert_refused(&output, 4, &["data/rates.csv", "cannot read"]);
+    crate::interface::cli::assert_refused(&output, 4, &["data/rates.csv", "cannot read"]);
     // Another sweep than the one that stands there is refused, and names what would go.
     fs::write(here.join("data/rates.csv"), "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n1,1e-9\n100,1e-2\n").unwrap();
     fs::rename(here.join("sweep.toml"), here.join("other.toml")).unwrap();
     let output = perilife(here, &["sweep", "other.toml", "--out", "out", "-q"]);
-    crate::cli::assert_refused(&output, 2, &["holds another sweep, sweep, with 2 of 2 cases done", "give another folder"]);
+    crate::interface::cli::assert_refused(
+        &output,
+        2,
+        &["holds another sweep, sweep, with 2 of 2 cases done", "give another folder"],
+    );
 }

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::cli::{assert_refused, perilife, texts};
+use crate::interface::cli::{assert_refused, perilife, texts};
 
 /// The table is the same text however long its rows took; JSON names both bounds of every row.
 #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use crate::cli::SMALL_CASE;
+use crate::interface::cli::SMALL_CASE;
 
 /// A hand calculation of a millisecond.
 pub const PANEL: &str = r#"

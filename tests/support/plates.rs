@@ -17,11 +17,14 @@ spacing_mm = 2.0
 a = 6450.0
 p = 2.86
 horizon_mm = 3.015
-driver = "bond_strain"
 "#;
 
 const STRESS: &str = "[loading]\nstress_max_mpa = 70.0\nstress_ratio = 0.1\n";
 const FORCE: &str = "[loading]\nforce_max_n = 4000.0\nstress_ratio = 0.1\n";
+
+/// What drives cracks: K of their tips, the default, and strains of bonds.
+pub const TIP_FIELD: &str = "fatigue.driver=tip_field";
+pub const BOND_STRAIN: &str = "fatigue.driver=bond_strain";
 
 /// The panel of Virkler, Hillberry and Goel (1979).
 pub const PANEL: &str =

@@ -11,7 +11,7 @@ use perilife::case::record::Estimate;
 use perilife::input::Folder;
 use perilife::predict::Silent;
 
-use crate::fatigue_test::{calibration, lengths, readings};
+use crate::support::fatigue_test::{calibration, lengths, readings};
 
 const C: f64 = 1e-8;
 const M: f64 = 3.0;

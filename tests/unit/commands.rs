@@ -12,7 +12,8 @@ use perilife::report::catalogue::lines;
 use perilife::report::output::{OutputFolder, RunKind};
 use tempfile::tempdir;
 
-use crate::{layering, made_up_case, made_up_run};
+use crate::support::{made_up_case, made_up_run};
+use crate::unit::layering;
 
 const QUIET: Console = Console { json: false, quiet: true };
 

@@ -4,7 +4,7 @@ use perilife::calibration::confidence::distance_squared;
 use perilife::calibration::criterion::Criterion;
 
 use super::misfit::{exact_curve, fit_by, fit_to, paris_model};
-use crate::noise::Noise;
+use crate::support::noise::Noise;
 
 /// Truth: m/cycle and MPa√m.
 const A: f64 = 8.95e-11;

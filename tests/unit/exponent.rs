@@ -11,7 +11,7 @@ use perilife::case::{Case, fitted_record};
 use perilife::predict::{Silent, predict};
 use tempfile::{TempDir, tempdir};
 
-use crate::hand_cases::{PANEL, hand_run};
+use crate::support::hand_cases::{PANEL, hand_run};
 
 /// A calibration on exact readings of the panel with C = 8.95422e-8 and m = 2.874, every 2 mm between two lengths.
 fn calibration(folder: &TempDir, window_mm: [usize; 2], fit: &str) -> perilife::Result<CalibrationCase> {

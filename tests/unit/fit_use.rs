@@ -3,8 +3,8 @@
 use perilife::predict::plastic_zone::{plastic_zone, warnings};
 use perilife::report::{fit_use, json};
 
-use crate::hand_cases::{PANEL, hand_case, hand_run};
-use crate::{made_up_case, made_up_run};
+use crate::support::hand_cases::{PANEL, hand_case, hand_run};
+use crate::support::{made_up_case, made_up_run};
 
 #[test]
 fn life_outside_the_fitted_range_is_told_side_by_side_with_a_remedy() {

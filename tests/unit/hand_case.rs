@@ -5,8 +5,8 @@ use std::path::Path;
 use perilife::case::{Case, LawSource, Method};
 use perilife::specimen::SpecimenKind;
 
-use crate::hand_cases::{ALL, PANEL, hand_case, try_hand_case};
-use crate::made_up_case::fitted;
+use crate::support::hand_cases::{ALL, PANEL, hand_case, try_hand_case};
+use crate::support::made_up_case::fitted;
 
 #[test]
 fn the_method_is_a_kind_and_peridynamics_the_default() {

@@ -19,8 +19,8 @@ use perilife::input::{Document, Folder};
 use perilife::predict::{Silent, predict};
 use perilife::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
-use crate::noise::Noise;
-use crate::shared::shared;
+use crate::support::noise::Noise;
+use crate::support::shared::shared;
 
 const RATIOS: [f64; 4] = [0.0, 0.3, 0.5, 0.7];
 const NASGRO: [(&str, f64); 9] = [

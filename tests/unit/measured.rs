@@ -10,7 +10,7 @@ use perilife::case::record::LeaveOut;
 use perilife::units::MM;
 use proptest::prelude::*;
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 fn parsed(text: &str) -> Measured {
     parse(text.as_bytes(), Path::new("curve.csv"), &Import::default()).unwrap()

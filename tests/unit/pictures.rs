@@ -12,7 +12,7 @@ use perilife::report::{csv, vtk};
 use perilife::specimen::Point;
 use tempfile::tempdir;
 
-use crate::made_up_run;
+use crate::support::made_up_run;
 
 /// Lattice angles that matter: the image and the mesh.
 const ANGLES: [f64; 2] = [0.0, 0.35];

@@ -10,7 +10,7 @@ use perilife::calibration::measured::{Import, LengthUnit, read};
 use perilife::input::{Document, Folder};
 use perilife::predict::Silent;
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 fn practice(file: &str) -> Option<PathBuf> {
     shared(&format!("field/practice/{file}"))

@@ -6,7 +6,7 @@ use perilife::growth::{CrackGrowth, GrowthStatus, State};
 use perilife::predict::record::Record;
 use perilife::predict::{Prediction, Silent};
 
-use crate::hand_cases::{PANEL, hand_case};
+use crate::support::hand_cases::{PANEL, hand_case};
 
 /// A crack that grows by a millimetre in thousand cycles.
 struct Steady(Vec<CurvePoint>);

@@ -3,7 +3,7 @@
 use perilife::report::{csv, json};
 use proptest::prelude::*;
 
-use crate::{made_up_case, made_up_run};
+use crate::support::{made_up_case, made_up_run};
 
 fn significant_digits(text: &str) -> usize {
     let mantissa = text.split('e').next().unwrap();

@@ -4,8 +4,8 @@ use perilife::predict::StopReason;
 use perilife::predict::residual_strength::{check_strength, residual_strength};
 use perilife::report::residual_strength::table;
 
-use crate::hand_cases::{ALL, hand_case, hand_run};
-use crate::{made_up_case, made_up_run};
+use crate::support::hand_cases::{ALL, hand_case, hand_run};
+use crate::support::{made_up_case, made_up_run};
 
 #[test]
 fn a_plate_has_the_strength_its_own_k_leaves_it() {

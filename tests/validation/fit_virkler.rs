@@ -7,7 +7,7 @@ use perilife::calibration::measured::{Import, Measured, read};
 use perilife::calibration::power_law::PowerLaw;
 use perilife::units::{MM, MPA};
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 pub fn delta_k(a: f64) -> f64 {
     let pi = std::f64::consts::PI;

@@ -239,11 +239,11 @@ fn fuzz(seeds: std::ops::Range<u64>) {
 
 #[test]
 fn random_cases_end_in_a_result_or_a_named_refusal() {
-    fuzz(0..30);
+    fuzz(0..8);
 }
 
 #[test]
-#[ignore = "long: some ten minutes; cargo test --test validation fuzz_cases -- --ignored --nocapture"]
+#[ignore = "long: some ten minutes; cargo test fuzz_cases -- --ignored --nocapture"]
 fn two_hundred_random_cases_end_in_a_result_or_a_named_refusal() {
     fuzz(0..200);
 }

@@ -13,7 +13,7 @@ use perilife::units::MM;
 
 use super::fit_engine;
 use super::fit_virkler::delta_k;
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 /// Largest deviation asked for at a crack length, as a share of life to there.
 fn bound(length_mm: f64) -> f64 {

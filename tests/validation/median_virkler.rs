@@ -7,7 +7,7 @@ use perilife::calibration::measured::{Import, MeasuredCurve, read};
 use perilife::calibration::median::{pointwise_median, pointwise_median_at};
 use perilife::units::MM;
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 const TABLE: &str = "calibration/al2024-t3/measured/virkler_median.csv";
 

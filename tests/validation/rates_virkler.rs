@@ -8,7 +8,7 @@ use perilife::calibration::test_piece::{TestPiece, add_delta_k};
 use perilife::specimen::SpecimenKind;
 use perilife::units::{MM, MM_PER_CYCLE, MPA};
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 /// ΔK of the panel: secant width correction, stress range 48.28 MPa, width 152.4 mm.
 fn delta_k(a: f64) -> f64 {

@@ -10,7 +10,7 @@ use serde_json::Value;
 const PLATES: [(&str, &str); 2] = [("slant_severance", "slant_severance"), ("hole_attracts", "hole_entered")];
 
 #[test]
-#[ignore = "long: five minutes, needs Python with tests/reference/requirements.txt: PERILIFE_PYTHON=python cargo test --test validation rivals -- --ignored --nocapture"]
+#[ignore = "long: five minutes, needs Python with tests/reference/requirements.txt: PERILIFE_PYTHON=python cargo test rivals -- --ignored --nocapture"]
 fn finite_elements_take_longer_for_the_same_error() {
     let python = std::env::var("PERILIFE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/rival.py");

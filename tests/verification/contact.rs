@@ -13,7 +13,7 @@ use perilife::predict::Silent;
 use perilife::specimen::Point;
 use perilife::specimen::geometry::segments_touch;
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 /// A plate of 60 x 100 mm pressed by 0.07 mm.
 const PRESSED: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 100\nthickness_mm = 1\nCRACKS\n\

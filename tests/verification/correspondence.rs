@@ -9,8 +9,8 @@ use perilife::fracture::{Scene, interaction::Interaction};
 use perilife::material::Plane;
 use perilife::specimen::Hole;
 
-use crate::correspondence_bodies::{bonds, field, forces, law, net, patch, rectangle, scene};
-use crate::noise::Noise;
+use crate::support::correspondence::{bonds, field, forces, law, net, patch, rectangle, scene};
+use crate::support::noise::Noise;
 
 /// Controls with factors at which they act.
 const CONTROLS: [(ZeroEnergyControl, f64); 3] = [(ZeroEnergyControl::None, 0.0), (Spring, 0.5e23), (Silling, 1.0)];
@@ -265,7 +265,7 @@ fn springs_raise_the_modulus_of_uniform_strain_as_their_integral_says() {
 /// `√(4 π G_c / (9 E δ))` at ν = 1/3 (theory, section 2).
 #[test]
 fn the_critical_stretch_of_the_plane_is_the_bond_based_one_at_a_third() {
-    let mut material = crate::correspondence_bodies::material(Plane::Stress);
+    let mut material = crate::support::correspondence::material(Plane::Stress);
     material.poisson_ratio = 1.0 / 3.0;
     let bond_based = (4.0 * std::f64::consts::PI * 100.0 / (9.0 * 1e9 * 0.75e-3)).sqrt();
     let stretch = perilife::fracture::correspondence::criterion::critical_stretch(&material, 100.0, 0.75e-3);

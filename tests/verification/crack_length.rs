@@ -1,11 +1,11 @@
-//! The crack length of a grown crack is the one a laboratory would find from the compliance of the same body.
+//! The crack length of a crack that bonds grew is the one a laboratory would find from the compliance of the same body.
 
 use perilife::predict::{Silent, predict};
 use perilife::solver::SolverKind;
 use perilife::units::MM;
 
-use crate::plates::case;
-use crate::statics::loaded;
+use crate::support::plates::{BOND_STRAIN, case};
+use crate::support::statics::loaded;
 
 fn panel(length: f64) -> String {
     format!("kind=\"middle_tension\"\nwidth_mm=90\nlength_mm=120\nthickness_mm=2\ncrack_length_mm={length}\n")
@@ -14,24 +14,22 @@ fn panel(length: f64) -> String {
 /// Compliance of the body with a straight cut of each length is inverted at the compliance of the grown crack.
 #[test]
 fn a_grown_crack_is_as_long_as_its_compliance_says() {
+    let cut: Vec<(f64, f64)> = (18..=32)
+        .map(|a| {
+            let case = case(&panel(f64::from(a)), &["model.spacing_mm=1"]);
+            (f64::from(a) * MM, loaded(&case, SolverKind::Multigrid).unwrap().work)
+        })
+        .collect();
     for (name, set) in [
-        ("steady profile", vec!["fatigue.precrack=steady_profile"]),
-        ("clean cut", vec!["fatigue.precrack=none"]),
-        ("grown", vec!["fatigue.precrack=grown"]),
-        ("p = 2", vec!["fatigue.precrack=grown", "fatigue.p=2", "stop.cycles_max=1e12"]),
-        ("p = 4", vec!["fatigue.precrack=grown", "fatigue.p=4", "stop.cycles_max=1e12"]),
+        ("steady profile", vec![BOND_STRAIN, "fatigue.precrack=steady_profile"]),
+        ("clean cut", vec![BOND_STRAIN, "fatigue.precrack=none"]),
+        ("grown", vec![BOND_STRAIN, "fatigue.precrack=grown"]),
+        ("p = 2", vec![BOND_STRAIN, "fatigue.precrack=grown", "fatigue.p=2", "stop.cycles_max=1e12"]),
+        ("p = 4", vec![BOND_STRAIN, "fatigue.precrack=grown", "fatigue.p=4", "stop.cycles_max=1e12"]),
     ] {
         let mut all = vec!["model.spacing_mm=1", "stop.crack_length_mm=30"];
         all.extend(set);
         let run = predict(&case(&panel(20.0), &all), &Silent).unwrap();
-        let cut: Vec<(f64, f64)> = (18..=32)
-            .map(|a| {
-                (
-                    f64::from(a) * MM,
-                    loaded(&case(&panel(f64::from(a)), &["model.spacing_mm=1"]), SolverKind::Multigrid).unwrap().work,
-                )
-            })
-            .collect();
         let by_compliance = |work: f64| {
             let pair = cut.windows(2).find(|pair| pair[1].1 >= work).unwrap();
             pair[0].0 + (work - pair[0].1) / (pair[1].1 - pair[0].1) * (pair[1].0 - pair[0].0)

@@ -13,8 +13,8 @@ use perilife::predict::Silent;
 use perilife::specimen::Point;
 use perilife::verify::dual_horizon::{PUBLISHED, Patch, forces, laws, material, patch};
 
-use crate::noise::Noise;
-use crate::scenes::{a_box, law, plate, refined, torn};
+use crate::support::noise::Noise;
+use crate::support::scenes::{a_box, law, plate, refined, torn};
 
 /// A plate with all that a bond can meet: hole, notch and slant crack.
 const FLAWED: &str = "width_mm = 40\nlength_mm = 50\nholes = [{ x_mm = 8, y_mm = 12, diameter_mm = 9 }]\n\

@@ -14,8 +14,8 @@ use perilife::fracture::{self, SceneEnd};
 use perilife::levels::Net;
 use perilife::predict::Silent;
 
-use crate::noise::Noise;
-use crate::scenes::{law, torn};
+use crate::support::noise::Noise;
+use crate::support::scenes::{law, torn};
 
 /// Forces, energies and breaks of the lattice kernel are those of the list, for every law, limit and kinematics, on a plate
 /// with a crack, two threads or one.

@@ -10,8 +10,8 @@ use perilife::solver::product::{Into, Product};
 use perilife::specimen::Specimen;
 use perilife::state::Bonds;
 
-use crate::plates::{case, try_case};
-use crate::statics::{corrected_laws, laws, material};
+use crate::support::plates::{case, try_case};
+use crate::support::statics::{corrected_laws, laws, material};
 
 const RATIOS: [f64; 6] = [1.5, 2.015, 3.015, 4.015, 5.015, 6.015];
 const SPACING: f64 = 1e-3;
@@ -265,7 +265,7 @@ fn poissons_ratio_beyond_the_law_is_refused_by_name() {
                 let by_stencil = Stencil::new(&law, &material, SPACING, 3.015, 1e-3).unwrap_err();
                 let set =
                     [format!("model.bond_law={kind}"), format!("material.poisson_ratio={nu}"), format!("material.plane={plane}")];
-                let by_case = try_case(crate::plates::PANEL, &set.each_ref().map(String::as_str)).unwrap_err();
+                let by_case = try_case(crate::support::plates::PANEL, &set.each_ref().map(String::as_str)).unwrap_err();
                 for error in [by_stencil, by_case] {
                     assert_eq!(error.exit_code(), 2);
                     let text = error.to_string();

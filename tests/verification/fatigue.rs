@@ -5,7 +5,7 @@ use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::solver::SolverKind;
 use perilife::units::MM;
 
-use crate::plates::case;
+use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case};
 
 const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=12\n";
 const SLANT: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncracks=[{from_mm=[-8,-5],to_mm=[8,5]}]\n";
@@ -18,6 +18,8 @@ const TWO: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\nc
 const SLOT: &str =
     "kind=\"plate\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\nnotches=[{from_mm=[-30,0],to_mm=[-14,0],width_mm=4}]\n";
 
+const DRIVERS: [&str; 2] = [TIP_FIELD, BOND_STRAIN];
+
 /// Grows a crack with run-out at 10⁷ cycles unless the case says otherwise.
 fn grow(specimen: &str, set: &[&str]) -> Prediction {
     let mut all = vec!["stop.cycles_max=1e7"];
@@ -28,19 +30,21 @@ fn grow(specimen: &str, set: &[&str]) -> Prediction {
 #[test]
 fn doubling_a_halves_every_n() {
     let stop = "stop.crack_length_mm=24";
-    let (once, twice) = (grow(SLANT, &[stop]), grow(SLANT, &[stop, "fatigue.a=12900"]));
-    assert_eq!(once.curve.len(), twice.curve.len());
-    assert!(once.curve.len() > 10, "{}", once.curve.len());
-    for (a, b) in once.curve.iter().zip(&twice.curve) {
-        assert!((a.cycles - 2.0 * b.cycles).abs() <= 1e-9 * a.cycles, "{} against twice {}", a.cycles, b.cycles);
-        assert!((a.crack_length - b.crack_length).abs() <= 1e-12, "{} and {}", a.crack_length, b.crack_length);
+    for driver in DRIVERS {
+        let (once, twice) = (grow(SLANT, &[driver, stop]), grow(SLANT, &[driver, stop, "fatigue.a=12900"]));
+        assert_eq!(once.curve.len(), twice.curve.len());
+        assert!(once.curve.len() > 3, "{driver}: {}", once.curve.len());
+        for (a, b) in once.curve.iter().zip(&twice.curve) {
+            assert!((a.cycles - 2.0 * b.cycles).abs() <= 1e-9 * a.cycles, "{driver}: {} against twice {}", a.cycles, b.cycles);
+            assert!((a.crack_length - b.crack_length).abs() <= 1e-12, "{driver}: {} and {}", a.crack_length, b.crack_length);
+        }
     }
 }
 
 /// The length of a plate's cracks grows by all tips; its da/dN is that of one (found by reading: twice that stood beside one ΔK).
 #[test]
 fn the_rate_of_a_plate_is_that_of_a_tip() {
-    let run = grow(TWO, &["stop.crack_length_mm=44"]);
+    let run = grow(TWO, &[BOND_STRAIN, "stop.crack_length_mm=44"]);
     let (first, last) = (&run.curve[run.curve.len() / 4], &run.curve[3 * run.curve.len() / 4]);
     let cycles = last.cycles - first.cycles;
     let mean = |tip: usize| (last.tips[tip].growth - first.tips[tip].growth) / cycles;
@@ -57,23 +61,28 @@ fn the_rate_of_a_plate_is_that_of_a_tip() {
 #[test]
 fn life_falls_with_the_p_th_power_of_load() {
     let stop = "stop.crack_length_mm=16";
-    let (low, high) = (grow(PANEL, &[stop]), grow(PANEL, &[stop, "loading.stress_max_mpa=84"]));
-    let ratio = low.life_cycles() / high.life_cycles();
-    // 1.2^2.86; the solver leaves about 1e-9 in the strains.
-    assert!((ratio / 1.2_f64.powf(2.86) - 1.0).abs() < 1e-6, "{ratio}");
+    for driver in DRIVERS {
+        let (low, high) = (grow(PANEL, &[driver, stop]), grow(PANEL, &[driver, stop, "loading.stress_max_mpa=84"]));
+        let ratio = low.life_cycles() / high.life_cycles();
+        // 1.2^2.86; the solver leaves about 1e-9 in the strains.
+        assert!((ratio / 1.2_f64.powf(2.86) - 1.0).abs() < 1e-6, "{driver}: {ratio}");
+    }
 }
 
 #[test]
 fn a_symmetric_plate_stays_symmetric() {
-    let run = grow(PANEL, &["stop.crack_length_mm=24"]);
-    for point in &run.curve {
-        let [left, right] = [point.tips[0], point.tips[1]];
-        assert!((left.growth - right.growth).abs() < 1e-12, "{} and {}", left.growth, right.growth);
-        assert!((left.position[0] + right.position[0]).abs() < 1e-12);
-        assert!(left.position[1].abs() < 1e-12 && right.position[1].abs() < 1e-12);
+    // The line of a crack turns by the residual of K_II over K_I, bonds break on the middle line or beside it.
+    for (driver, slack) in [(TIP_FIELD, 1e-8), (BOND_STRAIN, 1e-12)] {
+        let run = grow(PANEL, &[driver, "stop.crack_length_mm=24"]);
+        for point in &run.curve {
+            let [left, right] = [point.tips[0], point.tips[1]];
+            assert!((left.growth - right.growth).abs() < 1e-12, "{driver}: {} and {}", left.growth, right.growth);
+            assert!((left.position[0] + right.position[0]).abs() < slack, "{driver}: {left:?}, {right:?}");
+            assert!(left.position[1].abs() < slack && right.position[1].abs() < slack, "{driver}: {left:?}, {right:?}");
+        }
+        // Two tips and two halves: mirror twins break in one block.
+        assert!(run.figures.blocks * 3 < run.curve.last().unwrap().broken_bonds * 2, "{driver}: {} blocks", run.figures.blocks);
     }
-    // Two tips and two halves: mirror twins break in one block.
-    assert!(run.figures.blocks * 3 < run.curve.last().unwrap().broken_bonds * 2, "{} blocks", run.figures.blocks);
 }
 
 #[test]
@@ -89,8 +98,18 @@ fn every_scene_ends_with_a_named_stop_and_an_orderly_curve() {
         ("double edge", DOUBLE, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
         ("compact", COMPACT, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
         ("hole", HOLE, vec![], vec![StopReason::EnteredHole]),
-        ("slot", SLOT, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
+        ("slot", SLOT, vec![BOND_STRAIN], vec![StopReason::Severed, StopReason::LeftPlate]),
         ("slant", SLANT, vec![], vec![StopReason::Severed, StopReason::LeftPlate]),
+        ("length by bonds", PANEL, vec![BOND_STRAIN, "stop.crack_length_mm=16.4"], vec![StopReason::CrackLengthReached]),
+        ("run-out by bonds", PANEL, vec![BOND_STRAIN, "stop.cycles_max=100"], vec![StopReason::RunOut]),
+        ("toughness by bonds", PANEL, vec![BOND_STRAIN, "material.toughness_mpa_sqrt_m=18"], vec![StopReason::Toughness]),
+        (
+            "nothing ages by bonds",
+            PANEL,
+            vec![BOND_STRAIN, "fatigue.delta_k_threshold_mpa_sqrt_m=500"],
+            vec![StopReason::NothingAges],
+        ),
+        ("hole by bonds", HOLE, vec![BOND_STRAIN], vec![StopReason::EnteredHole]),
     ] {
         let run = grow(specimen, &set);
         let figures = &run.figures;
@@ -124,7 +143,8 @@ fn every_scene_ends_with_a_named_stop_and_an_orderly_curve() {
 fn two_cracks_and_ageing_everywhere_end_without_trouble() {
     for (name, specimen, set) in [
         ("two cracks", TWO, vec![]),
-        ("everywhere", PANEL, vec!["fatigue.ageing=everywhere", "stop.crack_length_mm=20"]),
+        ("two cracks by bonds", TWO, vec![BOND_STRAIN]),
+        ("everywhere", PANEL, vec![BOND_STRAIN, "fatigue.ageing=everywhere", "stop.crack_length_mm=20"]),
         ("resisted", PANEL, vec!["model.rotation=resisted", "stop.crack_length_mm=20"]),
         ("bond-based", PANEL, vec!["model.bond_law=bond_based", "material.poisson_ratio=0.333", "stop.crack_length_mm=20"]),
     ] {
@@ -141,7 +161,7 @@ fn assert_same_growth(name: &str, specimen: &str, set: &[&str]) {
     let grown_by = |solver: &SolverKind| {
         let chosen = format!("model.solver={solver}");
         // Where K sets the rate, two breaks that change places by round-off change the length at which it is read.
-        let set = [set, &[&*chosen, "fatigue.growth_rate=bond_strain"]].concat();
+        let set = [set, &[&*chosen, BOND_STRAIN, "fatigue.growth_rate=bond_strain"]].concat();
         let run = grow(specimen, &set);
         let last = run.curve.last().unwrap();
         (*solver, run.life_cycles(), last.broken_bonds, last.crack_length, run.stop)
@@ -157,9 +177,18 @@ fn assert_same_growth(name: &str, specimen: &str, set: &[&str]) {
     }
 }
 
-/// The window is exact: the same bonds break at the same cycles as with a solve of the whole plate per block, by any solver.
+/// The window is exact: the same bonds break at the same cycles as with a solve of the whole plate per block. Every solver by every law
+/// under the default driver: `tip_field_solvers.rs`.
 #[test]
 fn every_solver_grows_the_same_crack() {
+    let set = ["stop.crack_length_mm=22", "model.spacing_mm=3", "fatigue.precrack=none"];
+    assert_same_growth("slant", SLANT, &set, None);
+}
+
+/// The same on finer plates.
+#[test]
+#[ignore = "long: a minute and a half"]
+fn every_solver_grows_the_same_crack_on_every_plate() {
     let clamped = EDGE.replace("uniform_stress", "clamped");
     for (name, specimen, set) in [
         ("slant", SLANT, vec!["stop.crack_length_mm=22"]),
@@ -173,6 +202,7 @@ fn every_solver_grows_the_same_crack() {
 
 /// Every solver with every bond law on small cases: life equal to 1e-6.
 #[test]
+#[ignore = "long: a minute"]
 fn every_solver_grows_the_same_crack_by_every_law() {
     for kind in BondLawKind::ALL {
         let law = format!("model.bond_law={kind}");
@@ -199,7 +229,7 @@ fn every_solver_grows_the_same_crack_by_every_law() {
 fn the_start_decides_only_the_first_cycles() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=90\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=20\n";
     let life = |precrack: &str| {
-        let set = ["stop.crack_length_mm=26", "model.spacing_mm=1", &format!("fatigue.precrack={precrack}")];
+        let set = [BOND_STRAIN, "stop.crack_length_mm=26", "model.spacing_mm=1", &format!("fatigue.precrack={precrack}")];
         grow(panel, &set).life_cycles()
     };
     let (profile, grown, none) = (life("steady_profile"), life("grown"), life("none"));
@@ -210,42 +240,12 @@ fn the_start_decides_only_the_first_cycles() {
     assert!(off > 0.01 && off < 0.1, "{}", none / profile);
 }
 
-/// However the lattice lies, a crack across the load runs straight, growth is the way of its tip, and life is the same.
-#[test]
-fn life_does_not_depend_on_how_the_lattice_lies() {
-    let panel = "kind=\"middle_tension\"\nwidth_mm=120\nlength_mm=160\nthickness_mm=2\ncrack_length_mm=20\n";
-    for (nu, angle) in [(0.2, 15), (0.3, 45)] {
-        let run = |angle: u32, rate: &str| {
-            let set = [
-                format!("model.lattice_angle_deg={angle}"),
-                format!("fatigue.growth_rate={rate}"),
-                format!("material.poisson_ratio={nu}"),
-            ];
-            grow(panel, &["stop.crack_length_mm=40", "model.spacing_mm=1", &set[0], &set[1], &set[2]])
-        };
-        let upright = run(0, "stress_intensity").life_cycles();
-        let turned = run(angle, "stress_intensity");
-        for tip in &turned.curve.last().unwrap().tips {
-            let (way, y) = (tip.position[0].abs() - 20.0 * MM, tip.position[1]);
-            println!("{angle} degrees: growth {:.3} mm, way {:.3} mm, y {:.3} mm", tip.growth / MM, way / MM, y / MM);
-            assert!(y.abs() < 2.0 * turned.figures.horizon, "{angle}");
-            assert!((tip.growth - way).abs() < 0.1 * way, "{angle}: {} and {way}", tip.growth);
-        }
-        let ratio = turned.life_cycles() / upright;
-        println!("nu {nu}, {angle} degrees: life over upright {ratio:.4}");
-        assert!((ratio - 1.0).abs() < 0.04, "{angle}: {ratio}");
-        let by_strain = run(15, "bond_strain").life_cycles() / run(0, "bond_strain").life_cycles();
-        println!("nu {nu}, 15 degrees by the strain of bonds: {by_strain:.4}");
-        assert!(by_strain > 1.1, "strains alone would do: {by_strain}");
-    }
-}
-
 /// Cyclic growth follows handbook ΔK with the exponent p: rate over ΔK^p per interval of a, 4 spacings each.
 #[test]
 fn a_centre_crack_grows_by_the_power_law() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=152\nlength_mm=300\nthickness_mm=2.54\ncrack_length_mm=18\n";
-    for p in [2.0, 2.87, 4.0] {
-        let run = grow(panel, &["stop.crack_length_mm=51", "stop.cycles_max=1e12", &format!("fatigue.p={p}")]);
+    for (driver, p) in [(TIP_FIELD, 2.0), (BOND_STRAIN, 4.0)] {
+        let run = grow(panel, &[driver, "stop.crack_length_mm=51", "stop.cycles_max=1e12", &format!("fatigue.p={p}")]);
         let formula = perilife::specimen::handbook::handbook(&case(panel, &[]).specimen).unwrap();
         let cycles_at = |length: f64| {
             let pair = run.curve.windows(2).find(|pair| pair[1].crack_length >= length).unwrap();
@@ -262,7 +262,7 @@ fn a_centre_crack_grows_by_the_power_law() {
             .collect();
         let mean = constants.iter().sum::<f64>() / 4.0;
         let relative: Vec<f64> = constants.iter().map(|c| c / mean).collect();
-        println!("p {p}: rate over the power law {relative:.3?}");
+        println!("{driver}, p {p}: rate over the power law {relative:.3?}");
         // Reached: 2.1 % at p = 4, from three horizons on.
         assert!(relative.iter().all(|r| (r - 1.0).abs() < 0.03), "p {p}: {relative:?}");
     }
@@ -276,7 +276,8 @@ fn a_crack_below_the_threshold_waits() {
                     cracks=[{from_mm=[-40,40],to_mm=[-26,40]},{from_mm=[-40,-40],to_mm=[-36,-40]}]\n";
     for rate in ["stress_intensity", "bond_strain"] {
         let rate = format!("fatigue.growth_rate={rate}");
-        let set = ["model.spacing_mm=1", "fatigue.delta_k_threshold_mpa_sqrt_m=11", "stop.crack_length_mm=26", &*rate];
+        let set =
+            [BOND_STRAIN, "model.spacing_mm=1", "fatigue.delta_k_threshold_mpa_sqrt_m=11", "stop.crack_length_mm=26", &*rate];
         let run = grow(specimen, &set);
         assert_eq!(run.stop, StopReason::CrackLengthReached, "{rate}");
         let [long, short] = [0, 1].map(|tip: usize| run.curve.last().unwrap().tips[tip].growth);

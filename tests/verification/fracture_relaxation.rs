@@ -11,7 +11,7 @@ use perilife::fracture::scene::{Scene, SceneLaw};
 use perilife::fracture::springs::Springs;
 use perilife::levels::Net;
 
-use crate::scenes::{MM, law, pulled};
+use crate::support::scenes::{MM, law, pulled};
 
 /// As the sources have it, and with free rotation.
 const SOURCE_LAW: BondLaw = law(BondLawKind::TwoParameter, Rotation::Resisted);

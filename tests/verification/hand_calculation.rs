@@ -7,8 +7,8 @@ use perilife::predict::{Silent, StopReason, predict};
 use perilife::specimen::handbook::handbook;
 use perilife::units::MM;
 
-use crate::hand_cases::{ALL, PANEL, hand_case, hand_run};
-use crate::plates::case;
+use crate::support::hand_cases::{ALL, PANEL, hand_case, hand_run};
+use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case};
 
 /// Paris growth of a crack in a plate without end, `N = (a_1^(1-m/2) - a_0^(1-m/2)) / (C (Δσ √π)^m (1 - m/2))`.
 #[test]
@@ -132,19 +132,22 @@ fn the_engine_ends_at_the_same_crack_length() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=60\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=12\n";
     // The load of the engine's panel, 70 MPa.
     let hand = ["loading.stress_range_mpa=63", "loading.stress_ratio=0.1"];
-    for (strength, reason) in [
-        ("material.toughness_mpa_sqrt_m=18.9", StopReason::Toughness),
-        ("material.yield_strength_mpa=160", StopReason::NetSectionYield),
+    // K of a tip is that of the field, a percent off the handbook's; fatigue bonds ask the handbook.
+    for (driver, strength, reason, slack) in [
+        (TIP_FIELD, "material.toughness_mpa_sqrt_m=18.9", StopReason::Toughness, 0.01),
+        (TIP_FIELD, "material.yield_strength_mpa=160", StopReason::NetSectionYield, 1e-9),
+        (BOND_STRAIN, "material.toughness_mpa_sqrt_m=18.9", StopReason::Toughness, 1e-9),
+        (BOND_STRAIN, "material.yield_strength_mpa=160", StopReason::NetSectionYield, 1e-9),
     ] {
-        let engine = predict(&case(panel, &["stop.cycles_max=1e7", strength]), &Silent).unwrap();
+        let engine = predict(&case(panel, &[driver, "stop.cycles_max=1e7", strength]), &Silent).unwrap();
         let by_hand = hand_run(panel, &[&hand[..], &[strength]].concat());
-        println!("{reason}: {} and {} mm", engine.crack_length_final() / MM, by_hand.crack_length_final() / MM);
+        println!("{driver}, {reason}: {} and {} mm", engine.crack_length_final() / MM, by_hand.crack_length_final() / MM);
         assert_eq!((engine.stop, by_hand.stop), (reason, reason));
         let [.., before, last] = &engine.curve[..] else { panic!("{} rows", engine.curve.len()) };
         let end = by_hand.crack_length_final();
-        assert!(before.crack_length <= end && (last.crack_length / end - 1.0).abs() < 1e-9, "{reason}");
+        assert!(before.crack_length <= end && (last.crack_length / end - 1.0).abs() < slack, "{driver}, {reason}");
         // A load that is too high from the start ends the run before its first block.
-        let overloaded = predict(&case(panel, &[strength, "loading.stress_max_mpa=200"]), &Silent).unwrap();
+        let overloaded = predict(&case(panel, &[driver, strength, "loading.stress_max_mpa=200"]), &Silent).unwrap();
         assert_eq!((overloaded.stop, overloaded.figures.blocks, overloaded.life_cycles()), (reason, 0, 0.0));
     }
 }

@@ -6,7 +6,7 @@ use perilife::case::Case;
 use perilife::growth::tip_field::initial_tips;
 use perilife::predict::{Prediction, Silent, predict};
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 fn case(path: &Path, set: &[&str]) -> Case {
     Case::from_file(path, &set.iter().map(|key| (*key).to_owned()).collect::<Vec<_>>()).unwrap()

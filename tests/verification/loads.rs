@@ -7,7 +7,7 @@ use perilife::case::Case;
 use perilife::growth::tip_field::initial_tips;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 const STEADY: &str = "[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\nplane = \"stress\"\n\
                       [fatigue]\nparis_c_mm_per_cycle = 1e-9\nparis_m = 3\n";

@@ -4,8 +4,8 @@ use perilife::case::Case;
 use perilife::growth::tip_field::initial_tips;
 use perilife::predict::{Silent, predict};
 
-use crate::plates::case;
-use crate::shared::shared;
+use crate::support::plates::case;
+use crate::support::shared::shared;
 
 /// Heights around odd and even numbers of spacings of 1 mm, and the same but for round-off.
 fn heights() -> impl Iterator<Item = f64> {

@@ -8,8 +8,8 @@ use perilife::specimen::CrackLine;
 use perilife::stress_intensity::TipFrame;
 use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
 
-use crate::plates::{PANEL, case};
-use crate::statics::body;
+use crate::support::plates::{PANEL, case};
+use crate::support::statics::body;
 
 fn elasticity(plane: Plane) -> Elasticity {
     Elasticity::of(&Material::elastic(72e9, 0.3, plane))

@@ -12,7 +12,7 @@ use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::solver::{SolverKind, Symmetry};
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 fn pressed(name: &str) -> Option<Case> {
     shared(&format!("field/mechanics/closed_crack/{name}.toml")).map(|path| Case::from_file(&path, &[]).unwrap())

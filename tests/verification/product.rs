@@ -8,9 +8,9 @@ use perilife::solver::product::{Into, Product};
 use perilife::solver::{Equilibrium, SolverKind, Symmetry};
 use perilife::state::Bonds;
 
-use crate::noise::Noise;
-use crate::plates::{PANEL, case};
-use crate::statics::{Loaded, corrected_laws, loaded};
+use crate::support::noise::Noise;
+use crate::support::plates::{PANEL, case};
+use crate::support::statics::{Loaded, corrected_laws, loaded};
 
 /// A hole, a slant crack, and a slot from the edge: bonds of all sorts. A lattice of 18 x 24 places, so that several tasks
 /// share a product.
@@ -35,7 +35,7 @@ fn odd_body_of(law: &BondLaw, nu: f64, set: &[&str]) -> (Body, Bonds) {
         format!("material.poisson_ratio={nu}"),
     ];
     let all: Vec<&str> = names.iter().map(String::as_str).chain(set.iter().copied()).collect();
-    let body = crate::statics::body(&case(ODD, &all));
+    let body = crate::support::statics::body(&case(ODD, &all));
     let bonds = Bonds::new(&body);
     (body, bonds)
 }

@@ -1,7 +1,7 @@
 //! The accuracy table of the README is recomputed here, so that it cannot age.
 
-use crate::plates::PANEL;
-use crate::stress_intensity::{SINGLE, k_over_handbook};
+use crate::support::plates::PANEL;
+use crate::verification::stress_intensity::{SINGLE, k_over_handbook};
 
 /// What every line of the table begins with.
 const MARKER: &str = "| K_I, ";

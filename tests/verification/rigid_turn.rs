@@ -12,7 +12,7 @@ use perilife::growth::plate;
 use perilife::growth::plate::Plate;
 use perilife::predict::Silent;
 
-use crate::plates::try_case;
+use crate::support::plates::try_case;
 
 /// A plate with a hole, an edge crack and a slanted one: every kind of rim.
 const PLATE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 40\nlength_mm = 30\nthickness_mm = 2\n\

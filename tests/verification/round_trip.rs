@@ -16,8 +16,8 @@ use perilife::predict::{Silent, predict};
 use perilife::specimen::handbook::handbook;
 use perilife::units::MM;
 
-use crate::noise::Noise;
-use crate::plates::case;
+use crate::support::noise::Noise;
+use crate::support::plates::case;
 
 /// The panel of Virkler et al. (1979) on a coarse lattice.
 const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=152.4\nlength_mm=240\nthickness_mm=2.54\ncrack_length_mm=12\n";

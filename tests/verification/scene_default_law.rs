@@ -4,7 +4,7 @@
 use perilife::fracture::{self, Fracture, Scene};
 use perilife::predict::Silent;
 
-use crate::shared::shared;
+use crate::support::shared::shared;
 
 fn scene(file: &str, set: &[&str]) -> Option<Scene> {
     let path = shared(&format!("field/mechanics/scene_default_law/{file}.toml"))?;

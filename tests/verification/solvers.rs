@@ -11,8 +11,8 @@ use perilife::solver::field::Layout;
 use perilife::solver::{Equilibrium, SolverKind, Symmetry};
 use perilife::state::Bonds;
 
-use crate::plates::case;
-use crate::statics::{Loaded, body, loaded, loaded_with};
+use crate::support::plates::case;
+use crate::support::statics::{Loaded, body, loaded, loaded_with};
 
 /// More than the digits printed anywhere, less than what decides which bond breaks first.
 const AGREEMENT: f64 = 1e-6;
@@ -113,8 +113,8 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / size
 }
 
-#[test]
-fn iterations_and_cholesky_agree() {
+/// On points of so many mm, which count the steps of a factor to the power of 1.5.
+fn iterations_and_cholesky(spacing: &str) {
     let mut faults = Vec::new();
     println!(
         "{:>28} {:>11} {:>6} {:>6} {:>10} {:>9} {:>9} {:>9}",
@@ -131,7 +131,7 @@ fn iterations_and_cholesky_agree() {
                 for ratio in ratios.into_iter().filter(has) {
                     let ratio_set = format!("model.horizon_ratio={ratio}");
                     // Symmetric plates have tests of their own.
-                    let all: Vec<&str> = [&*ratio_set, "model.symmetry=off"]
+                    let all: Vec<&str> = [&*ratio_set, spacing, "model.symmetry=off"]
                         .into_iter()
                         .chain(choices.iter().copied())
                         .chain(set.iter().copied())
@@ -148,6 +148,17 @@ fn iterations_and_cholesky_agree() {
         }
     }
     assert!(faults.is_empty(), "{} of the scenes:\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn iterations_and_cholesky_agree() {
+    iterations_and_cholesky("model.spacing_mm=3");
+}
+
+#[test]
+#[ignore = "long: a minute"]
+fn iterations_and_cholesky_agree_on_larger_plates() {
+    iterations_and_cholesky("model.spacing_mm=2");
 }
 
 /// Where a solver is off the direct one, or multigrid takes more than so many iterations.

@@ -19,13 +19,20 @@
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::units::MM;
 
-use crate::plates::case;
+use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case};
 
 const PANEL: &str = "kind=\"middle_tension\"\nwidth_mm=48\nlength_mm=60\nthickness_mm=2\ncrack_length_mm=9\n";
 const PLATE: &str = "kind=\"plate\"\nwidth_mm=40\nlength_mm=48\nthickness_mm=2\n";
 
+const DRIVERS: [&str; 2] = [TIP_FIELD, BOND_STRAIN];
+
 fn grow(specimen: &str, set: &[&str]) -> Prediction {
     predict(&case(specimen, &[&["stop.cycles_max=1e12", "model.spacing_mm=1"], set].concat()), &Silent).unwrap()
+}
+
+/// The same by strains of bonds.
+fn grow_by_bonds(specimen: &str, set: &[&str]) -> Prediction {
+    grow(specimen, &[&[BOND_STRAIN], set].concat())
 }
 
 /// A run whose curve and pictures are in order.
@@ -47,7 +54,7 @@ fn is_through(run: &Prediction) -> bool {
 #[test]
 fn ageing_everywhere_ends_though_points_detach() {
     for p in ["fatigue.p=1", "fatigue.p=1.5", "fatigue.p=2"] {
-        let run = grow(PANEL, &["model.spacing_mm=2", "fatigue.ageing=everywhere", p]);
+        let run = grow_by_bonds(PANEL, &["model.spacing_mm=2", "fatigue.ageing=everywhere", p]);
         sound(p, &run);
         assert!(is_through(&run), "{p}: {}", run.stop);
         // A straight crack leaves its points 61 % of their bonds.
@@ -58,76 +65,82 @@ fn ageing_everywhere_ends_though_points_detach() {
         assert!(run.crack_length_final() <= 24.0 * MM * (1.0 + 1e-9), "{p}: {}", run.crack_length_final() / MM);
         let told = run.warnings.iter().any(|line| line.contains("read the life, not the length"));
         assert!(told || p != "fatigue.p=2", "{:?}", run.warnings);
-        let at_tips = grow(PANEL, &["model.spacing_mm=2", p]);
+        let at_tips = grow_by_bonds(PANEL, &["model.spacing_mm=2", p]);
         assert!(run.life_cycles() < at_tips.life_cycles(), "{p}: {} and {}", run.life_cycles(), at_tips.life_cycles());
     }
 }
 
 #[test]
 fn a_tip_at_an_edge_ends_and_the_other_goes_on() {
-    // A low stress: the last ligament is then as small as the lattice resolves, not what overload leaves.
-    let low = ["loading.stress_max_mpa=5", "stop.cycles_max=1e15"];
-    let run = grow(&format!("{PLATE}cracks=[{{from_mm=[-15,0],to_mm=[-5,0]}}]\n"), &low);
-    sound("edge", &run);
-    assert!(is_through(&run), "{}", run.stop);
-    let [left, right] = run.curve.last().unwrap().tips[..] else { panic!("two tips") };
-    assert!((left.position[0] + 20.0 * MM).abs() < run.figures.horizon, "{}", left.position[0] / MM);
-    assert!((right.position[0] - 20.0 * MM).abs() < 1.5 * run.figures.horizon, "{}", right.position[0] / MM);
-    assert!(run.curve.iter().all(|point| point.tips.iter().all(|tip| tip.position[1].abs() < run.figures.spacing)));
-    // The edge crack left behind is longer than the crack was, so the other tip runs faster than before.
-    let at_edge = run.curve.iter().position(|point| point.tips[0].growth >= left.growth - 0.1 * MM).unwrap();
-    assert!(run.curve[at_edge].tips[1].growth + 10.0 * MM < right.growth, "the other tip goes on");
-    let rate = |from: usize, to: usize| {
-        let (a, b) = (&run.curve[from], &run.curve[to]);
-        (b.tips[1].growth - a.tips[1].growth) / (b.cycles - a.cycles)
-    };
-    let later = at_edge + (run.curve.len() - at_edge) / 2;
-    assert!(rate(at_edge, later) > rate(0, at_edge));
+    for driver in DRIVERS {
+        // A low stress: the last ligament is then as small as the lattice resolves, not what overload leaves.
+        let low = [driver, "loading.stress_max_mpa=5", "stop.cycles_max=1e15"];
+        let run = grow(&format!("{PLATE}cracks=[{{from_mm=[-15,0],to_mm=[-5,0]}}]\n"), &low);
+        sound("edge", &run);
+        assert!(is_through(&run), "{}", run.stop);
+        let [left, right] = run.curve.last().unwrap().tips[..] else { panic!("two tips") };
+        assert!((left.position[0] + 20.0 * MM).abs() < run.figures.horizon, "{}", left.position[0] / MM);
+        assert!((right.position[0] - 20.0 * MM).abs() < 1.5 * run.figures.horizon, "{}", right.position[0] / MM);
+        assert!(run.curve.iter().all(|point| point.tips.iter().all(|tip| tip.position[1].abs() < run.figures.spacing)));
+        // The edge crack left behind is longer than the crack was, so the other tip runs faster than before.
+        let at_edge = run.curve.iter().position(|point| point.tips[0].growth >= left.growth - 0.1 * MM).unwrap();
+        assert!(run.curve[at_edge].tips[1].growth + 10.0 * MM < right.growth, "the other tip goes on");
+        let rate = |from: usize, to: usize| {
+            let (a, b) = (&run.curve[from], &run.curve[to]);
+            (b.tips[1].growth - a.tips[1].growth) / (b.cycles - a.cycles)
+        };
+        let later = at_edge + (run.curve.len() - at_edge) / 2;
+        assert!(rate(at_edge, later) > rate(0, at_edge));
+    }
 }
 
 #[test]
 fn tips_end_in_holes() {
-    let between =
-        "holes=[{x_mm=-12,y_mm=0,diameter_mm=8},{x_mm=12,y_mm=0,diameter_mm=8}]\ncracks=[{from_mm=[-3,0],to_mm=[3,0]}]\n";
-    let run = grow(&format!("{PLATE}{between}"), &[]);
-    sound("between two holes", &run);
-    assert_eq!(run.stop, StopReason::EnteredHole);
-    let [left, right] = run.curve.last().unwrap().tips[..] else { panic!("two tips") };
-    assert!((left.position[0] + right.position[0]).abs() < 1e-9 && (left.position[1] - right.position[1]).abs() < 1e-9);
-    // The ligament that was severed is that between the rims, 16 mm.
-    assert!((run.crack_length_final() / MM - 16.0).abs() < run.figures.horizon / MM, "{}", run.crack_length_final() / MM);
+    for driver in DRIVERS {
+        let between =
+            "holes=[{x_mm=-12,y_mm=0,diameter_mm=8},{x_mm=12,y_mm=0,diameter_mm=8}]\ncracks=[{from_mm=[-3,0],to_mm=[3,0]}]\n";
+        let run = grow(&format!("{PLATE}{between}"), &[driver]);
+        sound("between two holes", &run);
+        assert_eq!(run.stop, StopReason::EnteredHole);
+        let [left, right] = run.curve.last().unwrap().tips[..] else { panic!("two tips") };
+        assert!((left.position[0] + right.position[0]).abs() < 1e-9 && (left.position[1] - right.position[1]).abs() < 1e-9);
+        // The ligament that was severed is that between the rims, 16 mm.
+        assert!((run.crack_length_final() / MM - 16.0).abs() < run.figures.horizon / MM, "{}", run.crack_length_final() / MM);
 
-    let one = "holes=[{x_mm=12,y_mm=0,diameter_mm=8}]\ncracks=[{from_mm=[-8,0],to_mm=[2,0]}]\n";
-    let run = grow(&format!("{PLATE}{one}"), &["loading.stress_max_mpa=5", "stop.cycles_max=1e15"]);
-    sound("hole on one side", &run);
-    assert!(run.stop == StopReason::EnteredHole || is_through(&run), "{}", run.stop);
-    let [left, right] = run.curve.last().unwrap().tips[..] else { panic!("two tips") };
-    assert!((right.position[0] - 8.0 * MM).abs() < run.figures.horizon, "{}", right.position[0] / MM);
-    assert!((left.position[0] + 20.0 * MM).abs() < 1.5 * run.figures.horizon, "{}", left.position[0] / MM);
+        let one = "holes=[{x_mm=12,y_mm=0,diameter_mm=8}]\ncracks=[{from_mm=[-8,0],to_mm=[2,0]}]\n";
+        let run = grow(&format!("{PLATE}{one}"), &[driver, "loading.stress_max_mpa=5", "stop.cycles_max=1e15"]);
+        sound("hole on one side", &run);
+        assert!(run.stop == StopReason::EnteredHole || is_through(&run), "{}", run.stop);
+        let [left, right] = run.curve.last().unwrap().tips[..] else { panic!("two tips") };
+        assert!((right.position[0] - 8.0 * MM).abs() < run.figures.horizon, "{}", right.position[0] / MM);
+        assert!((left.position[0] + 20.0 * MM).abs() < 1.5 * run.figures.horizon, "{}", left.position[0] / MM);
+    }
 }
 
 #[test]
 fn collinear_cracks_join_as_mirror_twins() {
-    let two = "cracks=[{from_mm=[-13,0],to_mm=[-5,0]},{from_mm=[5,0],to_mm=[13,0]}]\n";
-    let run = grow(&format!("{PLATE}{two}"), &[]);
-    sound("two cracks", &run);
-    assert!(is_through(&run), "{}", run.stop);
-    for point in &run.curve {
-        // A bond as near to one inner tip as to the other is one's or the other's, and what K of the outer ones is read by is that crack.
-        let meeting = (point.tips[1].position[0] - point.tips[2].position[0]).abs() < 3.0 * run.figures.horizon;
-        for (a, b) in [(0, 3), (1, 2)] {
-            let (a, b) = (point.tips[a], point.tips[b]);
-            let slack = if meeting { run.figures.spacing } else { 1e-9 };
-            assert!((a.position[0] + b.position[0]).abs() < slack && (a.growth - b.growth).abs() < slack);
-            assert!(a.position[1].abs() < 1e-9);
+    for driver in DRIVERS {
+        let two = "cracks=[{from_mm=[-13,0],to_mm=[-5,0]},{from_mm=[5,0],to_mm=[13,0]}]\n";
+        let run = grow(&format!("{PLATE}{two}"), &[driver]);
+        sound("two cracks", &run);
+        assert!(is_through(&run), "{}", run.stop);
+        for point in &run.curve {
+            // A bond as near to one inner tip as to the other is one's or the other's, and what K of the outer ones is read by is that crack.
+            let meeting = (point.tips[1].position[0] - point.tips[2].position[0]).abs() < 3.0 * run.figures.horizon;
+            for (a, b) in [(0, 3), (1, 2)] {
+                let (a, b) = (point.tips[a], point.tips[b]);
+                let slack = if meeting { run.figures.spacing } else { 1e-9 };
+                assert!((a.position[0] + b.position[0]).abs() < slack && (a.growth - b.growth).abs() < slack);
+                assert!(a.position[1].abs() < 1e-9);
+            }
         }
+        let joined = run.curve.last().unwrap();
+        assert!(joined.tips[1].position[0].abs() < run.figures.horizon, "{}", joined.tips[1].position[0] / MM);
+        // Alone, each would live longer: the other one raises its K.
+        let half = joined.cycles;
+        let one = grow(&format!("{PLATE}cracks=[{{from_mm=[-13,0],to_mm=[-5,0]}}]\n"), &[driver]);
+        assert!(one.life_cycles() > half, "{} and {half}", one.life_cycles());
     }
-    let joined = run.curve.last().unwrap();
-    assert!(joined.tips[1].position[0].abs() < run.figures.horizon, "{}", joined.tips[1].position[0] / MM);
-    // Alone, each would live longer: the other one raises its K.
-    let half = joined.cycles;
-    let one = grow(&format!("{PLATE}cracks=[{{from_mm=[-13,0],to_mm=[-5,0]}}]\n"), &[]);
-    assert!(one.life_cycles() > half, "{} and {half}", one.life_cycles());
 }
 
 /// A crack half a spacing aside stands on a row of points instead of between two: the same plate to half a spacing.
@@ -154,7 +167,7 @@ fn a_crack_along_the_diagonal_grows_forward() {
     let crack =
         format!("kind=\"plate\"\nwidth_mm=90\nlength_mm=90\nthickness_mm=2\ncracks=[{{from_mm=[-{x},-{x}],to_mm=[{x},{x}]}}]\n");
     for nu in ["material.poisson_ratio=0.1", "material.poisson_ratio=0.3"] {
-        let run = grow(&crack, &[nu, "stop.crack_length_mm=60"]);
+        let run = grow_by_bonds(&crack, &[nu, "stop.crack_length_mm=60"]);
         sound(nu, &run);
         let tips = &run.curve.last().unwrap().tips;
         // Across the load: forward and, for the tip at the upper right, to the right.
@@ -167,7 +180,7 @@ fn a_crack_along_the_diagonal_grows_forward() {
 #[test]
 fn any_size_of_a_ends_well() {
     let life = |a: &str| {
-        let run = grow(PANEL, &["model.spacing_mm=2", &format!("fatigue.a={a}"), "stop.cycles_max=1e9"]);
+        let run = grow_by_bonds(PANEL, &["model.spacing_mm=2", &format!("fatigue.a={a}"), "stop.cycles_max=1e9"]);
         sound(a, &run);
         run
     };
@@ -203,13 +216,13 @@ fn compression_does_not_count() {
 #[test]
 fn low_and_high_exponents_follow_the_load() {
     /// Beyond p = 8 it is not known what rate over K bonds stand for.
-    const BY_STRAIN: &str = "fatigue.growth_rate=bond_strain";
+    const RATE: &str = "fatigue.growth_rate=bond_strain";
     for p in [1.0, 12.0] {
         let life = |stress: f64| {
             let load = format!("loading.stress_max_mpa={stress}");
             let a = format!("fatigue.a={:e}", 200.0_f64.powf(p));
             let run =
-                grow(PANEL, &["model.spacing_mm=2", &load, &format!("fatigue.p={p}"), &a, "stop.cycles_max=1e15", BY_STRAIN]);
+                grow_by_bonds(PANEL, &["model.spacing_mm=2", &load, &format!("fatigue.p={p}"), &a, "stop.cycles_max=1e15", RATE]);
             sound(&format!("p = {p}, {stress} MPa"), &run);
             assert!(is_through(&run), "p = {p}: {}", run.stop);
             for point in &run.curve {
@@ -226,14 +239,14 @@ fn low_and_high_exponents_follow_the_load() {
 
 /// One A: lives at all horizons lie together where K sets the rate; by the strain of bonds they do not below three spacings, and a
 /// warning says how far off they may be.
-#[test]
-fn horizon_ratios_agree_or_say_how_wrong_they_are() {
+/// Ratio, what sets the rate, life to be expected over that at 3.015, how far off it may be, whether there is a warning.
+fn horizon_ratios(all: &[(f64, &str, f64, f64, bool)]) {
     let panel = "kind=\"middle_tension\"\nwidth_mm=56\nlength_mm=56\nthickness_mm=2\ncrack_length_mm=14\n";
     let run = |ratio: f64, rate: &str| {
         let rate = format!("fatigue.growth_rate={rate}");
         let set = ["model.spacing_mm=1", &format!("model.horizon_ratio={ratio}"), "stop.crack_length_mm=20", &rate];
-        let told = case(panel, &set).warnings.iter().any(|line| line.contains("few neighbours"));
-        let run = grow(panel, &set);
+        let told = case(panel, &[&[BOND_STRAIN], &set[..]].concat()).warnings.iter().any(|line| line.contains("few neighbours"));
+        let run = grow_by_bonds(panel, &set);
         sound(&format!("ratio {ratio}"), &run);
         assert_eq!(run.stop, StopReason::CrackLengthReached, "{ratio}");
         for point in &run.curve {
@@ -242,25 +255,35 @@ fn horizon_ratios_agree_or_say_how_wrong_they_are() {
         }
         (run.life_cycles(), told)
     };
-    let (by_strain, by_factor) = ("bond_strain", "stress_intensity");
-    let references = [run(3.015, by_strain).0, run(3.015, by_factor).0];
-    // The crack is 3.5, 2.8, 2.3 horizons long at 4, 5, 6, and its bonds are strained more than those of a long one.
-    // What is to be expected, and how far off it may be; the warning says 40 % at 1.5 and up to 15 % at 2.
-    for (ratio, rate, expected, bound, warned) in [
-        (1.5, by_strain, 0.6, 0.1, true),
-        (2.0, by_strain, 1.0, 0.15, true),
-        (1.5, by_factor, 1.0, 0.05, false),
-        (2.0, by_factor, 1.0, 0.15, false),
-        (4.0, by_factor, 1.0, 0.05, false),
-        (5.0, by_factor, 1.0, 0.05, false),
-        (6.0, by_factor, 1.0, 0.05, false),
-    ] {
+    let references = [BY_STRAIN, BY_FACTOR].map(|rate| run(3.015, rate).0);
+    for &(ratio, rate, expected, bound, warned) in all {
         let (life, told) = run(ratio, rate);
-        let reference = references[usize::from(rate == by_factor)];
+        let reference = references[usize::from(rate == BY_FACTOR)];
         println!("ratio {ratio}, {rate}: life over that at 3.015 {:.4}", life / reference);
         assert!((life / reference - expected).abs() < bound, "{ratio}, {rate}: {}", life / reference);
         assert_eq!(told, warned, "{ratio}, {rate}");
     }
+}
+
+const BY_STRAIN: &str = "bond_strain";
+const BY_FACTOR: &str = "stress_intensity";
+
+/// The warning says 40 % at 1.5 and up to 15 % at 2.
+#[test]
+fn horizon_ratios_agree_or_say_how_wrong_they_are() {
+    horizon_ratios(&[(1.5, BY_STRAIN, 0.6, 0.1, true), (2.0, BY_STRAIN, 1.0, 0.15, true), (1.5, BY_FACTOR, 1.0, 0.05, false)]);
+}
+
+/// The crack is 3.5, 2.8, 2.3 horizons long at 4, 5, 6, and its bonds are strained more than those of a long one.
+#[test]
+#[ignore = "long: ten seconds, horizons of many points"]
+fn long_horizons_agree() {
+    horizon_ratios(&[
+        (2.0, BY_FACTOR, 1.0, 0.15, false),
+        (4.0, BY_FACTOR, 1.0, 0.05, false),
+        (5.0, BY_FACTOR, 1.0, 0.05, false),
+        (6.0, BY_FACTOR, 1.0, 0.05, false),
+    ]);
 }
 
 /// The life of a crack of less than three horizons is wrong by some percent, as the warning says.
@@ -270,8 +293,9 @@ fn a_crack_shorter_than_the_horizon_is_told_its_error() {
     let life = |spacing: f64| {
         let set = [format!("model.spacing_mm={spacing}")];
         let set = [set[0].as_str(), "stop.crack_length_mm=8"];
-        let told = case(panel, &set).warnings.iter().any(|line| line.contains("some 7 % wrong, 20 %"));
-        let run = grow(panel, &set);
+        let told =
+            case(panel, &[&[BOND_STRAIN], &set[..]].concat()).warnings.iter().any(|line| line.contains("some 7 % wrong, 20 %"));
+        let run = grow_by_bonds(panel, &set);
         sound(&format!("spacing {spacing} mm"), &run);
         (run.life_cycles(), told)
     };

@@ -2,7 +2,7 @@
 
 use perilife::predict::tip_factors::{StressIntensityMethod, TipResult, stress_intensity};
 
-use crate::plates::{PANEL, case};
+use crate::support::plates::{PANEL, case};
 
 /// Factors of the first tip of a case.
 fn first_tip(specimen: &str, set: &[String], methods: &[StressIntensityMethod]) -> TipResult {

@@ -22,7 +22,7 @@ spacing_mm = 2
 [fatigue]
 paris_c_mm_per_cycle = 1e-8
 paris_m = 3.0
-step_error_percent = 0.02
+step_error_percent = 0.1
 ";
 
 /// Name, `[specimen]`, crack length at which the run ends, mm, and whether the plate has a mirror image.
@@ -78,7 +78,7 @@ fn every_solver_by_every_law_gives_one_life_and_one_path() {
             let law_keys = of_law(law);
             let common: Vec<&str> = [stop].into_iter().chain(law_keys.iter().map(|key| &**key)).collect();
             let reference = grow(specimen, &common);
-            assert!(reference.curve.len() > 8 && reference.life_cycles() > 0.0, "{plate}, {law}: a run");
+            assert!(reference.curve.len() > 4 && reference.life_cycles() > 0.0, "{plate}, {law}: a run");
             let symmetries: &[&str] = if is_symmetric { &["auto", "off"] } else { &["auto"] };
             for solver in SolverKind::ALL {
                 for symmetry in symmetries {

@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 use assert_cmd::cargo::cargo_bin;
 use tempfile::{TempDir, tempdir};
 
-use crate::cli::{assert_refused, perilife, texts};
-use crate::daily::{KINDS, PANEL, content, names, write_inputs};
-use crate::server::PATIENCE;
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::{KINDS, PANEL, content, names, write_inputs};
+use crate::support::server::PATIENCE;
 
 /// A run of some seconds.
 const SLOW: [&str; 2] = ["predict", "slow.toml"];
@@ -21,8 +21,8 @@ fn inputs() -> TempDir {
     let (plate, _) = PANEL.split_once("[model]").unwrap();
     let law = "[model]\nspacing_mm = 0.8\n[fatigue]\ndriver = \"bond_strain\"\na = 6450.0\np = 2.86\nhorizon_mm = 3.015\n";
     fs::write(dir.path().join("slow.toml"), format!("{plate}{law}[stop]\ncrack_length_mm = 49.8\n")).unwrap();
-    fs::write(dir.path().join("slow_sweep.toml"), crate::daily::SWEEP.replace("panel.toml", "slow.toml")).unwrap();
-    let scene = crate::daily::SCENE.replace("spacing_mm = 1.0", "spacing_mm = 0.1");
+    fs::write(dir.path().join("slow_sweep.toml"), crate::support::daily::SWEEP.replace("panel.toml", "slow.toml")).unwrap();
+    let scene = crate::support::daily::SCENE.replace("spacing_mm = 1.0", "spacing_mm = 0.1");
     let motion = scene.replace("traction", "velocity").replace("stress_mpa = 10.0", "velocity_mm_s = 1000.0\nduration_s = 1e-3");
     let motion = motion.replace("[model]", "density_kg_m3 = 8000.0\n[model]");
     fs::write(dir.path().join("slow_scene.toml"), motion).unwrap();

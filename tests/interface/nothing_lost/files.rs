@@ -6,8 +6,8 @@ use std::path::Path;
 
 use tempfile::{TempDir, tempdir};
 
-use crate::cli::{assert_refused, perilife, texts};
-use crate::daily::{content, names, write_inputs};
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::{content, names, write_inputs};
 
 /// Every option that names one file: the call before it, a file that the call reads, and whether `-` is standard output there.
 const OUTPUTS: [(&[&str], &str, &str); 4] = [

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use tempfile::{TempDir, tempdir};
 
-use crate::cli::{assert_refused, perilife, texts};
-use crate::daily::{KINDS, content, names, write_inputs};
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::daily::{KINDS, content, names, write_inputs};
 
 fn inputs() -> TempDir {
     let dir = tempdir().unwrap();
@@ -136,7 +136,7 @@ fn an_input_in_the_folder_is_refused() {
     }
     // A table that the case names.
     let table = "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n1,1e-9\n100,1e-2\n";
-    let (plate, _) = crate::daily::PANEL.split_once("[fatigue]").unwrap();
+    let (plate, _) = crate::support::daily::PANEL.split_once("[fatigue]").unwrap();
     fs::write(here.join("t.toml"), format!("{plate}[fatigue]\ngrowth_law = \"table\"\ngrowth_table = \"data/rates.csv\"\n"))
         .unwrap();
     fs::create_dir(here.join("data")).unwrap();

@@ -5,7 +5,7 @@ use std::time::Instant;
 use tempfile::tempdir;
 
 use super::{QUICK, of};
-use crate::server::{Server, in_folder};
+use crate::support::server::{Server, in_folder};
 
 #[test]
 fn cases_that_are_too_large_are_refused_at_once() {

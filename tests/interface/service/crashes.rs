@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 
 use tempfile::tempdir;
 
-use super::jobs::with_each_store;
+use super::jobs::{with_each_store, with_store};
 use super::{QUICK, SLOW, of};
-use crate::cli::perilife;
-use crate::noise::Noise;
-use crate::postgres::Postgres;
-use crate::server::{PATIENCE, Server};
+use crate::interface::cli::perilife;
+use crate::support::noise::Noise;
+use crate::support::postgres::Postgres;
+use crate::support::server::{PATIENCE, Server};
 
 /// The a-N curve of an undisturbed run by the command line.
 pub fn undisturbed(folder: &Path, text: &str) -> Vec<u8> {
@@ -51,7 +51,7 @@ fn check(service: &Server, addresses: &[String], jobs: &[(&str, Vec<u8>)]) {
 
 #[test]
 fn a_killed_server_loses_nothing() {
-    with_each_store("killed", |place| {
+    with_store("killed", |place| {
         let dir = tempdir().unwrap();
         let jobs = mixed(dir.path(), 4);
         let mut service = Server::start(place, &EAGER);
@@ -138,7 +138,7 @@ fn a_full_disk_loses_nothing() {
     let Some(disk) = SmallDisk::mounted() else { return };
     let dir = tempdir().unwrap();
     let jobs = mixed(dir.path(), 4);
-    let place = crate::server::in_folder(disk.0.path());
+    let place = crate::support::server::in_folder(disk.0.path());
     let service = Server::start(&[&place[0], &place[1]], &EAGER);
     let addresses = submit(&service, &jobs);
     let ballast = disk.0.path().join("ballast");
@@ -193,7 +193,7 @@ const READINGS: &str =
 /// A server is killed within a calibration: the next one begins it anew, to the same fit.
 #[test]
 fn a_killed_calibration_is_made_again() {
-    with_each_store("fit_killed", |place| {
+    with_store("fit_killed", |place| {
         let dir = tempdir().unwrap();
         let folder = dir.path();
         fs::write(folder.join("fit.toml"), CALIBRATION).unwrap();
@@ -282,7 +282,7 @@ fn a_database_that_is_gone_for_a_while_loses_nothing() {
 /// A job that kills its workers is given up in the end, and the others go on.
 #[test]
 fn a_job_that_nobody_survives_is_given_up() {
-    with_each_store("given_up", |place| {
+    with_store("given_up", |place| {
         let eager = ["--jobs", "1", "--lease", "2", "--attempts", "2", "--checkpoint-every", "1000"];
         let service = Server::start(place, &["--jobs", "0"]);
         let job = service.submit("predictions", &of("case", SLOW));

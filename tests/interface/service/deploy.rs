@@ -12,9 +12,9 @@ use assert_cmd::cargo::cargo_bin;
 use tempfile::tempdir;
 
 use super::{QUICK, SLOW, of};
-use crate::cli::{perilife, texts};
-use crate::nginx::{DELIVERED, Nginx};
-use crate::server::{Server, in_folder};
+use crate::interface::cli::{perilife, texts};
+use crate::support::nginx::{DELIVERED, Nginx};
+use crate::support::server::{Server, in_folder};
 
 const SERVICE: &str = include_str!("../../../data/deploy/perilife.service");
 const WORKER: &str = include_str!("../../../data/deploy/perilife-worker@.service");

@@ -8,7 +8,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 use super::{QUICK, of};
-use crate::server::{Answer, Server, in_folder};
+use crate::support::server::{Answer, Server, in_folder};
 
 const PROBLEM: &str = "application/problem+json";
 
@@ -170,7 +170,7 @@ fn run(command: &mut Command) {
 }
 
 #[test]
-#[ignore = "long: needs Python with tests/reference/requirements-api.txt: PERILIFE_PYTHON=python cargo test --test interface a_validator -- --ignored --nocapture"]
+#[ignore = "long: needs Python with tests/reference/requirements-api.txt: PERILIFE_PYTHON=python cargo test a_validator -- --ignored --nocapture"]
 fn a_validator_finds_nothing() {
     let Some(mut python) = python() else { return };
     let dir = tempdir().unwrap();
@@ -181,7 +181,7 @@ fn a_validator_finds_nothing() {
 }
 
 #[test]
-#[ignore = "long: needs Python with tests/reference/requirements-api.txt: PERILIFE_PYTHON=python cargo test --test interface a_generated_client -- --ignored --nocapture"]
+#[ignore = "long: needs Python with tests/reference/requirements-api.txt: PERILIFE_PYTHON=python cargo test a_generated_client -- --ignored --nocapture"]
 fn a_generated_client_runs_a_job() {
     let Some(mut python) = python() else { return };
     let dir = tempdir().unwrap();
@@ -195,7 +195,7 @@ fn a_generated_client_runs_a_job() {
 
 /// Requests made from the description, whole chains of them: no fault of the program, no answer that is not described.
 #[test]
-#[ignore = "long: PERILIFE_FUZZ_MINUTES (10), needs Python with tests/reference/requirements-api.txt: PERILIFE_PYTHON=python cargo test --test interface requests_made -- --ignored --nocapture"]
+#[ignore = "long: PERILIFE_FUZZ_MINUTES (10), needs Python with tests/reference/requirements-api.txt: PERILIFE_PYTHON=python cargo test requests_made -- --ignored --nocapture"]
 fn requests_made_from_the_description_find_no_fault() {
     let Some(mut python) = python() else { return };
     let minutes = std::env::var("PERILIFE_FUZZ_MINUTES").map_or(10.0, |minutes| minutes.parse::<f64>().unwrap());

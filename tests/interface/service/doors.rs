@@ -11,8 +11,8 @@ use serde_json::json;
 use tempfile::tempdir;
 
 use super::{QUICK, SLOW, of};
-use crate::cli::{assert_refused, perilife, texts};
-use crate::server::{PATIENCE, Server, in_folder};
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::server::{PATIENCE, Server, in_folder};
 
 /// The case of a media type does not count; another type is refused with those that are taken.
 #[test]

@@ -16,7 +16,7 @@ use tempfile::tempdir;
 use tower::ServiceExt;
 
 use super::QUICK;
-use crate::noise::Noise;
+use crate::support::noise::Noise;
 
 /// Memory that no flood of bodies may exceed, MB. A process of the tests has some 300 of its own.
 const MEMORY_MB: f64 = 1500.0;

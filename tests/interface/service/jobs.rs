@@ -7,22 +7,35 @@ use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::{QUICK, SLOW, of};
-use crate::postgres::Postgres;
-use crate::server::{PATIENCE, Server, in_folder};
+use crate::support::postgres::Postgres;
+use crate::support::server::{PATIENCE, Server, in_folder};
 
-/// Does a test with each store that this machine has.
+/// Does a test with each store that this machine has: claims, fences, clocks, tables and waiting are SQL and messages of each.
 pub fn with_each_store(name: &str, test: impl Fn(&[&str])) {
-    let dir = tempdir().unwrap();
-    let place = in_folder(dir.path());
-    test(&[&place[0], &place[1]]);
+    in_folder_of_its_own(&test);
     if let Some(postgres) = Postgres::start() {
         test(&["--database", &postgres.database(name)]);
     }
 }
 
+/// Does a test of what stands above the store, with the quicker one; `PERILIFE_TESTS_EVERY_STORE=1` (`.ci/run long`) asks for each.
+pub fn with_store(name: &str, test: impl Fn(&[&str])) {
+    if std::env::var_os("PERILIFE_TESTS_EVERY_STORE").is_some() {
+        with_each_store(name, test);
+    } else {
+        in_folder_of_its_own(&test);
+    }
+}
+
+fn in_folder_of_its_own(test: &impl Fn(&[&str])) {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    test(&[&place[0], &place[1]]);
+}
+
 #[test]
 fn a_job_is_watched_to_its_end() {
-    with_each_store("watched", |place| {
+    with_store("watched", |place| {
         let service = Server::start(place, &["--jobs", "1"]);
         let job = service.submit("predictions", &of("slow", SLOW));
         let events = service.events(&job, &[]);
@@ -61,7 +74,7 @@ fn a_job_is_watched_to_its_end() {
 
 #[test]
 fn a_job_can_be_cancelled_and_deleted() {
-    with_each_store("cancelled", |place| {
+    with_store("cancelled", |place| {
         let service = Server::start(place, &["--jobs", "1"]);
         let [running, waiting] = [(); 2].map(|()| service.submit("predictions", &of("slow", SLOW)));
         let begun = Instant::now();
@@ -87,7 +100,7 @@ fn a_job_can_be_cancelled_and_deleted() {
 
 #[test]
 fn lists_come_in_parts() {
-    with_each_store("listed", |place| {
+    with_store("listed", |place| {
         let service = Server::start(place, &["--jobs", "0"]);
         let jobs: Vec<String> = (0..7).map(|i| service.submit("predictions", &of(&format!("case {i}"), QUICK))).collect();
         let (mut seen, mut after) = (Vec::new(), String::new());
@@ -156,7 +169,7 @@ fn many_clients_at_once_lose_nothing() {
 /// Finished jobs go when their time is over; what waits or runs stays.
 #[test]
 fn results_are_kept_for_their_time() {
-    with_each_store("expired", |place| {
+    with_store("expired", |place| {
         let service = Server::start(place, &["--jobs", "1", "--keep-days", "2e-5"]);
         let job = service.submit("predictions", &of("quick", QUICK));
         let begun = Instant::now();
@@ -171,7 +184,7 @@ fn results_are_kept_for_their_time() {
 /// A process that is asked to stop gives its jobs back; the next one goes on with them.
 #[test]
 fn a_stop_loses_nothing() {
-    with_each_store("stopped", |place| {
+    with_store("stopped", |place| {
         let mut service = Server::start(place, &["--jobs", "1", "--checkpoint-every", "0"]);
         let job = service.submit("predictions", &of("slow", SLOW));
         let begun = Instant::now();

@@ -9,11 +9,11 @@ use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::crashes::SmallDisk;
-use super::jobs::with_each_store;
+use super::jobs::{with_each_store, with_store};
 use super::queue::{on_store, token};
 use super::{QUICK, SLOW, of};
-use crate::cli::perilife;
-use crate::server::{PATIENCE, Server, in_folder};
+use crate::interface::cli::perilife;
+use crate::support::server::{PATIENCE, Server, in_folder};
 
 /// The quick plate with points of another spacing.
 pub fn spaced(spacing_mm: f64) -> String {
@@ -33,7 +33,7 @@ fn wait_for(service: &Server, job: &str, what: &str, is_so: impl Fn(&Value) -> b
 /// A job that wants more memory or time than it may have ends alone, and says so; the others go on.
 #[test]
 fn a_job_ends_alone_at_its_limits() {
-    with_each_store("limits", |place| {
+    with_store("limits", |place| {
         for (limit, text, title, words) in [
             (["--job-memory", "256"], spaced(0.12), "Too large", "more than the 268 MB of memory"),
             (["--job-hours", "0.003"], spaced(0.12), "Too slow", "--job-hours"),
@@ -113,7 +113,7 @@ fn a_full_temporary_disk_is_counted() {
 /// A job whose worker is dead is cancelled and deleted at once, whatever the clock did meanwhile, and is taken up when it was set back.
 #[test]
 fn orphans_of_dead_workers_are_nobodys() {
-    with_each_store("orphans", |place| {
+    with_store("orphans", |place| {
         let service = Server::start(place, &["--jobs", "0"]);
         let lease = ["--jobs", "1", "--lease", "2", "--checkpoint-every", "0"];
         let jobs = [(); 3].map(|()| {
@@ -247,7 +247,7 @@ fn streams_of_one_shut_nobody_out() {
     service.get("/healthz").expect(200);
     service.get(&job).expect(200);
     let removed = perilife(dir.path(), &[&["token", "remove", "reader"], &place[..]].concat());
-    assert!(removed.status.success(), "{}", crate::cli::texts(&removed).1);
+    assert!(removed.status.success(), "{}", crate::interface::cli::texts(&removed).1);
     let begun = Instant::now();
     // The last piece of an answer in pieces is empty (RFC 9112, 7.1); the connection stays for the next request.
     let mut pieces = streams.swap_remove(0).0.lines();

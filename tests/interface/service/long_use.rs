@@ -13,9 +13,9 @@ use super::crashes::{SmallDisk, undisturbed};
 use super::limits::spaced;
 use super::queue::on_store;
 use super::{QUICK, SLOW, of};
-use crate::noise::Noise;
-use crate::postgres::Postgres;
-use crate::server::{Server, in_folder};
+use crate::support::noise::Noise;
+use crate::support::postgres::Postgres;
+use crate::support::server::{Server, in_folder};
 
 /// A hand calculation, which takes milliseconds.
 fn tiny() -> String {
@@ -56,7 +56,7 @@ fn accepted(service: &Server, body: &Value, key: &str) -> String {
 /// Mixed load for an hour (or PERILIFE_SOAK_MINUTES) on a small disk, while workers are killed and stopped, the disk fills up and the
 /// clock jumps: nothing is lost, nothing is there twice, and the process that answers takes no more memory at the end.
 #[test]
-#[ignore = "long: an hour; cargo test --test interface -- --ignored soak --nocapture"]
+#[ignore = "long: an hour; cargo test soak -- --ignored --nocapture"]
 fn soak() {
     let minutes = std::env::var("PERILIFE_SOAK_MINUTES").ok().and_then(|text| text.parse().ok()).unwrap_or(60.0);
     let Some(disk) = SmallDisk::mounted_with("400m") else { return };
@@ -155,7 +155,7 @@ fn soak() {
 
 /// Four processes work for one PostgreSQL while one of them is killed now and then: of two thousand jobs none is lost, none runs twice.
 #[test]
-#[ignore = "long: some minutes; cargo test --test interface -- --ignored two_thousand_jobs --nocapture"]
+#[ignore = "long: some minutes; cargo test two_thousand_jobs -- --ignored --nocapture"]
 fn two_thousand_jobs_over_dying_workers() {
     let Some(postgres) = Postgres::start() else { return };
     let url = postgres.database("many");
@@ -234,7 +234,7 @@ fn bare_s(folder: &Path, at_once: usize) -> f64 {
 /// How much faster two workers of one thread are than one, five times in turn; beside it how much faster two processes of the program
 /// are without a service, which is what the machine gives.
 #[test]
-#[ignore = "long: some minutes on an idle machine; cargo test --test interface -- --ignored two_workers --nocapture"]
+#[ignore = "long: some minutes on an idle machine; cargo test two_workers -- --ignored --nocapture"]
 fn two_workers_are_faster_than_one() {
     let Some(postgres) = Postgres::start() else { return };
     let dir = tempdir().unwrap();
@@ -250,7 +250,7 @@ fn two_workers_are_faster_than_one() {
 
 /// Reads a second and the 99th percentile of their time while two jobs run.
 #[test]
-#[ignore = "long: needs an idle machine; cargo test --test interface -- --ignored reads_go_on --nocapture"]
+#[ignore = "long: needs an idle machine; cargo test reads_go_on -- --ignored --nocapture"]
 fn reads_go_on_while_jobs_run() {
     let dir = tempdir().unwrap();
     let place = in_folder(dir.path());

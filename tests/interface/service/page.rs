@@ -12,9 +12,9 @@ use perilife::tables::{DataFrame, parquet};
 use polars::prelude::Column;
 use tempfile::tempdir;
 
-use crate::browser::Browser;
-use crate::cli::perilife;
-use crate::server::{Server, in_folder};
+use crate::interface::cli::perilife;
+use crate::support::browser::Browser;
+use crate::support::server::{Server, in_folder};
 
 const DELETE: char = '\u{e017}';
 const RIGHT: char = '\u{e014}';
@@ -207,7 +207,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
         page.click(&format!("[data-file='{name}'] button"));
         let (file, begun) = (downloads.path().join(name), Instant::now());
         while fs::read(&file).is_ok_and(|bytes| bytes.is_empty()) || !file.exists() {
-            assert!(begun.elapsed() < crate::server::PATIENCE, "{name} does not come");
+            assert!(begun.elapsed() < crate::support::server::PATIENCE, "{name} does not come");
             std::thread::sleep(Duration::from_millis(50));
         }
         assert!(fs::read(&file).unwrap() == service.file(&format!("/v1/predictions/{first}"), name), "{name} differs");

@@ -3,10 +3,10 @@
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
-use super::jobs::with_each_store;
+use super::jobs::{with_each_store, with_store};
 use super::{QUICK, of};
-use crate::cli::{assert_refused, perilife, texts};
-use crate::server::{Answer, Server};
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::server::{Answer, Server};
 
 /// A token of this name and role in the store at `place`.
 pub fn token(place: &[&str], name: &str, role: &str) -> String {
@@ -61,7 +61,7 @@ fn owners_take_turns() {
 /// However many ask in the same moment, no more jobs wait than may.
 #[test]
 fn the_queue_has_an_end_for_everybody_together() {
-    with_each_store("bounded", |place| {
+    with_store("bounded", |place| {
         let service = Server::start(place, &["--jobs", "0", "--queued", "6"]);
         let answers: Vec<Answer> = std::thread::scope(|scope| {
             let ask = || service.post("/v1/predictions", &of("case", QUICK));
@@ -81,7 +81,7 @@ const BY_HAND: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \
 /// A request that was accepted is answered with its job however often it comes, even if what it refers to has gone since.
 #[test]
 fn a_repeated_request_finds_its_job() {
-    with_each_store("repeated", |place| {
+    with_store("repeated", |place| {
         let service = Server::start(place, &["--jobs", "1"]);
         let curve = "cycles,crack_length_mm\n0,9\n20000,10\n37000,11\n51000,12\n63000,13\n";
         let fit = service.submit("calibrations", &json!({ "input": BY_HAND, "files": { "curve.csv": curve } }));
@@ -102,7 +102,7 @@ fn a_repeated_request_finds_its_job() {
 /// A file that takes many parts comes back as it went in, and readers who never read cost no more than a part each.
 #[test]
 fn large_files_go_in_parts() {
-    with_each_store("parts", |place| {
+    with_store("parts", |place| {
         let service = Server::start(place, &["--jobs", "0"]);
         // No two parts alike, no part's end at the end, and an empty file beside it.
         let numbers = (0_u32..2_500_000).map(|i| i.wrapping_mul(2_654_435_761));

@@ -6,8 +6,8 @@ use std::path::Path;
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
-use crate::browser::Browser;
-use crate::server::{Server, in_folder};
+use crate::support::browser::Browser;
+use crate::support::server::{Server, in_folder};
 
 const UNKNOWN: &str = "Rig 7, sheet B12\nzeit,riss,kraft,temperatur\n0,9.0,6.1,21.2\n20000,10.2,6.1,21.3\n35000,11.9,6.1,21.4\n\
                        47000,13.8,6.1,21.3\n56000,16.1,6.1,21.2\n62000,18.4,6.1,21.1\n";

@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::{QUICK, of};
-use crate::cli::{perilife, texts};
-use crate::server::{Server, in_folder};
+use crate::interface::cli::{perilife, texts};
+use crate::support::server::{Server, in_folder};
 
 #[test]
 fn wrong_input_is_refused_in_the_words_of_the_command() {

@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 use tempfile::tempdir;
 
 use super::{QUICK, SLOW, of};
-use crate::cli::{perilife, texts};
-use crate::server::{Server, in_folder};
+use crate::interface::cli::{perilife, texts};
+use crate::support::server::{Server, in_folder};
 
 fn run(folder: &Path, arguments: &[&str]) -> String {
     let output = perilife(folder, arguments);

@@ -4,8 +4,8 @@ use serde_json::json;
 use tempfile::tempdir;
 
 use super::{QUICK, of};
-use crate::cli::{assert_refused, perilife, texts};
-use crate::server::{Server, in_folder};
+use crate::interface::cli::{assert_refused, perilife, texts};
+use crate::support::server::{Server, in_folder};
 
 #[test]
 fn roles_are_kept() {
