@@ -6,10 +6,8 @@ use std::path::Path;
 use perilife::bond_law::{BondLawKind, Rotation, SurfaceCorrection};
 use perilife::fracture::assembly::Assembly;
 use perilife::fracture::scene::PointLaw;
-use perilife::fracture::{Scene, rotation, run};
 use perilife::fracture::{Scene, run};
 use perilife::growth::plate;
-use perilife::growth::plate::Plate;
 use perilife::predict::Silent;
 
 use crate::support::plates::try_case;
