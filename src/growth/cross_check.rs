@@ -67,11 +67,12 @@ pub struct ReleasedEnergy {
 }
 
 impl ReleasedEnergy {
-    /// That of a block in which K of the tips released `of_tips` per thickness, J/m; their growth in it and until its end, m, the work of
-    /// the loads before and after it, J, and its cycles. Gives the crack length at its end, m, too.
+    /// That of a block: of every tip before and after it `K_eq²/E'`, J/m², and the length that its crack stands for beyond that of its
+    /// line, m; their growth in it and until its end, m, the work of the loads before and after it, J, and its cycles. Gives the crack length
+    /// at its end, m, too.
     pub fn of_block(
         case: &Case,
-        of_tips: f64,
+        [tips_before, tips_after]: [&[[f64; 2]]; 2],
         growths: &[f64],
         grown: &[f64],
         [before, after]: [f64; 2],
@@ -80,6 +81,10 @@ impl ReleasedEnergy {
         let specimen = &case.specimen;
         let at_start: Vec<f64> = grown.iter().zip(growths).map(|(grown, growth)| grown - growth).collect();
         let length = specimen.crack_length_after(grown);
+        let of_tip = |((growth, [then, offset_then]), [now, offset]): ((&f64, &[f64; 2]), &[f64; 2])| {
+            0.5 * (then + now) * (growth + offset - offset_then)
+        };
+        let of_tips: f64 = growths.iter().zip(tips_before).zip(tips_after).map(of_tip).sum();
         // What is released under a load is half of the work that this does more, and under a displacement the strain energy lost.
         let sign = if case.loading.displacement().is_some() { -1.0 } else { 1.0 };
         let block = ReleasedEnergy {

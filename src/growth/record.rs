@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::case::Case;
 use crate::fatigue::crack_tip::TipState;
 use crate::specimen::Point;
 
@@ -71,6 +72,27 @@ pub struct CurvePoint {
 }
 
 impl CurvePoint {
+    /// The row of tips that are driven by their K; `lead` is K_eq, Pa√m, and da/dN, m/cycle, of the fastest.
+    pub fn of_tips(
+        case: &Case,
+        [cycles, work]: [f64; 2],
+        broken_bonds: usize,
+        tips: Vec<TipRecord>,
+        lead: Option<(f64, f64)>,
+    ) -> CurvePoint {
+        let growths: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
+        let (k_max, growth_rate) = lead.unwrap_or((f64::NAN, f64::NAN));
+        CurvePoint {
+            cycles,
+            crack_length: case.specimen.crack_length_after(&growths),
+            delta_k: case.loading.range_share() * k_max,
+            growth_rate,
+            work,
+            broken_bonds,
+            tips,
+        }
+    }
+
     /// The row at a share of the way from another to this one; bonds broken are those of this one.
     pub fn between(self, before: &CurvePoint, share: f64) -> CurvePoint {
         let mix = |a: f64, b: f64| a + share * (b - a);

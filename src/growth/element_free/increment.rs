@@ -29,7 +29,7 @@ pub struct Increment {
     /// Rate of the lead before the last increment, and its growth in that, where no corner lies between.
     past: Option<[f64; 2]>,
     /// K_eq²/E' of every tip, J/m², and work of the loads, J.
-    pub(super) before: (Vec<f64>, f64),
+    pub(super) before: (Vec<[f64; 2]>, f64),
     /// Whether the lead begins a kink.
     is_kink: bool,
     /// Tips that have met something, with what they have become.
@@ -236,12 +236,12 @@ fn cycles_of_kink(grown: f64, rate: f64, rate_then: f64) -> f64 {
 }
 
 impl ElementFree<'_> {
-    /// K_eq²/E' of every tip, J/m², and work of the loads, J.
-    pub(super) fn energies(&self) -> (Vec<f64>, f64) {
+    /// Of every tip `K_eq²/E'`, J/m², its crack being as long as its line; work of the loads, J.
+    pub(super) fn energies(&self) -> (Vec<[f64; 2]>, f64) {
         let modulus = self.case.material.plane_modulus();
         let of_front = |front: &Front| {
             let factor = if front.begins_kink() { kinked(front) } else { front.equivalent() };
-            factor.powi(2) / modulus
+            [factor.powi(2) / modulus, 0.0]
         };
         (self.state.fronts.iter().map(of_front).collect(), self.load_work())
     }
@@ -250,9 +250,8 @@ impl ElementFree<'_> {
     pub(super) fn compare_energies(&mut self, step: &Increment, cycles: f64) {
         let ((now, work_now), (before, work)) = (self.energies(), &step.before);
         let growths: Vec<f64> = step.moves.iter().map(|step| step.0).collect();
-        let released: f64 = growths.iter().zip(before).zip(now).map(|((growth, then), now)| 0.5 * (then + now) * growth).sum();
         let grown: Vec<f64> = self.state.fronts.iter().map(|front| front.growth).collect();
-        let (block, length) = ReleasedEnergy::of_block(self.case, released, &growths, &grown, [*work, work_now], cycles);
+        let (block, length) = ReleasedEnergy::of_block(self.case, [before, &now], &growths, &grown, [*work, work_now], cycles);
         self.state.balance.take(block, length, 0.2 * self.settings.resolution.far);
     }
 }

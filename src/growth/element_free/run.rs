@@ -52,19 +52,10 @@ impl ElementFree<'_> {
             factors: Some(front.factors),
             t_stress: Some(front.t_stress),
         };
-        let tips: Vec<TipRecord> = self.state.fronts.iter().map(now).collect();
-        let growths: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
+        let tips = self.state.fronts.iter().map(now).collect();
         let lead = self.fastest().map(|tip| &self.state.fronts[tip]);
-        let (k_max, growth_rate) = lead.map_or((f64::NAN, f64::NAN), |front| (front.equivalent(), front.rate));
-        CurvePoint {
-            cycles: self.curve.last().map_or(0.0, |row| row.cycles) + cycles,
-            crack_length: self.case.specimen.crack_length_after(&growths),
-            delta_k: self.case.loading.range_share() * k_max,
-            growth_rate,
-            work,
-            broken_bonds: 0,
-            tips,
-        }
+        let cycles = self.curve.last().map_or(0.0, |row| row.cycles) + cycles;
+        CurvePoint::of_tips(self.case, [cycles, work], 0, tips, lead.map(|front| (front.equivalent(), front.rate)))
     }
 }
 

@@ -11,7 +11,7 @@ use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::growth::TipGrowth;
 use crate::growth::cross_check::ReleasedEnergy;
-use crate::growth::end_of_life::gone;
+use crate::growth::end_of_life::{self, gone};
 use crate::growth::record::StopReason;
 use crate::growth::tip_ring::DIRECTION_SPACINGS;
 use crate::solver::field::Layout;
@@ -98,7 +98,8 @@ impl TipGrowth for TipField<'_> {
     type Increment = Increment;
 
     fn reason_to_stop(&self) -> Option<StopReason> {
-        self.reason_before()
+        let states: Vec<TipState> = self.state.tips.iter().map(|tip| tip.state).collect();
+        end_of_life::reason_to_stop(self.case, self.end, self.last(), &states, self.fastest().is_some())
     }
 
     fn increments(&self) -> Increment {
@@ -242,7 +243,9 @@ impl TipGrowth for TipField<'_> {
             ));
             step.end = Some(StopReason::LigamentUnresolved);
         }
-        let (row, reason) = self.row_after(cycles, work, step.cut, step.end);
+        let last = self.last();
+        let next = self.row(last.cycles + cycles, work, last.broken_bonds + step.cut);
+        let (row, reason) = end_of_life::row_after(self.case, last, next, step.end);
         if step.cut > 0 || cycles > 0.0 {
             self.curve.push(row);
         }
@@ -261,12 +264,8 @@ impl TipField<'_> {
     /// Compares the energy that the new segments released by their K with what the plate did.
     fn compare_energies(&mut self, step: &Increment, cycles: f64) {
         let ((now, work_now), (before, work), growths) = (self.energies(), &step.before, step.growths());
-        let of_tip = |((growth, [then, offset_then]), [now, offset]): ((&f64, &[f64; 2]), [f64; 2])| {
-            0.5 * (then + now) * (growth + offset - offset_then)
-        };
-        let released: f64 = growths.iter().zip(before).zip(now).map(of_tip).sum();
         let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();
-        let (block, length) = ReleasedEnergy::of_block(self.case, released, &growths, &grown, [*work, work_now], cycles);
+        let (block, length) = ReleasedEnergy::of_block(self.case, [before, &now], &growths, &grown, [*work, work_now], cycles);
         self.state.balance.take(block, length, self.body.horizon());
     }
 

@@ -13,9 +13,8 @@ use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::remove_fragments;
 use crate::growth::cross_check::CrossCheck;
-use crate::growth::end_of_life;
 use crate::growth::plate;
-use crate::growth::record::{CurvePoint, StopReason, TipRecord};
+use crate::growth::record::{CurvePoint, TipRecord};
 use crate::growth::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
 use crate::specimen::geometry::meeting_share;
 use crate::units::MM;
@@ -31,7 +30,7 @@ impl TipField<'_> {
     }
 
     /// The plate as it stands, as a row; ΔK and da/dN are those of the fastest tip.
-    fn row(&self, cycles: f64, work: f64, broken_bonds: usize) -> CurvePoint {
+    pub(super) fn row(&self, cycles: f64, work: f64, broken_bonds: usize) -> CurvePoint {
         let now = |tip: &Tip| TipRecord {
             state: if tip.state == TipState::Active && tip.is_closed { TipState::Closed } else { tip.state },
             position: self.position(tip),
@@ -39,39 +38,9 @@ impl TipField<'_> {
             factors: Some(tip.factors),
             t_stress: Some(tip.t_stress),
         };
-        let tips: Vec<TipRecord> = self.state.tips.iter().map(now).collect();
-        let growths: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
+        let tips = self.state.tips.iter().map(now).collect();
         let lead = self.fastest().map(|tip| &self.state.tips[tip]);
-        let (k_max, growth_rate) = lead.map_or((f64::NAN, f64::NAN), |tip| (tip.equivalent(), tip.rate));
-        CurvePoint {
-            cycles,
-            crack_length: self.case.specimen.crack_length_after(&growths),
-            delta_k: self.case.loading.range_share() * k_max,
-            growth_rate,
-            work,
-            broken_bonds,
-            tips,
-        }
-    }
-
-    /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or grows.
-    pub(super) fn reason_before(&self) -> Option<StopReason> {
-        let states: Vec<TipState> = self.state.tips.iter().map(|tip| tip.state).collect();
-        end_of_life::reason_to_stop(self.case, self.end, self.last(), &states, self.fastest().is_some())
-    }
-
-    /// The row after an increment of so many cycles, and the reason to stop: run-out and toughness end the run between two rows, `end`
-    /// after this one.
-    pub(super) fn row_after(
-        &self,
-        cycles: f64,
-        work: f64,
-        broken_bonds: usize,
-        end: Option<StopReason>,
-    ) -> (CurvePoint, Option<StopReason>) {
-        let last = self.last();
-        let next = self.row(last.cycles + cycles, work, last.broken_bonds + broken_bonds);
-        end_of_life::row_after(self.case, last, next, end)
+        CurvePoint::of_tips(self.case, [cycles, work], broken_bonds, tips, lead.map(|tip| (tip.equivalent(), tip.rate)))
     }
 
     /// Lets the bonds ahead of all active tips lose remaining life λ up to where the tips are now; broken bonds are left out.
