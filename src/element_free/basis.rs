@@ -290,20 +290,24 @@ impl AnyBasis {
         scale: f64,
         values: &mut Vec<Value>,
     ) -> bool {
+        let polynomials = |values: &mut Vec<Value>| match self.kind {
+            BasisKind::Linear => shape_functions(&Linear, at, known, near, scale, values),
+            BasisKind::Quadratic => shape_functions(&Quadratic, at, known, near, scale, values),
+        };
         let [inner, outer] = RAMP_SPACINGS;
         let away = |tip: &&TipAxes| distance(at, tip.at) / tip.spacing;
         let nearest = self.tips.iter().min_by(|a, b| away(a).total_cmp(&away(b))).filter(|tip| away(tip) < outer);
-        let Some(tip) = nearest else { return self.polynomials(at, known, near, scale, values) };
+        let Some(tip) = nearest else { return polynomials(values) };
         let share = ((outer - away(&tip)) / (outer - inner)).min(1.0);
         let mut of_basis = Vec::new();
         if !shape_functions(&Intrinsic(tip), at, known, near, scale, &mut of_basis) {
-            return self.polynomials(at, known, near, scale, values);
+            return polynomials(values);
         }
         if share == 1.0 {
             *values = of_basis;
             return true;
         }
-        if !self.polynomials(at, known, near, scale, values) {
+        if !polynomials(values) {
             return false;
         }
         let length = distance(at, tip.at);
@@ -317,19 +321,5 @@ impl AnyBasis {
             value.value += share * more;
         }
         true
-    }
-
-    fn polynomials(
-        &self,
-        at: Point,
-        known: (&[u32], &[Point], &[f64]),
-        near: &Near,
-        scale: f64,
-        values: &mut Vec<Value>,
-    ) -> bool {
-        match self.kind {
-            BasisKind::Linear => shape_functions(&Linear, at, known, near, scale, values),
-            BasisKind::Quadratic => shape_functions(&Quadratic, at, known, near, scale, values),
-        }
     }
 }
