@@ -7,10 +7,9 @@
 
 use crate::case::Case;
 use crate::element_free::field::Discretisation;
-use crate::element_free::raster;
 use crate::element_free::resolution::Resolution;
 use crate::element_free::rim_stress::{RimStress, rim_stresses};
-use crate::element_free::solve::solve;
+use crate::element_free::solve::{raster, raster_fields, solve};
 use crate::error::{Error, Result};
 use crate::growth::element_free::initial_cracks;
 use crate::levels::PointGrid;
@@ -93,8 +92,8 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
         let is_settled = resolution.in_radius >= IN_RADIUS_LEAST && change.is_some_and(|change| change < SETTLED)
             || !rims.iter().any(|rim| rim.is_round);
         if is_settled || solves > REFINEMENTS || nodes > NODES_MOST {
-            let (displacement, stress) = raster::fields(specimen, &plate, &solution.u, far, case.material.plane, share);
-            let grid = raster::grid(specimen, far);
+            let (displacement, stress) = raster_fields(specimen, &plate, &solution.u, far, case.material.plane, share);
+            let grid = raster(specimen, far);
             return Ok(Stressed {
                 gross: specimen.gross_stress(share * load),
                 moved: most_moved(&grid, &displacement),

@@ -3,10 +3,10 @@
 //! `K_ab = h ∫ e_aᵀ D e_b dA` with e the strain of an unknown. The matrix of a cell is one of all unknowns in reach, and goes straight
 //! to the dense matrix of the part of the plate that the cell lies in ([`super::dissection`]).
 
+use super::basis::Value;
 use super::cells::QuadraturePoint;
 use super::field::{Discretisation, Local, TipFields, singular};
 use super::front::{Front, lower_product, whole_product};
-use super::shape::Value;
 use crate::error::Result;
 
 /// Area of points that may be left out where nodes in reach do not span the basis, over that of a cell: in the wedge between a slant

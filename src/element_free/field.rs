@@ -4,14 +4,13 @@
 //! around it (partition of unity: Melenk and Babuška 1996, CMAME 139:289; Belytschko and Black 1999, IJNME 45:601). Without them K is
 //! 4 % wrong with 900 nodes, with them 0.1 %.
 
-use super::basis::{AnyBasis, Enrichment};
+use super::basis::{AnyBasis, Enrichment, Value};
 use super::crack::{Tip, TipAxes, cracks};
 use super::cuts::{Near, Obstacles};
 use super::grid::Grid;
 use super::nodes::Nodes;
 use super::resolution::Resolution;
 use super::rims::sides;
-use super::shape::Value;
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{bounding_box, distance};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen};

@@ -1,8 +1,6 @@
 //! Following a crack tip through the bonds that break around it.
 //!
-//! A straight crack of length Δa with unit normal n severs, of the bonds with vector ξ_k, `Δa |ξ_k·n| / Δ²`. Weighting a
-//! bond with its spring stiffness times length, g_k, a broken bond stands for the crack length `g_k / ρ(n)`,
-//! `ρ(n) = Σ_k g_k |ξ_k·n| / Δ²` over the half stencil.
+//! A broken bond stands for the crack length `g_k / ρ(n)` ([`crate::body::severed`]).
 //!
 //! The bonds that broke last, half a horizon of crack of them, have their centre c a quarter horizon behind the tip;
 //! together with the half horizon of crack before them they show the direction d. Growth is the way of that centre along the

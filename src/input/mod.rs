@@ -13,4 +13,4 @@ pub use document::{Document, ForeignSections, Sections};
 pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256};
 pub use quantity::*;
 pub(crate) use slice::shorten;
-pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, slice, table_of, value_at};
+pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, refuse_given, slice, table_of, value_at};

@@ -46,6 +46,14 @@ pub fn slice<T: DeserializeOwned>(value: &Value, path: &str) -> Result<T> {
     value.clone().try_into().map_err(|error| explain(&error, value, path))
 }
 
+/// Refuses the first key of a section that is given, though it has no use there.
+pub fn refuse_given(section: &str, keys: &[(&str, bool)], problem: &str, remedy: &str) -> Result<()> {
+    match keys.iter().find(|(_, is_given)| *is_given) {
+        Some((key, _)) => Err(input_missing(&format!("{section}.{key}"), problem, remedy)),
+        None => Ok(()),
+    }
+}
+
 /// The table at `path`, refused with words if it is anything else.
 pub fn table_of<'v>(value: &'v Value, path: &str) -> Result<&'v Table> {
     value.as_table().ok_or_else(|| {

@@ -9,7 +9,7 @@ use toml::Value;
 
 use super::{Input, forces};
 use crate::error::{Result, input, input_missing};
-use crate::input::{number, shorten, slice, table_of};
+use crate::input::{number, refuse_given, shorten, slice, table_of};
 use crate::specimen::geometry::{bounding_box, distance, unit};
 use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
 use crate::units::MM;
@@ -29,16 +29,11 @@ pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Spec
         return apply_to_plate(input, supports, specimen, parallel_ratio);
     }
     let kind = specimen.kind;
-    let given = [
-        ("loading.edges", input.edges.is_some()),
-        ("loading.direction", input.direction.is_some()),
-        ("loading.pins", input.pins.is_some()),
-        ("loading.rollers", input.rollers.is_some()),
-        ("supports", supports.is_some()),
-    ];
-    if let Some((key, _)) = given.iter().find(|(_, given)| *given) {
-        let problem = format!("does not go with {kind}, which brings its own loads and grips");
-        return Err(input_missing(key, problem, "leave it out, or describe the specimen as kind = \"plate\""));
+    let problem = format!("does not go with {kind}, which brings its own loads and grips");
+    let remedy = "leave it out, or describe the specimen as kind = \"plate\"";
+    refuse_given("loading", &input.places(), &problem, remedy)?;
+    if supports.is_some() {
+        return Err(input_missing("supports", problem, remedy));
     }
     if parallel_ratio != 0.0 {
         if specimen.load_measure == LoadMeasure::Force {

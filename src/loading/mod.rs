@@ -42,6 +42,14 @@ struct Input {
     rollers: Option<Vec<Value>>,
 }
 
+impl Input {
+    /// Keys that say where the load acts, and whether they are given.
+    fn places(&self) -> [(&'static str, bool); 4] {
+        let Input { edges, direction, pins, rollers, .. } = self;
+        [("edges", edges.is_some()), ("direction", direction.is_some()), ("pins", pins.is_some()), ("rollers", rollers.is_some())]
+    }
+}
+
 /// What every cycle repeats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadControl {

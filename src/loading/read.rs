@@ -6,7 +6,7 @@ use toml::Value;
 use super::boundary;
 use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
 use crate::error::{self, Result, input, input_missing};
-use crate::input::{FORCE, FORCE_KN, Quantity, STRESS, number, shorten, slice, table_of};
+use crate::input::{FORCE, FORCE_KN, Quantity, STRESS, number, refuse_given, shorten, slice, table_of};
 use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
 use crate::units::MM;
 
@@ -95,17 +95,9 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
 
 /// Pressure on the cracks and no other load: the nominal load is the pressure.
 fn pressure_alone(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, ratio: f64) -> Result<Loading> {
-    let given = [
-        ("edges", input.edges.is_some()),
-        ("pins", input.pins.is_some()),
-        ("rollers", input.rollers.is_some()),
-        ("direction", input.direction.is_some()),
-        ("stress_parallel_ratio", input.stress_parallel_ratio.is_some()),
-    ];
-    if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
-        let problem = "says where a load acts, and none is given beside crack_pressure_mpa";
-        return Err(input_missing(&format!("loading.{key}"), problem, format!("leave it out, or give one of {MAGNITUDES}")));
-    }
+    let problem = "says where a load acts, and none is given beside crack_pressure_mpa";
+    let given = [&input.places()[..], &[("stress_parallel_ratio", input.stress_parallel_ratio.is_some())]].concat();
+    refuse_given("loading", &given, problem, &format!("leave it out, or give one of {MAGNITUDES}"))?;
     boundary::read_supports(supports, specimen)?;
     let maximum = read_crack_pressure(input, specimen)?.unwrap_or_default();
     specimen.loads.clear();

@@ -3,12 +3,11 @@
 use std::f64::consts::PI;
 
 use perilife::case::Case;
-use perilife::element_free::basis::{BasisKind, Enrichment};
+use perilife::element_free::basis::{BasisKind, Enrichment, Value};
 use perilife::element_free::crack::{Tip, TipAxes};
 use perilife::element_free::factors::integral;
 use perilife::element_free::field::{Discretisation, Local};
 use perilife::element_free::resolution::{IN_RADIUS, Resolution};
-use perilife::element_free::shape::Value;
 use perilife::element_free::solve::solve;
 use perilife::growth::element_free::initial_tips;
 use perilife::material::{Material, Plane};

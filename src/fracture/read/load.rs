@@ -6,7 +6,7 @@ use toml::Value;
 use super::region;
 use crate::error::{Result, input, input_missing};
 use crate::fracture::scene::{Action, LoadRamp, Region, SceneLoad};
-use crate::input::{Quantity, number, slice};
+use crate::input::{Quantity, number, refuse_given, slice};
 use crate::specimen::geometry::unit;
 use crate::specimen::{Edge, Point, Specimen};
 use crate::units::{MM, MPA};
@@ -225,10 +225,7 @@ fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<(Reg
         }
         (None, Some(regions)) => {
             let given = [("grip_mm", load.grip_mm.is_some()), ("range_mm", load.range_mm.is_some())];
-            if let Some((key, _)) = given.iter().find(|(_, given)| *given) {
-                let problem = "goes with edges, not with regions";
-                return Err(input_missing(&format!("{path}.{key}"), problem, "leave it out"));
-            }
+            refuse_given(path, &given, "goes with edges, not with regions", "leave it out")?;
             if regions.is_empty() || regions.len() > REGIONS_MAX {
                 let remedy = format!("give 1 to {REGIONS_MAX} boxes {{ from_mm = [x, y], to_mm = [x, y] }}");
                 return Err(input(&regions_key, format!("{} regions", regions.len()), "is no place of a load", remedy));

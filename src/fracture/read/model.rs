@@ -9,7 +9,7 @@ use crate::case::model::{check_spacing, default_spacing};
 use crate::error::{Error, Result, input, input_missing};
 use crate::fracture::correspondence::elasticity::SILLING_FACTOR;
 use crate::fracture::scene::{Discretisation, PointLaw, Procedure, SceneLaw, SceneModel, SceneSolver, ZeroEnergyControl};
-use crate::input::{LENGTH, number, slice};
+use crate::input::{LENGTH, number, refuse_given, slice};
 use crate::material::Material;
 use crate::specimen::Specimen;
 
@@ -92,10 +92,8 @@ fn bonds(name: Option<&str>, given: &Input, material: &Material) -> Result<Scene
         ("zero_energy_control", given.zero_energy_control.is_some()),
         ("zero_energy_factor", given.zero_energy_factor.is_some()),
     ];
-    if let Some((key, _)) = controls.iter().find(|(_, given)| *given) {
-        let problem = format!("goes with bond_law = \"correspondence\"; {kind} has no zero-energy modes");
-        return Err(input_missing(&format!("model.{key}"), problem, "leave it out"));
-    }
+    let problem = format!("goes with bond_law = \"correspondence\"; {kind} has no zero-energy modes");
+    refuse_given("model", &controls, &problem, "leave it out")?;
     let kernel = match kind {
         BondLawKind::BondBased | BondLawKind::OneBondTwoParameter => Kernel::Constant,
         BondLawKind::TwoParameter | BondLawKind::StateBased => Kernel::Conical,
@@ -129,10 +127,8 @@ fn correspondence(given: &Input) -> Result<SceneLaw> {
         ("surface_correction", given.surface_correction.is_some()),
         ("kinematics", given.kinematics.is_some()),
     ];
-    if let Some((key, _)) = of_bonds.iter().find(|(_, given)| *given) {
-        let problem = "goes with laws of bonds, not with bond_law = \"correspondence\"";
-        return Err(input_missing(&format!("model.{key}"), problem, "leave it out"));
-    }
+    let problem = "goes with laws of bonds, not with bond_law = \"correspondence\"";
+    refuse_given("model", &of_bonds, problem, "leave it out")?;
     const FACTOR: &str = "model.zero_energy_factor";
     let control = given.zero_energy_control.unwrap_or(ZeroEnergyControl::Silling);
     let factor = match (control, given.zero_energy_factor) {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ElementFree;
 use super::front::Front;
-use crate::element_free::raster;
+use crate::element_free::solve::{raster, raster_fields};
 use crate::error::{Error, Result};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
@@ -107,7 +107,7 @@ impl CrackGrowth for ElementFree<'_> {
     }
 
     fn grid(&self) -> Option<PointGrid> {
-        Some(raster::grid(&self.case.specimen, self.settings.resolution.far))
+        Some(raster(&self.case.specimen, self.settings.resolution.far))
     }
 
     fn fields(&mut self) -> Result<Option<Fields>> {
@@ -120,7 +120,7 @@ impl CrackGrowth for ElementFree<'_> {
         let Some((plate, solution)) = &self.plate else { return Ok(None) };
         let share = self.case.loading.share(self.work);
         let (specimen, far) = (&self.case.specimen, self.settings.resolution.far);
-        let (displacement, stress) = raster::fields(specimen, plate, &solution.u, far, self.case.material.plane, share);
+        let (displacement, stress) = raster_fields(specimen, plate, &solution.u, far, self.case.material.plane, share);
         Ok(Some(Fields { damage: vec![0.0; displacement.len()], remaining_life: Vec::new(), displacement, stress }))
     }
 
