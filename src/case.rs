@@ -12,6 +12,7 @@ mod law_source;
 pub mod model;
 mod nodes;
 mod read;
+pub mod record;
 
 pub use choices::{Choices, Failure, Method};
 pub use law_source::{LAW_KEYS, fitted_record, remove_law};
@@ -19,8 +20,7 @@ pub use read::{RECORD, SECTIONS};
 
 use crate::body::lattice::fitting_spacing;
 use crate::bond_law::{BondLaw, SurfaceCorrection};
-use crate::calibration::record::FittedRecord;
-use crate::calibration::record::law::LawRecord;
+use crate::case::record::{FittedRecord, LawRecord};
 use crate::element_free::resolution::ElementFreeSettings;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;

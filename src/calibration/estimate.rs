@@ -8,6 +8,7 @@ use crate::calibration::outliers::{RobustLine, robust_line, runs, step_rates};
 use crate::calibration::paris::Paris;
 use crate::calibration::power_law::PowerLaw;
 use crate::calibration::search::Constants;
+use crate::case::record::Estimate;
 use crate::fatigue::STEADY_EXPONENTS;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
@@ -16,14 +17,6 @@ const ERRORS_APART: f64 = 2.0;
 
 /// Smallest difference of exponents worth a word: computed curves have hardly any error.
 const APART_MIN: f64 = 0.05;
-
-crate::kinds! {
-    /// Estimates of the constants of a law.
-    pub enum Estimate for "estimate" {
-        LeastSquares = "least_squares": "least squares on lives",
-        Robust = "robust": "repeated median of rates (Siegel 1982), where readings do not belong",
-    }
-}
 
 /// C and m by the repeated median of rates.
 #[derive(Debug, Clone, Copy, PartialEq)]

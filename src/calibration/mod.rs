@@ -43,7 +43,6 @@ pub mod paris;
 pub mod power_law;
 pub mod rates;
 mod readings;
-pub mod record;
 pub mod results;
 mod roles;
 pub mod search;

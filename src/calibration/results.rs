@@ -7,9 +7,8 @@ use serde::Serialize;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::{Fit, FittedCurve};
 use crate::calibration::lack_of_fit::LackOfFit;
-use crate::calibration::leave_out::LeaveOut;
-use crate::calibration::record::{FittedRecord, SourceFile};
 use crate::case::Method;
+use crate::case::record::{FittedRecord, LeaveOut, SourceFile};
 use crate::cells::field;
 use crate::units::{GPA, MM};
 

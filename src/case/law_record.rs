@@ -3,7 +3,7 @@
 use toml::Value;
 
 use super::law_source::LAW_KEYS;
-use crate::calibration::record::law::LawRecord;
+use crate::case::record::LawRecord;
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::input::{Folder, slice, value_at};

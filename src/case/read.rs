@@ -6,7 +6,7 @@ use toml::{Table, Value};
 
 use super::choices::{Choices, Method};
 use super::{Case, LAW_KEYS, LawSource, boundaries, fatigue, first_load, law, law_record, model, remove_law};
-use crate::calibration::record::FittedRecord;
+use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
 use crate::fatigue::growth_law::GrowthLawKind;

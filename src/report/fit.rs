@@ -8,8 +8,8 @@ use super::output::write_file;
 use super::provenance;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::Fit;
-use crate::calibration::record::FittedRecord;
 use crate::calibration::results::{FitReport, fit_curves_csv};
+use crate::case::record::FittedRecord;
 use crate::error::{Error, Result};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 

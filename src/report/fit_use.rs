@@ -1,6 +1,6 @@
 //! How far a run stays within what its law was fitted to, and how sure that law is.
 
-use crate::calibration::record::FittedRecord;
+use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource, Method};
 use crate::predict::Prediction;
 use crate::units::MPA_SQRT_M;

@@ -9,7 +9,7 @@ use super::hypercube::hypercube;
 use super::scatter::{self, LawScatter};
 use super::vary::Spread;
 use crate::calibration::case::remove_law;
-use crate::calibration::record::FittedRecord;
+use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource, Method, fitted_record};
 use crate::error::{Error, InputError, Result, input_missing};
 use crate::input::{Document, Folder, value_at};

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::calibration::case::remove_law;
-use crate::calibration::record::FittedRecord;
 use crate::case::Case;
+use crate::case::record::FittedRecord;
 use crate::error::Result;
 use crate::input::Document;
 use crate::predict::{Prediction, Silent, predict};

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::calibration::record::FittedRecord;
+use perilife::case::record::FittedRecord;
 use perilife::report::csv::read_a_n;
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use perilife::calibration::estimate::Estimate;
-use perilife::calibration::record::FittedRecord;
+use perilife::case::record::{Estimate, FittedRecord};
 use perilife::case::{Case, LawSource};
 
 /// A plate of 100 x 300 mm with the slant crack of the made-up run and an inline law; the model names the bond law and a

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use perilife::calibration::calibrate::calibrate;
 use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::estimate::Estimate;
 use perilife::calibration::fit::Fit;
 use perilife::calibration::lack_of_fit::EndMiss;
 use perilife::calibration::results::{FitReport, record};
+use perilife::case::record::Estimate;
 use perilife::input::Folder;
 use perilife::predict::Silent;
 

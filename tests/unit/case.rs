@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use perilife::Error;
 use perilife::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use perilife::calibration::estimate::Estimate;
-use perilife::calibration::record::FittedRecord;
+use perilife::case::record::{Estimate, FittedRecord};
 use perilife::case::{Case, LawSource};
 use perilife::input::Folder;
 use perilife::material::library;

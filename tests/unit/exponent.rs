@@ -5,8 +5,8 @@ use std::path::Path;
 
 use perilife::calibration::calibrate::calibrate;
 use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::record::FittedRecord;
 use perilife::calibration::results::{FitReport, record};
+use perilife::case::record::FittedRecord;
 use perilife::case::{Case, fitted_record};
 use perilife::predict::{Silent, predict};
 use tempfile::{TempDir, tempdir};

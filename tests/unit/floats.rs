@@ -4,9 +4,9 @@ use std::path::Path;
 
 use perilife::calibration::calibrate::calibrate;
 use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::record::FittedRecord;
 use perilife::calibration::results::record;
 use perilife::case::Case;
+use perilife::case::record::FittedRecord;
 use perilife::input::{Document, Folder};
 use perilife::predict::Silent;
 use perilife::report::csv::{Row, parse_a_n, table};

@@ -4,9 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Uses against the order, each with its reason.
-const EXCEPTIONS: [(&str, &str); 4] = [
-    // The record is plain data that `calibrate` writes and a case reads; the search itself stays below `predict`.
-    ("case", "calibration::record"),
+const EXCEPTIONS: [(&str, &str); 3] = [
     // K of `sif` is that of the first row of a run, read by nothing else.
     ("stress_intensity", "growth::tip_field"),
     ("stress_intensity", "growth::record"),

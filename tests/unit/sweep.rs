@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::calibration::record::FittedRecord;
+use perilife::case::record::FittedRecord;
 use perilife::case::{Case, fitted_record};
 use perilife::input::{Document, Folder};
 use perilife::predict::{Silent, predict};

@@ -9,7 +9,7 @@ use super::candidate::Given;
 use super::rows::{RateRow, of_readings, read};
 use super::{FitLaw, LawFits, fit_laws};
 use crate::calibration::case::{CalibrationCase, source};
-use crate::calibration::record::SourceFile;
+use crate::case::record::SourceFile;
 use crate::error::{Result, input, input_missing};
 use crate::input::{Document, INTENSITY, number, slice, value_at};
 use crate::units::MPA_SQRT_M;

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::case::LawCase;
 use super::fit::LawFit;
 use super::{FitLaw, LawFits};
-use crate::calibration::record::law::LawRecord;
+use crate::case::record::LawRecord;
 use crate::cells::field;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 

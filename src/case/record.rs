@@ -1,12 +1,19 @@
 //! `fitted.toml`: the calibrated law with all it depends on. One record is one whole: constants are meaningless
-//! without horizon, law, kernel, corrections and zone they were fitted with.
+//! without horizon, law, kernel, corrections and zone they were fitted with. Of a law over K: its constants under the keys of `[fatigue]`,
+//! and what they were fitted to.
 
-pub mod law;
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
 
-use crate::calibration::estimate::Estimate;
-use crate::calibration::leave_out::LeaveOut;
+crate::kinds! {
+    /// Estimates of the constants of a law.
+    pub enum Estimate for "estimate" {
+        LeastSquares = "least_squares": "least squares on lives",
+        Robust = "robust": "repeated median of rates (Siegel 1982), where readings do not belong",
+    }
+}
 
 /// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -98,4 +105,62 @@ pub struct SourceFile {
     pub file: String,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
+}
+
+/// Cycles of a specimen that do not count.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeaveOut {
+    /// Name of the specimen; may be left out where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specimen: Option<String>,
+    /// First cycles, as the file counts them.
+    pub from_cycles: f64,
+    /// Last cycles.
+    pub to_cycles: f64,
+    /// Why.
+    pub reason: String,
+}
+
+/// A fitted law; keys and units as in the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LawRecord {
+    /// Material name; empty where the calibration had none.
+    pub material: String,
+    /// Smallest ΔK of the rates.
+    pub delta_k_min_mpa_sqrt_m: f64,
+    /// Largest ΔK of the rates.
+    pub delta_k_max_mpa_sqrt_m: f64,
+    /// Smallest stress ratio of the rates.
+    pub stress_ratio_min: f64,
+    /// Largest stress ratio of the rates.
+    pub stress_ratio_max: f64,
+    /// How many rates.
+    pub rates: usize,
+    /// Root mean square of ln da/dN about the law.
+    pub rms_log_rate: f64,
+    /// Criterion of the next best law less that of this one; absent where there is no other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub aicc_margin: Option<f64>,
+    /// Program version.
+    pub version: String,
+    /// `growth_law` and its constants, as a case has them.
+    pub fatigue: Table,
+    /// Standard errors of the constants that were fitted, by the same keys.
+    pub errors: BTreeMap<String, f64>,
+    /// Files with their hashes.
+    pub sources: Vec<SourceFile>,
+}
+
+impl LawRecord {
+    /// Whether the content of a `fitted.toml` is such a record.
+    pub fn is_of(table: &Table) -> bool {
+        table.contains_key("fatigue")
+    }
+
+    /// `growth_law`.
+    pub fn kind(&self) -> &str {
+        self.fatigue.get("growth_law").and_then(Value::as_str).unwrap_or_default()
+    }
 }
