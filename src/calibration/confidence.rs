@@ -12,8 +12,12 @@
 //! scatter independently by the same relative σ: the rms of the relative residual increments, each by its share of the life. Counted
 //! alike, one odd reading in the last percent of a life would double the error of the whole fit.
 
-use crate::calibration::criterion::Criterion;
 use nalgebra::{Matrix2, Vector2};
+
+use super::criterion::Criterion;
+use super::paris::Paris;
+use crate::error::{Error, Result};
+use crate::fatigue::STEADY_EXPONENTS;
 
 /// Covariance of (ln A, p) and the scatter it rests on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,4 +93,29 @@ pub fn distance_squared(covariance: [[f64; 2]; 2], difference: [f64; 2]) -> f64 
     let matrix = Matrix2::new(covariance[0][0], covariance[0][1], covariance[1][0], covariance[1][1]);
     let difference = Vector2::from(difference);
     matrix.try_inverse().map_or(f64::NAN, |inverse| difference.dot(&(inverse * difference)))
+}
+
+/// Below this ratio rates of every exponent are alike.
+const DELTA_K_RATIO_NONE: f64 = 1.01;
+
+/// Refuses a p that the readings do not identify: its error is that of a p of which only the ends of the search are known.
+pub(super) fn check_identified(name: &str, confidence: &Confidence, paris: &Paris) -> Result<()> {
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    let (error, ratio) = (confidence.covariance[1][1].sqrt(), paris.delta_k_max / paris.delta_k_min);
+    if error < (high - low) / 12.0_f64.sqrt() && ratio > DELTA_K_RATIO_NONE {
+        return Ok(());
+    }
+    Err(Error::Mechanics(format!(
+        "{name}: the misfit has no smallest value that tells p: its standard error is {error:.2} where {low} to {high} are searched, and ΔK \
+         varies by a factor {ratio:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] \
+         parameters = [\"a\"] and p = ..."
+    )))
+}
+
+/// What it means that a searched p is an end of its range.
+pub(super) fn end_of_range(p: f64) -> String {
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    format!(
+        "the misfit is smallest at p = {p:.3}, an end of the range searched, {low} to {high}: the curve does not follow the law"
+    )
 }

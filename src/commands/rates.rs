@@ -7,18 +7,16 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::unaged::case_without_law;
-use crate::calibration::decimal::Decimal;
-use crate::calibration::measured::{
-    ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, first_of, read_into,
-};
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt;
-use crate::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
-use crate::calibration::test_piece::{TestPiece, add_delta_k};
+use crate::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
 use crate::case::Case;
 use crate::cells::field;
 use crate::error::{Result, input};
 use crate::input::{Opened, STREAM};
+use crate::measured::{
+    ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, first_of, read_into,
+};
 use crate::report::output::{OutputFile, Sort};
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};

@@ -1,8 +1,7 @@
 //! Growth rates of curves whose rate is known.
 
-use perilife::calibration::measured::MeasuredCurve;
-use perilife::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
-use perilife::calibration::test_piece::{TestPiece, add_delta_k};
+use perilife::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
+use perilife::measured::MeasuredCurve;
 use perilife::specimen::SpecimenKind;
 use perilife::units::{MM, MPA};
 

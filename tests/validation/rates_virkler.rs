@@ -2,9 +2,8 @@
 
 use std::collections::HashMap;
 
-use perilife::calibration::measured::{Import, MeasuredCurve, read};
-use perilife::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
-use perilife::calibration::test_piece::{TestPiece, add_delta_k};
+use perilife::calibration::rates::{RateMethod, RatePoint, TestPiece, add_delta_k, paris_line, rates};
+use perilife::measured::{Import, MeasuredCurve, read};
 use perilife::specimen::SpecimenKind;
 use perilife::units::{MM, MM_PER_CYCLE, MPA};
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::calibration::measured::{Measured, READINGS_MIN};
+use super::curve::{Measured, READINGS_MIN};
 use crate::case::record::LeaveOut;
 use crate::error::{Error, Result, input, input_missing};
 
