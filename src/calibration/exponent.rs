@@ -44,7 +44,7 @@ pub(super) fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_
     match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
         (_, Some(p), Some(_)) => Err(input("fit.p", p, "stands beside record: p is given twice", "give p or record")),
         (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
-        (true, None, None) => Ok(Exponent::fitted(delta_k_ratio.unwrap_or(f64::INFINITY))),
+        (true, None, None) => Ok(Exponent::default()),
         (true, None, Some(file)) => match delta_k_ratio {
             Some(ratio) => Exponent::record_if_needed(file, folder, method, ratio),
             None => {
@@ -53,7 +53,7 @@ pub(super) fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_
                 Err(input("fit.record", format!("\"{file}\""), problem, remedy))
             }
         },
-        (false, Some(p), None) => Ok(Exponent::given(p)),
+        (false, Some(p), None) => Ok(Exponent { fixed: Some(p), source: "given".to_owned(), ..Exponent::default() }),
         (false, None, Some(file)) => Exponent::of_record(file, folder, method),
         (false, None, None) => Err(input_missing(
             "fit.p",
@@ -75,36 +75,27 @@ pub(super) fn delta_k_ratio(curves: &[MeasuredCurve], k_i: &dyn Fn(f64) -> f64) 
 }
 
 /// The exponent of a calibration before its fit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exponent {
     /// Its value; `None` where it is fitted.
     pub fixed: Option<f64>,
     /// Standard error of a value from a record, else 0.
     pub error: f64,
-    /// `fitted`, `given`, `not_identified`, or the file of the record.
-    pub source: String,
+    /// `given`, or the file of the record; empty where it is fitted.
+    source: String,
     /// What the user should know about it.
     pub warning: Option<String>,
 }
 
 impl Exponent {
-    /// Fitted where the window spans a factor [`DELTA_K_RATIO_MIN`] in ΔK.
-    pub fn fitted(delta_k_ratio: f64) -> Self {
-        let source = if delta_k_ratio < DELTA_K_RATIO_MIN { "not_identified" } else { "fitted" };
-        Exponent { fixed: None, error: 0.0, source: source.to_owned(), warning: None }
-    }
-
-    /// Its source once a fit has shown by which factor ΔK varies, as a drawn plate does only then.
-    pub fn source_over(&self, delta_k_ratio: f64) -> String {
+    /// Where it comes from over a window with this ratio of ΔK, which on a drawn plate only a fit shows: `fitted`, `not_identified`, `given`
+    /// or the file of a record.
+    pub fn source_over(&self, delta_k_ratio: f64) -> &str {
         match self.fixed {
-            None => Self::fitted(delta_k_ratio).source,
-            Some(_) => self.source.clone(),
+            Some(_) => &self.source,
+            None if delta_k_ratio < DELTA_K_RATIO_MIN => "not_identified",
+            None => "fitted",
         }
-    }
-
-    /// As the file gives it.
-    pub fn given(p: f64) -> Self {
-        Exponent { fixed: Some(p), error: 0.0, source: "given".to_owned(), warning: None }
     }
 
     /// Of a record: p, or m for hand calculation.
@@ -117,18 +108,19 @@ impl Exponent {
         Ok(Exponent { fixed: Some(p), error, source: file.to_owned(), warning: None })
     }
 
-    /// The exponent of a record where the window does not tell it, else the fitted one.
-    pub fn record_if_needed(file: &str, folder: &Folder, method: Method, delta_k_ratio: f64) -> Result<Self> {
+    /// The exponent of a record where the window does not identify it, else the fitted one.
+    fn record_if_needed(file: &str, folder: &Folder, method: Method, delta_k_ratio: f64) -> Result<Self> {
         let of_record = Self::of_record(file, folder, method)?;
-        let (p, error) = (of_record.fixed.unwrap_or(f64::NAN), of_record.error);
-        if delta_k_ratio < DELTA_K_RATIO_MIN {
-            let warning = format!(
-                "the fit window spans only a factor {delta_k_ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} tells p): \
-                 p = {p:.4} ± {error:.4} is taken from {file}"
-            );
-            return Ok(Exponent { warning: Some(warning), ..of_record });
+        if delta_k_ratio >= DELTA_K_RATIO_MIN {
+            let warning = format!("the fit window spans a factor {delta_k_ratio:.2} in ΔK and tells p: {file} is not used");
+            return Ok(Exponent { warning: Some(warning), ..Self::default() });
         }
-        let warning = format!("the fit window spans a factor {delta_k_ratio:.2} in ΔK and tells p: {file} is not used");
-        Ok(Exponent { warning: Some(warning), ..Self::fitted(delta_k_ratio) })
+        let warning = format!(
+            "the fit window spans only a factor {delta_k_ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} tells p): \
+             p = {:.4} ± {:.4} is taken from {file}",
+            of_record.fixed.unwrap_or(f64::NAN),
+            of_record.error
+        );
+        Ok(Exponent { warning: Some(warning), ..of_record })
     }
 }

@@ -68,7 +68,7 @@ pub fn report(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Value {
 }
 
 /// Where p comes from: `fitted`, `given`, `not_identified`, or the file of a record.
-fn p_source(calibration: &CalibrationCase, fit: &Fit) -> String {
+fn p_source<'c>(calibration: &'c CalibrationCase, fit: &Fit) -> &'c str {
     calibration.exponent.source_over(fit.paris.delta_k_max / fit.paris.delta_k_min)
 }
 
@@ -126,7 +126,7 @@ pub fn summary(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Vec<Str
     let law = record(calibration, fit);
     let [from, to] = window_mm(fit);
     let life = 100.0 * (fit.record.life_fitted() / fit.record.life_measured() - 1.0);
-    let source = match p_source(calibration, fit).as_str() {
+    let source = match p_source(calibration, fit) {
         "fitted" => String::new(),
         "not_identified" => " (not identified)".to_owned(),
         "given" => " (given)".to_owned(),

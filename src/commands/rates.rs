@@ -97,10 +97,7 @@ pub fn run(args: &Args) -> Result<()> {
     let mut measured = read_into(&opened, &args.measured, &args.import()?)?;
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     if let Some(case) = &case {
-        let (limit, limit_name) = case.specimen.length_limit();
-        measured.check_lengths(limit, limit_name)?;
-        measured.resolve_loads(case)?;
-        measured.check_sides(&case.specimen);
+        measured.set_against(case)?;
     }
     let specimens = specimen_rates(&measured, method, case.as_ref())?;
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());

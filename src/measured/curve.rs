@@ -64,11 +64,7 @@ pub struct Loads {
 }
 
 impl Loads {
-    pub(super) fn empty(measure: LoadMeasure) -> Self {
-        Loads { measure, is_range: false, maximum: Vec::new(), ratio: Vec::new() }
-    }
-
-    pub(super) fn of_readings(&self, readings: &[usize]) -> Self {
+    fn of_readings(&self, readings: &[usize]) -> Self {
         let some = |of: &[f64]| readings.iter().filter_map(|&reading| of.get(reading).copied()).collect();
         Loads { maximum: some(&self.maximum), ratio: some(&self.ratio), ..*self }
     }
@@ -145,6 +141,11 @@ impl MeasuredCurve {
         self.source.lines.get(reading).copied().unwrap_or(reading + 1)
     }
 
+    /// What is wrong with a reading.
+    pub(super) fn fault(&self, reading: usize) -> Fault<'_> {
+        Fault { file: &self.source.file, line: self.source.lines.get(reading).copied(), key: None, value: None }
+    }
+
     /// Cycles from the first reading to the last.
     pub fn life(&self) -> f64 {
         self.cycles.last().unwrap_or(&0.0) - self.cycles.first().unwrap_or(&0.0)
@@ -192,12 +193,7 @@ impl Measured {
         for curve in &other.curves {
             let Some(earlier) = own.get(curve.specimen.as_str()) else { continue };
             let problem = format!("stands in {} too", earlier.source.file.display());
-            let fault = Fault {
-                file: &curve.source.file,
-                line: curve.source.lines.first().copied(),
-                key: Some("specimen"),
-                value: Some(&curve.specimen),
-            };
+            let fault = Fault { key: Some("specimen"), value: Some(&curve.specimen), ..curve.fault(0) };
             return Err(fault.error(problem, "give every specimen its own name"));
         }
         self.curves.extend(other.curves);
@@ -211,12 +207,7 @@ impl Measured {
         for curve in &self.curves {
             let Some(reading) = curve.crack_length.iter().position(|&a| a >= limit) else { continue };
             let value = format!("{}", round_off(curve.crack_length[reading] / curve.source.length_unit));
-            let fault = Fault {
-                file: &curve.source.file,
-                line: curve.source.lines.get(reading).copied(),
-                key: Some(&curve.source.length_column),
-                value: Some(&value),
-            };
+            let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(reading) };
             return Err(fault.error(
                 format!("is not inside the specimen, whose {limit_name} is {} mm", round_off(limit / MM)),
                 "check the number, its unit, and whether the file gives the crack length of the specimen's test standard",

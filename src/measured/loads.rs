@@ -4,7 +4,6 @@
 //! growth up to the reading had the new load; where it changes from reading to reading (shedding), it went from one to the other.
 
 use super::curve::{Loads, Measured, MeasuredCurve, first_of};
-use super::table::Fault;
 use crate::case::Case;
 use crate::error::Result;
 use crate::specimen::LoadMeasure;
@@ -16,6 +15,18 @@ pub const SAME_LOAD: f64 = 0.01;
 const SAME_RATIO: f64 = 0.02;
 
 impl Measured {
+    /// Sets the readings against the specimen and the load of a case.
+    ///
+    /// # Errors
+    /// Readings beyond the specimen; loads that it cannot have.
+    pub fn set_against(&mut self, case: &Case) -> Result<()> {
+        let (limit, limit_name) = case.specimen.length_limit();
+        self.check_lengths(limit, limit_name)?;
+        self.resolve_loads(case)?;
+        self.check_sides(&case.specimen);
+        Ok(())
+    }
+
     /// Sets the load of every reading against that of the case: [`MeasuredCurve::load_factor`].
     ///
     /// # Errors
@@ -30,10 +41,8 @@ impl Measured {
                 (own, of_case) if own == of_case => 1.0,
                 (LoadMeasure::Force, _) => 1.0 / (specimen.width * specimen.thickness),
                 (LoadMeasure::Stress, _) => {
-                    let fault =
-                        Fault { file: &curve.source.file, line: curve.source.lines.first().copied(), key: None, value: None };
                     let problem = format!("has loads as stresses, but a {} is loaded by a force on its pins", specimen.kind);
-                    return Err(fault.error(problem, "give columns of force_max and force_min"));
+                    return Err(curve.fault(0).error(problem, "give columns of force_max and force_min"));
                 }
             };
             let factor = |(&load, &ratio): (&f64, &f64)| {

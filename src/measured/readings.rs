@@ -127,7 +127,8 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
     if let Some((maximum, ratio)) = load {
         let measure = if is_stress(&series.loads[0]) { LoadMeasure::Stress } else { LoadMeasure::Force };
         let is_range = series.load(Role::Max).is_none();
-        let loads = curve.loads.get_or_insert_with(|| Loads { is_range, ..Loads::empty(measure) });
+        let none = || Loads { measure, is_range, maximum: Vec::new(), ratio: Vec::new() };
+        let loads = curve.loads.get_or_insert_with(none);
         loads.maximum.push(maximum);
         loads.ratio.push(ratio);
     }
