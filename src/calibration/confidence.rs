@@ -2,7 +2,7 @@
 //!
 //! A crack that runs slowly between two readings shifts all later cycles: errors of cumulated cycles are sums of errors
 //! of the increments and strongly correlated. The usual `s² (JᵀJ)⁻¹` takes them as independent and is far too sure of itself.
-//! So the least squares estimate on lives (best for life, see `misfit`) gets a sandwich covariance
+//! So the least squares estimate on lives (best for life, see `criterion`) gets a sandwich covariance
 //!
 //! ```text
 //! Cov = (JᵀWJ)⁻¹ JᵀW Σ WJ (JᵀWJ)⁻¹,   Σ = L diag(σ² ΔN_i²) Lᵀ
@@ -28,20 +28,15 @@ pub struct Confidence {
     pub increment_scatter: f64,
 }
 
-/// A curve at a fit, all three counted from the first reading.
-#[derive(Debug, Clone, Copy)]
-pub struct Lives<'a> {
-    /// A x cycles of the model at the measured lengths.
-    pub model: &'a [f64],
-    /// Their derivative over p; `None` where p was fixed.
-    pub model_per_p: Option<&'a [f64]>,
-    /// Measured cycles.
-    pub measured: &'a [f64],
-}
-
-/// Covariance at a fit by a criterion.
-pub fn confidence(criterion: Criterion, lives: &Lives<'_>, inverse_a: f64) -> Confidence {
-    let Lives { model, model_per_p, measured } = *lives;
+/// Covariance at a fit by a criterion: A x cycles `model` of the law at the measured lengths, their derivative over p (`None` where p was
+/// fixed) and `measured` cycles, all counted from the first reading.
+pub fn confidence(
+    criterion: Criterion,
+    model: &[f64],
+    model_per_p: Option<&[f64]>,
+    measured: &[f64],
+    inverse_a: f64,
+) -> Confidence {
     let increments: Vec<(f64, f64)> = model
         .windows(2)
         .zip(measured.windows(2))

@@ -4,7 +4,7 @@
 //! written, since its error does not grow with theirs.
 
 use super::case::CalibrationCase;
-use super::confidence::{Confidence, Lives, check_identified, confidence, end_of_range};
+use super::confidence::{Confidence, check_identified, confidence, end_of_range};
 use super::criterion::Criterion;
 use super::exponent::DELTA_K_RATIO_MIN;
 use super::lack_of_fit::{LackOfFit, lack_of_fit};
@@ -197,8 +197,7 @@ fn assess(
     let counted = curve.cycles_counted();
     let measured: Vec<f64> = apart.iter().map(|&i| counted[i]).collect();
     let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
-    let lives = Lives { model: &model, model_per_p: model_per_p.as_deref(), measured: &measured };
-    let confidence = confidence(task.criterion, &lives, 1.0 / a);
+    let confidence = confidence(task.criterion, &model, model_per_p.as_deref(), &measured, 1.0 / a);
     // Under changing loads an interval must not reach over two of them.
     let loads = curve.load_history();
     let lengths = match curve.is_plain() {

@@ -5,7 +5,7 @@
 //!   squares; rate and crack length are those of the parabola at the middle reading. The first and last three readings get
 //!   no rate. Seven readings have to have one load: where it changes, the rates are secants.
 //!
-//! ΔK of every rate, and the validity that depends on the specimen, follow from the [`TestPiece`].
+//! ΔK of every rate, and the validity that depends on the specimen, follow from the case ([`add_delta_k`]).
 
 use std::ops::RangeInclusive;
 
@@ -14,7 +14,6 @@ use nalgebra::{Matrix3, Vector3};
 use crate::case::Case;
 use crate::line::{Line, line};
 use crate::measured::{MeasuredCurve, side_difference_max};
-use crate::specimen::{LoadMeasure, SpecimenKind, net_section};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Smallest increment of crack length between readings that E647 (8.6.2) asks for, m.
@@ -188,64 +187,16 @@ pub fn paris_line(points: &[RatePoint]) -> Option<Line> {
     line(&log_k, &log_rate)
 }
 
-/// What ΔK and the validity of a rate depend on; SI.
-pub struct TestPiece<'a> {
-    /// Shape.
-    pub kind: SpecimenKind,
-    /// Width W of its test standard.
-    pub width: f64,
-    /// Thickness B.
-    pub thickness: f64,
-    /// Largest force of a cycle.
-    pub force_max: f64,
-    /// K_max over ΔK.
-    pub k_max_over_range: f64,
-    /// Stress ratio of the case.
-    pub ratio: f64,
-    /// Yield strength, where known.
-    pub yield_strength: Option<f64>,
-    /// ΔK at a crack length.
-    pub delta_k: &'a dyn Fn(f64) -> f64,
-}
-
-impl<'a> TestPiece<'a> {
-    /// The specimen of a case, with ΔK from `delta_k`.
-    pub fn of(case: &Case, delta_k: &'a dyn Fn(f64) -> f64) -> Self {
-        let specimen = &case.specimen;
-        let force_per_load = match specimen.load_measure {
-            LoadMeasure::Stress => specimen.width * specimen.thickness,
-            LoadMeasure::Force => 1.0,
-        };
-        TestPiece {
-            kind: specimen.kind,
-            width: specimen.width,
-            thickness: specimen.thickness,
-            force_max: case.loading.maximum * force_per_load,
-            k_max_over_range: 1.0 / case.loading.range_share(),
-            ratio: case.loading.ratio,
-            yield_strength: case.material.yield_strength,
-            delta_k,
-        }
-    }
-}
-
-/// Fills in ΔK and the flags that depend on the specimen.
-pub fn add_delta_k(points: &mut [RatePoint], piece: &TestPiece<'_>) {
+/// Fills in ΔK, by that of the load of the case (Pa√m) at a length (m), and the flags that depend on its specimen.
+pub fn add_delta_k(points: &mut [RatePoint], case: &Case, delta_k: &dyn Fn(f64) -> f64) {
+    let (specimen, loading) = (&case.specimen, &case.loading);
+    let uneven = side_difference_max(specimen.kind, specimen.width, specimen.thickness);
     for point in points {
-        point.delta_k = (piece.delta_k)(point.crack_length) * point.load_factor;
-        point.ratio = if point.ratio.is_nan() { piece.ratio } else { point.ratio };
-        let k_max = point.delta_k * piece.k_max_over_range;
-        point.flags.yielding = !piece.small_scale_yielding(point.crack_length, k_max, point.load_factor);
-        point.flags.uneven_front = point.side_difference > side_difference_max(piece.kind, piece.width, piece.thickness);
-    }
-}
-
-impl TestPiece<'_> {
-    /// Whether the ligament is large enough, see [`net_section::small_scale_yielding`]. True where the yield strength is not
-    /// known.
-    pub fn small_scale_yielding(&self, crack_length: f64, k_max: f64, load_factor: f64) -> bool {
-        let Some(yield_strength) = self.yield_strength else { return true };
-        let force = self.force_max * load_factor / self.thickness;
-        net_section::small_scale_yielding(self.kind, self.width, crack_length, force, k_max, yield_strength)
+        point.delta_k = delta_k(point.crack_length) * point.load_factor;
+        point.ratio = if point.ratio.is_nan() { loading.ratio } else { point.ratio };
+        let (load, k_max) = (loading.maximum * point.load_factor, point.delta_k / loading.range_share());
+        let holds = |strength| specimen.small_scale_yielding(point.crack_length, load, k_max, strength);
+        point.flags.yielding = !case.material.yield_strength.is_none_or(holds);
+        point.flags.uneven_front = point.side_difference > uneven;
     }
 }

@@ -192,18 +192,17 @@ fn tidy(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// `fit.json` of laws over K.
+/// `fit.json` of laws over K; null for what a law without a fit does not have.
 pub fn law_report(case: &LawCase, fits: &LawFits, wall_s: f64) -> Value {
     let candidate = |law: &LawFit| {
-        let is_fitted = !law.constants.is_empty();
         json!({
             "law": law.kind.name(),
             "constants": values(law),
             "standard_errors": errors(law),
             "fitted_constants": law.fitted,
-            "rms_log_rate": is_fitted.then(|| law.rms()),
-            "aicc": finite(law.aicc),
-            "delta_aicc": finite(law.aicc - fits.least_aicc()),
+            "rms_log_rate": law.rms(),
+            "aicc": law.aicc,
+            "delta_aicc": law.aicc - fits.least_aicc(),
             "left_out": law.left_out,
         })
     };
@@ -229,10 +228,6 @@ pub fn law_report(case: &LawCase, fits: &LawFits, wall_s: f64) -> Value {
         "version": env!("CARGO_PKG_VERSION"),
         "sources": case.sources,
     })
-}
-
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
 }
 
 fn values(law: &LawFit) -> Map<String, Value> {

@@ -71,9 +71,8 @@ pub(super) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
         None => by_roles(table, import, &mut warnings)?,
     };
     let separator = table.separator.map_or("", |separator| separator.name());
-    let mut layout = Layout { shape, series, decimal: Decimal::Point, separator, warnings };
-    layout.decimal = decide(table, &layout.numbers(), import.decimal)?;
-    Ok(layout)
+    let decimal = decide(table, &numbers(shape, &series), import.decimal)?;
+    Ok(Layout { shape, series, decimal, separator, warnings })
 }
 
 /// Refuses columns that the user names and the file does not have.
@@ -139,11 +138,6 @@ impl Series {
     pub fn load(&self, role: Role) -> Option<Column> {
         self.loads.iter().copied().find(|column| column.role == role)
     }
-
-    /// Columns of numbers.
-    fn numbers(&self) -> impl Iterator<Item = Column> {
-        std::iter::once(&self.cycles).chain(&self.lengths).chain(&self.sides).chain(&self.loads).copied()
-    }
 }
 
 impl Layout {
@@ -166,17 +160,21 @@ impl Layout {
         }
         keys
     }
+}
 
-    /// Columns of numbers.
-    fn numbers(&self) -> Vec<Column> {
-        let mut numbers: Vec<Column> = self.series.iter().flat_map(Series::numbers).collect();
-        if self.shape != Shape::Long {
-            // The column that all specimens share stands first.
-            numbers.sort_by_key(|column| column.index);
-            numbers.dedup_by_key(|column| column.index);
-        }
-        numbers
+/// Columns of numbers.
+fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
+    let of = |series: &Series| -> Vec<Column> {
+        let all = std::iter::once(&series.cycles).chain(&series.lengths).chain(&series.sides).chain(&series.loads);
+        all.copied().collect()
+    };
+    let mut numbers: Vec<Column> = series.iter().flat_map(of).collect();
+    if shape != Shape::Long {
+        // The column that all specimens share stands first.
+        numbers.sort_by_key(|column| column.index);
+        numbers.dedup_by_key(|column| column.index);
     }
+    numbers
 }
 
 /// Columns of crack length, and those of single sides beside them: where no column has the mean, the sides have it.

@@ -187,7 +187,7 @@ impl Measured {
     /// Puts the curves of another file behind these.
     ///
     /// # Errors
-    /// [`Error::Input`] if a specimen has a name that stands here already.
+    /// A specimen whose name another one has.
     pub fn add(&mut self, other: Measured) -> Result<()> {
         let own: HashMap<&str, &MeasuredCurve> = self.curves.iter().map(|curve| (curve.specimen.as_str(), curve)).collect();
         for curve in &other.curves {

@@ -1,8 +1,8 @@
 //! Tables of readings as laboratories write them: cycles, crack lengths and loads of one or many specimens.
 //!
-//! In the order data flows: what the user says of files ([`import`]); words and units of column [`names`], the [`header`] they make up,
-//! and [`numerals`]; the cells of a [`table`] (CSV in any usual dress, a workbook, with the feature `tables` also Parquet); its [`columns`]
-//! and the [`decimal`] sign; [`readings`] of every specimen, which make up a [`curve`] with [`loads`], some of them [left out](leave_out).
+//! In the order data flows: what the user says of files (`import`); words and units of column `names`, the `header` they make up,
+//! and `numerals`; the cells of a `table` (CSV in any usual dress, a workbook, with the feature `tables` also Parquet); its `columns`
+//! and the `decimal` sign; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`).
 //!
 //! Every complaint names file, line, column and value. A crack length that falls from one reading to the next is reading noise and
 //! accepted; cycles that fall or repeat are a mistake of the file and refused.
