@@ -63,6 +63,7 @@ pub mod solver;
 pub mod element_free;
 pub mod fatigue;
 pub mod case;
+pub mod measured;
 pub mod stress_intensity;
 pub mod growth;
 pub mod stress_concentration;

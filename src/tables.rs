@@ -15,7 +15,7 @@ use crate::cells::{CELLS_MAX, SMALLER, TEXT_MAX, UNPACKED_MAX, defused, too_many
 use crate::error::{Error, InputError, Result};
 use crate::units::unmistakable;
 
-pub use polars::prelude::DataFrame;
+pub use polars::prelude::{Column, DataFrame};
 
 /// Name of the column of crack length, mm.
 pub const LENGTH: &str = "crack_length_mm";
@@ -27,17 +27,6 @@ pub const CYCLES: &str = "cycles";
 /// Most rows of a table of readings.
 const ROWS_MAX: usize = 1_000_000;
 
-/// Values of one column.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Values {
-    /// Text.
-    Text(Vec<String>),
-    /// Numbers.
-    Numbers(Vec<f64>),
-    /// Numbers with gaps.
-    Gaps(Vec<Option<f64>>),
-}
-
 /// Cells of a stored table as text, which is what a checking reader wants to see.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
@@ -47,27 +36,17 @@ pub struct Cells {
     pub rows: Vec<Vec<String>>,
 }
 
-/// A frame of named columns of equal length.
-pub fn frame(columns: Vec<(&str, Values)>) -> Result<DataFrame> {
-    let columns = columns.into_iter().map(|(name, values)| match values {
-        Values::Text(values) => Column::new(name.into(), values),
-        Values::Numbers(values) => Column::new(name.into(), values),
-        Values::Gaps(values) => Column::new(name.into(), values),
-    });
-    assemble(columns.collect())
-}
-
 /// Wide to long: the first column stays, every other becomes rows of `specimen` (its name), `cycles` and the first column;
 /// empty cells are left out.
 pub fn wide_to_long(wide: &DataFrame) -> Result<DataFrame> {
-    let Some((length, specimens)) = wide.columns().split_first() else { return assemble(Vec::new()) };
+    let Some((length, specimens)) = wide.columns().split_first() else { return frame(Vec::new()) };
     let mut long: Option<DataFrame> = None;
     for specimen in specimens {
         let mut cycles = specimen.clone();
         cycles.rename(CYCLES.into());
         let name = Column::new_scalar(SPECIMEN.into(), Scalar::from(specimen.name().clone()), wide.height());
         let present = cycles.as_materialized_series().is_not_null();
-        let part = assemble(vec![name, cycles, length.clone()])?.filter(&present).map_err(trouble)?;
+        let part = frame(vec![name, cycles, length.clone()])?.filter(&present).map_err(trouble)?;
         long = Some(match long {
             None => part,
             // In place: a copy for every specimen would copy all the ones before.
@@ -77,7 +56,7 @@ pub fn wide_to_long(wide: &DataFrame) -> Result<DataFrame> {
             }
         });
     }
-    long.map_or_else(|| assemble(Vec::new()), Ok)
+    long.map_or_else(|| frame(Vec::new()), Ok)
 }
 
 /// Quantiles of `cycles` at equal `crack_length_mm` of a long table: `crack_length_mm,cycles_p05,cycles_p50,...` for shares
@@ -99,19 +78,12 @@ pub fn quantiles(long: &DataFrame, shares: &[f64]) -> Result<DataFrame> {
     for (share, column) in shares.iter().zip(columns) {
         all.push(Column::new(format!("cycles_p{:02.0}", 100.0 * share).into(), column));
     }
-    assemble(all)
+    frame(all)
 }
 
 /// Rows of `left` with the columns of `right` for the same `specimen` (left join).
 pub fn join_by_specimen(left: &DataFrame, right: &DataFrame) -> Result<DataFrame> {
     left.left_join(right, [SPECIMEN], [SPECIMEN]).map_err(trouble)
-}
-
-/// Numbers of a column, gaps as NaN.
-pub fn numbers(table: &DataFrame, name: &str) -> Result<Vec<f64>> {
-    let column = table.column(name).map_err(trouble)?;
-    let values = column.f64().map_err(trouble)?;
-    Ok(values.iter().map(|value| value.unwrap_or(f64::NAN)).collect())
 }
 
 /// The table as the bytes of a Parquet file.
@@ -132,7 +104,7 @@ pub fn csv(table: &DataFrame) -> Result<Vec<u8>> {
         column
     });
     let mut bytes = Vec::new();
-    CsvWriter::new(&mut bytes).finish(&mut assemble(columns.collect())?).map_err(trouble)?;
+    CsvWriter::new(&mut bytes).finish(&mut frame(columns.collect())?).map_err(trouble)?;
     Ok(bytes)
 }
 
@@ -204,7 +176,8 @@ fn cell(value: &AnyValue<'_>) -> String {
     }
 }
 
-fn assemble(columns: Vec<Column>) -> Result<DataFrame> {
+/// A frame of columns of equal length.
+pub fn frame(columns: Vec<Column>) -> Result<DataFrame> {
     DataFrame::new_infer_height(columns).map_err(trouble)
 }
 

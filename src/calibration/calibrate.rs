@@ -1,14 +1,22 @@
-//! A calibration from its file to the fit: K(a) of a peridynamic run or of the handbook, and the law fitted to it.
+//! A calibration from its file to the fit: of lives, by K(a) of a peridynamic run, of nodes or of the handbook; or of rates by laws over K.
 
-use crate::calibration::bond_constants::in_terms_of_bonds;
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::fit::{Fit, FitTask, fit};
-use crate::calibration::paris;
-use crate::calibration::power_law::PowerLaw;
-use crate::case::Method;
+use serde_json::Value;
+
+use super::case::CalibrationCase;
+use super::fit::{Bonds, Fit, FitTask, OwnPath, fit};
+use super::laws::LawFits;
+use super::laws::case::{LawCase, is_law_fit};
+use super::paris;
+use super::power_law::PowerLaw;
+use super::results;
+use super::search::Constants;
+use crate::case::{Case, Method};
 use crate::error::{Result, input_missing};
-use crate::predict::Observer;
+use crate::fatigue::paris::ParisLaw;
+use crate::fatigue::rate_constant::{rate_constant, rate_constant_slope};
+use crate::input::Document;
 use crate::predict::factor_curve::{EXPONENT_USUAL, FactorCurve};
+use crate::predict::{Observer, RunFigures};
 use crate::units::MPA_SQRT_M;
 use crate::watch;
 
@@ -19,6 +27,90 @@ const EXPONENT_SAME: f64 = 0.05;
 const STEP_ERROR_PERCENT: f64 = 0.05;
 /// Most runs of a plate whose tips share the growth by the exponent that is sought.
 const RUNS_MAX: usize = 4;
+
+/// A checked calibration file.
+pub enum Calibration {
+    /// Lives of readings, by the law of Paris.
+    Lives(Box<CalibrationCase>),
+    /// Rates, by laws over K.
+    Rates(Box<LawCase>),
+}
+
+/// A calibration with its fit.
+pub enum Fitted<'c> {
+    /// Of lives.
+    Lives(&'c CalibrationCase, Box<Fit>),
+    /// Of rates.
+    Rates(&'c LawCase, LawFits),
+}
+
+impl Calibration {
+    /// Reads the file and all that it names.
+    pub fn from_document(document: &Document) -> Result<Self> {
+        if is_law_fit(&document.table) {
+            return LawCase::from_document(document).map(|case| Calibration::Rates(Box::new(case)));
+        }
+        CalibrationCase::from_document(document.clone()).map(|case| Calibration::Lives(Box::new(case)))
+    }
+
+    /// Name of the file.
+    pub fn name(&self) -> &str {
+        match self {
+            Calibration::Lives(calibration) => &calibration.case.name,
+            Calibration::Rates(case) => &case.name,
+        }
+    }
+
+    /// What the user should know.
+    pub fn warnings(&self) -> &[String] {
+        match self {
+            Calibration::Lives(calibration) => &calibration.warnings,
+            Calibration::Rates(case) => &case.warnings,
+        }
+    }
+
+    /// Finds the constants.
+    pub fn fit(&self, observer: &dyn Observer) -> Result<Fitted<'_>> {
+        Ok(match self {
+            Calibration::Lives(calibration) => Fitted::Lives(calibration, Box::new(calibrate(calibration, observer)?)),
+            Calibration::Rates(case) => Fitted::Rates(case, case.fit()?),
+        })
+    }
+}
+
+impl Fitted<'_> {
+    /// What the user should know about the fit.
+    pub fn warnings(&self) -> &[String] {
+        match self {
+            Fitted::Lives(_, fit) => &fit.warnings,
+            Fitted::Rates(_, fits) => &fits.warnings,
+        }
+    }
+
+    /// `fit.json` of a fit that took `wall_s` seconds.
+    pub fn report(&self, wall_s: f64) -> Value {
+        match self {
+            Fitted::Lives(calibration, fit) => results::report(calibration, fit, wall_s),
+            Fitted::Rates(case, fits) => results::law_report(case, fits, wall_s),
+        }
+    }
+
+    /// The fit in words.
+    pub fn summary(&self, wall_s: f64) -> Vec<String> {
+        match self {
+            Fitted::Lives(calibration, fit) => results::summary(calibration, fit, wall_s),
+            Fitted::Rates(case, fits) => results::law_summary(case, fits),
+        }
+    }
+
+    /// `fitted.toml`.
+    pub fn record_text(&self) -> std::result::Result<String, toml::ser::Error> {
+        match self {
+            Fitted::Lives(calibration, fit) => toml::to_string(&results::record(calibration, fit)),
+            Fitted::Rates(case, fits) => toml::to_string(&results::law_record(case, fits)),
+        }
+    }
+}
 
 /// Fits the constants of a calibration: A and p of bonds, or (method `handbook`) C and m of hand calculation.
 ///
@@ -47,27 +139,15 @@ fn fit_by_method(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
     let Some(_) = calibration.delta_k(from) else { return fit_along_path(calibration, observer) };
     let delta_k = |length: f64| calibration.delta_k(length).unwrap_or(f64::NAN);
     let task = task(calibration, &delta_k);
+    if case.model.method == Method::Handbook {
+        return Ok(fit(&task, &PowerLaw::new(from, to, &delta_k)?)?.of_power_law());
+    }
+    let factors = FactorCurve::of(case, observer)?;
+    let of_run = |length: f64| case.loading.range_share() * factors.at(length);
+    let fit = fit(&task, &PowerLaw::new(from, to, &of_run)?)?;
     match case.model.method {
-        Method::Peridynamics => {
-            let factors = FactorCurve::of(case, observer)?;
-            let of_field = |length: f64| case.loading.range_share() * factors.at(length);
-            let fit = fit(&task, &PowerLaw::new(from, to, &of_field)?)?;
-            of_bonds(fit, calibration, factors)
-        }
-        Method::ElementFreeGalerkin => {
-            let factors = FactorCurve::of(case, observer)?;
-            let of_nodes = |length: f64| case.loading.range_share() * factors.at(length);
-            let mut fit = fit(&task, &PowerLaw::new(from, to, &of_nodes)?)?;
-            fit.paris = fit.paris.of_power_law(fit.record.constants, fit.p_error());
-            fit.warnings.extend(factors.warnings);
-            Ok(fit)
-        }
-        Method::Handbook => {
-            let mut fit = fit(&task, &PowerLaw::new(from, to, &delta_k)?)?;
-            // The fitted constants are C and m themselves; no line has to be drawn through rates.
-            fit.paris = fit.paris.of_power_law(fit.record.constants, fit.p_error());
-            Ok(fit)
-        }
+        Method::Peridynamics => of_run_on_plate(fit, case, factors),
+        _ => of_run_on_plate(fit.of_power_law(), case, factors),
     }
 }
 
@@ -92,7 +172,8 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
         };
         let mut fit = at_exponent(m)?;
         let fitted = fit.record.constants.p;
-        if (fitted - m).abs() > EXPONENT_SAME && factors.depends_on_exponent() && run < RUNS_MAX {
+        let has_other_path = (fitted - m).abs() > EXPONENT_SAME && factors.depends_on_exponent();
+        if has_other_path && run < RUNS_MAX {
             (m, run) = (fitted, run + 1);
             continue;
         }
@@ -100,25 +181,44 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
         if fitted != m {
             fit = at_exponent(fitted)?;
         }
-        fit.paris = fit.paris.of_power_law(fit.record.constants, fit.p_error());
+        let mut fit = fit.of_power_law();
         let reached = |fold: fn(f64, f64) -> f64, start: f64| {
             fit.record.crack_length.iter().map(|&length| law.largest_delta_k(length)).fold(start, fold)
         };
         (fit.paris.delta_k_min, fit.paris.delta_k_max) = (reached(f64::min, f64::INFINITY), reached(f64::max, 0.0));
-        if (fitted - m).abs() > EXPONENT_SAME && factors.depends_on_exponent() {
+        if has_other_path {
             fit.warnings.push(format!("the path of the cracks is that of m = {m:.3}, and {fitted:.3} was fitted to it"));
         }
-        (fit.evaluations, fit.own_factors) = (run, Some(law));
-        return of_bonds(fit, calibration, factors);
+        let own_path = Some(OwnPath { factors: law, runs: run });
+        return of_run_on_plate(Fit { own_path, ..fit }, &calibration.case, factors);
     }
 }
 
-/// The fit in terms of A and p, where there are bonds.
-fn of_bonds(mut fit: Fit, calibration: &CalibrationCase, factors: FactorCurve) -> Result<Fit> {
-    if calibration.case.model.method == Method::Peridynamics {
-        in_terms_of_bonds(&mut fit, &calibration.case, factors.figures.horizon)?;
+/// A fit to K of a run, in terms of A and p where the plate has bonds.
+fn of_run_on_plate(mut fit: Fit, case: &Case, factors: FactorCurve) -> Result<Fit> {
+    if case.model.method == Method::Peridynamics {
+        fit = in_terms_of_bonds(fit, case, &factors.figures)?;
     }
-    fit.spacing = factors.figures.spacing;
     fit.warnings.extend(factors.warnings);
     Ok(fit)
+}
+
+/// A fit of C and m on the plate of a run as one of A and p, which are what they stand for ([`ParisLaw::to_bonds`]).
+pub fn in_terms_of_bonds(mut fit: Fit, case: &Case, plate: &RunFigures) -> Result<Fit> {
+    let (kernel, modulus, horizon) = (case.model.bond_law.kernel, case.material.plane_modulus(), plate.horizon);
+    let p = fit.record.constants.p;
+    let bonds = |Constants { a, p }: Constants| -> Result<Constants> {
+        let law = ParisLaw { c: a, m: p }.to_bonds(rate_constant(kernel, p)?, modulus, horizon);
+        Ok(Constants { a: law.a, p: law.p })
+    };
+    // ln A = ln C + g(m): its slope over m turns the covariance of (ln C, m) into that of (ln A, p).
+    let slope = -rate_constant_slope(kernel, p)? - (MPA_SQRT_M / (modulus * horizon.sqrt())).ln();
+    let [[c_c, c_m], [_, m_m]] = fit.confidence.covariance;
+    let a_p = c_m + slope * m_m;
+    fit.confidence.covariance = [[c_c + 2.0 * slope * c_m + slope * slope * m_m, a_p], [a_p, m_m]];
+    for curve in fit.specimens.iter_mut().chain([&mut fit.record]) {
+        curve.constants = bonds(curve.constants)?;
+    }
+    let bonds = Bonds { rate_constant: rate_constant(kernel, p)?, horizon, spacing: plate.spacing };
+    Ok(Fit { bonds: Some(bonds), ..fit })
 }

@@ -6,17 +6,13 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use crate::calibration::criterion::Criterion;
-use crate::calibration::decimal::Decimal;
-use crate::calibration::exponent::Exponent;
-pub use crate::calibration::fit_keys::Parameter;
-use crate::calibration::fit_keys::{FitSlice, delta_k_ratio, exponent};
-use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
+use crate::calibration::exponent::{Exponent, FitSlice, delta_k_ratio, exponent};
 use crate::case::record::{LeaveOut, SourceFile};
-pub use crate::case::remove_law;
 use crate::case::{Case, LawSource};
 use crate::error::{input, input_missing};
 use crate::fatigue::{Ageing, GrowthRate};
 use crate::input::{Document, Folder, LENGTH, sha256, slice};
+use crate::measured::{ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::MM;
@@ -91,7 +87,7 @@ impl CalibrationCase {
 
     /// The same for a parsed document, which gives errors their line.
     pub fn from_document(mut document: Document) -> crate::Result<Self> {
-        let whole = document.table.clone();
+        let input = document.table.clone();
         // Taken out of the table, but not of the text: errors still find their line.
         let measured = document.table.remove("measured");
         let fit = document.table.remove("fit").unwrap_or_else(|| Value::Table(Table::new()));
@@ -100,15 +96,12 @@ impl CalibrationCase {
                 .as_ref()
                 .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
             let case = Case::from_table(document.table.clone(), &document.name, &document.folder)?;
-            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.folder)
+            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.folder, input)
         };
-        let mut calibration: Self = build().map_err(|error| document.locate(error))?;
-        calibration.input = whole;
-        calibration.case.provenance = document.folder.opened().so_far();
-        Ok(calibration)
+        build().map_err(|error| document.locate(error))
     }
 
-    fn build(mut case: Case, keys: MeasuredSlice, fit: FitSlice, folder: &Folder) -> crate::Result<Self> {
+    fn build(mut case: Case, keys: MeasuredSlice, fit: FitSlice, folder: &Folder, input: Table) -> crate::Result<Self> {
         if !matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
             let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
@@ -117,10 +110,7 @@ impl CalibrationCase {
         check_growth_rate(&case)?;
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
-        let (limit, limit_name) = case.specimen.length_limit();
-        measured.check_lengths(limit, limit_name)?;
-        measured.resolve_loads(&case)?;
-        measured.check_sides(&case.specimen);
+        measured.set_against(&case)?;
         measured.leave_out(&keys.leave_out)?;
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;
@@ -139,7 +129,8 @@ impl CalibrationCase {
         case.material.yield_strength = None;
         warnings.extend(unrecorded(&case));
         warnings.extend(case.warnings.iter().cloned());
-        let (input, left_out) = (Table::new(), keys.leave_out);
+        case.provenance = folder.opened().so_far();
+        let left_out = keys.leave_out;
         Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out, warnings, input, formula })
     }
 

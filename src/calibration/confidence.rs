@@ -2,7 +2,7 @@
 //!
 //! A crack that runs slowly between two readings shifts all later cycles: errors of cumulated cycles are sums of errors
 //! of the increments and strongly correlated. The usual `s² (JᵀJ)⁻¹` takes them as independent and is far too sure of itself.
-//! So the least squares estimate on lives (best for life, see `misfit`) gets a sandwich covariance
+//! So the least squares estimate on lives (best for life, see `criterion`) gets a sandwich covariance
 //!
 //! ```text
 //! Cov = (JᵀWJ)⁻¹ JᵀW Σ WJ (JᵀWJ)⁻¹,   Σ = L diag(σ² ΔN_i²) Lᵀ
@@ -12,8 +12,12 @@
 //! scatter independently by the same relative σ: the rms of the relative residual increments, each by its share of the life. Counted
 //! alike, one odd reading in the last percent of a life would double the error of the whole fit.
 
-use crate::calibration::criterion::Criterion;
 use nalgebra::{Matrix2, Vector2};
+
+use super::criterion::Criterion;
+use super::paris::Paris;
+use crate::error::{Error, Result};
+use crate::fatigue::STEADY_EXPONENTS;
 
 /// Covariance of (ln A, p) and the scatter it rests on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,20 +28,15 @@ pub struct Confidence {
     pub increment_scatter: f64,
 }
 
-/// A curve at a fit, all three counted from the first reading.
-#[derive(Debug, Clone, Copy)]
-pub struct Lives<'a> {
-    /// A x cycles of the model at the measured lengths.
-    pub model: &'a [f64],
-    /// Their derivative over p; `None` where p was fixed.
-    pub model_per_p: Option<&'a [f64]>,
-    /// Measured cycles.
-    pub measured: &'a [f64],
-}
-
-/// Covariance at a fit by a criterion.
-pub fn confidence(criterion: Criterion, lives: &Lives<'_>, inverse_a: f64) -> Confidence {
-    let Lives { model, model_per_p, measured } = *lives;
+/// Covariance at a fit by a criterion: A x cycles `model` of the law at the measured lengths, their derivative over p (`None` where p was
+/// fixed) and `measured` cycles, all counted from the first reading.
+pub fn confidence(
+    criterion: Criterion,
+    model: &[f64],
+    model_per_p: Option<&[f64]>,
+    measured: &[f64],
+    inverse_a: f64,
+) -> Confidence {
     let increments: Vec<(f64, f64)> = model
         .windows(2)
         .zip(measured.windows(2))
@@ -89,4 +88,29 @@ pub fn distance_squared(covariance: [[f64; 2]; 2], difference: [f64; 2]) -> f64 
     let matrix = Matrix2::new(covariance[0][0], covariance[0][1], covariance[1][0], covariance[1][1]);
     let difference = Vector2::from(difference);
     matrix.try_inverse().map_or(f64::NAN, |inverse| difference.dot(&(inverse * difference)))
+}
+
+/// Below this ratio rates of every exponent are alike.
+const DELTA_K_RATIO_NONE: f64 = 1.01;
+
+/// Refuses a p that the readings do not identify: its error is that of a p of which only the ends of the search are known.
+pub(super) fn check_identified(name: &str, confidence: &Confidence, paris: &Paris) -> Result<()> {
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    let (error, ratio) = (confidence.covariance[1][1].sqrt(), paris.delta_k_max / paris.delta_k_min);
+    if error < (high - low) / 12.0_f64.sqrt() && ratio > DELTA_K_RATIO_NONE {
+        return Ok(());
+    }
+    Err(Error::Mechanics(format!(
+        "{name}: the misfit has no smallest value that tells p: its standard error is {error:.2} where {low} to {high} are searched, and ΔK \
+         varies by a factor {ratio:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] \
+         parameters = [\"a\"] and p = ..."
+    )))
+}
+
+/// What it means that a searched p is an end of its range.
+pub(super) fn end_of_range(p: f64) -> String {
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    format!(
+        "the misfit is smallest at p = {p:.3}, an end of the range searched, {low} to {high}: the curve does not follow the law"
+    )
 }

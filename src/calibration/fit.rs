@@ -1,35 +1,37 @@
-//! The calibration on one page: from measured curves and K of a growing crack to A, p and how sure they are.
+//! The fit of lives on one page: from measured curves and K of a growing crack to C and m of `da/dN = C ΔK^m` and how sure they are.
+//!
+//! Least squares predict lives best as long as all readings belong. Where some do not, both estimates are given, and the robust one is
+//! written, since its error does not grow with theirs.
 
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::case_load::at_case_load;
-use crate::calibration::confidence::{Confidence, Lives, confidence};
-use crate::calibration::criterion::Criterion;
-use crate::calibration::estimate::{Robust, apart, are_apart, robust_constants};
-pub use crate::calibration::fitted_curve::FittedCurve;
-use crate::calibration::fitted_curve::{as_fitted, fit_one, fitted_curve, own_law};
-use crate::calibration::lack_of_fit::{LackOfFit, lack_of_fit};
-use crate::calibration::measured::{MeasuredCurve, first_of};
-use crate::calibration::median::pointwise_median;
-use crate::calibration::outliers::{doubts, readings_apart, robust_line, runs, step_rates};
-use crate::calibration::paris::{self, Paris};
-use crate::calibration::power_law::PowerLaw;
-use crate::calibration::rates::STEP_MIN;
-use crate::calibration::search::{Constants, is_at_end};
-use crate::calibration::told::{at_end, check_told};
+use super::case::CalibrationCase;
+use super::confidence::{Confidence, check_identified, confidence, end_of_range};
+use super::criterion::Criterion;
+use super::exponent::DELTA_K_RATIO_MIN;
+use super::lack_of_fit::{LackOfFit, lack_of_fit};
+use super::median::pointwise_median;
+use super::outliers::{RobustLine, doubts, readings_apart, robust_line, runs, step_rates};
+use super::paris::{self, Paris};
+use super::power_law::PowerLaw;
+use super::rates::STEP_MIN;
+use super::search::{Constants, FittedCurve, as_fitted, at_case_load, fit_one, fitted_curve, is_at_end, own_law};
 use crate::case::record::Estimate;
 use crate::error::{Error, Result, input};
 use crate::fatigue::STEADY_EXPONENTS;
+use crate::measured::{MeasuredCurve, first_of};
 use crate::units::{MM, MPA_SQRT_M};
-
-/// Below this ratio of the largest to the smallest ΔK a curve does not say what p is.
-pub const DELTA_K_RATIO_MIN: f64 = 2.0;
 
 /// Most remarks on readings that a fit repeats.
 const DOUBTS_SHOWN: usize = 6;
 
+/// Standard errors by which two estimates differ in earnest.
+const ERRORS_APART: f64 = 2.0;
+
+/// Smallest difference of exponents worth a word: computed curves have hardly any error.
+const APART_MIN: f64 = 0.05;
+
 /// What is fitted to what.
 pub struct FitTask<'a> {
-    /// Curves inside the fit window ([`crate::calibration::measured::Measured::window`]).
+    /// Curves inside the fit window ([`crate::measured::Measured::window`]).
     pub curves: &'a [MeasuredCurve],
     /// p given by the user; `None` fits it.
     pub fixed_p: Option<f64>,
@@ -53,21 +55,35 @@ pub struct Fit {
     /// Which estimate the record holds.
     pub estimate: Estimate,
     /// C and m by the repeated median of the rates of the record's curve, where p was fitted.
-    pub robust: Option<Robust>,
+    pub robust: Option<RobustLine>,
     /// By how much the law misses measured rates at the ends of its range.
     pub lack_of_fit: Option<LackOfFit>,
-    /// β of the record's exponent ([`crate::fatigue::rate_constant`]), where A is that of bonds.
-    pub rate_constant: Option<f64>,
-    /// Horizon that A belongs to, m; NaN where K is that of a handbook.
-    pub horizon: f64,
-    /// Actual lattice spacing, m; NaN where K is that of a handbook.
-    pub spacing: f64,
-    /// ΔK along the crack's own path, where no handbook has it.
-    pub own_factors: Option<PowerLaw>,
-    /// How often K(a) was computed.
-    pub evaluations: usize,
+    /// The bonds that A and p of the record are of; without them they are C (m/cycle, MPa√m) and m.
+    pub bonds: Option<Bonds>,
+    /// K along the crack's own path, where no handbook has it.
+    pub own_path: Option<OwnPath>,
     /// What the user should know.
     pub warnings: Vec<String>,
+}
+
+/// Bonds that A belongs to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bonds {
+    /// β of the record's exponent ([`crate::fatigue::rate_constant`]).
+    pub rate_constant: f64,
+    /// Horizon, m.
+    pub horizon: f64,
+    /// Actual lattice spacing, m.
+    pub spacing: f64,
+}
+
+/// K along the path of a crack that no handbook has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnPath {
+    /// ΔK over crack length.
+    pub factors: PowerLaw,
+    /// How often it was computed: again where several tips share the growth by an exponent that is not known before.
+    pub runs: usize,
 }
 
 /// Fits A and p to the pointwise median, and again to each specimen.
@@ -89,7 +105,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
             "{}: {}; check the units of the readings and the load, narrow the window (measured.from_crack_length_mm and \
              to_crack_length_mm), or fix p by [fit] parameters = [\"a\"] and p = ...{}",
             record.name,
-            at_end(record.constants.p),
+            end_of_range(record.constants.p),
             warnings.iter().map(|line| format!("\n  {line}")).collect::<String>()
         )));
     }
@@ -98,31 +114,31 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         _ => task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?,
     };
     let at_ends = specimens.iter().filter(|curve| is_fitted && is_at_end(curve.constants.p));
-    warnings.extend(first_of(at_ends.map(|curve| format!("specimen {}: {}", curve.name, at_end(curve.constants.p))).collect()));
+    warnings
+        .extend(first_of(at_ends.map(|curve| format!("specimen {}: {}", curve.name, end_of_range(curve.constants.p))).collect()));
     warnings.extend(short_steps_warning(&median.crack_length));
 
     let (mut confidence, mut paris) = assess(task, law, &median, &record, is_fitted)?;
     if is_fitted {
-        check_told(&record.name, &confidence, &paris)?;
+        check_identified(&record.name, &confidence, &paris)?;
     }
     let mut estimate = Estimate::LeastSquares;
-    let line = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted);
-    if let Some(line) = line {
+    let robust = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted);
+    if let Some(line) = robust {
         // Readings that do not belong must not widen the error by which they are judged.
         let belonging = median.without(&runs(&step_rates(&median, task.delta_k), line));
         let without = fit_one(&belonging, task.criterion, fixed_p, law)?;
         let error = assess(task, law, &belonging, &without, is_fitted)?.1.m_error;
         let least_squares = paris;
-        if are_apart(line.m, least_squares.m, error) {
+        if (line.m - least_squares.m).abs() > (ERRORS_APART * error).max(APART_MIN) {
             if let Some(constants) = robust_constants(&median, law, record.constants.p) {
                 estimate = Estimate::Robust;
                 record = fitted_curve(&median, constants, law)?;
                 (confidence, paris) = assess(task, law, &belonging, &record, is_fitted)?;
             }
-            warnings.push(apart(&least_squares, error, &Robust::of(line), estimate));
+            warnings.push(apart(&least_squares, error, line, estimate));
         }
     }
-    let robust = line.map(Robust::of);
     if task.curves.len() == 1 {
         specimens.push(record.clone());
     }
@@ -133,26 +149,36 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
              widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
-    let (rate_constant, horizon, spacing) = (None, f64::NAN, f64::NAN);
     let fitted: Vec<MeasuredCurve> =
         task.curves.iter().map(|curve| as_fitted(curve, record.constants, law)).collect::<Result<_>>()?;
     let lack_of_fit = lack_of_fit(task.curves, &fitted, task.delta_k);
-    let (own_factors, evaluations) = (None, 1);
-    Ok(Fit {
-        record,
-        specimens,
-        confidence,
-        paris,
-        estimate,
-        robust,
-        lack_of_fit,
-        rate_constant,
-        horizon,
-        spacing,
-        own_factors,
-        evaluations,
-        warnings,
-    })
+    let (bonds, own_path) = (None, None);
+    Ok(Fit { record, specimens, confidence, paris, estimate, robust, lack_of_fit, bonds, own_path, warnings })
+}
+
+/// C and m by the repeated median over ΔK of the law that is fitted; `None` where all readings belong, or the law has no such m.
+/// `p` is the exponent of least squares, which several tips count together by.
+fn robust_constants(curve: &MeasuredCurve, law: &PowerLaw, p: f64) -> Option<Constants> {
+    let rates = step_rates(curve, &|length| law.delta_k(length, p) * MPA_SQRT_M);
+    let line = robust_line(&rates)?;
+    let some = !runs(&rates, line).is_empty() && STEADY_EXPONENTS.contains(&line.m);
+    some.then(|| Constants { a: line.intercept.exp(), p: line.m })
+}
+
+/// Both estimates in words, and which is written; `error` is that of m without the readings that do not belong.
+fn apart(least_squares: &Paris, error: f64, robust: RobustLine, written: Estimate) -> String {
+    format!(
+        "least squares give m = {:.3}, C = {:.3e}, the repeated median of the rates m = {:.3}, C = {:.3e} (mm/cycle, MPa√m): they differ by \
+         more than two standard errors of {error:.3}; written are the {} constants",
+        least_squares.m,
+        least_squares.c,
+        robust.m,
+        robust.c(),
+        match written {
+            Estimate::LeastSquares => "least-squares",
+            Estimate::Robust => "robust",
+        }
+    )
 }
 
 /// How sure A and p of a curve are, and what they mean as C and m.
@@ -171,8 +197,7 @@ fn assess(
     let counted = curve.cycles_counted();
     let measured: Vec<f64> = apart.iter().map(|&i| counted[i]).collect();
     let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
-    let lives = Lives { model: &model, model_per_p: model_per_p.as_deref(), measured: &measured };
-    let confidence = confidence(task.criterion, &lives, 1.0 / a);
+    let confidence = confidence(task.criterion, &model, model_per_p.as_deref(), &measured, 1.0 / a);
     // Under changing loads an interval must not reach over two of them.
     let loads = curve.load_history();
     let lengths = match curve.is_plain() {
@@ -224,12 +249,18 @@ fn longest(curve: &MeasuredCurve) -> f64 {
 impl Fit {
     /// ΔK, Pa√m, at a crack length, m: of the handbook, or of the crack's own path.
     pub fn delta_k(&self, calibration: &CalibrationCase, length: f64) -> f64 {
-        let own = || Some(self.own_factors.as_ref()?.delta_k(length, self.record.constants.p) * MPA_SQRT_M);
+        let own = || Some(self.own_path.as_ref()?.factors.delta_k(length, self.record.constants.p) * MPA_SQRT_M);
         calibration.delta_k(length).or_else(own).unwrap_or(f64::NAN)
     }
 
     /// Standard error of p; 0 where it was given.
     pub fn p_error(&self) -> f64 {
         self.confidence.covariance[1][1].max(0.0).sqrt()
+    }
+
+    /// The fit whose constants are C and m of the K that was fitted to: no line has to be drawn through rates.
+    pub(super) fn of_power_law(mut self) -> Fit {
+        self.paris = self.paris.of_power_law(self.record.constants, self.p_error());
+        self
     }
 }

@@ -1,36 +1,24 @@
 //! Curves and fits as data frames (feature `tables`): what is in them, [`crate::tables`] knows how.
 
-use crate::calibration::fit::FittedCurve;
-use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::{Rising, cycles_at};
+use crate::calibration::search::FittedCurve;
 use crate::error::Result;
-use crate::tables::{CYCLES, DataFrame, LENGTH, SPECIMEN, Values, frame, quantiles, wide_to_long};
+use crate::measured::MeasuredCurve;
+use crate::tables::{Column, DataFrame, LENGTH, SPECIMEN, frame, quantiles, wide_to_long};
 use crate::units::MM;
 
 /// Shares of specimens whose cycles are written beside a fit to many of them.
 pub const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// One row a reading: `specimen,cycles,crack_length_mm`.
-pub fn long(curves: &[MeasuredCurve]) -> Result<DataFrame> {
-    let names = curves.iter().flat_map(|curve| std::iter::repeat_n(curve.specimen.clone(), curve.cycles.len()));
-    let cycles = curves.iter().flat_map(|curve| curve.cycles.iter().copied());
-    let lengths = lengths_mm(curves.iter().flat_map(|curve| &curve.crack_length));
-    frame(vec![
-        (SPECIMEN, Values::Text(names.collect())),
-        (CYCLES, Values::Numbers(cycles.collect())),
-        (LENGTH, Values::Numbers(lengths)),
-    ])
-}
-
 /// One column a specimen: cycles at each of `lengths` (m), linear between readings, empty where a specimen was not read.
 pub fn wide(curves: &[MeasuredCurve], lengths: &[f64]) -> Result<DataFrame> {
-    let mut columns = vec![(LENGTH, Values::Numbers(lengths_mm(lengths)))];
-    for curve in curves {
+    let of_specimen = |curve: &MeasuredCurve| {
         let rising = Rising::of(curve);
-        let cycles = lengths.iter().map(|&length| rising.cycles_at(length));
-        columns.push((&curve.specimen, Values::Gaps(cycles.collect())));
-    }
-    frame(columns)
+        let cycles: Vec<Option<f64>> = lengths.iter().map(|&length| rising.cycles_at(length)).collect();
+        Column::new(curve.specimen.as_str().into(), cycles)
+    };
+    let first = Column::new(LENGTH.into(), lengths_mm(lengths));
+    frame(std::iter::once(first).chain(curves.iter().map(of_specimen)).collect())
 }
 
 /// Quantiles over specimens of the cycles since the first of `lengths` (m): `crack_length_mm,cycles_p05,...`.
@@ -46,24 +34,26 @@ pub fn cycle_quantiles(curves: &[MeasuredCurve], lengths: &[f64], shares: &[f64]
 /// Fitted beside measured cycles: `specimen,crack_length_mm,cycles_measured,cycles_fitted`.
 pub fn fit_curves(fits: &[FittedCurve]) -> Result<DataFrame> {
     let names = fits.iter().flat_map(|fit| std::iter::repeat_n(fit.name.clone(), fit.crack_length.len()));
+    let cycles = |of: fn(&FittedCurve) -> &Vec<f64>| fits.iter().flat_map(of).copied().collect::<Vec<f64>>();
     frame(vec![
-        (SPECIMEN, Values::Text(names.collect())),
-        (LENGTH, Values::Numbers(lengths_mm(fits.iter().flat_map(|fit| &fit.crack_length)))),
-        ("cycles_measured", Values::Numbers(fits.iter().flat_map(|fit| fit.cycles_measured.iter().copied()).collect())),
-        ("cycles_fitted", Values::Numbers(fits.iter().flat_map(|fit| fit.cycles_fitted.iter().copied()).collect())),
+        Column::new(SPECIMEN.into(), names.collect::<Vec<String>>()),
+        Column::new(LENGTH.into(), lengths_mm(fits.iter().flat_map(|fit| &fit.crack_length))),
+        Column::new("cycles_measured".into(), cycles(|fit| &fit.cycles_measured)),
+        Column::new("cycles_fitted".into(), cycles(|fit| &fit.cycles_fitted)),
     ])
 }
 
 /// One row a specimen: `specimen,a,p,life_measured,life_fitted,rms_life_error`.
 pub fn specimens(fits: &[FittedCurve]) -> Result<DataFrame> {
-    let numbers = |value: fn(&FittedCurve) -> f64| Values::Numbers(fits.iter().map(value).collect());
+    let column =
+        |name: &str, value: fn(&FittedCurve) -> f64| Column::new(name.into(), fits.iter().map(value).collect::<Vec<f64>>());
     frame(vec![
-        (SPECIMEN, Values::Text(fits.iter().map(|fit| fit.name.clone()).collect())),
-        ("a", numbers(|fit| fit.constants.a)),
-        ("p", numbers(|fit| fit.constants.p)),
-        ("life_measured", numbers(FittedCurve::life_measured)),
-        ("life_fitted", numbers(FittedCurve::life_fitted)),
-        ("rms_life_error", numbers(FittedCurve::rms_life_error)),
+        Column::new(SPECIMEN.into(), fits.iter().map(|fit| fit.name.clone()).collect::<Vec<String>>()),
+        column("a", |fit| fit.constants.a),
+        column("p", |fit| fit.constants.p),
+        column("life_measured", FittedCurve::life_measured),
+        column("life_fitted", FittedCurve::life_fitted),
+        column("rms_life_error", FittedCurve::rms_life_error),
     ])
 }
 

@@ -3,9 +3,9 @@
 
 use serde::Serialize;
 
-use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::median;
 use crate::calibration::rates::polynomial7;
+use crate::measured::MeasuredCurve;
 use crate::units::MPA_SQRT_M;
 
 /// Share of the range of ln ΔK that is an end of it.

@@ -1,7 +1,10 @@
-//! Several specimens as one curve: pointwise median of cycles at equal crack length.
+//! Cycles at which readings, and rows of a run, reach a length; several specimens as one curve, the pointwise median of cycles at equal
+//! crack length.
 
-use crate::calibration::measured::{MeasuredCurve, READINGS_MIN};
-use crate::error::{Result, input_missing};
+use crate::error::{Error, Result, input_missing};
+use crate::measured::{MeasuredCurve, READINGS_MIN};
+use crate::monotone::Monotone;
+use crate::units::MM;
 
 /// Two lengths that differ by less are the same grid point, m.
 const SAME_LENGTH: f64 = 1e-9;
@@ -97,7 +100,7 @@ pub fn pointwise_median_at(curves: &[MeasuredCurve], lengths: &[f64]) -> Result<
                 _ => {
                     return Err(input_missing(
                         "measured.files",
-                        format!("do not reach {:.4} mm in specimen {}", length / crate::units::MM, curve.specimen),
+                        format!("do not reach {:.4} mm in specimen {}", length / MM, curve.specimen),
                         "choose lengths that every specimen covers",
                     ));
                 }
@@ -118,4 +121,58 @@ pub fn pointwise_median(curves: &[MeasuredCurve]) -> Result<MeasuredCurve> {
 
 fn rises(lengths: &[f64]) -> bool {
     lengths.windows(2).all(|pair| pair[1] > pair[0])
+}
+
+/// Slack of the ends of a run against readings, m.
+const LENGTH_SLACK: f64 = 1e-9;
+
+/// Cycles from the first of `lengths` (m) to each of them, linear between the points (cycles, crack length in m) of a dense table.
+///
+/// # Errors
+/// A length that the table does not reach.
+pub fn cycles_since_first(table: &[(f64, f64)], lengths: &[f64]) -> Result<Vec<f64>> {
+    since_first(table, lengths, |before, share| {
+        let [from, to] = [table[before].0, table[before + 1].0];
+        from + share * (to - from)
+    })
+}
+
+/// The same of the rows of a run, by a monotone cubic between them: they lie two to four millimetres apart, and on straight lines
+/// cycles were up to 1 % off.
+///
+/// # Errors
+/// A length that the run does not reach.
+pub fn cycles_of_run(rows: &[(f64, f64)], lengths: &[f64]) -> Result<Vec<f64>> {
+    let table = Monotone::new(rows.iter().map(|(cycles, length)| [*length, *cycles]));
+    since_first(rows, lengths, |before, share| table.between(before, share))
+}
+
+fn since_first(curve: &[(f64, f64)], lengths: &[f64], between: impl Fn(usize, f64) -> f64) -> Result<Vec<f64>> {
+    let at: Vec<f64> = lengths.iter().map(|&length| cycles_reaching(curve, &between, length)).collect::<Result<_>>()?;
+    let start = at.first().copied().unwrap_or(0.0);
+    Ok(at.into_iter().map(|n| n - start).collect())
+}
+
+/// Cycles at which the curve first reaches a length.
+fn cycles_reaching(curve: &[(f64, f64)], between: impl Fn(usize, f64) -> f64, length: f64) -> Result<f64> {
+    let outside = |problem: String| Err(Error::Mechanics(problem));
+    let (Some(first), Some(last)) = (curve.first(), curve.last()) else {
+        return outside("the run gave no a-N curve".to_owned());
+    };
+    let mm = |length: f64| length / MM;
+    if length <= first.1 {
+        if length >= first.1 - LENGTH_SLACK {
+            return Ok(first.0);
+        }
+        return outside(format!("the run starts at {:.4} mm, after the reading at {:.4} mm", mm(first.1), mm(length)));
+    }
+    let next = curve.partition_point(|point| point.1 < length);
+    match curve.get(next) {
+        None if length <= last.1 + LENGTH_SLACK => Ok(last.0),
+        None => outside(format!("the run ends at {:.4} mm, before the reading at {:.4} mm", mm(last.1), mm(length))),
+        Some(&(_, to)) => {
+            let from = curve[next - 1].1; // next > 0: the first point lies below `length`
+            Ok(between(next - 1, (length - from) / (to - from)))
+        }
+    }
 }

@@ -4,12 +4,16 @@
 //! error says. A repeated-median line, `m = med_i med_(j≠i) (y_j - y_i) / (x_j - x_i)` with y = ln da/dN over x = ln ΔK (Siegel 1982,
 //! Biometrika 69:242), stays until half of the rates are wrong. Rates are those over growth of at least 0.25 mm, below which reading
 //! errors show.
+//!
+//! And whether one power of ΔK can hold for all readings of a test whose loads the file does not give: a load that was stepped or shed,
+//! or a counter that jumped, shows as two levels of rate at equal ΔK. Compared are one line `ln da/dN = ln C + m ln ΔK` and two with a
+//! common m, the second beginning at the split that fits best: `F = (S₁ - S₂) / (S₂ / (n - 3))` with the sums of squares S of both (test
+//! of nested models; Draper and Smith, Applied Regression Analysis, 1998).
 
-use crate::calibration::level_shift;
-use crate::calibration::measured::{MeasuredCurve, round_off};
-use crate::calibration::median::median;
-use crate::calibration::rates::STEP_MIN;
-use crate::units::{MM, MPA_SQRT_M};
+use super::median::median;
+use super::rates::STEP_MIN;
+use crate::measured::{MeasuredCurve, round_off};
+use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Rates beyond this factor of the line, or below its inverse, do not belong; on clean curves the smallest seen is 0.83.
 pub const FACTOR: f64 = 3.0;
@@ -43,6 +47,13 @@ pub struct RobustLine {
     pub intercept: f64,
     /// Slope.
     pub m: f64,
+}
+
+impl RobustLine {
+    /// C in mm/cycle and MPa√m.
+    pub fn c(&self) -> f64 {
+        self.intercept.exp() / MM_PER_CYCLE
+    }
 }
 
 /// Readings between which a crack grew too slowly or too fast.
@@ -130,24 +141,24 @@ impl MeasuredCurve {
     }
 }
 
-/// What speaks against the readings of a curve: [`runs`] that do not belong, and a [shift of level](level_shift).
+/// What speaks against the readings of a curve: [`runs`] that do not belong, and a [shift of level](best_split).
 pub fn doubts(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<String> {
     let rates = step_rates(curve, delta_k);
     let runs = robust_line(&rates).map_or_else(Vec::new, |line| runs(&rates, line));
-    let shift = level_shift::warning(curve, &rates, &runs);
+    let shift = level_warning(curve, &rates, &runs);
     named(curve, &runs).into_iter().chain(shift).collect()
 }
 
 /// Warnings that name the runs of a curve by line, with the window that leaves them out.
 fn named(curve: &MeasuredCurve, runs: &[Run]) -> Vec<String> {
-    let mut lines: Vec<String> = runs.iter().take(RUNS_NAMED).map(|run| warning(curve, *run)).collect();
+    let mut lines: Vec<String> = runs.iter().take(RUNS_NAMED).map(|run| run_warning(curve, *run)).collect();
     if runs.len() > RUNS_NAMED {
         lines.push(format!("specimen {}: {} more runs of readings do not belong", curve.specimen, runs.len() - RUNS_NAMED));
     }
     lines
 }
 
-fn warning(curve: &MeasuredCurve, run: Run) -> String {
+fn run_warning(curve: &MeasuredCurve, run: Run) -> String {
     let Run { from, to, factor } = run;
     let [start, end] = [from, to].map(|reading| round_off(curve.source.cycles_before + curve.cycles[reading]));
     let [first, last] = [from, to].map(|reading| round_off(curve.crack_length[reading] / MM));
@@ -162,9 +173,109 @@ fn warning(curve: &MeasuredCurve, run: Run) -> String {
 }
 
 /// File and lines of readings, to go in front of a message.
-pub(crate) fn place(curve: &MeasuredCurve, from: usize, to: usize) -> String {
+fn place(curve: &MeasuredCurve, from: usize, to: usize) -> String {
     match curve.source.lines.len() {
         0 => String::new(),
         _ => format!("{}: lines {} to {}: ", curve.source.file.display(), curve.line(from), curve.line(to)),
     }
+}
+
+/// F above which two levels are certain. The split is chosen among many, so that ordinary tables of F do not hold; of 34 panels of one
+/// alloy under constant load one reaches it.
+pub const F_MAX: f64 = 60.0;
+
+/// Smallest ratio of the levels worth a word: computed curves scatter so little that any bend is certain.
+const RATIO_MIN: f64 = 1.1;
+
+/// Share of rates that may be left to a warning of their own.
+const FEW: f64 = 0.1;
+
+/// Fewest rates on each side.
+const SIDE_MIN: usize = 3;
+
+/// Two levels of rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelShift {
+    /// First rate of the second level.
+    pub rate: usize,
+    /// How certain the second level is.
+    pub f: f64,
+    /// Its rate over that of the first, at equal ΔK.
+    pub ratio: f64,
+    /// The common exponent.
+    pub m: f64,
+}
+
+/// Sums over rates that a common slope needs: their number, x, y, x², x y, y².
+type Sums = [f64; 6];
+
+fn plus(sums: Sums, x: f64, y: f64) -> Sums {
+    let terms = [1.0, x, y, x * x, x * y, y * y];
+    std::array::from_fn(|i| sums[i] + terms[i])
+}
+
+/// Sums of squares about the means: xx, xy, yy.
+fn about_means([n, x, y, xx, xy, yy]: Sums) -> [f64; 3] {
+    [xx - x * x / n, xy - x * y / n, yy - y * y / n]
+}
+
+/// The best split of the rates; `None` where there are too few.
+pub fn best_split(rates: &[StepRate]) -> Option<LevelShift> {
+    let count = rates.len();
+    if count < 2 * SIDE_MIN + 2 {
+        return None;
+    }
+    // About the means, so that sums of squares lose no digits.
+    let mean = |of: fn(&StepRate) -> f64| rates.iter().map(of).sum::<f64>() / count as f64;
+    let (mean_x, mean_y) = (mean(|rate| rate.log_k), mean(|rate| rate.log_rate));
+    let points = || rates.iter().map(|rate| (rate.log_k - mean_x, rate.log_rate - mean_y));
+    let all = points().fold(Sums::default(), |sums, (x, y)| plus(sums, x, y));
+    let [xx, xy, yy] = about_means(all);
+    let one_line = yy - xy * xy / xx;
+    let (mut before, mut best): (Sums, Option<(f64, LevelShift)>) = (Sums::default(), None);
+    for (i, (x, y)) in points().enumerate().take(count - SIDE_MIN) {
+        before = plus(before, x, y);
+        if i + 1 < SIDE_MIN {
+            continue;
+        }
+        let after: Sums = std::array::from_fn(|i| all[i] - before[i]);
+        let [first, second] = [before, after].map(about_means);
+        let m = (first[1] + second[1]) / (first[0] + second[0]);
+        let two_lines = (first[2] + second[2] - m * (first[1] + second[1])).max(yy * 1e-14);
+        let f = (one_line - two_lines) / (two_lines / (count as f64 - 3.0));
+        let step = |of: usize| after[of] / after[0] - before[of] / before[0];
+        let ratio = (step(2) - m * step(1)).exp();
+        if f.is_finite() && best.is_none_or(|(least, _)| two_lines < least) {
+            best = Some((two_lines, LevelShift { rate: i + 1, f, ratio, m }));
+        }
+    }
+    best.map(|(_, shift)| shift)
+}
+
+/// Where the rates of a curve have two levels, and not because of the few of them that `runs` names: those have their own warning.
+fn level_warning(curve: &MeasuredCurve, rates: &[StepRate], runs: &[Run]) -> Option<String> {
+    // Runs follow each other.
+    let named = |rate: &StepRate| {
+        let begun = runs.partition_point(|run| run.from <= rate.from);
+        begun > 0 && rate.to <= runs[begun - 1].to
+    };
+    let rest: Vec<StepRate> = rates.iter().filter(|rate| !named(rate)).copied().collect();
+    let few = (rates.len() - rest.len()) as f64 <= FEW * rates.len() as f64;
+    let rates = if few { &rest } else { rates };
+    let shift = best_split(rates)?;
+    if shift.f <= F_MAX || shift.ratio.ln().abs() < RATIO_MIN.ln() {
+        return None;
+    }
+    let StepRate { from, to, .. } = rates[shift.rate];
+    Some(format!(
+        "{}no one power of ΔK can hold for specimen {}: from {} mm on the rate is {:.2} times that before at equal ΔK (F = {:.0}, common m \
+         {:.2}); if the load changed, give it for every reading (columns force_max_kn and force_min_kn), else leave the readings before or \
+         after it out (measured.leave_out or the window of crack lengths)",
+        place(curve, from, to),
+        curve.specimen,
+        round_off(curve.crack_length[from] / MM),
+        shift.ratio,
+        shift.f,
+        shift.m
+    ))
 }

@@ -4,9 +4,9 @@
 //! Where the crack length is the sum of the paths of several tips, as on a drawn plate, all of them make it longer at once:
 //! `A N(a) = ∫ da / Σ (ΔK_i / ΔK₀)^p`.
 
-use crate::calibration::measured::MeasuredCurve;
-use crate::calibration::model::cycles_since_first;
+use crate::calibration::median::cycles_since_first;
 use crate::error::{Result, input};
+use crate::measured::MeasuredCurve;
 use crate::units::MPA_SQRT_M;
 
 /// Lengths at which ΔK is tabulated; Simpson's rule on them integrates the Virkler panel to 1e-9.

@@ -4,13 +4,16 @@
 //! - **seven-point incremental polynomial** (appendix X1): a parabola in N through seven neighbouring readings by least
 //!   squares; rate and crack length are those of the parabola at the middle reading. The first and last three readings get
 //!   no rate. Seven readings have to have one load: where it changes, the rates are secants.
+//!
+//! ΔK of every rate, and the validity that depends on the specimen, follow from the case ([`add_delta_k`]).
 
 use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::calibration::measured::MeasuredCurve;
+use crate::case::Case;
 use crate::line::{Line, line};
+use crate::measured::{MeasuredCurve, side_difference_max};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Smallest increment of crack length between readings that E647 (8.6.2) asks for, m.
@@ -40,7 +43,7 @@ pub struct RatePoint {
     pub delta_k: f64,
     /// Range of load over that of the case.
     pub load_factor: f64,
-    /// Stress ratio R; NaN where the readings do not say it ([`add_delta_k`](crate::calibration::test_piece::add_delta_k)).
+    /// Stress ratio R; NaN where the readings do not say it ([`add_delta_k`]).
     pub ratio: f64,
     /// Largest difference of crack length between sides at the readings of the point, m.
     pub side_difference: f64,
@@ -83,7 +86,7 @@ impl Flags {
 }
 
 /// Rates of a curve by one method, without steps that are left out; ΔK is NaN until
-/// [`add_delta_k`](crate::calibration::test_piece::add_delta_k).
+/// [`add_delta_k`].
 pub fn rates(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {
     let factors = curve.step_factors();
     match method {
@@ -182,4 +185,18 @@ pub fn paris_line(points: &[RatePoint]) -> Option<Line> {
     let log_k: Vec<f64> = usable().map(|point| (point.delta_k / MPA_SQRT_M).log10()).collect();
     let log_rate: Vec<f64> = usable().map(|point| (point.rate / MM_PER_CYCLE).log10()).collect();
     line(&log_k, &log_rate)
+}
+
+/// Fills in ΔK, by that of the load of the case (Pa√m) at a length (m), and the flags that depend on its specimen.
+pub fn add_delta_k(points: &mut [RatePoint], case: &Case, delta_k: &dyn Fn(f64) -> f64) {
+    let (specimen, loading) = (&case.specimen, &case.loading);
+    let uneven = side_difference_max(specimen.kind, specimen.width, specimen.thickness);
+    for point in points {
+        point.delta_k = delta_k(point.crack_length) * point.load_factor;
+        point.ratio = if point.ratio.is_nan() { loading.ratio } else { point.ratio };
+        let (load, k_max) = (loading.maximum * point.load_factor, point.delta_k / loading.range_share());
+        let holds = |strength| specimen.small_scale_yielding(point.crack_length, load, k_max, strength);
+        point.flags.yielding = !case.material.yield_strength.is_none_or(holds);
+        point.flags.uneven_front = point.side_difference > uneven;
+    }
 }

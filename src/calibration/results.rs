@@ -1,196 +1,104 @@
-//! Results of a calibration as they are written: `fit.json`, `fitted.toml`, `fit_curves.csv`.
+//! Results of a calibration as they are written: `fit.json`, `fitted.toml`, `fit_curves.csv` of lives and `fit_rates.csv` of rates, and in
+//! words.
 
 use std::fmt::Write as _;
 
-use serde::Serialize;
+use serde_json::{Map, Value, json};
 
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::fit::{Fit, FittedCurve};
-use crate::calibration::lack_of_fit::LackOfFit;
-use crate::case::Method;
-use crate::case::record::{FittedRecord, LeaveOut, SourceFile};
+use super::case::CalibrationCase;
+use super::fit::{Bonds, Fit};
+use super::laws::case::LawCase;
+use super::laws::fit::LawFit;
+use super::laws::{FitLaw, LawFits};
+use super::search::FittedCurve;
+use crate::case::record::{Estimate, FittedRecord, LawRecord};
 use crate::cells::field;
-use crate::units::{GPA, MM};
+use crate::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
 
-/// Content of `fit.json`; units as in the names, cycles else.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FitReport {
-    /// A at `horizon_mm`, 1/cycle; null for hand calculation.
-    pub a: f64,
-    /// Exponent p.
-    pub p: f64,
-    /// Horizon that A belongs to.
-    pub horizon_mm: f64,
-    /// Lattice spacing of the fit.
-    pub spacing_mm: f64,
-    /// C of da/dN = C ΔK^m in mm/cycle and MPa√m.
-    pub paris_c_mm_per_cycle: f64,
-    /// m of the same (not p).
-    pub paris_m: f64,
-    /// Standard error of m; 0 where p was given.
-    pub paris_m_error: f64,
-    /// ΔK at which the rate is best determined.
-    pub pivot_delta_k_mpa_sqrt_m: f64,
-    /// da/dN there.
-    pub rate_at_pivot_mm_per_cycle: f64,
-    /// Relative standard error of that rate.
-    pub rate_at_pivot_relative_error: f64,
-    /// Standard error of p; 0 where p was given.
-    pub p_error: f64,
-    /// Where p comes from: `fitted`, `given`, `not_identified`, or the file of a record.
-    pub p_source: String,
-    /// Which lives were counted: `fit.criterion`.
-    pub criterion: String,
-    /// Covariance of (ln A, p).
-    pub covariance: [[f64; 2]; 2],
-    /// Relative scatter of the cycles between readings about the fit.
-    pub increment_scatter: f64,
-    /// Rms life error of the record's curve.
-    pub rms_life_error: f64,
-    /// Life of the record's curve, measured.
-    pub life_measured: f64,
-    /// Life of the record's curve, fitted.
-    pub life_fitted: f64,
-    /// What the record was fitted to: the name of the only specimen, or `median`.
-    pub fitted_to: String,
-    /// Ends of the fit window.
-    pub from_crack_length_mm: f64,
-    /// See `from_crack_length_mm`.
-    pub to_crack_length_mm: f64,
-    /// Smallest ΔK of the fit window.
-    pub delta_k_min_mpa_sqrt_m: f64,
-    /// Largest ΔK of the fit window.
-    pub delta_k_max_mpa_sqrt_m: f64,
-    /// Each specimen with its own fit.
-    pub specimens: Vec<SpecimenReport>,
-    /// Which estimate of C and m is written: `least_squares` or `robust`.
-    pub estimate: String,
-    /// m by the repeated median of rates; null where p was given or there are too few.
-    pub robust_paris_m: f64,
-    /// C of the same.
-    pub robust_paris_c_mm_per_cycle: f64,
-    /// By how much the law misses measured rates at both ends of its range; null for fewer than six rates.
-    pub lack_of_fit: Option<LackOfFit>,
-    /// Readings that were left out.
-    pub left_out: Vec<LeaveOut>,
-    /// How often K(a) was computed: once, whatever is fitted to it; again where several tips share the growth by an exponent that is not
-    /// known before.
-    pub evaluations: usize,
-    /// Wall time.
-    pub wall_s: f64,
-    /// What the user should know.
-    pub warnings: Vec<String>,
-    /// Program version.
-    pub version: String,
-    /// Measured files with their hashes.
-    pub sources: Vec<SourceFile>,
+/// `fit.json` of a fit that took `wall_s` seconds; units as in the names, cycles else, null for what is not known.
+pub fn report(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Value {
+    let law = record(calibration, fit);
+    let [from, to] = window_mm(fit);
+    let specimen = |curve: &FittedCurve| {
+        json!({
+            "name": curve.name,
+            "a": curve.constants.a,
+            "p": curve.constants.p,
+            "life_measured": curve.life_measured(),
+            "life_fitted": curve.life_fitted(),
+            "rms_life_error": curve.rms_life_error(),
+        })
+    };
+    json!({
+        "a": law.a,
+        "p": law.p,
+        "horizon_mm": law.horizon_mm,
+        "spacing_mm": law.spacing_mm,
+        "paris_c_mm_per_cycle": law.paris_c_mm_per_cycle,
+        "paris_m": law.paris_m,
+        "paris_m_error": law.paris_m_error,
+        "pivot_delta_k_mpa_sqrt_m": law.pivot_delta_k_mpa_sqrt_m,
+        "rate_at_pivot_mm_per_cycle": law.rate_at_pivot_mm_per_cycle,
+        "rate_at_pivot_relative_error": law.rate_at_pivot_relative_error,
+        "p_error": law.p_error,
+        "p_source": p_source(calibration, fit),
+        "criterion": calibration.criterion.name(),
+        "covariance": fit.confidence.covariance,
+        "increment_scatter": fit.confidence.increment_scatter,
+        "rms_life_error": fit.record.rms_life_error(),
+        "life_measured": fit.record.life_measured(),
+        "life_fitted": fit.record.life_fitted(),
+        "fitted_to": fit.record.name,
+        "from_crack_length_mm": from,
+        "to_crack_length_mm": to,
+        "delta_k_min_mpa_sqrt_m": law.delta_k_min_mpa_sqrt_m,
+        "delta_k_max_mpa_sqrt_m": law.delta_k_max_mpa_sqrt_m,
+        "specimens": fit.specimens.iter().map(specimen).collect::<Vec<_>>(),
+        "estimate": fit.estimate,
+        "robust_paris_m": fit.robust.map(|line| line.m),
+        "robust_paris_c_mm_per_cycle": fit.robust.map(|line| line.c()),
+        "lack_of_fit": fit.lack_of_fit,
+        "left_out": law.left_out,
+        "evaluations": fit.own_path.as_ref().map_or(1, |path| path.runs),
+        "wall_s": wall_s,
+        "warnings": calibration.warnings.iter().chain(&fit.warnings).collect::<Vec<_>>(),
+        "version": law.version,
+        "sources": law.sources,
+    })
 }
 
-/// One specimen of `fit.json`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SpecimenReport {
-    /// Name.
-    pub name: String,
-    /// A of its own fit, 1/cycle.
-    pub a: f64,
-    /// p of its own fit.
-    pub p: f64,
-    /// Measured cycles from the first to the last reading of the window.
-    pub life_measured: f64,
-    /// Fitted cycles over the same lengths.
-    pub life_fitted: f64,
-    /// Rms life error.
-    pub rms_life_error: f64,
+/// Where p comes from: `fitted`, `given`, `not_identified`, or the file of a record.
+fn p_source<'c>(calibration: &'c CalibrationCase, fit: &Fit) -> &'c str {
+    calibration.exponent.source_over(fit.paris.delta_k_max / fit.paris.delta_k_min)
 }
 
-impl FitReport {
-    /// The report of a fit that took `wall_s` seconds.
-    pub fn new(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Self {
-        let lengths = &fit.record.crack_length;
-        FitReport {
-            a: bond_constant(calibration, fit),
-            p: fit.record.constants.p,
-            horizon_mm: tidy(fit.horizon / MM),
-            spacing_mm: tidy(fit.spacing / MM),
-            paris_c_mm_per_cycle: fit.paris.c,
-            paris_m: fit.paris.m,
-            paris_m_error: fit.paris.m_error.max(calibration.exponent.error),
-            pivot_delta_k_mpa_sqrt_m: fit.paris.pivot,
-            rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
-            rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
-            p_error: p_error(calibration, fit),
-            p_source: calibration.exponent.source_over(fit.paris.delta_k_max / fit.paris.delta_k_min),
-            criterion: calibration.criterion.name().to_owned(),
-            covariance: fit.confidence.covariance,
-            increment_scatter: fit.confidence.increment_scatter,
-            rms_life_error: fit.record.rms_life_error(),
-            life_measured: fit.record.life_measured(),
-            life_fitted: fit.record.life_fitted(),
-            fitted_to: fit.record.name.clone(),
-            from_crack_length_mm: tidy(lengths.iter().copied().fold(f64::INFINITY, f64::min) / MM),
-            to_crack_length_mm: tidy(lengths.iter().copied().fold(0.0, f64::max) / MM),
-            delta_k_min_mpa_sqrt_m: fit.paris.delta_k_min,
-            delta_k_max_mpa_sqrt_m: fit.paris.delta_k_max,
-            specimens: fit.specimens.iter().map(SpecimenReport::new).collect(),
-            estimate: fit.estimate.name().to_owned(),
-            robust_paris_m: fit.robust.map_or(f64::NAN, |robust| robust.m),
-            robust_paris_c_mm_per_cycle: fit.robust.map_or(f64::NAN, |robust| robust.c),
-            lack_of_fit: fit.lack_of_fit,
-            left_out: calibration.left_out.clone(),
-            evaluations: fit.evaluations,
-            wall_s,
-            warnings: calibration.warnings.iter().chain(&fit.warnings).cloned().collect(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            sources: calibration.sources.clone(),
-        }
-    }
-}
-
-impl SpecimenReport {
-    fn new(curve: &FittedCurve) -> Self {
-        SpecimenReport {
-            name: curve.name.clone(),
-            a: curve.constants.a,
-            p: curve.constants.p,
-            life_measured: curve.life_measured(),
-            life_fitted: curve.life_fitted(),
-            rms_life_error: curve.rms_life_error(),
-        }
-    }
-}
-
-/// A of the bonds; NaN for hand calculation, which has none.
-fn bond_constant(calibration: &CalibrationCase, fit: &Fit) -> f64 {
-    match calibration.case.model.method {
-        Method::Peridynamics => fit.record.constants.a,
-        Method::Handbook | Method::ElementFreeGalerkin => f64::NAN,
-    }
-}
-
-/// Standard error of p: of this fit, or of the record it was taken from.
-fn p_error(calibration: &CalibrationCase, fit: &Fit) -> f64 {
-    fit.p_error().max(calibration.exponent.error)
+/// Ends of the fit window, mm.
+fn window_mm(fit: &Fit) -> [f64; 2] {
+    let lengths = || fit.record.crack_length.iter().copied();
+    [lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max)].map(|length| tidy(length / MM))
 }
 
 /// The record that predictions read.
 pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
     let case = &calibration.case;
+    // Without bonds there is no A.
+    let of_bonds = |value: fn(&Bonds) -> f64| fit.bonds.as_ref().map_or(f64::NAN, |bonds| tidy(value(bonds)));
     FittedRecord {
         method: case.model.method.name().to_owned(),
-        a: bond_constant(calibration, fit),
+        a: fit.bonds.map_or(f64::NAN, |_| fit.record.constants.a),
         p: fit.record.constants.p,
-        horizon_mm: tidy(fit.horizon / MM),
-        spacing_mm: tidy(fit.spacing / MM),
+        horizon_mm: of_bonds(|bonds| bonds.horizon / MM),
+        spacing_mm: of_bonds(|bonds| bonds.spacing / MM),
         horizon_ratio: case.model.horizon_ratio,
         scaling: "a at another horizon = a * (horizon / horizon_mm)^((p - 2) / 2)".to_owned(),
-        rate_constant: fit.rate_constant,
+        rate_constant: fit.bonds.map(|bonds| bonds.rate_constant),
         paris_c_mm_per_cycle: fit.paris.c,
         paris_m: fit.paris.m,
         paris_m_error: fit.paris.m_error.max(calibration.exponent.error),
         pivot_delta_k_mpa_sqrt_m: fit.paris.pivot,
         rate_at_pivot_mm_per_cycle: fit.paris.rate_at_pivot,
         rate_at_pivot_relative_error: fit.paris.rate_at_pivot_error,
-        p_error: p_error(calibration, fit),
+        p_error: fit.p_error().max(calibration.exponent.error),
         delta_k_min_mpa_sqrt_m: fit.paris.delta_k_min,
         delta_k_max_mpa_sqrt_m: fit.paris.delta_k_max,
         stress_ratio: case.loading.ratio,
@@ -211,6 +119,54 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         estimate: fit.estimate,
         left_out: calibration.left_out.clone(),
     }
+}
+
+/// A fit in words: rate at the pivot and exponent with their errors, never A alone.
+pub fn summary(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Vec<String> {
+    let law = record(calibration, fit);
+    let [from, to] = window_mm(fit);
+    let life = 100.0 * (fit.record.life_fitted() / fit.record.life_measured() - 1.0);
+    let source = match p_source(calibration, fit) {
+        "fitted" => String::new(),
+        "not_identified" => " (not identified)".to_owned(),
+        "given" => " (given)".to_owned(),
+        file => format!(" (from {file})"),
+    };
+    let error = |error: f64| if error > 0.0 { format!(" ± {error:.4}") } else { String::new() };
+    let mut lines = vec![format!("fit to {}, {from} to {to} mm", fit.record.name)];
+    // Hand calculation has no bonds: its p is m.
+    if fit.bonds.is_some() {
+        lines.push(format!("  A              {:.6e} at horizon {} mm", law.a, law.horizon_mm));
+        lines.push(format!("  p              {:.4}{}{source}", law.p, error(law.p_error)));
+    }
+    lines.extend([
+        format!(
+            "  rate           {:.4e} mm/cycle ± {:.2} % at the pivot ΔK = {:.3} MPa√m",
+            law.rate_at_pivot_mm_per_cycle,
+            100.0 * law.rate_at_pivot_relative_error,
+            law.pivot_delta_k_mpa_sqrt_m
+        ),
+        format!("  Paris          da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m)", law.paris_c_mm_per_cycle, law.paris_m),
+        format!("  m              {:.4}{}{source}", law.paris_m, error(law.paris_m_error)),
+        "  ±              one standard error".to_owned(),
+        format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", law.delta_k_min_mpa_sqrt_m, law.delta_k_max_mpa_sqrt_m),
+        format!(
+            "  life           measured {:.0}, fitted {:.0} cycles ({life:+.2} %), rms life error {:.2} %",
+            fit.record.life_measured(),
+            fit.record.life_fitted(),
+            100.0 * fit.record.rms_life_error()
+        ),
+    ]);
+    if fit.estimate == Estimate::Robust {
+        lines.push("  estimate       robust: repeated median of the rates".to_owned());
+    }
+    lines.extend(fit.lack_of_fit.map(|lack| format!("  lack of fit    {}", lack.words())));
+    lines.extend(law.left_out.iter().map(|window| {
+        let specimen = window.specimen.as_ref().map_or_else(String::new, |name| format!("specimen {name}, "));
+        format!("  left out       {specimen}{} to {} cycles: {}", window.from_cycles, window.to_cycles, window.reason)
+    }));
+    lines.push(format!("  specimens      {}, in {wall_s:.1} s", fit.specimens.len()));
+    lines
 }
 
 /// `fit_curves.csv`: each reading of each specimen with the cycles of its own fit, and after them, for several specimens,
@@ -234,4 +190,136 @@ pub fn curves_written(fit: &Fit) -> impl Iterator<Item = &FittedCurve> {
 /// Twelve significant digits: hides the last bits that unit conversion leaves, so that 3.015 mm reads as 3.015.
 fn tidy(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+/// `fit.json` of laws over K; null for what a law without a fit does not have.
+pub fn law_report(case: &LawCase, fits: &LawFits, wall_s: f64) -> Value {
+    let candidate = |law: &LawFit| {
+        json!({
+            "law": law.kind.name(),
+            "constants": values(law),
+            "standard_errors": errors(law),
+            "fitted_constants": law.fitted,
+            "rms_log_rate": law.rms(),
+            "aicc": law.aicc,
+            "delta_aicc": law.aicc - fits.least_aicc(),
+            "left_out": law.left_out,
+        })
+    };
+    let [low, high] = case.delta_k_range();
+    let ratios = case.ratios();
+    json!({
+        "law": fits.law().kind.name(),
+        "law_asked_for": case.law.name(),
+        "aicc_margin": fits.margin.map(|(_, margin)| margin),
+        "next_best": fits.margin.map(|(kind, _)| kind.name()),
+        "constants": values(fits.law()),
+        "standard_errors": errors(fits.law()),
+        "rms_log_rate": fits.law().rms(),
+        "rates": case.rows.len(),
+        "effective_rates": fits.effective_rates,
+        "stress_ratios": ratios,
+        "delta_k_min_mpa_sqrt_m": low,
+        "delta_k_max_mpa_sqrt_m": high,
+        "candidates": fits.candidates.iter().map(candidate).collect::<Vec<_>>(),
+        "material": case.material,
+        "wall_s": wall_s,
+        "warnings": case.warnings.iter().chain(&fits.warnings).collect::<Vec<_>>(),
+        "version": env!("CARGO_PKG_VERSION"),
+        "sources": case.sources,
+    })
+}
+
+fn values(law: &LawFit) -> Map<String, Value> {
+    law.constants.iter().map(|constant| (constant.key.to_owned(), json!(constant.value))).collect()
+}
+
+fn errors(law: &LawFit) -> Map<String, Value> {
+    law.constants.iter().filter_map(|constant| Some((constant.key.to_owned(), json!(constant.error?)))).collect()
+}
+
+/// The record of a law over K that predictions read.
+pub fn law_record(case: &LawCase, fits: &LawFits) -> LawRecord {
+    let law = fits.law();
+    let mut fatigue = toml::Table::new();
+    fatigue.insert("growth_law".to_owned(), law.kind.name().into());
+    fatigue.extend(law.constants.iter().map(|constant| (constant.key.to_owned(), constant.value.into())));
+    let [low, high] = case.delta_k_range();
+    let ratios = || case.rows.iter().map(|row| row.ratio);
+    LawRecord {
+        material: case.material.clone(),
+        delta_k_min_mpa_sqrt_m: low,
+        delta_k_max_mpa_sqrt_m: high,
+        stress_ratio_min: ratios().fold(f64::INFINITY, f64::min),
+        stress_ratio_max: ratios().fold(f64::NEG_INFINITY, f64::max),
+        rates: case.rows.len(),
+        rms_log_rate: law.rms(),
+        aicc_margin: fits.margin.map(|(_, margin)| margin),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        fatigue,
+        errors: law.constants.iter().filter_map(|constant| Some((constant.key.to_owned(), constant.error?))).collect(),
+        sources: case.sources.clone(),
+    }
+}
+
+/// `fit_rates.csv`: every rate beside that of the law.
+pub fn rates_csv(case: &LawCase, fits: &LawFits) -> String {
+    let mut text = String::from("series,stress_ratio,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,da_dn_fitted_mm_per_cycle\n");
+    for (row, residual) in case.rows.iter().zip(&fits.law().residuals) {
+        let (k, rate) = (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE);
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{},{},{k:.10e},{rate:.10e},{:.10e}", field(&row.series), row.ratio, rate * (-residual).exp());
+    }
+    text
+}
+
+/// A fit of laws in words, the chosen one first.
+pub fn law_summary(case: &LawCase, fits: &LawFits) -> Vec<String> {
+    let law = fits.law();
+    let [low, high] = case.delta_k_range();
+    let ratios = case.ratios().iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    let mut lines = vec![format!("fit of laws to {} rates at R = {ratios}, ΔK {low:.3} to {high:.3} MPa√m", case.rows.len())];
+    let asked = if case.law == FitLaw::Best { "best by AICc" } else { "as asked for" };
+    let margin = match fits.margin {
+        Some((next, margin)) if margin >= 0.0 => format!(", {margin:.1} better than {next}{}", strength(margin)),
+        Some((next, margin)) => format!(", {:.1} worse than {next}", -margin),
+        None => ", no other law is left".to_owned(),
+    };
+    lines.push(format!("  law            {} ({asked}{margin})", law.kind));
+    lines.extend(law.constants.iter().map(|constant| {
+        let error = constant.error.map_or_else(|| "(given)".to_owned(), |error| format!("± {}", figure(error, 2)));
+        format!("    {:<28} {} {error}", constant.key, figure(constant.value, 5))
+    }));
+    lines.push("  ±              one standard error".to_owned());
+    for candidate in &fits.candidates {
+        lines.push(match &candidate.left_out {
+            Some(why) => format!("  {:<14} left out: {why}", candidate.kind.name()),
+            None => format!(
+                "  {:<14} rms {:.3} of ln da/dN, {} constants, delta AICc {:.1}",
+                candidate.kind.name(),
+                candidate.rms(),
+                candidate.fitted,
+                candidate.aicc - fits.least_aicc()
+            ),
+        });
+    }
+    lines
+}
+
+/// What a difference of the criterion is worth (Burnham and Anderson 2002).
+fn strength(margin: f64) -> &'static str {
+    match margin {
+        margin if margin < 2.0 => ": hardly a difference",
+        margin if margin > 10.0 => "",
+        _ => ": some evidence",
+    }
+}
+
+/// A number with some significant digits.
+fn figure(value: f64, digits: usize) -> String {
+    if value != 0.0 && !(1e-3..1e4).contains(&value.abs()) {
+        return format!("{value:.*e}", digits - 1);
+    }
+    let before = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    format!("{value:.*}", (digits as i32 - 1 - before).max(0) as usize)
 }

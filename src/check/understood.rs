@@ -3,9 +3,9 @@
 use toml::Value;
 
 use crate::calibration::laws::case::LawCase;
-use crate::calibration::measured::MeasuredCurve;
 use crate::case::{Case, LawSource, Method};
 use crate::material::Material;
+use crate::measured::MeasuredCurve;
 use crate::report::fit_use;
 use crate::report::model_words::{self, Choice};
 use crate::specimen::handbook::handbook;

@@ -1,21 +1,18 @@
 //! `perilife calibrate`: measured a-N curves to A and p, and on to the cases that use them.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::console::Console;
-use super::{calibrate_laws, predict};
-use crate::calibration::calibrate::calibrate;
-use crate::calibration::case::{CalibrationCase, remove_law};
-use crate::calibration::laws::case::is_law_fit;
-use crate::calibration::results::{FitReport, record};
-use crate::case::Case;
+use super::predict;
+use crate::calibration::calibrate::{Calibration, Fitted};
+use crate::calibration::results::record;
 use crate::case::budget::Budget;
-use crate::case::record::Estimate;
-use crate::error::{Result, input};
+use crate::case::{Case, remove_law};
+use crate::error::{Error, Result, input, input_missing};
 use crate::input::Document;
 use crate::predict::Prediction;
 use crate::report::output::{Finished, OutputFolder, Room, RunKind};
@@ -52,43 +49,68 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let console = &args.console;
     let document = Document::read(&args.calibration, &args.set)?;
-    if is_law_fit(&document.table) {
-        return calibrate_laws::run(args, &document);
+    let calibration = Calibration::from_document(&document)?;
+    if let Calibration::Lives(of_lives) = &calibration {
+        Budget::of(&of_lives.case).within_machine().map_err(|error| error.in_file(&args.calibration))?;
     }
-    let calibration = CalibrationCase::from_document(document)?;
-    Budget::of(&calibration.case).within_machine().map_err(|error| error.in_file(&args.calibration))?;
     // Read before the fit: a slip in the last case should not cost a calibration.
     let cases = cases_to_predict(&args.predict)?;
-    let mut read = calibration.case.provenance.clone();
+    if let Calibration::Rates(_) = &calibration {
+        cases.iter().try_for_each(check_no_gamma)?;
+    }
+    let mut read = document.folder.opened().so_far();
     read.files.extend(cases.iter().flat_map(|document| document.folder.opened().so_far().files));
     let mut folder = OutputFolder::claim(&args.out, RunKind::Calibrate, &read, Room { tables: 64_000, all: 1_000_000 })?;
-    for warning in calibration.warnings.iter().map(String::as_str).chain(folder.warning()) {
+    for warning in calibration.warnings().iter().map(String::as_str).chain(folder.warning()) {
         console.warn(warning);
     }
     let started = Instant::now();
-    let fitted = calibrate(&calibration, &console.progress(&calibration.case.name))?;
-    let report = FitReport::new(&calibration, &fitted, started.elapsed().as_secs_f64());
-    for warning in &fitted.warnings {
+    let fitted = calibration.fit(&console.progress(calibration.name()))?;
+    let wall_s = started.elapsed().as_secs_f64();
+    for warning in fitted.warnings() {
         console.warn(warning);
     }
-    let law = record(&calibration, &fitted);
-    folder.fill(|path| fit::write(path, &calibration, &fitted, &report, &law))?;
+    let report = fitted.report(wall_s);
+    folder.fill(|path| fit::write(path, &fitted, &report))?;
     // Nobody else writes there until the predictions stand in it.
     let place = folder.finish()?;
-    for line in summary(&report, &args.out) {
+    for line in fitted.summary(wall_s) {
         console.say(&line);
     }
+    console.say(&format!("  results        {}", args.out.display()));
+    let cases = cases.into_iter().map(|document| with_law(document, &fitted, args)).collect::<Result<_>>()?;
+    predict_each(cases, report, args, &place)
+}
 
-    let with_law = |document: &Document| -> Result<Case> {
-        case_of(document)?.with_law(law.clone()).map_err(|error| document.locate(error))
-    };
-    let cases = cases.iter().map(with_law).collect::<Result<_>>()?;
-    predict_each(cases, json!(report), args, &place)
+/// A case with the law that has just been fitted.
+fn with_law(mut document: Document, fitted: &Fitted<'_>, args: &Args) -> Result<Case> {
+    if let Fitted::Lives(calibration, fit) = fitted {
+        return case_of(&document)?.with_law(record(calibration, fit)).map_err(|error| document.locate(error));
+    }
+    let file = args.out.join("fitted.toml");
+    let file = std::path::absolute(&file).map_err(|error| Error::file(&file, "cannot find", error))?;
+    let fatigue = document.table.entry("fatigue").or_insert_with(|| toml::Table::new().into());
+    if let Some(fatigue) = fatigue.as_table_mut() {
+        fatigue.insert("fitted".to_owned(), file.to_string_lossy().into_owned().into());
+    }
+    case_of(&document)
+}
+
+/// A law over K has its own influence of R.
+fn check_no_gamma(document: &Document) -> Result<()> {
+    match document.table.get("fatigue").and_then(|fatigue| fatigue.get("walker_gamma")) {
+        None => Ok(()),
+        Some(_) => Err(document.locate(input_missing(
+            "fatigue.walker_gamma",
+            "does not go with a fit of a law over K, which has its own influence of R",
+            "remove it from the case",
+        ))),
+    }
 }
 
 /// Prints the report, with the predictions: each case with the fit, as the command `predict` does it, into its own folder. They run side by
 /// side; what they say comes in their order.
-pub(super) fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &Finished) -> Result<()> {
+fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &Finished) -> Result<()> {
     let console = &args.console;
     // Claimed first: a folder that cannot be written should not cost a run.
     let claim =
@@ -115,7 +137,7 @@ pub(super) fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, pla
 }
 
 /// Cases for `--predict`, read and checked but for their fatigue law, which the fit will be.
-pub(super) fn cases_to_predict(paths: &[PathBuf]) -> Result<Vec<Document>> {
+fn cases_to_predict(paths: &[PathBuf]) -> Result<Vec<Document>> {
     let mut documents: Vec<Document> = Vec::with_capacity(paths.len());
     for path in paths {
         let mut document = Document::read(path, &[])?;
@@ -130,56 +152,6 @@ pub(super) fn cases_to_predict(paths: &[PathBuf]) -> Result<Vec<Document>> {
     Ok(documents)
 }
 
-pub(super) fn case_of(document: &Document) -> Result<Case> {
+fn case_of(document: &Document) -> Result<Case> {
     Case::from_table(document.table.clone(), &document.name, &document.folder).map_err(|error| document.locate(error))
-}
-
-/// The fit in words: rate at the pivot and exponent with their errors, never A alone.
-fn summary(report: &FitReport, out: &Path) -> Vec<String> {
-    let life = 100.0 * (report.life_fitted / report.life_measured - 1.0);
-    let source = match report.p_source.as_str() {
-        "fitted" => String::new(),
-        "not_identified" => " (not identified)".to_owned(),
-        "given" => " (given)".to_owned(),
-        file => format!(" (from {file})"),
-    };
-    let error = |error: f64| if error > 0.0 { format!(" ± {error:.4}") } else { String::new() };
-    let mut lines =
-        vec![format!("fit to {}, {} to {} mm", report.fitted_to, report.from_crack_length_mm, report.to_crack_length_mm)];
-    // Hand calculation has no bonds: its p is m.
-    if report.a.is_finite() {
-        lines.push(format!("  A              {:.6e} at horizon {} mm", report.a, report.horizon_mm));
-        lines.push(format!("  p              {:.4}{}{source}", report.p, error(report.p_error)));
-    }
-    lines.extend([
-        format!(
-            "  rate           {:.4e} mm/cycle ± {:.2} % at the pivot ΔK = {:.3} MPa√m",
-            report.rate_at_pivot_mm_per_cycle,
-            100.0 * report.rate_at_pivot_relative_error,
-            report.pivot_delta_k_mpa_sqrt_m
-        ),
-        format!("  Paris          da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m)", report.paris_c_mm_per_cycle, report.paris_m),
-        format!("  m              {:.4}{}{source}", report.paris_m, error(report.paris_m_error)),
-        "  ±              one standard error".to_owned(),
-        format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", report.delta_k_min_mpa_sqrt_m, report.delta_k_max_mpa_sqrt_m),
-        format!(
-            "  life           measured {:.0}, fitted {:.0} cycles ({life:+.2} %), rms life error {:.2} %",
-            report.life_measured,
-            report.life_fitted,
-            100.0 * report.rms_life_error
-        ),
-    ]);
-    if report.estimate == Estimate::Robust.name() {
-        lines.push("  estimate       robust: repeated median of the rates".to_owned());
-    }
-    lines.extend(report.lack_of_fit.map(|lack| format!("  lack of fit    {}", lack.words())));
-    lines.extend(report.left_out.iter().map(|window| {
-        let specimen = window.specimen.as_ref().map_or_else(String::new, |name| format!("specimen {name}, "));
-        format!("  left out       {specimen}{} to {} cycles: {}", window.from_cycles, window.to_cycles, window.reason)
-    }));
-    lines.extend([
-        format!("  specimens      {}, in {:.1} s", report.specimens.len(), report.wall_s),
-        format!("  results        {}", out.display()),
-    ]);
-    lines
 }

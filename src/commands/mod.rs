@@ -3,7 +3,6 @@
 //! A new subcommand is its file, its `mod` and its line in the list below.
 
 pub mod calibrate;
-mod calibrate_laws;
 pub mod chart;
 pub mod check;
 pub mod collect;

@@ -7,18 +7,16 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::unaged::case_without_law;
-use crate::calibration::decimal::Decimal;
-use crate::calibration::measured::{
-    ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, first_of, read_into,
-};
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt;
-use crate::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
-use crate::calibration::test_piece::{TestPiece, add_delta_k};
+use crate::calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
 use crate::case::Case;
 use crate::cells::field;
 use crate::error::{Result, input};
 use crate::input::{Opened, STREAM};
+use crate::measured::{
+    ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, first_of, read_into,
+};
 use crate::report::output::{OutputFile, Sort};
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
@@ -99,10 +97,7 @@ pub fn run(args: &Args) -> Result<()> {
     let mut measured = read_into(&opened, &args.measured, &args.import()?)?;
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     if let Some(case) = &case {
-        let (limit, limit_name) = case.specimen.length_limit();
-        measured.check_lengths(limit, limit_name)?;
-        measured.resolve_loads(case)?;
-        measured.check_sides(&case.specimen);
+        measured.set_against(case)?;
     }
     let specimens = specimen_rates(&measured, method, case.as_ref())?;
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());
@@ -138,9 +133,8 @@ fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) 
         return Err(input("specimen.kind", case.specimen.kind, "has no handbook K(a) in this shape", remedy));
     };
     let delta_k = |length: f64| formula.delta_k(length, case.loading.maximum, case.loading.range_share());
-    let piece = TestPiece::of(case, &delta_k);
     for (specimen, curve) in specimens.iter_mut().zip(&measured.curves) {
-        add_delta_k(&mut specimen.points, &piece);
+        add_delta_k(&mut specimen.points, case, &delta_k);
         let law = paris_line(&specimen.points).and_then(|law| doubt(10_f64.powf(law.intercept), law.slope));
         let of_law = law.map(|words| format!("specimen {}: {words}", curve.specimen));
         let outside = outside_formula(&specimen.points, &formula).map(|words| format!("specimen {}: {words}", curve.specimen));
@@ -171,8 +165,9 @@ fn table(specimens: &[SpecimenRates]) -> String {
     let mut text = HEADER.to_owned();
     for specimen in specimens {
         for point in &specimen.points {
-            let delta_k = known(point.delta_k / MPA_SQRT_M).map_or_else(String::new, |k| format!("{k:.10}"));
-            let ratio = known(point.ratio).map_or_else(String::new, |ratio| ratio.to_string());
+            let [delta_k, ratio] = [point.delta_k / MPA_SQRT_M, point.ratio];
+            let delta_k = if delta_k.is_finite() { format!("{delta_k:.10}") } else { String::new() };
+            let ratio = if ratio.is_finite() { ratio.to_string() } else { String::new() };
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
@@ -194,9 +189,9 @@ fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {
             json!({
                 "cycles": point.cycles,
                 "crack_length_mm": point.crack_length / MM,
-                "delta_k_mpa_sqrt_m": known(point.delta_k / MPA_SQRT_M),
+                "delta_k_mpa_sqrt_m": point.delta_k / MPA_SQRT_M,
                 "da_dn_mm_per_cycle": point.rate / MM_PER_CYCLE,
-                "stress_ratio": known(point.ratio),
+                "stress_ratio": point.ratio,
                 "flags": point.flags.words().split_whitespace().collect::<Vec<_>>(),
             })
         };
@@ -232,8 +227,4 @@ impl SpecimenRates {
             }
         }
     }
-}
-
-fn known(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
 }

@@ -3,10 +3,8 @@
 use serde_json::{Value, json};
 
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use crate::calibration::case::Parameter;
 use crate::calibration::criterion::Criterion;
-use crate::calibration::decimal::Decimal;
-use crate::calibration::import::{CycleUnit, LengthUnit, LoadUnit};
+use crate::calibration::exponent::Parameter;
 use crate::calibration::laws::FitLaw;
 use crate::calibration::rates::RateMethod;
 use crate::case::TableEnds;
@@ -24,6 +22,7 @@ use crate::input::Folder;
 use crate::kinds::KindLine;
 use crate::loading::LoadingKind;
 use crate::material::{Plane, library};
+use crate::measured::{CycleUnit, Decimal, LengthUnit, LoadUnit};
 use crate::predict::StopReason;
 use crate::predict::tip_factors::StressIntensityMethod;
 use crate::solver::{SolverKind, SolverUsed, Symmetry};

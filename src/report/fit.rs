@@ -3,31 +3,48 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use serde_json::Value;
+
 use super::chart::{self, Mark, Series};
 use super::output::write_file;
 use super::provenance;
+use crate::calibration::calibrate::Fitted;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::Fit;
-use crate::calibration::results::{FitReport, fit_curves_csv};
-use crate::case::record::FittedRecord;
+use crate::calibration::laws::LawFits;
+use crate::calibration::laws::case::LawCase;
+use crate::calibration::laws::rows::RateRow;
+use crate::calibration::results::{fit_curves_csv, rates_csv};
 use crate::error::{Error, Result};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
-/// Writes all files of a fit into `folder`.
-pub fn write(folder: &Path, calibration: &CalibrationCase, fit: &Fit, report: &FitReport, law: &FittedRecord) -> Result<()> {
-    let unwritable = |file: &str, error: String| Error::file(&folder.join(file), "cannot write", std::io::Error::other(error));
-    let mut json = serde_json::to_value(report).map_err(|error| unwritable("fit.json", error.to_string()))?;
-    let toml = toml::to_string(law).map_err(|error| unwritable("fitted.toml", error.to_string()))?;
-    let (curves, band) = (fit_curves_csv(fit), band(calibration, fit, report));
-    let provenance = &calibration.case.provenance;
-    provenance::add(&mut json, provenance, &[("fitted.toml", &toml), ("fit_curves.csv", &curves), ("fit_band.csv", &band)]);
-    write_file(&folder.join("fit.json"), format!("{json:#}\n").as_bytes())?;
-    write_file(&folder.join("fitted.toml"), toml.as_bytes())?;
-    write_file(&folder.join("fit_curves.csv"), curves.as_bytes())?;
-    write_file(&folder.join("fit_band.csv"), band.as_bytes())?;
-    provenance::write(folder, "calibrate", calibration.input.clone(), provenance)?;
-    write_tables(folder, calibration, fit)?;
-    draw(folder, calibration, fit)
+/// Writes all files of a fit into `folder`; `report` is the content of `fit.json`.
+pub fn write(folder: &Path, fitted: &Fitted<'_>, report: &Value) -> Result<()> {
+    let unwritable = |error: toml::ser::Error| {
+        Error::file(&folder.join("fitted.toml"), "cannot write", std::io::Error::other(error.to_string()))
+    };
+    let law = fitted.record_text().map_err(unwritable)?;
+    let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
+    let mut json = report.clone();
+    match fitted {
+        Fitted::Lives(calibration, fit) => {
+            let (curves, band) = (fit_curves_csv(fit), band(calibration, fit));
+            let provenance = &calibration.case.provenance;
+            let tables = [("fitted.toml", &*law), ("fit_curves.csv", &*curves), ("fit_band.csv", &*band)];
+            provenance::add(&mut json, provenance, &tables);
+            tables.iter().try_for_each(|(name, text)| put(name, text))?;
+            provenance::write(folder, "calibrate", calibration.input.clone(), provenance)?;
+            write_tables(folder, calibration, fit)?;
+            draw(folder, calibration, fit)?;
+        }
+        Fitted::Rates(case, fits) => {
+            put("fitted.toml", &law)?;
+            put("fit_rates.csv", &rates_csv(case, fits))?;
+            let title = format!("{}: {}", case.name, fits.law().kind);
+            chart::growth_rate(&folder.join("fit_rates.svg"), &title, &series(case, fits))?;
+        }
+    }
+    put("fit.json", &format!("{json:#}\n"))
 }
 
 /// Standard errors from the middle of a 95 % band to its ends.
@@ -38,17 +55,18 @@ const BAND: f64 = 1.96;
 ///
 /// The rate at the pivot and the exponent m have errors of their own, without correlation, which is what makes it the pivot. With
 /// N(a) = ∫ da / rate, the relative error of N is s_N² = s_rate² + (s_m w)², w the mean of ln(ΔK/ΔK_pivot) over the cycles so far.
-fn band(calibration: &CalibrationCase, fit: &Fit, report: &FitReport) -> String {
+fn band(calibration: &CalibrationCase, fit: &Fit) -> String {
     let mut text = "crack_length_mm,cycles_fitted,cycles_low,cycles_high\n".to_owned();
     let (lengths, cycles) = (&fit.record.crack_length, &fit.record.cycles_fitted);
+    let m_error = fit.paris.m_error.max(calibration.exponent.error);
     let mut weighted = 0.0;
     for (i, (&length, &n)) in lengths.iter().zip(cycles).enumerate() {
         if i > 0 {
             let delta_k = fit.delta_k(calibration, 0.5 * (length + lengths[i - 1])) * fit.record.load_factor[i] / MPA_SQRT_M;
-            weighted += (n - cycles[i - 1]) * (delta_k / report.pivot_delta_k_mpa_sqrt_m).ln();
+            weighted += (n - cycles[i - 1]) * (delta_k / fit.paris.pivot).ln();
         }
         let w = if n > 0.0 { weighted / n } else { 0.0 };
-        let factor = (BAND * report.rate_at_pivot_relative_error.hypot(report.paris_m_error * w)).exp();
+        let factor = (BAND * fit.paris.rate_at_pivot_error.hypot(m_error * w)).exp();
         let _ = writeln!(text, "{:.12e},{n:.12e},{:.12e},{:.12e}", length / MM, n / factor, n * factor); // a String takes all
     }
     text
@@ -57,9 +75,9 @@ fn band(calibration: &CalibrationCase, fit: &Fit, report: &FitReport) -> String 
 /// The same curves as Parquet beside their constants, and for several specimens quantiles of their cycles.
 #[cfg(feature = "tables")]
 fn write_tables(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
-    use crate::calibration::fit::FittedCurve;
     use crate::calibration::frames::{SHARES, cycle_quantiles, fit_curves, specimens};
     use crate::calibration::results::curves_written;
+    use crate::calibration::search::FittedCurve;
     use crate::tables::{csv, join_by_specimen, parquet};
 
     let curves: Vec<FittedCurve> = curves_written(fit).cloned().collect();
@@ -122,4 +140,27 @@ fn draw_rates(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result
         Series { name: format!("da/dN = {:.3e} ΔK^{:.3}", fit.paris.c, fit.paris.m), points: line, mark: Mark::Dashes },
     ];
     chart::growth_rate(&folder.join("fit_rates.svg"), &format!("{}: growth rate", calibration.case.name), &all)
+}
+
+/// Most stress ratios that a picture tells apart.
+const RATIOS_DRAWN: usize = 6;
+
+/// Measured rates of every stress ratio, and those of the law at the same rows.
+fn series(case: &LawCase, fits: &LawFits) -> Vec<Series> {
+    let ratios = case.ratios();
+    if ratios.len() > RATIOS_DRAWN {
+        return pair("all stress ratios", case, fits, &|_| true);
+    }
+    ratios.iter().flat_map(|ratio| pair(&format!("R = {ratio}"), case, fits, &|of| (of - ratio).abs() < 0.0051)).collect()
+}
+
+fn pair(name: &str, case: &LawCase, fits: &LawFits, is_of: &dyn Fn(f64) -> bool) -> Vec<Series> {
+    let rows = || case.rows.iter().zip(&fits.law().residuals).filter(|(row, _)| is_of(row.ratio));
+    let point = |(row, share): (&RateRow, f64)| (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE * share);
+    let mut law: Vec<(f64, f64)> = rows().map(|(row, residual)| point((row, (-residual).exp()))).collect();
+    law.sort_by(|a, b| a.0.total_cmp(&b.0));
+    vec![
+        Series { name: name.to_owned(), points: rows().map(|(row, _)| point((row, 1.0))).collect(), mark: Mark::Circles },
+        Series { name: format!("{}, {name}", fits.law().kind), points: law, mark: Mark::Line },
+    ]
 }

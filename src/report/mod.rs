@@ -9,7 +9,6 @@ pub mod damage;
 pub mod disc;
 pub mod fit;
 pub mod fit_use;
-pub mod law_fit;
 pub mod fracture;
 pub mod json;
 pub mod model_words;

@@ -9,7 +9,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::problem::Problem;
-use crate::calibration::case::remove_law;
+use crate::case::remove_law;
 use crate::error::Result;
 use crate::input::{Document, Folder};
 

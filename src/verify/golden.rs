@@ -4,9 +4,9 @@
 
 use super::scene::case;
 use super::table::Table;
-use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::rates::{RateMethod, rates};
 use crate::error::{Error, Result};
+use crate::measured::MeasuredCurve;
 use crate::predict::{Prediction, Silent, StopReason, predict};
 use crate::units::{MM, MM_PER_CYCLE};
 

@@ -10,14 +10,14 @@ use super::scene::case_with_law;
 use super::table::Table;
 use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::CalibrationCase;
-use crate::calibration::fit::FittedCurve;
-use crate::calibration::measured::MeasuredCurve;
 use crate::calibration::median::cycles_at;
 use crate::calibration::paris::Paris;
 use crate::calibration::results::record;
+use crate::calibration::search::FittedCurve;
 use crate::case::record::FittedRecord;
 use crate::error::Result;
 use crate::input::Folder;
+use crate::measured::MeasuredCurve;
 use crate::predict::{Silent, StopReason, predict};
 use crate::units::MM;
 

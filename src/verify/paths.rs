@@ -4,7 +4,7 @@ use super::collinear::{Collinear, growth_integral};
 use super::references;
 use super::scene::{case, pulled_plate};
 use super::table::Table;
-use crate::calibration::model::cycles_of_run;
+use crate::calibration::median::cycles_of_run;
 use crate::error::Result;
 use crate::growth::tip_field::steering::kink_angle;
 use crate::predict::{Silent, StopReason, predict};

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use crate::calibration::case::remove_law;
 use crate::case::Case;
 use crate::case::record::FittedRecord;
+use crate::case::remove_law;
 use crate::error::Result;
 use crate::input::Document;
 use crate::predict::{Prediction, Silent, predict};

@@ -1,7 +1,7 @@
 //! Standard specimens at default resolution, and their lives by quadrature with K of finite elements.
 
 use super::scene::{MATERIAL_AND_LAW, PULL, case, points};
-use crate::calibration::model::cycles_of_run;
+use crate::calibration::median::cycles_of_run;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::predict::{Observer, Prediction, Silent, StopReason, predict};

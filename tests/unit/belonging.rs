@@ -6,7 +6,7 @@ use perilife::calibration::calibrate::calibrate;
 use perilife::calibration::case::CalibrationCase;
 use perilife::calibration::fit::Fit;
 use perilife::calibration::lack_of_fit::EndMiss;
-use perilife::calibration::results::{FitReport, record};
+use perilife::calibration::results::{record, report};
 use perilife::case::record::Estimate;
 use perilife::input::Folder;
 use perilife::predict::Silent;
@@ -140,7 +140,7 @@ fn what_is_left_out_stands_in_every_result() {
     let keys = format!("leave_out = [{{ specimen = \"test\", from_cycles = {from}, to_cycles = {to}, reason = \"overload\" }}]");
     let case = case(&csv, &keys).unwrap();
     let fit = calibrate(&case, &Silent).unwrap();
-    let report = serde_json::to_value(FitReport::new(&case, &fit, 0.0)).unwrap();
+    let report = report(&case, &fit, 0.0);
     assert_eq!(report["left_out"][0]["reason"], "overload", "{report}");
     let text = toml::to_string(&record(&case, &fit)).unwrap();
     assert!(text.contains("[[left_out]]") && text.contains("reason = \"overload\""), "{text}");

@@ -4,9 +4,9 @@ use std::io::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
-use perilife::calibration::measured::{Import, parse, survey};
 use perilife::cells::{CELLS_MAX, ROWS_MAX, UNPACKED_MAX, defused, field, restored};
-use perilife::tables::{Values, csv, frame, parquet, read_parquet};
+use perilife::measured::{Import, parse, survey};
+use perilife::tables::{Column, csv, frame, parquet, read_parquet};
 use polars::prelude::{AnyValue, Column, DataFrame, DataType, Scalar};
 
 use super::import::workbook;
@@ -35,11 +35,11 @@ fn names_of_specimens_go_through_tables() {
     let written = format!("specimen,cycles,crack_length_mm\n{}", names.map(rows).concat());
     let of_cells = |name: &str, index: usize| (0..5).map(|_| name.to_owned()).nth(index).unwrap();
     let column: Vec<String> = names.iter().flat_map(|name| (0..5).map(|i| of_cells(name, i))).collect();
-    let numbers = |of: fn(usize) -> f64| Values::Numbers((0..5 * names.len()).map(of).collect());
+    let numbers = |name: &str, of: fn(usize) -> f64| Column::new(name.into(), (0..5 * names.len()).map(of).collect::<Vec<f64>>());
     let table = frame(vec![
-        ("specimen", Values::Text(column)),
-        ("cycles", numbers(|i| 1000.0 * (i % 5) as f64)),
-        ("crack_length_mm", numbers(|i| 10.0 + (i % 5) as f64)),
+        Column::new("specimen".into(), column),
+        numbers("cycles", |i| 1000.0 * (i % 5) as f64),
+        numbers("crack_length_mm", |i| 10.0 + (i % 5) as f64),
     ])
     .unwrap();
     let files = [("a.csv", written.into_bytes()), ("b.csv", csv(&table).unwrap()), ("c.parquet", parquet(&table).unwrap())];
@@ -101,7 +101,7 @@ fn parquet_files_that_lie_are_refused() {
     lie.extend((footer.len() as u32).to_le_bytes());
     lie.extend(b"PAR1");
     let mut cases = vec![("footer", lie, "its footer is cut off")];
-    let table = frame(vec![("cycles", Values::Numbers(vec![1.0; 100])), ("a_mm", Values::Numbers(vec![2.0; 100]))]).unwrap();
+    let table = frame(vec![Column::new("cycles".into(), vec![1.0; 100]), Column::new("a_mm".into(), vec![2.0; 100])]).unwrap();
     let fine = parquet(&table).unwrap();
     assert_eq!(read_parquet(&fine, Path::new("fine.parquet")).unwrap().rows.len(), 100);
     // The first page: its header begins with the kind of page (field 1), then unpacked bytes (field 2, two bytes of varint here).

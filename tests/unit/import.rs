@@ -3,8 +3,7 @@
 use std::io::Write as _;
 use std::path::Path;
 
-use perilife::calibration::decimal::Decimal;
-use perilife::calibration::measured::{ColumnName, ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Sheet, parse};
+use perilife::measured::{ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Sheet, parse};
 use perilife::units::MM;
 
 /// Cycles and crack length in mm, as plain as they can be written.
@@ -31,8 +30,10 @@ fn comma(a: f64) -> String {
     format!("{a:.2}").replace('.', ",")
 }
 
-fn column(name: &str) -> ColumnName {
-    ColumnName(name.to_owned())
+fn columns(names: &[&str]) -> ColumnNames {
+    let mut columns = ColumnNames::default();
+    names.iter().for_each(|name| columns.put(name).unwrap());
+    columns
 }
 
 fn is_the_curve(name: &str, bytes: &[u8], import: &Import) {
@@ -227,7 +228,7 @@ fn names_of_laboratories_are_known() {
 fn columns_may_be_named_by_the_user() {
     let strange = format!("t;Zahl;Sonde [in];Kraft\n{}", lines(|n, a| format!("{};{n};{};7", n / 10.0, a / 25.4)));
     let names = |cycles: &str, length: &str| Import {
-        columns: ColumnNames { cycles: Some(column(cycles)), length: vec![column(length)], ..ColumnNames::default() },
+        columns: columns(&[&format!("cycles={cycles}"), &format!("length={length}")]),
         ..Import::default()
     };
     for (cycles, length) in [("Zahl", "Sonde [in]"), ("zahl", " SONDE  [in]"), ("2", "3")] {
@@ -245,8 +246,7 @@ fn columns_may_be_named_by_the_user() {
     is_the_curve("the corrected one", both.as_bytes(), &names("N", "a corrected (mm)"));
     let error = parse(both.as_bytes(), Path::new("b.csv"), &names("N", "b")).unwrap_err().to_string();
     assert!(error.contains("measured.columns.length = b: names no column of this file; its columns are N | a (mm)"), "{error}");
-    let mut columns = ColumnNames::default();
-    columns.put("cycles=N").unwrap();
+    let mut columns = columns(&["cycles=N"]);
     for (text, words) in
         [("N", "has no ="), ("depth=a", "has a key that is not known"), ("cycles=M", "twice"), ("length=", "names no column")]
     {
@@ -302,8 +302,7 @@ fn a_wide_table_holds_lengths_alone() {
         assert_eq!(curves.len(), 1, "{sides}");
         assert!((curves[0].crack_length[4] - 14.0 * MM).abs() < 1e-12, "{sides}");
     }
-    let named =
-        Import { columns: ColumnNames { length: vec![column("S1"), column("S2")], ..ColumnNames::default() }, ..import.clone() };
+    let named = Import { columns: columns(&["length=S1", "length=S2"]), ..import.clone() };
     let text = "Cycles;S1;S2\n0;12.8;11.2\n10;13.3;11.7\n20;13.8;12.2\n30;14.3;12.7\n40;14.8;13.2\n";
     assert_eq!(parse(text.as_bytes(), Path::new("w.csv"), &import).unwrap().curves.len(), 2);
     assert_eq!(parse(text.as_bytes(), Path::new("w.csv"), &named).unwrap().curves.len(), 1);

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use perilife::calibration::laws::case::LawCase;
 use perilife::calibration::laws::fit::LawFit;
-use perilife::calibration::laws::results::{rates_csv, record, report, summary};
 use perilife::calibration::laws::rows::{RateRow, read};
 use perilife::calibration::laws::{FitLaw, Given, LawFits, fit_laws};
+use perilife::calibration::results::{law_record, law_report, law_summary, rates_csv};
 use perilife::case::Case;
 use perilife::fatigue::growth_law::Forman;
 use perilife::fatigue::growth_law::GrowthLaw;
@@ -315,13 +315,13 @@ fn predictions_read_the_fitted_law() {
         let text = format!("[measured]\nrates = [\"all.csv\"]\n[material]\nname = \"sheet\"\n[fit]\nlaw = \"{kind}\"\n");
         let calibration = case(&text, &[("all.csv", all)]).unwrap();
         let fits = calibration.fit().unwrap();
-        let report = report(&calibration, &fits, 0.1);
+        let report = law_report(&calibration, &fits, 0.1);
         assert_eq!(report["candidates"].as_array().unwrap().len(), 4);
         assert_eq!(report["law"], kind.name());
         assert!(report["constants"].as_object().unwrap().len() >= 2 && report["material"] == "sheet", "{report}");
         assert_eq!(rates_csv(&calibration, &fits).lines().count(), calibration.rows.len() + 1);
-        assert!(summary(&calibration, &fits).iter().any(|line| line.contains("delta AICc")));
-        let record = toml::to_string(&record(&calibration, &fits)).unwrap();
+        assert!(law_summary(&calibration, &fits).iter().any(|line| line.contains("delta AICc")));
+        let record = toml::to_string(&law_record(&calibration, &fits)).unwrap();
         let folder = Folder::at_hand([("fitted.toml".to_owned(), record.into_bytes())]);
         let life = |fatigue: &str, set: &[&str]| {
             let set: Vec<String> = set.iter().map(|set| (*set).to_owned()).collect();

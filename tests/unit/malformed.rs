@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use perilife::calibration::measured::{Import, parse};
+use perilife::measured::{Import, parse};
 use perilife::units::MM;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};

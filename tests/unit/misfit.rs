@@ -1,12 +1,11 @@
 //! Search, misfit and Paris equivalents against models with a known answer.
 
 use perilife::Result;
-use perilife::calibration::criterion::Criterion;
+use perilife::calibration::criterion::{Criterion, inverse_a, misfit, rms_life_error};
 use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::measured::MeasuredCurve;
-use perilife::calibration::misfit::{inverse_a, misfit, rms_life_error};
-use perilife::calibration::model::cycles_since_first;
+use perilife::calibration::median::cycles_since_first;
 use perilife::calibration::power_law::PowerLaw;
+use perilife::measured::MeasuredCurve;
 use perilife::units::{MM, MPA, MPA_SQRT_M};
 
 /// ΔK of the Virkler panel, Pa√m.

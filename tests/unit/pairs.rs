@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use perilife::calibration::measured::{Import, LengthUnit, Measured, parse};
+use perilife::measured::{Import, LengthUnit, Measured, parse};
 use perilife::units::MM;
 
 /// Cycles and lengths in mm of two specimens of unlike tests.

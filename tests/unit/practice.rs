@@ -4,10 +4,9 @@ use std::path::PathBuf;
 
 use perilife::calibration::calibrate::calibrate;
 use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::decimal::Decimal;
 use perilife::calibration::fit::Fit;
-use perilife::calibration::measured::{Import, LengthUnit, read};
 use perilife::input::{Document, Folder};
+use perilife::measured::{Decimal, Import, LengthUnit, read};
 use perilife::predict::Silent;
 
 use crate::support::shared::shared;

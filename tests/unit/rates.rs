@@ -1,8 +1,10 @@
 //! Growth rates of curves whose rate is known.
 
-use perilife::calibration::measured::MeasuredCurve;
-use perilife::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
-use perilife::calibration::test_piece::{TestPiece, add_delta_k};
+use perilife::calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
+use perilife::case::Case;
+use perilife::input::Folder;
+use perilife::material::Material;
+use perilife::measured::MeasuredCurve;
 use perilife::specimen::SpecimenKind;
 use perilife::units::{MM, MPA};
 
@@ -13,17 +15,14 @@ fn curve(cycles: Vec<f64>, lengths_mm: &[f64]) -> MeasuredCurve {
     MeasuredCurve::new("S", cycles, crack_length)
 }
 
-fn piece(kind: SpecimenKind, yield_strength: Option<f64>) -> TestPiece<'static> {
-    TestPiece {
-        kind,
-        width: 152.4 * MM,
-        thickness: 2.54 * MM,
-        force_max: 60.35 * MPA * 152.4 * MM * 2.54 * MM,
-        k_max_over_range: 1.25,
-        ratio: 0.2,
-        yield_strength,
-        delta_k: &delta_k,
-    }
+/// The panel of Virkler et al. (1979) under its load.
+fn panel() -> Case {
+    let text = "specimen = { kind = \"middle_tension\", width_mm = 152.4, length_mm = 300.0, thickness_mm = 2.54, crack_length_mm = 9.0 }
+        material = { youngs_modulus_gpa = 71.0, poisson_ratio = 0.33, yield_strength_mpa = 345.0 }
+        loading = { stress_max_mpa = 60.35, stress_ratio = 0.2 }
+        model = { method = \"handbook\" }
+        fatigue = { paris_c_mm_per_cycle = 1e-8, paris_m = 3.0 }";
+    Case::from_toml(text, "panel", Folder::none(), &[]).unwrap()
 }
 
 #[test]
@@ -55,7 +54,7 @@ fn rates_of_a_paris_curve_give_back_its_law() {
     let (a, p) = (8.95e-11, 2.87);
     for &method in RateMethod::ALL {
         let mut points = rates(&exact_curve("exact", a, p), method);
-        add_delta_k(&mut points, &piece(SpecimenKind::MiddleTension, None));
+        add_delta_k(&mut points, &panel(), &delta_k);
         let law = paris_line(&points).unwrap();
         assert!((law.slope - p).abs() < 0.01, "{method}: m = {}", law.slope);
         // C belongs to ΔK = 1, far outside the data: compare rates inside, at 15 MPa√m.
@@ -77,13 +76,23 @@ fn short_steps_and_falling_readings_are_flagged() {
 /// C(T): W - a ≥ (4/π) (K_max/σ_YS)².
 #[test]
 fn the_ligament_must_hold_its_plastic_zone() {
-    let middle = piece(SpecimenKind::MiddleTension, Some(345.0 * MPA));
-    assert!(middle.small_scale_yielding(59.5 * MM, 0.0, 1.0));
-    assert!(!middle.small_scale_yielding(59.7 * MM, 0.0, 1.0));
-    assert!(piece(SpecimenKind::MiddleTension, None).small_scale_yielding(70.0 * MM, 0.0, 1.0));
-    let compact = piece(SpecimenKind::CompactTension, Some(345.0 * MPA));
-    let ligament = 152.4 * MM - 100.0 * MM;
-    let limit = 345.0 * MPA * (ligament * std::f64::consts::PI / 4.0).sqrt();
-    assert!(compact.small_scale_yielding(100.0 * MM, 0.999 * limit, 1.0));
-    assert!(!compact.small_scale_yielding(100.0 * MM, 1.001 * limit, 1.0));
+    let holds = |case: &Case, a: f64, k_max: f64| {
+        let strength = case.material.yield_strength.unwrap();
+        case.specimen.small_scale_yielding(a * MM, case.loading.maximum, k_max, strength)
+    };
+    let middle = panel();
+    assert!(holds(&middle, 59.5, 0.0) && !holds(&middle, 59.7, 0.0));
+    let mut compact = panel();
+    compact.specimen.kind = SpecimenKind::CompactTension;
+    let limit = 345.0 * MPA * ((152.4 - 100.0) * MM * std::f64::consts::PI / 4.0).sqrt();
+    assert!(holds(&compact, 100.0, 0.999 * limit) && !holds(&compact, 100.0, 1.001 * limit));
+    // Rates say so, and where no strength is known, nothing.
+    let strength = |case: Case, yield_strength| {
+        let mut points = rates(&curve(vec![0.0, 1e4, 2e4], &[58.0, 59.0, 62.0]), RateMethod::Secant);
+        let material = Material { yield_strength, ..case.material.clone() };
+        add_delta_k(&mut points, &Case { material, ..case }, &delta_k);
+        points.iter().map(|point| point.flags.yielding).collect::<Vec<bool>>()
+    };
+    assert_eq!(strength(panel(), Some(345.0 * MPA)), [false, true]);
+    assert_eq!(strength(panel(), None), [false, false]);
 }

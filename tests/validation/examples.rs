@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use perilife::calibration::model::cycles_of_run;
+use perilife::calibration::median::cycles_of_run;
 use perilife::case::Case;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::quadrature::integrate;

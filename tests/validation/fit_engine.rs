@@ -5,7 +5,7 @@ use std::path::Path;
 use perilife::calibration::calibrate::calibrate;
 use perilife::calibration::case::CalibrationCase;
 use perilife::calibration::fit::Fit;
-use perilife::calibration::measured::MeasuredCurve;
+use perilife::measured::MeasuredCurve;
 use perilife::predict::Silent;
 
 pub fn calibration(set: &[String]) -> CalibrationCase {

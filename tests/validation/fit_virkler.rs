@@ -3,8 +3,8 @@
 
 use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::measured::{Import, Measured, read};
 use perilife::calibration::power_law::PowerLaw;
+use perilife::measured::{Import, Measured, read};
 use perilife::units::{MM, MPA};
 
 use crate::support::shared::shared;

@@ -5,10 +5,11 @@
 //! difference of the halves cancels in the mean, and what is left is what the model has to answer for.
 
 use perilife::calibration::criterion::Criterion;
-use perilife::calibration::fit::{Fit, FitTask, FittedCurve, fit};
-use perilife::calibration::measured::{Import, MeasuredCurve, read};
+use perilife::calibration::fit::{Fit, FitTask, fit};
 use perilife::calibration::median::{cycles_at, pointwise_median};
 use perilife::calibration::power_law::PowerLaw;
+use perilife::calibration::search::FittedCurve;
+use perilife::measured::{Import, MeasuredCurve, read};
 use perilife::units::MM;
 
 use super::fit_engine;

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use perilife::calibration::measured::{Import, MeasuredCurve, read};
 use perilife::calibration::median::{pointwise_median, pointwise_median_at};
+use perilife::measured::{Import, MeasuredCurve, read};
 use perilife::units::MM;
 
 use crate::support::shared::shared;

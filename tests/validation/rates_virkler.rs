@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use perilife::calibration::measured::{Import, MeasuredCurve, read};
-use perilife::calibration::rates::{RateMethod, RatePoint, paris_line, rates};
-use perilife::calibration::test_piece::{TestPiece, add_delta_k};
-use perilife::specimen::SpecimenKind;
+use perilife::calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
+use perilife::case::Case;
+use perilife::input::Folder;
+use perilife::measured::{Import, MeasuredCurve, read};
 use perilife::units::{MM, MM_PER_CYCLE, MPA};
 
 use crate::support::shared::shared;
@@ -16,19 +16,19 @@ fn delta_k(a: f64) -> f64 {
     48.28 * MPA * (pi * a / (pi * a / (152.4 * MM)).cos()).sqrt()
 }
 
+/// The panel of Virkler et al. (1979) under its load.
+fn panel() -> Case {
+    let text = "specimen = { kind = \"middle_tension\", width_mm = 152.4, length_mm = 300.0, thickness_mm = 2.54, crack_length_mm = 9.0 }
+        material = { youngs_modulus_gpa = 71.0, poisson_ratio = 0.33, yield_strength_mpa = 345.0 }
+        loading = { stress_max_mpa = 60.35, stress_ratio = 0.2 }
+        model = { method = \"handbook\" }
+        fatigue = { paris_c_mm_per_cycle = 1e-8, paris_m = 3.0 }";
+    Case::from_toml(text, "panel", Folder::none(), &[]).unwrap()
+}
+
 fn rates_with_delta_k(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {
     let mut points = rates(curve, method);
-    let piece = TestPiece {
-        kind: SpecimenKind::MiddleTension,
-        width: 152.4 * MM,
-        thickness: 2.54 * MM,
-        force_max: 60.35 * MPA * 152.4 * MM * 2.54 * MM,
-        k_max_over_range: 1.25,
-        ratio: 0.2,
-        yield_strength: Some(345.0 * MPA),
-        delta_k: &delta_k,
-    };
-    add_delta_k(&mut points, &piece);
+    add_delta_k(&mut points, &panel(), &delta_k);
     points
 }
 

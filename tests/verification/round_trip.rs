@@ -1,18 +1,18 @@
 //! The calibration finds the constants of curves that the engine itself computed.
 
-use perilife::calibration::bond_constants::in_terms_of_bonds;
+use perilife::calibration::calibrate::in_terms_of_bonds;
 use perilife::calibration::confidence::distance_squared;
 use perilife::calibration::criterion::Criterion;
 use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::measured::MeasuredCurve;
 use perilife::calibration::power_law::PowerLaw;
 use perilife::calibration::search::Constants;
 use perilife::case::Case;
 use perilife::fatigue::FatigueLaw;
 use perilife::fatigue::paris::ParisLaw;
 use perilife::fatigue::rate_constant::rate_constant;
+use perilife::measured::MeasuredCurve;
 use perilife::predict::factor_curve::FactorCurve;
-use perilife::predict::{Silent, predict};
+use perilife::predict::{RunFigures, Silent, predict};
 use perilife::specimen::handbook::handbook;
 use perilife::units::MM;
 
@@ -41,8 +41,8 @@ fn curve(spacing: f64, exact: &[(f64, f64)], scatter: f64, seed: u64) -> Measure
     MeasuredCurve::new(format!("seed {seed} at {spacing} mm"), cycles, crack_length)
 }
 
-/// The panel, its actual horizon (m), and fits of C and m to curves of several seeds, all from one run with the known constants.
-fn fits(spacing: f64, scatter: f64, seeds: u64) -> (Case, f64, Vec<Fit>) {
+/// The panel, figures of its run, and fits of C and m to curves of several seeds, all from one run with the known constants.
+fn fits(spacing: f64, scatter: f64, seeds: u64) -> (Case, RunFigures, Vec<Fit>) {
     let set = [format!("model.spacing_mm={spacing}"), format!("fatigue.a={A}"), format!("fatigue.p={P}")];
     let set: Vec<&str> = set.iter().map(String::as_str).chain(["fatigue.driver=tip_field", "stop.crack_length_mm=44"]).collect();
     let panel = case(PANEL, &set);
@@ -57,7 +57,7 @@ fn fits(spacing: f64, scatter: f64, seeds: u64) -> (Case, f64, Vec<Fit>) {
         fit(&FitTask { curves: &curves, fixed_p: None, criterion: Criterion::BothEnds, delta_k: &delta_k }, &law).unwrap()
     };
     let found = (1..=seeds).map(fit_to).collect();
-    (panel, factors.figures.horizon, found)
+    (panel, factors.figures, found)
 }
 
 /// The law at the horizon that the fit belongs to.
@@ -67,10 +67,9 @@ fn known(horizon: f64) -> (f64, f64) {
 
 #[test]
 fn the_engine_recovers_its_own_constants() {
-    let (panel, horizon, mut found) = fits(4.0, 0.0, 1);
-    let mut found = found.remove(0);
-    in_terms_of_bonds(&mut found, &panel, horizon).unwrap();
-    let (a, p) = known(horizon);
+    let (panel, figures, mut found) = fits(4.0, 0.0, 1);
+    let found = in_terms_of_bonds(found.remove(0), &panel, &figures).unwrap();
+    let (a, p) = known(figures.horizon);
     let constants = found.record.constants;
     let (rms, life) = (found.record.rms_life_error(), found.record.life_fitted() / found.record.life_measured());
     println!("A {} against {a}, p {} against {p}, rms {rms}, life {life}", constants.a, constants.p);
@@ -82,7 +81,8 @@ fn the_engine_recovers_its_own_constants() {
 
 #[test]
 fn truth_lies_inside_the_95_percent_ellipse_of_engine_fits() {
-    let (panel, horizon, found) = fits(3.0, 0.05, 200);
+    let (panel, figures, found) = fits(3.0, 0.05, 200);
+    let horizon = figures.horizon;
     let beta = rate_constant(panel.model.bond_law.kernel, P).unwrap();
     let truth = ParisLaw::of_bonds(&FatigueLaw { a: known(horizon).0, p: P, horizon }, beta, panel.material.plane_modulus());
     let is_inside = |fit: &&Fit| {

@@ -1,17 +1,17 @@
 //! A calibration file whose fit is a law over K: rates of tables, or of readings, and which law.
 
-use std::path::Path;
-
 use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::candidate::Given;
-use super::rows::{RateRow, of_readings, read};
+use super::rows::{RateRow, read};
 use super::{FitLaw, LawFits, fit_laws};
 use crate::calibration::case::{CalibrationCase, source};
+use crate::calibration::outliers::{StepRate, step_rates};
 use crate::case::record::SourceFile;
 use crate::error::{Result, input, input_missing};
 use crate::input::{Document, INTENSITY, number, slice, value_at};
+use crate::measured::MeasuredCurve;
 use crate::units::MPA_SQRT_M;
 
 /// Keys of `[measured]` that only tables of rates have.
@@ -229,7 +229,21 @@ fn alone(table: &Table) -> Result<String> {
         .to_owned())
 }
 
-/// The same from a file on disk.
-pub fn from_file(path: &Path, overrides: &[String]) -> Result<LawCase> {
-    LawCase::from_document(&Document::read(path, overrides)?)
+/// Rates of the readings of a calibration, over steps of at least 0.25 mm (ASTM E647, 8.6.2), each at its own ΔK and R.
+fn of_readings(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64) -> Vec<RateRow> {
+    let of_curve = |curve: &MeasuredCurve| -> Vec<RateRow> {
+        let ratio_at = |reading: usize| {
+            let own = curve.loads.as_ref().and_then(|loads| loads.ratio.get(reading).copied());
+            own.filter(|ratio| !ratio.is_nan()).unwrap_or(calibration.case.loading.ratio)
+        };
+        let row = |step: StepRate| RateRow {
+            series: curve.specimen.clone(),
+            place: format!("{}: lines {} to {}", curve.source.file.display(), curve.line(step.from), curve.line(step.to)),
+            delta_k: step.log_k.exp() * MPA_SQRT_M,
+            rate: step.log_rate.exp(),
+            ratio: (step.from + 1..=step.to).map(ratio_at).sum::<f64>() / (step.to - step.from) as f64,
+        };
+        step_rates(curve, delta_k).into_iter().map(row).filter(|row| row.rate > 0.0 && row.rate.is_finite()).collect()
+    };
+    calibration.curves.iter().flat_map(of_curve).collect()
 }

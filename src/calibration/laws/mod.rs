@@ -13,7 +13,6 @@ mod candidate;
 pub mod case;
 pub mod fit;
 mod least_squares;
-pub mod results;
 pub mod rows;
 
 use crate::calibration::paris::doubt;
@@ -70,6 +69,11 @@ impl LawFits {
     /// The chosen law.
     pub fn law(&self) -> &LawFit {
         &self.candidates[self.chosen]
+    }
+
+    /// The least criterion of those that are left.
+    pub fn least_aicc(&self) -> f64 {
+        self.candidates.iter().filter(|law| law.left_out.is_none()).map(|law| law.aicc).fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -4,9 +4,6 @@
 
 use std::path::Path;
 
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::measured::MeasuredCurve;
-use crate::calibration::outliers::step_rates;
 use crate::error::{Error, InputError, Result};
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
@@ -147,23 +144,4 @@ fn read_rows(bytes: &[u8], file: &Path, given: Option<f64>) -> Result<RateTable>
         });
     }
     Ok(table)
-}
-
-/// Rates of the readings of a calibration, over steps of at least 0.25 mm (ASTM E647, 8.6.2), each at its own ΔK and R.
-pub fn of_readings(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64) -> Vec<RateRow> {
-    let of_curve = |curve: &MeasuredCurve| -> Vec<RateRow> {
-        let ratio_at = |reading: usize| {
-            let own = curve.loads.as_ref().and_then(|loads| loads.ratio.get(reading).copied());
-            own.filter(|ratio| !ratio.is_nan()).unwrap_or(calibration.case.loading.ratio)
-        };
-        let row = |step: crate::calibration::outliers::StepRate| RateRow {
-            series: curve.specimen.clone(),
-            place: format!("{}: lines {} to {}", curve.source.file.display(), curve.line(step.from), curve.line(step.to)),
-            delta_k: step.log_k.exp() * MPA_SQRT_M,
-            rate: step.log_rate.exp(),
-            ratio: (step.from + 1..=step.to).map(ratio_at).sum::<f64>() / (step.to - step.from) as f64,
-        };
-        step_rates(curve, delta_k).into_iter().map(row).filter(|row| row.rate > 0.0 && row.rate.is_finite()).collect()
-    };
-    calibration.curves.iter().flat_map(of_curve).collect()
 }

@@ -18,8 +18,7 @@ use super::collections::is_id;
 use super::places::BodyPlace;
 use super::security::Caller;
 use super::{App, Limits};
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::laws::case::{LawCase, is_law_fit};
+use crate::calibration::calibrate::Calibration;
 use crate::case::Case;
 use crate::case::budget::Budget;
 use crate::check::is_calibration;
@@ -399,8 +398,10 @@ pub fn check(submission: &Submission, kind: JobKind, limits: &Limits) -> Answer<
     let document = submission.document()?;
     match kind {
         JobKind::Prediction => check_points(&Case::from_document(&document)?, limits),
-        JobKind::Calibration if is_law_fit(&document.table) => Ok(LawCase::from_document(&document).map(drop)?),
-        JobKind::Calibration => check_points(&CalibrationCase::from_document(document)?.case, limits),
+        JobKind::Calibration => match Calibration::from_document(&document)? {
+            Calibration::Lives(calibration) => check_points(&calibration.case, limits),
+            Calibration::Rates(_) => Ok(()),
+        },
         JobKind::Scene => within(&Scene::from_document(&document)?.budget(), limits),
         JobKind::Sweep => {
             let sweep = Sweep::with_overrides(document, &[], CASES_MAX)?;

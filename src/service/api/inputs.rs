@@ -11,12 +11,13 @@ use utoipa::ToSchema;
 use super::App;
 use super::documents::{self, JobRequest, submission, while_asked};
 use super::security::Caller;
-use crate::calibration::columns::Shape;
-use crate::calibration::decimal::Decimal;
-use crate::calibration::measured::{ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, MeasuredCurve, Sheet, Survey, survey};
+
 use crate::check;
 use crate::error::{Error, input};
 use crate::fracture::read::is_scene;
+use crate::measured::{
+    Column, ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, MeasuredCurve, Named, Shape, Sheet, Survey, survey,
+};
 use crate::service::job::JobKind;
 use crate::service::problem::{Answer, Place, Problem};
 use crate::sweep::design::is_sweep;
@@ -149,17 +150,18 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
 
 fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
     let Survey { header, first_rows, layout, measured, problems } = survey(content, Path::new(&file), import);
+    let unit = |column: &Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
     let columns = layout.map(|layout| Columns {
         layout: match layout.shape {
-            Shape::Long { .. } => "long",
-            Shape::Paired(_) => "paired",
-            Shape::WideCycles(..) | Shape::WideLengths(..) => "wide",
+            Shape::Long => "long",
+            Shape::Paired => "paired",
+            Shape::WideCycles | Shape::WideLengths => "wide",
         },
-        length_unit: LengthUnit::ALL.iter().find(|unit| unit.metres() == layout.length_unit).map_or("mm", |unit| unit.name()),
-        cycle_unit: CycleUnit::ALL.iter().find(|unit| unit.cycles() == layout.cycle_unit).map_or("cycles", |unit| unit.name()),
+        length_unit: unit(&layout.series[0].lengths[0]),
+        cycle_unit: unit(&layout.series[0].cycles),
         decimal_comma: layout.decimal == Decimal::Comma,
         separator: layout.separator,
-        keys: layout.shape.keys(header.len()),
+        keys: layout.keys(header.len()),
     });
     let curve = |curve: MeasuredCurve| FoundCurve {
         specimen: curve.specimen,

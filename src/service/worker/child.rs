@@ -16,8 +16,7 @@ use serde_json::Value;
 use super::frames::{self, News, Order};
 use super::telling::Teller;
 use super::{free_bytes, results};
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::laws::case::{LawCase, is_law_fit};
+use crate::calibration::calibrate::Calibration;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fracture::Scene;
@@ -42,8 +41,7 @@ pub type Other<'a> = &'a (dyn Fn(&Order, Document) -> Result<Value> + Sync);
 /// What is to be run.
 enum Task<'a> {
     Prediction(Box<Case>, Option<Box<Checkpoint>>),
-    Calibration(Box<CalibrationCase>),
-    Laws(Box<LawCase>),
+    Calibration(Calibration),
     Scene(Box<Scene>),
     Other(Other<'a>, Box<Document>),
 }
@@ -94,7 +92,7 @@ fn ended(order: &Order, other: Other<'_>, room: &mut Room, tell: &(dyn Fn(&News)
     *room = match &task {
         Task::Prediction(case, _) => run::room(case),
         Task::Scene(scene) => fracture::room(scene),
-        Task::Calibration(_) | Task::Laws(_) | Task::Other(..) => Room::default(),
+        Task::Calibration(_) | Task::Other(..) => Room::default(),
     };
     // Asked before the run, which would be for nothing.
     if free_bytes(&order.folder).is_some_and(|free| free < room.all) {
@@ -112,8 +110,8 @@ fn ended(order: &Order, other: Other<'_>, room: &mut Room, tell: &(dyn Fn(&News)
     let keep = |bytes| tell(&News::Checkpoint(bytes));
     let (cracks, keep) = match &task {
         Task::Prediction(case, _) => (case.specimen.cracks.clone(), Some(&keep as _)),
-        Task::Calibration(calibration) => (calibration.case.specimen.cracks.clone(), None),
-        Task::Laws(_) | Task::Scene(_) | Task::Other(..) => (Vec::new(), None),
+        Task::Calibration(Calibration::Lives(calibration)) => (calibration.case.specimen.cracks.clone(), None),
+        Task::Calibration(_) | Task::Scene(_) | Task::Other(..) => (Vec::new(), None),
     };
     let teller = Teller::new(&cracks, &shown.unwrap_or_default(), keep, order.checkpoint_every);
     let (done, end) = channel();
@@ -141,8 +139,7 @@ fn ended(order: &Order, other: Other<'_>, room: &mut Room, tell: &(dyn Fn(&News)
 fn task<'a>(order: &Order, other: Other<'a>) -> Result<Task<'a>> {
     let document = order.submission.document()?;
     match order.kind {
-        JobKind::Calibration if is_law_fit(&document.table) => Ok(Task::Laws(Box::new(LawCase::from_document(&document)?))),
-        JobKind::Calibration => Ok(Task::Calibration(Box::new(CalibrationCase::from_document(document)?))),
+        JobKind::Calibration => Ok(Task::Calibration(Calibration::from_document(&document)?)),
         JobKind::Prediction => {
             let case = Case::from_document(&document)?;
             let taken = order.checkpoint.as_ref().and_then(|bytes| match Checkpoint::from_bytes(bytes) {
@@ -177,7 +174,6 @@ fn run_task(order: &Order, task: Task<'_>, teller: &Teller<'_>) -> Result<Value>
         Task::Prediction(case, None) => of(&case, predict(&case, teller)),
         Task::Prediction(case, Some(checkpoint)) => of(&case, resume(&case, *checkpoint, teller)),
         Task::Calibration(calibration) => results::of_fit(&order.folder, &calibration, teller),
-        Task::Laws(case) => results::of_laws(&order.folder, &case),
         Task::Scene(scene) => results::of_scene(&order.folder, &scene, teller),
         Task::Other(other, document) => {
             let summary = other(order, *document)?;

@@ -9,16 +9,12 @@ use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
 
 use super::telling::Teller;
-use crate::calibration::calibrate::calibrate;
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::laws::case::LawCase;
-use crate::calibration::laws::results::report;
-use crate::calibration::results::{FitReport, record};
+use crate::calibration::calibrate::{Calibration, Fitted};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fracture::{Scene, SceneEnd};
 use crate::predict::Prediction;
-use crate::report::{fit, fracture, law_fit, run};
+use crate::report::{fit, fracture, run};
 use crate::service::store::ResultFile;
 use crate::units::MM;
 
@@ -58,17 +54,14 @@ pub fn of_run(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Val
 }
 
 /// Fits a calibration and writes its files.
-pub fn of_fit(folder: &Path, calibration: &CalibrationCase, teller: &Teller<'_>) -> Result<Value> {
+pub fn of_fit(folder: &Path, calibration: &Calibration, teller: &Teller<'_>) -> Result<Value> {
     let started = Instant::now();
-    let fitted = calibrate(calibration, teller)?;
-    let report = FitReport::new(calibration, &fitted, started.elapsed().as_secs_f64());
-    fit::write(folder, calibration, &fitted, &report, &record(calibration, &fitted))?;
-    let mut summary = json!(report);
-    let warnings: Vec<&String> = calibration.warnings.iter().chain(&fitted.warnings).collect();
-    let case = &calibration.case;
-    if let Some(figures) = summary.as_object_mut() {
-        figures.insert("warnings".to_owned(), json!(warnings));
+    let fitted = calibration.fit(teller)?;
+    let mut summary = fitted.report(started.elapsed().as_secs_f64());
+    fit::write(folder, &fitted, &summary)?;
+    if let (Fitted::Lives(calibration, _), Some(figures)) = (&fitted, summary.as_object_mut()) {
         // What the law is of.
+        let case = &calibration.case;
         figures.insert("material".to_owned(), json!(case.material.name));
         figures.insert("plane".to_owned(), json!(case.material.plane.name()));
         figures.insert("stress_ratio".to_owned(), json!(case.loading.ratio));
@@ -76,16 +69,6 @@ pub fn of_fit(folder: &Path, calibration: &CalibrationCase, teller: &Teller<'_>)
     }
     packed(folder)?;
     Ok(summary)
-}
-
-/// Fits laws over K and writes their files.
-pub fn of_laws(folder: &Path, case: &LawCase) -> Result<Value> {
-    let started = Instant::now();
-    let fits = case.fit()?;
-    let report = report(case, &fits, started.elapsed().as_secs_f64());
-    law_fit::write(folder, case, &fits, &report)?;
-    packed(folder)?;
-    Ok(report)
 }
 
 /// Runs a scene and writes its files.

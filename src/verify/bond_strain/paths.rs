@@ -2,7 +2,7 @@
 
 use super::grown::{Grown, grow};
 use super::scene::PANEL;
-use crate::calibration::model::cycles_of_run;
+use crate::calibration::median::cycles_of_run;
 use crate::case::Case;
 use crate::error::Result;
 use crate::predict::tip_factors::{StressIntensityMethod, stress_intensity};

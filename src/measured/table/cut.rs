@@ -7,14 +7,14 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use super::separator::{Line, Separator};
-use super::{COLUMNS_MAX, Fault, Row, Table, whole_file};
-use crate::calibration::columns::names_a_test;
-use crate::calibration::import::Import;
-use crate::calibration::names::{is_unit_or_blank, with_unit};
-use crate::calibration::numerals::is_number;
+use super::cells::{COLUMNS_MAX, Fault, Row, Separator, Table, whole_file};
+use super::lines::Line;
 use crate::cells::{ROWS_MAX, SMALLER, TEXT_MAX, restored, too_many};
 use crate::error::Result;
+use crate::measured::header::names_a_test;
+use crate::measured::import::Import;
+use crate::measured::names::{is_unit_or_blank, with_unit};
+use crate::measured::numerals::is_number;
 
 /// Lines that separators are compared on.
 const SAMPLE: usize = 400;

@@ -10,9 +10,6 @@ pub(super) const CYCLES_MORE: &str = "elapsed total number num no nr of count co
 /// `Axial Count` has no other word for cycles.
 pub(super) const COUNTS: &str = "count counts";
 
-pub(super) const KILO: &str = "kilocycles kilocycle kcycles kcycle kcyc kc k thousand thousands 1000 1e3 e3 tausend";
-pub(super) const MEGA: &str = "megacycles megacycle mcycles mcycle mcyc million millions millionen 1000000 1e6 e6";
-
 pub(super) const LENGTH: &str = "a length len risslaenge risslange rissl fissure grieta cricca cracklength cracksize crack";
 pub(super) const LENGTH_MORE: &str = "crack size average avg ave av mean mittlere mittel mittelwert visual optical measured current corrected physical \
     fatigue the of length longueur longitud lunghezza de la della moyenne media flaw a";

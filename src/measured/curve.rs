@@ -1,21 +1,11 @@
-//! Measured a-N curves: readings of crack length against cycles, and the loads between them.
-//!
-//! A file is a table of readings in any usual dress: CSV in the units and names of laboratories, a workbook, with the
-//! feature `tables` also Parquet. Every complaint names file, line, column and value. A crack length that falls from one reading to the
-//! next is reading noise and accepted; cycles that fall or repeat are a mistake of the file and refused.
+//! Readings of crack length against cycles, with the loads between them.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::calibration::columns::{self, Layout};
-pub use crate::calibration::import::{ColumnName, ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Sheet};
-use crate::calibration::loads::Loads;
-use crate::calibration::readings::curves_of;
-use crate::calibration::table::{Fault, Table};
-use crate::calibration::test_piece::side_difference_max;
-use crate::error::{Error, InputError, Result, input};
-use crate::input::Opened;
-use crate::specimen::Specimen;
+use super::table::Fault;
+use crate::error::{Result, input};
+use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
 use crate::units::MM;
 
 /// Fewest readings a curve can have.
@@ -39,7 +29,7 @@ pub struct MeasuredCurve {
     pub loads: Option<Loads>,
     /// Range of load at each reading over that of the case ([`Measured::resolve_loads`]); empty where it is that of the case.
     pub load_factor: Vec<f64>,
-    /// Whether the growth up to each reading is left out ([`crate::calibration::leave_out`]); empty where none is.
+    /// Whether the growth up to each reading is left out (`measured.leave_out`); empty where none is.
     pub left_out: Vec<bool>,
     /// Where the readings stand.
     pub source: Source,
@@ -60,6 +50,108 @@ pub struct Source {
     pub cycles_before: f64,
 }
 
+/// Loads of the readings of a curve as a file has them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loads {
+    /// Force (N) or gross stress (Pa).
+    pub measure: LoadMeasure,
+    /// Whether `maximum` holds ranges.
+    pub is_range: bool,
+    /// Largest load of a cycle.
+    pub maximum: Vec<f64>,
+    /// Smallest over largest load; NaN where the file does not say it, and that of the case holds.
+    pub ratio: Vec<f64>,
+}
+
+impl Loads {
+    fn of_readings(&self, readings: &[usize]) -> Self {
+        let some = |of: &[f64]| readings.iter().filter_map(|&reading| of.get(reading).copied()).collect();
+        Loads { maximum: some(&self.maximum), ratio: some(&self.ratio), ..*self }
+    }
+}
+
+impl MeasuredCurve {
+    /// Readings without loads or other remarks.
+    pub fn new(specimen: impl Into<String>, cycles: Vec<f64>, crack_length: Vec<f64>) -> Self {
+        MeasuredCurve { specimen: specimen.into(), cycles, crack_length, ..MeasuredCurve::default() }
+    }
+
+    fn window(&self, from: f64, to: f64) -> MeasuredCurve {
+        let inside = |&reading: &usize| self.crack_length[reading] >= from && self.crack_length[reading] <= to;
+        let first = (0..self.cycles.len()).find(inside);
+        let start = first.map_or(from, |first| self.crack_length[first]);
+        let readings: Vec<usize> =
+            (0..self.cycles.len()).filter(inside).filter(|&reading| self.crack_length[reading] >= start).collect();
+        self.of_readings(&readings)
+    }
+
+    /// The curve of some of its readings, in their order, cycles counted from the first. The growth between two of them is left out
+    /// where that of any step between them was.
+    pub fn of_readings(&self, readings: &[usize]) -> MeasuredCurve {
+        fn some<T: Copy>(of: &[T], readings: &[usize]) -> Vec<T> {
+            readings.iter().filter_map(|&reading| of.get(reading).copied()).collect()
+        }
+        let start = readings.first().map_or(0.0, |&first| self.cycles[first]);
+        let steps = readings.iter().enumerate().map(|(i, &to)| (if i == 0 { to } else { readings[i - 1] }, to));
+        let left_out = steps.map(|(from, to)| (from + 1..=to).any(|step| self.left_out.get(step) == Some(&true)));
+        MeasuredCurve {
+            specimen: self.specimen.clone(),
+            cycles: readings.iter().map(|&reading| self.cycles[reading] - start).collect(),
+            crack_length: some(&self.crack_length, readings),
+            side_difference: some(&self.side_difference, readings),
+            loads: self.loads.as_ref().map(|loads| loads.of_readings(readings)),
+            load_factor: some(&self.load_factor, readings),
+            left_out: if self.left_out.is_empty() { Vec::new() } else { left_out.collect() },
+            source: Source {
+                lines: some(&self.source.lines, readings),
+                cycles_before: self.source.cycles_before + start,
+                ..self.source.clone()
+            },
+        }
+    }
+
+    /// Whether every reading has the load of the case and counts.
+    pub fn is_plain(&self) -> bool {
+        self.load_factor.is_empty() && !self.left_out.contains(&true)
+    }
+
+    /// Whether the growth up to a reading counts.
+    pub fn counts(&self, reading: usize) -> bool {
+        self.left_out.get(reading) != Some(&true)
+    }
+
+    /// Cycles since the first reading, those of steps left out taken off.
+    pub fn cycles_counted(&self) -> Vec<f64> {
+        let Some(&first) = self.cycles.first() else { return Vec::new() };
+        if !self.left_out.contains(&true) {
+            return self.cycles.iter().map(|n| n - first).collect();
+        }
+        let mut sum = 0.0;
+        let step = |i: usize| if i > 0 && self.counts(i) { self.cycles[i] - self.cycles[i - 1] } else { 0.0 };
+        (0..self.cycles.len())
+            .map(|i| {
+                sum += step(i);
+                sum
+            })
+            .collect()
+    }
+
+    /// Where a reading stands, for messages: its line, or its number where there is no file.
+    pub fn line(&self, reading: usize) -> usize {
+        self.source.lines.get(reading).copied().unwrap_or(reading + 1)
+    }
+
+    /// What is wrong with a reading.
+    pub(super) fn fault(&self, reading: usize) -> Fault<'_> {
+        Fault { file: &self.source.file, line: self.source.lines.get(reading).copied(), key: None, value: None }
+    }
+
+    /// Cycles from the first reading to the last.
+    pub fn life(&self) -> f64 {
+        self.cycles.last().unwrap_or(&0.0) - self.cycles.first().unwrap_or(&0.0)
+    }
+}
+
 /// Curves of one or many files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measured {
@@ -67,44 +159,6 @@ pub struct Measured {
     pub curves: Vec<MeasuredCurve>,
     /// What the user should know.
     pub warnings: Vec<String>,
-}
-
-/// Reads one or many files; `-` is standard input.
-pub fn read(files: &[PathBuf], import: &Import) -> Result<Measured> {
-    read_into(&Opened::default(), files, import)
-}
-
-/// The same, remembering what was read.
-pub fn read_into(opened: &Opened, files: &[PathBuf], import: &Import) -> Result<Measured> {
-    let mut all = Measured::default();
-    for file in files {
-        let bytes = opened.read(file, &file.display().to_string())?;
-        all.add(parse(&bytes, file, import)?)?;
-    }
-    Ok(all)
-}
-
-/// Reads the bytes of one file; `file` is only named in messages and, where there is no specimen column, in the curve. Its ending
-/// tells Parquet from CSV.
-pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
-    let table = Table::read(bytes, file, import)?;
-    let layout = columns::recognise(&table, import)?;
-    curves_of(&table, &layout, &mut Err)
-}
-
-/// What a file holds although some of it is wrong.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Survey {
-    /// Column names as written.
-    pub header: Vec<String>,
-    /// Cells of the first rows below them.
-    pub first_rows: Vec<Vec<String>>,
-    /// What its columns are.
-    pub layout: Option<Layout>,
-    /// Curves of the good rows.
-    pub measured: Measured,
-    /// What is wrong, row by row, up to [`PROBLEMS_MAX`].
-    pub problems: Vec<InputError>,
 }
 
 /// Most problems that a survey names, and most warnings of one kind.
@@ -118,55 +172,28 @@ pub(crate) fn first_of(mut warnings: Vec<String>) -> Vec<String> {
     warnings
 }
 
-/// Reads the bytes of one file as [`parse`] does, but goes on behind a bad row.
-pub fn survey(bytes: &[u8], file: &Path, import: &Import) -> Survey {
-    let mut survey = Survey::default();
-    let mut problems: Vec<InputError> = Vec::new();
-    let mut note = |error: Error| match error {
-        Error::Input(problem) if problems.len() < PROBLEMS_MAX => {
-            problems.push(*problem);
-            Ok(())
-        }
-        other => Err(other),
+/// Largest difference between the crack lengths on the sides of a specimen that E647 accepts, m: 0.025 W of a central crack or two
+/// edge cracks, 0.25 B of one edge crack.
+pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f64 {
+    let limit = match kind {
+        SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => 0.025 * width,
+        _ => 0.25 * thickness,
     };
-    let mut look = || {
-        let table = Table::read(bytes, file, import)?;
-        survey.header.clone_from(&table.header);
-        survey.first_rows = table.first_cells();
-        let layout = columns::recognise(&table, import)?;
-        survey.measured = curves_of(&table, &layout, &mut note)?;
-        survey.layout = Some(layout);
-        Ok(())
-    };
-    match look() {
-        Ok(()) => {}
-        // Too many, or one that leaves no table.
-        Err(Error::Input(problem)) => problems.push(*problem),
-        Err(other) => {
-            let file = Some(file.to_path_buf());
-            problems.push(InputError { file, problem: other.to_string(), ..InputError::default() });
-        }
-    }
-    survey.problems = problems;
-    survey
+    // Lengths of 12.8 and 11.2 mm differ by 1.6 mm and a rounding.
+    limit * (1.0 + 1e-9)
 }
 
 impl Measured {
     /// Puts the curves of another file behind these.
     ///
     /// # Errors
-    /// [`Error::Input`] if a specimen has a name that stands here already.
+    /// A specimen whose name another one has.
     pub fn add(&mut self, other: Measured) -> Result<()> {
         let own: HashMap<&str, &MeasuredCurve> = self.curves.iter().map(|curve| (curve.specimen.as_str(), curve)).collect();
         for curve in &other.curves {
             let Some(earlier) = own.get(curve.specimen.as_str()) else { continue };
             let problem = format!("stands in {} too", earlier.source.file.display());
-            let fault = Fault {
-                file: &curve.source.file,
-                line: curve.source.lines.first().copied(),
-                key: Some("specimen"),
-                value: Some(&curve.specimen),
-            };
+            let fault = Fault { key: Some("specimen"), value: Some(&curve.specimen), ..curve.fault(0) };
             return Err(fault.error(problem, "give every specimen its own name"));
         }
         self.curves.extend(other.curves);
@@ -180,12 +207,7 @@ impl Measured {
         for curve in &self.curves {
             let Some(reading) = curve.crack_length.iter().position(|&a| a >= limit) else { continue };
             let value = format!("{}", round_off(curve.crack_length[reading] / curve.source.length_unit));
-            let fault = Fault {
-                file: &curve.source.file,
-                line: curve.source.lines.get(reading).copied(),
-                key: Some(&curve.source.length_column),
-                value: Some(&value),
-            };
+            let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(reading) };
             return Err(fault.error(
                 format!("is not inside the specimen, whose {limit_name} is {} mm", round_off(limit / MM)),
                 "check the number, its unit, and whether the file gives the crack length of the specimen's test standard",

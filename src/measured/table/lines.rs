@@ -1,61 +1,59 @@
-//! What stands between the columns of a text table, and lines cut by it.
+//! Bytes of a text file as text (UTF-8 or UTF-16 with or without a byte order mark, else Windows-1252), what stands between the columns
+//! of its lines, and lines cut by it.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use csv::StringRecord;
+use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
-use super::{Row, whole_file};
+use super::cells::{Fault, Row, Separator, whole_file};
 use crate::cells::{CELLS_MAX, SMALLER, too_many};
 use crate::error::Result;
+
+/// Bytes looked at for the zeros that UTF-16 without a mark is known by.
+const LOOKED_AT: usize = 256;
+
+/// The text of a file without byte order mark.
+///
+/// # Errors
+/// Characters that no text has: the file is something else.
+pub(super) fn decoded<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>> {
+    let text = match Encoding::for_bom(bytes).map(|(encoding, _)| encoding).or_else(|| unmarked_utf16(bytes)) {
+        Some(encoding) => encoding.decode(bytes).0,
+        None => match std::str::from_utf8(bytes) {
+            Ok(text) => Cow::Borrowed(text),
+            // Spreadsheets of Western Europe; every byte is a character in it.
+            Err(_) => WINDOWS_1252.decode(bytes).0,
+        },
+    };
+    let strange =
+        |c: char| (c.is_control() && !matches!(c, '\t' | '\n' | '\r' | '\u{b}' | '\u{c}' | '\u{85}')) || c == '\u{fffd}';
+    if let Some(place) = text.find(strange) {
+        let line = 1 + text[..place].matches('\n').count();
+        return Err(Fault { line: Some(line), ..whole_file(file) }
+            .error("is no text (it has characters that no table has)", "save the table as CSV in UTF-8, or as .xlsx"));
+    }
+    Ok(text)
+}
+
+/// UTF-16 of mostly Latin letters has a zero in every other byte.
+fn unmarked_utf16(bytes: &[u8]) -> Option<&'static Encoding> {
+    let head = &bytes[..bytes.len().min(LOOKED_AT) & !1];
+    let zeros = |offset: usize| head.iter().skip(offset).step_by(2).filter(|&&byte| byte == 0).count();
+    let (even, odd, most) = (zeros(0), zeros(1), head.len() / 2 * 3 / 4);
+    match head.len() {
+        0..8 => None,
+        _ if odd > most && even == 0 => Some(UTF_16LE),
+        _ if even > most && odd == 0 => Some(UTF_16BE),
+        _ => None,
+    }
+}
 
 /// A line of the file with its number.
 pub(super) type Line<'a> = (usize, &'a str);
 
-/// What stands between columns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Separator {
-    /// A tab.
-    Tab,
-    /// A semicolon.
-    Semicolon,
-    /// A comma.
-    Comma,
-    /// A vertical bar.
-    Bar,
-    /// Two blanks or more, so that names may have blanks.
-    Gap,
-    /// Any number of blanks.
-    Blanks,
-}
-
 impl Separator {
-    /// All, those first that stand in numbers least.
-    pub(super) const ALL: [Separator; 6] =
-        [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Bar, Separator::Gap, Separator::Blanks];
-
-    /// Its name in messages.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Separator::Tab => "tabs",
-            Separator::Semicolon => "semicolons",
-            Separator::Comma => "commas",
-            Separator::Bar => "vertical bars",
-            Separator::Gap => "two or more blanks",
-            Separator::Blanks => "blanks",
-        }
-    }
-
-    /// Its character; `None` for a run of blanks.
-    pub(super) fn character(self) -> Option<char> {
-        match self {
-            Separator::Tab => Some('\t'),
-            Separator::Semicolon => Some(';'),
-            Separator::Comma => Some(','),
-            Separator::Bar => Some('|'),
-            Separator::Gap | Separator::Blanks => None,
-        }
-    }
-
     /// The lines cut into cells, quotes respected.
     ///
     /// # Errors

@@ -8,11 +8,12 @@ use std::path::Path;
 use calamine::{Data, DataRef, Reader, Xlsx, XlsxError};
 use csv::StringRecord;
 
-use super::{COLUMNS_MAX, Fault, Row, Table, cut, whole_file};
-use crate::calibration::columns::names_a_test;
-use crate::calibration::import::{Import, Sheet};
+use super::cells::{COLUMNS_MAX, Fault, Row, Table, whole_file};
+use super::cut;
 use crate::cells::{CELLS_MAX, SMALLER, TEXT_MAX, UNPACKED_MAX, too_many};
 use crate::error::{Error, Result};
+use crate::measured::header::names_a_test;
+use crate::measured::import::{Import, Sheet};
 use crate::units::unmistakable;
 
 /// Most sheets of a workbook: a file may name one sheet any number of times.

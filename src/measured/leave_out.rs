@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::calibration::measured::{Measured, READINGS_MIN};
+use super::curve::{Measured, READINGS_MIN};
 use crate::case::record::LeaveOut;
-use crate::error::{Error, Result, input, input_missing};
+use crate::error::{Result, input, input_missing};
 
 /// Most names of specimens in a message.
 const NAMES_MAX: usize = 20;
@@ -16,36 +16,31 @@ impl Measured {
     /// # Errors
     /// A window without specimen, reason or readings, or one that leaves fewer than [`READINGS_MIN`] readings.
     pub fn leave_out(&mut self, windows: &[LeaveOut]) -> Result<()> {
-        let places: HashMap<String, usize> =
+        let key = |index: usize| format!("measured.leave_out[{index}]");
+        let names: HashMap<String, usize> =
             self.curves.iter().enumerate().rev().map(|(place, curve)| (curve.specimen.clone(), place)).collect();
-        for (index, window) in windows.iter().enumerate() {
-            self.leave_one_out(&format!("measured.leave_out[{index}]"), window, &places)?;
-        }
-        for (index, window) in windows.iter().enumerate() {
-            let place = window.specimen.as_ref().map_or(Some(0), |name| places.get(name).copied());
-            let Some(curve) = place.and_then(|place| self.curves.get_mut(place)) else { continue };
-            let counted = |step: &usize| curve.counts(*step);
-            let steps = 1..curve.cycles.len();
-            let (Some(first), Some(last)) = (steps.clone().find(counted), steps.rev().find(counted)) else {
-                return Err(too_few(&format!("measured.leave_out[{index}]"), 0));
-            };
-            let kept: Vec<usize> = (first - 1..=last).collect();
+        let mark = |(index, window)| self.mark(&key(index), window, &names);
+        let places: Vec<usize> = windows.iter().enumerate().map(mark).collect::<Result<_>>()?;
+        for (index, place) in places.into_iter().enumerate() {
+            let curve = &mut self.curves[place];
+            let counted: Vec<usize> = (1..curve.cycles.len()).filter(|&step| curve.counts(step)).collect();
+            if counted.len() + 1 < READINGS_MIN {
+                let kept = if counted.is_empty() { 0 } else { counted.len() + 1 };
+                let remedy = format!("leave out less: at least {READINGS_MIN} readings are needed");
+                return Err(input_missing(&key(index), format!("leaves {kept} readings"), remedy));
+            }
+            let kept: Vec<usize> = (counted[0] - 1..=counted[counted.len() - 1]).collect();
             if kept.len() < curve.cycles.len() {
                 *curve = curve.of_readings(&kept);
                 // The first reading of a curve ends no step.
-                if let Some(first) = curve.left_out.first_mut() {
-                    *first = false;
-                }
-            }
-            let steps = (1..curve.cycles.len()).filter(|&step| curve.counts(step)).count();
-            if steps + 1 < READINGS_MIN {
-                return Err(too_few(&format!("measured.leave_out[{index}]"), steps + 1));
+                curve.left_out[0] = false;
             }
         }
         Ok(())
     }
 
-    fn leave_one_out(&mut self, key: &str, window: &LeaveOut, places: &HashMap<String, usize>) -> Result<()> {
+    /// Marks the growth of a window; gives the place of its curve.
+    fn mark(&mut self, key: &str, window: &LeaveOut, places: &HashMap<String, usize>) -> Result<usize> {
         let LeaveOut { specimen, from_cycles, to_cycles, reason } = window;
         let known = || {
             let names = self.curves.iter().take(NAMES_MAX).map(|curve| format!("\"{}\"", curve.specimen));
@@ -54,12 +49,8 @@ impl Measured {
         };
         let place = match specimen {
             Some(name) => places.get(name).copied().ok_or_else(|| {
-                input(
-                    &format!("{key}.specimen"),
-                    format!("\"{name}\""),
-                    "is no specimen of the files",
-                    format!("use one of {}", known()),
-                )
+                let remedy = format!("use one of {}", known());
+                input(&format!("{key}.specimen"), format!("\"{name}\""), "is no specimen of the files", remedy)
             })?,
             None if self.curves.len() == 1 => 0,
             None => {
@@ -86,10 +77,6 @@ impl Measured {
         }
         curve.left_out.resize(count, false);
         steps.into_iter().for_each(|step| curve.left_out[step] = true);
-        Ok(())
+        Ok(place)
     }
-}
-
-fn too_few(key: &str, kept: usize) -> Error {
-    input_missing(key, format!("leaves {kept} readings"), format!("leave out less: at least {READINGS_MIN} readings are needed"))
 }

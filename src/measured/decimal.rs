@@ -4,76 +4,46 @@
 //! (`12,00`). A column in which every sign has exactly three digits behind it, `5.000` next to `58.528`, stays open where nothing else in
 //! the file decides, and for cycles even then; it is refused unless `[measured] decimal` says which it is.
 
-use crate::calibration::numerals::{Evidence, evidence, number};
-use crate::calibration::table::{Row, Separator, Table};
+use super::import::Decimal;
+use super::names::{Column, Role};
+use super::numerals::{Evidence, evidence, number};
+use super::table::{Row, Separator, Table};
 use crate::error::{Error, Result};
 
-crate::kinds! {
-    /// Decimal signs.
-    pub enum Decimal for "measured.decimal" {
-        Point = ".": "1234.5",
-        Comma = ",": "1234,5",
+/// Whether a column holds large whole numbers, cycles one by one or forces in N and lbf; the others never reach a thousand: lengths,
+/// kilocycles, forces in kN, stresses, ratios.
+fn counts(column: &Column) -> bool {
+    match column.role {
+        Role::Cycles => column.factor == 1.0,
+        Role::Max | Role::Min | Role::Range => column.factor < 1e3,
+        _ => false,
     }
-}
-
-impl Decimal {
-    pub(super) fn sign(self) -> char {
-        match self {
-            Decimal::Point => '.',
-            Decimal::Comma => ',',
-        }
-    }
-
-    /// Its name in messages.
-    pub(crate) fn words(self) -> &'static str {
-        match self {
-            Decimal::Point => "point",
-            Decimal::Comma => "comma",
-        }
-    }
-
-    pub(super) fn other(self) -> Decimal {
-        match self {
-            Decimal::Point => Decimal::Comma,
-            Decimal::Comma => Decimal::Point,
-        }
-    }
-}
-
-/// What a column holds, as far as it tells a decimal sign from a separator of thousands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Holds {
-    /// Large whole numbers: cycles one by one, forces in N.
-    Counts,
-    /// Numbers that never reach a thousand: lengths, kilocycles, stresses, ratios.
-    Measures,
 }
 
 /// Decides the decimal sign of a table by the columns that are read, or else by the others.
 ///
 /// # Errors
 /// Cells that contradict each other, and columns that stay open.
-pub(crate) fn decide(table: &Table, columns: &[(usize, Holds)], given: Option<Decimal>) -> Result<Decimal> {
+pub(super) fn decide(table: &Table, columns: &[Column], given: Option<Decimal>) -> Result<Decimal> {
     if let Some(given) = given {
         return Ok(given);
     }
-    let read: Vec<usize> = columns.iter().map(|(column, _)| *column).collect();
-    let seen: Vec<Seen<'_>> = read.iter().map(|&column| Seen::of(table, column)).collect();
+    let seen: Vec<Seen<'_>> = columns.iter().map(|column| Seen::of(table, column.index)).collect();
     let proof = |decimal: Decimal| seen.iter().find_map(|seen| seen.proof(decimal));
     let decided = match (proof(Decimal::Point), proof(Decimal::Comma)) {
         (Some(point), Some(comma)) => return Err(contradiction(table, point, comma)),
         (Some(_), None) => Some(Decimal::Point),
         (None, Some(_)) => Some(Decimal::Comma),
-        (None, None) => by_the_rest(table, &read, columns, &seen),
+        (None, None) => by_the_rest(table, columns, &seen),
     };
     let open = |seen: &Seen<'_>| seen.open[0].or(seen.open[1]).map(|row| open_column(table, row, seen.column));
     let Some(decided) = decided else {
         return seen.iter().find_map(open).map_or(Ok(Decimal::Point), Err);
     };
-    for (seen, (_, holds)) in seen.iter().zip(columns) {
+    for (seen, column) in seen.iter().zip(columns) {
         // Whole thousands beside decimals of the same sign, and thousands where none can be: one of two programs wrote the column.
-        let own_sign = *holds == Holds::Counts && seen.is_open_alone(decided);
-        let other_sign = *holds == Holds::Measures && seen.open[decided.other() as usize].is_some();
+        let own_sign = counts(column) && seen.is_open_alone(decided);
+        let other_sign = !counts(column) && seen.open[decided.other() as usize].is_some();
         if own_sign || other_sign {
             return Err(open(seen).unwrap_or_else(|| table.header_fault(seen.column).error("is open", "")));
         }
@@ -82,11 +52,11 @@ pub(crate) fn decide(table: &Table, columns: &[(usize, Holds)], given: Option<De
 }
 
 /// The sign as columns that are not read prove it; that commas separate columns; or that no length has thousands.
-fn by_the_rest(table: &Table, read: &[usize], columns: &[(usize, Holds)], seen: &[Seen<'_>]) -> Option<Decimal> {
-    let others = (0..table.header.len()).filter(|column| !read.contains(column));
+fn by_the_rest(table: &Table, columns: &[Column], seen: &[Seen<'_>]) -> Option<Decimal> {
+    let others = (0..table.header.len()).filter(|&index| columns.iter().all(|column| column.index != index));
     let others: Vec<Seen<'_>> = others.map(|column| Seen::of(table, column)).filter(|seen| seen.all_numbers).collect();
     let proved = |decimal: Decimal| others.iter().any(|seen| seen.proof(decimal).is_some());
-    let measures = || seen.iter().zip(columns).filter(|(_, (_, holds))| *holds == Holds::Measures).map(|(seen, _)| seen);
+    let measures = || seen.iter().zip(columns).filter(|(_, column)| !counts(column)).map(|(seen, _)| seen);
     let in_measures = |decimal: Decimal| measures().any(|seen| seen.open[decimal as usize].is_some());
     match [proved(Decimal::Point), proved(Decimal::Comma)] {
         [true, false] => return Some(Decimal::Point),

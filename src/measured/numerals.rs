@@ -1,6 +1,6 @@
 //! Numbers as they are written: digits, a decimal sign, signs between thousands, an exponent.
 
-use crate::calibration::decimal::Decimal;
+use super::import::Decimal;
 
 /// What a cell tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

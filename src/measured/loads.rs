@@ -3,8 +3,7 @@
 //! The load at a reading is the one under which the crack grew there. Where it changes once between readings of equal loads (a step), the
 //! growth up to the reading had the new load; where it changes from reading to reading (shedding), it went from one to the other.
 
-use crate::calibration::measured::{Measured, MeasuredCurve, first_of};
-use crate::calibration::table::Fault;
+use super::curve::{Loads, Measured, MeasuredCurve, first_of};
 use crate::case::Case;
 use crate::error::Result;
 use crate::specimen::LoadMeasure;
@@ -15,31 +14,19 @@ pub const SAME_LOAD: f64 = 0.01;
 /// Stress ratios that differ by less are the same.
 const SAME_RATIO: f64 = 0.02;
 
-/// Loads of the readings of a curve as a file has them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Loads {
-    /// Force (N) or gross stress (Pa).
-    pub measure: LoadMeasure,
-    /// Whether `maximum` holds ranges.
-    pub is_range: bool,
-    /// Largest load of a cycle.
-    pub maximum: Vec<f64>,
-    /// Smallest over largest load; NaN where the file does not say it, and that of the case holds.
-    pub ratio: Vec<f64>,
-}
-
-impl Loads {
-    pub(crate) fn empty(measure: LoadMeasure) -> Self {
-        Loads { measure, is_range: false, maximum: Vec::new(), ratio: Vec::new() }
-    }
-
-    pub(crate) fn of_readings(&self, readings: &[usize]) -> Self {
-        let some = |of: &[f64]| readings.iter().filter_map(|&reading| of.get(reading).copied()).collect();
-        Loads { maximum: some(&self.maximum), ratio: some(&self.ratio), ..*self }
-    }
-}
-
 impl Measured {
+    /// Sets the readings against the specimen and the load of a case.
+    ///
+    /// # Errors
+    /// Readings beyond the specimen; loads that it cannot have.
+    pub fn set_against(&mut self, case: &Case) -> Result<()> {
+        let (limit, limit_name) = case.specimen.length_limit();
+        self.check_lengths(limit, limit_name)?;
+        self.resolve_loads(case)?;
+        self.check_sides(&case.specimen);
+        Ok(())
+    }
+
     /// Sets the load of every reading against that of the case: [`MeasuredCurve::load_factor`].
     ///
     /// # Errors
@@ -54,10 +41,8 @@ impl Measured {
                 (own, of_case) if own == of_case => 1.0,
                 (LoadMeasure::Force, _) => 1.0 / (specimen.width * specimen.thickness),
                 (LoadMeasure::Stress, _) => {
-                    let fault =
-                        Fault { file: &curve.source.file, line: curve.source.lines.first().copied(), key: None, value: None };
                     let problem = format!("has loads as stresses, but a {} is loaded by a force on its pins", specimen.kind);
-                    return Err(fault.error(problem, "give columns of force_max and force_min"));
+                    return Err(curve.fault(0).error(problem, "give columns of force_max and force_min"));
                 }
             };
             let factor = |(&load, &ratio): (&f64, &f64)| {

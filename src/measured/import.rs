@@ -1,0 +1,256 @@
+//! What a user says about measured files: units, columns by name, the decimal sign, the sheet. Keys of `[measured]`, options of `rates`
+//! and fields of the service's form are all read into this.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use crate::error::{Result, input};
+use crate::units::{INCH, KGF, KN, KSI, LBF, MM, MPA};
+
+crate::kinds! {
+    /// Units of crack length in measured files.
+    pub enum LengthUnit for "measured.length_unit" {
+        Millimetre = "mm": "millimetres",
+        Inch = "inch": "inches of 25.4 mm",
+        Metre = "m": "metres",
+    }
+}
+
+crate::kinds! {
+    /// Units of cycles in measured files.
+    pub enum CycleUnit for "measured.cycle_unit" {
+        Cycles = "cycles": "single cycles",
+        Kilocycles = "kilocycles": "thousands of cycles",
+        Megacycles = "megacycles": "millions of cycles",
+    }
+}
+
+crate::kinds! {
+    /// Units of loads in measured files.
+    pub enum LoadUnit for "measured.load_unit" {
+        Newton = "N": "newtons",
+        Kilonewton = "kN": "kilonewtons",
+        PoundForce = "lbf": "pounds-force of 4.448 N",
+        Kip = "kip": "thousands of pounds-force",
+        KilogramForce = "kgf": "kilograms-force of 9.807 N",
+        Megapascal = "MPa": "gross stress in megapascals",
+        Ksi = "ksi": "gross stress in thousands of pounds-force per square inch",
+    }
+}
+
+crate::kinds! {
+    /// Decimal signs.
+    pub enum Decimal for "measured.decimal" {
+        Point = ".": "1234.5",
+        Comma = ",": "1234,5",
+    }
+}
+
+impl Decimal {
+    /// The character.
+    pub fn sign(self) -> char {
+        match self {
+            Decimal::Point => '.',
+            Decimal::Comma => ',',
+        }
+    }
+
+    /// Its name in messages.
+    pub fn words(self) -> &'static str {
+        match self {
+            Decimal::Point => "point",
+            Decimal::Comma => "comma",
+        }
+    }
+
+    /// The sign that separates thousands beside it.
+    pub fn other(self) -> Decimal {
+        match self {
+            Decimal::Point => Decimal::Comma,
+            Decimal::Comma => Decimal::Point,
+        }
+    }
+}
+
+/// A unit of a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// Of crack length.
+    Length(LengthUnit),
+    /// Of cycles.
+    Cycles(CycleUnit),
+    /// Of a force or a gross stress.
+    Load(LoadUnit),
+}
+
+impl Unit {
+    /// Name in input files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Unit::Length(unit) => unit.name(),
+            Unit::Cycles(unit) => unit.name(),
+            Unit::Load(unit) => unit.name(),
+        }
+    }
+
+    /// Metres, cycles, newtons or pascals in the unit.
+    pub fn si(self) -> f64 {
+        UNITS.iter().find(|(unit, ..)| *unit == self).map_or(f64::NAN, |(_, si, _)| *si)
+    }
+
+    /// The unit of a quantity, that of `like`, that some lower-case words spell.
+    pub(super) fn spelled(words: &[&str], like: Unit) -> Option<Unit> {
+        let words = words.join(" ");
+        let is_like = |unit: &Unit| std::mem::discriminant(unit) == std::mem::discriminant(&like);
+        let found = UNITS.iter().find(|(unit, _, spellings)| is_like(unit) && spellings.split(", ").any(|own| own == words));
+        found.map(|(unit, ..)| *unit)
+    }
+
+    /// Whether it is one of stress.
+    pub fn is_stress(self) -> bool {
+        matches!(self, Unit::Load(LoadUnit::Megapascal | LoadUnit::Ksi))
+    }
+}
+
+/// Units with their size in SI, or in cycles, and how tables spell them.
+const UNITS: [(Unit, f64, &str); 13] = [
+    (Unit::Length(LengthUnit::Millimetre), MM, "mm, millimetre, millimeter, millimetres, millimeters"),
+    (Unit::Length(LengthUnit::Inch), INCH, "in, inch, inches"),
+    (Unit::Length(LengthUnit::Metre), 1.0, "m, metre, meter, metres, meters"),
+    (Unit::Cycles(CycleUnit::Cycles), 1.0, "cycles, cycle, cyc, 1, zyklen, count, counts, lw, n"),
+    (
+        Unit::Cycles(CycleUnit::Kilocycles),
+        1e3,
+        "kilocycles, kilocycle, kcycles, kcycle, kcyc, kc, k, thousand, thousands, 1000, 1e3, e3, tausend, 10 3",
+    ),
+    (
+        Unit::Cycles(CycleUnit::Megacycles),
+        1e6,
+        "megacycles, megacycle, mcycles, mcycle, mcyc, million, millions, millionen, 1000000, 1e6, e6, 10 6",
+    ),
+    (Unit::Load(LoadUnit::Newton), 1.0, "n, newton, newtons"),
+    (Unit::Load(LoadUnit::Kilonewton), KN, "kn, kilonewton, kilonewtons"),
+    (Unit::Load(LoadUnit::PoundForce), LBF, "lbf, lb, lbs, pounds, pound"),
+    (Unit::Load(LoadUnit::Kip), 1e3 * LBF, "kip, kips, klbf, klb, klbs"),
+    (Unit::Load(LoadUnit::KilogramForce), KGF, "kgf, kg, kp"),
+    (Unit::Load(LoadUnit::Megapascal), MPA, "mpa, n mm2, n mm 2"),
+    (Unit::Load(LoadUnit::Ksi), KSI, "ksi"),
+];
+
+/// What the user says about files of readings; a header that names its own unit must agree.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Import {
+    /// Unit of crack length.
+    pub length: Option<LengthUnit>,
+    /// Unit of cycles.
+    pub cycles: Option<CycleUnit>,
+    /// Unit of loads.
+    pub load: Option<LoadUnit>,
+    /// Which column is which.
+    pub columns: ColumnNames,
+    /// The decimal sign.
+    pub decimal: Option<Decimal>,
+    /// Sheet of a workbook.
+    pub sheet: Option<Sheet>,
+}
+
+/// A sheet by name, or by number from 1.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(from = "TextOrNumber")]
+pub struct Sheet(pub String);
+
+/// Which column is which, by a key and the name in the header, or the number from 1; what is left out is found by the names that
+/// laboratories use. Several columns of crack length are readings of one crack on several sides.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
+#[serde(try_from = "BTreeMap<String, OneOrMany>")]
+pub struct ColumnNames(Vec<(&'static str, String)>);
+
+impl ColumnNames {
+    /// Known keys.
+    pub const KEYS: [&'static str; 9] =
+        ["cycles", "length", "specimen", "force_max", "force_min", "force_range", "stress_max", "stress_min", "stress_ratio"];
+
+    /// Names a column as `key=name` of the option `--column` does.
+    ///
+    /// # Errors
+    /// A text without `=`, an unknown key, or a key given twice (crack length may be).
+    pub fn put(&mut self, text: &str) -> Result<()> {
+        let refuse = |problem: &str| {
+            let remedy =
+                format!("write --column key=name with one of {}, e.g. --column length=\"a [in]\"", Self::KEYS.join(", "));
+            input("--column", format!("\"{text}\""), problem, remedy)
+        };
+        let (key, name) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
+        let name = name.trim().trim_matches('"');
+        if name.is_empty() {
+            return Err(refuse("names no column"));
+        }
+        let key = Self::KEYS.into_iter().find(|known| *known == key.trim());
+        let key = key.ok_or_else(|| refuse("has a key that is not known"))?;
+        if key != "length" && self.0.iter().any(|(given, _)| *given == key) {
+            return Err(refuse("names a column twice"));
+        }
+        self.0.push((key, name.to_owned()));
+        Ok(())
+    }
+
+    /// Columns that are named, with their keys; crack lengths last.
+    pub(super) fn given(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let keys = Self::KEYS.into_iter().filter(|key| *key != "length").chain(["length"]);
+        keys.flat_map(|key| self.0.iter().filter(move |(own, _)| *own == key).map(|(own, name)| (*own, name.as_str())))
+    }
+
+    /// Whether several columns are crack lengths.
+    pub(super) fn has_sides(&self) -> bool {
+        self.given().filter(|(key, _)| *key == "length").count() > 1
+    }
+}
+
+impl TryFrom<BTreeMap<String, OneOrMany>> for ColumnNames {
+    type Error = String;
+
+    fn try_from(table: BTreeMap<String, OneOrMany>) -> std::result::Result<Self, String> {
+        let mut names = Vec::new();
+        for (key, columns) in table {
+            let known = Self::KEYS.into_iter().find(|known| *known == key);
+            let known = known.ok_or_else(|| format!("unknown field `{key}`, expected one of `{}`", Self::KEYS.join("`, `")))?;
+            match columns {
+                OneOrMany::One(name) => names.push((known, name.into())),
+                OneOrMany::Many(several) if key == "length" => names.extend(several.into_iter().map(|name| (known, name.into()))),
+                OneOrMany::Many(_) => return Err("a column, expected the name of a column or its number".to_owned()),
+            }
+        }
+        Ok(ColumnNames(names))
+    }
+}
+
+/// Text, or the number that a name may be.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "a name, expected the name of a sheet or column, or its number")]
+enum TextOrNumber {
+    Text(String),
+    Number(u32),
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "columns, expected the name of a column or a list of them")]
+enum OneOrMany {
+    One(TextOrNumber),
+    Many(Vec<TextOrNumber>),
+}
+
+impl From<TextOrNumber> for String {
+    fn from(value: TextOrNumber) -> Self {
+        match value {
+            TextOrNumber::Text(text) => text,
+            TextOrNumber::Number(number) => number.to_string(),
+        }
+    }
+}
+
+impl From<TextOrNumber> for Sheet {
+    fn from(value: TextOrNumber) -> Self {
+        Sheet(value.into())
+    }
+}
