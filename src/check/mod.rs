@@ -12,17 +12,16 @@ use serde_json::{Map, Value, json};
 use self::preview::preview;
 use self::scene::{scene_drawing, scene_lines};
 use self::understood::{case_lines, curves_line, line, rates_line, sweep_lines};
-use crate::calibration::case::CalibrationCase;
-use crate::calibration::laws::case::{LawCase, is_law_fit};
+use crate::calibration::laws::case::LawCase;
 use crate::case::Case;
 use crate::case::budget::Budget;
 use crate::error::Result;
 use crate::fracture::Scene;
-use crate::fracture::read::is_scene;
 use crate::input::{Document, Provenance};
 use crate::report::specimen_picture::specimen_svg;
-use crate::sweep::Sweep;
-use crate::sweep::design::{self, CASES_MAX, is_sweep};
+use crate::runner::{Kind, Task};
+use crate::sweep::design::{self, CASES_MAX};
+use crate::sweep::{DrawnCase, Sweep};
 
 pub use self::understood::Line;
 
@@ -66,49 +65,40 @@ impl Checked {
     }
 }
 
-/// Reads the file as what it is: a calibration with the curves it names, a fracture scene, a sweep with all its cases, or a case. The body
-/// is built as well where that is quick, since only then some troubles show.
-///
-/// # Errors
-/// Wrong input, or files it names that cannot be read.
-pub fn check(document: Document) -> Result<Checked> {
-    if is_sweep(&document.table) {
-        return checked_sweep(document, &[]);
+/// What a document that was read as a task asks for. The body is built as well where that is quick, since only then some troubles
+/// show.
+pub fn check(document: &Document, task: &Task) -> Result<Checked> {
+    match task {
+        Task::Sweep { sweep, cases } => checked_sweep(sweep, cases),
+        Task::Scene(scene) => checked_scene(document, scene),
+        Task::LawFit(case) => Ok(checked_laws(document, case)),
+        Task::Fit(calibration) => {
+            let mut checked = checked_case(document, "calibration", &calibration.case, &calibration.warnings)?;
+            checked.lines.insert(0, curves_line(&calibration.curves));
+            Ok(checked)
+        }
+        Task::Prediction { case, .. } | Task::Factors { case, .. } => checked_case(document, "case", case, &case.warnings),
     }
-    if is_scene(&document.table) {
-        return checked_scene(&document);
-    }
-    if is_law_fit(&document.table) {
-        return checked_laws(&document);
-    }
-    if is_calibration(&document.table) {
-        let calibration = CalibrationCase::from_document(document.clone())?;
-        let mut checked = checked_case(&document, "calibration", &calibration.case, calibration.warnings)?;
-        checked.lines.insert(0, curves_line(&calibration.curves));
-        return Ok(checked);
-    }
-    let case = Case::from_document(&document)?;
-    checked_case(&document, "case", &case, case.warnings.clone())
 }
 
 /// [`check`] of a file. Overrides are those of the command that runs it.
 pub fn check_file(path: &Path, overrides: &[String]) -> Result<Checked> {
     // Read once: a pipe is empty the second time.
     let mut document = Document::read(path, &[])?;
-    if is_sweep(&document.table) {
-        return checked_sweep(document, overrides);
+    let kind = Kind::of(&document.table);
+    if kind == Kind::Sweep {
+        return check(&document, &Task::sweep(document.clone(), overrides, CASES_MAX)?);
     }
     document.set_all(overrides)?;
-    check(document)
+    // An override may make it something else.
+    check(&document, &Task::read(Kind::of(&document.table), &document, &[])?)
 }
 
-fn checked_sweep(document: Document, overrides: &[String]) -> Result<Checked> {
-    let sweep = Sweep::with_overrides(document, overrides, CASES_MAX)?;
-    let cases = sweep.cases()?;
-    let lines = sweep_lines(&sweep, &cases);
+fn checked_sweep(sweep: &Sweep, cases: &[DrawnCase]) -> Result<Checked> {
+    let lines = sweep_lines(sweep, cases);
     // A sweep has one case at least; what they have in common shows in any of them.
     let first = cases[0].read()?;
-    let mut checked = checked_case(&sweep.base, "sweep", &first, first.warnings.clone())?;
+    let mut checked = checked_case(&sweep.base, "sweep", &first, &first.warnings)?;
     checked.name.clone_from(&sweep.name);
     checked.echo = design::echo(&sweep.document.table);
     checked.provenance = sweep.document.folder.opened().so_far();
@@ -116,19 +106,11 @@ fn checked_sweep(document: Document, overrides: &[String]) -> Result<Checked> {
     Ok(checked)
 }
 
-/// Whether these are the sections of a calibration.
-pub fn is_calibration(table: &toml::Table) -> bool {
-    table.contains_key("measured") || table.contains_key("fit")
-}
-
-/// The case of a document, with its warnings so far.
-///
-/// # Errors
-/// A body that cannot be built.
-pub fn checked_case(document: &Document, kind: &'static str, case: &Case, mut warnings: Vec<String>) -> Result<Checked> {
+/// A case, with its warnings so far.
+fn checked_case(document: &Document, kind: &'static str, case: &Case, warnings: &[String]) -> Result<Checked> {
     let budget = Budget::of(case);
     let preview = budget.within_machine().and_then(|()| preview(case)).map_err(|error| document.locate(error))?;
-    warnings.extend(preview.warnings);
+    let warnings = [warnings, &preview.warnings].concat();
     let mut lines = case_lines(case, preview.points);
     lines.push(line("computing", budget.words()));
     let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
@@ -136,23 +118,21 @@ pub fn checked_case(document: &Document, kind: &'static str, case: &Case, mut wa
 }
 
 /// A fit of laws has a plate only where its rates come from readings.
-fn checked_laws(document: &Document) -> Result<Checked> {
-    let case = LawCase::from_document(document)?;
-    let mut lines = vec![rates_line(&case)];
+fn checked_laws(document: &Document, case: &LawCase) -> Checked {
+    let mut lines = vec![rates_line(case)];
     let mut drawing = String::new();
     if let Some(test) = &case.test {
         lines.extend(case_lines(&test.case, "none: rates over handbook K".to_owned()));
         drawing = specimen_svg(&test.case);
     }
     let provenance = document.folder.opened().so_far();
-    Ok(Checked { kind: "calibration", name: case.name, lines, warnings: case.warnings, drawing, echo: case.echo, provenance })
+    let (name, warnings, echo) = (case.name.clone(), case.warnings.clone(), case.echo.clone());
+    Checked { kind: "calibration", name, lines, warnings, drawing, echo, provenance }
 }
 
-fn checked_scene(document: &Document) -> Result<Checked> {
-    let scene = Scene::from_document(document)?;
-    let (lines, of_points) = scene_lines(&scene).map_err(|error| document.locate(error))?;
-    let drawing = scene_drawing(&scene);
-    let warnings = scene.warnings.into_iter().chain(of_points).collect();
-    let (name, echo, provenance) = (scene.name, scene.echo, scene.provenance);
-    Ok(Checked { kind: "fracture", name, lines, warnings, drawing, echo, provenance })
+fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
+    let (lines, of_points) = scene_lines(scene).map_err(|error| document.locate(error))?;
+    let (name, echo, provenance) = (scene.name.clone(), scene.echo.clone(), scene.provenance.clone());
+    let warnings = [&scene.warnings[..], &of_points].concat();
+    Ok(Checked { kind: "fracture", name, lines, warnings, drawing: scene_drawing(scene), echo, provenance })
 }

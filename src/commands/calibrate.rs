@@ -6,8 +6,8 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use super::calibrate_laws;
 use super::console::Console;
-use super::{calibrate_laws, predict};
 use crate::calibration::calibrate::calibrate;
 use crate::calibration::case::{CalibrationCase, remove_law};
 use crate::calibration::estimate::Estimate;
@@ -20,6 +20,7 @@ use crate::input::Document;
 use crate::predict::Prediction;
 use crate::report::output::{Finished, OutputFolder, Room, RunKind};
 use crate::report::{fit, run};
+use crate::runner::of_prediction;
 
 /// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
@@ -103,7 +104,9 @@ pub(super) fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, pla
             console.warn(warning);
         }
         place.adopt(&case.name)?;
-        let kept = predict::keep(case, run?, folder, &|_| Ok(()), console)?;
+        let prediction = run?;
+        let files = |path: &Path| of_prediction(case, &prediction, false, Some(path), console);
+        let kept = console.keep(folder, &[], files)?.counted()?;
         predictions.insert(case.name.clone(), kept.result);
     }
     if let Some(fields) = report.as_object_mut()

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::case_without_law;
 use super::console::Console;
-use super::unaged::case_without_law;
 use crate::calibration::decimal::Decimal;
 use crate::calibration::measured::{
     ColumnNames, CycleUnit, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, first_of, read_into,

@@ -89,15 +89,11 @@ fn public_url(text: &str) -> std::result::Result<String, String> {
 }
 
 /// Runs `perilife serve`, until it is asked to stop.
-///
-/// # Errors
-/// An address or a database that cannot be used; other machines let in without tokens.
 pub fn run(args: &Args) -> Result<()> {
     let limits = Limits {
         body_bytes: (args.body_mib as usize) << 20,
         points: f64::from(args.points),
         case_bytes: args.work.settings().memory as f64,
-        job_seconds: args.work.settings().time.as_secs_f64() * args.work.threads as f64,
         queued: i64::from(args.queued),
         quota_bytes: i64::from(args.quota_mib) << 20,
         connections: args.connections as usize,

@@ -169,3 +169,36 @@ fn paths(fracture: &Fracture) -> Vec<Vec<Point>> {
     fracture.path.iter().for_each(|point| paths[point.tip].push(point.position));
     paths
 }
+
+/// What came of a scene, in words.
+pub fn words(scene: &Scene, fracture: &Fracture) -> Vec<String> {
+    let last = fracture.history.last().copied().unwrap_or_default();
+    let figures = &fracture.figures;
+    let when = |step: Option<usize>| match step {
+        None => "never".to_owned(),
+        Some(step) if figures.time_step > 0.0 => format!("step {step}, {:.3} µs", step as f64 * figures.time_step * 1e6),
+        Some(step) => format!("step {step}"),
+    };
+    let way = match scene.procedure {
+        Procedure::Static => "one static solve".to_owned(),
+        Procedure::QuasiStatic { iterations: Some(_), .. } => format!("{} load steps", last.step),
+        Procedure::QuasiStatic { steps, .. } => format!("{steps} load steps, {} states of equilibrium", last.step),
+        Procedure::Dynamic { .. } => format!("{} time steps of {:.4} µs", last.step, figures.time_step * 1e6),
+    };
+    let mut lines = vec![
+        format!("{}: peak load {:.4} kN", scene.name, fracture.peak_load() / KN),
+        format!("  stopped        {}: {}", fracture.end, fracture.end.meaning()),
+        format!("  displacement   {:.6} mm at the end, load {:.4} kN", last.displacement / MM, last.load / KN),
+        format!("  first break    {}", when(fracture.onset_step)),
+        format!("  separated      {}", when(fracture.separated_step)),
+        format!("  broken         {} of {} bonds", last.broken_bonds, figures.bonds),
+    ];
+    lines.extend(
+        figures
+            .touching
+            .filter(|flanks| flanks.pressed > 0)
+            .map(|flanks| format!("  flanks         pressed together over {:.0} % of the cracks", 100.0 * flanks.share())),
+    );
+    lines.push(format!("  computed       {} points, {way}, {:.1} s", figures.points, figures.wall_s));
+    lines
+}

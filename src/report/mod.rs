@@ -28,11 +28,7 @@ pub mod sweep;
 pub mod time;
 pub mod verification;
 pub mod vtk;
-pub mod whole;
 
 mod axis;
-mod colour;
-mod glyphs;
 pub mod labels;
 mod raster;
-mod sweep_warnings;

@@ -2,7 +2,6 @@
 
 use serde_json::{Map, Value};
 
-use super::json::clean;
 use crate::bond_law::BondLawKind;
 use crate::case::{Case, LawSource, Method};
 use crate::element_free::resolution::ElementFreeSettings;
@@ -191,4 +190,9 @@ fn solved_part(figures: &RunFigures) -> &'static str {
         (false, true) => "; one half was solved, the other is its mirror image",
         (false, false) => "; a quarter was solved, the others are its mirror images",
     }
+}
+
+/// Hides the last digits of a double, which a unit conversion may have disturbed.
+pub(super) fn clean(value: f64) -> f64 {
+    format!("{value:.14e}").parse().unwrap_or(value)
 }

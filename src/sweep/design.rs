@@ -5,18 +5,9 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::vary::{Spread, Vary};
+use super::vary::{DesignKind, Spread, Vary};
 use crate::error::{Error, Result, input, input_missing};
 use crate::input::{Document, slice};
-
-crate::kinds! {
-    /// How the cases of a sweep are chosen.
-    pub enum DesignKind for "design.kind" {
-        Grid = "grid": "every combination of the values of all keys, the last key fastest",
-        LatinHypercube = "latin_hypercube": "random: of every key one value from each of as many strata as there are samples",
-        FittedScatter = "fitted_scatter": "the fatigue law scatters as a calibration found it; other keys may vary beside",
-    }
-}
 
 crate::kinds! {
     /// Where the scatter of a fatigue law comes from.

@@ -9,7 +9,6 @@ use std::io::{Cursor, Read as _};
 use std::path::Path;
 use std::time::Duration;
 
-use super::folder::SweepFolder;
 use crate::commands::console::Count;
 use crate::error::{Error, Result};
 use crate::report::csv::{A_N_FILE, parse_a_n};
@@ -17,6 +16,7 @@ use crate::report::output::write_file;
 use crate::report::provenance::INPUTS;
 use crate::report::run::PARAVIEW;
 use crate::report::sweep::Outcome;
+use crate::runner::sweep_folder::SweepFolder;
 use crate::service::job::{Job, JobKind, State, Submission};
 use crate::service::store::{self, FileEntry, NewJob, Origin, Room, Store, Submitted, is_gone};
 use crate::service::with_store;
@@ -41,9 +41,6 @@ struct File {
 const ROOM: Room = Room { queued: i64::MAX, bytes: i64::MAX };
 
 /// Has cases run, and fetches what comes of them.
-///
-/// # Errors
-/// A database that cannot be used; [`Error::File`] if results cannot be written; a job that somebody cancelled or deleted.
 pub fn run(url: &str, cases: &[&DrawnCase], folder: &SweepFolder, with_files: bool, count: &Count) -> Result<()> {
     if cases.is_empty() {
         return Ok(());

@@ -6,8 +6,8 @@ use super::rows;
 use crate::fracture::outcome::PathPoint;
 use crate::fracture::scene::{Action, Procedure, Scene, SceneLaw};
 use crate::fracture::{Fracture, SceneEnd};
-use crate::report::json::clean;
-use crate::report::{model_words, provenance};
+use crate::report::model_words::{self, clean};
+use crate::report::provenance;
 use crate::units::MM;
 
 /// The whole object. A figure that does not exist is `null`.

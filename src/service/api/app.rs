@@ -10,9 +10,8 @@ use std::time::{Duration, Instant};
 use governor::{DefaultKeyedRateLimiter, Quota, RateLimiter};
 use tokio::sync::{Notify, RwLock, Semaphore};
 
-use super::audit::Audit;
+use super::caller::{Audit, Caller};
 use super::places::{BodyPlaces, Place, Places};
-use super::security::Caller;
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::{Store, Token};
 
@@ -27,8 +26,6 @@ pub struct Limits {
     pub points: f64,
     /// Memory that a case may take up, bytes.
     pub case_bytes: f64,
-    /// Computing time that a job may take, s of one core.
-    pub job_seconds: f64,
     /// Jobs of one owner that wait.
     pub queued: i64,
     /// Bytes of the files of one owner, inputs and results.
@@ -60,7 +57,6 @@ impl Default for Limits {
             files: 64,
             points: 1e6,
             case_bytes: 4.0 * 1024.0 * 1024.0 * 1024.0,
-            job_seconds: 86_400.0,
             queued: 1000,
             quota_bytes: 100 << 30,
             requests_per_second: READS,
@@ -138,7 +134,7 @@ impl App {
             tokens: RwLock::new(Vec::new()),
             stopping: AtomicBool::new(false),
         };
-        let bodies = BodyPlaces::new(&limits);
+        let bodies = BodyPlaces::new(limits.bodies_of_caller, limits.bodies_of_readers, limits.bodies_at_once);
         let curves = Arc::new(Semaphore::new(CURVES_AT_ONCE));
         // Half of the connections are left to those who ask and go.
         let (streams, all_streams) = (Places::new(limits.streams_of_caller), Places::new((limits.connections / 2).max(1)));

@@ -5,8 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-use super::app::Limits;
-use super::security::Caller;
+use super::caller::Caller;
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::Role;
 
@@ -79,20 +78,17 @@ pub struct BodyPlace {
 }
 
 impl BodyPlaces {
-    /// As the limits say.
-    pub fn new(limits: &Limits) -> Self {
+    /// So many for each caller, for all who may only read, and for all.
+    pub fn new(of_caller: usize, of_readers: usize, of_all: usize) -> Self {
         BodyPlaces {
-            most_of_caller: limits.bodies_of_caller,
+            most_of_caller: of_caller,
             of_callers: Arc::default(),
-            of_readers: Arc::new(Semaphore::new(limits.bodies_of_readers)),
-            of_all: Arc::new(Semaphore::new(limits.bodies_at_once)),
+            of_readers: Arc::new(Semaphore::new(of_readers)),
+            of_all: Arc::new(Semaphore::new(of_all)),
         }
     }
 
     /// Waits for room for one more body of a caller.
-    ///
-    /// # Errors
-    /// 429 where the server is about to stop.
     pub async fn wait(&self, caller: &Caller) -> Answer<BodyPlace> {
         let own = {
             let mut callers = self.of_callers.lock().unwrap_or_else(PoisonError::into_inner);

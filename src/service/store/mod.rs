@@ -140,9 +140,6 @@ pub enum Upgrade {
 
 impl Store {
     /// Connects to `sqlite://FILE` or `postgres://...` and lays the tables in a new database.
-    ///
-    /// # Errors
-    /// Another kind of URL; a database that cannot be reached or was made by another version of this program.
     pub async fn open(url: &str, connections: u32, upgrade: Upgrade) -> Result<Store> {
         sqlx::any::install_default_drivers();
         let dialect = match url.split(':').next() {

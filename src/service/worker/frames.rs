@@ -17,7 +17,7 @@ pub struct Order {
     pub kind: JobKind,
     /// The input without what it names.
     pub submission: Submission,
-    /// Options of the command.
+    /// Options of the command, which its form leaves out.
     pub options: Vec<String>,
     /// Files that came with it.
     pub files: Vec<(String, Vec<u8>)>,
@@ -56,9 +56,6 @@ pub enum News {
 const MOST: u32 = 1 << 31;
 
 /// Writes a frame.
-///
-/// # Errors
-/// Nobody reads any more.
 pub fn write(mut to: impl Write, value: &impl Serialize) -> io::Result<()> {
     let bytes = postcard::to_stdvec(value).map_err(io::Error::other)?;
     let length = u32::try_from(bytes.len()).ok().filter(|length| *length <= MOST);

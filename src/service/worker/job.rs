@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use super::frames::{News, Order};
 use super::process::{Death, JobProcess, Look};
-use super::{Shared, TRY_EVERY, milliseconds, results};
+use super::{Shared, TRY_EVERY, files, milliseconds};
 use crate::error::{Error, Result};
 use crate::service::job::{JobKind, State, Submission};
 use crate::service::problem::Problem;
@@ -199,7 +199,7 @@ fn beat(shared: &Shared, claim: &Claim, untold: &mut Told, elapsed: Duration) ->
 fn conclude(shared: &Shared, claim: &Claim, end: End, folder: &Path) {
     let settings = &shared.settings;
     match end {
-        End::Done(summary) => match results::files(folder) {
+        End::Done(summary) => match files(folder) {
             Ok(files) => {
                 let done = Outcome { state: State::Succeeded, summary: Some(summary), problem: None, files };
                 hand_in(shared, claim, &done, "done");
