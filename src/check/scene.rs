@@ -1,12 +1,12 @@
 //! What `perilife check` has understood of a fracture scene, in words.
 
 use super::preview::{as_input, is_quick};
-use super::understood::{self, Line, line, mm, plate_lines, points_words, short};
+use super::understood::{self, Line, line, plate_lines, points_words};
 use crate::error::Result;
 use crate::fracture::Scene;
 use crate::fracture::preview::preview;
 use crate::fracture::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSupport};
-use crate::report::model_words;
+use crate::report::model_words::{self, mm, short};
 use crate::report::specimen_picture::scene_svg;
 use crate::units::{MM, MPA};
 

@@ -90,8 +90,7 @@ impl Args {
             return done;
         }
         let way = match &self.checkpoint {
-            Some(path) if path.is_file() => format!("the same command goes on from {}", path.display()),
-            Some(path) => format!("the same command begins anew: {} was not written yet", path.display()),
+            Some(path) => way_on(path),
             None => "give more, or keep the run with --checkpoint FILE".to_owned(),
         };
         let seconds = self.time_limit.unwrap_or_default();
@@ -112,7 +111,8 @@ impl Args {
     }
 
     fn keeper(&self, task: &Task, read: &Provenance, path: &Path, progress: RunProgress) -> Result<Keeper> {
-        signals::go_on_from(path);
+        let file = path.to_path_buf();
+        signals::go_on_by(move || way_on(&file));
         let sign = if matches!(task, Task::Scene(_)) { SCENE_SIGN } else { SIGN };
         let file = OutputFile::claim(path, Sort { option: "--checkpoint", sign }, read)?;
         if !file.is_file() {
@@ -122,6 +122,14 @@ impl Args {
         let every = Duration::try_from_secs_f64(self.checkpoint_every).unwrap_or_default();
         let last = Mutex::new(Last { at: Instant::now(), cost: Duration::ZERO, has_failed: false });
         Ok(Keeper { progress, file, every, last })
+    }
+}
+
+/// How to go on from a checkpoint, in words.
+fn way_on(path: &Path) -> String {
+    match path.is_file() {
+        true => format!("the same command goes on from {}", path.display()),
+        false => format!("the same command begins anew: {} was not written yet", path.display()),
     }
 }
 

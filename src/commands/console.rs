@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressFinish, ProgressStyle};
 use miette::{GraphicalReportHandler, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use serde_json::Value;
 
@@ -91,22 +91,22 @@ impl Console {
 
     /// The same for a run that is asked to end after so long.
     pub fn progress_within(&self, name: &str, limit: Option<Duration>) -> RunProgress {
-        let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(STEPS) };
-        let style = ProgressStyle::with_template("{prefix} {bar:30} {percent:>3} %  {msg}  {eta} left");
-        // The template is fixed, so it either always parses or a look at the screen shows the plain bar.
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.set_prefix(name.to_owned());
-        RunProgress::new(bar, limit)
+        RunProgress::new(self.bar(name, STEPS, "{prefix} {bar:30} {percent:>3} %  {msg}  {eta} left"), limit)
     }
 
     /// A bar on stderr that counts to `total`, drawn only on a terminal.
-    pub fn count(&self, name: &str, total: usize) -> Count {
-        let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(total as u64) };
-        let style = ProgressStyle::with_template("{prefix} {bar:30} {pos} of {len}  {eta} left");
-        // As for the bar of a run.
+    pub fn count(&self, name: &str, total: usize) -> ProgressBar {
+        self.bar(name, total as u64, "{prefix} {bar:30} {pos} of {len}  {eta} left")
+    }
+
+    /// A bar that goes when it is dropped.
+    fn bar(&self, name: &str, steps: u64, template: &str) -> ProgressBar {
+        let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(steps) };
+        let style = ProgressStyle::with_template(template);
+        // The template is fixed, so it either always parses or a look at the screen shows the plain bar.
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(name.to_owned());
-        Count { bar }
+        bar.with_finish(ProgressFinish::AndClear)
     }
 
     /// A progress bar for each of several runs side by side, one below the other.
@@ -148,25 +148,6 @@ fn to_stdout(text: &str) -> Result<()> {
 
 /// Steps of a full bar.
 const STEPS: u64 = 1000;
-
-/// Counts what is done; the bar goes when the value is dropped.
-#[derive(Debug)]
-pub struct Count {
-    bar: ProgressBar,
-}
-
-impl Count {
-    /// One more.
-    pub fn one(&self) {
-        self.bar.inc(1);
-    }
-}
-
-impl Drop for Count {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
-}
 
 /// The message for stderr.
 pub fn error_words(error: &Error) -> String {
@@ -303,6 +284,5 @@ impl Drop for RunProgress {
             // It ends at once, and has nothing to say.
             let _ = looker.join();
         }
-        self.bar.finish_and_clear();
     }
 }

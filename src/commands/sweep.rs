@@ -129,7 +129,7 @@ pub fn run(args: &Args) -> Result<()> {
     match args.engine {
         Engine::Local => {
             let count = args.console.count(&sweep.name, left.len());
-            run_here(&left, &folder, threads(args), !args.summary_only, &|| count.one())?;
+            run_here(&left, &folder, threads(args), !args.summary_only, &|| count.inc(1))?;
         }
         #[cfg(feature = "service")]
         Engine::Service => {
@@ -172,7 +172,7 @@ fn run_part(args: &Args, shard: Shard, sweep: &Sweep, cases: &[DrawnCase], folde
     let left: Vec<&DrawnCase> = own().filter(|case| !folder.is_done(case.number, !args.summary_only)).collect();
     let name = format!("{} {}/{}", sweep.name, shard.number, shard.of);
     let count = args.console.count(&name, left.len());
-    run_here(&left, &folder, threads(args), !args.summary_only, &|| count.one())?;
+    run_here(&left, &folder, threads(args), !args.summary_only, &|| count.inc(1))?;
     let failed = own().filter(|case| folder.outcome(case.number).is_some_and(|outcome| outcome.problem.is_some())).count();
     let line = format!("{name}: {} cases, {} of them run now, {failed} failed", own().count(), left.len());
     args.console.say(&line);

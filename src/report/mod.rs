@@ -16,7 +16,6 @@ pub mod model_words;
 pub mod output;
 pub mod provenance;
 pub mod resample;
-pub mod residual_strength;
 pub mod run;
 pub mod speed;
 pub mod specimen_picture;

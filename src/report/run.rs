@@ -1,5 +1,6 @@
 //! A run of cycles: whether it counts as a result, and all its files.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::Value;
@@ -13,16 +14,16 @@ use super::output::{Room, write_file};
 use super::specimen_picture::{nodes_svg, tip_svg};
 use super::{fit_use, json, provenance, vtk};
 use crate::case::budget::Budget;
-use crate::case::first_load;
-use crate::case::{Case, Method, RECORD};
+use crate::case::{Case, Method, RECORD, first_load};
 use crate::error::{Error, Result, input};
 use crate::predict::guard::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::plastic_zone::PlasticZone;
+use crate::predict::residual_strength::Strength;
 use crate::predict::{Prediction, StopReason};
-use crate::specimen::Point;
 use crate::specimen::geometry::distance;
 use crate::specimen::handbook::handbook;
-use crate::units::MM;
+use crate::specimen::{LoadMeasure, Point};
+use crate::units::{KN, MM, MPA};
 
 /// Half the width of the picture of the fatigue zone, in horizons.
 const ZONE_HORIZONS: f64 = 4.0;
@@ -281,4 +282,55 @@ fn computed(case: &Case, prediction: &Prediction) -> String {
             format!("by hand calculation: {formula}, {} rows, {:.2} ms", figures.blocks + 1, 1e3 * figures.wall_s)
         }
     }
+}
+
+/// Table of the residual strength.
+pub const RESIDUAL_STRENGTH_FILE: &str = "residual_strength.csv";
+
+/// Unit of the load in columns and in the picture, its name there, and its size.
+fn unit(case: &Case) -> (&'static str, &'static str, f64) {
+    match case.specimen.load_measure {
+        LoadMeasure::Stress => ("mpa", "Residual strength (gross stress), MPa", MPA),
+        LoadMeasure::Force => ("kn", "Residual strength (force), kN", KN),
+    }
+}
+
+/// `crack_length_mm,residual_strength_*,by_toughness_*,by_net_section_*,governed_by` with `mpa` of gross stress or `kn` of force;
+/// empty where a strength is not known.
+pub fn strength_table(case: &Case, curve: &[Strength]) -> String {
+    let (unit, _, size) = unit(case);
+    let mut text = format!("crack_length_mm,residual_strength_{unit},by_toughness_{unit},by_net_section_{unit},governed_by\n");
+    let field = |load: Option<f64>| load.map_or_else(String::new, |load| csv::number(load / size));
+    for strength in curve {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{}",
+            csv::number(strength.crack_length / MM),
+            csv::number(strength.load() / size),
+            field(strength.by_toughness),
+            field(strength.by_net_section),
+            strength.governed_by()
+        );
+    }
+    text
+}
+
+/// Writes `residual_strength.csv` and its picture into the folder of a run.
+pub fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> {
+    write_file(&folder.join(RESIDUAL_STRENGTH_FILE), strength_table(case, curve).as_bytes())?;
+    let (_, axis, size) = unit(case);
+    let series = |name: &str, mark, pick: &dyn Fn(&Strength) -> Option<f64>| Series {
+        name: name.to_owned(),
+        mark,
+        points: curve.iter().filter_map(|s| Some((s.crack_length / MM, pick(s)? / size))).collect(),
+    };
+    let all = [
+        series("residual strength", Mark::Line, &|s| Some(s.load())),
+        series("by toughness", Mark::Dashes, &|s| s.by_toughness),
+        series("by net-section yield", Mark::Dashes, &|s| s.by_net_section),
+        series("maximum load of the cycle", Mark::Dots, &|_| Some(case.loading.maximum)),
+    ];
+    let known: Vec<Series> = all.into_iter().filter(|series| !series.points.is_empty()).collect();
+    chart::over_crack_length(&folder.join("residual_strength.svg"), &format!("{}: residual strength", case.name), axis, &known)
 }

@@ -159,7 +159,7 @@ pub fn of_prediction(
         None => run::result(case, prediction),
     };
     if let (Some(folder), Ok(Some(strengths))) = (folder, &strengths) {
-        report::residual_strength::write(folder, case, strengths)?;
+        run::write_strength(folder, case, strengths)?;
     }
     let refusal = run::refusal(case, prediction);
     let mut warnings: Vec<String> = refusal.iter().map(Error::to_string).collect();

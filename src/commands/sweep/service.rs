@@ -9,7 +9,8 @@ use std::io::{Cursor, Read as _};
 use std::path::Path;
 use std::time::Duration;
 
-use crate::commands::console::Count;
+use indicatif::ProgressBar;
+
 use crate::error::{Error, Result};
 use crate::report::csv::{A_N_FILE, parse_a_n};
 use crate::report::output::write_file;
@@ -41,7 +42,7 @@ struct File {
 const ROOM: Room = Room { queued: i64::MAX, bytes: i64::MAX };
 
 /// Has cases run, and fetches what comes of them.
-pub fn run(url: &str, cases: &[&DrawnCase], folder: &SweepFolder, with_files: bool, count: &Count) -> Result<()> {
+pub fn run(url: &str, cases: &[&DrawnCase], folder: &SweepFolder, with_files: bool, count: &ProgressBar) -> Result<()> {
     if cases.is_empty() {
         return Ok(());
     }
@@ -61,7 +62,7 @@ pub fn run(url: &str, cases: &[&DrawnCase], folder: &SweepFolder, with_files: bo
                         if let Err(error) = fetch(store, job, case, folder, with_files).await? {
                             return Ok(Err(error));
                         }
-                        count.one();
+                        count.inc(1);
                     }
                 }
             }

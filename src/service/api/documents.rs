@@ -14,8 +14,8 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
+use super::app::BodyPlace;
 use super::caller::Caller;
-use super::places::BodyPlace;
 use super::{App, Limits};
 use crate::error::input;
 use crate::input::Document;

@@ -8,15 +8,14 @@ mod documents;
 mod events;
 mod inputs;
 mod knowledge;
-mod places;
 mod results;
 mod sending;
 mod security;
 mod watching;
 
-pub use app::{App, Limits, Security};
+pub use app::{App, Limits, Place, Places, Security};
 pub use caller::Audit;
-pub use places::{Place, Places};
+
 pub use security::Crowded;
 pub use watching::{start as start_counting, sum_up};
 

@@ -209,7 +209,13 @@ impl Store {
     /// The database cannot take it; what stood there before stays.
     pub async fn keep(&self, claim: &Claim, checkpoint: Vec<u8>) -> Result<bool> {
         let mut transaction = self.begin().await?;
-        if !hold(&mut transaction, claim, "attempts = 0").await? {
+        // Others cannot take the row until the transaction ends.
+        let held = sqlx::query("UPDATE jobs SET attempts = 0 WHERE id = $1 AND fence = $2 AND state = 'running'")
+            .bind(&claim.id)
+            .bind(claim.fence)
+            .execute(&mut *transaction)
+            .await?;
+        if held.rows_affected() == 0 {
             return Ok(false);
         }
         sqlx::query(
@@ -329,11 +335,4 @@ async fn grow(transaction: &mut sqlx::Transaction<'static, sqlx::Any>, claim: &C
     .execute(&mut **transaction)
     .await
     .map(drop)
-}
-
-/// Changes the row of a claimed job, which others then cannot take until the transaction ends; whether the claim holds.
-async fn hold(transaction: &mut sqlx::Transaction<'static, sqlx::Any>, claim: &Claim, change: &'static str) -> Result<bool> {
-    let statement = format!("UPDATE jobs SET {change} WHERE id = $1 AND fence = $2 AND state = 'running'");
-    let held = sqlx::query(sqlx::AssertSqlSafe(statement)).bind(&claim.id).bind(claim.fence).execute(&mut **transaction);
-    Ok(held.await?.rows_affected() > 0)
 }

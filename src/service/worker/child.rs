@@ -13,7 +13,7 @@ use std::time::Duration;
 use rustix::process::{Signal, kill_current_process_group};
 use serde_json::Value;
 
-use super::frames::{self, News, Order};
+use super::process::{News, Order, read_frame, write_frame};
 use super::telling::Teller;
 use super::{bytes, free_bytes, packed};
 use crate::error::{Error, Result};
@@ -30,7 +30,7 @@ const TELL_EVERY: Duration = Duration::from_millis(400);
 pub fn take() -> Result<()> {
     let cannot = |error| Error::file(Path::new("standard input"), "brings no order of a worker", error);
     let socket = io::stdin().as_fd().try_clone_to_owned().map(UnixStream::from).map_err(cannot)?;
-    let order: Option<Order> = frames::read(&socket).map_err(cannot)?;
+    let order: Option<Order> = read_frame(&socket).map_err(cannot)?;
     let mut order = order.ok_or_else(|| cannot(io::ErrorKind::UnexpectedEof.into()))?;
     order.submission.files = std::mem::take(&mut order.files);
     end_with_worker(socket.try_clone().map_err(cannot)?, &order);
@@ -40,7 +40,7 @@ pub fn take() -> Result<()> {
     let tell = |news: &News| {
         let socket = socket.lock().unwrap_or_else(PoisonError::into_inner);
         // A worker that has gone ends this process.
-        frames::write(&*socket, news).is_ok()
+        write_frame(&*socket, news).is_ok()
     };
     let mut room = Room::default();
     let end = match ended(&order, &mut room, &tell) {

@@ -4,7 +4,6 @@
 //! A job that wants more memory than it may have, or takes too long, ends alone; one that is cancelled ends at once, wherever it is.
 
 pub mod child;
-mod frames;
 mod job;
 mod process;
 mod telling;
