@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use perilife::case::Case;
 use perilife::commands::check;
 use perilife::commands::console::{Console, with_source_line};
-
 use perilife::error::InputError;
 use perilife::predict::{Prediction, StopReason};
 use perilife::report::catalogue::lines;
@@ -90,7 +89,7 @@ fn an_error_shows_its_line_where_there_is_one() {
         assert!(shown.contains(words), "{words} in {shown}");
     }
     // A line the file does not have (it was changed meanwhile) and a file that has gone give the plain words instead.
-    assert!(with_source_line(&error(0)).is_none() && message::with_source_line(&error(99)).is_none());
+    assert!(with_source_line(&error(0)).is_none() && with_source_line(&error(99)).is_none());
     assert!(with_source_line(&InputError { file: Some("gone.toml".into()), ..error(2) }).is_none());
 }
 

@@ -32,11 +32,8 @@ const TRY_EVERY: Duration = Duration::from_secs(1);
 /// Jobs looked at each time: they are taken in their order, so that those behind have hardly begun.
 const LOOKED_AT: usize = 64;
 
-/// A file of a result.
-struct File {
-    name: String,
-    content: Vec<u8>,
-}
+/// A file of a result: name and content.
+type File = (String, Vec<u8>);
 
 /// As many jobs as a sweep has.
 const ROOM: Room = Room { queued: i64::MAX, bytes: i64::MAX };
@@ -153,7 +150,7 @@ async fn fetch(
     for FileEntry { name, .. } in patiently(async || store.file_entries(&job.id, Origin::Result).await).await? {
         if with_files || name == A_N_FILE {
             let content = patiently(async || store.whole_file(&job.id, Origin::Result, &name).await).await?;
-            files.extend(content.map(|content| File { name, content }));
+            files.extend(content.map(|content| (name, content)));
         }
     }
     Ok(folder.keep(case, |path| {
@@ -166,8 +163,8 @@ async fn fetch(
 
 /// What the table says, from the a-N curve: the digits of JSON may lose the last bit.
 fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Result<Outcome> {
-    let curve = files.iter().find(|file| file.name == A_N_FILE);
-    let text = curve.map(|file| String::from_utf8_lossy(&file.content)).unwrap_or_default();
+    let curve = files.iter().find(|(name, _)| name == A_N_FILE);
+    let text = curve.map(|(_, content)| String::from_utf8_lossy(content)).unwrap_or_default();
     let rows = parse_a_n(&text, Path::new(A_N_FILE))?;
     let summary = job.summary.clone().unwrap_or_default();
     if let Some(refused) = summary["refused"].as_str() {
@@ -189,15 +186,15 @@ fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Resu
 }
 
 /// Writes a file of a job; an archive becomes the folder that it was made of.
-fn unpacked(folder: &Path, file: &File) -> Result<()> {
-    let path = folder.join(&file.name);
-    let Some(archived) = [PARAVIEW, INPUTS].into_iter().find(|name| file.name == format!("{name}.zip")) else {
-        return write_file(&path, &file.content);
+fn unpacked(folder: &Path, (name, content): &File) -> Result<()> {
+    let path = folder.join(name);
+    let Some(archived) = [PARAVIEW, INPUTS].into_iter().find(|folder| *name == format!("{folder}.zip")) else {
+        return write_file(&path, content);
     };
     let failed = |error: &dyn std::fmt::Display| Error::file(&path, "cannot unpack", std::io::Error::other(error.to_string()));
     let into = folder.join(archived);
     fs::create_dir(&into).map_err(|error| Error::file(&into, "cannot create the folder", error))?;
-    let mut archive = zip::ZipArchive::new(Cursor::new(&file.content)).map_err(|error| failed(&error))?;
+    let mut archive = zip::ZipArchive::new(Cursor::new(content)).map_err(|error| failed(&error))?;
     for i in 0..archive.len() {
         let mut entry = archive.by_index(i).map_err(|error| failed(&error))?;
         // Only names of this program stand in there; whatever comes is put into this folder and nowhere else.
