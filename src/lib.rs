@@ -75,6 +75,7 @@ pub mod stability;
 pub mod chart;
 pub mod sweep;
 pub mod report;
+pub mod runner;
 pub mod check;
 #[cfg(feature = "service")]
 pub mod service;

@@ -4,7 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
-use perilife::commands::{CommandLine, message};
+use perilife::commands::CommandLine;
+use perilife::commands::console::error_words;
 
 fn main() -> ExitCode {
     let line = CommandLine::parse();
@@ -14,7 +15,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             // A closed stderr must not turn the exit code into a panic.
-            let _ = writeln!(std::io::stderr(), "{}", message::of(&error));
+            let _ = writeln!(std::io::stderr(), "{}", error_words(&error));
             ExitCode::from(error.exit_code())
         }
     }

@@ -29,6 +29,7 @@ const STEP_ERROR_PERCENT: f64 = 0.05;
 const RUNS_MAX: usize = 4;
 
 /// A checked calibration file.
+#[derive(Debug, Clone)]
 pub enum Calibration {
     /// Lives of readings, by the law of Paris.
     Lives(Box<CalibrationCase>),

@@ -1,6 +1,6 @@
 //! The body that a run would compute, looked at before anything is solved.
 
-use super::understood::{built, mm, points_words};
+use super::understood::{built, points_words};
 use crate::body::lattice::Lattice;
 use crate::case::budget::Budget;
 use crate::case::{Case, Method};
@@ -10,7 +10,7 @@ use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::growth::element_free::initial_plate;
 use crate::growth::plate;
-use crate::report::model_words;
+use crate::report::model_words::{self, mm};
 use crate::specimen::Specimen;
 use crate::state::Bonds;
 

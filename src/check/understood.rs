@@ -7,11 +7,11 @@ use crate::case::{Case, LawSource, Method};
 use crate::material::Material;
 use crate::measured::MeasuredCurve;
 use crate::report::fit_use;
-use crate::report::model_words::{self, Choice};
+use crate::report::model_words::{self, Choice, mm, short};
 use crate::specimen::handbook::handbook;
-use crate::specimen::{LoadMeasure, Specimen, Support};
+use crate::specimen::{Specimen, Support};
 use crate::sweep::{DesignKind, DrawnCase, Sweep};
-use crate::units::{GPA, KN, MM, MM_PER_CYCLE, MPA};
+use crate::units::{GPA, MM, MM_PER_CYCLE};
 
 /// One line of what was understood.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,13 +111,8 @@ pub(super) fn points_words(count: &str, spacings: [f64; 2], [asked, horizon]: [f
 
 /// What the program understood of a case, one line each; `points` says how it is divided.
 pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
-    let (specimen, loading, fatigue) = (&case.specimen, &case.loading, &case.fatigue);
+    let (specimen, fatigue) = (&case.specimen, &case.fatigue);
     let chosen = model_words::of_case(case, None);
-    let (load, unit, symbol) = match specimen.load_measure {
-        LoadMeasure::Stress => ("stress", MPA, "MPa"),
-        LoadMeasure::Force => ("force", KN, "kN"),
-    };
-    let [least, most] = [loading.maximum * loading.ratio, loading.maximum].map(|load| short(load / unit));
     let held = match specimen.supports.first() {
         None => "nothing held, loads in equilibrium",
         Some(Support::Fixed { .. }) => "held as [supports] says",
@@ -136,23 +131,7 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         &case.material,
         ("crack", specimen.cracks.len(), format!("; length {} mm", mm(specimen.crack_length))),
     );
-    let mut cycles = match (loading.displacement(), specimen.crack_pressure) {
-        (Some(displacement), _) => {
-            let [least, most] = [loading.ratio, 1.0].map(|share| mm(share * displacement));
-            format!("displacement of the loaded places {least} to {most} mm; the load falls as cracks grow")
-        }
-        (None, pressure) if pressure > 0.0 && specimen.loads.is_empty() => {
-            format!("pressure on the cracks {least} to {most} {symbol}")
-        }
-        (None, pressure) if pressure > 0.0 => {
-            format!(
-                "{load} {least} to {most} {symbol}, pressure on the cracks up to {} MPa",
-                short(pressure * loading.maximum / MPA)
-            )
-        }
-        _ => format!("{load} {least} to {most} {symbol}"),
-    };
-    cycles += &format!(", R = {}; {held}", loading.ratio);
+    let cycles = format!("{}; {held}", model_words::loading(case));
     lines.push(line("loading", cycles));
     let by_points = case.model.method == Method::Peridynamics;
     lines.extend(by_points.then(|| line("bonds", model_words::words(&chosen, &model_words::OF_BONDS))));
@@ -203,20 +182,9 @@ pub(super) fn line(what: &'static str, value: String) -> Line {
     Line { what, value }
 }
 
-/// A length in millimetres.
-pub(super) fn mm(metres: f64) -> String {
-    short(metres / MM)
-}
-
 /// So many of something.
 fn count(number: usize, name: &str) -> String {
     format!("{number} {name}{}", if number == 1 { "" } else { "s" })
-}
-
-/// A number with at most four decimals.
-pub(super) fn short(value: f64) -> String {
-    let text = format!("{value:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A number of any size in a few figures.

@@ -1,13 +1,12 @@
 //! `perilife calibrate`: measured a-N curves to A and p, and on to the cases that use them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use rayon::prelude::*;
 use serde_json::Value;
 
 use super::console::Console;
-use super::predict;
 use crate::calibration::calibrate::{Calibration, Fitted};
 use crate::calibration::results::record;
 use crate::case::budget::Budget;
@@ -17,6 +16,7 @@ use crate::input::Document;
 use crate::predict::Prediction;
 use crate::report::output::{Finished, OutputFolder, Room, RunKind};
 use crate::report::{fit, run};
+use crate::runner::of_prediction;
 
 /// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
@@ -125,7 +125,9 @@ fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &Finish
             console.warn(warning);
         }
         place.adopt(&case.name)?;
-        let kept = predict::keep(case, run?, folder, &|_| Ok(()), console)?;
+        let prediction = run?;
+        let files = |path: &Path| of_prediction(case, &prediction, false, Some(path), console);
+        let kept = console.keep(folder, &[], files)?.counted()?;
         predictions.insert(case.name.clone(), kept.result);
     }
     if let Some(fields) = report.as_object_mut()

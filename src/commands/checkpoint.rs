@@ -7,15 +7,14 @@ use std::time::{Duration, Instant};
 
 use super::console::{Console, RunProgress};
 use super::signals;
-use crate::case::Case;
 use crate::error::{Error, Result, input};
 use crate::fracture::checkpoint::{SIGN as SCENE_SIGN, SceneCheckpoint};
-use crate::fracture::{self, Fracture, Scene, SceneObserver, SceneProgress};
-use crate::input::Provenance;
+use crate::fracture::{SceneObserver, SceneProgress};
+use crate::input::{Document, Provenance};
 use crate::predict::checkpoint::{Checkpoint, SIGN};
-use crate::predict::{Observer, Prediction, Progress, predict, resume};
-use crate::report::output::{Replaced, Sort};
-use crate::units::MM;
+use crate::predict::{Observer, Progress};
+use crate::report::output::{OutputFile, OutputFolder, Sort};
+use crate::runner::{self, Summary, Task, TaskCheckpoint, Watcher};
 use crate::watch::Watch;
 
 /// Time between two checkpoints over the time that writing one takes, at least: so they cost 5 % at most.
@@ -43,67 +42,55 @@ fn seconds(text: &str) -> std::result::Result<f64, String> {
 }
 
 impl Args {
-    /// Runs a case, from its checkpoint if there is one.
-    ///
-    /// # Errors
-    /// As [`predict`] and [`resume`]; a file that cannot be read, or is no checkpoint of this case.
-    pub fn run(&self, case: &Case, console: &Console) -> Result<(Prediction, Option<Replaced>)> {
-        let progress = self.progress(&case.name, console);
-        let Some(path) = &self.checkpoint else {
-            return Ok((self.within_limit(&case.name, &progress, predict(case, &progress))?, None));
-        };
-        let of_case = |bytes: Vec<u8>| Checkpoint::from_bytes(&bytes).and_then(|kept| kept.check(case).map(|()| kept));
-        let checkpoint = read(path)?.map(of_case).transpose().map_err(|error| error.in_file(path))?;
-        let keeper = self.keeper((path, SIGN), progress, &case.provenance, console)?;
-        let Some(checkpoint) = checkpoint else {
-            return Ok((self.within_limit(&case.name, &keeper.progress, predict(case, &keeper))?, Some(keeper.file)));
-        };
-        let Progress { cycles, crack_length, .. } = checkpoint.progress();
-        console.note(&format!(
-            "{}: goes on from {}: N = {cycles:.1}, a = {:.3} mm",
-            case.name,
-            path.display(),
-            crack_length / MM
-        ));
-        let done = resume(case, checkpoint, &keeper);
-        Ok((self.within_limit(&case.name, &keeper.progress, done)?, Some(keeper.file)))
+    /// Runs the task of a document into the folder `out`, from its checkpoint if there is one; also gives the file of the checkpoint, to
+    /// be removed when the run has counted.
+    pub fn run(&self, task: &Task, document: &Document, out: &Path, console: &Console) -> Result<(Summary, Option<OutputFile>)> {
+        // Before anything is laid out or written.
+        super::within_machine(task, document)?;
+        // Claimed first: a folder that cannot be written should not cost a run.
+        self.check_outside(out)?;
+        let read = document.folder.opened().so_far();
+        let folder = OutputFolder::claim(out, task.run_kind(), &read, task.room())?;
+        let mut checkpoint = None;
+        let summary = console.keep(folder, task.warnings(), |folder| {
+            let (summary, kept) = self.run_kept(task, &read, folder, console).map_err(|error| document.locate(error))?;
+            checkpoint = kept;
+            Ok(summary)
+        })?;
+        Ok((summary, checkpoint))
     }
 
-    /// Runs a scene, from its checkpoint if there is one.
-    ///
-    /// # Errors
-    /// As [`fracture::run`] and [`fracture::resume`]; a file that cannot be read, or is no checkpoint of this scene.
-    pub fn run_scene(&self, scene: &Scene, console: &Console) -> Result<(Fracture, Option<Replaced>)> {
-        let progress = self.progress(&scene.name, console);
-        let Some(path) = &self.checkpoint else {
-            return Ok((self.within_limit(&scene.name, &progress, fracture::run(scene, &progress))?, None));
-        };
-        let of_scene = |bytes: Vec<u8>| SceneCheckpoint::from_bytes(&bytes).and_then(|kept| kept.check(scene).map(|()| kept));
-        let checkpoint = read(path)?.map(of_scene).transpose().map_err(|error| error.in_file(path))?;
-        let keeper = self.keeper((path, SCENE_SIGN), progress, &scene.provenance, console)?;
-        let Some(checkpoint) = checkpoint else {
-            return Ok((self.within_limit(&scene.name, &keeper.progress, fracture::run(scene, &keeper))?, Some(keeper.file)));
-        };
-        let (step, share) = (checkpoint.step(), checkpoint.progress().share);
-        console.note(&format!("{}: goes on from {}: step {step}, {:.1} % done", scene.name, path.display(), 100.0 * share));
-        let done = fracture::resume(scene, checkpoint, &keeper);
-        Ok((self.within_limit(&scene.name, &keeper.progress, done)?, Some(keeper.file)))
-    }
-
-    fn progress(&self, name: &str, console: &Console) -> RunProgress {
+    fn run_kept(
+        &self,
+        task: &Task,
+        read: &Provenance,
+        folder: &Path,
+        console: &Console,
+    ) -> Result<(Summary, Option<OutputFile>)> {
         // The parser let no other time through.
         let limit = self.time_limit.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-        console.progress_within(name, limit)
+        let (name, progress) = (task.name(), console.progress_within(task.name(), limit));
+        let Some(path) = &self.checkpoint else {
+            let done = runner::run(task, None, Some(folder), &progress);
+            return Ok((self.within_limit(name, &progress, done)?, None));
+        };
+        let from =
+            content(path)?.map(|bytes| TaskCheckpoint::of(task, &bytes)).transpose().map_err(|error| error.in_file(path))?;
+        let keeper = self.keeper(task, read, path, progress)?;
+        if let Some(from) = &from {
+            console.note(&format!("{name}: goes on from {}: {}", path.display(), from.words()));
+        }
+        let done = runner::run(task, from, Some(folder), &keeper);
+        Ok((self.within_limit(name, &keeper.progress, done)?, Some(keeper.file)))
     }
 
     /// What came of a run, with words for one whose time was over.
-    fn within_limit<T>(&self, name: &str, progress: &RunProgress, done: Result<T>) -> Result<T> {
-        if done.is_ok() || !progress.ran_out() {
+    fn within_limit(&self, name: &str, progress: &RunProgress, done: Result<Summary>) -> Result<Summary> {
+        if !matches!(done, Err(Error::Mechanics(_))) || !progress.ran_out() {
             return done;
         }
         let way = match &self.checkpoint {
-            Some(path) if path.is_file() => format!("the same command goes on from {}", path.display()),
-            Some(path) => format!("the same command begins anew: {} was not written yet", path.display()),
+            Some(path) => way_on(path),
             None => "give more, or keep the run with --checkpoint FILE".to_owned(),
         };
         let seconds = self.time_limit.unwrap_or_default();
@@ -111,7 +98,7 @@ impl Args {
     }
 
     /// Refuses a checkpoint below the folder of the results, which it would make one that holds something else.
-    pub fn check_outside(&self, out: &Path) -> Result<()> {
+    fn check_outside(&self, out: &Path) -> Result<()> {
         let Some(path) = &self.checkpoint else { return Ok(()) };
         let real = |path: &Path| std::path::absolute(fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf()));
         match (real(path), real(out)) {
@@ -123,27 +110,31 @@ impl Args {
         }
     }
 
-    fn keeper<'a>(
-        &self,
-        (path, sign): (&Path, &'static [u8]),
-        progress: RunProgress,
-        read: &Provenance,
-        console: &'a Console,
-    ) -> Result<Keeper<'a>> {
-        signals::go_on_from(path);
-        Ok(Keeper {
-            progress,
-            console,
-            file: Replaced::claim(path, Sort { option: "--checkpoint", sign }, read)?,
-            // The parser let no other time through.
-            every: Duration::try_from_secs_f64(self.checkpoint_every).unwrap_or_default(),
-            last: Mutex::new(Last { at: Instant::now(), cost: Duration::ZERO, has_failed: false }),
-        })
+    fn keeper(&self, task: &Task, read: &Provenance, path: &Path, progress: RunProgress) -> Result<Keeper> {
+        let file = path.to_path_buf();
+        signals::go_on_by(move || way_on(&file));
+        let sign = if matches!(task, Task::Scene(_)) { SCENE_SIGN } else { SIGN };
+        let file = OutputFile::claim(path, Sort { option: "--checkpoint", sign }, read)?;
+        if !file.is_file() {
+            return Err(input("--checkpoint", path.display(), "is no file", "give the name of a file"));
+        }
+        // The parser let no other time through.
+        let every = Duration::try_from_secs_f64(self.checkpoint_every).unwrap_or_default();
+        let last = Mutex::new(Last { at: Instant::now(), cost: Duration::ZERO, has_failed: false });
+        Ok(Keeper { progress, file, every, last })
+    }
+}
+
+/// How to go on from a checkpoint, in words.
+fn way_on(path: &Path) -> String {
+    match path.is_file() {
+        true => format!("the same command goes on from {}", path.display()),
+        false => format!("the same command begins anew: {} was not written yet", path.display()),
     }
 }
 
 /// What stands in the file, if there is one.
-fn read(path: &Path) -> Result<Option<Vec<u8>>> {
+fn content(path: &Path) -> Result<Option<Vec<u8>>> {
     match fs::read(path) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -152,10 +143,9 @@ fn read(path: &Path) -> Result<Option<Vec<u8>>> {
 }
 
 /// Shows how far a run is, and keeps its state.
-struct Keeper<'a> {
+struct Keeper {
     progress: RunProgress,
-    console: &'a Console,
-    file: Replaced,
+    file: OutputFile,
     every: Duration,
     last: Mutex<Last>,
 }
@@ -167,7 +157,7 @@ struct Last {
     has_failed: bool,
 }
 
-impl Observer for Keeper<'_> {
+impl Observer for Keeper {
     fn watch(&self) -> Option<Arc<Watch>> {
         Observer::watch(&self.progress)
     }
@@ -181,7 +171,7 @@ impl Observer for Keeper<'_> {
     }
 }
 
-impl SceneObserver for Keeper<'_> {
+impl SceneObserver for Keeper {
     fn watch(&self) -> Option<Arc<Watch>> {
         SceneObserver::watch(&self.progress)
     }
@@ -195,7 +185,13 @@ impl SceneObserver for Keeper<'_> {
     }
 }
 
-impl Keeper<'_> {
+impl Watcher for Keeper {
+    fn warn(&self, warning: &str) {
+        self.progress.warn(warning);
+    }
+}
+
+impl Keeper {
     /// Writes the file if it is time.
     fn may_write(&self, bytes: &dyn Fn() -> Vec<u8>) {
         // Times are whole at any moment, even those of a thread that died.
@@ -206,11 +202,11 @@ impl Keeper<'_> {
             return;
         }
         let begun = Instant::now();
-        if let Err(error) = self.file.write(&bytes())
+        if let Err(error) = self.file.rewrite(&bytes())
             && !std::mem::replace(&mut last.has_failed, true)
         {
             // A run that cannot be kept is still worth its end.
-            self.console.warn(&format!("{error}: the run goes on, but cannot be taken up later"));
+            self.warn(&format!("{error}: the run goes on, but cannot be taken up later"));
         }
         (last.at, last.cost) = (Instant::now(), begun.elapsed());
     }

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::console::Console;
-use super::sweep::{SweepFolder, finish};
+use super::sweep::finish;
 use crate::error::Result;
+use crate::runner::sweep_folder::SweepFolder;
 
 /// Arguments of `perilife collect`.
 #[derive(Debug, clap::Args)]
@@ -19,9 +20,6 @@ pub struct Args {
 }
 
 /// Runs `perilife collect`.
-///
-/// # Errors
-/// A folder that is not one of a sweep; cases that are missing, after what is there has been written.
 pub fn run(args: &Args) -> Result<()> {
-    finish(&SweepFolder::existing(&args.dir)?, Instant::now(), &args.console).map(drop)
+    finish(&SweepFolder::existing(&args.dir)?, Instant::now(), &args.console)
 }

@@ -1,15 +1,23 @@
-//! What a command prints: results on stdout, warnings and progress on stderr.
+//! What a command prints: results on stdout, warnings, progress and errors on stderr.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
-use std::time::Duration;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
-use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressFinish, ProgressStyle};
+use miette::{GraphicalReportHandler, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use serde_json::Value;
 
-pub use super::run_progress::RunProgress;
-
-use crate::error::{Error, Result};
+use crate::error::{Error, InputError, Result};
+use crate::fracture::{SceneObserver, SceneProgress};
+use crate::predict::{Observer, Progress};
+use crate::report::output::OutputFolder;
+use crate::runner::{Summary, Watcher};
+use crate::units::MM;
+use crate::watch::Watch;
 
 /// Options of every command that prints results.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
@@ -45,19 +53,35 @@ impl Console {
     }
 
     /// A result that was asked for on stdout and stands in no file, unless `--json` replaces it.
-    ///
-    /// # Errors
-    /// [`Error::File`] if stdout cannot be written; a closed pipe is no trouble.
     pub fn result(&self, text: &str) -> Result<()> {
         if self.json { Ok(()) } else { to_stdout(text) }
     }
 
     /// The JSON object on stdout, if it was asked for.
-    ///
-    /// # Errors
-    /// [`Error::File`] if stdout cannot be written; a closed pipe is no trouble.
     pub fn object(&self, object: &Value) -> Result<()> {
         if self.json { to_stdout(&format!("{object:#}\n")) } else { Ok(()) }
+    }
+
+    /// Tables and words of a run.
+    pub fn print(&self, summary: Summary) -> Result<Summary> {
+        self.result(&summary.tables)?;
+        summary.lines.iter().for_each(|line| self.say(line));
+        Ok(summary)
+    }
+
+    /// Has a run fill the folder that was claimed for it, puts that in its place and prints what came of the run; `warnings` are
+    /// those of its input.
+    pub fn keep(
+        &self,
+        mut folder: OutputFolder,
+        warnings: &[String],
+        work: impl FnOnce(&Path) -> Result<Summary>,
+    ) -> Result<Summary> {
+        warnings.iter().map(String::as_str).chain(folder.warning()).for_each(|warning| self.warn(warning));
+        let mut summary = folder.fill(work)?;
+        summary.lines.push(format!("  results        {}", folder.name().display()));
+        drop(folder.finish()?);
+        self.print(summary)
     }
 
     /// A progress bar on stderr, drawn only on a terminal.
@@ -67,22 +91,22 @@ impl Console {
 
     /// The same for a run that is asked to end after so long.
     pub fn progress_within(&self, name: &str, limit: Option<Duration>) -> RunProgress {
-        let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(STEPS) };
-        let style = ProgressStyle::with_template("{prefix} {bar:30} {percent:>3} %  {msg}  {eta} left");
-        // The template is fixed, so it either always parses or a look at the screen shows the plain bar.
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.set_prefix(name.to_owned());
-        RunProgress::new(bar, limit)
+        RunProgress::new(self.bar(name, STEPS, "{prefix} {bar:30} {percent:>3} %  {msg}  {eta} left"), limit)
     }
 
     /// A bar on stderr that counts to `total`, drawn only on a terminal.
-    pub fn count(&self, name: &str, total: usize) -> Count {
-        let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(total as u64) };
-        let style = ProgressStyle::with_template("{prefix} {bar:30} {pos} of {len}  {eta} left");
-        // As for the bar of a run.
+    pub fn count(&self, name: &str, total: usize) -> ProgressBar {
+        self.bar(name, total as u64, "{prefix} {bar:30} {pos} of {len}  {eta} left")
+    }
+
+    /// A bar that goes when it is dropped.
+    fn bar(&self, name: &str, steps: u64, template: &str) -> ProgressBar {
+        let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(steps) };
+        let style = ProgressStyle::with_template(template);
+        // The template is fixed, so it either always parses or a look at the screen shows the plain bar.
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(name.to_owned());
-        Count { bar }
+        bar.with_finish(ProgressFinish::AndClear)
     }
 
     /// A progress bar for each of several runs side by side, one below the other.
@@ -96,6 +120,24 @@ impl Console {
     }
 }
 
+impl Observer for Console {
+    fn block_done(&self, _: &Progress) -> bool {
+        true
+    }
+}
+
+impl SceneObserver for Console {
+    fn step_done(&self, _: &SceneProgress) -> bool {
+        true
+    }
+}
+
+impl Watcher for Console {
+    fn warn(&self, warning: &str) {
+        Console::warn(self, warning);
+    }
+}
+
 fn to_stdout(text: &str) -> Result<()> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
@@ -105,23 +147,142 @@ fn to_stdout(text: &str) -> Result<()> {
 }
 
 /// Steps of a full bar.
-pub(super) const STEPS: u64 = 1000;
+const STEPS: u64 = 1000;
 
-/// Counts what is done; the bar goes when the value is dropped.
-#[derive(Debug)]
-pub struct Count {
-    bar: ProgressBar,
-}
-
-impl Count {
-    /// One more.
-    pub fn one(&self) {
-        self.bar.inc(1);
+/// The message for stderr.
+pub fn error_words(error: &Error) -> String {
+    let plain = format!("error: {error}");
+    if !std::io::stderr().is_terminal() {
+        return plain;
+    }
+    match error {
+        Error::Input(input) => with_source_line(input).unwrap_or(plain),
+        _ => plain,
     }
 }
 
-impl Drop for Count {
+/// The message with the file's line shown; `None` if file or line are not known or the file has gone.
+pub fn with_source_line(input: &InputError) -> Option<String> {
+    let (file, line) = (input.file.as_ref()?, input.line?);
+    // A pipe is empty by now, and a terminal would wait.
+    let text = Some(file).filter(|file| file.is_file()).and_then(|file| std::fs::read_to_string(file).ok())?;
+    let start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
+    let length = text.lines().nth(line - 1)?.len();
+    // Where the trouble stands is part of the message already; the shown line takes their place.
+    let message = InputError { file: None, line: None, remedy: String::new(), ..input.clone() }.to_string();
+    let label = LabeledSpan::new(Some("here".to_owned()), start, length);
+    let mut shown = MietteDiagnostic::new(message).with_label(label);
+    if !input.remedy.is_empty() {
+        shown = shown.with_help(&input.remedy);
+    }
+    let report = Report::from(shown).with_source_code(NamedSource::new(file.display().to_string(), text));
+    let mut words = String::new();
+    GraphicalReportHandler::new().render_report(&mut words, report.as_ref()).ok()?;
+    Some(words)
+}
+
+/// Time between two looks at what a run does.
+const LOOK_EVERY: Duration = Duration::from_millis(100);
+
+/// Shows a run's cycles, crack length, share and time left; the bar goes when the value is dropped.
+#[derive(Debug)]
+pub struct RunProgress {
+    bar: ProgressBar,
+    shared: Arc<Shared>,
+    /// Looks at the run from beside it; none where nobody would see it and nothing limits it.
+    looker: Option<JoinHandle<()>>,
+}
+
+/// What both threads know.
+#[derive(Debug, Default)]
+struct Shared {
+    watch: Arc<Watch>,
+    has_rows: AtomicBool,
+    is_over: AtomicBool,
+    ran_out: AtomicBool,
+}
+
+impl RunProgress {
+    /// On this bar, with an end after so long.
+    pub fn new(bar: ProgressBar, limit: Option<Duration>) -> Self {
+        let shared = Arc::new(Shared::default());
+        let is_looked_at = !bar.is_hidden() || limit.is_some();
+        let (shown, known) = (bar.clone(), shared.clone());
+        let looker = is_looked_at.then(|| std::thread::spawn(move || look(&shown, &known, limit)));
+        RunProgress { bar, shared, looker }
+    }
+
+    /// The bar.
+    pub fn bar(&self) -> &ProgressBar {
+        &self.bar
+    }
+
+    /// Whether the time was over before the run was.
+    pub fn ran_out(&self) -> bool {
+        self.shared.ran_out.load(Ordering::Relaxed)
+    }
+
+    fn advance(&self, share: f64, message: Option<String>) -> bool {
+        self.shared.has_rows.store(true, Ordering::Relaxed);
+        let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
+        self.bar.set_message(message.unwrap_or_default());
+        self.bar.set_position((share * STEPS as f64) as u64);
+        !self.shared.watch.is_cancelled()
+    }
+}
+
+/// Shows what a run does before it has rows, and asks it to end when its time is over.
+fn look(bar: &ProgressBar, shared: &Shared, limit: Option<Duration>) {
+    let begun = Instant::now();
+    while !shared.is_over.load(Ordering::Relaxed) {
+        if limit.is_some_and(|limit| begun.elapsed() >= limit) && !shared.ran_out.swap(true, Ordering::Relaxed) {
+            shared.watch.cancel();
+        }
+        if !shared.has_rows.load(Ordering::Relaxed)
+            && let Some((stage, share)) = shared.watch.now()
+        {
+            bar.set_message(format!("{} {:.0} %", stage.words(), 100.0 * share));
+            bar.tick();
+        }
+        let left =
+            limit.map_or(LOOK_EVERY, |limit| limit.saturating_sub(begun.elapsed()).clamp(Duration::from_millis(1), LOOK_EVERY));
+        std::thread::park_timeout(left);
+    }
+}
+
+impl Observer for RunProgress {
+    fn block_done(&self, progress: &Progress) -> bool {
+        self.advance(progress.share, Some(format!("N = {:.4e}, a = {:.2} mm", progress.cycles, progress.crack_length / MM)))
+    }
+
+    fn watch(&self) -> Option<Arc<Watch>> {
+        Some(self.shared.watch.clone())
+    }
+}
+
+impl SceneObserver for RunProgress {
+    fn step_done(&self, progress: &SceneProgress) -> bool {
+        self.advance(progress.share, None)
+    }
+
+    fn watch(&self) -> Option<Arc<Watch>> {
+        Some(self.shared.watch.clone())
+    }
+}
+
+impl Watcher for RunProgress {
+    fn warn(&self, warning: &str) {
+        self.bar.suspend(|| Console::default().warn(warning));
+    }
+}
+
+impl Drop for RunProgress {
     fn drop(&mut self) {
-        self.bar.finish_and_clear();
+        self.shared.is_over.store(true, Ordering::Relaxed);
+        if let Some(looker) = self.looker.take() {
+            looker.thread().unpark();
+            // It ends at once, and has nothing to say.
+            let _ = looker.join();
+        }
     }
 }

@@ -10,7 +10,6 @@ use crate::input::Opened;
 use crate::report::csv::{self, A_N_FILE, Row, parse_a_n};
 use crate::report::output::{OutputFile, Sort};
 use crate::report::resample::{ROWS_MAX, Sampling};
-use crate::report::whole;
 
 /// First line of an export, which a run's own table has not.
 const HEADER: &str = "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n";
@@ -59,7 +58,7 @@ fn curve_of(folder: &Path, opened: &Opened) -> Result<Vec<Row>> {
     let table = folder.join(A_N_FILE);
     if table.is_file() {
         let bytes = opened.read(&table, A_N_FILE)?;
-        whole::check(folder, A_N_FILE, &bytes, opened)?;
+        csv::check_whole(folder, A_N_FILE, &bytes, opened)?;
         return parse_a_n(&String::from_utf8_lossy(&bytes), &table);
     }
     let remedy = if folder.join("fitted.toml").is_file() {

@@ -13,9 +13,6 @@ pub struct Args {
 }
 
 /// Prints the list in aligned columns, or as JSON.
-///
-/// # Errors
-/// Only if stdout cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let lines = lines();
     let widest =

@@ -26,13 +26,30 @@ pub mod worker;
 
 pub mod checkpoint;
 pub mod console;
-pub mod message;
-pub mod run_progress;
 pub mod signals;
-mod unaged;
+
+use std::path::Path;
 
 use clap::{Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
+
+use crate::case::Case;
+use crate::error::Result;
+use crate::input::Document;
+use crate::runner::Task;
+
+/// Specimen, material, load and model of a case or calibration file, of whose fatigue law nothing is asked: a fitted record that does not
+/// exist yet is no obstacle.
+fn case_without_law(path: &Path, overrides: &[String]) -> Result<Case> {
+    let case = Case::plate_of(&Document::read(path, overrides)?)?;
+    case.specimen.check_growth().map_err(|error| error.in_file(path))?;
+    Ok(case)
+}
+
+/// Refuses a task that this machine has no memory for, before anything is laid out.
+fn within_machine(task: &Task, document: &Document) -> Result<()> {
+    task.budgets(1)?.iter().try_for_each(|budget| budget.within_machine()).map_err(|error| document.locate(error))
+}
 
 /// Declares the subcommands: doc line, name and module; gives the enum that clap parses and the call of the right `run`.
 macro_rules! commands {
@@ -46,7 +63,7 @@ macro_rules! commands {
             ///
             /// # Errors
             /// What the command reports; [`crate::Error::exit_code`] is the exit code of the process.
-            pub fn run(&self) -> crate::Result<()> {
+            pub fn run(&self) -> Result<()> {
                 #[allow(unused_doc_comments, reason = "the lines about a subcommand stand at its arm too, as its condition does")]
                 match self { $($(#[$attribute])+ Command::$Name(args) => $module::run(args)),+ }
             }

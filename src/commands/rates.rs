@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::case_without_law;
 use super::console::Console;
-use super::unaged::case_without_law;
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt;
 use crate::calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};

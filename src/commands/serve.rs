@@ -89,9 +89,6 @@ fn public_url(text: &str) -> std::result::Result<String, String> {
 }
 
 /// Runs `perilife serve`, until it is asked to stop.
-///
-/// # Errors
-/// An address or a database that cannot be used; other machines let in without tokens.
 pub fn run(args: &Args) -> Result<()> {
     let limits = Limits {
         body_bytes: (args.body_mib as usize) << 20,

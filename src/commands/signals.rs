@@ -1,7 +1,6 @@
 //! Ctrl-C and its like: what is in the making goes, one line says how to go on, and the exit code is that of the signal.
 
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -9,23 +8,20 @@ use signal_hook::iterator::Signals;
 
 use crate::report::output::pending;
 
-/// How to go on, for the line at the end.
-#[derive(Debug)]
-enum Way {
-    Words(String),
-    Checkpoint(PathBuf),
-}
+/// Says how to go on, in the line at the end.
+type Way = Box<dyn Fn() -> String + Send>;
 
 static WAY: Mutex<Option<Way>> = Mutex::new(None);
 
 /// Says this line if the process is asked to end.
 pub fn say_at_the_end(words: &str) {
-    *WAY.lock().unwrap_or_else(PoisonError::into_inner) = Some(Way::Words(words.to_owned()));
+    let words = words.to_owned();
+    go_on_by(move || words.clone());
 }
 
-/// Says how to go on from this checkpoint if the process is asked to end.
-pub fn go_on_from(checkpoint: &Path) {
-    *WAY.lock().unwrap_or_else(PoisonError::into_inner) = Some(Way::Checkpoint(checkpoint.to_path_buf()));
+/// Says then how to go on.
+pub fn go_on_by(words: impl Fn() -> String + Send + 'static) {
+    *WAY.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(words));
 }
 
 /// Has the process fold up on SIGINT, SIGTERM and SIGHUP, except on those that it was started to ignore (`nohup`).
@@ -53,12 +49,8 @@ fn end(signal: i32) {
         SIGTERM => "SIGTERM",
         _ => "SIGHUP",
     };
-    let way = match &*WAY.lock().unwrap_or_else(PoisonError::into_inner) {
-        None => "nothing is left behind; with --checkpoint FILE a run can be taken up again".to_owned(),
-        Some(Way::Words(words)) => words.clone(),
-        Some(Way::Checkpoint(file)) if file.is_file() => format!("the same command goes on from {}", file.display()),
-        Some(Way::Checkpoint(file)) => format!("the same command begins anew: {} was not written yet", file.display()),
-    };
+    let nothing = || "nothing is left behind; with --checkpoint FILE a run can be taken up again".to_owned();
+    let way = WAY.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map_or_else(nothing, |way| way());
     let _ = writeln!(std::io::stderr(), "ended by {name}: {way}");
     std::process::exit(128 + signal);
 }

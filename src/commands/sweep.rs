@@ -1,31 +1,26 @@
 //! `perilife sweep`: many cases of one, run here, by a service or by Slurm, to one table.
 
-mod folder;
-mod local;
 #[cfg(feature = "service")]
 mod service;
 mod slurm;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
-
-use serde_json::Value;
 
 use super::console::Console;
 use super::signals;
 #[cfg(feature = "service")]
 use super::worker::Place;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::input::Document;
 use crate::report::output::Share;
-use crate::report::sweep::{Outcome, Plan, write};
+use crate::report::sweep::Plan;
+use crate::runner::Task;
+use crate::runner::sweep::{collect, run as run_here};
+use crate::runner::sweep_folder::SweepFolder;
 use crate::sweep::design::CASES_MAX;
 use crate::sweep::{DrawnCase, Sweep};
-pub use folder::SweepFolder;
-
-/// Failed or missing cases that a message names.
-const NAMED: usize = 5;
 
 /// Arguments of `perilife sweep`.
 #[derive(Debug, clap::Args)]
@@ -110,13 +105,11 @@ impl Shard {
 }
 
 /// Runs `perilife sweep`.
-///
-/// # Errors
-/// Wrong input, no case with a result, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let begun = Instant::now();
-    let sweep = Sweep::from_file(&args.sweep, &args.set, args.most)?;
-    let cases = sweep.cases()?;
+    let Task::Sweep { sweep, cases } = Task::sweep(Document::read(&args.sweep, &[])?, &args.set, args.most)? else {
+        return Ok(());
+    };
     let plan = Plan::new(&sweep, &cases);
     let read = sweep.document.folder.opened().so_far();
     if let Some(shard) = args.shard {
@@ -135,7 +128,8 @@ pub fn run(args: &Args) -> Result<()> {
     }
     match args.engine {
         Engine::Local => {
-            local::run(&left, &folder, threads(args), !args.summary_only, &args.console.count(&sweep.name, left.len()))?
+            let count = args.console.count(&sweep.name, left.len());
+            run_here(&left, &folder, threads(args), !args.summary_only, &|| count.inc(1))?;
         }
         #[cfg(feature = "service")]
         Engine::Service => {
@@ -152,19 +146,14 @@ pub fn run(args: &Args) -> Result<()> {
             }
         }
     }
-    finish(&folder, begun, &args.console).map(drop)
+    finish(&folder, begun, &args.console)
 }
 
-/// Runs all cases of the sweep of a document on this machine: the figures of `sweep.json`.
-pub fn run_on(document: Document, out: &Path, threads: usize, console: &Console) -> Result<Value> {
-    let begun = Instant::now();
-    let sweep = Sweep::with_overrides(document, &[], CASES_MAX)?;
-    let cases = sweep.cases()?;
-    let read = sweep.document.folder.opened().so_far();
-    let folder = SweepFolder::open(out, Plan::new(&sweep, &cases), &read, Share::Alone)?;
-    let all: Vec<&DrawnCase> = cases.iter().collect();
-    local::run(&all, &folder, threads, true, &console.count(&sweep.name, all.len()))?;
-    finish(&folder, begun, console)
+/// Writes table, figures and picture of what is there, and says what it is.
+pub fn finish(folder: &SweepFolder, begun: Instant, console: &Console) -> Result<()> {
+    let summary = console.print(collect(folder, begun, console)?)?;
+    console.object(&summary.result)?;
+    summary.counted().map(drop)
 }
 
 /// Cases that are not done yet.
@@ -182,7 +171,8 @@ fn run_part(args: &Args, shard: Shard, sweep: &Sweep, cases: &[DrawnCase], folde
     let own = || cases.iter().filter(|case| shard.has(case.number));
     let left: Vec<&DrawnCase> = own().filter(|case| !folder.is_done(case.number, !args.summary_only)).collect();
     let name = format!("{} {}/{}", sweep.name, shard.number, shard.of);
-    local::run(&left, &folder, threads(args), !args.summary_only, &args.console.count(&name, left.len()))?;
+    let count = args.console.count(&name, left.len());
+    run_here(&left, &folder, threads(args), !args.summary_only, &|| count.inc(1))?;
     let failed = own().filter(|case| folder.outcome(case.number).is_some_and(|outcome| outcome.problem.is_some())).count();
     let line = format!("{name}: {} cases, {} of them run now, {failed} failed", own().count(), left.len());
     args.console.say(&line);
@@ -190,80 +180,4 @@ fn run_part(args: &Args, shard: Shard, sweep: &Sweep, cases: &[DrawnCase], folde
         "name": sweep.name, "shard": shard.number, "shards": shard.of,
         "cases": own().count(), "run": left.len(), "failed": failed,
     }))
-}
-
-/// Writes table, figures and picture of what is there, and says what it is.
-///
-/// # Errors
-/// [`Error::Mechanics`] if cases are missing or none has a result; files that cannot be written.
-pub fn finish(folder: &SweepFolder, begun: Instant, console: &Console) -> Result<Value> {
-    let outcomes: Vec<Option<Outcome>> = (1..=folder.plan.cases.len()).map(|number| folder.outcome(number)).collect();
-    let figures = write(&folder.path, &folder.plan, &outcomes, begun.elapsed().as_secs_f64())?;
-    for warning in first(&figures, "warnings") {
-        let [case, text] = ["first", "warning"].map(|key| warning[key].as_str().unwrap_or_default());
-        let more = warning["cases"].as_u64().unwrap_or(1).saturating_sub(1);
-        let others = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let largest = warning["largest_percent"].as_f64().filter(|_| more > 0 && warning["largest_in"] != warning["first"]);
-        let most = largest.map_or_else(String::new, |share| {
-            format!(" (case {}: {share} %)", warning["largest_in"].as_str().unwrap_or_default())
-        });
-        console.warn(&format!("case {case}{others}: {text}{most}"));
-    }
-    summary(&folder.path, &folder.plan, &figures).iter().for_each(|line| console.say(line));
-    console.object(&figures)?;
-    verdict(&folder.plan.name, &figures)?;
-    Ok(figures)
-}
-
-fn summary(path: &Path, plan: &Plan, figures: &Value) -> Vec<String> {
-    let life = |key: &str| figures["life_cycles"][key].as_f64();
-    let counts = ["succeeded", "failed", "missing"].map(|key| figures[key].as_u64().unwrap_or(0));
-    let mut lines = vec![format!(
-        "{}: {} cases, {} succeeded, {} failed, {} missing",
-        plan.name,
-        plan.cases.len(),
-        counts[0],
-        counts[1],
-        counts[2]
-    )];
-    if let (Some(low), Some(middle), Some(high)) = (life("p05"), life("p50"), life("p95")) {
-        lines.push(format!("  life           5 % {low:.0}, median {middle:.0}, 95 % {high:.0} cycles"));
-    }
-    if let Some(count) = figures["run_outs"].as_u64().filter(|count| *count > 0) {
-        lines.push(format!("  run-outs       {count}: their lives end at stop.cycles_max"));
-    }
-    lines.extend(first(figures, "failures").iter().map(|failure| {
-        format!(
-            "  failed         {}: {}",
-            failure["case"].as_str().unwrap_or_default(),
-            failure["problem"].as_str().unwrap_or_default()
-        )
-    }));
-    lines.push(format!("  computed       {:.1} s of one core", figures["computing_s"].as_f64().unwrap_or(0.0)));
-    lines.push(format!("  results        {}", path.display()));
-    lines
-}
-
-fn first<'f>(figures: &'f Value, key: &str) -> &'f [Value] {
-    let all = figures[key].as_array().map_or(&[][..], Vec::as_slice);
-    &all[..all.len().min(NAMED)]
-}
-
-fn verdict(name: &str, figures: &Value) -> Result<()> {
-    let missing = figures["missing"].as_u64().unwrap_or(0);
-    if missing > 0 {
-        let named: Vec<&str> = first(figures, "missing_cases").iter().filter_map(Value::as_str).collect();
-        let more = if missing > NAMED as u64 { ", ..." } else { "" };
-        let text = format!(
-            "{name}: {missing} of {} cases are missing: {}{more}; run `perilife sweep` again with the same --out",
-            figures["cases"],
-            named.join(", ")
-        );
-        return Err(Error::Mechanics(text));
-    }
-    if figures["succeeded"] == 0 {
-        let why = first(figures, "failures").first().and_then(|failure| failure["problem"].as_str()).unwrap_or_default();
-        return Err(Error::Mechanics(format!("{name}: no case has a result; the first says: {why}")));
-    }
-    Ok(())
 }

@@ -47,9 +47,6 @@ pub enum Task {
 }
 
 /// Runs `perilife token`.
-///
-/// # Errors
-/// A name that is taken or not known; a database that cannot be used.
 pub fn run(args: &Args) -> Result<()> {
     let may_make = matches!(args.task, Task::Add { .. });
     let (url, console) = (if may_make { args.place.made()? } else { args.place.url()? }, &args.console);

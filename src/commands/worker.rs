@@ -28,9 +28,6 @@ pub struct Place {
 
 impl Place {
     /// URL of the database of a service that was begun.
-    ///
-    /// # Errors
-    /// [`Error::Input`] where there is none.
     pub fn url(&self) -> Result<String> {
         if let Some(url) = self.given()? {
             return Ok(url);
@@ -71,9 +68,6 @@ impl Place {
     }
 
     /// The same, of a service that begins: the folder and its file are made where they are missing.
-    ///
-    /// # Errors
-    /// A folder that cannot be made.
     pub fn made(&self) -> Result<String> {
         if let Some(url) = self.given()? {
             return Ok(url);
@@ -183,9 +177,6 @@ pub struct Args {
 }
 
 /// Runs `perilife worker`, until it is asked to stop.
-///
-/// # Errors
-/// A database that cannot be used.
 pub fn run(args: &Args) -> Result<()> {
     let (url, settings) = (args.work.place.url()?, args.work.settings());
     let place = service::without_password(&url);

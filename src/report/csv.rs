@@ -1,11 +1,15 @@
-//! Tables of a run: `a_n.csv` and `crack_path.csv`, and reading `a_n.csv` back.
+//! Tables of a run: `a_n.csv` and `crack_path.csv`; reading `a_n.csv` back, and whether it is still what was written.
 //!
 //! Numbers carry at least ten significant digits; cycles are written so that they read back bit for bit.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
+use serde_json::Value;
+
+use super::json::RESULT_FILE;
 use crate::error::{Error, InputError, Result};
+use crate::input::{Opened, sha256};
 use crate::predict::{CurvePoint, Prediction};
 use crate::specimen::{Crack, Point};
 use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
@@ -130,9 +134,6 @@ fn far_end(tip: Point, cracks: &[Crack]) -> Option<Point> {
 }
 
 /// Reads the first four columns of an a-N table this program wrote.
-///
-/// # Errors
-/// [`Error::File`] if it cannot be read; [`Error::Input`] naming line and column where it is not such a table.
 pub fn read_a_n(path: &Path) -> Result<Vec<Row>> {
     parse_a_n(&std::fs::read_to_string(path).map_err(|e| Error::file(path, "cannot read", e))?, path)
 }
@@ -215,4 +216,35 @@ fn pad(mut text: String, wanted: usize) -> String {
     }
     text.push_str(&"0".repeat(wanted - significant));
     text
+}
+
+/// Compares a table with what `result.json` beside it says of it; without that file there is nothing to compare with.
+pub fn check_whole(folder: &Path, name: &str, table: &[u8], opened: &Opened) -> Result<()> {
+    let (path, beside) = (folder.join(name), folder.join(RESULT_FILE));
+    let refuse = |problem: String| {
+        let remedy = "copy the folder again, or run the case again".to_owned();
+        let error = InputError { file: Some(path.clone()), problem, remedy, ..InputError::default() };
+        Err(Error::Input(Box::new(error)))
+    };
+    if !beside.is_file() {
+        return Ok(());
+    }
+    let Ok(result) = serde_json::from_slice::<Value>(&opened.read(&beside, RESULT_FILE)?) else {
+        return refuse(format!("stands beside a {RESULT_FILE} that is cut off or damaged"));
+    };
+    let said = result["tables"].as_array().into_iter().flatten().find(|entry| entry["file"] == name);
+    if let Some(entry) = said {
+        let bytes = entry["bytes"].as_u64().unwrap_or(0);
+        return match table.len() as u64 {
+            length if length < bytes => refuse(format!("is cut off: {length} of the {bytes} bytes that the run wrote")),
+            _ if entry["sha256"] != sha256(table) => refuse(format!("is not the table that the run wrote, by {RESULT_FILE}")),
+            _ => Ok(()),
+        };
+    }
+    // A run of an earlier version says its life alone.
+    let last = parse_a_n(&String::from_utf8_lossy(table), &path)?.last().map(|row| row.cycles);
+    match (result["life_cycles"].as_f64(), last) {
+        (Some(life), Some(last)) if last < life => refuse(format!("ends at {last} cycles, and the run at {life}")),
+        _ => Ok(()),
+    }
 }

@@ -4,9 +4,8 @@
 
 use std::path::Path;
 
-use super::colour::{Rgb, of_share};
 use super::output::write_file;
-use super::raster::Canvas;
+use super::raster::{Canvas, Rgb, of_share};
 use crate::error::{Error, Result};
 use crate::predict::{PointGrid, Snapshot};
 use crate::specimen::{Crack, Point};

@@ -8,9 +8,6 @@ use crate::units::MM;
 use crate::verify::disc::{self, ElasticDisc};
 
 /// Draws u_x over x for the springs of a sweep, the default control and the reference.
-///
-/// # Errors
-/// No equilibrium; a file that cannot be written.
 pub fn springs_chart(path: &Path) -> Result<()> {
     let sweep = disc::sweep()?;
     let series = |name: String, of: &ElasticDisc, mark: Mark| Series {

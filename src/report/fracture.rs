@@ -1,21 +1,20 @@
 //! Results of a fracture scene: `history.csv`, `crack_path.csv`, `cracking.csv`, `result.json`, charts and the damaged plate.
 
-mod json;
-
 use std::fmt::Write as _;
 use std::path::Path;
 
-pub use json::result;
+use serde_json::{Value, json};
 
 use super::chart::{self, Mark, Series};
 use super::csv::{exact, number};
 use super::damage::{DamagePicture, PointField};
+use super::model_words::{self, clean};
 use super::output::{Room, write_file};
 use super::{provenance, vtk};
 use crate::error::{Error, Result};
 use crate::fracture::outcome::{HistoryRow, PathPoint};
-use crate::fracture::scene::Procedure;
-use crate::fracture::{Fracture, Scene};
+use crate::fracture::scene::{Action, Procedure, SceneLaw};
+use crate::fracture::{Fracture, Scene, SceneEnd};
 use crate::predict::Snapshot;
 use crate::specimen::Point;
 use crate::units::{KN, MM};
@@ -58,7 +57,7 @@ pub fn crack_path(path: &[PathPoint]) -> String {
 }
 
 /// All tables by name.
-pub(super) fn tables(fracture: &Fracture) -> [(&'static str, String); 3] {
+fn tables(fracture: &Fracture) -> [(&'static str, String); 3] {
     [
         ("history.csv", history(fracture)),
         ("crack_path.csv", crack_path(&fracture.path)),
@@ -72,7 +71,7 @@ pub fn room(scene: &Scene) -> Room {
 }
 
 /// Writes all files of a scene into `folder`.
-pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &serde_json::Value) -> Result<()> {
+pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &Value) -> Result<()> {
     // Tables and figures first: what a full disk cuts off are pictures.
     for (file, text) in tables(fracture) {
         write_file(&folder.join(file), text.as_bytes())?;
@@ -168,4 +167,138 @@ fn paths(fracture: &Fracture) -> Vec<Vec<Point>> {
     let mut paths = vec![Vec::new(); count];
     fracture.path.iter().for_each(|point| paths[point.tip].push(point.position));
     paths
+}
+
+/// What came of a scene, in words.
+pub fn words(scene: &Scene, fracture: &Fracture) -> Vec<String> {
+    let last = fracture.history.last().copied().unwrap_or_default();
+    let figures = &fracture.figures;
+    let when = |step: Option<usize>| match step {
+        None => "never".to_owned(),
+        Some(step) if figures.time_step > 0.0 => format!("step {step}, {:.3} µs", step as f64 * figures.time_step * 1e6),
+        Some(step) => format!("step {step}"),
+    };
+    let way = match scene.procedure {
+        Procedure::Static => "one static solve".to_owned(),
+        Procedure::QuasiStatic { iterations: Some(_), .. } => format!("{} load steps", last.step),
+        Procedure::QuasiStatic { steps, .. } => format!("{steps} load steps, {} states of equilibrium", last.step),
+        Procedure::Dynamic { .. } => format!("{} time steps of {:.4} µs", last.step, figures.time_step * 1e6),
+    };
+    let mut lines = vec![
+        format!("{}: peak load {:.4} kN", scene.name, fracture.peak_load() / KN),
+        format!("  stopped        {}: {}", fracture.end, fracture.end.meaning()),
+        format!("  displacement   {:.6} mm at the end, load {:.4} kN", last.displacement / MM, last.load / KN),
+        format!("  first break    {}", when(fracture.onset_step)),
+        format!("  separated      {}", when(fracture.separated_step)),
+        format!("  broken         {} of {} bonds", last.broken_bonds, figures.bonds),
+    ];
+    lines.extend(
+        figures
+            .touching
+            .filter(|flanks| flanks.pressed > 0)
+            .map(|flanks| format!("  flanks         pressed together over {:.0} % of the cracks", 100.0 * flanks.share())),
+    );
+    lines.push(format!("  computed       {} points, {way}, {:.1} s", figures.points, figures.wall_s));
+    lines
+}
+
+/// The whole object. A figure that does not exist is `null`.
+pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
+    let figures = &fracture.figures;
+    let peak = rows(fracture).max_by(|a, b| a.load.total_cmp(&b.load));
+    let last = rows(fracture).last();
+    let warnings: Vec<&String> = scene.warnings.iter().chain(&fracture.warnings).collect();
+    let mut result = json!({
+        "name": scene.name,
+        "stop_reason": fracture.end.name(),
+        "stop_meaning": fracture.end.meaning(),
+        "converged": !matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable),
+        "peak_load_n": peak.map(|row| clean(row.load.max(0.0))),
+        "peak_step": peak.map(|row| row.step),
+        "peak_displacement_mm": peak.map(|row| clean(row.displacement / MM)),
+        "onset_step": fracture.onset_step,
+        "onset_time_s": fracture.onset_step.and_then(|step| time_of(step, fracture)),
+        "separated_step": fracture.separated_step,
+        "separated_time_s": fracture.separated_step.and_then(|step| time_of(step, fracture)),
+        "broken_bonds": last.map(|row| row.broken_bonds),
+        "energy_balance_error": energy_error(fracture),
+        "flanks_pressed_share": figures.touching.map(|flanks| clean(flanks.share())),
+        "fronts": fronts(fracture),
+        "points": figures.points,
+        "bonds": figures.bonds,
+        "steps": last.map(|row| row.step),
+        "evaluations": figures.evaluations,
+        "time_step_s": (figures.time_step > 0.0).then_some(figures.time_step),
+        "wall_s": figures.wall_s,
+        "memory_mb": figures.memory_mb,
+        "loading": loading(scene),
+        "model": model_words::object(&model_words::of_scene(scene, Some(fracture.grid.spacing))),
+        "damage": damage(scene),
+        "warnings": warnings,
+        "version": env!("CARGO_PKG_VERSION"),
+        "case": scene.echo,
+    });
+    let tables = tables(fracture);
+    let tables: Vec<(&str, &str)> = tables.iter().map(|(name, text)| (*name, &**text)).collect();
+    provenance::add(&mut result, &scene.provenance, &tables);
+    result
+}
+
+/// Time of a step where there is time.
+fn time_of(step: usize, fracture: &Fracture) -> Option<f64> {
+    (fracture.figures.time_step > 0.0).then(|| clean(step as f64 * fracture.figures.time_step))
+}
+
+/// Largest of |kinetic + strain + fracture - work| over the largest energy of the history.
+fn energy_error(fracture: &Fracture) -> Option<f64> {
+    let largest = rows(fracture).map(|row| row.kinetic.max(row.strain).max(row.work.abs())).fold(0.0, f64::max);
+    let left = rows(fracture).map(|row| (row.kinetic + row.strain + row.fracture - row.work).abs()).fold(0.0, f64::max);
+    (largest > 0.0).then(|| left / largest).filter(|error| error.is_finite())
+}
+
+/// Where every crack front stands at the end.
+fn fronts(fracture: &Fracture) -> Value {
+    let count = fracture.path.iter().map(|point| point.tip + 1).max().unwrap_or(0);
+    let last = |tip: usize| fracture.path.iter().rev().find(|point| point.tip == tip);
+    let words = |point: &PathPoint| {
+        json!({
+            "tip": point.tip, "step": point.step, "time_s": point.time,
+            "x_mm": clean(point.position[0] / MM), "y_mm": clean(point.position[1] / MM), "damage": clean(point.damage),
+        })
+    };
+    (0..count).filter_map(last).map(words).collect()
+}
+
+fn loading(scene: &Scene) -> Value {
+    let kinds: Vec<&str> = scene
+        .drives
+        .iter()
+        .map(|drive| match drive.action {
+            Action::Traction(_) => "traction",
+            Action::Displacement(_) => "displacement",
+            Action::Velocity(_) => "velocity",
+            Action::Platen(_) => "platens",
+        })
+        .collect();
+    match scene.procedure {
+        Procedure::Static => json!({ "procedure": "static", "kinds": kinds }),
+        Procedure::QuasiStatic { steps, iterations } => {
+            json!({ "procedure": "quasi_static", "steps": steps, "iterations_per_step": iterations, "kinds": kinds })
+        }
+        Procedure::Dynamic { duration, .. } => json!({ "procedure": "dynamic", "duration_s": duration, "kinds": kinds }),
+    }
+}
+
+fn damage(scene: &Scene) -> Value {
+    let damage = &scene.damage;
+    let by_points = matches!(scene.model.law, SceneLaw::Correspondence { .. });
+    json!({
+        "law": damage.law.name(),
+        "enters": by_points.then(|| damage.enters.name()),
+        "critical_stretch": damage.stretch,
+        "elastic_stretch": damage.nonlinear.map(|law| law.elastic),
+        "peak_stretch": damage.nonlinear.map(|law| law.peak),
+        "final_stretch": damage.nonlinear.map(|law| law.last),
+        "printed_law": damage.nonlinear.map(|law| law.printed),
+    })
 }

@@ -11,7 +11,7 @@ use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 use super::fit_use::extrapolated;
 pub use super::fit_use::life_share_extrapolated;
-use super::model_words;
+use super::model_words::{self, clean};
 
 /// Name of the file.
 pub const RESULT_FILE: &str = "result.json";
@@ -124,9 +124,4 @@ fn law(case: &Case, prediction: &Prediction) -> Value {
         object.insert("record".to_owned(), json!(record));
     }
     law
-}
-
-/// Hides the last digits of a double, which a unit conversion may have disturbed.
-pub(super) fn clean(value: f64) -> f64 {
-    format!("{value:.14e}").parse().unwrap_or(value)
 }

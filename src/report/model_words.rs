@@ -2,15 +2,15 @@
 
 use serde_json::{Map, Value};
 
-use super::json::clean;
 use crate::bond_law::BondLawKind;
 use crate::case::{Case, LawSource, Method};
 use crate::element_free::resolution::ElementFreeSettings;
 use crate::fracture::scene::{Discretisation, Scene, SceneLaw};
 use crate::predict::RunFigures;
 use crate::solver::SolverUsed;
+use crate::specimen::LoadMeasure;
 use crate::specimen::handbook::handbook;
-use crate::units::MM;
+use crate::units::{KN, MM, MPA};
 
 /// Keys that say how bonds resist.
 pub const OF_BONDS: [&str; 7] =
@@ -187,4 +187,43 @@ fn solved_part(figures: &RunFigures) -> &'static str {
         (false, true) => "; one half was solved, the other is its mirror image",
         (false, false) => "; a quarter was solved, the others are its mirror images",
     }
+}
+
+/// Hides the last digits of a double, which a unit conversion may have disturbed.
+pub(super) fn clean(value: f64) -> f64 {
+    format!("{value:.14e}").parse().unwrap_or(value)
+}
+
+/// The cycles of load in words.
+pub fn loading(case: &Case) -> String {
+    let (specimen, loading) = (&case.specimen, &case.loading);
+    let (load, unit, symbol) = match specimen.load_measure {
+        LoadMeasure::Stress => ("stress", MPA, "MPa"),
+        LoadMeasure::Force => ("force", KN, "kN"),
+    };
+    let range = |unit: f64, most: f64| format!("{} to {}", short(loading.ratio * most / unit), short(most / unit));
+    let loads = range(unit, loading.maximum);
+    let cycles = match (loading.displacement(), specimen.crack_pressure) {
+        (Some(most), _) => format!("displacement of the loaded places {} mm; the load falls as cracks grow", range(MM, most)),
+        (None, pressure) if pressure > 0.0 && specimen.loads.is_empty() => format!("pressure on the cracks {loads} {symbol}"),
+        (None, pressure) if pressure > 0.0 => {
+            let most = short(pressure * loading.maximum / MPA);
+            format!("{load} {loads} {symbol}, pressure on the cracks up to {most} MPa")
+        }
+        _ => format!("{load} {loads} {symbol}"),
+    };
+    let sides =
+        if loading.parallel_ratio == 0.0 { String::new() } else { format!(", {} of it on the sides", loading.parallel_ratio) };
+    format!("{cycles}{sides}, R = {}", loading.ratio)
+}
+
+/// A number with at most four decimals.
+pub fn short(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A length in millimetres.
+pub fn mm(metres: f64) -> String {
+    short(metres / MM)
 }

@@ -1,5 +1,6 @@
 //! A run of cycles: whether it counts as a result, and all its files.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::Value;
@@ -8,17 +9,21 @@ use toml::Table;
 use super::chart::{self, Mark, Series};
 use super::csv::{self, Row};
 use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
+pub use super::json::result;
 use super::output::{Room, write_file};
 use super::specimen_picture::{nodes_svg, tip_svg};
 use super::{fit_use, json, provenance, vtk};
 use crate::case::budget::Budget;
 use crate::case::{Case, Method, RECORD, first_load};
 use crate::error::{Error, Result, input};
+use crate::predict::plastic_zone::PlasticZone;
 use crate::predict::record::BLOCKS_WITHOUT_GROWTH;
+use crate::predict::residual_strength::Strength;
 use crate::predict::{Prediction, StopReason};
-use crate::specimen::Point;
 use crate::specimen::geometry::distance;
-use crate::units::MM;
+use crate::specimen::handbook::handbook;
+use crate::specimen::{LoadMeasure, Point};
+use crate::units::{KN, MM, MPA};
 
 /// Half the width of the picture of the fatigue zone, in horizons.
 const ZONE_HORIZONS: f64 = 4.0;
@@ -26,7 +31,6 @@ const ZONE_HORIZONS: f64 = 4.0;
 const CRACK_PATH_FILE: &str = "crack_path.csv";
 /// Folder of the ParaView files in that of a run.
 pub const PARAVIEW: &str = "paraview";
-/// Share of life outside the fitted ΔK range above which the user is warned.
 /// Share of life outside the fitted ΔK range above which a run is refused unless the case allows it.
 const EXTRAPOLATION_REFUSED: f64 = 0.25;
 
@@ -107,6 +111,24 @@ pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
     let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
     Some(input("fatigue.allow_extrapolation", false, format!("{}: {text}; the results are marked as refused", case.name), remedy))
 }
+
+/// Keys of `result.json` that a listing of runs shows.
+pub const FIGURES: [&str; 14] = [
+    "life_cycles",
+    "life_is_lower_bound",
+    "stop_reason",
+    "stop_meaning",
+    "crack_length_initial_mm",
+    "crack_length_final_mm",
+    "life_share_extrapolated",
+    "refused",
+    "points",
+    "points_solved",
+    "blocks",
+    "solves",
+    "wall_s",
+    "memory_mb",
+];
 
 /// Writes all files of a run into `folder`; returns the content of `result.json`.
 pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Value> {
@@ -206,4 +228,106 @@ fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction) -> Result<()
         chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;
     }
     Ok(())
+}
+
+/// What came of a run, in words.
+pub fn words(case: &Case, prediction: &Prediction) -> Vec<String> {
+    let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
+    let mut lines = vec![
+        match prediction.life() {
+            Some(life) if prediction.stop == StopReason::EnteredHole => format!("{}: {life:.1} cycles to the hole", case.name),
+            Some(life) if prediction.stop.is_lower_bound() => format!("{}: life at least {life:.1} cycles", case.name),
+            Some(life) => format!("{}: life {life:.1} cycles", case.name),
+            None => format!("{}: life unlimited", case.name),
+        },
+        format!("  crack length   {from:.3} mm to {to:.3} mm"),
+        format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
+    ];
+    lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
+    lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
+    lines.push(format!("  computed       {}", computed(case, prediction)));
+    lines
+}
+
+/// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.
+fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
+    let PlasticZone { first, last, .. } = PlasticZone::of(case, prediction)?;
+    let (horizon, thickness) = (prediction.figures.horizon, case.specimen.thickness);
+    let of_horizon = if horizon > 0.0 { format!(", {:.2} of the horizon", last.size / horizon) } else { String::new() };
+    Some(format!(
+        "{:.3} mm to {:.3} mm ({:.3} of the ligament, {:.2} of the thickness{of_horizon})",
+        first.size / MM,
+        last.size / MM,
+        last.size / last.ligament,
+        last.size / thickness
+    ))
+}
+
+fn computed(case: &Case, prediction: &Prediction) -> String {
+    let figures = &prediction.figures;
+    match case.model.method {
+        Method::Peridynamics => format!(
+            "{} points, {} cycle blocks, {} solves, {:.1} s",
+            figures.points, figures.blocks, figures.solves, figures.wall_s
+        ),
+        Method::ElementFreeGalerkin => format!(
+            "up to {} nodes, {} increments, {} solves, {:.2} s",
+            figures.points, figures.blocks, figures.solves, figures.wall_s
+        ),
+        Method::Handbook => {
+            let formula = handbook(&case.specimen).map_or("", |formula| formula.name);
+            format!("by hand calculation: {formula}, {} rows, {:.2} ms", figures.blocks + 1, 1e3 * figures.wall_s)
+        }
+    }
+}
+
+/// Table of the residual strength.
+pub const RESIDUAL_STRENGTH_FILE: &str = "residual_strength.csv";
+
+/// Unit of the load in columns and in the picture, its name there, and its size.
+fn unit(case: &Case) -> (&'static str, &'static str, f64) {
+    match case.specimen.load_measure {
+        LoadMeasure::Stress => ("mpa", "Residual strength (gross stress), MPa", MPA),
+        LoadMeasure::Force => ("kn", "Residual strength (force), kN", KN),
+    }
+}
+
+/// `crack_length_mm,residual_strength_*,by_toughness_*,by_net_section_*,governed_by` with `mpa` of gross stress or `kn` of force;
+/// empty where a strength is not known.
+pub fn strength_table(case: &Case, curve: &[Strength]) -> String {
+    let (unit, _, size) = unit(case);
+    let mut text = format!("crack_length_mm,residual_strength_{unit},by_toughness_{unit},by_net_section_{unit},governed_by\n");
+    let field = |load: Option<f64>| load.map_or_else(String::new, |load| csv::number(load / size));
+    for strength in curve {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{}",
+            csv::number(strength.crack_length / MM),
+            csv::number(strength.load() / size),
+            field(strength.by_toughness),
+            field(strength.by_net_section),
+            strength.governed_by()
+        );
+    }
+    text
+}
+
+/// Writes `residual_strength.csv` and its picture into the folder of a run.
+pub fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> {
+    write_file(&folder.join(RESIDUAL_STRENGTH_FILE), strength_table(case, curve).as_bytes())?;
+    let (_, axis, size) = unit(case);
+    let series = |name: &str, mark, pick: &dyn Fn(&Strength) -> Option<f64>| Series {
+        name: name.to_owned(),
+        mark,
+        points: curve.iter().filter_map(|s| Some((s.crack_length / MM, pick(s)? / size))).collect(),
+    };
+    let all = [
+        series("residual strength", Mark::Line, &|s| Some(s.load())),
+        series("by toughness", Mark::Dashes, &|s| s.by_toughness),
+        series("by net-section yield", Mark::Dashes, &|s| s.by_net_section),
+        series("maximum load of the cycle", Mark::Dots, &|_| Some(case.loading.maximum)),
+    ];
+    let known: Vec<Series> = all.into_iter().filter(|series| !series.points.is_empty()).collect();
+    chart::over_crack_length(&folder.join("residual_strength.svg"), &format!("{}: residual strength", case.name), axis, &known)
 }

@@ -4,14 +4,15 @@ mod nodes;
 mod scene;
 pub mod sketch;
 
+use super::model_words::loading;
 pub use nodes::{nodes_svg, tip_svg};
 pub use scene::scene_svg;
 use sketch::{CRACK, EDGE, HELD, LOAD, PLATE, Sketch, WORDS};
 
 use crate::case::Case;
 use crate::specimen::geometry::{along, bounding_box, distance};
-use crate::specimen::{Crack, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
-use crate::units::{KN, MM, MPA};
+use crate::specimen::{Crack, Load, Point, Specimen, SpecimenKind, Support};
+use crate::units::MM;
 
 /// What a drawing says of itself, so that it is known again.
 pub const SIGN: &str = "drawn by perilife check";
@@ -27,7 +28,7 @@ const ARROW: f64 = 38.0;
 /// Red: cracks, with a dot at each tip that can grow, numbered as in `crack_path.csv`. Blue: loads. Green hatching: what
 /// is held.
 pub fn specimen_svg(case: &Case) -> String {
-    drawing(&case.name, &load_words(case), &case.specimen, &[], |_| {})
+    drawing(&case.name, &loading(case), &case.specimen, &[], |_| {})
 }
 
 /// The drawing with a title, the loads in words, lines below the others, and what `more` adds on the bare plate.
@@ -64,31 +65,6 @@ fn drawing(name: &str, loads: &str, specimen: &Specimen, lines: &[String], more:
     draw_axes(&mut sketch);
     draw_legend(&mut sketch, &rows, plate_height);
     sketch.finish(width, height)
-}
-
-/// The load in one line.
-fn load_words(case: &Case) -> String {
-    let loading = &case.loading;
-    let (symbol, maximum, unit) = match case.specimen.load_measure {
-        LoadMeasure::Stress => ("stress σ", loading.maximum / MPA, "MPa"),
-        LoadMeasure::Force => ("force P", loading.maximum / KN, "kN"),
-    };
-    let minimum = maximum * loading.ratio;
-    if let Some(most) = loading.displacement() {
-        let [least, most] = [loading.ratio * most, most].map(|metres| format!("{:.4}", metres / MM));
-        return format!("displacement cycles between {least} and {most} mm (R = {})", loading.ratio);
-    }
-    let pressure = case.specimen.crack_pressure;
-    let (symbol, beside) = match pressure {
-        _ if pressure > 0.0 && case.specimen.loads.is_empty() => ("pressure p on the cracks", String::new()),
-        _ if pressure > 0.0 => {
-            (symbol, format!(", pressure on the cracks up to {} MPa", short(pressure * loading.maximum / MPA)))
-        }
-        _ => (symbol, String::new()),
-    };
-    let parallel =
-        if loading.parallel_ratio == 0.0 { String::new() } else { format!(", on the sides {} σ", loading.parallel_ratio) };
-    format!("{symbol} cycles between {} and {} {unit} (R = {}){parallel}{beside}", short(minimum), short(maximum), loading.ratio)
 }
 
 /// A number with at most two decimals.

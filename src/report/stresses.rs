@@ -69,6 +69,14 @@ pub fn table(stressed: &Stressed) -> String {
     text
 }
 
+/// How they were computed, in one line.
+pub fn words(case: &Case, stressed: &Stressed) -> String {
+    let gross = stressed.gross.map_or(String::new(), |gross| format!(", gross stress {:.3} MPa", gross / MPA));
+    let settled = stressed.change.map_or(String::new(), |change| format!(", last change {:.2} %", 100.0 * change));
+    let (nodes, solves, moved) = (stressed.nodes, stressed.solves, stressed.moved.0 / MM);
+    format!("{}: {nodes} nodes after {solves} solves{settled}{gross}; largest displacement {moved:.6} mm", case.name)
+}
+
 /// What is to be said of the stresses.
 pub fn warnings(stressed: &Stressed) -> Vec<String> {
     let sharp: Vec<String> = stressed.rims.iter().filter(|rim| rim.is_sharp).map(|rim| name(rim.rim)).collect();

@@ -1,5 +1,6 @@
 //! Results of a sweep: plan, outcome of every case, `sweep.csv`, `sweep.json`, `life.svg`.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -9,12 +10,11 @@ use serde_json::{Value, json};
 use super::chart::{self, Mark, Series};
 use super::csv;
 use super::output::write_file;
-use super::sweep_warnings::warnings;
 use crate::cells::field;
 use crate::error::{Error, Result, input_missing};
 use crate::predict::StopReason;
+use crate::sweep::distribution::quantile;
 use crate::sweep::draw::label;
-use crate::sweep::quantile::quantile;
 use crate::sweep::{DrawnCase, Sweep, design};
 
 /// File that says what a sweep consists of.
@@ -242,9 +242,6 @@ impl Plan {
 }
 
 /// Reads the plan of a folder; `None` where there is none.
-///
-/// # Errors
-/// A file that cannot be read or is no plan.
 pub fn read_plan(folder: &Path) -> Result<Option<Plan>> {
     let path = folder.join(PLAN_FILE);
     let text = match std::fs::read_to_string(&path) {
@@ -263,4 +260,34 @@ pub fn read_outcome(folder: &Path, input: &str) -> Option<Outcome> {
     // TOML and not JSON: its reader gives back every bit of a number.
     let text = std::fs::read_to_string(folder.join(OUTCOME_FILE)).ok()?;
     toml::from_str::<Outcome>(&text).ok().filter(|outcome| outcome.input == input)
+}
+
+/// Warnings that the figures list at most.
+const WARNINGS_MAX: usize = 20;
+
+/// Warnings by number of cases; those that differ in their numbers only are one, told by the first case that has it. Where they begin with a
+/// share, as of a life outside the range of a formula, the largest stands beside it.
+fn warnings(outcomes: &[Option<Outcome>]) -> Vec<Value> {
+    let mut found: BTreeMap<String, Vec<(usize, &str)>> = BTreeMap::new();
+    for (i, outcome) in outcomes.iter().enumerate() {
+        for warning in outcome.iter().flat_map(|outcome| &outcome.warnings) {
+            let words = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
+            found.entry(words).or_default().push((i + 1, warning));
+        }
+    }
+    let mut found: Vec<Vec<(usize, &str)>> = found.into_values().collect();
+    found.sort_by_key(|all| (std::cmp::Reverse(all.len()), all[0].0));
+    let told = |all: Vec<(usize, &str)>| {
+        let (first, text) = all[0];
+        let shares = all.iter().filter_map(|(case, text)| Some((text.split_once(" % ")?.0.parse::<f64>().ok()?, *case)));
+        let largest = shares.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        json!({
+            "cases": all.len(),
+            "first": label(first),
+            "warning": text,
+            "largest_percent": largest.map(|(share, _)| share),
+            "largest_in": largest.map(|(_, case)| label(case)),
+        })
+    };
+    found.into_iter().take(WARNINGS_MAX).map(told).collect()
 }

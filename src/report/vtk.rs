@@ -39,19 +39,9 @@ pub fn image(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
         "<ImageData WholeExtent=\"{extent}\" Origin=\"{x} {y} 0\" Spacing=\"{step} {step} {step}\">\n<Piece Extent=\"{extent}\">\n\
          <PointData Scalars=\"damage\" Vectors=\"displacement_mm\">\n"
     );
-    let places = &grid.point_at;
-    data.reals(&mut body, "damage", 1, places.iter().map(|point| [point.map_or(0.0, |p| of(&snapshot.damage, p))]));
-    if !snapshot.remaining_life.is_empty() {
-        let lives = places.iter().map(|point| [point.map_or(1.0, |p| of(&snapshot.remaining_life, p))]);
-        data.reals(&mut body, "remaining_life", 1, lives);
-    }
-    if !snapshot.stress.is_empty() {
-        let stresses = places.iter().map(|point| [point.map_or(0.0, |p| of(&snapshot.stress, p) / MPA)]);
-        data.reals(&mut body, "von_mises_mpa", 1, stresses);
-    }
-    data.reals(&mut body, "displacement_mm", 3, places.iter().map(|point| point.map_or([0.0; 3], |p| displacement(snapshot, p))));
+    data.fields(&mut body, snapshot, &grid.point_at);
     // 2 = hidden point: ParaView draws nothing there and filters leave it out.
-    data.bytes(&mut body, "vtkGhostType", places.iter().map(|point| if point.is_some() { 0 } else { 2 }));
+    data.bytes(&mut body, "vtkGhostType", grid.point_at.iter().map(|point| if point.is_some() { 0 } else { 2 }));
     body.push_str("</PointData>\n</Piece>\n</ImageData>\n");
     data.file("ImageData", &body)
 }
@@ -82,11 +72,8 @@ pub fn mesh(grid: &PointGrid, snapshot: &Snapshot) -> Vec<u8> {
     data.integers(&mut body, "offsets", (1..=squares.len() as i64).map(|i| 4 * i));
     data.bytes(&mut body, "types", squares.iter().map(|_| 9)); // 9 = quadrilateral
     body.push_str("</Cells>\n<PointData Scalars=\"damage\" Vectors=\"displacement_mm\">\n");
-    data.reals(&mut body, "damage", 1, place_of.iter().map(|(p, _)| [of(&snapshot.damage, *p)]));
-    if !snapshot.remaining_life.is_empty() {
-        data.reals(&mut body, "remaining_life", 1, place_of.iter().map(|(p, _)| [of(&snapshot.remaining_life, *p)]));
-    }
-    data.reals(&mut body, "displacement_mm", 3, place_of.iter().map(|(p, _)| displacement(snapshot, *p)));
+    let points: Vec<Option<u32>> = place_of.iter().map(|(point, _)| Some(*point)).collect();
+    data.fields(&mut body, snapshot, &points);
     body.push_str("</PointData>\n</Piece>\n</UnstructuredGrid>\n");
     data.file("UnstructuredGrid", &body)
 }
@@ -110,14 +97,6 @@ fn squares(grid: &PointGrid, place_of: &[(u32, usize)]) -> Vec<[i64; 4]> {
     squares
 }
 
-fn of(values: &[f64], point: u32) -> f64 {
-    values.get(point as usize).copied().unwrap_or(0.0)
-}
-
-fn displacement(snapshot: &Snapshot, point: u32) -> [f64; 3] {
-    snapshot.displacement.get(point as usize).map_or([0.0; 3], |[x, y]| [x / MM, y / MM, 0.0])
-}
-
 /// Arrays at the end of the file: each is its length in bytes as u64, then the bytes; the XML names the offset.
 #[derive(Default)]
 struct Appended {
@@ -125,6 +104,26 @@ struct Appended {
 }
 
 impl Appended {
+    /// The fields of a snapshot at these points; places without a point have those of whole material at rest.
+    fn fields(&mut self, xml: &mut String, snapshot: &Snapshot, points: &[Option<u32>]) {
+        let mut scalar = |name: &str, values: &[f64], whole: f64, unit: f64| {
+            let at = |point: &Option<u32>| [point.map_or(whole, |p| values.get(p as usize).copied().unwrap_or(0.0) / unit)];
+            self.reals(xml, name, 1, points.iter().map(at));
+        };
+        scalar("damage", &snapshot.damage, 0.0, 1.0);
+        if !snapshot.remaining_life.is_empty() {
+            scalar("remaining_life", &snapshot.remaining_life, 1.0, 1.0);
+        }
+        if !snapshot.stress.is_empty() {
+            scalar("von_mises_mpa", &snapshot.stress, 0.0, MPA);
+        }
+        let moved = |point: &Option<u32>| {
+            let u = point.and_then(|p| snapshot.displacement.get(p as usize));
+            u.map_or([0.0; 3], |[x, y]| [x / MM, y / MM, 0.0])
+        };
+        self.reals(xml, "displacement_mm", 3, points.iter().map(moved));
+    }
+
     fn reals<const N: usize>(&mut self, xml: &mut String, name: &str, components: usize, values: impl Iterator<Item = [f64; N]>) {
         let bytes: Vec<u8> = values.flatten().flat_map(f64::to_le_bytes).collect();
         self.array(xml, "Float64", name, components, &bytes);

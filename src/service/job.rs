@@ -12,24 +12,7 @@ use super::problem::Problem;
 use crate::case::remove_law;
 use crate::error::Result;
 use crate::input::{Document, Folder};
-
-/// What a job does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum JobKind {
-    /// Fits the fatigue law to measured curves.
-    Calibration,
-    /// Runs a case.
-    Prediction,
-    /// Runs a fracture scene without cycles.
-    Scene,
-    /// Runs many cases of one.
-    Sweep,
-    /// Stress intensity factors of a case.
-    Sif,
-    /// Time against error of every method.
-    Chart,
-}
+pub use crate::runner::Kind as JobKind;
 
 /// Where a job stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -47,44 +30,7 @@ pub enum State {
     Cancelled,
 }
 
-/// Names as they stand in the database and in URLs.
-macro_rules! names {
-    ($Type:ident, $($Variant:ident = $name:literal),+) => {
-        impl $Type {
-            /// Its name.
-            pub fn name(self) -> &'static str {
-                match self { $($Type::$Variant => $name),+ }
-            }
-        }
-        impl FromStr for $Type {
-            type Err = ();
-            fn from_str(name: &str) -> std::result::Result<Self, ()> {
-                match name { $($name => Ok($Type::$Variant),)+ _ => Err(()) }
-            }
-        }
-        impl fmt::Display for $Type {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(self.name())
-            }
-        }
-    };
-}
-names!(
-    JobKind,
-    Calibration = "calibration",
-    Prediction = "prediction",
-    Scene = "scene",
-    Sweep = "sweep",
-    Sif = "sif",
-    Chart = "chart"
-);
-names!(State, Queued = "queued", Running = "running", Succeeded = "succeeded", Failed = "failed", Cancelled = "cancelled");
-
 impl JobKind {
-    /// All of them.
-    pub const ALL: [JobKind; 6] =
-        [JobKind::Calibration, JobKind::Prediction, JobKind::Scene, JobKind::Sweep, JobKind::Sif, JobKind::Chart];
-
     /// Its place in URLs.
     pub fn collection(self) -> &'static str {
         match self {
@@ -93,17 +39,12 @@ impl JobKind {
             JobKind::Scene => "scenes",
             JobKind::Sweep => "sweeps",
             JobKind::Sif => "sif",
-            JobKind::Chart => "charts",
         }
     }
 
     /// Options of its command that a job of it may have.
     pub fn options(self) -> &'static [&'static str] {
-        match self {
-            JobKind::Sif => &["method"],
-            JobKind::Chart => &["quick", "scene"],
-            _ => &[],
-        }
+        if self == JobKind::Sif { &["method"] } else { &[] }
     }
 }
 
@@ -111,9 +52,34 @@ impl State {
     /// All of them.
     pub const ALL: [State; 5] = [State::Queued, State::Running, State::Succeeded, State::Failed, State::Cancelled];
 
+    /// Its name, in the database and in URLs.
+    pub fn name(self) -> &'static str {
+        match self {
+            State::Queued => "queued",
+            State::Running => "running",
+            State::Succeeded => "succeeded",
+            State::Failed => "failed",
+            State::Cancelled => "cancelled",
+        }
+    }
+
     /// Whether nothing more will happen.
     pub fn is_final(self) -> bool {
         matches!(self, State::Succeeded | State::Failed | State::Cancelled)
+    }
+}
+
+impl FromStr for State {
+    type Err = ();
+
+    fn from_str(name: &str) -> std::result::Result<Self, ()> {
+        State::ALL.into_iter().find(|state| state.name() == name).ok_or(())
+    }
+}
+
+impl fmt::Display for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -193,10 +159,12 @@ pub struct Submission {
 pub const FITTED: &str = "fitted.toml";
 
 impl Submission {
+    /// Methods that its options name.
+    pub fn methods(&self) -> Vec<String> {
+        self.options.iter().filter_map(|option| Some(option.strip_prefix("method=")?.to_owned())).collect()
+    }
+
     /// The text as a parsed document.
-    ///
-    /// # Errors
-    /// Text that is not TOML.
     pub fn document(&self) -> Result<Document> {
         let mut document = Document::parse(&self.text, &self.name, Folder::at_hand(self.files.iter().cloned()), &[])?;
         if self.with_fitted {
@@ -214,4 +182,9 @@ impl Submission {
 pub fn time(milliseconds: i64) -> String {
     let since = Duration::from_millis(milliseconds.try_into().unwrap_or(0));
     humantime::format_rfc3339_millis(UNIX_EPOCH + since).to_string()
+}
+
+/// Whether a job can have this id. Anything else never gets to the database.
+pub fn is_id(id: &str) -> bool {
+    uuid::Uuid::try_parse(id).is_ok()
 }

@@ -58,9 +58,6 @@ pub struct Settings {
 }
 
 /// Serves until the process is asked to stop (SIGINT, SIGTERM); `ready` is told the address once it answers.
-///
-/// # Errors
-/// [`Error::Input`] if it would be open to other machines without tokens; [`Error::File`] if address or database cannot be used.
 pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> {
     runtime()?.block_on(async {
         let store = open(&settings.database, CONNECTIONS + settings.workers.jobs as u32, Upgrade::Allowed).await?;
@@ -99,9 +96,6 @@ pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> 
 }
 
 /// Works for a service of another process until this one is asked to stop.
-///
-/// # Errors
-/// [`Error::File`] if the database cannot be used.
 pub fn work(url: &str, settings: &worker::Settings, ready: impl FnOnce()) -> Result<()> {
     runtime()?.block_on(async {
         let store = open(url, 1 + settings.jobs as u32, Upgrade::Refused).await?;
@@ -124,9 +118,6 @@ fn disks(settings: &Settings) -> Vec<(&'static str, PathBuf)> {
 }
 
 /// Does something with the store of a service.
-///
-/// # Errors
-/// [`Error::File`] if the database cannot be used.
 pub fn with_store<T>(url: &str, task: impl AsyncFnOnce(&Store) -> store::Result<T>) -> Result<T> {
     runtime()?.block_on(async {
         let store = open(url, 1, Upgrade::Refused).await?;

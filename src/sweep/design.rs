@@ -1,22 +1,11 @@
 //! `SWEEP.toml`: the base case and the design of a sweep.
 
-use std::path::Path;
-
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::vary::{Spread, Vary};
+use super::vary::{DesignKind, Spread, Vary};
 use crate::error::{Error, Result, input, input_missing};
 use crate::input::{Document, slice};
-
-crate::kinds! {
-    /// How the cases of a sweep are chosen.
-    pub enum DesignKind for "design.kind" {
-        Grid = "grid": "every combination of the values of all keys, the last key fastest",
-        LatinHypercube = "latin_hypercube": "random: of every key one value from each of as many strata as there are samples",
-        FittedScatter = "fitted_scatter": "the fatigue law scatters as a calibration found it; other keys may vary beside",
-    }
-}
 
 crate::kinds! {
     /// Where the scatter of a fatigue law comes from.
@@ -85,29 +74,19 @@ struct DesignInput {
 }
 
 impl Sweep {
-    /// Reads a sweep file. Overrides of `design` and `vary` are those of the sweep file, all others those of the base case; there
-    /// may be at most `most` cases.
-    pub fn from_file(path: &Path, overrides: &[String], most: usize) -> Result<Self> {
-        Self::with_overrides(Document::read(path, &[])?, overrides, most)
-    }
-
-    /// The same for a document that was read without overrides.
+    /// Reads a sweep from its file, which was read without overrides. Those of `design` and `vary` are of the file, all others of the base
+    /// case; there may be at most `most` cases.
     pub fn with_overrides(mut document: Document, overrides: &[String], most: usize) -> Result<Self> {
         let section = |text: &str| text.split(['.', '[', '=']).next().unwrap_or_default().trim().to_owned();
         let of_sweep = |text: &String| ["design", "vary"].contains(&section(text).as_str());
         let (own, of_case): (Vec<String>, Vec<String>) = overrides.iter().cloned().partition(of_sweep);
         document.set_all(&own)?;
-        Self::from_document(document, &of_case, most)
-    }
-
-    /// The same for a document; the overrides are those of the base case.
-    pub fn from_document(document: Document, of_case: &[String], most: usize) -> Result<Self> {
         let read = || -> Result<(String, Design)> {
             let input: Input = slice(&Value::Table(document.table.clone()), "file").map_err(at_top)?;
             Ok((input.case, read_design(&input.design, &input.vary, most)?))
         };
         let (case, design) = read().map_err(|error| document.locate(error))?;
-        let base = Document::in_folder(&document.folder, &case, of_case)?;
+        let base = Document::in_folder(&document.folder, &case, &of_case)?;
         Ok(Sweep { name: document.name.clone(), document, base, design })
     }
 }

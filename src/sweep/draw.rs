@@ -4,10 +4,10 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 
-use super::design::{DesignKind, Sweep};
-use super::hypercube::hypercube;
+use super::design::Sweep;
+use super::distribution::hypercube;
 use super::scatter::{self, LawScatter};
-use super::vary::Spread;
+use super::vary::{DesignKind, Spread};
 use crate::case::record::FittedRecord;
 use crate::case::remove_law;
 use crate::case::{Case, LawSource, Method, fitted_record};

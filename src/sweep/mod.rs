@@ -2,16 +2,14 @@
 //!
 //! A sweep file gives the base case, the keys that vary and how ([`design`]); [`draw`] makes the cases of it, each whole in itself
 //! (text and the files it names), so that they can be run anywhere, and reads all of them before anything is run. Random designs
-//! are [`hypercube`]s; laws that scatter as specimens do come from [`scatter`].
+//! are hypercubes ([`distribution`]); laws that scatter as specimens do come from [`scatter`].
 
 pub mod design;
 pub mod distribution;
 pub mod draw;
-pub mod hypercube;
-pub mod quantile;
 pub mod scatter;
 mod vary;
 
-pub use design::{Design, DesignKind, Scatter, Sweep};
+pub use design::{Design, Scatter, Sweep};
 pub use draw::DrawnCase;
-pub use vary::{DistributionKind, Scale, Spread, Vary};
+pub use vary::{DesignKind, DistributionKind, Scale, Spread, Vary};

@@ -61,9 +61,6 @@ pub struct LawScatter {
 
 impl LawScatter {
     /// Scatter from specimen to specimen: mean and covariance (over n - 1) of their own fits.
-    ///
-    /// # Errors
-    /// [`Error::Input`] if there are fewer than [`SPECIMENS_MIN`], or the fits are those of another record.
     pub fn of_specimens(record: FittedRecord, fits: &SpecimenFits) -> Result<Self> {
         if (fits.p / record.p - 1.0).abs() > 1e-9 {
             let problem = format!("is not the exponent of the record beside it, {}", record.p);
@@ -90,9 +87,6 @@ impl LawScatter {
     }
 
     /// Uncertainty of the record itself: standard errors of the rate at the pivot and of the exponent, uncorrelated there.
-    ///
-    /// # Errors
-    /// [`Error::Input`] if the record has none.
     pub fn of_constants(record: FittedRecord) -> Result<Self> {
         let errors = [record.rate_at_pivot_relative_error, record.p_error];
         if !errors.iter().all(|error| error.is_finite() && *error >= 0.0) || errors == [0.0; 2] {
@@ -106,9 +100,6 @@ impl LawScatter {
     }
 
     /// The law at two probabilities in (0, 1): that of the exponent, and that of the rate at the pivot given the exponent.
-    ///
-    /// # Errors
-    /// A record whose names are not known.
     pub fn draw(&self, [of_exponent, of_rate]: [f64; 2]) -> Result<FittedRecord> {
         let [[rate_rate, rate_p], [_, p_p]] = self.covariance;
         let z = normal_quantile(of_exponent);
@@ -146,9 +137,6 @@ impl LawScatter {
 }
 
 /// Reads the scatter of the record of a case; `fitted` is its file in `folder`.
-///
-/// # Errors
-/// Files that cannot be read, or say too little.
 pub fn read(record: FittedRecord, fitted: &str, folder: &Folder, scatter: Scatter) -> Result<LawScatter> {
     if scatter == Scatter::Constants {
         return LawScatter::of_constants(record).map_err(|error| error.in_file(&folder.path(fitted)));
@@ -175,9 +163,6 @@ fn constant(record: &FittedRecord) -> f64 {
 }
 
 /// s = ∂ ln R / ∂p at fixed A and the pivot ΔK.
-///
-/// # Errors
-/// A record whose names are not known.
 pub fn slope(record: &FittedRecord) -> Result<f64> {
     let pivot = record.pivot_delta_k_mpa_sqrt_m;
     if Method::from_str(&record.method)? == Method::Handbook {

@@ -3,11 +3,19 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::design::DesignKind;
 use super::distribution::Distribution;
 use crate::case::{SECTIONS, law_keys};
 use crate::error::{Result, input, input_missing};
 use crate::input::slice;
+
+crate::kinds! {
+    /// How the cases of a sweep are chosen.
+    pub enum DesignKind for "design.kind" {
+        Grid = "grid": "every combination of the values of all keys, the last key fastest",
+        LatinHypercube = "latin_hypercube": "random: of every key one value from each of as many strata as there are samples",
+        FittedScatter = "fitted_scatter": "the fatigue law scatters as a calibration found it; other keys may vary beside",
+    }
+}
 
 crate::kinds! {
     /// Shape of a distribution.

@@ -4,12 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use perilife::case::Case;
-use perilife::commands::console::Console;
-use perilife::commands::{check, message, predict};
+use perilife::commands::check;
+use perilife::commands::console::{Console, with_source_line};
 use perilife::error::InputError;
 use perilife::predict::{Prediction, StopReason};
 use perilife::report::catalogue::lines;
 use perilife::report::output::{OutputFolder, RunKind};
+use perilife::runner::of_prediction;
 use tempfile::tempdir;
 
 use crate::support::{made_up_case, made_up_run};
@@ -18,7 +19,8 @@ use crate::unit::layering;
 const QUIET: Console = Console { json: false, quiet: true };
 
 fn keep(case: &Case, run: Prediction, out: &Path) -> Result<(), perilife::Error> {
-    predict::keep(case, run, OutputFolder::create(out, RunKind::Predict)?, &|_| Ok(()), &QUIET).map(|_| ())
+    let folder = OutputFolder::create(out, RunKind::Predict)?;
+    QUIET.keep(folder, &[], |path| of_prediction(case, &run, false, Some(path), &QUIET))?.counted().map(drop)
 }
 
 #[test]
@@ -83,13 +85,13 @@ fn an_error_shows_its_line_where_there_is_one() {
         problem: "must be above zero".to_owned(),
         remedy: "give a width".to_owned(),
     };
-    let shown = message::with_source_line(&error(2)).unwrap();
+    let shown = with_source_line(&error(2)).unwrap();
     for words in ["case.toml", "width_mm = -1", "specimen.width_mm = -1: must be above zero", "give a width"] {
         assert!(shown.contains(words), "{words} in {shown}");
     }
     // A line the file does not have (it was changed meanwhile) and a file that has gone give the plain words instead.
-    assert!(message::with_source_line(&error(0)).is_none() && message::with_source_line(&error(99)).is_none());
-    assert!(message::with_source_line(&InputError { file: Some("gone.toml".into()), ..error(2) }).is_none());
+    assert!(with_source_line(&error(0)).is_none() && with_source_line(&error(99)).is_none());
+    assert!(with_source_line(&InputError { file: Some("gone.toml".into()), ..error(2) }).is_none());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use perilife::predict::StopReason;
 use perilife::predict::residual_strength::{check_strength, residual_strength};
-use perilife::report::residual_strength::table;
+use perilife::report::run::strength_table as table;
 
 use crate::support::hand_cases::{ALL, hand_case, hand_run};
 use crate::support::{made_up_case, made_up_run};

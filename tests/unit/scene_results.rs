@@ -4,11 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use perilife::commands::console::Console;
-use perilife::commands::fracture::keep;
 use perilife::fracture::outcome::HistoryRow;
 use perilife::fracture::{Scene, SceneEnd, run};
 use perilife::predict::Silent;
 use perilife::report::output::{OutputFolder, RunKind};
+use perilife::runner::of_scene;
 use serde_json::Value;
 
 const TEXT: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 20\nlength_mm = 20\nthickness_mm = 1\n[material]\nyoungs_modulus_gpa = 65\n\
@@ -29,7 +29,9 @@ fn histories_of_a_bad_end_are_kept() {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("run");
         let folder = OutputFolder::create(&out, RunKind::Fracture).unwrap();
-        let error = keep(&scene, &fracture, folder, &Console { json: false, quiet: true }).unwrap_err();
+        let quiet = Console { json: false, quiet: true };
+        let summary = quiet.keep(folder, &[], |path| of_scene(&scene, &fracture, Some(path), &quiet)).unwrap();
+        let error = summary.counted().unwrap_err();
         assert_eq!(error.exit_code(), 3);
         assert!(error.to_string().contains(end.name()) && error.to_string().contains("histories so far are kept"), "{error}");
         let history = fs::read_to_string(out.join("history.csv")).unwrap();

@@ -7,9 +7,7 @@ use perilife::case::record::FittedRecord;
 use perilife::case::{Case, fitted_record};
 use perilife::input::{Document, Folder};
 use perilife::predict::{Silent, predict};
-use perilife::sweep::distribution::{Distribution, normal_quantile};
-use perilife::sweep::hypercube::hypercube;
-use perilife::sweep::quantile::quantile;
+use perilife::sweep::distribution::{Distribution, hypercube, normal_quantile, quantile};
 use perilife::sweep::scatter::{LawScatter, SpecimenFit, SpecimenFits, slope};
 use perilife::sweep::{DrawnCase, Sweep};
 use perilife::units::{MM, MM_PER_CYCLE};
@@ -108,7 +106,7 @@ fn sweep(design: &str) -> perilife::Result<Sweep> {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("panel.toml"), CASE).unwrap();
     fs::write(dir.path().join("sweep.toml"), format!("case = \"panel.toml\"\n{design}")).unwrap();
-    Sweep::from_file(&dir.path().join("sweep.toml"), &[], 1000)
+    Sweep::with_overrides(Document::read(&dir.path().join("sweep.toml"), &[])?, &[], 1000)
 }
 
 fn drawn(design: &str) -> Vec<DrawnCase> {
@@ -154,7 +152,7 @@ fn a_random_design_is_reproducible() {
 #[test]
 fn the_shipped_sweep_is_right() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/sweeps");
-    let sweep = Sweep::from_file(&folder.join("panel_scatter.toml"), &[], 1000).unwrap();
+    let sweep = Sweep::with_overrides(Document::read(&folder.join("panel_scatter.toml"), &[]).unwrap(), &[], 1000).unwrap();
     assert_eq!(sweep.cases().unwrap().len(), 200);
 }
 

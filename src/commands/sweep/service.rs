@@ -9,14 +9,15 @@ use std::io::{Cursor, Read as _};
 use std::path::Path;
 use std::time::Duration;
 
-use super::folder::SweepFolder;
-use crate::commands::console::Count;
+use indicatif::ProgressBar;
+
 use crate::error::{Error, Result};
 use crate::report::csv::{A_N_FILE, parse_a_n};
 use crate::report::output::write_file;
 use crate::report::provenance::INPUTS;
 use crate::report::run::PARAVIEW;
 use crate::report::sweep::Outcome;
+use crate::runner::sweep_folder::SweepFolder;
 use crate::service::job::{Job, JobKind, State, Submission};
 use crate::service::store::{self, FileEntry, NewJob, Origin, Room, Store, Submitted, is_gone};
 use crate::service::with_store;
@@ -31,20 +32,14 @@ const TRY_EVERY: Duration = Duration::from_secs(1);
 /// Jobs looked at each time: they are taken in their order, so that those behind have hardly begun.
 const LOOKED_AT: usize = 64;
 
-/// A file of a result.
-struct File {
-    name: String,
-    content: Vec<u8>,
-}
+/// A file of a result: name and content.
+type File = (String, Vec<u8>);
 
 /// As many jobs as a sweep has.
 const ROOM: Room = Room { queued: i64::MAX, bytes: i64::MAX };
 
 /// Has cases run, and fetches what comes of them.
-///
-/// # Errors
-/// A database that cannot be used; [`Error::File`] if results cannot be written; a job that somebody cancelled or deleted.
-pub fn run(url: &str, cases: &[&DrawnCase], folder: &SweepFolder, with_files: bool, count: &Count) -> Result<()> {
+pub fn run(url: &str, cases: &[&DrawnCase], folder: &SweepFolder, with_files: bool, count: &ProgressBar) -> Result<()> {
     if cases.is_empty() {
         return Ok(());
     }
@@ -64,7 +59,7 @@ pub fn run(url: &str, cases: &[&DrawnCase], folder: &SweepFolder, with_files: bo
                         if let Err(error) = fetch(store, job, case, folder, with_files).await? {
                             return Ok(Err(error));
                         }
-                        count.one();
+                        count.inc(1);
                     }
                 }
             }
@@ -155,7 +150,7 @@ async fn fetch(
     for FileEntry { name, .. } in patiently(async || store.file_entries(&job.id, Origin::Result).await).await? {
         if with_files || name == A_N_FILE {
             let content = patiently(async || store.whole_file(&job.id, Origin::Result, &name).await).await?;
-            files.extend(content.map(|content| File { name, content }));
+            files.extend(content.map(|content| (name, content)));
         }
     }
     Ok(folder.keep(case, |path| {
@@ -168,8 +163,8 @@ async fn fetch(
 
 /// What the table says, from the a-N curve: the digits of JSON may lose the last bit.
 fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Result<Outcome> {
-    let curve = files.iter().find(|file| file.name == A_N_FILE);
-    let text = curve.map(|file| String::from_utf8_lossy(&file.content)).unwrap_or_default();
+    let curve = files.iter().find(|(name, _)| name == A_N_FILE);
+    let text = curve.map(|(_, content)| String::from_utf8_lossy(content)).unwrap_or_default();
     let rows = parse_a_n(&text, Path::new(A_N_FILE))?;
     let summary = job.summary.clone().unwrap_or_default();
     if let Some(refused) = summary["refused"].as_str() {
@@ -191,15 +186,15 @@ fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Resu
 }
 
 /// Writes a file of a job; an archive becomes the folder that it was made of.
-fn unpacked(folder: &Path, file: &File) -> Result<()> {
-    let path = folder.join(&file.name);
-    let Some(archived) = [PARAVIEW, INPUTS].into_iter().find(|name| file.name == format!("{name}.zip")) else {
-        return write_file(&path, &file.content);
+fn unpacked(folder: &Path, (name, content): &File) -> Result<()> {
+    let path = folder.join(name);
+    let Some(archived) = [PARAVIEW, INPUTS].into_iter().find(|folder| *name == format!("{folder}.zip")) else {
+        return write_file(&path, content);
     };
     let failed = |error: &dyn std::fmt::Display| Error::file(&path, "cannot unpack", std::io::Error::other(error.to_string()));
     let into = folder.join(archived);
     fs::create_dir(&into).map_err(|error| Error::file(&into, "cannot create the folder", error))?;
-    let mut archive = zip::ZipArchive::new(Cursor::new(&file.content)).map_err(|error| failed(&error))?;
+    let mut archive = zip::ZipArchive::new(Cursor::new(content)).map_err(|error| failed(&error))?;
     for i in 0..archive.len() {
         let mut entry = archive.by_index(i).map_err(|error| failed(&error))?;
         // Only names of this program stand in there; whatever comes is put into this folder and nowhere else.

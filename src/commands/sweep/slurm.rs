@@ -6,20 +6,14 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::{Shard, SweepFolder};
+use super::Shard;
 use crate::error::{Error, Result, input};
 use crate::report::output::write_file;
+use crate::runner::sweep_folder::{LOGS, SCRIPT_FILE, SweepFolder, TASKS_FILE};
 use crate::sweep::DrawnCase;
 
 /// Most tasks of an array unless the user asks for smaller ones: Slurm's own default limit is 1001.
 const TASKS_MAX: usize = 1000;
-/// Tasks and their cases.
-pub(super) const TASKS_FILE: &str = "tasks";
-/// Script of the array job.
-pub(super) const SCRIPT_FILE: &str = "job.sh";
-/// Folder of what tasks print.
-pub(super) const LOGS: &str = "logs";
-
 /// Options for Slurm.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Slurm")]
@@ -36,9 +30,6 @@ pub struct Args {
 }
 
 /// Submits the cases that are left, and waits for them if that is asked for; whether all that can be collected is there.
-///
-/// # Errors
-/// No sbatch, or one that refuses; files that cannot be written.
 pub fn submit(args: &super::Args, folder: &SweepFolder, left: &[&DrawnCase]) -> Result<bool> {
     if left.is_empty() {
         return Ok(true);

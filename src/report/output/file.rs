@@ -4,9 +4,8 @@ use std::fs;
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::folder::taken;
-use super::leftovers::{self, PARTIAL, lock_of, parent_of, temporary_beside, visible_beside};
-use super::lock::{Lock, Refused, Share};
+use super::lock::{Lock, Share};
+use super::marker::{PARTIAL, gone, temporary_beside, visible_beside};
 use super::pending::{self, Pending};
 use super::place::{resolved, was_read};
 use crate::error::{Error, Result, input};
@@ -61,17 +60,18 @@ impl OutputFile {
         }
         let target = resolved(path).map_err(|error| Error::file(path, "cannot write", error))?;
         match fs::metadata(&target) {
-            Ok(there) if there.is_dir() => return Err(is_folder(sort, path)),
-            Ok(there) if was_read(&there, read) => return Err(is_read(sort, path)),
-            Err(_) if path.file_name().is_none() => return Err(is_folder(sort, path)),
-            _ => {}
+            Ok(there) if was_read(&there, read) && !there.is_dir() => {
+                return Err(input(sort.option, path.display(), "is a file that this command reads", "give another name"));
+            }
+            Ok(there) if !there.is_dir() => {}
+            Err(_) if path.file_name().is_some() => {}
+            _ => return Err(input(sort.option, path.display(), "is a folder", "give the name of a file")),
         }
         if !is_own(&target, sort)? {
             let problem = "is a file that this command did not write";
             return Err(input(sort.option, path.display(), problem, "give a new name, or remove it yourself"));
         }
-        let lock = lock(sort, path, &target)?;
-        leftovers::remove_beside(&target, &lock);
+        let lock = Lock::of(sort.option, path, "cannot write", &target, Share::Alone)?;
         claimed(Place::File { target, _lock: lock })
     }
 
@@ -100,30 +100,38 @@ impl OutputFile {
         };
         if target.is_dir() || !is_own(target, self.sort)? {
             let other = visible_beside(target);
-            super::write_file(&other, bytes)?;
+            write_file(&other, bytes)?;
             let why = format!("something else has appeared there and stays; the result stands in {}", other.display());
             return Err(cannot(io::Error::other(why)));
         }
-        super::write_file(target, bytes).map_err(|error| match error {
-            Error::File { source, .. } => cannot(source),
-            other => other,
-        })
+        write_whole(target, bytes, false).map_err(|error| self.named(error))
     }
-}
 
-fn is_folder(sort: Sort, path: &Path) -> Error {
-    input(sort.option, path.display(), "is a folder", "give the name of a file")
-}
+    /// Writes it whole or not at all, again and again; it stays whole if the machine stops, and stays as it was if this fails.
+    pub fn rewrite(&self, bytes: &[u8]) -> Result<()> {
+        write_whole(self.own_target()?, bytes, true).map_err(|error| self.named(error))
+    }
 
-fn is_read(sort: Sort, path: &Path) -> Error {
-    input(sort.option, path.display(), "is a file that this command reads", "give another name")
-}
+    /// Removes it, if it is there: what it was for is done.
+    pub fn remove(self) -> Result<()> {
+        gone(fs::remove_file(self.own_target()?)).map_err(|error| Error::file(&self.name, "cannot remove", error))
+    }
 
-fn lock(sort: Sort, path: &Path, target: &Path) -> Result<Lock> {
-    Lock::take(&lock_of(target), Share::Alone).map_err(|refused| match refused {
-        Refused::Impossible(error) => Error::file(path, "cannot write", error),
-        Refused::Taken(holder) => taken(sort.option, path, &holder),
-    })
+    /// Its place, if nothing else has appeared there.
+    fn own_target(&self) -> Result<&Path> {
+        match &self.place {
+            Place::File { target, .. } if is_own(target, self.sort)? => Ok(target),
+            _ => Err(Error::file(&self.name, "cannot write", io::Error::other("something else has appeared there, and stays"))),
+        }
+    }
+
+    /// The error with the name that the user gave.
+    fn named(&self, error: Error) -> Error {
+        match error {
+            Error::File { action, source, .. } => Error::file(&self.name, action, source),
+            other => other,
+        }
+    }
 }
 
 /// Whether nothing stands there, or nothing but what this command wrote.
@@ -139,12 +147,14 @@ fn is_own(target: &Path, sort: Sort) -> Result<bool> {
     }
 }
 
-/// Writes a single file whole or not at all: under a temporary name beside its place, then renamed. For files of a folder in the
-/// making; what a user names is an [`OutputFile`].
-///
-/// # Errors
-/// [`Error::File`] if it cannot be written; what stood there before then stays.
+/// Writes a single file whole or not at all: under a temporary name beside its place, then renamed; what stood there before stays if
+/// that fails. For files of a folder in the making; what a user names is an [`OutputFile`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_whole(path, bytes, false)
+}
+
+/// The same; `synced` has the bytes on the disk before the name stands for them.
+fn write_whole(path: &Path, bytes: &[u8], synced: bool) -> Result<()> {
     let cannot = |e| Error::file(path, "cannot write", e);
     if path.is_dir() || path.file_name().is_none() {
         return Err(input("--out", path.display(), "is a folder", "give the name of a file"));
@@ -156,7 +166,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     }
     let partial = temporary_beside(&target, PARTIAL);
     let (pending, mut file) = Pending::file_by(&partial, || fs::File::create(&partial)).map_err(cannot)?;
-    let written = file.write_all(bytes);
+    let written = file.write_all(bytes).and_then(|()| if synced { file.sync_all() } else { Ok(()) });
     drop(file);
     let held = pending::hold();
     let done = written.and_then(|()| fs::rename(&partial, &target));
@@ -166,71 +176,4 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
         let _ = fs::remove_file(&partial);
     }
     done.map_err(cannot)
-}
-
-/// A file that is written again and again, whole every time, and stays whole if the machine stops.
-#[derive(Debug)]
-pub struct Replaced {
-    name: PathBuf,
-    path: PathBuf,
-    partial: PathBuf,
-    sort: Sort,
-    _pending: Pending,
-    _lock: Lock,
-}
-
-impl Replaced {
-    /// Claims `path`, which need not exist; what stands there stays until the first writing.
-    ///
-    /// # Errors
-    /// As [`OutputFile::claim`]; [`Error::Input`] if it is a device.
-    pub fn claim(path: &Path, sort: Sort, read: &Provenance) -> Result<Replaced> {
-        let claimed = OutputFile::claim(path, sort, read)?;
-        let Place::File { target, _lock } = claimed.place else {
-            return Err(input(sort.option, path.display(), "is no file", "give the name of a file"));
-        };
-        let name = target.file_name().unwrap_or_default().to_string_lossy();
-        // Always the same name: what a process that was killed left there is overwritten by the next.
-        let partial = parent_of(&target).join(format!(".{name}.{PARTIAL}"));
-        let tried = fs::File::create(&partial).and_then(|_| fs::remove_file(&partial));
-        tried.map_err(|e| Error::file(path, "cannot write", e))?;
-        let _pending = Pending::file(&partial);
-        Ok(Replaced { name: path.to_path_buf(), path: target, partial, sort, _pending, _lock })
-    }
-
-    /// Writes it whole or not at all.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it cannot be written, or something else has appeared there; what stood there before then stays.
-    pub fn write(&self, bytes: &[u8]) -> Result<()> {
-        self.check_own()?;
-        let written = fs::File::create(&self.partial).and_then(|mut file| {
-            file.write_all(bytes)?;
-            // A name must not come to stand for content that is not on the disk yet.
-            file.sync_all()
-        });
-        let held = pending::hold();
-        let done = written.and_then(|()| fs::rename(&self.partial, &self.path));
-        drop(held);
-        if done.is_err() {
-            let _ = fs::remove_file(&self.partial);
-        }
-        done.map_err(|e| Error::file(&self.name, "cannot write", e))
-    }
-
-    fn check_own(&self) -> Result<()> {
-        if is_own(&self.path, self.sort)? {
-            return Ok(());
-        }
-        Err(Error::file(&self.name, "cannot write", io::Error::other("something else has appeared there, and stays")))
-    }
-
-    /// Removes it, if it is there: what it was for is done.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it cannot be removed; what is not this command's stays.
-    pub fn remove(self) -> Result<()> {
-        self.check_own()?;
-        super::marker::gone(fs::remove_file(&self.path)).map_err(|error| Error::file(&self.name, "cannot remove", error))
-    }
 }

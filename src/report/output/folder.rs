@@ -1,17 +1,15 @@
-//! The folder of a run: made beside its place, or within it where it cannot be replaced, and put there when it is whole.
+//! Folders of results: that of a run, made beside its place and put there when it is whole; that of a sweep, which stays between calls.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::leftovers::{self, OLD, PARTIAL, lock_of, parent_of, temporary_beside, visible_beside};
-use super::lock::{Lock, Refused, Share};
-use super::marker::{MARKER, Marker, RunKind};
+use super::lock::{Lock, Share};
+use super::marker::{MARKER, Marker, OLD, PARTIAL, RunKind, parent_of, temporary_beside, visible_beside};
 use super::pending::{self, Pending};
-use super::place::{Room, folder_for, is_mounted, occupied, room};
-use super::rescue::{elsewhere, has_files};
-use super::{said, swap};
-use crate::error::{Error, Result, input};
+use super::place::{Room, folder_for, occupied, room};
+use super::{said, write_file};
+use crate::error::{Error, Result};
 use crate::input::Provenance;
 
 /// An output folder in the making. Until [`OutputFolder::finish`] it stands under a temporary name; dropped before that (an error, a
@@ -23,8 +21,6 @@ pub struct OutputFolder {
     target: PathBuf,
     kind: RunKind,
     partial: PathBuf,
-    /// Within the target: something is mounted there, or its parent takes no new names.
-    is_inside: bool,
     /// Folders above the target that did not exist before, deepest first; removed again if nothing comes of the run.
     new_parents: Vec<PathBuf>,
     warning: Option<String>,
@@ -43,13 +39,10 @@ pub struct Finished {
 
 impl Finished {
     /// Makes a folder of another run in it, by its name there, a part of this one.
-    ///
-    /// # Errors
-    /// [`Error::File`] if the marker cannot be written.
     pub fn adopt(&self, run: &str) -> Result<()> {
         let Some(mut marker) = Marker::read(&self.target) else { return Ok(()) };
         marker.files.insert(format!("{run}/"));
-        super::write_file(&self.target.join(MARKER), marker.text().as_bytes())
+        write_file(&self.target.join(MARKER), marker.text().as_bytes())
     }
 }
 
@@ -63,8 +56,8 @@ impl OutputFolder {
     /// kind, which stays until [`OutputFolder::finish`]. What processes left there that were killed goes.
     ///
     /// # Errors
-    /// [`Error::Input`] if the path is a file, holds anything this program did not make, results of another kind or an input of this
-    /// run, or if another process writes there; [`Error::File`] if it cannot be written or has no room.
+    /// [`Error::Input`] if the path is a file, a mount point, holds anything this program did not make, results of another kind or an
+    /// input of this run, or if another process writes there; [`Error::File`] if it cannot be written or has no room.
     pub fn claim(path: &Path, kind: RunKind, read: &Provenance, wanted: Room) -> Result<OutputFolder> {
         let cannot = |e| Error::file(path, "cannot create the folder", e);
         let target = folder_for(path, kind, read)?;
@@ -77,7 +70,6 @@ impl OutputFolder {
             name: path.to_path_buf(),
             kind,
             partial: PathBuf::new(),
-            is_inside: target.is_dir() && is_mounted(&target),
             target,
             new_parents,
             warning: None,
@@ -86,39 +78,17 @@ impl OutputFolder {
             lock: None,
         };
         fs::create_dir_all(&parent).map_err(cannot)?;
-        folder.take_lock().map_err(|refused| match refused {
-            Refused::Impossible(error) => cannot(error),
-            Refused::Taken(holder) => taken("--out", path, &holder),
-        })?;
+        folder.lock = Some(Lock::of("--out", path, "cannot create the folder", &folder.target, Share::Alone)?);
         // It may have changed while it was not locked.
-        let target = folder_for(path, kind, read)?;
-        folder.lock.iter().for_each(|lock| leftovers::remove_beside(&folder.within(), lock));
-        folder.partial = temporary_beside(&folder.within(), PARTIAL);
+        folder_for(path, kind, read)?;
+        folder.partial = temporary_beside(&folder.target, PARTIAL);
         let (pending, ()) = Pending::tree_by(&folder.partial, || fs::create_dir(&folder.partial)).map_err(cannot)?;
         folder._in_the_making.push(pending);
-        let marker = Marker { kind, files: Default::default() };
+        let marker = Marker::listing(kind, &[]);
         fs::write(folder.partial.join(MARKER), marker.text())
             .map_err(|e| Error::file(path, "cannot write into the folder", e))?;
-        folder.warning = room(path, if folder.is_inside { &target } else { &parent }, wanted)?;
+        folder.warning = room(path, &parent, wanted)?;
         Ok(folder)
-    }
-
-    /// What temporary names stand beside: the target, or a name in it.
-    fn within(&self) -> PathBuf {
-        if self.is_inside { self.target.join("perilife") } else { self.target.clone() }
-    }
-
-    /// Takes the lock beside the target; in it where its parent takes no new names.
-    fn take_lock(&mut self) -> std::result::Result<(), Refused> {
-        let lock = match Lock::take(&lock_of(&self.within()), Share::Alone) {
-            Err(Refused::Impossible(_)) if !self.is_inside && self.target.is_dir() => {
-                self.is_inside = true;
-                Lock::take(&lock_of(&self.within()), Share::Alone)
-            }
-            lock => lock,
-        };
-        self.lock = Some(lock?);
-        Ok(())
     }
 
     /// Where to write until the folder is finished.
@@ -136,23 +106,19 @@ impl OutputFolder {
         self.warning.as_deref()
     }
 
-    /// Has the files of the run written. If that fails, what there is stays under a visible name; where nothing could be written it is
-    /// tried in the current folder, and in the one for temporary files.
-    pub fn fill<T>(&mut self, write: impl Fn(&Path) -> Result<T>) -> Result<T> {
+    /// Has the files of the run written. If that fails, what there is stays under a visible name.
+    pub fn fill<T>(&mut self, write: impl FnOnce(&Path) -> Result<T>) -> Result<T> {
         let error = match write(&self.partial) {
             Ok(done) => return Ok(done),
             Err(error) => error,
         };
-        if has_files(&self.partial) {
-            return Err(match self.show() {
-                Ok(visible) => said(error, &format!("what there is stands in {}", visible.display())),
-                Err(trouble) => said(error, &format!("what there is cannot be kept: {trouble}")),
-            });
+        if !has_files(&self.partial) {
+            return Err(error);
         }
-        match elsewhere(self.kind, &self.target, &write) {
-            Some(other) => Err(said(error, &format!("what there is stands in {}", other.display()))),
-            None => Err(error),
-        }
+        Err(match self.show() {
+            Ok(visible) => said(error, &format!("what there is stands in {}", visible.display())),
+            Err(trouble) => said(error, &format!("what there is cannot be kept: {trouble}")),
+        })
     }
 
     /// Puts the folder in its place; the files of an earlier run go, and nothing else.
@@ -187,22 +153,39 @@ impl OutputFolder {
         fs::write(self.partial.join(MARKER), marker.text())
     }
 
-    /// Asks again what stands at the target, on the folder as it is now, and takes its place.
+    /// Asks again what stands at the target, on the folder as it is now, and takes its place, from which the files of an earlier run
+    /// go. What appears there in the last moment stays.
     fn put(&self) -> std::result::Result<(), String> {
         let words = |error: io::Error| error.to_string();
-        if let Some((problem, _)) = occupied(&self.target, self.kind).map_err(words)? {
+        let (partial, target) = (&self.partial, &self.target);
+        if let Some((problem, _)) = occupied(target, self.kind).map_err(words)? {
             return Err(format!("it {problem}, and that stays"));
         }
-        if self.is_inside {
-            return swap::move_into(&self.partial, &self.target).map_err(words);
+        if fs::symlink_metadata(target).is_err() {
+            return fs::rename(partial, target).map_err(words);
         }
-        swap::replace(&self.partial, &self.target, &temporary_beside(&self.target, OLD))
+        let old = temporary_beside(target, OLD);
+        fs::rename(target, &old).map_err(words)?;
+        if let Err(error) = fs::rename(partial, target) {
+            // The earlier result goes back; should that fail as well, it still stands under its temporary name.
+            let _ = fs::rename(&old, target);
+            return Err(words(error));
+        }
+        if let Some(marker) = Marker::read(&old) {
+            let _ = marker.remove_from(&old);
+        }
+        if fs::remove_dir(&old).is_err() && old.exists() {
+            let visible = visible_beside(target);
+            let _ = fs::rename(&old, &visible);
+            tracing::warn!("what appeared in {} in the last moment stands in {}", target.display(), visible.display());
+        }
+        Ok(())
     }
 
     /// Gives what was written a visible name.
     fn show(&mut self) -> io::Result<PathBuf> {
         let _ = self.list();
-        let visible = visible_beside(&self.within());
+        let visible = visible_beside(&self.target);
         {
             let _held = pending::hold();
             fs::rename(&self.partial, &visible)?;
@@ -212,12 +195,6 @@ impl OutputFolder {
         let named = self.name.with_file_name(visible.file_name().unwrap_or_default());
         Ok(if named.exists() { named } else { visible })
     }
-}
-
-/// Another process has the lock of what an option names.
-pub(super) fn taken(option: &str, path: &Path, holder: &str) -> Error {
-    let problem = format!("is in use by another run: {holder}");
-    input(option, path.display(), problem, "wait for its end, or give another name")
 }
 
 impl Drop for OutputFolder {
@@ -235,4 +212,67 @@ impl Drop for OutputFolder {
             let _ = fs::remove_dir(parent);
         }
     }
+}
+
+/// Whether a folder of results has more than its marker: tables that hold something.
+fn has_files(folder: &Path) -> bool {
+    let size = |file: &String| fs::metadata(folder.join(file)).map_or(0, |there| there.len());
+    Marker::of(RunKind::Predict, folder).is_ok_and(|marker| marker.files.iter().any(|file| size(file) > 0))
+}
+
+/// The folder of a sweep, filled run by run; locked while this lives.
+#[derive(Debug)]
+pub struct StandingFolder {
+    target: PathBuf,
+    _lock: Lock,
+}
+
+impl StandingFolder {
+    /// Opens the folder of an earlier call, or makes one with `marker` and these files.
+    pub fn open(path: &Path, marker: &Marker, read: &Provenance, share: Share, first: &[(&str, Vec<u8>)]) -> Result<Self> {
+        let action = "cannot create the folder";
+        let target = folder_for(path, marker.kind, read)?;
+        fs::create_dir_all(parent_of(&target)).map_err(|error| Error::file(path, action, error))?;
+        let lock = Lock::of("--out", path, action, &target, share)?;
+        if !target.join(MARKER).is_file() {
+            begin(path, &target, marker, first)?;
+        }
+        // It may have changed while it was not locked.
+        folder_for(path, marker.kind, read)?;
+        Ok(StandingFolder { target, _lock: lock })
+    }
+
+    /// Takes part in a folder that is there.
+    pub fn join(path: &Path) -> Result<Self> {
+        let action = "cannot use this folder";
+        let target = fs::canonicalize(path).map_err(|error| Error::file(path, action, error))?;
+        let lock = Lock::of("DIR", path, action, &target, Share::Parts)?;
+        Ok(StandingFolder { target, _lock: lock })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.target
+    }
+}
+
+/// Makes the folder of a sweep, whole from the first moment on.
+fn begin(name: &Path, target: &Path, marker: &Marker, first: &[(&str, Vec<u8>)]) -> Result<()> {
+    let cannot = |error| Error::file(name, "cannot create the folder", error);
+    let fill = |folder: &Path| -> Result<()> {
+        first.iter().try_for_each(|(file, content)| write_file(&folder.join(file), content))?;
+        write_file(&folder.join(MARKER), marker.text().as_bytes())
+    };
+    if target.is_dir() {
+        return fill(target);
+    }
+    let partial = temporary_beside(target, PARTIAL);
+    let (_pending, ()) = Pending::tree_by(&partial, || fs::create_dir(&partial)).map_err(cannot)?;
+    let done = fill(&partial).and_then(|()| match fs::rename(&partial, target) {
+        // Another part was first.
+        Err(error) if matches!(error.kind(), io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::AlreadyExists) => Ok(()),
+        renamed => renamed.map_err(cannot),
+    });
+    let _ = fs::remove_dir_all(&partial);
+    done
 }

@@ -1,13 +1,12 @@
-//! The marker of a folder of results: of which kind they are, and which files are theirs.
+//! The marker of a folder of results: of which kind they are, and which files are theirs; and names that this program gives for a while.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::{Deserialize, Serialize};
-
-use super::leftovers::is_temporary;
 
 /// File that marks a folder as made by this program.
 pub const MARKER: &str = ".perilife";
@@ -76,14 +75,17 @@ impl Marker {
         Ok(Marker { kind, files })
     }
 
+    /// The marker of a folder that will hold these; names of folders of other runs end in `/`.
+    pub fn listing(kind: RunKind, files: &[&str]) -> Marker {
+        Marker { kind, files: files.iter().map(|file| (*file).to_owned()).collect() }
+    }
+
     /// As it is written.
-    ///
-    /// # Panics
-    /// Never: names and text always have a form in TOML.
     pub fn text(&self) -> String {
         let version = env!("CARGO_PKG_VERSION");
         let head =
             format!("# Made by perilife {version}. The next run of this kind replaces the files listed here, and no others.\n");
+        // Names and text always have a form in TOML.
         head + &toml::to_string(self).unwrap_or_default()
     }
 
@@ -93,9 +95,6 @@ impl Marker {
     }
 
     /// The first thing in `folder` that is not this run's, in the order of names; below folders of other runs their own markers count.
-    ///
-    /// # Errors
-    /// A folder that cannot be read.
     pub fn first_foreign(&self, folder: &Path) -> io::Result<Option<PathBuf>> {
         self.foreign_below(folder, "")
     }
@@ -123,12 +122,6 @@ impl Marker {
 
     /// Removes the files of this run from a folder, and the folders that are empty then.
     pub fn remove_from(&self, folder: &Path) -> io::Result<()> {
-        self.remove_files(folder)?;
-        gone(fs::remove_file(folder.join(MARKER)))
-    }
-
-    /// The same, but for the marker itself.
-    pub(super) fn remove_files(&self, folder: &Path) -> io::Result<()> {
         for file in &self.files {
             let path = folder.join(file);
             if file.ends_with('/') {
@@ -140,7 +133,7 @@ impl Marker {
             // What holds something else stays.
             above.for_each(|above| drop(fs::remove_dir(folder.join(above))));
         }
-        Ok(())
+        gone(fs::remove_file(folder.join(MARKER)))
     }
 }
 
@@ -207,4 +200,67 @@ fn list(folder: &Path, prefix: &str, files: &mut BTreeSet<String>) -> io::Result
         }
     }
     Ok(())
+}
+
+/// What a name begun is called until it is whole.
+pub(super) const PARTIAL: &str = "partial";
+/// What an earlier result is called while the new one takes its place.
+pub(super) const OLD: &str = "old";
+const LOCK: &str = "lock";
+
+/// The lock file of a name.
+pub(super) fn lock_of(target: &Path) -> PathBuf {
+    parent_of(target).join(format!(".{}.{LOCK}", name_of(target)))
+}
+
+/// Whether a name is one of those that this program gives for a while.
+pub fn is_temporary(name: &str) -> bool {
+    let Some((stem, end)) = name.strip_prefix('.').and_then(|rest| rest.rsplit_once('.')) else { return false };
+    !stem.is_empty() && (end == LOCK || end == PARTIAL) || stem_of(name).is_some()
+}
+
+/// Whether this is what a name begun ends with: number of the process, and a count.
+fn is_number(end: &str) -> bool {
+    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    end.strip_prefix('-').and_then(|rest| rest.split_once('-')).is_some_and(|(a, b)| is_digits(a) && is_digits(b))
+}
+
+/// A name beside `target` that nobody else uses: hidden, with process number and a count.
+pub(super) fn temporary_beside(target: &Path, what: &str) -> PathBuf {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    loop {
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!(".{}.{what}-{}-{count}", name_of(target), std::process::id());
+        let candidate = parent_of(target).join(name);
+        if fs::symlink_metadata(&candidate).is_err() {
+            return candidate;
+        }
+    }
+}
+
+/// A visible name beside `target` that nothing has.
+pub(super) fn visible_beside(target: &Path) -> PathBuf {
+    let name = |count: usize| if count == 1 { String::new() } else { format!("-{count}") };
+    let candidate = |count: usize| parent_of(target).join(format!("{}.result{}", name_of(target), name(count)));
+    // There are always free names.
+    (1..).map(candidate).find(|path| fs::symlink_metadata(path).is_err()).unwrap_or_default()
+}
+
+/// The name that a temporary name stands for, and whether it is that of an earlier result.
+pub(super) fn stem_of(name: &str) -> Option<(&str, bool)> {
+    let (stem, end) = name.strip_prefix('.')?.rsplit_once('.')?;
+    let is = |what: &str| end.strip_prefix(what).is_some_and(is_number);
+    (!stem.is_empty() && (is(PARTIAL) || is(OLD))).then(|| (stem, is(OLD)))
+}
+
+pub(super) fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The folder a path stands in; the current one for a bare name.
+pub(super) fn parent_of(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
+        _ => PathBuf::from("."),
+    }
 }

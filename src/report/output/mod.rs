@@ -9,22 +9,16 @@
 
 mod file;
 mod folder;
-mod leftovers;
 pub mod lock;
 mod marker;
 pub mod pending;
 mod place;
-mod rescue;
-mod standing;
-mod swap;
 
-pub use file::{OutputFile, Replaced, Sort, write_file};
-pub use folder::{Finished, OutputFolder};
-pub use leftovers::{is_temporary, lock_of};
+pub use file::{OutputFile, Sort, write_file};
+pub use folder::{Finished, OutputFolder, StandingFolder};
 pub use lock::Share;
-pub use marker::{MARKER, Marker, RunKind};
+pub use marker::{MARKER, Marker, RunKind, is_temporary};
 pub use place::Room;
-pub use standing::StandingFolder;
 
 use crate::error::Error;
 

@@ -22,14 +22,9 @@ static ALL: Mutex<Vec<(u64, Thing)>> = Mutex::new(Vec::new());
 pub struct Pending(u64);
 
 impl Pending {
-    /// A file that is removed when the process is asked to end.
-    pub fn file(path: &Path) -> Self {
-        Self::add(Thing::File(path.to_path_buf()))
-    }
-
-    /// A folder likewise, if nothing is in it.
-    pub fn empty(path: &Path) -> Self {
-        Self::add(Thing::Empty(path.to_path_buf()))
+    /// A folder that is removed when the process is asked to end, if nothing is in it.
+    pub(super) fn empty(path: &Path) -> Self {
+        Self::add(&mut hold().0, Thing::Empty(path.to_path_buf()))
     }
 
     /// Makes a file and keeps it on the list, so that the process is folded up before or after, not in between.
@@ -37,7 +32,7 @@ impl Pending {
         Self::by(Thing::File(path.to_path_buf()), make)
     }
 
-    /// Likewise a folder.
+    /// Likewise a folder with all that comes into it.
     pub(super) fn tree_by<T, E>(path: &Path, make: impl FnOnce() -> Result<T, E>) -> Result<(Self, T), E> {
         Self::by(Thing::Tree(path.to_path_buf()), make)
     }
@@ -45,14 +40,10 @@ impl Pending {
     fn by<T, E>(thing: Thing, make: impl FnOnce() -> Result<T, E>) -> Result<(Self, T), E> {
         let mut all = hold().0;
         let made = make()?;
-        Ok((Self::add_to(&mut all, thing), made))
+        Ok((Self::add(&mut all, thing), made))
     }
 
-    fn add(thing: Thing) -> Self {
-        Self::add_to(&mut hold().0, thing)
-    }
-
-    fn add_to(all: &mut Vec<(u64, Thing)>, thing: Thing) -> Self {
+    fn add(all: &mut Vec<(u64, Thing)>, thing: Thing) -> Self {
         let number = all.last().map_or(0, |(last, _)| last + 1);
         all.push((number, thing));
         Pending(number)

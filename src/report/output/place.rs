@@ -4,8 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::leftovers::parent_of;
-use super::marker::{MARKER, Marker, RunKind};
+use super::marker::{MARKER, Marker, RunKind, parent_of};
 use crate::error::{Error, Result, input};
 use crate::input::{FileId, Provenance};
 
@@ -19,9 +18,6 @@ pub struct Room {
 }
 
 /// A path with its links followed, also through one that points to nothing yet.
-///
-/// # Errors
-/// Links in a circle; a folder above it that cannot be read.
 pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_path_buf();
     // As many as the system follows.
@@ -50,9 +46,6 @@ fn below_what_is_there(path: &Path) -> PathBuf {
 }
 
 /// The folder behind `path`, if a run of this kind may have it: new, empty, or that of an earlier run and nothing else in it.
-///
-/// # Errors
-/// [`Error::Input`] that names what is there, or the input that lies below it; [`Error::File`] if it cannot be looked at.
 pub(super) fn folder_for(path: &Path, kind: RunKind, read: &Provenance) -> Result<PathBuf> {
     let refuse = |problem: &str, remedy: &str| Err(input("--out", path.display(), problem, remedy));
     if path.as_os_str().is_empty() {
@@ -67,6 +60,9 @@ pub(super) fn folder_for(path: &Path, kind: RunKind, read: &Provenance) -> Resul
     }
     if target.file_name().is_none() || std::env::current_dir().is_ok_and(|here| here.starts_with(&target)) {
         return refuse("is the current folder or one above it", "give a folder below it");
+    }
+    if target.is_dir() && is_mounted(&target) {
+        return refuse("is a mount point, which results that are whole cannot replace", "give a folder below it");
     }
     if let Some(file) = read_below(&target, read) {
         let problem = format!("holds an input of this run, {}", file.display());
@@ -92,8 +88,7 @@ pub(super) fn occupied(target: &Path, kind: RunKind) -> io::Result<Option<(Strin
         let problem = if target.join(MARKER).is_file() {
             "holds results whose files no list names, of another version of this program or damaged".to_owned()
         } else {
-            let marker = Marker { kind, files: Default::default() };
-            let Some(first) = marker.first_foreign(target)? else { return Ok(None) };
+            let Some(first) = Marker::listing(kind, &[]).first_foreign(target)? else { return Ok(None) };
             format!("holds files that this program did not make, {} for one", name_in(target, &first))
         };
         return Ok(Some((problem, ELSEWHERE)));
@@ -111,7 +106,7 @@ fn name_in(folder: &Path, path: &Path) -> String {
 }
 
 /// Whether something is mounted at a folder, which can be filled but not replaced.
-pub(super) fn is_mounted(folder: &Path) -> bool {
+fn is_mounted(folder: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let device = |path: &Path| fs::metadata(path).map(|there| there.dev());
     let is_other = matches!((device(folder), device(&parent_of(folder))), (Ok(own), Ok(above)) if own != above);

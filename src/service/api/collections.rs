@@ -13,9 +13,9 @@ use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 
 use super::App;
+use super::caller::Caller;
 use super::documents::{self, JobRequest, submission};
-use super::security::Caller;
-use crate::service::job::{Job, JobKind, State};
+use crate::service::job::{Job, JobKind, State, is_id};
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::{FileEntry, NewJob, Origin, Role, Room, Submitted};
 
@@ -77,12 +77,12 @@ pub struct Part {
 
 /// The kind of a collection's name in a URL.
 pub fn kind_of(collection: &str) -> Answer<JobKind> {
+    // Jobs that an earlier version ran may still be stored.
+    if collection == "charts" {
+        let detail = "a service runs no charts and shows none of an earlier version; run `perilife chart` on a command line";
+        return Err(Problem::new(StatusCode::GONE, "Gone", detail));
+    }
     JobKind::ALL.into_iter().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
-}
-
-/// Whether a job can have this id. Anything else never gets to the database.
-pub fn is_id(id: &str) -> bool {
-    uuid::Uuid::try_parse(id).is_ok()
 }
 
 /// A job of a collection.
@@ -124,7 +124,7 @@ pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
 
 /// Submits a job. With the header `Idempotency-Key` a repeated request gives the same job.
 #[utoipa::path(post, path = "/v1/{collection}", tag = "jobs",
-    params(("collection" = String, Path, description = "`calibrations`, `predictions`, `scenes`, `sweeps`, `sif` or `charts`"),
+    params(("collection" = String, Path, description = "`calibrations`, `predictions`, `scenes`, `sweeps` or `sif`"),
         ("Idempotency-Key" = Option<String>, Header, description = "Text of the caller's choice, new for every new job")),
     request_body = JobRequest,
     responses((status = 202, body = JobView, description = "Accepted: it will be run, whatever happens to this server"),
@@ -199,7 +199,7 @@ fn key_of(headers: &HeaderMap) -> Answer<Option<String>> {
 
 /// Lists jobs, newest first.
 #[utoipa::path(get, path = "/v1/{collection}", tag = "jobs",
-    params(("collection" = String, Path, description = "`calibrations`, `predictions`, `scenes`, `sweeps`, `sif` or `charts`"), Part),
+    params(("collection" = String, Path, description = "`calibrations`, `predictions`, `scenes`, `sweeps` or `sif`"), Part),
     responses((status = 200, body = Page), (status = 400, body = Problem), (status = 404, body = Problem)))]
 pub async fn list(
     Shared(app): Shared<App>,

@@ -14,22 +14,15 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
-use super::collections::is_id;
-use super::places::BodyPlace;
-use super::security::Caller;
+use super::app::BodyPlace;
+use super::caller::Caller;
 use super::{App, Limits};
-use crate::calibration::calibrate::Calibration;
-use crate::case::Case;
-use crate::case::budget::Budget;
-use crate::check::is_calibration;
 use crate::error::input;
-use crate::fracture::Scene;
-use crate::predict::tip_factors::StressIntensityMethod;
-use crate::service::job::{FITTED, JobKind, State, Submission};
+use crate::input::Document;
+use crate::runner::Task;
+use crate::service::job::{FITTED, JobKind, State, Submission, is_id};
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::{Origin, hex};
-use crate::sweep::design::CASES_MAX;
-use crate::sweep::{DrawnCase, Sweep};
 use crate::watch::{self, Watch};
 
 /// Longest input, bytes; files beside it may be as large as bodies are.
@@ -58,7 +51,7 @@ pub struct JobRequest {
     pub files: BTreeMap<String, FileText>,
     /// Calibration whose law is to be used, whatever `[fatigue]` says.
     pub calibration: Option<String>,
-    /// Options of the command: `method` (a list) for stress intensity factors, `quick` and `scene` (a list) for charts.
+    /// Options of the command: `method` (a list) for stress intensity factors.
     #[serde(default)]
     #[schema(value_type = Value)]
     pub options: BTreeMap<String, Value>,
@@ -258,12 +251,8 @@ fn check_name(key: &str, name: &str) -> Answer<()> {
 /// What was asked for as it can be stored and run.
 pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> Answer<Submission> {
     let options = options(kind, &asked.options)?;
-    let given = match asked.input {
-        Some(given) => given,
-        // Its scenes are built in.
-        None if kind == Some(JobKind::Chart) => Value::String(String::new()),
-        None => return Err(Problem::bad_request("the body has no `input`: give TOML text or an object")),
-    };
+    let no_input = || Problem::bad_request("the body has no `input`: give TOML text or an object");
+    let given = asked.input.ok_or_else(no_input)?;
     let name = asked.name.unwrap_or_else(|| kind.map_or("case", JobKind::name).to_owned());
     check_name("name", &name)?;
     let mut files: Vec<(String, Vec<u8>)> = Vec::with_capacity(asked.files.len() + 1);
@@ -283,7 +272,10 @@ pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> 
     }
     let submission = Submission { name, text, with_fitted, options, files };
     let limits = app.limits.clone();
-    let checked = while_asked(move || kind.map_or(Ok(()), |kind| check(&submission, kind, &limits)).map(|()| submission)).await;
+    let look = move || {
+        kind.map_or(Ok(()), |kind| check(&submission, kind, &submission.document()?, &limits).map(drop)).map(|()| submission)
+    };
+    let checked = while_asked(look).await;
     checked.map_err(|problem| if is_text { problem } else { problem.without_line() })
 }
 
@@ -301,8 +293,7 @@ fn options(kind: Option<JobKind>, given: &BTreeMap<String, Value>) -> Answer<Vec
         for value in values {
             match value {
                 Value::String(text) if text.len() <= NAME_MAX => options.push(format!("{name}={text}")),
-                Value::Bool(flag) => options.push(format!("{name}={flag}")),
-                _ => return refused("is neither a word, nor true or false, nor a list of words", "give one of these".to_owned()),
+                _ => return refused("is neither a word nor a list of words", "give one of these".to_owned()),
             }
         }
     }
@@ -319,9 +310,6 @@ impl Drop for Asked {
 }
 
 /// Work on a thread of its own; it ends at its next mark when the request that waits for it has gone.
-///
-/// # Errors
-/// Those of the work; 500 if it panicked.
 pub async fn while_asked<T: Send + 'static>(work: impl FnOnce() -> Answer<T> + Send + 'static) -> Answer<T> {
     let watch = Arc::new(Watch::default());
     let _asked = Asked(Arc::clone(&watch));
@@ -368,7 +356,7 @@ fn text_of(given: Value) -> Answer<String> {
 
 fn names_no_readings(table: &toml::Table) -> bool {
     let names = |measured: &toml::Value| ["files", "rates"].iter().any(|key| measured.get(key).is_some());
-    is_calibration(table) && !table.get("measured").is_some_and(names)
+    JobKind::of(table) == JobKind::Calibration && !table.get("measured").is_some_and(names)
 }
 
 /// A calibration that names no files uses all that came with it.
@@ -393,45 +381,13 @@ async fn record_of(app: &App, id: &str) -> Answer<Vec<u8>> {
     }
 }
 
-/// Whether it can be run as this kind of job within the limits of this server, as far as that shows without building the plate.
-pub fn check(submission: &Submission, kind: JobKind, limits: &Limits) -> Answer<()> {
-    let document = submission.document()?;
-    match kind {
-        JobKind::Prediction => check_points(&Case::from_document(&document)?, limits),
-        JobKind::Calibration => match Calibration::from_document(&document)? {
-            Calibration::Lives(calibration) => check_points(&calibration.case, limits),
-            Calibration::Rates(_) => Ok(()),
-        },
-        JobKind::Scene => within(&Scene::from_document(&document)?.budget(), limits),
-        JobKind::Sweep => {
-            let sweep = Sweep::with_overrides(document, &[], CASES_MAX)?;
-            let cases = sweep.cases()?;
-            // A few of very many: each runs within the memory of the job all the same.
-            let step = cases.len().div_ceil(LOOKED_AT).max(1);
-            for case in cases.iter().step_by(step) {
-                within(&Budget::of(&DrawnCase::read(case)?), limits)?;
-            }
-            Ok(())
-        }
-        JobKind::Sif => {
-            for name in submission.options.iter().filter_map(|option| option.strip_prefix("method=")) {
-                name.parse::<StressIntensityMethod>()?;
-            }
-            within(&Budget::of(&Case::plate_of(&document)?), limits)
-        }
-        JobKind::Chart => {
-            let names = submission.options.iter().filter_map(|option| option.strip_prefix("scene=")).map(str::to_owned);
-            Ok(crate::chart::scenes(&names.collect::<Vec<_>>()).map(drop)?)
-        }
+/// Reads it as this kind of job, within the limits of this server as far as they show without building the plate.
+pub fn check(submission: &Submission, kind: JobKind, document: &Document, limits: &Limits) -> Answer<Task> {
+    let task = Task::read(kind, document, &submission.methods())?;
+    // Of very many cases a few: each runs within the memory of the job all the same.
+    for budget in task.budgets(LOOKED_AT)? {
+        budget.within_points(limits.points)?;
+        budget.within(limits.case_bytes)?;
     }
-}
-
-/// Refuses plates of more points than this server takes, and what would take up more memory, before anything is laid out.
-fn check_points(case: &Case, limits: &Limits) -> Answer<()> {
-    within(&Budget::of(case), limits)
-}
-
-fn within(budget: &Budget, limits: &Limits) -> Answer<()> {
-    budget.within_points(limits.points)?;
-    Ok(budget.within(limits.case_bytes)?)
+    Ok(task)
 }

@@ -13,9 +13,9 @@ use tokio::sync::mpsc::{Sender, channel};
 use tokio_stream::wrappers::ReceiverStream;
 
 use super::App;
+use super::app::Place;
+use super::caller::Caller;
 use super::collections::{job_of, view};
-use super::places::Place;
-use super::security::Caller;
 use crate::service::job::JobKind;
 use crate::service::problem::{Answer, Problem};
 

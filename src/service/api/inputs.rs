@@ -9,18 +9,16 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::App;
+use super::caller::Caller;
 use super::documents::{self, JobRequest, submission, while_asked};
-use super::security::Caller;
 
 use crate::check;
 use crate::error::{Error, input};
-use crate::fracture::read::is_scene;
 use crate::measured::{
     Column, ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, MeasuredCurve, Named, Shape, Sheet, Survey, survey,
 };
 use crate::service::job::JobKind;
 use crate::service::problem::{Answer, Place, Problem};
-use crate::sweep::design::is_sweep;
 use crate::units::MM;
 use crate::watch;
 
@@ -180,16 +178,6 @@ fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
     }
 }
 
-/// The kind of run that a file of these sections is input of.
-fn kind_of(table: &toml::Table) -> JobKind {
-    match table {
-        table if is_scene(table) => JobKind::Scene,
-        table if is_sweep(table) => JobKind::Sweep,
-        table if check::is_calibration(table) => JobKind::Calibration,
-        _ => JobKind::Prediction,
-    }
-}
-
 /// Checks a case, a calibration, a sweep or a fracture scene without running it: what was understood, and a drawing.
 #[utoipa::path(post, path = "/v1/check", tag = "inputs", request_body = JobRequest,
     responses((status = 200, body = Value), (status = 400, body = Problem), (status = 422, body = Problem)))]
@@ -202,8 +190,8 @@ pub async fn check(State(app): State<App>, Extension(caller): Extension<Caller>,
     let look = move || -> Answer<Value> {
         let _room = room;
         let document = submission.document()?;
-        documents::check(&submission, kind_of(&document.table), &limits)?;
-        let checked = check::check(document)?;
+        let task = documents::check(&submission, JobKind::of(&document.table), &document, &limits)?;
+        let checked = check::check(&document, &task)?;
         let mut object = checked.json();
         object["drawing"] = checked.drawing.into();
         Ok(object)

@@ -1,23 +1,21 @@
 //! The HTTP service: every route, its limits and its answers.
 
 mod app;
-mod audit;
+mod caller;
 mod collections;
 mod description;
 mod documents;
 mod events;
 mod inputs;
 mod knowledge;
-mod page;
-mod places;
 mod results;
 mod sending;
 mod security;
 mod watching;
 
-pub use app::{App, Limits, Security};
-pub use audit::Audit;
-pub use places::{Place, Places};
+pub use app::{App, Limits, Place, Places, Security};
+pub use caller::Audit;
+
 pub use security::Crowded;
 pub use watching::{start as start_counting, sum_up};
 
@@ -89,7 +87,7 @@ pub fn router(app: App) -> Router {
         .route("/healthz", get(watching::health))
         .route("/readyz", get(watching::ready))
         .route("/metrics", get(watching::metrics))
-        .fallback(page::page)
+        .fallback(knowledge::page)
         .method_not_allowed_fallback(|| async {
             Problem::new(StatusCode::METHOD_NOT_ALLOWED, "Method not allowed", "this address does not take that method")
         })

@@ -12,12 +12,12 @@ use tokio::sync::OwnedSemaphorePermit;
 use utoipa::{IntoParams, ToSchema};
 
 use super::App;
-use super::collections::{is_id, job_of};
+use super::collections::job_of;
 use super::sending::Stored;
 use crate::error::input;
 use crate::report::csv::{self, A_N_FILE, Row};
 use crate::report::resample::{Sampling, cycles_over_length};
-use crate::service::job::{Job, State};
+use crate::service::job::{Job, State, is_id};
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::{Origin, media_type};
 

@@ -14,36 +14,10 @@ use axum::response::{IntoResponse, Response};
 use tokio::sync::Semaphore;
 use tokio_stream::StreamExt;
 
+use super::caller::Caller;
 use super::{App, Security};
 use crate::service::problem::{Answer, Problem};
 use crate::service::store::{Role, hash};
-
-/// Who asks.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Caller {
-    /// Name of the token; empty where none is needed.
-    pub name: String,
-    /// What he may do.
-    pub role: Role,
-    /// Hash of the token; empty where none is needed.
-    pub token: String,
-}
-
-impl Caller {
-    /// Refuses who may not.
-    pub fn must_be(&self, role: Role) -> Answer<()> {
-        if self.role >= role {
-            return Ok(());
-        }
-        let detail = format!("this needs a token of the role {role}; yours has {}", self.role);
-        Err(Problem::new(StatusCode::FORBIDDEN, "Forbidden", detail))
-    }
-
-    /// Refuses who may not do something with a job of this owner.
-    pub fn must_own(&self, owner: &str) -> Answer<()> {
-        self.must_be(if owner == self.name { Role::Run } else { Role::Admin })
-    }
-}
 
 /// Lets a request through, or not.
 pub async fn guard(

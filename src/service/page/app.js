@@ -14,7 +14,7 @@ import { createRunsView } from "./runs.js";
 import { forgetToken, readToken } from "./token.js";
 
 const views = { measure: createCalibrateView(), predict: createPredictView(), runs: createRunsView() };
-const OTHERS = { scenes: "Fracture scene", sweeps: "Sweep", sif: "Stress intensity factors", charts: "Chart" };
+const OTHERS = { scenes: "Fracture scene", sweeps: "Sweep", sif: "Stress intensity factors" };
 const PAGES = {
   calibrations: openCalibration, predictions: openPrediction,
   ...Object.fromEntries(Object.keys(OTHERS).map((name) => [name, openOther(name)])),

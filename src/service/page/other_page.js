@@ -1,4 +1,4 @@
-// Page of a run that is one of a command as a whole (scene, sweep, stress intensity factors, chart): its pictures and files.
+// Page of a run that is one of a command as a whole (scene, sweep, stress intensity factors): its pictures and files.
 
 import { getBlob, getJson } from "./api.js";
 import { warningList } from "./check.js";

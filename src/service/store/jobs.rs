@@ -68,9 +68,6 @@ const BEHIND_ALL: &str = "~";
 
 impl Store {
     /// Stores a job with its input, whole or not at all: once this returns it will be run.
-    ///
-    /// # Errors
-    /// The database cannot take it; nothing is stored then.
     pub async fn submit(&self, new: &NewJob<'_>, room: Room) -> Result<Submitted> {
         // Without failure: text and numbers.
         let content = postcard::to_stdvec(new.submission).unwrap_or_default();

@@ -46,35 +46,23 @@ enum Dialect {
 }
 
 impl Dialect {
-    /// Milliseconds since 1970 by the clock of the database.
-    fn now(self) -> &'static str {
+    /// Fragments of statements: milliseconds since 1970 by the clock of the database; what passes over rows that another transaction is
+    /// about to take (SQLite has one writer at a time); type of bytes; type of ids and names, compared by bytes whatever the language
+    /// of the server.
+    fn fragments(self) -> [(&'static str, &'static str); 4] {
         match self {
-            Dialect::Sqlite => "CAST(unixepoch('subsec') * 1000 AS INTEGER)",
-            Dialect::Postgres => "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)",
-        }
-    }
-
-    /// Passes over rows that another transaction is about to take. SQLite has one writer at a time.
-    fn skip_locked(self) -> &'static str {
-        match self {
-            Dialect::Sqlite => "",
-            Dialect::Postgres => "FOR UPDATE SKIP LOCKED",
-        }
-    }
-
-    /// Type of bytes.
-    fn bytes(self) -> &'static str {
-        match self {
-            Dialect::Sqlite => "BLOB",
-            Dialect::Postgres => "BYTEA",
-        }
-    }
-
-    /// Type of ids and names that are compared: by bytes, whatever the language of the server.
-    fn key(self) -> &'static str {
-        match self {
-            Dialect::Sqlite => "TEXT",
-            Dialect::Postgres => "TEXT COLLATE \"C\"",
+            Dialect::Sqlite => [
+                ("{now}", "CAST(unixepoch('subsec') * 1000 AS INTEGER)"),
+                ("{skip_locked}", ""),
+                ("{bytes}", "BLOB"),
+                ("{key}", "TEXT"),
+            ],
+            Dialect::Postgres => [
+                ("{now}", "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)"),
+                ("{skip_locked}", "FOR UPDATE SKIP LOCKED"),
+                ("{bytes}", "BYTEA"),
+                ("{key}", "TEXT COLLATE \"C\""),
+            ],
         }
     }
 
@@ -140,9 +128,6 @@ pub enum Upgrade {
 
 impl Store {
     /// Connects to `sqlite://FILE` or `postgres://...` and lays the tables in a new database.
-    ///
-    /// # Errors
-    /// Another kind of URL; a database that cannot be reached or was made by another version of this program.
     pub async fn open(url: &str, connections: u32, upgrade: Upgrade) -> Result<Store> {
         sqlx::any::install_default_drivers();
         let dialect = match url.split(':').next() {
@@ -210,16 +195,12 @@ impl Store {
     /// A statement with the fragments of this database filled in: `{now}`, `{skip_locked}`, `{bytes}`, `{key}`, and those made of
     /// them: `{counted}`, the counted clock, and `{orphaned}`, whether a running job's lease is over.
     fn sql(&self, statement: &str) -> sqlx::AssertSqlSafe<String> {
-        let dialect = self.dialect;
-        let filled = statement
+        let composed = statement
             .replace("{counted}", "(SELECT counted_ms + {step} FROM clock)")
             .replace("{step}", &STEP.replace("{most}", &COUNTED_STEP.as_millis().to_string()))
-            .replace("{orphaned}", ORPHANED)
-            .replace("{now}", dialect.now())
-            .replace("{skip_locked}", dialect.skip_locked())
-            .replace("{bytes}", dialect.bytes())
-            .replace("{key}", dialect.key());
-        sqlx::AssertSqlSafe(filled)
+            .replace("{orphaned}", ORPHANED);
+        let fragments = self.dialect.fragments().into_iter();
+        sqlx::AssertSqlSafe(fragments.fold(composed, |statement, (name, fragment)| statement.replace(name, fragment)))
     }
 
     /// A transaction that writes.

@@ -1,13 +1,15 @@
 //! Jobs as workers see them: claimed for a time, kept alive, written to by who holds the claim, finished once.
 
-use serde::{Deserialize, Serialize};
-use sqlx::Row;
-
 use std::path::PathBuf;
 use std::time::Duration;
 
+use axum::http::StatusCode;
+use serde::{Deserialize, Serialize};
+use sqlx::Row;
+
 use super::{FileEntry, Origin, Result, Store, files, schema};
 use crate::service::job::{JobKind, State, Submission};
+use crate::service::problem::Problem;
 
 /// A job that a worker holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,11 +123,21 @@ impl Store {
         .bind(row.try_get::<i64, _>("turn")?)
         .execute(&mut *transaction)
         .await?;
+        let (id, kind): (String, String) = (row.try_get("id")?, row.try_get("kind")?);
+        let Ok(kind) = kind.parse() else {
+            // Of an earlier version: ended, or it would come up for ever.
+            let detail = format!("jobs of kind {kind} are not run any more; run `perilife {kind}` on a command line");
+            let problem = serde_json::to_string(&Problem::new(StatusCode::GONE, "Gone", detail)).unwrap_or_default();
+            let ended = "UPDATE jobs SET state = 'failed', problem = $2, finished_ms = {now}, finished_count_ms = {counted},
+                worker = NULL, lease_until_ms = NULL, revision = revision + 1 WHERE id = $1";
+            sqlx::query(self.sql(ended)).bind(id).bind(problem).execute(&mut *transaction).await?;
+            transaction.commit().await?;
+            return Ok(None);
+        };
         transaction.commit().await?;
-        let kind: String = row.try_get("kind")?;
         Ok(Some(Claim {
-            id: row.try_get("id")?,
-            kind: kind.parse().map_err(|()| sqlx::Error::Decode("unknown kind".into()))?,
+            id,
+            kind,
             fence: row.try_get("fence")?,
             attempts: row.try_get("attempts")?,
             cancel_asked: row.try_get::<i64, _>("cancel_asked")? != 0,
@@ -197,7 +209,13 @@ impl Store {
     /// The database cannot take it; what stood there before stays.
     pub async fn keep(&self, claim: &Claim, checkpoint: Vec<u8>) -> Result<bool> {
         let mut transaction = self.begin().await?;
-        if !hold(&mut transaction, claim, "attempts = 0").await? {
+        // Others cannot take the row until the transaction ends.
+        let held = sqlx::query("UPDATE jobs SET attempts = 0 WHERE id = $1 AND fence = $2 AND state = 'running'")
+            .bind(&claim.id)
+            .bind(claim.fence)
+            .execute(&mut *transaction)
+            .await?;
+        if held.rows_affected() == 0 {
             return Ok(false);
         }
         sqlx::query(
@@ -317,11 +335,4 @@ async fn grow(transaction: &mut sqlx::Transaction<'static, sqlx::Any>, claim: &C
     .execute(&mut **transaction)
     .await
     .map(drop)
-}
-
-/// Changes the row of a claimed job, which others then cannot take until the transaction ends; whether the claim holds.
-async fn hold(transaction: &mut sqlx::Transaction<'static, sqlx::Any>, claim: &Claim, change: &'static str) -> Result<bool> {
-    let statement = format!("UPDATE jobs SET {change} WHERE id = $1 AND fence = $2 AND state = 'running'");
-    let held = sqlx::query(sqlx::AssertSqlSafe(statement)).bind(&claim.id).bind(claim.fence).execute(&mut **transaction);
-    Ok(held.await?.rows_affected() > 0)
 }

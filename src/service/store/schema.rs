@@ -85,9 +85,6 @@ const LOCK: i64 = 0x7065_7269_6c69_6665;
 
 impl Store {
     /// Lays the tables, all or none, where there are none, and leads older ones on to this version if that is wanted.
-    ///
-    /// # Errors
-    /// Tables of a later version; of an earlier one that may not be changed.
     pub(super) async fn lay_tables(&self, may_upgrade: bool) -> Result<()> {
         let mut transaction = self.begin().await?;
         if self.dialect == Dialect::Postgres {

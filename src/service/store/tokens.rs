@@ -77,9 +77,6 @@ pub fn hex(bytes: &[u8]) -> String {
 
 impl Store {
     /// Makes a token and returns it; it is not kept and cannot be had again. `None` if there is one of this name already.
-    ///
-    /// # Errors
-    /// The database does not answer, or the machine has no random numbers.
     pub async fn add_token(&self, name: &str, role: Role, days: Option<u32>) -> Result<Option<String>> {
         let mut random = [0; RANDOM_BYTES];
         getrandom::fill(&mut random).map_err(|error| sqlx::Error::Io(std::io::Error::other(error.to_string())))?;

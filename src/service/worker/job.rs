@@ -1,14 +1,14 @@
 //! One job from its claim to its end.
 
 use std::path::Path;
+use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
 use axum::http::StatusCode;
 use tempfile::TempDir;
 
-use super::frames::{News, Order};
-use super::process::{Death, JobProcess, Look};
-use super::{Shared, TRY_EVERY, milliseconds, results};
+use super::process::{Death, JobProcess, News, Order};
+use super::{Shared, TRY_EVERY, files, milliseconds};
 use crate::error::{Error, Result};
 use crate::service::job::{JobKind, State, Submission};
 use crate::service::problem::Problem;
@@ -122,16 +122,16 @@ fn relay(shared: &Shared, claim: &Claim, process: &JobProcess, begun: Instant) -
     let (mut untold, mut beaten) = (Told::default(), Instant::now());
     let mut memory = 0;
     let end = loop {
-        match process.look(BEAT.saturating_sub(beaten.elapsed())) {
-            Look::News(News::Progress(progress)) => untold.progress = Some(progress),
-            Look::News(News::Growth(growth)) => add(&mut untold.growth, growth),
-            Look::News(News::Picture(about, picture)) => untold.picture = Some((about, picture)),
-            Look::News(News::Checkpoint(bytes)) => keep(shared, claim, bytes),
-            Look::News(News::Done(summary)) => break Some(End::Done(summary)),
-            Look::News(News::Failed(problem)) => break Some(End::Failed(problem)),
-            Look::News(News::NoRoom(why, bytes)) => break Some(End::NoRoom(room_needed(&why, bytes))),
-            Look::Quiet => {}
-            Look::Over => break None,
+        match process.news_within(BEAT.saturating_sub(beaten.elapsed())) {
+            Ok(News::Progress(progress)) => untold.progress = Some(progress),
+            Ok(News::Growth(growth)) => add(&mut untold.growth, growth),
+            Ok(News::Picture(about, picture)) => untold.picture = Some((about, picture)),
+            Ok(News::Checkpoint(bytes)) => keep(shared, claim, bytes),
+            Ok(News::Done(summary)) => break Some(End::Done(summary)),
+            Ok(News::Failed(problem)) => break Some(End::Failed(problem)),
+            Ok(News::NoRoom(why, bytes)) => break Some(End::NoRoom(room_needed(&why, bytes))),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break None,
         }
         if beaten.elapsed() >= BEAT {
             beaten = Instant::now();
@@ -199,7 +199,7 @@ fn beat(shared: &Shared, claim: &Claim, untold: &mut Told, elapsed: Duration) ->
 fn conclude(shared: &Shared, claim: &Claim, end: End, folder: &Path) {
     let settings = &shared.settings;
     match end {
-        End::Done(summary) => match results::files(folder) {
+        End::Done(summary) => match files(folder) {
             Ok(files) => {
                 let done = Outcome { state: State::Succeeded, summary: Some(summary), problem: None, files };
                 hand_in(shared, claim, &done, "done");

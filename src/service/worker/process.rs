@@ -1,21 +1,25 @@
 //! The process of a job: it has its own memory, of which it may take so much, and can be ended at any moment.
 //!
 //! Worker and process talk over a pair of sockets, one end of which is the standard input of the process: it ends when the other end is
-//! closed, by whatever death of the worker. With the processes that it starts itself it is a group, which ends together.
+//! closed, by whatever death of the worker. With the processes that it starts itself it is a group, which ends together. What they tell
+//! each other are frames: a length, 4 bytes little-endian, and a value packed by postcard.
 
-use std::io;
+use std::io::{self, ErrorKind, Read, Write};
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use rustix::process::{Pid, Resource, Rlimit, Signal, kill_process_group, prlimit};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
-use super::frames::{self, News, Order};
+use crate::service::job::{JobKind, Submission};
+use crate::service::store::Growth;
 
 /// The subcommand that takes an order.
 pub const COMMAND: &str = "job";
@@ -30,17 +34,6 @@ pub struct JobProcess {
     child: Child,
     news: Receiver<News>,
     said: Option<JoinHandle<Vec<u8>>>,
-}
-
-/// What a look for news brings.
-#[derive(Debug)]
-pub enum Look {
-    /// Something new.
-    News(News),
-    /// Nothing within the time.
-    Quiet,
-    /// Nothing more will come.
-    Over,
 }
 
 /// How a process ended without having said so.
@@ -73,10 +66,10 @@ impl JobProcess {
             // Writable private memory, and not addresses: reserved addresses cost nothing.
             prlimit(Some(process.group()), Resource::Data, limit)?;
             process.said = stderr.map(|stderr| std::thread::Builder::new().spawn(move || tail(stderr))).transpose()?;
-            frames::write(&ours, order)?;
+            write_frame(&ours, order)?;
             let (told, news) = sync_channel(WAITING);
             std::thread::Builder::new().spawn(move || {
-                while let Ok(Some(piece)) = frames::read(&ours) {
+                while let Ok(Some(piece)) = read_frame(&ours) {
                     if told.send(piece).is_err() {
                         break;
                     }
@@ -96,13 +89,9 @@ impl JobProcess {
         Pid::from_child(&self.child)
     }
 
-    /// The next news within a time.
-    pub fn look(&self, within: Duration) -> Look {
-        match self.news.recv_timeout(within) {
-            Ok(news) => Look::News(news),
-            Err(RecvTimeoutError::Timeout) => Look::Quiet,
-            Err(RecvTimeoutError::Disconnected) => Look::Over,
-        }
+    /// The next news within a time; none will come any more where its end is disconnected.
+    pub fn news_within(&self, time: Duration) -> Result<News, RecvTimeoutError> {
+        self.news.recv_timeout(time)
     }
 
     /// Most memory that it has had, bytes; `None` where the system does not tell.
@@ -158,4 +147,83 @@ fn tail(mut from: impl io::Read) -> Vec<u8> {
         kept.drain(..kept.len().saturating_sub(TAIL));
     }
     kept
+}
+
+/// What is to be run.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Order {
+    /// What it does.
+    pub kind: JobKind,
+    /// The input without what it names.
+    pub submission: Submission,
+    /// Options of the command, which its form leaves out.
+    pub options: Vec<String>,
+    /// Files that came with it.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// Where an earlier worker stood.
+    pub checkpoint: Option<Vec<u8>>,
+    /// The curve that earlier workers have shown; `None` for the first.
+    pub shown: Option<Vec<Growth>>,
+    /// Empty folder for the results, in one of its own, which goes with the job.
+    pub folder: PathBuf,
+    /// Threads.
+    pub threads: usize,
+    /// Least time between two checkpoints.
+    pub checkpoint_every: Duration,
+}
+
+/// What a run tells.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum News {
+    /// How far it is, [`crate::service::job::JobProgress`] as JSON.
+    Progress(String),
+    /// More of its curve.
+    Growth(Growth),
+    /// What is said of a picture, JSON, and its PNG.
+    Picture(String, Vec<u8>),
+    /// Where it could be taken up.
+    Checkpoint(Vec<u8>),
+    /// It is done: the figures of its result, JSON. Its files are in the folder.
+    Done(String),
+    /// It has no result: [`crate::service::problem::Problem`] as JSON.
+    Failed(String),
+    /// The disk did not take its files: why, and bytes that they need.
+    NoRoom(String, u64),
+}
+
+/// Longest frame.
+const MOST: u32 = 1 << 31;
+
+/// Writes a frame.
+pub fn write_frame(mut to: impl Write, value: &impl Serialize) -> io::Result<()> {
+    let bytes = postcard::to_stdvec(value).map_err(io::Error::other)?;
+    let length = u32::try_from(bytes.len()).ok().filter(|length| *length <= MOST);
+    let length = length.ok_or_else(|| io::Error::new(ErrorKind::InvalidData, "a frame is longer than 2 GiB"))?;
+    to.write_all(&length.to_le_bytes())?;
+    to.write_all(&bytes)
+}
+
+/// Reads a frame; `None` where the other side has closed, in the middle of a frame as well.
+pub fn read_frame<T: DeserializeOwned>(mut from: impl Read) -> io::Result<Option<T>> {
+    let mut length = [0; 4];
+    let closed = |error: io::Error| match error.kind() {
+        ErrorKind::UnexpectedEof | ErrorKind::ConnectionReset | ErrorKind::BrokenPipe => Ok(None),
+        _ => Err(error),
+    };
+    if let Err(error) = from.read_exact(&mut length) {
+        return closed(error);
+    }
+    let length = u32::from_le_bytes(length);
+    if length > MOST {
+        return Err(io::Error::new(ErrorKind::InvalidData, "a frame is longer than 2 GiB"));
+    }
+    let mut bytes = Vec::new();
+    // Room grows with what has come, not with what was announced.
+    if let Err(error) = from.take(u64::from(length)).read_to_end(&mut bytes) {
+        return closed(error);
+    }
+    if bytes.len() < length as usize {
+        return Ok(None);
+    }
+    postcard::from_bytes(&bytes).map(Some).map_err(|error| io::Error::new(ErrorKind::InvalidData, error))
 }

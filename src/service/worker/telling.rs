@@ -3,10 +3,12 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use super::process::News;
 use crate::fracture::{SceneObserver, SceneProgress};
 use crate::predict::checkpoint::Checkpoint;
 use crate::predict::{Observer, PointGrid, Progress, Snapshot, TipRecord};
 use crate::report::damage::{DamagePicture, PointField, cycles_and_length};
+use crate::runner::Watcher;
 use crate::service::job::JobProgress;
 use crate::service::store::Growth;
 use crate::specimen::{Crack, Point};
@@ -18,7 +20,7 @@ const ENTRIES: f64 = 800.0;
 
 /// The plate as it was last seen, to be drawn by who has time for it.
 #[derive(Debug)]
-pub struct LivePicture {
+struct LivePicture {
     snapshot: Snapshot,
     grid: PointGrid,
     cracks: Vec<Crack>,
@@ -27,24 +29,13 @@ pub struct LivePicture {
 
 impl LivePicture {
     /// What is said of the picture, JSON, and its PNG; `None` if it cannot be drawn.
-    pub fn draw(&self) -> Option<(String, Vec<u8>)> {
+    fn draw(&self) -> Option<(String, Vec<u8>)> {
         let LivePicture { snapshot, grid, cracks, paths } = self;
         let caption = cycles_and_length(snapshot);
         let picture = DamagePicture { grid, field: PointField::Damage, snapshot, cracks, paths, caption: &caption };
         let about = serde_json::json!({ "cycles": snapshot.cycles, "crack_length_mm": snapshot.crack_length / MM });
         Some((about.to_string(), picture.png().ok()?))
     }
-}
-
-/// What a run has told since it was last asked.
-#[derive(Debug, Default)]
-pub struct Update {
-    /// How far it is.
-    pub progress: Option<JobProgress>,
-    /// Where its curve has got to.
-    pub growth: Option<Growth>,
-    /// Its latest look.
-    pub look: Option<LivePicture>,
 }
 
 /// Takes a checkpoint's bytes to where they are kept; whether that worked.
@@ -62,6 +53,8 @@ pub struct Teller<'a> {
     /// Whether nobody has shown any of its curve yet.
     is_fresh: bool,
     told: Mutex<Pending>,
+    /// When the last picture was drawn, and what it cost.
+    drawn: Mutex<Option<(Instant, Duration)>>,
 }
 
 /// What the run has told.
@@ -79,7 +72,9 @@ struct Pending {
     keep_cost: Duration,
 }
 
-/// Time between two checkpoints over the time that keeping one takes, at least: so they cost 5 % at most.
+/// Time between two pictures, at least.
+const DRAW_EVERY: Duration = Duration::from_secs(1);
+/// Time between two pictures or checkpoints over the time that one takes, at least: so they cost 5 % at most each.
 const OVER_COST: u32 = 20;
 
 impl<'a> Teller<'a> {
@@ -99,11 +94,32 @@ impl<'a> Teller<'a> {
             keep_cost: Duration::ZERO,
         };
         let is_fresh = growth.cycles.is_empty();
-        Teller { cracks, keep, keep_every, started: Instant::now(), work: Arc::default(), is_fresh, told: Mutex::new(told) }
+        let (told, drawn) = (Mutex::new(told), Mutex::default());
+        Teller { cracks, keep, keep_every, started: Instant::now(), work: Arc::default(), is_fresh, told, drawn }
     }
 
-    /// What was told since the last time; a look stays where no picture is wanted.
-    pub fn news(&self, with_look: bool) -> Update {
+    /// Passes on what was told since the last time; a look at the plate stays until it is time for a picture.
+    pub fn pass_on(&self, tell: &dyn Fn(&News) -> bool) {
+        let mut drawn = self.drawn.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_due = drawn.is_none_or(|(at, cost)| at.elapsed() > DRAW_EVERY.max(OVER_COST * cost));
+        let (progress, growth, look) = self.news(is_due);
+        if let Some(growth) = growth {
+            tell(&News::Growth(growth));
+        }
+        if let Some(look) = look {
+            let begun = Instant::now();
+            if let Some((about, picture)) = look.draw() {
+                tell(&News::Picture(about, picture));
+            }
+            *drawn = Some((Instant::now(), begun.elapsed()));
+        }
+        if let Some(progress) = progress {
+            tell(&News::Progress(serde_json::to_string(&progress).unwrap_or_default()));
+        }
+    }
+
+    /// How far the run is, where its curve has got to and its latest look.
+    fn news(&self, with_look: bool) -> (Option<JobProgress>, Option<Growth>, Option<LivePicture>) {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         let elapsed_s = self.started.elapsed().as_secs_f64();
         let first_share = told.first_share;
@@ -125,7 +141,7 @@ impl<'a> Teller<'a> {
             let next = told.entries.from + told.entries.cycles.len();
             std::mem::replace(&mut told.entries, Growth { from: next, ..Growth::default() })
         });
-        Update { progress, growth, look: told.look.take_if(|_| with_look) }
+        (progress, growth, told.look.take_if(|_| with_look))
     }
 }
 
@@ -191,3 +207,5 @@ impl SceneObserver for Teller<'_> {
         Observer::block_done(self, &Progress { cycles: 0.0, crack_length: 0.0, share: progress.share })
     }
 }
+
+impl Watcher for Teller<'_> {}

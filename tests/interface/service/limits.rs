@@ -339,7 +339,6 @@ fn every_kind_of_job_runs() {
     let service = Server::start(&[&place[0], &place[1]], &["--jobs", "2"]);
     let sweep =
         "case = \"case.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nvalues = [50, 60]\n";
-    let tension = json!({ "name": "t", "options": { "quick": true, "scene": ["tension_plate"] } });
     for (collection, body, files) in [
         ("scenes", of("scene", SCENE), vec!["result.json", "history.csv", "paraview.zip"]),
         (
@@ -348,7 +347,6 @@ fn every_kind_of_job_runs() {
             vec!["sweep.csv", "sweep.json", "life.svg", "cases.zip"],
         ),
         ("sif", json!({ "name": "sif", "input": QUICK, "options": { "method": ["ring"] } }), vec!["result.json"]),
-        ("charts", tension, vec!["chart.csv", "chart.svg", "chart.html", "summary.md"]),
     ] {
         let job = service.submit(collection, &body);
         let done = service.succeeded(&job);

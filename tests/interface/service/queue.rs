@@ -193,6 +193,29 @@ fn an_earlier_store_is_led_on() {
     });
 }
 
+/// A job of a kind that is not run any more is ended in words and keeps nobody waiting; its place in the interface says the same.
+#[test]
+fn a_job_of_a_former_kind_is_refused() {
+    with_each_store("former", |place| {
+        let mut idle = Server::start(place, &["--jobs", "0"]);
+        idle.submit("predictions", &of("old", QUICK));
+        idle.stop();
+        on_store(place, "UPDATE jobs SET kind = 'chart'");
+        let service = Server::start(place, &["--jobs", "1"]);
+        let job = service.submit("predictions", &of("quick", QUICK));
+        service.succeeded(&job);
+        assert!(service.get("/metrics").text().contains("perilife_jobs{state=\"failed\"} 1"));
+        for answer in [service.get("/v1/charts"), service.post("/v1/charts", &of("new", QUICK))] {
+            assert!(answer.expect(410).text().contains("run `perilife chart` on a command line"));
+        }
+        // Led back to a kind that is shown, it says why it ended.
+        on_store(place, "UPDATE jobs SET kind = 'scene' WHERE kind = 'chart'");
+        let ended = service.get("/v1/scenes").json()["items"][0].clone();
+        assert_eq!(ended["state"], "failed", "{ended:#}");
+        assert!(ended["problem"]["detail"].as_str().unwrap().contains("jobs of kind chart are not run any more"), "{ended:#}");
+    });
+}
+
 /// A worker whose program is older than the tables takes no jobs, and goes on when they are its own again.
 #[test]
 fn a_worker_older_than_the_tables_takes_no_jobs() {

@@ -1,4 +1,4 @@
-//! Who has changed what, and who was refused: a line of JSON each, appended to a file.
+//! Who asks; and who has changed what, and who was refused: a line of JSON each, appended to a file.
 
 use std::fs::{File, OpenOptions};
 use std::io::Write as _;
@@ -11,8 +11,36 @@ use std::time::SystemTime;
 use axum::http::{Method, StatusCode};
 use serde_json::json;
 
-use super::security::Caller;
 use crate::error::{Error, Result};
+use crate::service::problem::{Answer, Problem};
+use crate::service::store::Role;
+
+/// Who asks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Caller {
+    /// Name of the token; empty where none is needed.
+    pub name: String,
+    /// What he may do.
+    pub role: Role,
+    /// Hash of the token; empty where none is needed.
+    pub token: String,
+}
+
+impl Caller {
+    /// Refuses who may not.
+    pub fn must_be(&self, role: Role) -> Answer<()> {
+        if self.role >= role {
+            return Ok(());
+        }
+        let detail = format!("this needs a token of the role {role}; yours has {}", self.role);
+        Err(Problem::new(StatusCode::FORBIDDEN, "Forbidden", detail))
+    }
+
+    /// Refuses who may not do something with a job of this owner.
+    pub fn must_own(&self, owner: &str) -> Answer<()> {
+        self.must_be(if owner == self.name { Role::Run } else { Role::Admin })
+    }
+}
 
 /// The file that it is written to.
 #[derive(Debug)]
@@ -20,9 +48,6 @@ pub struct Audit(Mutex<File>);
 
 impl Audit {
     /// Appends to a file, which nobody else may read if it is made now.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it cannot be opened.
     pub fn open(path: &Path) -> Result<Audit> {
         let file = OpenOptions::new().create(true).append(true).mode(0o600).open(path);
         Ok(Audit(Mutex::new(file.map_err(|error| Error::file(path, "cannot append to", error))?)))

@@ -4,7 +4,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::slurm::{LOGS, SCRIPT_FILE, TASKS_FILE};
 use crate::error::{Error, Result, input};
 use crate::input::Provenance;
 use crate::report::output::{Marker, OutputFolder, RunKind, Share, StandingFolder, is_temporary, write_file};
@@ -16,6 +15,14 @@ use crate::sweep::draw::label;
 
 /// Folder of the cases.
 const CASES: &str = "cases";
+/// Of an array job of Slurm: its tasks and their cases, its script, the folder of what tasks print.
+pub const TASKS_FILE: &str = "tasks";
+/// Script of the array job.
+pub const SCRIPT_FILE: &str = "job.sh";
+/// Folder of what its tasks print.
+pub const LOGS: &str = "logs";
+/// Cases that a message names at most.
+pub(super) const NAMED: usize = 5;
 
 /// The folder of a sweep.
 #[derive(Debug)]
@@ -33,9 +40,6 @@ impl SweepFolder {
     /// Opens or makes the folder for a whole sweep. Finished cases of an earlier call stay where their input is the same; tables of
     /// another plan, and cases that it had more, go; what killed processes left behind goes too, unless others may be at work on
     /// the same folder ([`Share::Parts`]).
-    ///
-    /// # Errors
-    /// As [`OutputFolder::claim`]; [`Error::Input`] if it holds another sweep; files that cannot be read or written.
     pub fn open(path: &Path, plan: Plan, read: &Provenance, share: Share) -> Result<Self> {
         let standing = enter(path, &plan, read, share)?;
         let earlier = read_plan(path);
@@ -59,9 +63,6 @@ impl SweepFolder {
     }
 
     /// Opens or makes the folder for one part of a sweep, beside which other processes may work on theirs.
-    ///
-    /// # Errors
-    /// As [`SweepFolder::open`]; [`Error::Input`] if it holds anything but this sweep.
     pub fn open_part(path: &Path, plan: Plan, read: &Provenance) -> Result<Self> {
         let standing = enter(path, &plan, read, Share::Parts)?;
         let folder = SweepFolder { path: path.to_path_buf(), plan, changed: None, _standing: standing };
@@ -73,9 +74,6 @@ impl SweepFolder {
     }
 
     /// Opens the folder of a sweep that was begun.
-    ///
-    /// # Errors
-    /// [`Error::Input`] if it is none.
     pub fn existing(path: &Path) -> Result<Self> {
         let is_sweep = Marker::read(path).is_some_and(|marker| marker.kind == RunKind::Sweep);
         let plan = if is_sweep { read_plan(path)? } else { None };
@@ -104,8 +102,8 @@ impl SweepFolder {
         };
         let goes = |number: &usize| !stays(*number) && self.outcome_in(earlier, *number).is_some();
         let lost: Vec<String> = (1..=earlier.cases.len()).filter(goes).map(label).collect();
-        let named = lost[..lost.len().min(super::NAMED)].join(", ");
-        let more = if lost.len() > super::NAMED { ", ..." } else { "" };
+        let named = lost[..lost.len().min(NAMED)].join(", ");
+        let more = if lost.len() > NAMED { ", ..." } else { "" };
         let all = earlier.cases.len();
         (!lost.is_empty()).then(|| format!("the plan has changed: {} of {all} finished cases go: {named}{more}", lost.len()))
     }
@@ -119,9 +117,6 @@ impl SweepFolder {
     }
 
     /// Puts a case into its place: `make` writes its files and says what came of it.
-    ///
-    /// # Errors
-    /// Files that cannot be written; what `make` fails with.
     pub fn keep(&self, case: &DrawnCase, make: impl FnOnce(&Path) -> Result<Outcome>) -> Result<()> {
         let cases = self.path.join(CASES);
         fs::create_dir_all(&cases).map_err(|error| Error::file(&cases, "cannot create the folder", error))?;
