@@ -88,8 +88,7 @@ fn the_other_examples_keep_their_lives() {
     }
 }
 
-/// Li, Lü, Huang and Yang 2024, section 4.4: the crack turns across the load at once. Its extent is 46 mm after 70 000 to 85 000 cycles in trials with
-/// several kernels, all from a clean cut and with strains as computed.
+/// Li, Lü, Huang and Yang 2024, section 4.4: the crack turns across the load at once.
 #[test]
 fn the_slant_crack_turns_across_the_load() {
     let (_, run) = example(SLANT);
@@ -105,6 +104,12 @@ fn the_slant_crack_turns_across_the_load() {
         let slope = (b.position[1] - a.position[1]) / (b.position[0] - a.position[0]);
         assert!(slope.abs() < 0.1, "slope {slope} after 2 mm");
     }
+}
+
+/// Its extent is 46 mm after 70 000 to 85 000 cycles in their trials with several kernels, all from a clean cut and with strains as computed.
+#[test]
+#[ignore = "long: ten seconds"]
+fn the_slant_crack_lives_as_long_as_in_trials() {
     let as_tried = ["fatigue.precrack=none", "fatigue.growth_rate=bond_strain"];
     let file = folder().join(format!("{SLANT}.toml"));
     let case = Case::from_file(&file, &as_tried.map(str::to_owned)).unwrap();

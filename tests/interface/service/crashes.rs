@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use tempfile::tempdir;
@@ -20,6 +21,12 @@ pub fn undisturbed(folder: &Path, text: &str) -> Vec<u8> {
     fs::read(folder.join("run/a_n.csv")).unwrap()
 }
 
+/// That of [`SLOW`], made once.
+fn undisturbed_slow() -> Vec<u8> {
+    static CURVE: OnceLock<Vec<u8>> = OnceLock::new();
+    CURVE.get_or_init(|| undisturbed(tempdir().unwrap().path(), SLOW)).clone()
+}
+
 /// Waits for something to become true.
 fn wait(what: &str, is_so: impl Fn() -> bool) {
     let begun = Instant::now();
@@ -33,7 +40,7 @@ const EAGER: [&str; 8] = ["--jobs", "2", "--checkpoint-every", "0", "--lease", "
 
 /// Jobs of two kinds in turn, and their undisturbed curves.
 fn mixed(folder: &Path, count: usize) -> Vec<(&'static str, Vec<u8>)> {
-    let [quick, slow] = [QUICK, SLOW].map(|text| (text, undisturbed(folder, text)));
+    let (quick, slow) = ((QUICK, undisturbed(folder, QUICK)), (SLOW, undisturbed_slow()));
     (0..count).map(|i| if i % 3 == 0 { slow.clone() } else { quick.clone() }).collect()
 }
 
@@ -53,7 +60,7 @@ fn check(service: &Server, addresses: &[String], jobs: &[(&str, Vec<u8>)]) {
 fn a_killed_server_loses_nothing() {
     with_store("killed", |place| {
         let dir = tempdir().unwrap();
-        let jobs = mixed(dir.path(), 4);
+        let jobs = mixed(dir.path(), 3);
         let mut service = Server::start(place, &EAGER);
         let addresses = submit(&service, &jobs);
         let mut noise = Noise::new(7);
@@ -137,7 +144,7 @@ impl Drop for SmallDisk {
 fn a_full_disk_loses_nothing() {
     let Some(disk) = SmallDisk::mounted() else { return };
     let dir = tempdir().unwrap();
-    let jobs = mixed(dir.path(), 4);
+    let jobs = mixed(dir.path(), 3);
     let place = crate::support::server::in_folder(disk.0.path());
     let service = Server::start(&[&place[0], &place[1]], &EAGER);
     let addresses = submit(&service, &jobs);
@@ -163,8 +170,7 @@ fn a_full_disk_loses_nothing() {
 #[test]
 fn another_worker_takes_over() {
     let Some(postgres) = Postgres::start() else { return };
-    let dir = tempdir().unwrap();
-    let curve = undisturbed(dir.path(), SLOW);
+    let curve = undisturbed_slow();
     let url = postgres.database("taken_over");
     let place = ["--database", url.as_str()];
     let service = Server::start(&place, &["--jobs", "0"]);
@@ -215,8 +221,7 @@ fn a_killed_calibration_is_made_again() {
 #[test]
 fn a_worker_that_was_only_slow_is_fenced_off() {
     with_each_store("fenced", |place| {
-        let dir = tempdir().unwrap();
-        let curve = undisturbed(dir.path(), SLOW);
+        let curve = undisturbed_slow();
         let service = Server::start(place, &["--jobs", "0"]);
         let slow = Server::worker(place, &["--jobs", "1", "--lease", "2"]);
         let job = service.submit("predictions", &of("case", SLOW));
@@ -255,7 +260,7 @@ fn stop_between_writings(service: &Server, process: &Server) {
 fn a_database_that_is_gone_for_a_while_loses_nothing() {
     let Some(postgres) = Postgres::start() else { return };
     let dir = tempdir().unwrap();
-    let jobs = mixed(dir.path(), 4);
+    let jobs = mixed(dir.path(), 3);
     let url = postgres.database("gone");
     let service = Server::start(&["--database", &url], &EAGER);
     let addresses = submit(&service, &jobs);
