@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use perilife::cells::{CELLS_MAX, ROWS_MAX, UNPACKED_MAX, defused, field, restored};
 use perilife::measured::{Import, parse, survey};
-use perilife::tables::{Column, csv, frame, parquet, read_parquet};
+use perilife::tables::{csv, frame, parquet, read_parquet};
 use polars::prelude::{AnyValue, Column, DataFrame, DataType, Scalar};
 
 use super::import::workbook;
