@@ -10,7 +10,6 @@
 
 mod crack_faces;
 mod cracked_plate;
-mod cut_cells;
 mod energy_release;
 mod gradient;
 pub mod ring;
