@@ -280,7 +280,7 @@ impl AnyBasis {
         AnyBasis { kind, tips: if enrichment == Enrichment::Intrinsic { axes.to_vec() } else { Vec::new() } }
     }
 
-    /// Shape functions at a point ([`shape_functions`]). Around a tip with an enriched basis they are `R Φ^e + (1 - R) Φ`, R falling
+    /// Shape functions at a point (`shape_functions`). Around a tip with an enriched basis they are `R Φ^e + (1 - R) Φ`, R falling
     /// from 1 to 0 between two and four spacings (Fleming, Chu, Moran and Belytschko 1997, IJNME 40:1483).
     pub fn shape_functions(
         &self,

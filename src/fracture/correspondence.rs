@@ -14,7 +14,7 @@
 //! The energy is `Σ V S:e/2`, to which the control of zero-energy modes adds its own ([`elasticity::Control`]). Linear fields are exact
 //! at every point, those at the rim among them, so there is no surface correction.
 //!
-//! Where broken bonds enter ([`DamageEntry`]) decides what a crack does to the stress beside it. In the influence function
+//! Where broken bonds enter ([`super::scene::DamageEntry`]) decides what a crack does to the stress beside it. In the influence function
 //! (w → μ w, equation 18) K and F forget the broken bonds and the stress is released; force and energy belong together.
 //! In the force alone (T → μ T, equation 16) F goes on to see the crack open, and the stress grows where it should vanish; such
 //! forces have no energy, and that which is reported counts the stress as it stands. Initial cracks are geometry and enter

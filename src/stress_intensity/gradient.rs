@@ -33,12 +33,6 @@ impl TipFrame {
         [v[0] * c + v[1] * s, v[1] * c - v[0] * s]
     }
 
-    /// A vector of the frame in the plate.
-    pub fn in_plate(&self, v: Point) -> Point {
-        let [c, s] = self.ahead;
-        [v[0] * c - v[1] * s, v[0] * s + v[1] * c]
-    }
-
     /// A place of the plate in the frame.
     pub fn local(&self, point: Point) -> Point {
         self.vector([point[0] - self.origin[0], point[1] - self.origin[1]])

@@ -29,8 +29,7 @@
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
-use super::crack_faces::{CrackFaces, continued, faces};
-use super::cut_cells::{Part, cells_along, cells_at, parts};
+use super::crack_faces::{CrackFaces, Part, cells_along, cells_at, continued, faces, parts};
 use super::gradient::{Derivatives, TipFrame, derivatives_at};
 use crate::body::Body;
 use crate::body::boundary::{LoadPiece, load_pieces};

@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use perilife::body::severed::represented_excess;
 use perilife::material::{Material, Plane};
 use perilife::specimen::CrackLine;
-use perilife::stress_intensity::TipFrame;
 use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
 
 use crate::support::plates::{PANEL, case};
@@ -84,13 +83,6 @@ fn the_singular_functions_have_unit_factors() {
             assert!((jump - 1.0).abs() < 1e-12, "{symmetry:?}: {jump}");
         }
     }
-}
-
-#[test]
-fn a_frame_turns_there_and_back() {
-    let frame = TipFrame { origin: [1.0, 2.0], ahead: [0.6, 0.8] };
-    let back = frame.in_plate(frame.vector([0.3, -0.7]));
-    assert!((back[0] - 0.3).abs() < 1e-15 && (back[1] + 0.7).abs() < 1e-15);
 }
 
 /// The end that the bonds represent swings about the one asked for: with the period of the lattice for a crack along its rows,

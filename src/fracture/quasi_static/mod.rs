@@ -1,12 +1,11 @@
 //! Scenes without time: one equilibrium, or a load that grows step by step.
 //!
 //! `adaptive_dynamic_relaxation` brings any interaction to rest, step after step, with the displacement of the loads rising
-//! ([`steps`]), or, with `iterations_per_step`, follows the load in damped motion without coming to rest ([`marching`]). `secant` follows the path of springs through falling load and displacement ([`path`]).
+//! ([`steps`]), or, with `iterations_per_step`, follows the load in damped motion without coming to rest ([`steps::march`]). `secant` follows the path of springs through falling load and displacement ([`path`]).
 
 pub mod account;
 pub mod control;
 pub mod equilibrium;
-pub mod marching;
 pub mod path;
 pub mod relaxation;
 pub mod steps;
@@ -55,7 +54,7 @@ pub fn run(
     };
     let walked = match (scene.model.solver, iterations) {
         (SceneSolver::AdaptiveDynamicRelaxation, Some(iterations)) => {
-            marching::follow(&full, [steps, iterations], interaction, bonds, &mut course)?
+            steps::march(&full, [steps, iterations], interaction, bonds, &mut course)?
         }
         (SceneSolver::AdaptiveDynamicRelaxation, None) => {
             steps::follow(&full, steps, &relaxation(scene), interaction, bonds, &mut course)?
