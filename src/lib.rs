@@ -70,8 +70,6 @@ pub mod predict;
 pub mod fracture;
 pub mod calibration;
 pub mod verify;
-pub mod stability;
-pub mod chart;
 pub mod sweep;
 pub mod report;
 pub mod check;

@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 use crate::error::{Result, input};
 
 /// The committed table.
-const TABLE: &str = include_str!("stability/boundaries.csv");
+const TABLE: &str = include_str!("../data/boundaries.csv");
 /// Its columns.
 const COLUMNS: [&str; 9] = ["sweep", "method", "parameter", "is_safe", "low", "high", "bound_percent", "version", "date"];
 

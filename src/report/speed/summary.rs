@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use super::{Origin, digits, seconds};
-use crate::chart::summary::{Overall, WITHIN_PERCENT, beaten, fastest_within, never_on_front, overall};
-use crate::chart::{Chart, Family, Point};
+use crate::verify::chart::summary::{Overall, WITHIN_PERCENT, beaten, fastest_within, never_on_front, overall};
+use crate::verify::chart::{Chart, Family, Point};
 
 /// The summary.
 pub fn markdown(chart: &Chart, origin: &Origin) -> String {
@@ -35,7 +35,14 @@ pub fn markdown(chart: &Chart, origin: &Origin) -> String {
     if !failed.is_empty() {
         text += "\nWithout a result:\n\n";
         for point in failed {
-            let _ = writeln!(text, "- {}, {}: {}: {}", point.scene.name, point.choice.name(), point.status, point.reason);
+            let _ = writeln!(
+                text,
+                "- {}, {}: {}: {}",
+                point.panel.name,
+                point.choice.name(),
+                point.status(),
+                point.outcome.reason().unwrap_or_default()
+            );
         }
     }
     text += "\nOmissions and tweaking: C and m of the growth law are given, nothing is fitted to a scene. The beam with three holes has points of \
@@ -70,7 +77,7 @@ fn sentences(chart: &Chart) -> Vec<String> {
     let defaults = chart.points.iter().filter(|point| point.choice.is_default() && point.place().is_some()).count();
     let named = losers.iter().map(|beaten| {
         let by = beaten.by.map_or_else(String::new, |by| format!(" by {}", by.choice.name()));
-        format!("{}{by}", beaten.scene.name)
+        format!("{}{by}", beaten.panel.name)
     });
     let named: Vec<String> = named.collect();
     all.push(match named.is_empty() {
@@ -89,11 +96,11 @@ fn sentences(chart: &Chart) -> Vec<String> {
 }
 
 fn default_row(point: &Point) -> String {
-    let run = point.run.as_ref();
+    let run = point.outcome.done();
     format!(
         "| {} | {} | {} | {} | {} | {} | {} |",
-        point.scene.name,
-        run.map_or_else(|| point.status.to_string(), |run| format!("{} %", digits(run.error_percent))),
+        point.panel.name,
+        run.map_or_else(|| point.status().to_string(), |run| format!("{} %", digits(run.error_percent))),
         run.and_then(|run| run.path_rms_mm).map_or_else(String::new, digits),
         seconds(point.wall_s().unwrap_or(f64::NAN)),
         run.map_or_else(String::new, |run| run.solves.to_string()),

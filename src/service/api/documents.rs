@@ -423,7 +423,7 @@ pub fn check(submission: &Submission, kind: JobKind, limits: &Limits) -> Answer<
         }
         JobKind::Chart => {
             let names = submission.options.iter().filter_map(|option| option.strip_prefix("scene=")).map(str::to_owned);
-            Ok(crate::chart::scenes(&names.collect::<Vec<_>>()).map(drop)?)
+            Ok(crate::verify::chart::scenes(&names.collect::<Vec<_>>()).map(drop)?)
         }
     }
 }
