@@ -49,9 +49,6 @@ const RUNS_FILE: &str = "runs.jsonl";
 const LOOK: Duration = Duration::from_millis(2);
 
 /// Runs `perilife chart`.
-///
-/// # Errors
-/// A name that is no scene; a process that cannot be started; files that cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     if args.once {
         return once(args);

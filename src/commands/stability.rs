@@ -27,9 +27,6 @@ pub struct Args {
 }
 
 /// Runs `perilife stability`.
-///
-/// # Errors
-/// A name that is no sweep; files that cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let sweeps = sweeps(&args.names)?;
     // Who names a sweep wants all of it.

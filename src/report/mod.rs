@@ -6,7 +6,6 @@ pub mod catalogue;
 pub mod chart;
 pub mod csv;
 pub mod damage;
-pub mod disc;
 pub mod fit;
 pub mod fit_use;
 pub mod law_fit;

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::csv::number;
 use super::time;
 use crate::cells::field;
+use crate::limits;
 use crate::verify::stability::Record;
 
 /// One record as a line on the console.
@@ -65,7 +66,7 @@ pub fn csv(records: &[Record]) -> String {
 pub fn boundaries(records: &[Record]) -> String {
     let now = time::now();
     let date = now.split('T').next().unwrap_or_default();
-    let mut text = "sweep,method,parameter,is_safe,low,high,bound_percent,version,date\n".to_owned();
+    let mut text = format!("{}\n", limits::COLUMNS);
     for record in records {
         let [low, high] = record.ends.map(|end| end.map_or_else(String::new, short));
         let sweep = record.sweep;

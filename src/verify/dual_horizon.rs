@@ -1,7 +1,7 @@
 //! Points of several levels: what the dual horizon keeps, and what a change of level does to uniform strain.
 
 use super::table::Table;
-use super::uniform_tension::strip;
+use super::uniform_tension::{rest_within_rim, steel, strip};
 use crate::bond_law::stencil::poisson_limit;
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::error::Result;
@@ -9,8 +9,6 @@ use crate::fracture;
 use crate::fracture::bonds::BondState;
 use crate::fracture::failure::Failure;
 use crate::fracture::interaction::{Damaging, Interaction};
-use crate::fracture::quasi_static::equilibrium::{Equilibrium, Shape};
-use crate::fracture::quasi_static::full_load::FullLoad;
 use crate::fracture::scene::{Discretisation, RefinedRegion, Refinement, Scene, SceneLaw};
 use crate::fracture::springs::Springs;
 use crate::levels::{Net, NetBond};
@@ -47,7 +45,7 @@ pub fn laws() -> impl Iterator<Item = BondLaw> {
 /// A material that springs can be: E = 200 GPa, plane stress, ν that of the bond-based law or 0.7 of it.
 pub fn material(law: &BondLaw) -> Material {
     let share = if law.kind == BondLawKind::BondBased { 1.0 } else { 0.7 };
-    Material::elastic(200e9, share * poisson_limit(Plane::Stress), Plane::Stress)
+    steel(share * poisson_limit(Plane::Stress))
 }
 
 /// A plate that nothing loads or breaks, on a dual horizon with finer points in these regions.
@@ -118,16 +116,11 @@ pub fn patch(law: BondLaw) -> Result<Patch> {
         let rim = x[0].abs() > 44.0 * MM || x[1].abs() > 24.0 * MM;
         (held[n * i], held[n * i + 1]) = (rim, rim);
     }
-    let motion = exact.iter().zip(&held).map(|(u, held)| if *held { *u } else { 0.0 }).collect();
-    let full = FullLoad { motion, external: vec![0.0; size], held, pins: Vec::new() };
-    let mut bonds = BondState::new(&net, &vec![true; net.len()]);
-    let mut shape = Shape { u: vec![0.0; size], force: vec![0.0; size], strain: 0.0 };
-    Equilibrium::new(&net, &[], &full)?.solve(&mut bonds, &mut shape)?;
-    let u = &shape.u;
+    let u = rest_within_rim(&net, &exact, held.clone())?;
     let off = u.chunks_exact(n).zip(exact.chunks_exact(n)).fold(0.0, |m: f64, (a, b)| m.max((a[0] - b[0]).abs()));
     let between = |bond: &NetBond| {
         let (a, b) = (bond.from as usize, bond.to as usize);
-        let free = !full.held[n * a] && !full.held[n * b];
+        let free = !held[n * a] && !held[n * b];
         let neighbours = free && bond.normal[1].abs() < 1e-9 && bond.length < 1.01 * net.spacings[a];
         neighbours.then(|| (u[n * b] - u[n * a]) / (net.positions[b][0] - net.positions[a][0]) / STRAIN)
     };

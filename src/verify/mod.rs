@@ -95,9 +95,6 @@ pub const TOPICS: &[Topic] = &[
 ];
 
 /// The topics of these names, all where no name is given.
-///
-/// # Errors
-/// A name that no topic bears.
 pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
     chosen(TOPICS, |topic| topic.name, names, "NAME", "is not a verification topic")
 }

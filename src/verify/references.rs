@@ -154,9 +154,6 @@ pub fn largest(errors: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// Curves of all tips of a table `cycles, tip, x_mm, y_mm, ...`.
-///
-/// # Errors
-/// A line that holds no such numbers.
 pub fn tips_of_table(text: &str) -> Result<Vec<Curve>> {
     let mut tips: Vec<Curve> = Vec::new();
     for line in text.lines().skip(1) {
@@ -174,9 +171,6 @@ pub fn tips_of_table(text: &str) -> Result<Vec<Curve>> {
 
 impl Reference {
     /// The reference of a name.
-    ///
-    /// # Errors
-    /// A name that none has.
     pub fn named(name: &str) -> Result<&'static Reference> {
         let found = REFERENCES.iter().find(|reference| reference.name == name);
         found.ok_or_else(|| Error::Mechanics(format!("no reference {name}")))
@@ -196,9 +190,6 @@ impl Reference {
     }
 
     /// K_I and K_II of its first tip at the start, MPa√m.
-    ///
-    /// # Errors
-    /// A table without a first row.
     pub fn initial_factors(&self) -> Result<[f64; 2]> {
         let fields = self.files[1].lines().nth(1).map(|line| line.split(',').skip(4).map(str::parse).collect::<Vec<_>>());
         match fields.as_deref() {

@@ -223,9 +223,6 @@ pub fn tips(case: &Case) -> Result<Vec<TipRecord>> {
 }
 
 /// K_I and K_II of one of the initial tips, Pa√m.
-///
-/// # Errors
-/// A tip at which nothing was read.
 pub fn factors(case: &Case, tip: usize) -> Result<[f64; 2]> {
     let found = tips(case)?.get(tip).and_then(|tip| tip.factors);
     found.ok_or_else(|| Error::Mechanics(format!("tip {tip} has no K")))

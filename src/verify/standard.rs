@@ -69,9 +69,6 @@ impl Standard {
     }
 
     /// The life of a run over that by quadrature with the same keys and K of finite elements.
-    ///
-    /// # Errors
-    /// A run that ends before the last length.
     pub fn over_quadrature(&self, run: &Prediction, set: &[String]) -> Result<f64> {
         if run.stop != StopReason::CrackLengthReached {
             return Err(Error::Mechanics(format!("{} ended before its last length: {}", self.name, run.stop)));
@@ -80,9 +77,6 @@ impl Standard {
     }
 
     /// The largest error of the cycles of a run at shares of the growth, percent, against quadrature.
-    ///
-    /// # Errors
-    /// A run that ends before one of these lengths.
     pub fn largest_error(&self, run: &Prediction, shares: &[f64]) -> Result<f64> {
         let [from, to] = self.range;
         let lengths: Vec<f64> = [0.0].iter().chain(shares).map(|share| from + share * (to - from)).collect();

@@ -1,7 +1,7 @@
 //! The committed boundaries are those of this program: a fresh quick run finds them again.
 
 use perilife::limits;
-use perilife::stability::{Effort, run, sweeps};
+use perilife::verify::stability::{Effort, run, sweeps};
 
 /// Sweeps that take seconds, of several methods each.
 const SWEEPS: [&str; 5] = ["crack_length", "ligament", "density_factor", "influence_radius", "time_step"];

@@ -139,11 +139,9 @@ fn wrong_refinements_are_refused() {
         assert_eq!(error.exit_code(), 2, "{error}");
         assert!(error.to_string().contains(words), "{error}");
     }
-    let mut scene =
+    let scene =
         plate(PLAIN, BondLaw { surface_correction: SurfaceCorrection::Balanced, ..PUBLISHED }, 2e-3, &[(around(5e-3), 1)]);
     assert!(fracture::build(&scene).is_ok());
-    scene.model.arrangement = Discretisation::VariableHorizon;
-    assert!(fracture::build(&scene).unwrap_err().to_string().contains("balanced"));
 }
 
 /// Regions two levels deep get a ring between, so that no horizon reaches over more than one level; it is said.

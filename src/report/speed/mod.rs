@@ -14,7 +14,7 @@ use crate::verify::chart::run::Model;
 use crate::verify::chart::{Chart, Point};
 
 pub use picture::svg;
-pub use summary::markdown;
+pub use summary::{beaten, fastest_within, markdown, never_on_front};
 
 /// Names of the files of a chart.
 pub const FILES: [&str; 3] = ["chart.csv", "chart.svg", "summary.md"];

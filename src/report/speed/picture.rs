@@ -34,9 +34,6 @@ const DEFAULT: RGBColor = RGBColor(242, 193, 78);
 const SCATTER: RGBColor = RGBColor(122, 83, 0);
 
 /// The picture.
-///
-/// # Errors
-/// None that a string can have; the library's type of error is passed on.
 pub fn svg(chart: &Chart, origin: &Origin) -> Result<String> {
     let scenes = chart.scenes();
     let columns = scenes.len().clamp(1, COLUMNS);

@@ -7,9 +7,6 @@
 pub mod choice;
 pub mod run;
 pub mod schedule;
-pub mod summary;
-
-use pulp::{Simd, WithSimd};
 
 pub use choice::{Choice, Family};
 pub use run::Run;
@@ -52,9 +49,6 @@ pub static SCENES: [Panel; 12] = [
 ];
 
 /// The scenes of these names, all where no name is given.
-///
-/// # Errors
-/// A name that no scene bears.
 pub fn scenes(names: &[String]) -> Result<Vec<&'static Panel>> {
     chosen(&SCENES, |panel| panel.name, names, "SCENE", "is not a scene of the chart")
 }
@@ -198,30 +192,26 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
-/// Program, threads and vector units of a chart.
+/// Program, threads and vector units that a chart was measured with.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
     /// Version of the program.
     pub version: &'static str,
     /// Threads of the solvers.
     pub threads: usize,
-    /// Bits of the widest vectors that the kernels may use, chosen when they run.
-    pub simd_bits: usize,
-    /// Instruction set of these vectors.
+    /// Instruction set of the vectors that the kernels use, chosen when they run.
     pub instruction_set: String,
 }
 
 impl Machine {
     /// The machine at hand.
     pub fn here() -> Self {
-        let arch = pulp::Arch::new();
         // The name of the variant, without what it holds.
-        let name = format!("{arch:?}");
+        let name = format!("{:?}", pulp::Arch::new());
         let instruction_set = name.split(['(', ' ']).next().unwrap_or_default().to_owned();
         Machine {
             version: env!("CARGO_PKG_VERSION"),
             threads: rayon::current_num_threads(),
-            simd_bits: 64 * arch.dispatch(Lanes),
             instruction_set: format!("{} {instruction_set}", std::env::consts::ARCH),
         }
     }
@@ -229,18 +219,7 @@ impl Machine {
 
 impl std::fmt::Display for Machine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Machine { version, threads, simd_bits, instruction_set } = self;
-        write!(f, "perilife {version}, {threads} threads, vectors of {simd_bits} bits ({instruction_set})")
-    }
-}
-
-/// Doubles in a vector.
-struct Lanes;
-
-impl WithSimd for Lanes {
-    type Output = usize;
-
-    fn with_simd<S: Simd>(self, _: S) -> usize {
-        S::F64_LANES
+        let Machine { version, threads, instruction_set } = self;
+        write!(f, "perilife {version}, {threads} threads, {instruction_set}")
     }
 }

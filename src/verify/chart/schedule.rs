@@ -108,9 +108,6 @@ impl Measuring<'_> {
 }
 
 /// Measures the choices of these scenes; runs that are `known` from an earlier call are not made again.
-///
-/// # Errors
-/// A process that cannot be started; what `keep` fails with.
 pub fn measure(
     scenes: &[&'static Panel],
     effort: Effort,

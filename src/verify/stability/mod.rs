@@ -181,9 +181,6 @@ impl Effort {
 }
 
 /// The sweeps of these names, all where no name is given.
-///
-/// # Errors
-/// A name that no sweep bears.
 pub fn sweeps(names: &[String]) -> Result<Vec<&'static Sweep>> {
     chosen(&SWEEPS, |sweep| sweep.name, names, "NAME", "is not a stability sweep")
 }
