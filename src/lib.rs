@@ -71,8 +71,6 @@ pub mod predict;
 pub mod fracture;
 pub mod calibration;
 pub mod verify;
-pub mod stability;
-pub mod chart;
 pub mod sweep;
 pub mod report;
 pub mod runner;

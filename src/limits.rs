@@ -8,9 +8,9 @@ use std::sync::OnceLock;
 use crate::error::{Result, input};
 
 /// The committed table.
-const TABLE: &str = include_str!("stability/boundaries.csv");
+const TABLE: &str = include_str!("../data/boundaries.csv");
 /// Its columns.
-const COLUMNS: [&str; 9] = ["sweep", "method", "parameter", "is_safe", "low", "high", "bound_percent", "version", "date"];
+pub const COLUMNS: &str = "sweep,method,parameter,is_safe,low,high,bound_percent,version,date";
 
 /// The safe range of a method over one parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,47 +41,25 @@ impl Limit {
     }
 }
 
-/// Reads a table of limits.
-///
-/// # Errors
-/// [`crate::Error::Input`]: another header, a row of another number of fields, an end that is no number.
+/// Fields of a row in the order of [`COLUMNS`].
+type Row = (String, String, String, Option<bool>, Option<f64>, Option<f64>, f64, String, String);
+
+/// Reads a table of limits; a header or a row of another form is refused.
 pub fn parse(text: &str) -> Result<Vec<Limit>> {
-    const FILE: &str = "boundaries.csv";
-    let remedy = "write it with `perilife stability --out DIR`";
-    let broken = |value: &str, problem: &str| input(FILE, format!("\"{value}\""), problem, remedy);
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
-    let mut limits = Vec::new();
-    for (line, row) in reader.records().enumerate() {
-        let row = row.map_err(|error| broken(&error.to_string(), "is no row of a table"))?;
-        let fields: Vec<&str> = row.iter().collect();
-        let &[sweep, method, parameter, is_safe, low, high, bound, version, date] = fields.as_slice() else {
-            return Err(broken(&fields.join(","), "has another number of fields"));
-        };
-        if line == 0 {
-            if fields != COLUMNS {
-                return Err(broken(&fields.join(","), "is not the header of a table of boundaries"));
-            }
-            continue;
-        }
-        let number = |text: &str| text.parse::<f64>().map_err(|_| broken(text, "is not a number"));
-        let end = |text: &str| if text.is_empty() { Ok(None) } else { number(text).map(Some) };
-        limits.push(Limit {
-            sweep: sweep.to_owned(),
-            method: method.to_owned(),
-            parameter: parameter.to_owned(),
-            is_safe: match is_safe {
-                "" => None,
-                "true" => Some(true),
-                "false" => Some(false),
-                other => return Err(broken(other, "is neither true nor false")),
-            },
-            ends: [end(low)?, end(high)?],
-            bound_percent: number(bound)?,
-            version: version.to_owned(),
-            date: date.to_owned(),
-        });
+    let broken = |what: &dyn std::fmt::Display, problem: &str| {
+        input("boundaries.csv", format!("\"{what}\""), problem, "write it with `perilife stability --out DIR`")
+    };
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|error| broken(&error, "is no header"))?.iter().collect::<Vec<_>>().join(",");
+    if header != COLUMNS {
+        return Err(broken(&header, "is not the header of a table of boundaries"));
     }
-    Ok(limits)
+    let limit = |row: csv::Result<Row>| {
+        let (sweep, method, parameter, is_safe, low, high, bound_percent, version, date) =
+            row.map_err(|error| broken(&error, "is no row of a table of boundaries"))?;
+        Ok(Limit { sweep, method, parameter, is_safe, ends: [low, high], bound_percent, version, date })
+    };
+    reader.into_deserialize().map(limit).collect()
 }
 
 /// The committed table as text.

@@ -12,12 +12,13 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::signals;
-use crate::chart::schedule::{Effort, Outcome, Record, Request, measure};
-use crate::chart::{self, run, scenes};
 use crate::error::{Error, Result, input, input_missing};
 use crate::input::Provenance;
 use crate::report::output::{Marker, RunKind, Share, StandingFolder};
 use crate::report::speed::{self, Origin, digits, seconds};
+use crate::verify::chart::schedule::{Effort, Record, Request, measure};
+use crate::verify::chart::{Machine, Run, run, scenes};
+use crate::verify::tasks::Outcome;
 
 /// Arguments of `perilife chart`.
 #[derive(Debug, clap::Args)]
@@ -28,7 +29,7 @@ pub struct Args {
     /// Few choices, one run each: under three minutes on two cores
     #[arg(long)]
     pub quick: bool,
-    /// Folder for chart.csv, chart.svg, chart.html and summary.md; a chart that was broken off goes on there
+    /// Folder for chart.csv, chart.svg and summary.md; a chart that was broken off goes on there
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
     /// One run of one scene with the keys of --set: prints its time and error
@@ -48,9 +49,6 @@ const RUNS_FILE: &str = "runs.jsonl";
 const LOOK: Duration = Duration::from_millis(2);
 
 /// Runs `perilife chart`.
-///
-/// # Errors
-/// A name that is no scene; a process that cannot be started; files that cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     if args.once {
         return once(args);
@@ -109,17 +107,9 @@ fn line(record: &Record) -> String {
         }
         Outcome::Refused(reason) => format!("refused: {reason}"),
         Outcome::Failed(reason) => format!("failed: {reason}"),
-        Outcome::Stopped(limit) => format!("stopped after {limit} s"),
+        Outcome::Stopped(reason) => format!("stopped: {reason}"),
     };
     format!("  {:<20} {told}  {keys}", record.request.scene)
-}
-
-/// Answer of a process to its request.
-#[derive(Serialize, Deserialize)]
-enum Answer {
-    Done(chart::Run),
-    Refused(String),
-    Failed(String),
 }
 
 /// One run in this process, printed.
@@ -127,31 +117,26 @@ fn once(args: &Args) -> Result<()> {
     let [name] = args.names.as_slice() else {
         return Err(input_missing("SCENE", "is not one scene, and --once runs one".to_owned(), "name one scene"));
     };
-    let scene = scenes(std::slice::from_ref(name))?[0];
-    let ran = run::once(scene, &args.set);
-    if !args.console.json {
-        let found = ran?;
-        args.console.say(&format!(
-            "{}: error {} % of {}, {}, {} solves, {} MB",
-            scene.name,
-            digits(found.error_percent),
-            scene.quantity,
-            seconds(found.wall_s),
-            found.solves,
-            digits(found.memory_mb)
-        ));
-        return Ok(());
+    let panel = scenes(std::slice::from_ref(name))?[0];
+    let ran = run::once(panel, &args.set);
+    if args.console.json {
+        return args.console.object(&json!(Outcome::of(ran)));
     }
-    let answer = match ran {
-        Ok(run) => Answer::Done(run),
-        Err(error @ Error::Input(_)) => Answer::Refused(error.to_string()),
-        Err(error) => Answer::Failed(error.to_string()),
-    };
-    args.console.object(&json!(answer))
+    let found = ran?;
+    args.console.say(&format!(
+        "{}: error {} % of {}, {}, {} solves, {} MB",
+        panel.name,
+        digits(found.error_percent),
+        panel.scene.quantity(),
+        seconds(found.wall_s),
+        found.solves,
+        digits(found.memory_mb)
+    ));
+    Ok(())
 }
 
 /// Starts this program once more for one run, so that memory and caches are that run's alone.
-fn in_own_process(request: &Request, limit_s: f64) -> Result<Outcome> {
+fn in_own_process(request: &Request, limit_s: f64) -> Result<Outcome<Run>> {
     let failed = |source| Error::file(Path::new("perilife"), "cannot start a process of its own", source);
     let program = std::env::current_exe().map_err(failed)?;
     let mut answer = tempfile::tempfile().map_err(failed)?;
@@ -169,18 +154,14 @@ fn in_own_process(request: &Request, limit_s: f64) -> Result<Outcome> {
         }
         if started.elapsed().as_secs_f64() > limit_s {
             child.kill().and_then(|()| child.wait()).map_err(failed)?;
-            return Ok(Outcome::Stopped(limit_s));
+            return Ok(Outcome::Stopped(format!("not done after {limit_s:.0} s")));
         }
         thread::sleep(LOOK);
     };
     let mut text = String::new();
     std::io::Seek::rewind(&mut answer).and_then(|()| std::io::Read::read_to_string(&mut answer, &mut text)).map_err(failed)?;
-    Ok(match serde_json::from_str(&text) {
-        Ok(Answer::Done(run)) => Outcome::Done(run),
-        Ok(Answer::Refused(reason)) => Outcome::Refused(reason),
-        Ok(Answer::Failed(reason)) => Outcome::Failed(reason),
-        Err(_) => Outcome::Failed(format!("its process ended without an answer: {status}")),
-    })
+    let ended = || Outcome::Failed(format!("its process ended without an answer: {status}"));
+    Ok(serde_json::from_str(&text).unwrap_or_else(|_| ended()))
 }
 
 /// The folder of a chart: it keeps every run, which is how a chart that was broken off goes on.
@@ -200,7 +181,7 @@ struct Header {
 
 impl Header {
     fn here() -> Header {
-        let machine = chart::Machine::here();
+        let machine = Machine::here();
         Header { version: machine.version.to_owned(), instruction_set: machine.instruction_set, threads: machine.threads }
     }
 }

@@ -6,8 +6,8 @@ use super::console::Console;
 use crate::error::Result;
 use crate::report::output::{OutputFolder, RunKind, write_file};
 use crate::report::stability as tables;
-use crate::report::{stability_map, stability_picture};
-use crate::stability::{self, Effort, SLOW, sweeps};
+use crate::report::stability_picture;
+use crate::verify::stability::{self, Effort, SLOW, sweeps};
 
 /// Arguments of `perilife stability`.
 #[derive(Debug, clap::Args)]
@@ -27,9 +27,6 @@ pub struct Args {
 }
 
 /// Runs `perilife stability`.
-///
-/// # Errors
-/// A name that is no sweep; files that cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let sweeps = sweeps(&args.names)?;
     // Who names a sweep wants all of it.
@@ -52,7 +49,7 @@ pub fn run(args: &Args) -> Result<()> {
                 let of_sweep: Vec<_> = records.iter().filter(|record| record.sweep.name == sweep.name).collect();
                 stability_picture::sweep(&path.join(format!("{}.svg", sweep.name)), sweep, &of_sweep)?;
             }
-            stability_map::overview(&path.join("stability.svg"), &records)
+            stability_picture::overview(&path.join("stability.svg"), &records)
         })?;
         drop(folder.finish()?);
     }

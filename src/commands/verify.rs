@@ -7,7 +7,6 @@ use serde_json::json;
 use super::console::Console;
 use crate::error::{Error, Result};
 use crate::input::Provenance;
-use crate::report::disc::springs_chart;
 use crate::report::output::{OutputFile, OutputFolder, RunKind, Sort, write_file};
 use crate::report::verification;
 use crate::verify::{self, topics};
@@ -18,7 +17,7 @@ pub struct Args {
     /// Topics to verify; all where none is given (`perilife list` names them)
     #[arg(value_name = "NAME")]
     pub names: Vec<String>,
-    /// Folder for verify.csv, verify.json, verify.md and charts
+    /// Folder for verify.csv, verify.json and verify.md
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
     /// File for the table of every topic as Markdown, without wall times
@@ -49,9 +48,7 @@ pub fn run(args: &Args) -> Result<()> {
         folder.fill(|path| {
             write_file(&path.join("verify.csv"), verification::csv(&rows).as_bytes())?;
             write_file(&path.join("verify.json"), format!("{object:#}\n").as_bytes())?;
-            write_file(&path.join("verify.md"), verification::markdown(&topics, &rows).as_bytes())?;
-            let has_disc = topics.iter().any(|topic| topic.name == "pbx_disc");
-            if has_disc { springs_chart(&path.join("springs_on_disc.svg")) } else { Ok(()) }
+            write_file(&path.join("verify.md"), verification::markdown(&topics, &rows).as_bytes())
         })?;
         drop(folder.finish()?);
     }

@@ -46,7 +46,8 @@ impl Axis {
         Self::logarithmic_between(low / room, high * room)
     }
 
-    fn logarithmic_between(low: f64, high: f64) -> Axis {
+    /// Logarithmic axis from one value to another.
+    pub fn logarithmic_between(low: f64, high: f64) -> Axis {
         let decades = (high / low).log10();
         let multiples: &[f64] = match decades {
             d if d > 3.0 => &[1.0],

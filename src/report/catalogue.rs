@@ -10,7 +10,6 @@ use crate::calibration::rates::RateMethod;
 use crate::case::TableEnds;
 use crate::case::record::Estimate;
 use crate::case::{Failure, Method};
-use crate::chart::{Family, SCENES, Status};
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
@@ -27,9 +26,10 @@ use crate::predict::StopReason;
 use crate::predict::tip_factors::StressIntensityMethod;
 use crate::solver::{SolverKind, SolverUsed, Symmetry};
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
-use crate::stability::SWEEPS;
 use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
-use crate::verify::all_topics;
+use crate::verify::TOPICS;
+use crate::verify::chart::{Family, SCENES, Status};
+use crate::verify::stability::SWEEPS;
 
 /// Every line, in the order of an input file: key, name, meaning.
 pub fn lines() -> Vec<(String, String, String)> {
@@ -99,7 +99,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.extend(of_calibration.into_iter().flatten().map(words));
     all.extend(of_sweeps.into_iter().flatten().map(words));
     all.extend(of_the_tips.into_iter().map(words));
-    all.extend(all_topics().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
+    all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
     all.extend(SCENES.iter().map(|scene| ("chart SCENE".to_owned(), scene.name.to_owned(), scene.about.to_owned())));
     all.extend([Family::lines(), Status::lines()].into_iter().flatten().map(words));
     all.extend(SWEEPS.iter().map(|sweep| ("stability NAME".to_owned(), sweep.name.to_owned(), sweep.about.to_owned())));

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::text_anchor::HPos;
 
 use super::axis::Axis;
-use super::output::write_file;
-use crate::error::{Error, Result};
+use super::plot::{Area, COLOURS, Drawn, Frame, INK, Layout, dashes, frame, line, px, save, stroke, words};
+use crate::error::Result;
 
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,115 +73,50 @@ fn values(series: &[Series], pick: impl Fn(&(f64, f64)) -> f64) -> impl Iterator
         .into_iter()
 }
 
-/// Size of a chart, px.
+/// Size of a chart, px, and how its frame is laid out.
 const SIZE: (u32, u32) = (900, 600);
-/// The chart library places everything on whole pixels. Drawing four times as large and shrinking by the view box keeps
-/// flat curves smooth.
-pub(super) const FINE: u32 = 4;
-/// Colours that differ in lightness too (Okabe and Ito 2008, safe for colour-blind readers); black is for measured points.
-pub(super) const COLOURS: [RGBColor; 6] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-];
-pub(super) const INK: RGBColor = RGBColor(40, 40, 40);
+const LAYOUT: Layout = Layout { margins: [42, 36, 8, 8], labels: [58, 92], fonts: [14, 16] };
 
-pub(super) fn px(length: u32) -> i32 {
-    (length * FINE) as i32
+fn draw(path: &Path, title: &str, axes: [Axis; 2], names: [&str; 2], series: &[Series]) -> Result<()> {
+    save(path, SIZE, |root| {
+        words(root, title, [0.5 * f64::from(SIZE.0), 22.0], 17, (HPos::Center, INK))?;
+        let mut chart = frame(root, &LAYOUT, axes, names)?;
+        let mut colours = COLOURS.iter().cycle();
+        for (row, series) in series.iter().enumerate() {
+            let colour = if series.mark == Mark::Circles { INK } else { colours.next().copied().unwrap_or(INK) };
+            // The sample in the legend stands on the plotting area, whose left edge is margin + label area.
+            sample(root, &mut chart, series, colour, [118.0, 62.0 + 24.0 * row as f64])?;
+        }
+        Ok(())
+    })
 }
 
-pub(super) fn font(size: u32) -> TextStyle<'static> {
-    // The library divides sizes by 1.24 when it writes SVG.
-    ("sans-serif", f64::from(size * FINE) * 1.24).into_font().color(&INK)
-}
-
-fn draw(path: &Path, title: &str, [x, y]: [Axis; 2], names: [&str; 2], series: &[Series]) -> Result<()> {
-    save(path, SIZE, |svg| draw_into(svg, title, [x, y], names, series))
-}
-
-/// Writes what `draw` draws [`FINE`] times as large into a picture of this size.
-pub(super) fn save(
-    path: &Path,
-    (width, height): (u32, u32),
-    draw: impl FnOnce(&mut String) -> std::result::Result<(), Box<dyn std::error::Error>>,
-) -> Result<()> {
-    let mut svg = String::new();
-    // Drawing into a string has no failure of its own; the library's error type still has to be passed on.
-    draw(&mut svg).map_err(|error| Error::file(path, "cannot draw", std::io::Error::other(error.to_string())))?;
-    let large = format!("width=\"{}\" height=\"{}\"", width * FINE, height * FINE);
-    write_file(path, svg.replacen(&large, &format!("width=\"{width}\" height=\"{height}\""), 1).as_bytes())
-}
-
-fn draw_into(
-    svg: &mut String,
-    title: &str,
-    [x, y]: [Axis; 2],
-    [x_name, y_name]: [&str; 2],
-    series: &[Series],
-) -> std::result::Result<(), Box<dyn std::error::Error>> {
-    let root = SVGBackend::with_string(svg, (SIZE.0 * FINE, SIZE.1 * FINE)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let middle = Pos::new(HPos::Center, VPos::Center);
-    root.draw(&Text::new(title.to_owned(), (px(SIZE.0 / 2), px(22)), font(17).pos(middle)))?;
-    let (x_labels, y_labels) = (x.labels(), y.labels());
-    let mut chart = ChartBuilder::on(&root)
-        .margin_top(px(42))
-        .margin_right(px(36))
-        .margin_bottom(px(8))
-        .margin_left(px(8))
-        .x_label_area_size(px(58))
-        .y_label_area_size(px(92))
-        .build_cartesian_2d(x, y)?;
-    let thin = |grey: u8| ShapeStyle::from(&RGBColor(grey, grey, grey)).stroke_width(FINE);
-    chart
-        .configure_mesh()
-        .x_labels(x_labels)
-        .y_labels(y_labels)
-        .bold_line_style(thin(205))
-        .light_line_style(thin(235))
-        .axis_style(ShapeStyle::from(&INK).stroke_width(FINE))
-        .set_all_tick_mark_size(px(5))
-        .label_style(font(14))
-        .axis_desc_style(font(16))
-        .x_desc(x_name)
-        .y_desc(y_name)
-        .draw()?;
-    let mut colours = COLOURS.iter().cycle();
-    for (row, series) in series.iter().enumerate() {
-        let colour = if series.mark == Mark::Circles { INK } else { colours.next().copied().unwrap_or(INK) };
-        let line = ShapeStyle::from(&colour).stroke_width(2 * FINE + FINE / 2);
-        let points = series.points.iter().copied().filter(|(x, y)| x.is_finite() && y.is_finite());
-        // The sample in the legend stands on the plotting area, whose left edge is margin + label area.
-        let height = px(62 + 24 * row as u32);
-        let (left, right) = (px(118), px(150));
-        match series.mark {
-            Mark::Line => {
-                chart.draw_series(LineSeries::new(points, line))?;
-                root.draw(&PathElement::new(vec![(left, height), (right, height)], line))?;
-            }
-            Mark::Dashes => {
-                chart.draw_series(DashedLineSeries::new(points, 9 * FINE, 6 * FINE, line))?;
-                for start in [left, left + px(12), left + px(24)] {
-                    root.draw(&PathElement::new(vec![(start, height), (start + px(8), height)], line))?;
-                }
-            }
-            Mark::Circles => {
-                let style = ShapeStyle::from(&colour).stroke_width(FINE + FINE / 2);
-                chart.draw_series(points.map(|point| Circle::new(point, px(4), style)))?;
-                root.draw(&Circle::new(((left + right) / 2, height), px(4), style))?;
-            }
-            Mark::Dots => {
-                let style = colour.mix(0.55).filled();
-                chart.draw_series(points.map(|point| Circle::new(point, px(2), style)))?;
-                root.draw(&Circle::new(((left + right) / 2, height), px(3), colour.filled()))?;
+/// Draws a series, and a sample of it with its name at a place.
+fn sample(root: &Area<'_>, chart: &mut Frame<'_>, series: &Series, colour: RGBColor, [left, height]: [f64; 2]) -> Drawn {
+    let points = series.points.iter().copied().filter(|(x, y)| x.is_finite() && y.is_finite());
+    let right = left + 32.0;
+    let middle = (px((left + 16.0) as u32), px(height as u32));
+    match series.mark {
+        Mark::Line => {
+            chart.draw_series(LineSeries::new(points, stroke(&colour, 2.5)))?;
+            line(root, &[[left, height], [right, height]], 2.5, &colour)?;
+        }
+        Mark::Dashes => {
+            dashes(chart, points.collect(), stroke(&colour, 2.5))?;
+            for start in [left, left + 12.0, left + 24.0] {
+                line(root, &[[start, height], [start + 8.0, height]], 2.5, &colour)?;
             }
         }
-        let text = Text::new(series.name.clone(), (right + px(10), height), font(15).pos(Pos::new(HPos::Left, VPos::Center)));
-        root.draw(&text)?;
+        Mark::Circles => {
+            let style = stroke(&colour, 1.5);
+            chart.draw_series(points.map(|point| Circle::new(point, px(4), style)))?;
+            root.draw(&Circle::new(middle, px(4), style))?;
+        }
+        Mark::Dots => {
+            let style = colour.mix(0.55).filled();
+            chart.draw_series(points.map(|point| Circle::new(point, px(2), style)))?;
+            root.draw(&Circle::new(middle, px(3), colour.filled()))?;
+        }
     }
-    root.present()?;
-    Ok(())
+    words(root, &series.name, [right + 10.0, height], 15, (HPos::Left, INK))
 }

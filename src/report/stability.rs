@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::csv::number;
 use super::time;
 use crate::cells::field;
-use crate::stability::Record;
+use crate::limits;
+use crate::verify::stability::Record;
 
 /// One record as a line on the console.
 pub fn line(record: &Record) -> String {
@@ -17,7 +18,7 @@ pub fn line(record: &Record) -> String {
 pub fn range(record: &Record) -> String {
     let sweep = record.sweep;
     let unit = if sweep.unit.is_empty() { String::new() } else { format!(" {}", sweep.unit) };
-    let (first, last) = (sweep.values[0], sweep.values[sweep.values.len() - 1]);
+    let [first, last] = sweep.range();
     match (record.is_safe, record.ends) {
         (None, _) => format!("not judged: the usual value {}{unit} took more than its budget", short(sweep.usual)),
         (Some(false), _) => format!("not within {} % at the usual value {}{unit}", sweep.bound_percent, short(sweep.usual)),
@@ -43,14 +44,15 @@ pub fn csv(records: &[Record]) -> String {
     for record in records {
         let sweep = record.sweep;
         for (value, outcome) in &record.points {
-            let (error, reason) = (outcome.error().map_or_else(String::new, number), outcome.reason().unwrap_or_default());
+            let (error, reason) =
+                (outcome.done().map_or_else(String::new, |error| number(*error)), outcome.reason().unwrap_or_default());
             text += &format!(
                 "{},{},{},{},{},{error},{},{},{}\n",
                 sweep.name,
                 field(record.method),
                 field(sweep.parameter),
                 number(*value),
-                outcome.status(sweep.bound_percent).name(),
+                sweep.status(outcome).name(),
                 record.end_beside(*value).map_or_else(String::new, number),
                 field(reason),
                 env!("CARGO_PKG_VERSION"),
@@ -64,7 +66,7 @@ pub fn csv(records: &[Record]) -> String {
 pub fn boundaries(records: &[Record]) -> String {
     let now = time::now();
     let date = now.split('T').next().unwrap_or_default();
-    let mut text = "sweep,method,parameter,is_safe,low,high,bound_percent,version,date\n".to_owned();
+    let mut text = format!("{}\n", limits::COLUMNS);
     for record in records {
         let [low, high] = record.ends.map(|end| end.map_or_else(String::new, short));
         let sweep = record.sweep;
@@ -87,7 +89,7 @@ pub fn object(records: &[Record]) -> Value {
         let sweep = record.sweep;
         let points = record.points.iter().map(|(value, outcome)| {
             json!({
-                "value": value, "status": outcome.status(sweep.bound_percent).name(), "error_percent": outcome.error(),
+                "value": value, "status": sweep.status(outcome).name(), "error_percent": outcome.done(),
                 "reason": outcome.reason(),
             })
         });

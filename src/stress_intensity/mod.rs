@@ -2,7 +2,6 @@
 //! integral over a ring around it ([`ring`]).
 
 mod crack_faces;
-mod cut_cells;
 mod gradient;
 pub mod ring;
 

@@ -1,170 +1,124 @@
-//! Golden lives: a-N figures that anyone can check with a pocket calculator or a closed form.
+//! Golden lives: a-N figures that anyone can check with a pocket calculator or a closed form, by hand calculation and by peridynamics
+//! with the same C and m.
 //!
 //! Units of the constants as in the input: mm/cycle and MPa√m.
 
-use super::scene::case;
+use super::cases::run;
 use super::table::Table;
 use crate::calibration::rates::{RateMethod, rates};
 use crate::error::{Error, Result};
 use crate::measured::MeasuredCurve;
-use crate::predict::{Prediction, Silent, StopReason, predict};
+use crate::predict::{Prediction, StopReason};
 use crate::units::{MM, MM_PER_CYCLE};
 
 /// The panel of Virkler, Hillberry and Goel (1979) with the constants of Kotulski (1998), ln C = -26.155 and m = 2.874 in mm and
 /// MPa√mm.
-pub const PANEL: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 152.4
-length_mm = 300.0
-thickness_mm = 2.54
-crack_length_mm = 9.0
-[material]
-youngs_modulus_gpa = 73.1
-poisson_ratio = 0.33
-[loading]
-stress_range_mpa = 48.28
-stress_ratio = 0.2
-[model]
-method = "handbook"
-[fatigue]
-paris_c_mm_per_cycle = 8.95422e-8
-paris_m = 2.874
-"#;
+const PANEL: &str = "
+    specimen = { kind = 'middle_tension', width_mm = 152.4, length_mm = 300.0, thickness_mm = 2.54, crack_length_mm = 9.0 }
+    loading = { stress_range_mpa = 48.28, stress_ratio = 0.2 }
+    fatigue = { paris_c_mm_per_cycle = 8.95422e-8, paris_m = 2.874 }";
 
 /// A compact specimen of 50 mm.
-pub const COMPACT: &str = r#"
-[specimen]
-kind = "compact_tension"
-width_mm = 50.0
-thickness_mm = 12.5
-crack_length_mm = 12.5
-[material]
-youngs_modulus_gpa = 73.1
-poisson_ratio = 0.33
-[loading]
-force_range_n = 8000.0
-stress_ratio = 0.0
-[model]
-method = "handbook"
-[fatigue]
-paris_c_mm_per_cycle = 1.647547e-8
-paris_m = 3.0
-[stop]
-crack_length_mm = 30.0
-"#;
+const COMPACT: &str = "
+    specimen = { kind = 'compact_tension', width_mm = 50.0, thickness_mm = 12.5, crack_length_mm = 12.5 }
+    loading = { force_range_n = 8000.0, stress_ratio = 0.0 }
+    fatigue = { paris_c_mm_per_cycle = 1.647547e-8, paris_m = 3.0 }
+    stop = { crack_length_mm = 30.0 }";
 
 /// A crack so small in its plate (20 mm in 60 m) that F = 1 to 1e-6.
-const WIDE: &str = r#"
-[specimen]
-kind = "middle_tension"
-width_mm = 60000.0
-length_mm = 100000.0
-thickness_mm = 1.0
-crack_length_mm = 2.0
-[material]
-youngs_modulus_gpa = 73.1
-poisson_ratio = 0.33
-[loading]
-stress_range_mpa = 100.0
-stress_ratio = 0.0
-[model]
-method = "handbook"
-[fatigue]
-paris_c_mm_per_cycle = 1e-7
-paris_m = 2.0
-[stop]
-crack_length_mm = 20.0
-"#;
+const WIDE: &str = "
+    specimen = { kind = 'middle_tension', width_mm = 60000.0, length_mm = 100000.0, thickness_mm = 1.0, crack_length_mm = 2.0 }
+    loading = { stress_range_mpa = 100.0, stress_ratio = 0.0 }
+    fatigue = { paris_c_mm_per_cycle = 1e-7, paris_m = 2.0 }
+    stop = { crack_length_mm = 20.0 }";
 
-/// A life, and where it ends if not at a given length: cycles, crack length in mm.
+/// Material and method of all.
+const REST: &str = "
+    material = { youngs_modulus_gpa = 73.1, poisson_ratio = 0.33 }
+    model = { method = 'handbook' }";
+
+/// A life.
 struct Golden {
     what: &'static str,
     text: &'static str,
-    set: &'static [&'static str],
+    keys: &'static str,
+    /// Spacing of the run by peridynamics, mm.
+    spacing: Option<f64>,
+    /// Cycles.
     life: f64,
-    end: Option<(StopReason, f64)>,
+    /// Why it ends and at which crack length, mm, if not at a given one; the bound of that length by peridynamics, percent.
+    end: Option<(StopReason, f64, f64)>,
     source: &'static str,
 }
 
 const QUADRATURE: &str = "quadrature of the Paris law with the secant formula, independent script";
 
-const GOLDEN: &[Golden] = &[
-    Golden {
-        what: "M(T) W 152.4 mm, range 48.28 MPa, 9 to 49.8 mm",
-        text: PANEL,
-        set: &["stop.crack_length_mm=49.8"],
-        life: 247_247.0,
-        end: None,
-        source: QUADRATURE,
-    },
-    Golden {
-        what: "M(T) W 152.4 mm, range 48.28 MPa, 20 to 49.8 mm",
-        text: PANEL,
-        set: &["specimen.crack_length_mm=20", "stop.crack_length_mm=49.8"],
-        life: 91_814.0,
-        end: None,
-        source: QUADRATURE,
-    },
-    Golden {
-        what: "C(T) W 50 mm, B 12.5 mm, range 8 kN, 12.5 to 30 mm",
-        text: COMPACT,
-        set: &[],
-        life: 127_411.0,
-        end: None,
-        source: "quadrature of the Paris law with the formula of ASTM E647, independent script",
-    },
-    Golden {
-        what: "crack in a plate without end, range 100 MPa, m 2, 2 to 20 mm",
-        text: WIDE,
-        set: &[],
-        life: 732_935.6,
-        end: None,
-        source: "closed form ln(a_end/a_0) / (C Δσ² π)",
-    },
-    Golden {
-        what: "M(T) of yield strength 345 MPa",
-        text: PANEL,
-        set: &["material.yield_strength_mpa=345"],
-        life: 254_287.0,
-        end: Some((StopReason::NetSectionYield, 62.871)),
-        source: "W σ_max / (W - 2a) = yield strength; quadrature up to there",
-    },
-    Golden {
-        what: "M(T) of toughness 40 MPa√m",
-        text: PANEL,
-        set: &["material.yield_strength_mpa=345", "material.toughness_mpa_sqrt_m=40"],
-        life: 251_721.0,
-        end: Some((StopReason::Toughness, 56.154)),
-        source: "K_max by the secant formula = toughness; quadrature up to there",
-    },
+#[rustfmt::skip]
+const GOLDEN: [Golden; 6] = [
+    golden("M(T) W 152.4 mm, range 48.28 MPa, 9 to 49.8 mm", PANEL, "stop.crack_length_mm=49.8",
+        Some(1.0), 247_247.0, None, QUADRATURE),
+    golden("M(T) W 152.4 mm, range 48.28 MPa, 20 to 49.8 mm", PANEL, "specimen.crack_length_mm=20 stop.crack_length_mm=49.8",
+        Some(1.0), 91_814.0, None, QUADRATURE),
+    golden("C(T) W 50 mm, B 12.5 mm, range 8 kN, 12.5 to 30 mm", COMPACT, "",
+        Some(0.5), 127_411.0, None, "quadrature of the Paris law with the formula of ASTM E647, independent script"),
+    golden("crack in a plate without end, range 100 MPa, m 2, 2 to 20 mm", WIDE, "",
+        None, 732_935.6, None, "closed form ln(a_end/a_0) / (C Δσ² π)"),
+    golden("M(T) of yield strength 345 MPa", PANEL, "material.yield_strength_mpa=345",
+        Some(1.0), 254_287.0, Some((StopReason::NetSectionYield, 62.871, 0.1)),
+        "W σ_max / (W - 2a) = yield strength; quadrature up to there"),
+    golden("M(T) of toughness 40 MPa√m", PANEL, "material.yield_strength_mpa=345 material.toughness_mpa_sqrt_m=40",
+        Some(1.0), 251_721.0, Some((StopReason::Toughness, 56.154, 1.0)),
+        "K_max by the secant formula = toughness; quadrature up to there"),
 ];
 
-/// Bound of hand calculation, percent.
+const fn golden(
+    what: &'static str,
+    text: &'static str,
+    keys: &'static str,
+    spacing: Option<f64>,
+    life: f64,
+    end: Option<(StopReason, f64, f64)>,
+    source: &'static str,
+) -> Golden {
+    Golden { what, text, keys, spacing, life, end, source }
+}
+
+/// Bounds of hand calculation and of peridynamics, percent.
 const BOUND: f64 = 0.1;
+const BOUND_ON_POINTS: f64 = 1.0;
 
 /// Golden lives by hand calculation, and rates by the two methods of ASTM E647.
-///
-/// # Errors
-/// As [`predict`]; a life that ends for another reason than it should.
 pub fn by_hand(table: &mut Table) -> Result<()> {
-    for golden in GOLDEN {
-        let run = predict(&case(golden.text, golden.set)?, &Silent)?;
-        table.compare(format!("{}: cycles", golden.what), run.life_cycles(), golden.life, BOUND, golden.source);
-        if let Some((reason, end)) = golden.end {
-            ended_by(&run, reason, golden.what)?;
-            let length = run.crack_length_final() / MM;
-            table.compare(format!("{}: {reason} at a, mm", golden.what), length, end, BOUND, golden.source);
-        }
+    for golden in &GOLDEN {
+        row(table, golden, "", "", [BOUND; 2])?;
     }
     measured_rates(table);
     Ok(())
 }
 
+/// Golden lives by peridynamics.
+pub fn on_points(table: &mut Table) -> Result<()> {
+    for golden in &GOLDEN {
+        let Some(spacing) = golden.spacing else { continue };
+        let bound_of_end = golden.end.map_or(f64::NAN, |end| end.2);
+        let keys = format!("model.method=peridynamics model.spacing_mm={spacing}");
+        row(table, golden, &format!(", {spacing} mm spacing"), &keys, [BOUND_ON_POINTS, bound_of_end])?;
+    }
+    Ok(())
+}
+
+fn row(table: &mut Table, golden: &Golden, how: &str, keys: &str, [of_life, of_end]: [f64; 2]) -> Result<()> {
+    let Golden { what, text, life, end, source, .. } = golden;
+    let run = run(&format!("{text}{REST}"), &format!("{} {keys}", golden.keys))?;
+    ended_by(&run, end.map_or(StopReason::CrackLengthReached, |end| end.0), what)?;
+    table.compare(format!("{what}{how}: cycles"), run.life_cycles(), *life, of_life, source);
+    if let Some((reason, length, _)) = end {
+        table.compare(format!("{what}{how}: {reason} at a, mm"), run.crack_length_final() / MM, *length, of_end, source);
+    }
+    Ok(())
+}
+
 /// Whether a run ended for this reason.
-///
-/// # Errors
-/// It did not.
 pub(super) fn ended_by(run: &Prediction, reason: StopReason, what: &str) -> Result<()> {
     if run.stop == reason {
         return Ok(());

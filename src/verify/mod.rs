@@ -1,40 +1,39 @@
-//! Built-in verification: figures of the program beside those of theory, handbooks and measurements.
+//! The program beside truths that it did not give itself: one judge with three questions.
 //!
-//! A topic is a function that fills a [`Table`] with rows: computed, reference, error, bound, source. Bounds are demands on
-//! the program, not records of what it reaches: a row that misses its bound fails the command, unless it carries the reason of
-//! a known miss and stays within the second bound that comes with it. How many rows of a topic miss is pinned, so that neither a
+//! A [`scene::Scene`] has a case, a truth and the truth's uncertainty, and says how far the case with some keys is from it. [`verify`](rows)
+//! bounds that error (and figures that are no such scene) at the default; [`chart`] sets it beside the time that it costs, over
+//! methods and resolutions; [`stability`] follows it over one parameter until it passes a bound.
+//!
+//! A topic of `perilife verify` is a function that fills a [`Table`] with rows: computed, reference, error, bound, source. Bounds are
+//! demands on the program, not records of what it reaches: a row that misses its bound fails the command, unless it carries the reason
+//! of a known miss and stays within the second bound that comes with it. How many rows of a topic miss is pinned, so that neither a
 //! new miss nor the end of an old one goes unseen.
 
-pub mod biaxial;
 mod bond_strain;
+pub mod cases;
+pub mod chart;
 pub mod collinear;
 pub mod disc;
 pub mod dual_horizon;
-pub mod element_free;
-pub mod golden;
-pub mod golden_peridynamics;
-pub mod lives;
-pub mod measured;
-pub mod paths;
-pub mod poissons_ratio;
+mod factors;
+mod golden;
+mod lives;
+mod measured;
+mod paths;
 pub mod references;
-pub mod resolution;
+mod rims;
 pub mod scene;
+pub mod stability;
 pub mod standard;
-pub mod state_based;
-pub mod static_scenes;
-pub mod steps;
-pub mod stress_intensity;
+mod static_scenes;
 pub mod table;
+pub mod tasks;
 pub mod tension_plate;
 pub mod uniform_tension;
 
-use std::num::NonZero;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-use std::thread;
+use crate::error::Result;
+use tasks::{chosen, side_by_side};
 
-use crate::error::{Result, input};
 pub use table::{KnownMiss, Row, Table};
 
 /// A group of rows that are computed together.
@@ -49,128 +48,66 @@ pub struct Topic {
     pub fill: fn(&mut Table) -> Result<()>,
 }
 
-/// Topics of the default model, in the order in which a life is computed.
-const TOPICS: &[Topic] = &[
-    Topic { name: "tension_plate", about: "displacements of a plate in uniform tension", misses: 2, fill: tension_plate::rows },
-    Topic {
-        name: "static_scenes",
-        about: "scenes without time against uniform tension and shear",
-        misses: 5,
-        fill: static_scenes::rows,
-    },
-    Topic {
-        name: "stress_intensity",
-        about: "K_I and K_II of standard specimens, slanted cracks and two cracks, by every method",
-        misses: 0,
-        fill: stress_intensity::all,
-    },
-    Topic {
-        name: "element_free",
-        about: "stress concentration, K, kinks, lives and paths on nodes without elements",
-        misses: 5,
-        fill: element_free::all,
-    },
-    Topic { name: "golden", about: "golden lives by hand calculation, rates of readings", misses: 0, fill: golden::by_hand },
-    Topic {
-        name: "life",
-        about: "lives of standard specimens by m, bond law and kernel against quadrature",
-        misses: 0,
-        fill: lives::all,
-    },
-    Topic {
-        name: "golden_peridynamics",
-        about: "the golden lives by peridynamics",
-        misses: 0,
-        fill: golden_peridynamics::by_tips,
-    },
-    Topic {
-        name: "poissons_ratio",
-        about: "life at equal K whatever Poisson's ratio and plane state",
-        misses: 1,
-        fill: poissons_ratio::rows,
-    },
-    Topic { name: "spacing", about: "life at every spacing and horizon ratio", misses: 0, fill: resolution::spacing },
-    Topic { name: "orientation", about: "lives and paths on turned lattices", misses: 0, fill: resolution::orientation },
-    Topic { name: "same_plate", about: "one plate drawn, mirrored and scaled", misses: 0, fill: resolution::same_plate },
-    Topic { name: "blocks", about: "life and path over the length of cycle blocks", misses: 0, fill: steps::rows },
-    Topic { name: "biaxial", about: "stress along the crack does not count", misses: 0, fill: biaxial::rows },
-    Topic {
-        name: "paths",
-        about: "first kinks, cracks that join, curved cracks beside finite elements",
-        misses: 3,
-        fill: paths::all,
-    },
-    Topic {
-        name: "measured",
-        about: "the fit to a measured panel, and its C and m by hand calculation in other specimens",
-        misses: 0,
-        fill: measured::all,
-    },
-    Topic {
-        name: "state_based",
-        about: "Poisson's ratios that springs alone cannot have: displacements and K of the state-based law",
-        misses: 0,
-        fill: state_based::rows,
-    },
-    Topic {
-        name: "pbx_disc",
-        about: "correspondence: Brazilian disc between platens against Hondros, springs against zero-energy modes",
-        misses: 3,
-        fill: disc::rows,
-    },
-    Topic {
-        name: "dual_horizon",
-        about: "points of several levels: momentum, ghost forces, uniform strain across a change of level, counts",
-        misses: 3,
-        fill: dual_horizon::rows,
-    },
+const fn topic(name: &'static str, about: &'static str, misses: usize, fill: fn(&mut Table) -> Result<()>) -> Topic {
+    Topic { name, about, misses, fill }
+}
+
+/// All topics, in the order in which a life is computed.
+pub const TOPICS: &[Topic] = &[
+    topic("tension_plate", "displacements of a plate in uniform tension", 2, tension_plate::rows),
+    topic("static_scenes", "scenes without time against uniform tension and shear", 5, static_scenes::rows),
+    topic("stress_concentration", "holes, an elliptical opening and a notch on nodes without elements", 5, rims::rows),
+    topic(
+        "stress_intensity",
+        "K of standard specimens, slanted, edge, stacked and collinear cracks, in bending and beside holes, by every method",
+        0,
+        factors::all,
+    ),
+    topic("golden", "golden lives by hand calculation, rates of readings", 0, golden::by_hand),
+    topic("golden_peridynamics", "the golden lives by peridynamics", 0, golden::on_points),
+    topic("life", "lives of standard specimens by m, bond law, kernel and on nodes against quadrature", 0, lives::standard),
+    topic("poissons_ratio", "life at equal K whatever Poisson's ratio and plane state", 1, lives::poissons_ratio),
+    topic("spacing", "life at every spacing and horizon ratio", 0, lives::spacing),
+    topic("orientation", "lives and paths on turned lattices", 0, lives::orientation),
+    topic("same_plate", "one plate drawn, mirrored and scaled", 0, lives::same_plate),
+    topic("blocks", "life and path over the length of cycle blocks", 0, lives::blocks),
+    topic("biaxial", "stress along the crack does not count", 0, lives::biaxial),
+    topic("paths", "first kinks, cracks that join, curved cracks beside finite elements, on points and on nodes", 3, paths::all),
+    topic("measured", "the fit to a measured panel, and its C and m by hand calculation in other specimens", 0, measured::all),
+    topic(
+        "pbx_disc",
+        "correspondence: Brazilian disc between platens against Hondros, springs against zero-energy modes",
+        3,
+        disc::rows,
+    ),
+    topic(
+        "dual_horizon",
+        "points of several levels in scenes: momentum, uniform strain across a change of level, counts",
+        1,
+        dual_horizon::rows,
+    ),
+    topic(
+        "bond_strain",
+        "fatigue bonds: lives at the rate of K, broken bonds over those that a clean cut severs",
+        0,
+        bond_strain::rows,
+    ),
 ];
 
-/// All topics: lives and paths by K of the tips first, fatigue bonds last.
-pub fn all_topics() -> impl Iterator<Item = &'static Topic> {
-    TOPICS.iter().chain(bond_strain::TOPICS)
-}
-
 /// The topics of these names, all where no name is given.
-///
-/// # Errors
-/// A name that no topic bears.
 pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
-    if names.is_empty() {
-        return Ok(all_topics().collect());
-    }
-    let known = || all_topics().map(|topic| topic.name).collect::<Vec<_>>().join(", ");
-    let find = |name: &String| {
-        all_topics()
-            .find(|topic| topic.name == name)
-            .ok_or_else(|| input("NAME", name, "is not a verification topic", format!("known are {}", known())))
-    };
-    names.iter().map(find).collect()
+    chosen(TOPICS, |topic| topic.name, names, "NAME", "is not a verification topic")
 }
 
-/// Rows of some topics in their order, computed side by side on the processors there are. `done` hears of every topic as it
-/// ends.
+/// Rows of some topics in their order. `done` hears of every topic as it ends.
 pub fn rows(topics: &[&'static Topic], done: &(dyn Fn(&Topic, &[Row]) + Sync)) -> Result<Vec<Row>> {
-    let next = AtomicUsize::new(0);
-    let computed = Mutex::new(Vec::new());
-    let work = || {
-        while let Some((at, topic)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, topics.get(at)?))) {
-            let mut table = Table::new(topic.name);
-            let rows = (topic.fill)(&mut table).map(|()| table.into_rows());
-            rows.iter().for_each(|rows| done(topic, rows));
-            computed.lock().unwrap_or_else(PoisonError::into_inner).push((at, rows));
-        }
-    };
-    let workers = thread::available_parallelism().map_or(1, NonZero::get).min(topics.len());
-    thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(work);
-        }
+    let tables = side_by_side(topics, |topic| {
+        let mut table = Table::new(topic.name);
+        let rows = (topic.fill)(&mut table).map(|()| table.into_rows());
+        rows.iter().for_each(|rows| done(topic, rows));
+        rows
     });
-    let mut computed = computed.into_inner().unwrap_or_else(PoisonError::into_inner);
-    computed.sort_by_key(|(at, _)| *at);
-    let tables: Vec<Vec<Row>> = computed.into_iter().map(|(_, rows)| rows).collect::<Result<_>>()?;
-    Ok(tables.concat())
+    Ok(tables.into_iter().collect::<Result<Vec<Vec<Row>>>>()?.concat())
 }
 
 /// What is wrong with the rows of some topics, a line each: rows that fail, and topics of which another number of rows misses

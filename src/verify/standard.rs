@@ -1,97 +1,83 @@
 //! Standard specimens at default resolution, and their lives by quadrature with K of finite elements.
 
-use super::scene::{MATERIAL_AND_LAW, PULL, case, points};
+use super::cases::{MATERIAL_AND_LAW, case_of, overrides, points};
 use crate::calibration::median::cycles_of_run;
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::predict::{Observer, Prediction, Silent, StopReason, predict};
+use crate::predict::{Prediction, Silent, StopReason, predict};
 use crate::quadrature::integrate;
 use crate::specimen::handbook::handbook;
 use crate::specimen::{LoadMeasure, Specimen};
 use crate::units::{MM, MPA_SQRT_M};
 
-/// K of finite elements: specimen, crack length in mm, K_I in MPa√m at 100 MPa or 10 kN.
-const STANDARD_SPECIMENS: &str = include_str!("../../tests/reference/standard_specimens.csv");
-/// Where the reference of [`Standard::over_quadrature`] comes from.
-pub const ELEMENTS: &str = "quadrature, K of finite elements (tests/reference), 0.05 %";
-
-/// Where the reference of [`Standard::factors_of_elements`] comes from.
-pub const ELEMENTS_OF_K: &str = "finite elements (tests/reference/standard_specimens.csv), 0.05 %";
+/// K of finite elements: specimen, crack length in mm, K_I in MPa√m at 100 MPa or 10 kN. Right to 0.05 % (`tests/reference/README.md`).
+const FACTORS: &str = include_str!("../../data/reference/standard_specimens.csv");
 
 /// A specimen and the growth of its crack.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct Standard {
     /// As ASTM E647 has it.
     pub name: &'static str,
-    text: String,
+    /// Its sections `[specimen]` and `[loading]`.
+    keys: &'static str,
     /// First and last length, mm.
     pub range: [f64; 2],
 }
 
-/// M(T), C(T), SE(T) and DE(T), from a quarter to three quarters of their width about.
-pub fn standard_specimens() -> [Standard; 4] {
-    let pulled =
-        |keys: &str| format!("{keys}\nlength_mm = {}\nthickness_mm = 2\n{PULL}", if keys.contains("single") { 150 } else { 300 });
-    [
-        Standard {
-            name: "M(T)",
-            text: pulled("kind = \"middle_tension\"\nwidth_mm = 100\ncrack_length_mm = 10"),
-            range: [10.0, 38.0],
-        },
-        Standard {
-            name: "C(T)",
-            text: "kind = \"compact_tension\"\nwidth_mm = 50\nthickness_mm = 10\ncrack_length_mm = 15\n[loading]\nforce_max_n = 5000\nstress_ratio = 0.1\n".to_owned(),
-            range: [15.0, 35.0],
-        },
-        Standard {
-            name: "SE(T)",
-            text: pulled("kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 50\ncrack_length_mm = 8"),
-            range: [8.0, 28.0],
-        },
-        Standard {
-            name: "DE(T)",
-            text: pulled("kind = \"double_edge_tension\"\nwidth_mm = 100\ncrack_length_mm = 12"),
-            range: [12.0, 38.0],
-        },
-    ]
-}
+/// M(T), 2a/W 0.2 to 0.76.
+pub const MIDDLE_TENSION: Standard = Standard {
+    name: "M(T)",
+    keys: "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10\n\
+           [loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n",
+    range: [10.0, 38.0],
+};
+/// C(T), a/W 0.3 to 0.7.
+pub const COMPACT_TENSION: Standard = Standard {
+    name: "C(T)",
+    keys: "kind = \"compact_tension\"\nwidth_mm = 50\nthickness_mm = 10\ncrack_length_mm = 15\n\
+           [loading]\nforce_max_n = 5000\nstress_ratio = 0.1\n",
+    range: [15.0, 35.0],
+};
+/// SE(T), a/W 0.16 to 0.56.
+pub const SINGLE_EDGE: Standard = Standard {
+    name: "SE(T)",
+    keys: "kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 50\nlength_mm = 150\nthickness_mm = 2\n\
+           crack_length_mm = 8\n[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n",
+    range: [8.0, 28.0],
+};
+/// DE(T), 2a/W 0.24 to 0.76.
+pub const DOUBLE_EDGE: Standard = Standard {
+    name: "DE(T)",
+    keys: "kind = \"double_edge_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 12\n\
+           [loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n",
+    range: [12.0, 38.0],
+};
+/// All of them.
+pub const STANDARD: [Standard; 4] = [MIDDLE_TENSION, COMPACT_TENSION, SINGLE_EDGE, DOUBLE_EDGE];
 
 impl Standard {
     /// The same with another range of crack lengths, mm.
-    pub fn from_to(mut self, range: [f64; 2]) -> Self {
-        self.range = range;
-        self
+    pub const fn from_to(self, range: [f64; 2]) -> Self {
+        Standard { range, ..self }
     }
 
-    /// Life over that by quadrature of the same law with K of finite elements, other keys set by `section.key=value`.
-    pub fn over_quadrature(&self, set: &[&str]) -> Result<f64> {
-        self.over_quadrature_watched(set, &Silent)
+    /// Its case, other keys set.
+    pub fn case(&self, set: &[String]) -> Result<Case> {
+        let [from, to] = self.range;
+        let range = format!("specimen.crack_length_mm={from} stop.crack_length_mm={to}");
+        case_of(&self.text(), &[&overrides(&range), set].concat())
     }
 
-    /// [`Standard::over_quadrature`] with an observer of the run, which may end it.
-    ///
-    /// # Errors
-    /// As [`predict`]; a run that ends before the last length.
-    pub fn over_quadrature_watched(&self, set: &[&str], observer: &dyn Observer) -> Result<f64> {
-        let run = predict(&self.case(set)?, observer)?;
+    /// The life of a run over that by quadrature with the same keys and K of finite elements.
+    pub fn over_quadrature(&self, run: &Prediction, set: &[String]) -> Result<f64> {
         if run.stop != StopReason::CrackLengthReached {
             return Err(Error::Mechanics(format!("{} ended before its last length: {}", self.name, run.stop)));
         }
         Ok(run.life_cycles() / self.by_quadrature(set, self.range[1])?)
     }
 
-    /// Life to a length, mm, by quadrature with K of finite elements, cycles.
-    fn by_quadrature(&self, set: &[&str], to: f64) -> Result<f64> {
-        let range = [self.range[0], to];
-        let by_hand = self.clone().from_to(range).case(&[set, &["model.method=handbook"]].concat())?;
-        Ok(predict(&by_hand, &Silent)?.life_cycles() * over_handbook(&by_hand, range)?)
-    }
-
-    /// The largest error of the cycles of a run at shares of the growth, percent, against [`Standard::over_quadrature`]'s reference.
-    ///
-    /// # Errors
-    /// A run that ends before one of these lengths.
-    pub fn error_percent(&self, run: &Prediction, shares: &[f64]) -> Result<f64> {
+    /// The largest error of the cycles of a run at shares of the growth, percent, against quadrature.
+    pub fn largest_error(&self, run: &Prediction, shares: &[f64]) -> Result<f64> {
         let [from, to] = self.range;
         let lengths: Vec<f64> = [0.0].iter().chain(shares).map(|share| from + share * (to - from)).collect();
         let cycles = cycles_of_run(&points(run), &lengths.iter().map(|length| length * MM).collect::<Vec<_>>())?;
@@ -103,29 +89,23 @@ impl Standard {
         Ok(largest)
     }
 
-    /// Life, cycles.
-    pub fn life(&self, set: &[&str]) -> Result<f64> {
-        Ok(predict(&self.case(set)?, &Silent)?.life_cycles())
+    /// Life to a length, mm, by quadrature with K of finite elements, cycles.
+    fn by_quadrature(&self, set: &[String], to: f64) -> Result<f64> {
+        let range = [self.range[0], to];
+        let by_hand = self.from_to(range).case(&[set, &overrides("model.method=handbook")].concat())?;
+        Ok(predict(&by_hand, &Silent)?.life_cycles() * over_handbook(&by_hand, range)?)
     }
 
-    /// Crack lengths, mm, with K_I of finite elements under the load of [`Standard::at`], Pa√m.
+    /// Crack lengths, mm, with K_I of finite elements under the load of the case, Pa√m.
     pub fn factors_of_elements(&self) -> Result<Vec<[f64; 2]>> {
         let case = self.case(&[])?;
         let load = case.loading.maximum / load_of_table(&case.specimen);
         Ok(known_factors(case.specimen.kind.name()).map(|[a, k]| [a, k * load]).collect())
     }
 
-    /// The case at a crack length, mm.
-    pub fn at(&self, length: f64, set: &[&str]) -> Result<Case> {
-        // Grown by nothing to speak of.
-        self.clone().from_to([length, 1.001 * length]).case(set)
-    }
-
-    /// Its case, other keys set by `section.key=value`.
-    pub fn case(&self, set: &[&str]) -> Result<Case> {
-        let [from, to] = self.range;
-        let range = [format!("specimen.crack_length_mm={from}"), format!("stop.crack_length_mm={to}")];
-        case(&format!("[specimen]\n{}{MATERIAL_AND_LAW}", self.text), &[&[&*range[0], &*range[1]], set].concat())
+    /// Text of its case.
+    pub fn text(&self) -> String {
+        format!("[specimen]\n{}{MATERIAL_AND_LAW}", self.keys)
     }
 }
 
@@ -136,14 +116,14 @@ fn load_of_table(specimen: &Specimen) -> f64 {
 
 /// Crack lengths, mm, and K_I, Pa√m, of a specimen of the table.
 fn known_factors(name: &str) -> impl Iterator<Item = [f64; 2]> {
-    STANDARD_SPECIMENS
+    FACTORS
         .lines()
         .filter_map(move |line| line.strip_prefix(name)?.strip_prefix(',')?.split_once(','))
         .filter_map(|(a, k)| Some([a.parse().ok()?, k.parse::<f64>().ok()? * MPA_SQRT_M]))
 }
 
 /// Life with K by finite elements over that with the handbook's, between two lengths, mm. Their ratio is taken linear between the
-/// lengths of the table; K of finite elements is right to 0.05 % (`tests/reference/README.md`), the formulas to 0.1 to 1 %.
+/// lengths of the table; the formulas are right to 0.1 to 1 %.
 fn over_handbook(case: &Case, [from, to]: [f64; 2]) -> Result<f64> {
     let specimen = &case.specimen;
     let m = case.paris_law()?.m;

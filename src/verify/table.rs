@@ -2,6 +2,11 @@
 
 use std::time::Instant;
 
+use super::cases::overrides;
+use super::scene::{Scene, percent};
+use crate::error::Result;
+use crate::predict::Silent;
+
 /// One figure beside its reference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
@@ -62,7 +67,15 @@ impl Table {
 
     /// A figure against its reference (not 0); the bound is on `100 |computed / reference - 1|`.
     pub fn compare(&mut self, quantity: impl Into<String>, computed: f64, reference: f64, bound_percent: f64, source: &str) {
-        self.push(quantity.into(), computed, reference, 100.0 * (computed / reference - 1.0), bound_percent, source);
+        self.push(quantity.into(), computed, reference, percent(computed, reference), bound_percent, source);
+    }
+
+    /// A scene with these keys against its truth.
+    pub fn judge(&mut self, quantity: impl Into<String>, scene: &Scene, keys: &str, bound_percent: f64) -> Result<()> {
+        let set = overrides(keys);
+        let found = scene.found(&scene.case(&set)?, &set, &Silent)?;
+        self.compare(quantity, found.computed, found.truth, bound_percent, scene.truth());
+        Ok(())
     }
 
     /// A figure that is itself an error in percent.

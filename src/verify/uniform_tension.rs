@@ -3,6 +3,10 @@
 use crate::body::Body;
 use crate::bond_law::BondLaw;
 use crate::error::Result;
+use crate::fracture::bonds::BondState;
+use crate::fracture::quasi_static::equilibrium;
+use crate::levels::Net;
+use crate::levels::equilibrium::FullLoad;
 use crate::material::{Material, Plane};
 use crate::solver::field::Layout;
 use crate::solver::{Equilibrium, SolverKind, Symmetry};
@@ -83,6 +87,17 @@ pub fn uniform_tension_with(
         }
     }
     Ok(errors)
+}
+
+/// Displacements at rest of a net whose held unknowns have those given.
+pub(super) fn rest_within_rim(net: &Net, given: &[f64], held: Vec<bool>) -> Result<Vec<f64>> {
+    let size = given.len();
+    let motion = given.iter().zip(&held).map(|(u, held)| if *held { *u } else { 0.0 }).collect();
+    let full = FullLoad { motion, external: vec![0.0; size], held, pins: Vec::new() };
+    let mut bonds = BondState::new(net, &vec![true; net.len()]);
+    let mut shape = equilibrium::Shape { u: vec![0.0; size], force: vec![0.0; size], strain: 0.0 };
+    equilibrium::Equilibrium::new(net, &[], &full)?.solve(&mut bonds, &mut shape)?;
+    Ok(shape.u)
 }
 
 /// E = 200 GPa, plane stress.

@@ -8,7 +8,7 @@ use tempfile::tempdir;
 use crate::interface::cli::{assert_refused, perilife, texts};
 
 #[test]
-fn a_quick_scene_leaves_table_picture_page_and_summary() {
+fn a_quick_scene_leaves_table_picture_and_summary() {
     let dir = tempdir().unwrap();
     let call = ["bench", "tension_plate", "--quick", "--json", "--out", "out"];
     let output = perilife(dir.path(), &call);
@@ -36,7 +36,6 @@ fn a_quick_scene_leaves_table_picture_page_and_summary() {
     }
     for (file, words) in [
         ("chart.svg", "plate in uniform tension"),
-        ("chart.html", "perilife chart tension_plate --once"),
         ("summary.md", "# What to use when"),
         ("runs.jsonl", "\"scene\":\"tension_plate\""),
         (".perilife", "chart.svg"),

@@ -1,4 +1,4 @@
-"""Scenes of the reference. `python plates.py [name ...]` grows them and writes NAME.toml and NAME.csv beside this file.
+"""Scenes of the reference. `python plates.py [name ...]` grows them and writes NAME.toml and NAME.csv into data/reference.
 
 Options: --half halves steps and elements and writes to a folder `half`; --shift moves the holes by 0.3 mm down and
 up and writes nothing; --quiet prints the results only.
@@ -15,7 +15,7 @@ import numpy as np
 from fracture_fe import Crack, Plate
 from grow import Law, Run, grow
 
-HERE = Path(__file__).resolve().parent
+HERE = Path(__file__).resolve().parents[2] / "data" / "reference"
 
 
 @dataclass

@@ -8,7 +8,7 @@ import numpy as np
 from fracture_fe import Crack, Plate, analyse
 from verify import pulled
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parents[2] / "data" / "reference"
 
 
 def middle_tension(a):

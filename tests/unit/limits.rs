@@ -5,7 +5,7 @@ use std::path::Path;
 use perilife::case::Case;
 use perilife::fracture::Scene;
 use perilife::limits::{self, Limit};
-use perilife::stability::SWEEPS;
+use perilife::verify::stability::SWEEPS;
 
 /// Relative distance from a boundary at which a case lies clearly on one side.
 const ASIDE: f64 = 0.01;
@@ -15,8 +15,8 @@ const ASIDE: f64 = 0.01;
 fn every_method_has_its_row() {
     let limits = limits::parse(limits::committed()).unwrap();
     let mut known: Vec<(String, String, f64)> = Vec::new();
-    for sweep in SWEEPS {
-        known.extend(sweep.methods.iter().map(|method| (sweep.name.to_owned(), method.name.to_owned(), sweep.bound_percent)));
+    for sweep in &SWEEPS {
+        known.extend(sweep.methods.iter().map(|(method, _)| (sweep.name.to_owned(), (*method).to_owned(), sweep.bound_percent)));
         assert!(sweep.values.windows(2).all(|pair| pair[0] < pair[1]), "{}: values rise", sweep.name);
         assert!(sweep.values.contains(&sweep.usual), "{}: the usual value is run", sweep.name);
     }
@@ -37,11 +37,11 @@ fn a_broken_table_is_refused() {
     let head = text.lines().next().unwrap();
     for (broken, words) in [
         (text.replacen("low", "least", 1), "header"),
-        (format!("{head}\na,b,c,true,1,2,3\n"), "number of fields"),
-        (format!("{head}\na,b,c,true,x,2,3,0.1.0,2026-01-01\n"), "\"x\": is not a number"),
+        (format!("{head}\na,b,c,true,1,2,3\n"), "7 fields"),
+        (format!("{head}\na,b,c,true,x,2,3,0.1.0,2026-01-01\n"), "invalid float"),
     ] {
         let error = limits::parse(&broken).unwrap_err().to_string();
-        assert!(error.contains(words) || error.contains("row"), "{error}");
+        assert!(error.contains(words), "{error}");
     }
 }
 

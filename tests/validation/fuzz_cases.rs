@@ -4,8 +4,9 @@ use std::path::Path;
 
 use perilife::case::Case;
 use perilife::error::Error;
-use perilife::predict::Prediction;
-use perilife::stability::{Budget, Outcome, within};
+use perilife::predict::{Prediction, predict};
+use perilife::verify::stability::{Budget, within};
+use perilife::verify::tasks::Outcome;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
@@ -209,7 +210,7 @@ fn fuzz(seeds: std::ops::Range<u64>) {
         let text = Draw(ChaCha8Rng::seed_from_u64(seed)).case();
         let mut end = None;
         let outcome = within(BUDGET, |run| {
-            let done = Case::from_toml(&text, "fuzz", Path::new("."), &[]).and_then(|case| run.predict(&case));
+            let done = Case::from_toml(&text, "fuzz", Path::new("."), &[]).and_then(|case| predict(&case, run));
             end = Some(match &done {
                 Ok(run) => fault(run).map_or(Ok(None), Err),
                 Err(error) => nameless(error).map_or(Ok(Some(error.to_string())), Err),
@@ -217,8 +218,8 @@ fn fuzz(seeds: std::ops::Range<u64>) {
             Ok(0.0)
         });
         match (outcome, end) {
-            (Outcome::Unfinished(_), _) => cut_short.push(seed),
-            (Outcome::Failed(why), _) => faults.push(format!("seed {seed}: {why}\n{text}")),
+            (Outcome::Stopped(_), _) => cut_short.push(seed),
+            (Outcome::Refused(why) | Outcome::Failed(why), _) => faults.push(format!("seed {seed}: {why}\n{text}")),
             (_, Some(Err(why))) => faults.push(format!("seed {seed}: {why}\n{text}")),
             (_, Some(Ok(None))) => results += 1,
             (_, Some(Ok(Some(why)))) => refused.push(format!("seed {seed}: {why}")),

@@ -12,10 +12,9 @@ use perilife::element_free::solve::solve;
 use perilife::growth::element_free::initial_tips;
 use perilife::material::{Material, Plane};
 use perilife::specimen::{CrackLine, Specimen};
-use perilife::verify::scene::{case, pulled_plate};
+use perilife::verify::cases::{NODES as METHOD, case, pulled_plate};
 use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
 
-const METHOD: &str = "model.method=element_free_galerkin";
 const BASES: [(BasisKind, Enrichment, f64); 4] = [
     (BasisKind::Linear, Enrichment::Tip, 2.5),
     (BasisKind::Linear, Enrichment::None, 2.5),
@@ -53,8 +52,7 @@ fn crowded_plate() -> Case {
          notches = [{ from_mm = [-50, -60], to_mm = [-35, -60], width_mm = 3 }]\n\
          cracks = [{ path_mm = [[-50, 0], [-40, 0], [-34, 5], [-30, 10.5]] }, { from_mm = [28, -30], to_mm = [35, -27] }]",
     );
-    let edges = ["loading.edges=[\"bottom\"]", "supports.top.fix=[\"x\", \"y\"]", METHOD];
-    case(&text, &edges).unwrap()
+    case(&text, &format!("loading.edges=[\"bottom\"] supports.top.fix=[\"x\",\"y\"] {METHOD}")).unwrap()
 }
 
 #[test]
@@ -94,7 +92,7 @@ fn shape_functions_reproduce_linear_fields_beside_cracks_holes_and_corners() {
 #[test]
 fn a_patch_in_uniform_tension_is_in_equilibrium_within_a_thousandth() {
     let text = pulled_plate("width_mm = 50\nlength_mm = 100\ncracks = [{ from_mm = [-25, 0], to_mm = [-15, 0] }]");
-    let mut case = case(&text, &[]).unwrap();
+    let mut case = case(&text, "").unwrap();
     case.specimen.cracks.clear();
     case.specimen.tips.clear();
     let (plate, far) = nodes(&case, 10.0, BASES[0]);
@@ -149,7 +147,7 @@ fn the_integral_reads_the_fields_of_williams() {
 #[test]
 fn near_tip_fields_bring_the_stress_ahead_of_a_tip_that_polynomials_miss() {
     let text = pulled_plate("width_mm = 50\nlength_mm = 50\ncracks = [{ from_mm = [-25, 0], to_mm = [-15, 0] }]");
-    let case = case(&text, &[METHOD]).unwrap();
+    let case = case(&text, METHOD).unwrap();
     let k = 1.488 * case.loading.maximum * (PI * 0.01).sqrt();
     let error = |choice| {
         let (plate, far) = nodes(&case, 20.0, choice);
@@ -170,12 +168,12 @@ fn near_tip_fields_bring_the_stress_ahead_of_a_tip_that_polynomials_miss() {
 #[test]
 fn cracks_under_pressure_have_the_factors_of_the_same_stress_far_away() {
     let plate = "width_mm = 100\nlength_mm = 200\ncracks = [{ from_mm = [-15, -6], to_mm = [15, 6] }]";
-    let pulled = initial_tips(&case(&pulled_plate(plate), &[METHOD]).unwrap()).unwrap();
+    let pulled = initial_tips(&case(&pulled_plate(plate), METHOD).unwrap()).unwrap();
     // Tension along y alone opens and shears a slanted crack: superposed with pressure from all sides, which presses it flat.
-    let all = ["loading.edges=[\"top\", \"bottom\", \"left\", \"right\"]", METHOD];
+    let all = format!("loading.edges=[\"top\",\"bottom\",\"left\",\"right\"] {METHOD}");
     let all_round = initial_tips(&case(&pulled_plate(plate), &all).unwrap()).unwrap();
     let pressed = pulled_plate(plate).replace("stress_max_mpa = 60", "crack_pressure_mpa = 60");
-    let pressed = initial_tips(&case(&pressed, &[METHOD]).unwrap()).unwrap();
+    let pressed = initial_tips(&case(&pressed, METHOD).unwrap()).unwrap();
     let [k_i, k_ii] = pressed[0].factors.unwrap();
     let [wanted, sliding] = all_round[0].factors.unwrap();
     assert!((k_i / wanted - 1.0).abs() < 2e-3 && (k_ii - sliding).abs() < 2e-3 * wanted, "{k_i} {k_ii} for {wanted} {sliding}");

@@ -3,8 +3,84 @@
 use std::fmt::Write as _;
 
 use super::{Origin, digits, seconds};
-use crate::chart::summary::{Overall, WITHIN_PERCENT, beaten, fastest_within, never_on_front, overall};
-use crate::chart::{Chart, Family, Point};
+use crate::calibration::median::median;
+use crate::verify::chart::{Chart, Family, Panel, Point};
+
+/// Errors, percent, for which the fastest choice is told.
+const WITHIN_PERCENT: [f64; 4] = [10.0, 5.0, 2.0, 1.0];
+
+/// A choice over all scenes in which cracks grow and which have it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Overall {
+    /// Its name.
+    pub name: String,
+    /// Scenes with a result.
+    pub done: usize,
+    /// Scenes that have it.
+    pub of: usize,
+    /// Its largest error, percent.
+    pub worst_percent: f64,
+    /// The scene of that error.
+    pub worst_in: &'static str,
+    /// Median of its times, s.
+    pub median_s: f64,
+    /// Scenes where it is on the front.
+    pub on_front: usize,
+}
+
+/// Choices over the scenes in which cracks grow, in their order.
+fn overall(chart: &Chart) -> Vec<Overall> {
+    let growing: Vec<&Point> = chart.points.iter().filter(|point| point.panel.scene.grows()).collect();
+    let mut names: Vec<String> = Vec::new();
+    for point in &growing {
+        let name = point.choice.name();
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names.into_iter().filter_map(|name| of_choice(&growing, name)).collect()
+}
+
+fn of_choice(growing: &[&Point], name: String) -> Option<Overall> {
+    let own: Vec<&&Point> = growing.iter().filter(|point| point.choice.name() == name).collect();
+    let results: Vec<(f64, f64, &'static str)> =
+        own.iter().filter_map(|point| point.place().map(|(time, error)| (time, error, point.panel.name))).collect();
+    let worst = results.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Overall {
+        done: results.len(),
+        of: own.len(),
+        worst_percent: worst.1,
+        worst_in: worst.2,
+        median_s: median(&results.iter().map(|(time, ..)| *time).collect::<Vec<_>>()),
+        on_front: own.iter().filter(|point| point.is_on_front).count(),
+        name,
+    })
+}
+
+/// The choice with the least median time that is within an error in every scene in which cracks grow.
+pub fn fastest_within(chart: &Chart, percent: f64) -> Option<Overall> {
+    let scenes = chart.scenes().into_iter().filter(|panel| panel.scene.grows()).count();
+    let fits = |choice: &Overall| choice.done == scenes && choice.worst_percent <= percent;
+    overall(chart).into_iter().filter(fits).min_by(|a, b| a.median_s.total_cmp(&b.median_s))
+}
+
+/// Scenes whose default is not on the front, each with the point nearest to the truth of those that are faster and nearer.
+pub fn beaten(chart: &Chart) -> Vec<(&'static Panel, Option<&Point>)> {
+    let of_scene = |panel: &'static Panel| {
+        let (time, error) = chart.of(panel).find(|point| point.choice.is_default() && !point.is_on_front)?.place()?;
+        let on_front = chart.of(panel).filter(|point| point.is_on_front).filter_map(|point| Some((point, point.place()?)));
+        let beats = on_front.filter(|(_, place)| place.0 <= time && place.1 <= error);
+        Some((panel, beats.min_by(|a, b| a.1.1.total_cmp(&b.1.1)).map(|(point, _)| point)))
+    };
+    chart.scenes().into_iter().filter_map(of_scene).collect()
+}
+
+/// Families that are on no front though they have results.
+pub fn never_on_front(chart: &Chart) -> Vec<Family> {
+    let of = |family: Family| chart.points.iter().filter(move |point| point.choice.family == family);
+    let never = |family: &Family| of(*family).any(|point| point.place().is_some()) && !of(*family).any(|point| point.is_on_front);
+    Family::ALL.iter().copied().filter(never).collect()
+}
 
 /// The summary.
 pub fn markdown(chart: &Chart, origin: &Origin) -> String {
@@ -35,7 +111,14 @@ pub fn markdown(chart: &Chart, origin: &Origin) -> String {
     if !failed.is_empty() {
         text += "\nWithout a result:\n\n";
         for point in failed {
-            let _ = writeln!(text, "- {}, {}: {}: {}", point.scene.name, point.choice.name(), point.status, point.reason);
+            let _ = writeln!(
+                text,
+                "- {}, {}: {}: {}",
+                point.panel.name,
+                point.choice.name(),
+                point.status(),
+                point.outcome.reason().unwrap_or_default()
+            );
         }
     }
     text += "\nOmissions and tweaking: C and m of the growth law are given, nothing is fitted to a scene. The beam with three holes has points of \
@@ -68,11 +151,10 @@ fn sentences(chart: &Chart) -> Vec<String> {
     }
     let losers = beaten(chart);
     let defaults = chart.points.iter().filter(|point| point.choice.is_default() && point.place().is_some()).count();
-    let named = losers.iter().map(|beaten| {
-        let by = beaten.by.map_or_else(String::new, |by| format!(" by {}", by.choice.name()));
-        format!("{}{by}", beaten.scene.name)
-    });
-    let named: Vec<String> = named.collect();
+    let name = |(panel, by): &(&Panel, Option<&Point>)| {
+        panel.name.to_owned() + &by.map_or_else(String::new, |by| format!(" by {}", by.choice.name()))
+    };
+    let named: Vec<String> = losers.iter().map(name).collect();
     all.push(match named.is_empty() {
         true => format!("The default is on the front in all {defaults} scenes."),
         false => format!(
@@ -89,11 +171,11 @@ fn sentences(chart: &Chart) -> Vec<String> {
 }
 
 fn default_row(point: &Point) -> String {
-    let run = point.run.as_ref();
+    let run = point.outcome.done();
     format!(
         "| {} | {} | {} | {} | {} | {} | {} |",
-        point.scene.name,
-        run.map_or_else(|| point.status.to_string(), |run| format!("{} %", digits(run.error_percent))),
+        point.panel.name,
+        run.map_or_else(|| point.status().to_string(), |run| format!("{} %", digits(run.error_percent))),
         run.and_then(|run| run.path_rms_mm).map_or_else(String::new, digits),
         seconds(point.wall_s().unwrap_or(f64::NAN)),
         run.map_or_else(String::new, |run| run.solves.to_string()),
