@@ -183,7 +183,7 @@ fn first(case: &Case) -> (Vec<u8>, Prediction) {
 /// A service cancels a run and goes on later; what is kept can be older than where it was cancelled.
 #[test]
 fn a_cancelled_run_goes_on() {
-    let case = case(CLAMPED, &[SHORTER, "model.spacing_mm=2", "stop.crack_length_mm=30"]);
+    let case = case(CLAMPED, &[SHORTER, "model.spacing_mm=2"]);
     let whole = predict(&case, &Silent).unwrap();
     let mut checkpoint: Option<Vec<u8>> = None;
     let mut parts = 0;
