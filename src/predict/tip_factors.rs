@@ -2,7 +2,7 @@
 //!
 //! An integral over a ring around the tip, that of the first row of a prediction ([`crate::growth::tip_field`]); the same on a plate of
 //! nodes, which shares nothing with points and bonds ([`crate::element_free`]); and the energy that crack growth releases
-//! ([`energy_release`]), which tells K_I of cracks that open only. A crack cut into bonds reaches up to half a spacing farther or less far
+//! (`energy_release.rs`), which tells K_I of cracks that open only. A crack cut into bonds reaches up to half a spacing farther or less far
 //! than asked ([`crate::body::severed`]); both methods on points therefore look at other lengths, too: K belongs to the requested one.
 //!
 //! Signs, in the frame of a tip (x₁ ahead of the tip, x₂ a quarter turn counter-clockwise from it): K_I > 0 opens the

@@ -66,7 +66,6 @@ const fn plate(old: &'static str, new: &'static str, words: &'static [&'static s
     Bad { good: PLATE, old, new, words }
 }
 
-/// The panel on points of two levels.
 const BAD: &[Bad] = &[
     // Keys, sections, types
     panel("width_mm = 152.4", "widht_mm = 152.4", &[":3:", "specimen.widht_mm", "not a known key", "width_mm"]),

@@ -24,7 +24,7 @@ pub const SOLVERS: &[Bad] = &[
         "spacing_mm = 1\nsolver = \"secant\"",
         &["model.solver", "correspondence", "adaptive_dynamic_relaxation"],
     ),
-    (REFINED, "\"dual_horizon\"", "\"variable_horizon\"", &[":11:", "model.discretisation", "lattice, dual_horizon"]),
+    (REFINED, "\"dual_horizon\"", "\"variable_horizon\"", &[":10:", "model.discretisation", "lattice, dual_horizon"]),
     (THROWN, "spacing_mm = 1", "spacing_mm = 1\nkinematics = \"finite\"", &["model.kinematics", "bond_based"]),
     (
         PULLED,
