@@ -7,7 +7,6 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::console::Console;
@@ -171,26 +170,16 @@ struct RunsFolder {
     standing: StandingFolder,
 }
 
-/// First line of the file of runs: runs of another version or number of threads are not mixed with these.
-#[derive(Serialize, Deserialize, PartialEq)]
-struct Header {
-    version: String,
-    instruction_set: String,
-    threads: usize,
-}
-
-impl Header {
-    fn here() -> Header {
-        let machine = Machine::here();
-        Header { version: machine.version.to_owned(), instruction_set: machine.instruction_set, threads: machine.threads }
-    }
+/// First line of the file of runs: runs of another version, machine or number of threads are not mixed with these.
+fn header() -> String {
+    json!(Machine::here()).to_string()
 }
 
 impl RunsFolder {
     fn open(path: &Path) -> Result<RunsFolder> {
         let files: Vec<&str> = speed::FILES.into_iter().chain([RUNS_FILE]).collect();
         let marker = Marker::listing(RunKind::Chart, &files);
-        let first = format!("{}\n", json!(Header::here())).into_bytes();
+        let first = format!("{}\n", header()).into_bytes();
         let standing = StandingFolder::open(path, &marker, &Provenance::default(), Share::Alone, &[(RUNS_FILE, first)])?;
         Ok(RunsFolder { name: path.to_path_buf(), standing })
     }
@@ -204,8 +193,7 @@ impl RunsFolder {
         let path = self.name.join(RUNS_FILE);
         let text = fs::read_to_string(self.file()).map_err(|error| Error::file(&path, "cannot read", error))?;
         let mut lines = text.lines();
-        let header = lines.next().and_then(|line| serde_json::from_str::<Header>(line).ok());
-        if header != Some(Header::here()) {
+        if lines.next() != Some(header().as_str()) {
             let problem = "holds runs of another version, machine or number of threads";
             return Err(input("--out", self.name.display(), problem, "give another folder, or remove this one yourself"));
         }

@@ -107,44 +107,38 @@ const DIAMETER_MM: f64 = 20.0;
 const PATH_MISSING_MOST: f64 = 0.05;
 
 impl Scene {
-    /// Where the truth comes from.
-    pub fn truth(&self) -> &'static str {
+    /// What its error is of, where its truth comes from, and how far that may be off, percent.
+    fn facts(&self) -> (&'static str, &'static str, f64) {
         match self {
-            Scene::Life(_) => "quadrature, K of finite elements (tests/reference), 0.05 %",
-            Scene::Growth(_) => "quadrature, K of finite elements (tests/reference)",
-            Scene::Plate(_) | Scene::Factors(_) => "finite elements (tests/reference)",
-            Scene::Handbook(_) => "handbook (Tada, 0.1 %)",
-            Scene::AgainstNodes(..) => "the plate on nodes (0.3 %)",
-            Scene::Tip { truth, .. } => truth,
-            Scene::Tension => "u = σ y / E, exact",
-            Scene::Hole => "Howland 1930 (fit of Pilkey and Pilkey 2008)",
-        }
-    }
-
-    /// How far that may be off, percent.
-    pub fn truth_uncertainty_percent(&self) -> f64 {
-        match self {
-            // Three times that of K, since m is 3.
-            Scene::Life(_) | Scene::Growth(_) => 0.15,
+            // The uncertainty is three times that of K, since m is 3.
+            Scene::Life(_) => ("life", "quadrature, K of finite elements (tests/reference), 0.05 %", 0.15),
+            Scene::Growth(_) => ("life", "quadrature, K of finite elements (tests/reference)", 0.15),
             // Halved elements and steps move lives by 0.04 % at most.
-            Scene::Plate(_) => 0.05,
-            Scene::Factors(_) => 0.02,
-            Scene::Handbook(_) | Scene::Tip { .. } => 0.1,
-            Scene::AgainstNodes(..) => 0.3,
-            Scene::Tension => 0.0,
-            Scene::Hole => 0.5,
+            Scene::Plate(_) => ("life", "finite elements (tests/reference)", 0.05),
+            Scene::Factors(_) => ("K, the larger error of K_I and K_II over |K|", "finite elements (tests/reference)", 0.02),
+            Scene::Handbook(_) => ("K_I", "handbook (Tada)", 0.1),
+            Scene::AgainstNodes(..) => ("K_I", "the plate on nodes", 0.3),
+            Scene::Tip { truth, .. } => ("K_I", truth, 0.1),
+            Scene::Tension => ("displacement along the load, largest error of a point over its own", "u = σ y / E, exact", 0.0),
+            Scene::Hole => {
+                ("stress at the side of the hole over that far away", "Howland 1930 (fit of Pilkey and Pilkey 2008)", 0.5)
+            }
         }
     }
 
     /// What its error is of.
     pub fn quantity(&self) -> &'static str {
-        match self {
-            Scene::Life(_) | Scene::Growth(_) | Scene::Plate(_) => "life",
-            Scene::Factors(_) => "K, the larger error of K_I and K_II over |K|",
-            Scene::Handbook(_) | Scene::AgainstNodes(..) | Scene::Tip { .. } => "K_I",
-            Scene::Tension => "displacement along the load, largest error of a point over its own",
-            Scene::Hole => "stress at the side of the hole over that far away",
-        }
+        self.facts().0
+    }
+
+    /// Where the truth comes from.
+    pub fn truth(&self) -> &'static str {
+        self.facts().1
+    }
+
+    /// How far that may be off, percent.
+    pub fn truth_uncertainty_percent(&self) -> f64 {
+        self.facts().2
     }
 
     /// Whether cracks grow in it.

@@ -193,7 +193,7 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
 }
 
 /// Program, threads and vector units that a chart was measured with.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Machine {
     /// Version of the program.
     pub version: &'static str,
