@@ -202,7 +202,7 @@ fn everything_of_the_specimen_is_drawn() {
         "100 mm",
         "200 mm",
         "thickness 2 mm",
-        "between 7 and 70 MPa",
+        "stress 7 to 70 MPa, R = 0.1",
         "held in x and y",
         "diameter 10 mm",
         "slot with tip 2",
