@@ -35,18 +35,15 @@ use checkpoint::Checkpoint;
 use record::Record;
 
 /// Predicts the a-N curve of a case.
-///
-/// # Errors
-/// Wrong input that shows only now (spacing against plate or memory, no fatigue law), or mechanics that fail before there is a curve.
+/// Errors: wrong input that shows only now (spacing against plate or memory, no fatigue law), or mechanics that fail before there
+/// is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
     watched(case, observer, || follow(Record::new(case, observer)))
 }
 
 /// Goes on with a run of a case from a checkpoint of it; gives what [`predict`] gives, bit for bit, its wall time counted from the
 /// start of the first run.
-///
-/// # Errors
-/// As [`predict`]; [`crate::Error::Input`] if the checkpoint is not one of this case.
+/// Errors: as [`predict`]; [`crate::Error::Input`] if the checkpoint is not one of this case.
 pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
     checkpoint.check(case)?;
     watched(case, observer, || follow(Record::new(case, observer).resumed_from(checkpoint)))

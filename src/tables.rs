@@ -109,9 +109,7 @@ pub fn csv(table: &DataFrame) -> Result<Vec<u8>> {
 }
 
 /// Reads the bytes of a Parquet file; `path` is only named in messages.
-///
-/// # Errors
-/// Bytes that are none; a table that would become larger than [`crate::cells`] allows, before it does.
+/// Errors: bytes that are none; a table that would become larger than [`crate::cells`] allows, before it does.
 pub fn read_parquet(bytes: &[u8], path: &Path) -> Result<Cells> {
     let refused = |problem: String, remedy: &str| {
         let (file, remedy) = (Some(path.to_path_buf()), remedy.to_owned());

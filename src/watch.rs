@@ -101,9 +101,7 @@ pub fn with<R>(watch: Option<Arc<Watch>>, work: impl FnOnce() -> R) -> R {
 }
 
 /// Marks a place.
-///
-/// # Errors
-/// [`Error::Mechanics`] if the work is to end.
+/// Errors: [`Error::Mechanics`] if the work is to end.
 pub fn at(stage: Stage, share: f64) -> Result<()> {
     WATCHED_BY.with_borrow(|watch| match watch {
         None => Ok(()),

@@ -117,9 +117,7 @@ impl Fitted<'_> {
 ///
 /// The path of a crack does not depend on C, and that of a single tip not on m either, so one run whose crack is driven by its tip serves
 /// every C and m; A and p stand for them. Tips of unlike K share the growth by m: the run is repeated at the m that was fitted.
-///
-/// # Errors
-/// Mechanics without a result, a window in which the handbook has no K, or a law that no metal has.
+/// Errors: mechanics without a result, a window in which the handbook has no K, or a law that no metal has.
 pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Result<Fit> {
     let fit = watch::with(observer.watch(), || {
         let fit = fit_by_method(calibration, observer);

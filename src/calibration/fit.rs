@@ -87,10 +87,8 @@ pub struct OwnPath {
 }
 
 /// Fits A and p to the pointwise median, and again to each specimen.
-///
-/// # Errors
-/// Curves without common lengths; readings outside the table of ΔK; [`Error::Mechanics`] where the smallest misfit of the median
-/// lies at an end of the exponents searched.
+/// Errors: curves without common lengths; readings outside the table of ΔK; [`Error::Mechanics`] where the smallest misfit of the
+/// median lies at an end of the exponents searched.
 pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let fixed_p = task.fixed_p.map(checked_p).transpose()?;
     let is_fitted = fixed_p.is_none();

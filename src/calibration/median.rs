@@ -127,9 +127,7 @@ fn rises(lengths: &[f64]) -> bool {
 const LENGTH_SLACK: f64 = 1e-9;
 
 /// Cycles from the first of `lengths` (m) to each of them, linear between the points (cycles, crack length in m) of a dense table.
-///
-/// # Errors
-/// A length that the table does not reach.
+/// Errors: a length that the table does not reach.
 pub fn cycles_since_first(table: &[(f64, f64)], lengths: &[f64]) -> Result<Vec<f64>> {
     since_first(table, lengths, |before, share| {
         let [from, to] = [table[before].0, table[before + 1].0];
@@ -139,9 +137,7 @@ pub fn cycles_since_first(table: &[(f64, f64)], lengths: &[f64]) -> Result<Vec<f
 
 /// The same of the rows of a run, by a monotone cubic between them: they lie two to four millimetres apart, and on straight lines
 /// cycles were up to 1 % off.
-///
-/// # Errors
-/// A length that the run does not reach.
+/// Errors: a length that the run does not reach.
 pub fn cycles_of_run(rows: &[(f64, f64)], lengths: &[f64]) -> Result<Vec<f64>> {
     let table = Monotone::new(rows.iter().map(|(cycles, length)| [*length, *cycles]));
     since_first(rows, lengths, |before, share| table.between(before, share))

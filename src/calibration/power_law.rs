@@ -33,17 +33,13 @@ struct Piece {
 
 impl PowerLaw {
     /// Tabulates `delta_k` (Pa√m) between two lengths (m).
-    ///
-    /// # Errors
-    /// A ΔK that is not above 0.
+    /// Errors: a ΔK that is not above 0.
     pub fn new(from: f64, to: f64, delta_k: &dyn Fn(f64) -> f64) -> Result<Self> {
         Self::of_tips(from, to, &|length| vec![delta_k(length)])
     }
 
     /// The same for several tips whose growths add up, each with its own `delta_k` (Pa√m).
-    ///
-    /// # Errors
-    /// A length at which no tip has a ΔK, or a ΔK that is not above 0.
+    /// Errors: a length at which no tip has a ΔK, or a ΔK that is not above 0.
     pub fn of_tips(from: f64, to: f64, delta_k: &dyn Fn(f64) -> Vec<f64>) -> Result<Self> {
         let lengths: Vec<f64> = (0..=INTERVALS).map(|i| from + (to - from) * i as f64 / INTERVALS as f64).collect();
         let in_mpa = |k: f64| k / MPA_SQRT_M;
@@ -119,9 +115,7 @@ impl PowerLaw {
     }
 
     /// A x cycles from the first of `lengths` (m) to each of them.
-    ///
-    /// # Errors
-    /// A length outside the table.
+    /// Errors: a length outside the table.
     pub fn cycles(&self, p: f64, lengths: &[f64]) -> Result<Vec<f64>> {
         cycles_since_first(&self.integral(|tips| 1.0 / tips.iter().map(|k| k.powf(p)).sum::<f64>()), lengths)
     }

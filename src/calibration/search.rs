@@ -142,9 +142,7 @@ const SETTLED: f64 = 1e-7;
 
 /// The curves at the load of the case. Growth by a power p of ΔK takes `(ΔP / ΔP_case)^p` times the cycles at that load; a step that is left
 /// out takes those of the specimen's own fit. p is that of the median itself, which a few rounds find.
-///
-/// # Errors
-/// As the fits of the curves; [`Error::Mechanics`] where p does not settle.
+/// Errors: as the fits of the curves; [`Error::Mechanics`] where p does not settle.
 pub(super) fn at_case_load(
     curves: &[MeasuredCurve],
     criterion: Criterion,

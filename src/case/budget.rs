@@ -228,9 +228,8 @@ impl Budget {
     }
 
     /// Refuses what takes up more than so many bytes of memory.
-    ///
-    /// # Errors
-    /// [`crate::Error::Input`] on `model.spacing_mm` with both figures and a spacing that fits, or on `model.nodes` with such a number.
+    /// Errors: [`crate::Error::Input`] on `model.spacing_mm` with both figures and a spacing that fits, or on `model.nodes` with
+    /// such a number.
     pub fn within(&self, bytes: f64) -> Result<()> {
         if self.bytes <= bytes {
             return Ok(());

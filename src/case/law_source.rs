@@ -37,9 +37,7 @@ impl GivenLaw {
 
 /// The law of the case, of the kind that is asked for or else whose constants are given; `None` where the file gives none at all,
 /// as in a calibration.
-///
-/// # Errors
-/// Two laws, constants of another kind than `growth_law` or than the driver can have.
+/// Errors: two laws, constants of another kind than `growth_law` or than the driver can have.
 pub(super) fn read(
     (keys, fatigue): (&FatigueKeys, &Value),
     (method, settings): (Method, FatigueSettings),
@@ -159,9 +157,7 @@ fn read_record(name: &str, folder: &Folder) -> Result<LawSource> {
 }
 
 /// Reads and checks a `fitted.toml`.
-///
-/// # Errors
-/// A file that cannot be read, or is no such record.
+/// Errors: a file that cannot be read, or is no such record.
 pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
     let document = Document::in_folder(folder, name, &[])?;
     if LawRecord::is_of(&document.table) {
@@ -185,9 +181,7 @@ pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
 
 /// `[fatigue]` with the constants of the record it names, and the record; `None` where it names none, one that does not exist, or one of
 /// A and p.
-///
-/// # Errors
-/// A record that cannot be read, beside constants of a law.
+/// Errors: a record that cannot be read, beside constants of a law.
 pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value, Box<LawRecord>)>> {
     let Some(name) = value_at(fatigue, "fitted").and_then(Value::as_str) else { return Ok(None) };
     // One that cannot be read is refused, or not missed, where records of A and p are.

@@ -134,9 +134,7 @@ pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
 }
 
 /// The spacing resolves crack and plate, and the number of points can be held.
-///
-/// # Errors
-/// `Error::Input` on `model.spacing_mm`.
+/// Errors: `Error::Input` on `model.spacing_mm`.
 pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
     const KEY: &str = "model.spacing_mm";
     let (given, flaw) = (round_mm(spacing), specimen.smallest_flaw());

@@ -43,9 +43,7 @@ pub struct Args {
 }
 
 /// Runs `perilife calibrate`.
-///
-/// # Errors
-/// Wrong input, mechanics without a result, or files that cannot be read or written.
+/// Errors: wrong input, mechanics without a result, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let console = &args.console;
     let document = Document::read(&args.calibration, &args.set)?;

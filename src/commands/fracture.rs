@@ -37,10 +37,8 @@ pub struct Args {
 }
 
 /// Runs `perilife fracture`.
-///
-/// # Errors
-/// Wrong input; files that cannot be read or written; [`Error::Mechanics`] where the scene ended without convergence or blew up,
-/// whose histories are written all the same.
+/// Errors: wrong input; files that cannot be read or written; [`Error::Mechanics`] where the scene ended without convergence or
+/// blew up, whose histories are written all the same.
 pub fn run(args: &Args) -> Result<()> {
     let document = Document::read(&args.case, &args.set)?;
     let task = Task::read(Kind::Scene, &document, &[])?;

@@ -60,9 +60,7 @@ macro_rules! commands {
 
         impl Command {
             /// Runs it.
-            ///
-            /// # Errors
-            /// What the command reports; [`crate::Error::exit_code`] is the exit code of the process.
+            /// Errors: what the command reports; [`crate::Error::exit_code`] is the exit code of the process.
             pub fn run(&self) -> Result<()> {
                 #[allow(unused_doc_comments, reason = "the lines about a subcommand stand at its arm too, as its condition does")]
                 match self { $($(#[$attribute])+ Command::$Name(args) => $module::run(args)),+ }

@@ -29,10 +29,8 @@ pub struct Args {
 }
 
 /// Runs `perilife verify`.
-///
-/// # Errors
-/// A name that is no topic; a row that misses its bound for no known reason or by more than is known; a topic with another number
-/// of misses than is pinned; files that cannot be written.
+/// Errors: a name that is no topic; a row that misses its bound for no known reason or by more than is known; a topic with
+/// another number of misses than is pinned; files that cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let topics = topics(&args.names)?;
     // Before minutes are spent on what cannot be written.

@@ -96,9 +96,7 @@ impl BondStrainState {
 
 impl<'a> BondStrain<'a> {
     /// The plate with its cracks as they are cut, before its first equilibrium; the fatigue law is given the body's horizon, m.
-    ///
-    /// # Errors
-    /// As [`Body::build`]; a crack too short to be grown, cracks that cut the plate in two, no fatigue law.
+    /// Errors: as [`Body::build`]; a crack too short to be grown, cracks that cut the plate in two, no fatigue law.
     pub fn start(case: &'a Case, rates: impl FnOnce(f64) -> Result<BondRates>) -> Result<Self> {
         let start = Precrack::of(case)?;
         let body = case.model.body(&start.specimen, &case.material)?;
@@ -213,9 +211,7 @@ impl<'a> BondStrain<'a> {
 
     /// One cycle block, until the next break, which makes one row; the reason why there is no next one. A block that finds that reason
     /// before anything happens makes no row.
-    ///
-    /// # Errors
-    /// No equilibrium before the block.
+    /// Errors: no equilibrium before the block.
     pub fn next_break(&mut self) -> Result<Option<StopReason>> {
         let body = &self.body.clone();
         let (case, settings) = (self.case, &self.case.fatigue);

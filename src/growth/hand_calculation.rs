@@ -32,9 +32,7 @@ pub struct HandCalculation<'a> {
 
 impl<'a> HandCalculation<'a> {
     /// Growth of the crack of a case of method `handbook`.
-    ///
-    /// # Errors
-    /// No handbook formula.
+    /// Errors: no handbook formula.
     pub fn start(case: &'a Case, law: Box<dyn GrowthLaw>) -> Result<Self> {
         let formula = handbook(&case.specimen)
             .ok_or_else(|| input_missing("model.method", "\"handbook\" has no K(a) for this specimen", "use \"peridynamics\""))?;
@@ -98,9 +96,7 @@ impl<'a> HandCalculation<'a> {
     }
 
     /// The next interval of the curve; the reason why there is none after it.
-    ///
-    /// # Errors
-    /// A growth rate that is no number.
+    /// Errors: a growth rate that is no number.
     pub fn next_interval(&mut self) -> Result<Option<StopReason>> {
         let (start, End { crack_length: end, reason }) = (self.case.specimen.crack_length, self.end);
         let (done, last) = (self.curve.len(), self.last());

@@ -30,9 +30,7 @@ use record::{CurvePoint, StopReason, TipRecord};
 /// it can be resumed; each has an increment of its own, which [`crate::predict::predict`] calls until there is a reason to stop.
 pub trait CrackGrowth {
     /// Makes the first row: the plate with its initial cracks, in equilibrium.
-    ///
-    /// # Errors
-    /// No equilibrium, or nothing can be read at a tip.
+    /// Errors: no equilibrium, or nothing can be read at a tip.
     fn open(&mut self) -> Result<()>;
 
     /// The last row.
@@ -79,9 +77,7 @@ pub trait CrackGrowth {
     }
 
     /// Ends the run for a reason, or for one that had come before it.
-    ///
-    /// # Errors
-    /// No equilibrium of the whole plate.
+    /// Errors: no equilibrium of the whole plate.
     fn close(&mut self, stop: StopReason) -> Result<StopReason> {
         Ok(stop)
     }

@@ -84,17 +84,13 @@ pub struct TipField<'a> {
 
 impl<'a> TipField<'a> {
     /// The plate with its initial cracks, before its first equilibrium ([`CrackGrowth::open`]).
-    ///
-    /// # Errors
-    /// As [`Body::build`]; a specimen without sharp crack, cracks that cut the plate in two.
+    /// Errors: as [`Body::build`]; a specimen without sharp crack, cracks that cut the plate in two.
     pub fn start(case: &'a Case, law: Box<dyn GrowthLaw>) -> Result<Self> {
         TipField::start_on(case, Arc::new(case.model.body(&case.specimen, &case.material)?), law)
     }
 
     /// The same on a plate that stands.
-    ///
-    /// # Errors
-    /// A specimen without sharp crack, cracks that cut the plate in two.
+    /// Errors: a specimen without sharp crack, cracks that cut the plate in two.
     pub fn start_on(case: &'a Case, body: Arc<Body>, law: Box<dyn GrowthLaw>) -> Result<Self> {
         let specimen = &case.specimen;
         let tip = |tip: usize| {

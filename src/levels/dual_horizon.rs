@@ -65,9 +65,7 @@ pub struct MultiLevelSpec<'a> {
 }
 
 /// Builds points and bonds.
-///
-/// # Errors
-/// Wrong input, or choices that do not go together.
+/// Errors: wrong input, or choices that do not go together.
 pub fn build(ask: &MultiLevelSpec<'_>) -> Result<Net> {
     let MultiLevelSpec { specimen, law, .. } = *ask;
     if law.kind == BondLawKind::StateBased {

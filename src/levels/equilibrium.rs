@@ -52,9 +52,7 @@ impl FullLoad {
     }
 
     /// Refuses loads that a floating plate cannot balance.
-    ///
-    /// # Errors
-    /// A force at a pin.
+    /// Errors: a force at a pin.
     pub fn check_balance(&self, net: &Net, force: &[f64]) -> Result<()> {
         let load = self.size(force);
         let Some(&at) = self.pins.iter().find(|&&at| (force[at] + self.external[at]).abs() > IMBALANCE * load) else {
@@ -139,9 +137,7 @@ impl Equilibrium {
     }
 
     /// Moves `shape` to the equilibrium of these springs, to a residual of `tolerance` times the load; returns the iterations.
-    ///
-    /// # Errors
-    /// No convergence: nothing holds what the loads pull at.
+    /// Errors: no convergence: nothing holds what the loads pull at.
     pub fn solve(
         &mut self,
         net: &Net,

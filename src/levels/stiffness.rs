@@ -67,9 +67,7 @@ impl Stiffness {
     }
 
     /// Factorises the stiffness of the net with these shares of the bonds, and struts between points that the pattern joins.
-    ///
-    /// # Errors
-    /// A stiffness that is not positive definite.
+    /// Errors: a stiffness that is not positive definite.
     pub fn factorise(&mut self, net: &Net, share: &[f64], struts: &[Strut]) -> Result<()> {
         let added: Vec<(usize, f64)> = struts.iter().flat_map(|strut| self.strut_entries(net, strut)).collect();
         let values = self.matrix.val_mut();

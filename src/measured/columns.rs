@@ -59,9 +59,7 @@ const KNOWN: &str = "known are specimen, cycles (N, kilocycles, megacycles), cra
                      more columns, all of them specimens";
 
 /// Recognises the layout of a table by its header and by what the user says.
-///
-/// # Errors
-/// Columns that are not there, that say the same, or that do not make up a test; cells that leave the decimal sign open.
+/// Errors: columns that are not there, that say the same, or that do not make up a test; cells that leave the decimal sign open.
 pub(super) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
     check_given(table, import)?;
     let mut warnings = table.warnings();

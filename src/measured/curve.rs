@@ -185,9 +185,7 @@ pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f6
 
 impl Measured {
     /// Puts the curves of another file behind these.
-    ///
-    /// # Errors
-    /// A specimen whose name another one has.
+    /// Errors: a specimen whose name another one has.
     pub fn add(&mut self, other: Measured) -> Result<()> {
         let own: HashMap<&str, &MeasuredCurve> = self.curves.iter().map(|curve| (curve.specimen.as_str(), curve)).collect();
         for curve in &other.curves {

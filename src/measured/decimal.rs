@@ -21,9 +21,7 @@ fn counts(column: &Column) -> bool {
 }
 
 /// Decides the decimal sign of a table by the columns that are read, or else by the others.
-///
-/// # Errors
-/// Cells that contradict each other, and columns that stay open.
+/// Errors: cells that contradict each other, and columns that stay open.
 pub(super) fn decide(table: &Table, columns: &[Column], given: Option<Decimal>) -> Result<Decimal> {
     if let Some(given) = given {
         return Ok(given);

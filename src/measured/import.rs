@@ -172,9 +172,7 @@ impl ColumnNames {
         ["cycles", "length", "specimen", "force_max", "force_min", "force_range", "stress_max", "stress_min", "stress_ratio"];
 
     /// Names a column as `key=name` of the option `--column` does.
-    ///
-    /// # Errors
-    /// A text without `=`, an unknown key, or a key given twice (crack length may be).
+    /// Errors: a text without `=`, an unknown key, or a key given twice (crack length may be).
     pub fn put(&mut self, text: &str) -> Result<()> {
         let refuse = |problem: &str| {
             let remedy =

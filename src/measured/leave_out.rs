@@ -12,9 +12,7 @@ const NAMES_MAX: usize = 20;
 impl Measured {
     /// Leaves out the growth between all readings that a window of cycles covers or cuts. At the start and the end of a curve the
     /// readings go with it.
-    ///
-    /// # Errors
-    /// A window without specimen, reason or readings, or one that leaves fewer than [`READINGS_MIN`] readings.
+    /// Errors: a window without specimen, reason or readings, or one that leaves fewer than [`READINGS_MIN`] readings.
     pub fn leave_out(&mut self, windows: &[LeaveOut]) -> Result<()> {
         let key = |index: usize| format!("measured.leave_out[{index}]");
         let names: HashMap<String, usize> =

@@ -16,9 +16,7 @@ const SAME_RATIO: f64 = 0.02;
 
 impl Measured {
     /// Sets the readings against the specimen and the load of a case.
-    ///
-    /// # Errors
-    /// Readings beyond the specimen; loads that it cannot have.
+    /// Errors: readings beyond the specimen; loads that it cannot have.
     pub fn set_against(&mut self, case: &Case) -> Result<()> {
         let (limit, limit_name) = case.specimen.length_limit();
         self.check_lengths(limit, limit_name)?;
@@ -28,9 +26,7 @@ impl Measured {
     }
 
     /// Sets the load of every reading against that of the case: [`MeasuredCurve::load_factor`].
-    ///
-    /// # Errors
-    /// Stresses for a specimen that is loaded by a force on pins.
+    /// Errors: stresses for a specimen that is loaded by a force on pins.
     pub fn resolve_loads(&mut self, case: &Case) -> Result<()> {
         let specimen = &case.specimen;
         let case_range = case.loading.maximum * case.loading.range_share();

@@ -60,9 +60,7 @@ impl Checkpoint {
     }
 
     /// Puts a run at its start where this one stood; returns its pictures, and the time spent on it so far, s.
-    ///
-    /// # Errors
-    /// It is that of another law or plate.
+    /// Errors: it is that of another law or plate.
     pub(super) fn restore(self, growth: &mut dyn CrackGrowth) -> Result<(Snapshots, f64)> {
         let picture_fits = |picture: &Picture| {
             let mut points = picture.damage.iter().chain(&picture.remaining_life);

@@ -40,9 +40,7 @@ struct TipFactors {
 
 impl FactorCurve {
     /// Of a case, whatever its driver, law, threshold and limit of cycles, up to `stop.crack_length`.
-    ///
-    /// # Errors
-    /// As [`super::predict`]; a run that ends before that length.
+    /// Errors: as [`super::predict`]; a run that ends before that length.
     pub fn of(case: &Case, observer: &dyn Observer) -> Result<Self> {
         Self::at_exponent(case, EXPONENT_USUAL, observer)
     }

@@ -12,9 +12,7 @@ use crate::growth::bond_strain::BondRates;
 use crate::units::MM;
 
 /// The law over K of a case, for driver `tip_field` and method `handbook`.
-///
-/// # Errors
-/// A case without law; as [`rate_constant`] where it is one of bonds.
+/// Errors: a case without law; as [`rate_constant`] where it is one of bonds.
 pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
     let threshold = case.fatigue.threshold;
     Ok(match &case.law {
@@ -70,9 +68,7 @@ pub fn paris_law(case: &Case) -> Result<ParisLaw> {
 
 /// A and p of a case at the body's actual horizon, m, for driver `bond_strain`; C and m stand for those that [`ParisLaw::to_bonds`]
 /// gives.
-///
-/// # Errors
-/// A case without law; as [`rate_constant`] where it is one over K.
+/// Errors: a case without law; as [`rate_constant`] where it is one over K.
 pub fn bond_law(case: &Case, horizon: f64) -> Result<FatigueLaw> {
     match &case.law {
         LawSource::Paris(law) => {

@@ -87,9 +87,7 @@ impl<'a> Record<'a> {
     ///
     /// Mechanics that fail after the first row end the run as [`StopReason::NoConvergence`]: the rows so far stay, and the error is
     /// among the warnings.
-    ///
-    /// # Errors
-    /// Those of the first row; a run that was cancelled; wrong input that shows only on the way.
+    /// Errors: those of the first row; a run that was cancelled; wrong input that shows only on the way.
     pub fn follow<G: CrackGrowth>(
         self,
         growth: &mut G,
@@ -216,9 +214,7 @@ pub struct Guard {
 
 impl Guard {
     /// Takes in the row after a block; the reason to stop where no tip has grown for too long. Runs without tips have none to watch.
-    ///
-    /// # Errors
-    /// [`Error::Mechanics`]: cycles or crack length that are no finite number, or cycles that fall.
+    /// Errors: [`Error::Mechanics`]: cycles or crack length that are no finite number, or cycles that fall.
     pub fn check(&mut self, before: f64, now: &GrowthStatus<'_>) -> Result<Option<StopReason>> {
         for (what, value) in [("cycles", now.cycles), ("crack length", now.crack_length)] {
             if !value.is_finite() {

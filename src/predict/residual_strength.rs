@@ -42,9 +42,7 @@ impl Strength {
 
 /// Residual strength over crack length: from the initial crack to the end of the plate where a handbook knows K, else along
 /// the curve of the run.
-///
-/// # Errors
-/// Neither toughness nor yield strength is given, or neither says anything about this plate.
+/// Errors: neither toughness nor yield strength is given, or neither says anything about this plate.
 pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Strength>> {
     check_strength(case)?;
     let material = &case.material;
@@ -72,9 +70,7 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
 }
 
 /// Whether the material has a strength that says anything about this plate.
-///
-/// # Errors
-/// It has none; the net section of a `plate` is not known, so that its yield strength says nothing.
+/// Errors: it has none; the net section of a `plate` is not known, so that its yield strength says nothing.
 pub fn check_strength(case: &Case) -> Result<()> {
     if case.loading.displacement().is_some() {
         let problem = "does not go with cycles of a displacement, whose load is not that of a strength";

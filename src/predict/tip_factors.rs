@@ -144,9 +144,7 @@ pub struct TipResult {
 /// Stress intensity factors of every crack tip of a case at its maximum load.
 ///
 /// End faces of slots are no crack tips and left out.
-///
-/// # Errors
-/// A case without crack tips, mechanics without equilibrium.
+/// Errors: a case without crack tips, mechanics without equilibrium.
 pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Result<Vec<TipResult>> {
     let tips: Vec<usize> = (0..case.specimen.tips.len()).filter(|&tip| !case.specimen.tips[tip].from_slot).collect();
     if tips.is_empty() {

@@ -22,9 +22,7 @@ pub enum Sampling {
 
 impl Sampling {
     /// Rows of a curve, which has at least one.
-    ///
-    /// # Errors
-    /// A step that is not positive or asks for more than [`ROWS_MAX`] rows; `option` is what the caller calls it.
+    /// Errors: a step that is not positive or asks for more than [`ROWS_MAX`] rows; `option` is what the caller calls it.
     pub fn of(self, curve: &[Row], option: &str) -> Result<Vec<Row>> {
         let (first, last) = (curve[0].cycles, curve[curve.len() - 1].cycles);
         let cycles = match self {

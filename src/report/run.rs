@@ -35,9 +35,7 @@ pub const PARAVIEW: &str = "paraview";
 const EXTRAPOLATION_REFUSED: f64 = 0.25;
 
 /// Whether a run counts as a result; what the user should know about it beyond what the run itself says.
-///
-/// # Errors
-/// [`Error::Mechanics`] if the run ended before the crack grew.
+/// Errors: [`Error::Mechanics`] if the run ended before the crack grew.
 pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
     let mut warnings = Vec::new();
     let start = prediction.curve.first().map_or(f64::INFINITY, |point| point.crack_length);

@@ -53,9 +53,7 @@ pub struct Summary {
 
 impl Summary {
     /// The summary of a run that counts.
-    ///
-    /// # Errors
-    /// Its refusal.
+    /// Errors: its refusal.
     pub fn counted(mut self) -> Result<Summary> {
         self.refusal.take().map_or(Ok(self), Err)
     }
@@ -72,9 +70,7 @@ pub enum TaskCheckpoint {
 
 impl TaskCheckpoint {
     /// The checkpoint of a task from the bytes of its file.
-    ///
-    /// # Errors
-    /// Bytes that are no checkpoint, or one of another task.
+    /// Errors: bytes that are no checkpoint, or one of another task.
     pub fn of(task: &Task, bytes: &[u8]) -> Result<TaskCheckpoint> {
         match task {
             Task::Scene(scene) => SceneCheckpoint::from_bytes(bytes)
@@ -97,9 +93,7 @@ impl TaskCheckpoint {
 }
 
 /// Runs a task, from a checkpoint of it if there is one, and writes all files of its results into an empty folder if one is given.
-///
-/// # Errors
-/// Mechanics without a result, wrong input that shows only now, files that cannot be written.
+/// Errors: mechanics without a result, wrong input that shows only now, files that cannot be written.
 pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
     match task {
         Task::Prediction { case, with_strength } => {
@@ -135,9 +129,7 @@ pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, wat
 }
 
 /// Judges a run of cycles and writes its files.
-///
-/// # Errors
-/// As [`report::run::judge`]; files that cannot be written.
+/// Errors: as [`report::run::judge`]; files that cannot be written.
 pub fn of_prediction(
     case: &Case,
     prediction: &Prediction,

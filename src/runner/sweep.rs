@@ -17,9 +17,7 @@ use crate::sweep::DrawnCase;
 
 /// Runs cases, `threads` at a time, each of them on one thread: cases share nothing, so that is the fastest. `done` is called after
 /// each.
-///
-/// # Errors
-/// [`Error::File`] if results cannot be written; what is finished by then stays. A case that fails is none.
+/// Errors: [`Error::File`] if results cannot be written; what is finished by then stays. A case that fails is none.
 pub fn run(cases: &[&DrawnCase], folder: &SweepFolder, threads: usize, with_files: bool, done: &(dyn Fn() + Sync)) -> Result<()> {
     let next = AtomicUsize::new(0);
     let is_over = AtomicBool::new(false);

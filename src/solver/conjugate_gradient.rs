@@ -69,9 +69,7 @@ impl<const N: usize> MultigridSolver<N> {
     }
 
     /// Solves to a residual over load. A rough solve makes do with the hierarchy that is there.
-    ///
-    /// # Errors
-    /// [`Error::LossOfStiffness`]; the iteration does not converge.
+    /// Errors: [`Error::LossOfStiffness`]; the iteration does not converge.
     pub(super) fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         let System { body, bonds, product, f } = system;
         let is_rough = tolerance > self.tolerance;

@@ -70,9 +70,7 @@ impl Equilibrium {
 
     /// Solves for the present bonds, starting from the last solution; returns the iterations.
     /// `displacement` receives the field in the layout of [`field::Layout::of`], right on the [`Equilibrium::window`].
-    ///
-    /// # Errors
-    /// `Error::Mechanics` if the iteration does not converge.
+    /// Errors: `Error::Mechanics` if the iteration does not converge.
     pub fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
         self.solves += 1;
         in_pool(|| self.inner.solve(body, bonds, displacement))

@@ -80,9 +80,7 @@ impl Sweep {
     }
 
     /// All cases, in order, each of them read and found right.
-    ///
-    /// # Errors
-    /// The first that is wrong, with the sweep file where it is about a key that varies; files that cannot be read.
+    /// Errors: the first that is wrong, with the sweep file where it is about a key that varies; files that cannot be read.
     pub fn cases(&self) -> Result<Vec<DrawnCase>> {
         let draws = self.draws()?;
         let built: Vec<Result<DrawnCase>> = draws.par_iter().enumerate().map(|(i, draw)| self.build(i + 1, draw)).collect();

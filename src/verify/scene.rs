@@ -176,9 +176,7 @@ impl Scene {
     }
 
     /// What a case of the scene finds; `set` are the keys that it has been given, which a life by quadrature takes as well.
-    ///
-    /// # Errors
-    /// Those of the run; a run that ends otherwise than the truth.
+    /// Errors: those of the run; a run that ends otherwise than the truth.
     pub fn found(&self, case: &Case, set: &[String], observer: &dyn Observer) -> Result<Found> {
         match self {
             Scene::Life(specimen) => {

@@ -124,9 +124,7 @@ pub(super) struct Candidate<'a> {
 
 impl<'a> Candidate<'a> {
     /// The law over the rows.
-    ///
-    /// # Errors
-    /// In words, why these rows say nothing about it.
+    /// Errors: in words, why these rows say nothing about it.
     pub fn new(kind: GrowthLawKind, given: &Given, rows: &'a [RateRow]) -> std::result::Result<Self, String> {
         let parameters = parameters(kind).1;
         let values = parameters.iter().map(|parameter| given.get(parameter.key).copied().or(parameter.default)).collect();

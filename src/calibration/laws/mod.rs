@@ -78,9 +78,7 @@ impl LawFits {
 }
 
 /// Fits every law and chooses the one asked for, or the best.
-///
-/// # Errors
-/// [`Error::Mechanics`] where the rates do not tell the law asked for, or none; constants that no law has, or no metal.
+/// Errors: [`Error::Mechanics`] where the rates do not tell the law asked for, or none; constants that no law has, or no metal.
 pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFits> {
     candidate::check_given(given)?;
     let mut candidates: Vec<LawFit> = LAWS.iter().map(|(_, kind)| fit(*kind, given, rows)).collect();

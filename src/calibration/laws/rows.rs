@@ -53,9 +53,7 @@ pub struct RateTable {
 }
 
 /// Reads a table; `ratio` is that of all its rows, where it has no such column.
-///
-/// # Errors
-/// A table without the columns, cells that are no numbers or none of growth, a stress ratio given twice or not at all.
+/// Errors: a table without the columns, cells that are no numbers or none of growth, a stress ratio given twice or not at all.
 pub fn read(bytes: &[u8], file: &Path, ratio: Option<f64>) -> Result<RateTable> {
     read_rows(bytes, file, ratio).map_err(|error| error.in_file(file))
 }

@@ -45,8 +45,7 @@ pub(super) struct Precrack {
 }
 
 impl Precrack {
-    /// # Errors
-    /// A crack too short to be `grown`.
+    /// Errors: a crack too short to be `grown`.
     pub(super) fn of(case: &Case) -> Result<Precrack> {
         let horizon = case.model.horizon_ratio * case.model.spacing;
         let front_offset = FRONT_OFFSET_SPACINGS * case.model.spacing;

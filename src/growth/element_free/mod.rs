@@ -51,9 +51,7 @@ pub struct ElementFree<'a> {
 
 impl<'a> ElementFree<'a> {
     /// The plate with its initial cracks, before its first equilibrium.
-    ///
-    /// # Errors
-    /// A specimen without sharp crack.
+    /// Errors: a specimen without sharp crack.
     pub fn start(case: &'a Case, law: Box<dyn GrowthLaw>) -> Result<Self> {
         let specimen = &case.specimen;
         let lines = specimen.crack_lines();
@@ -125,9 +123,7 @@ pub fn initial_cracks(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
 }
 
 /// The nodes of a case with its initial cracks.
-///
-/// # Errors
-/// As [`ElementFree::start`]; too many cells.
+/// Errors: as [`ElementFree::start`]; too many cells.
 pub fn initial_plate(case: &Case) -> Result<Discretisation> {
     let (lines, tips) = initial_cracks(&case.specimen);
     Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &case.model.element_free.resolution)

@@ -24,9 +24,7 @@ struct Pair {
 }
 
 /// Sets the multipliers of the bonds near the rim and near changes of level, on the uncracked net.
-///
-/// # Errors
-/// No multipliers within the bounds come near equilibrium.
+/// Errors: no multipliers within the bounds come near equilibrium.
 pub fn balance(net: &mut Net, specimen: &Specimen, levels: &Levels, stencils: &[Stencil], sharing: &Sharing<'_>) -> Result<()> {
     let finest = levels.finest().spacing;
     let irregular = irregular(net, levels, stencils);

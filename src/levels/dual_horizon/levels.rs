@@ -41,9 +41,7 @@ const NONE: u32 = u32::MAX;
 impl Levels {
     /// Splits the places of a lattice in four where areas ask for it, as often as they ask for it, and around that so often that
     /// no horizon (`ratio` × own spacing) reaches over more than one level: rings as wide as the horizon of the coarser level.
-    ///
-    /// # Errors
-    /// An area without points, more places than memory can sensibly hold.
+    /// Errors: an area without points, more places than memory can sensibly hold.
     pub fn over(specimen: &Specimen, lattice: Lattice, areas: &[Area<'_>], ratio: f64) -> Result<Levels> {
         let deepest = areas.iter().map(|area| area.levels).max().unwrap_or(0);
         let mut lattices = vec![lattice];

@@ -79,9 +79,7 @@ impl<'a> Sharing<'a> {
 }
 
 /// Forces at full load, plate axes, N. What sharing leaves of resultant and moment is removed where nothing holds the plate.
-///
-/// # Errors
-/// A load without points, loads out of balance on a plate that nothing holds.
+/// Errors: a load without points, loads out of balance on a plate that nothing holds.
 pub fn forces(specimen: &Specimen, sharing: &Sharing<'_>, floating: bool) -> Result<Vec<(u32, Point)>> {
     let finest = sharing.levels.finest().spacing;
     let mut sums = BTreeMap::<u32, Point>::new();

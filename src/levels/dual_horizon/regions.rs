@@ -24,9 +24,7 @@ pub struct Area<'s> {
 
 impl<'s> Area<'s> {
     /// Areas of a plate.
-    ///
-    /// # Errors
-    /// Levels out of range, areas outside the plate, horizons that do not overlap where levels meet.
+    /// Errors: levels out of range, areas outside the plate, horizons that do not overlap where levels meet.
     pub fn all(specimen: &'s Specimen, refinement: Option<&'s Refinement>, ratio: f64) -> Result<Vec<Area<'s>>> {
         let regions = refinement.map_or(&[][..], |refinement| &refinement.regions);
         let area =

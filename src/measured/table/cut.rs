@@ -42,9 +42,7 @@ pub(super) struct Place {
 struct Merit(bool, bool, f64);
 
 /// Cuts a text into a table.
-///
-/// # Errors
-/// No table, or rows that are not as wide as its header.
+/// Errors: no table, or rows that are not as wide as its header.
 pub(super) fn text(text: &str, file: &Path, import: &Import) -> Result<Table> {
     check_size(text, file)?;
     let (lines, comments) = kept_lines(text);
@@ -196,9 +194,7 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
 }
 
 /// Header and readings of rows that may have a preamble.
-///
-/// # Errors
-/// Less than two columns.
+/// Errors: less than two columns.
 pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Result<Table> {
     let Some(place) = place(&rows, import) else {
         return Err(whole_file(file).error("is no table of 2 to 4096 columns", "give at least cycles and crack length"));

@@ -15,9 +15,7 @@ use crate::error::Result;
 const LOOKED_AT: usize = 256;
 
 /// The text of a file without byte order mark.
-///
-/// # Errors
-/// Characters that no text has: the file is something else.
+/// Errors: characters that no text has: the file is something else.
 pub(super) fn decoded<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>> {
     let text = match Encoding::for_bom(bytes).map(|(encoding, _)| encoding).or_else(|| unmarked_utf16(bytes)) {
         Some(encoding) => encoding.decode(bytes).0,
@@ -55,9 +53,7 @@ pub(super) type Line<'a> = (usize, &'a str);
 
 impl Separator {
     /// The lines cut into cells, quotes respected.
-    ///
-    /// # Errors
-    /// More cells than a table that is read may have: a byte of text can be one of them, which takes up eight and more.
+    /// Errors: more cells than a table that is read may have: a byte of text can be one of them, which takes up eight and more.
     pub(super) fn cut(self, lines: &[Line<'_>], file: &Path) -> Result<Vec<Row>> {
         let cells = lines.iter().map(|(_, text)| self.cells(text)).sum::<usize>();
         if cells > CELLS_MAX {

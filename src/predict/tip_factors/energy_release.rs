@@ -34,9 +34,7 @@ const STEP_SHARE: f64 = 0.25;
 const ALIGNED: f64 = 1e-6;
 
 /// K_I of the tips with these numbers.
-///
-/// # Errors
-/// Mechanics without equilibrium at one of the crack lengths.
+/// Errors: mechanics without equilibrium at one of the crack lengths.
 pub(super) fn all_tips(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>> {
     let started = Instant::now();
     let plate = &mut CrackedPlate::new(case)?;

@@ -45,10 +45,8 @@ enum Place {
 
 impl OutputFile {
     /// Claims `path`, before anything is computed; `-` is standard output.
-    ///
-    /// # Errors
-    /// [`Error::Input`] if it is a folder, a file that was read, one that this command did not write, or one that another process is
-    /// at; [`Error::File`] if nothing can be written there.
+    /// Errors: [`Error::Input`] if it is a folder, a file that was read, one that this command did not write, or one that another
+    /// process is at; [`Error::File`] if nothing can be written there.
     pub fn claim(path: &Path, sort: Sort, read: &Provenance) -> Result<OutputFile> {
         let claimed = |place| Ok(OutputFile { name: path.to_path_buf(), sort, place });
         if path == Path::new(STREAM) {
@@ -81,10 +79,8 @@ impl OutputFile {
     }
 
     /// Writes it whole or not at all.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it cannot be written; if somebody else's file has appeared there meanwhile, that stays, and the message says
-    /// under what name this one stands.
+    /// Errors: [`Error::File`] if it cannot be written; if somebody else's file has appeared there meanwhile, that stays, and the
+    /// message says under what name this one stands.
     pub fn write(self, bytes: &[u8]) -> Result<()> {
         let cannot = |error| Error::file(&self.name, "cannot write", error);
         let target = match &self.place {

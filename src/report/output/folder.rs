@@ -54,10 +54,9 @@ impl OutputFolder {
 
     /// Claims `path` for a run of this kind, before anything is computed. It may be new, empty, or the result of an earlier run of that
     /// kind, which stays until [`OutputFolder::finish`]. What processes left there that were killed goes.
-    ///
-    /// # Errors
-    /// [`Error::Input`] if the path is a file, a mount point, holds anything this program did not make, results of another kind or an
-    /// input of this run, or if another process writes there; [`Error::File`] if it cannot be written or has no room.
+    /// Errors: [`Error::Input`] if the path is a file, a mount point, holds anything this program did not make, results of
+    /// another kind or an input of this run, or if another process writes there; [`Error::File`] if it cannot be written or has
+    /// no room.
     pub fn claim(path: &Path, kind: RunKind, read: &Provenance, wanted: Room) -> Result<OutputFolder> {
         let cannot = |e| Error::file(path, "cannot create the folder", e);
         let target = folder_for(path, kind, read)?;
@@ -122,10 +121,8 @@ impl OutputFolder {
     }
 
     /// Puts the folder in its place; the files of an earlier run go, and nothing else.
-    ///
-    /// # Errors
-    /// [`Error::File`] if it cannot be put there, or if something has appeared there meanwhile: that stays, and the results get a
-    /// visible name, which the message says.
+    /// Errors: [`Error::File`] if it cannot be put there, or if something has appeared there meanwhile: that stays, and the
+    /// results get a visible name, which the message says.
     pub fn finish(mut self) -> Result<Finished> {
         let put = {
             // Folded up before or after, not in between.

@@ -148,9 +148,7 @@ impl Store {
     }
 
     /// What a claimed job is about, and where it stood.
-    ///
-    /// # Errors
-    /// The database does not answer, or what stands there cannot be read.
+    /// Errors: the database does not answer, or what stands there cannot be read.
     pub async fn content(&self, claim: &Claim) -> Result<(Option<Submission>, Option<Vec<u8>>)> {
         let checkpoint = sqlx::query_scalar("SELECT content FROM checkpoints WHERE job = $1").bind(&claim.id);
         let Some(mut submission) = self.submission(&claim.id).await? else { return Ok((None, None)) };
@@ -164,9 +162,7 @@ impl Store {
 
     /// A sign of life: the claim holds on for `lease_ms` and has taken so long so far. What the run told goes with it, in one transaction,
     /// since each takes the disk of the database to its end.
-    ///
-    /// # Errors
-    /// The database does not answer, and has stored nothing; the claim may still hold.
+    /// Errors: the database does not answer, and has stored nothing; the claim may still hold.
     pub async fn beat(&self, claim: &Claim, lease_ms: i64, elapsed: Duration, told: &Told) -> Result<Heartbeat> {
         let mut transaction = self.begin().await?;
         let is_more = told.growth.is_some() || told.picture.is_some();
@@ -204,9 +200,7 @@ impl Store {
     }
 
     /// Stores the state of a job, from which any worker can go on. Whether the claim still holds.
-    ///
-    /// # Errors
-    /// The database cannot take it; what stood there before stays.
+    /// Errors: the database cannot take it; what stood there before stays.
     pub async fn keep(&self, claim: &Claim, checkpoint: Vec<u8>) -> Result<bool> {
         let mut transaction = self.begin().await?;
         // Others cannot take the row until the transaction ends.
@@ -254,9 +248,7 @@ impl Store {
     }
 
     /// Ends a job with its results, all or nothing, if the claim still holds; whether it did.
-    ///
-    /// # Errors
-    /// The database cannot take it; the job then runs on as far as it is concerned.
+    /// Errors: the database cannot take it; the job then runs on as far as it is concerned.
     pub async fn finish(&self, claim: &Claim, outcome: &Outcome) -> Result<bool> {
         let mut transaction = self.begin().await?;
         let changed = sqlx::query(self.sql(
@@ -287,9 +279,7 @@ impl Store {
     }
 
     /// Gives a job back to the queue, not counted as having been tried: it is not to blame.
-    ///
-    /// # Errors
-    /// The database does not answer; the job goes on elsewhere once its time has run out.
+    /// Errors: the database does not answer; the job goes on elsewhere once its time has run out.
     pub async fn release(&self, claim: &Claim) -> Result<()> {
         sqlx::query(
             "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL,
