@@ -54,9 +54,8 @@ fn an_upright_crack_in_bending_has_no_sliding_mode() {
     }
 }
 
-#[test]
-fn the_mirror_image_of_a_plate_lives_as_long() {
-    for height in heights().step_by(2) {
+fn live_as_long(heights: impl Iterator<Item = f64>) {
+    for height in heights {
         let life = |sign: f64| {
             let hole = format!("holes=[{{x_mm=4,y_mm={},diameter_mm=10}}]", sign * 14.0);
             let run = predict(&plate(height, &format!("{hole}\ncracks=[{{from_mm=[-20,0],to_mm=[-10,0]}}]")), &Silent).unwrap();
@@ -67,17 +66,38 @@ fn the_mirror_image_of_a_plate_lives_as_long() {
     }
 }
 
+/// Even and odd numbers of spacings, some of them but for round-off.
+#[test]
+fn the_mirror_image_of_a_plate_lives_as_long() {
+    live_as_long(heights().step_by(4));
+}
+
+#[test]
+#[ignore = "long: ten seconds"]
+fn the_mirror_image_of_a_plate_of_any_height_lives_as_long() {
+    live_as_long(heights().step_by(2));
+}
+
 /// Double cantilevers of 79 and 80 rows against finite elements (`../shared/data/field/mechanics/odd_rows`): K and life; the arms of the
 /// former were of 39 and 40 rows, and the crack left by its side after 0.57 of the life.
+fn keeps_its_middle_line(name: &str) {
+    let (k_i, life) = (2.295, 16.00e6);
+    let Some(path) = shared(&format!("field/mechanics/odd_rows/{name}.toml")) else { return };
+    let run = predict(&Case::from_file(&path, &["model.spacing_mm=1".to_owned()]).unwrap(), &Silent).unwrap();
+    let at = |length: f64| run.curve.iter().find(|point| point.crack_length >= length).unwrap().cycles;
+    let first = run.curve[0].tips[0].factors.unwrap()[0] / 1e6;
+    println!("{name}: K_I {first:.4}, {:.4e} cycles to 100 mm", at(0.1));
+    assert!((first / k_i - 1.0).abs() < 0.006 && (at(0.1) / life - 1.0).abs() < 0.015, "{name}: {first}, {}", at(0.1));
+    assert!(run.curve.iter().all(|point| point.tips[0].position[1].abs() < 0.05e-3), "{name}: off the middle line");
+}
+
 #[test]
-fn double_cantilevers_keep_their_middle_line() {
-    for (name, k_i, life) in [("dcb_39.5_plane_strain_1mm", 2.295, 16.00e6), ("dcb_39.5", 2.295, 16.00e6)] {
-        let Some(path) = shared(&format!("field/mechanics/odd_rows/{name}.toml")) else { return };
-        let run = predict(&Case::from_file(&path, &["model.spacing_mm=1".to_owned()]).unwrap(), &Silent).unwrap();
-        let at = |length: f64| run.curve.iter().find(|point| point.crack_length >= length).unwrap().cycles;
-        let first = run.curve[0].tips[0].factors.unwrap()[0] / 1e6;
-        println!("{name}: K_I {first:.4}, {:.4e} cycles to 100 mm", at(0.1));
-        assert!((first / k_i - 1.0).abs() < 0.006 && (at(0.1) / life - 1.0).abs() < 0.015, "{name}: {first}, {}", at(0.1));
-        assert!(run.curve.iter().all(|point| point.tips[0].position[1].abs() < 0.05e-3), "{name}: off the middle line");
-    }
+fn a_double_cantilever_keeps_its_middle_line() {
+    keeps_its_middle_line("dcb_39.5");
+}
+
+#[test]
+#[ignore = "long: ten seconds"]
+fn a_double_cantilever_in_plane_strain_keeps_its_middle_line() {
+    keeps_its_middle_line("dcb_39.5_plane_strain_1mm");
 }
