@@ -152,7 +152,7 @@ fn limits(chart: &mut Frame<'_>, panel: &Panel, most_s: f64) -> Drawn {
     if uncertainty > ERRORS[0] {
         let shade = RGBColor(233, 237, 242).mix(0.7).filled();
         chart.draw_series([Rectangle::new([(SECONDS_LEAST, ERRORS[0]), (most_s, uncertainty)], shade)])?;
-        chart.draw_series([Text::new("below the error of the truth", (right, 0.9 * uncertainty), small(&GREY))])?;
+        chart.draw_series([Text::new("below the error of the truth", (right, 2.5 * ERRORS[0]), small(&GREY))])?;
     }
     if panel.scene.grows() {
         dashes(chart, vec![(SECONDS_LEAST, SCATTER_PERCENT), (most_s, SCATTER_PERCENT)], stroke(&SCATTER, 1.0))?;
