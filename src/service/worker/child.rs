@@ -34,6 +34,7 @@ pub fn take() -> Result<()> {
     let order: Option<Order> = read_frame(&socket).map_err(cannot)?;
     let mut order = order.ok_or_else(|| cannot(io::ErrorKind::UnexpectedEof.into()))?;
     order.submission.files = std::mem::take(&mut order.files);
+    order.submission.options = std::mem::take(&mut order.options);
     end_with_worker(socket.try_clone().map_err(cannot)?, &order);
     let threads = |error| Error::file(Path::new("threads"), "cannot be started", io::Error::other(error));
     rayon::ThreadPoolBuilder::new().num_threads(order.threads).build_global().map_err(threads)?;

@@ -356,6 +356,10 @@ fn every_kind_of_job_runs() {
         for file in files {
             assert!(!service.file(&job, file).is_empty(), "{collection}: {file}");
         }
+        if collection == "sif" {
+            let factors = done["summary"].to_string();
+            assert!(factors.contains("\"ring\"") && !factors.contains("energy_release"), "the method asked for alone: {factors}");
+        }
         let refused = json!({ "name": "x", "input": QUICK, "options": { "out": "/tmp/x" } });
         service.post(&format!("/v1/{collection}"), &refused).expect(422);
     }
