@@ -4,7 +4,7 @@
 //! [`measured`] readings with their [`loads`], those that are [left out](leave_out), their [`median`] and [`rates`]; [`outliers`] and
 //! [shifts of level](level_shift) among them; the [`power_law`] over K(a) that is fitted;
 //! [`criterion`], [`misfit`], [`search`] and [`confidence`]; [`fit`], the page that calls them in turn; what it means as C and m
-//! ([`paris`]) and as A and p of bonds ([`bond_constants`]); [`results`] as they are written and the [`record`] that predictions
+//! ([`paris`]) and as A and p of bonds ([`bond_constants`]); [`results`] as they are written and the [`crate::case::record`] that predictions
 //! read. [`case`] reads the input file, and [`mod@calibrate`] goes the whole way.
 
 pub mod bond_constants;
