@@ -232,7 +232,7 @@ enum TextOrNumber {
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "columns, expected the name of a column or a list of them")]
+#[serde(untagged, expecting = "columns, expected the name of a column or its number, or a list of them")]
 enum OneOrMany {
     One(TextOrNumber),
     Many(Vec<TextOrNumber>),

@@ -162,7 +162,7 @@ fn imports_are_taken_apart() {
 const LINES: &[(&str, usize)] = &[
     ("fracture", 6766),
     ("report", 6240),
-    ("service", 5648),
+    ("service", 5671),
     ("growth", 5329),
     ("solver", 5120),
     ("verify", 4803),
@@ -187,7 +187,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 64688;
+const LINES_OF_ALL: usize = 64711;
 
 #[test]
 fn rooms_do_not_grow() {

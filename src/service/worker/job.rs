@@ -136,6 +136,9 @@ fn relay(shared: &Shared, claim: &Claim, process: &JobProcess, begun: Instant) -
         if beaten.elapsed() >= BEAT {
             beaten = Instant::now();
             memory = process.memory().unwrap_or(0).max(memory);
+            if process.touched().is_some_and(|touched| touched > shared.settings.memory) {
+                break Some(End::Died(Death::OutOfMemory));
+            }
             if let Some(end) = beat(shared, claim, &mut untold, begun.elapsed()) {
                 break Some(end);
             }
