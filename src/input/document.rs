@@ -69,7 +69,8 @@ impl Document {
     /// Names file and line in an error about a key of this document.
     pub fn locate(&self, error: Error) -> Error {
         let Error::Input(mut trouble) = error else { return error };
-        if trouble.file.is_some() {
+        // An option of the command line stands in no file.
+        if trouble.file.is_some() || trouble.key.as_ref().is_some_and(|key| key.starts_with("--")) {
             return Error::Input(trouble);
         }
         trouble.file.clone_from(&self.file);
