@@ -177,7 +177,7 @@ impl Chart {
 const GAIN: f64 = 1e-3;
 
 /// Pareto front of time and error: indices, fastest first, of points (time, error) that are nearer to the reference than every faster
-/// one by more than [`GAIN`]. Points that are not finite have no place on it.
+/// one by more than `GAIN`. Points that are not finite have no place on it.
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].0.is_finite() && points[i].1.is_finite()).collect();
     order.sort_by(|&a, &b| points[a].0.total_cmp(&points[b].0).then(points[a].1.total_cmp(&points[b].1)));
