@@ -225,7 +225,7 @@ impl TryFrom<BTreeMap<String, OneOrMany>> for ColumnNames {
 
 /// Text, or the number that a name may be.
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "a name, expected the name of a sheet or column, or its number")]
+#[serde(untagged, expecting = "a name, expected the name of a sheet or its number")]
 enum TextOrNumber {
     Text(String),
     Number(u32),
