@@ -35,48 +35,7 @@
 //! (kept by `tests/unit/layering.rs`).
 #![warn(missing_docs)]
 
-pub mod error;
-pub mod kinds;
-pub mod units;
-pub mod cells;
-#[cfg(feature = "tables")]
-pub mod tables;
-pub mod parallel;
-pub mod watch;
-pub mod monotone;
-pub mod quadrature;
-pub mod line;
-pub mod block_cholesky;
-pub mod sealed;
-pub mod input;
-pub mod limits;
-
-pub mod specimen;
-pub mod loading;
-pub mod material;
-pub mod williams;
-pub mod bond_law;
-pub mod body;
-pub mod state;
-pub mod levels;
-pub mod solver;
-pub mod element_free;
-pub mod fatigue;
-pub mod case;
-pub mod measured;
-pub mod stress_intensity;
-pub mod growth;
-pub mod stress_concentration;
-pub mod predict;
-pub mod fracture;
-pub mod calibration;
-pub mod verify;
-pub mod sweep;
-pub mod report;
-pub mod runner;
-pub mod check;
+pub use perilife_analysis::*;
 #[cfg(feature = "service")]
-pub mod service;
+pub use perilife_service as service;
 pub mod commands;
-
-pub use error::{Error, Result};

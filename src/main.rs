@@ -6,8 +6,12 @@ use std::process::ExitCode;
 use clap::Parser;
 use perilife::commands::CommandLine;
 use perilife::commands::console::error_words;
+use perilife::report::provenance::built_from;
 
 fn main() -> ExitCode {
+    if let Some(commit) = option_env!("PERILIFE_COMMIT") {
+        built_from(commit);
+    }
     let line = CommandLine::parse();
     line.start_log();
     line.watch_signals();

@@ -30,24 +30,6 @@ pub enum State {
     Cancelled,
 }
 
-impl JobKind {
-    /// Its place in URLs.
-    pub fn collection(self) -> &'static str {
-        match self {
-            JobKind::Calibration => "calibrations",
-            JobKind::Prediction => "predictions",
-            JobKind::Scene => "scenes",
-            JobKind::Sweep => "sweeps",
-            JobKind::Sif => "sif",
-        }
-    }
-
-    /// Options of its command that a job of it may have.
-    pub fn options(self) -> &'static [&'static str] {
-        if self == JobKind::Sif { &["method"] } else { &[] }
-    }
-}
-
 impl State {
     /// All of them.
     pub const ALL: [State; 5] = [State::Queued, State::Running, State::Succeeded, State::Failed, State::Cancelled];

@@ -12,8 +12,8 @@ use governor::{DefaultKeyedRateLimiter, Quota, RateLimiter};
 use tokio::sync::{Notify, OwnedSemaphorePermit, RwLock, Semaphore};
 
 use super::caller::{Audit, Caller};
-use crate::service::problem::{Answer, Problem};
-use crate::service::store::{Role, Store, Token};
+use crate::problem::{Answer, Problem};
+use crate::store::{Role, Store, Token};
 
 /// How much a request may ask for.
 #[derive(Debug, Clone)]
@@ -200,7 +200,7 @@ impl App {
     }
 
     /// The token with this hash, if there is one that has not ended.
-    pub async fn token(&self, hash: &str) -> crate::service::store::Result<Option<Token>> {
+    pub async fn token(&self, hash: &str) -> crate::store::Result<Option<Token>> {
         let found = self.store.token(hash).await?;
         let mut known = self.shared.tokens.write().await;
         known.retain(|(other, ..)| other != hash);

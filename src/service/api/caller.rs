@@ -12,8 +12,8 @@ use axum::http::{Method, StatusCode};
 use serde_json::json;
 
 use crate::error::{Error, Result};
-use crate::service::problem::{Answer, Problem};
-use crate::service::store::Role;
+use crate::problem::{Answer, Problem};
+use crate::store::Role;
 
 /// Who asks.
 #[derive(Debug, Clone, PartialEq)]

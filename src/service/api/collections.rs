@@ -15,9 +15,9 @@ use utoipa::{IntoParams, ToSchema};
 use super::App;
 use super::caller::Caller;
 use super::documents::{self, JobRequest, submission};
-use crate::service::job::{Job, JobKind, State, is_id};
-use crate::service::problem::{Answer, Problem};
-use crate::service::store::{FileEntry, NewJob, Origin, Role, Room, Submitted};
+use crate::job::{Job, JobKind, State, is_id};
+use crate::problem::{Answer, Problem};
+use crate::store::{FileEntry, NewJob, Origin, Role, Room, Submitted};
 
 /// Most jobs of one part of a list.
 const LIST_MAX: u32 = 200;

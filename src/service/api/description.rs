@@ -4,7 +4,7 @@
 use serde_json::{Map, Value, json};
 use utoipa::openapi::OpenApi;
 
-use crate::service::job::JobKind;
+use crate::job::JobKind;
 
 /// What every request may be answered with: the door, the limits and the store stand before every handler.
 const ALWAYS: [&str; 4] = ["401", "403", "429", "503"];

@@ -20,9 +20,9 @@ use super::{App, Limits};
 use crate::error::input;
 use crate::input::Document;
 use crate::runner::Task;
-use crate::service::job::{FITTED, JobKind, State, Submission, is_id};
-use crate::service::problem::{Answer, Problem};
-use crate::service::store::{Origin, hex};
+use crate::job::{FITTED, JobKind, State, Submission, is_id};
+use crate::problem::{Answer, Problem};
+use crate::store::{Origin, hex};
 use crate::watch::{self, Watch};
 
 /// Longest input, bytes; files beside it may be as large as bodies are.

@@ -16,8 +16,8 @@ use super::App;
 use super::app::Place;
 use super::caller::Caller;
 use super::collections::{job_of, view};
-use crate::service::job::JobKind;
-use crate::service::problem::{Answer, Problem};
+use crate::job::JobKind;
+use crate::problem::{Answer, Problem};
 
 /// Time between two looks at the store.
 const LOOK_EVERY: Duration = Duration::from_millis(250);

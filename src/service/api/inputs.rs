@@ -17,8 +17,8 @@ use crate::error::{Error, input};
 use crate::measured::{
     Column, ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, MeasuredCurve, Named, Shape, Sheet, Survey, survey,
 };
-use crate::service::job::JobKind;
-use crate::service::problem::{Answer, Place, Problem};
+use crate::job::JobKind;
+use crate::problem::{Answer, Place, Problem};
 use crate::units::MM;
 use crate::watch;
 

@@ -14,8 +14,8 @@ use super::caller::Caller;
 use crate::input::Folder;
 use crate::material::library::{self, Property};
 use crate::report::catalogue;
-use crate::service::problem::{Answer, Problem};
-use crate::service::store::{Role, hex};
+use crate::problem::{Answer, Problem};
+use crate::store::{Role, hex};
 
 /// The service and what it allows.
 #[derive(Serialize, ToSchema)]
@@ -45,7 +45,7 @@ pub struct Allowed {
 pub async fn service(State(app): State<App>, caller: Option<Extension<Caller>>) -> Json<Service> {
     let limits = &app.limits;
     Json(Service {
-        name: env!("CARGO_PKG_NAME"),
+        name: "perilife",
         version: env!("CARGO_PKG_VERSION"),
         needs_token: app.security.needs_token,
         role: caller.map(|Extension(caller)| caller.role),
@@ -83,7 +83,7 @@ pub async fn materials() -> Answer<Json<Value>> {
 }
 
 #[derive(Embed)]
-#[folder = "src/service/page/"]
+#[folder = "page/"]
 struct Files;
 
 /// A file of the page; `/` is its beginning.

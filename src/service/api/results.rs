@@ -17,9 +17,9 @@ use super::sending::Stored;
 use crate::error::input;
 use crate::report::csv::{self, A_N_FILE, Row};
 use crate::report::resample::{Sampling, cycles_over_length};
-use crate::service::job::{Job, State, is_id};
-use crate::service::problem::{Answer, Problem};
-use crate::service::store::{Origin, media_type};
+use crate::job::{Job, State, is_id};
+use crate::problem::{Answer, Problem};
+use crate::store::{Origin, media_type};
 
 /// Rows of a resampled curve: as many as a table can show.
 const POINTS: std::ops::RangeInclusive<u64> = 2..=100_000;

@@ -16,8 +16,8 @@ use tokio_stream::StreamExt;
 
 use super::caller::Caller;
 use super::{App, Security};
-use crate::service::problem::{Answer, Problem};
-use crate::service::store::{Role, hash};
+use crate::problem::{Answer, Problem};
+use crate::store::{Role, hash};
 
 /// Lets a request through, or not.
 pub async fn guard(

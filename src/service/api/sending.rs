@@ -8,7 +8,7 @@ use axum::response::{IntoResponse, Response};
 use tokio::sync::mpsc::channel;
 use tokio_stream::wrappers::ReceiverStream;
 
-use crate::service::store::{FileEntry, Origin, PART, Store};
+use crate::store::{FileEntry, Origin, PART, Store};
 
 /// Whose file it is, and what is known of it.
 pub struct Stored {

@@ -10,9 +10,9 @@ use axum::response::{IntoResponse, Response};
 use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 
 use super::App;
-use crate::service::job::State;
-use crate::service::problem::{Answer, Problem};
-use crate::service::worker::free_bytes;
+use crate::job::State;
+use crate::problem::{Answer, Problem};
+use crate::worker::free_bytes;
 
 /// Bounds of the histogram of answer times, s.
 const BOUNDS_S: [f64; 12] = [0.000_5, 0.001, 0.002_5, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 5.0];

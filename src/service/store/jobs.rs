@@ -4,7 +4,7 @@ use sqlx::Row;
 use sqlx::any::AnyRow;
 
 use super::{Dialect, Origin, Result, Store, files};
-use crate::service::job::{Job, JobKind, State, Submission, time};
+use crate::job::{Job, JobKind, State, Submission, time};
 
 /// A job to be stored.
 #[derive(Debug, Clone)]

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use sqlx::Row;
 
 use super::{FileEntry, Origin, Result, Store, files, schema};
-use crate::service::job::{JobKind, State, Submission};
-use crate::service::problem::Problem;
+use crate::job::{JobKind, State, Submission};
+use crate::problem::Problem;
 
 /// A job that a worker holds.
 #[derive(Debug, Clone, PartialEq)]

@@ -21,8 +21,8 @@ use crate::error::{Error, Result};
 use crate::report::json::RESULT_FILE;
 use crate::report::output::{Room, write_file};
 use crate::runner::{self, Task, TaskCheckpoint};
-use crate::service::problem::Problem;
-use crate::service::store::Growth;
+use crate::problem::Problem;
+use crate::store::Growth;
 
 /// Time between two tellings.
 const TELL_EVERY: Duration = Duration::from_millis(400);

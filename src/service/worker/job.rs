@@ -10,9 +10,9 @@ use tempfile::TempDir;
 use super::process::{Death, JobProcess, News, Order};
 use super::{Shared, TRY_EVERY, files, milliseconds};
 use crate::error::{Error, Result};
-use crate::service::job::{JobKind, State, Submission};
-use crate::service::problem::Problem;
-use crate::service::store::{Claim, Growth, Heartbeat, Outcome, Told, is_gone};
+use crate::job::{JobKind, State, Submission};
+use crate::problem::Problem;
+use crate::store::{Claim, Growth, Heartbeat, Outcome, Told, is_gone};
 
 /// Time between two signs of life, in which a wish to cancel comes back as well.
 const BEAT: Duration = Duration::from_millis(400);

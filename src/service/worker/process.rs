@@ -18,8 +18,8 @@ use rustix::process::{Pid, Resource, Rlimit, Signal, kill_process_group, prlimit
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::service::job::{JobKind, Submission};
-use crate::service::store::Growth;
+use crate::job::{JobKind, Submission};
+use crate::store::Growth;
 
 /// The subcommand that takes an order.
 pub const COMMAND: &str = "job";
@@ -194,7 +194,7 @@ pub struct Order {
 /// What a run tells.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum News {
-    /// How far it is, [`crate::service::job::JobProgress`] as JSON.
+    /// How far it is, [`crate::job::JobProgress`] as JSON.
     Progress(String),
     /// More of its curve.
     Growth(Growth),
@@ -204,7 +204,7 @@ pub enum News {
     Checkpoint(Vec<u8>),
     /// It is done: the figures of its result, JSON. Its files are in the folder.
     Done(String),
-    /// It has no result: [`crate::service::problem::Problem`] as JSON.
+    /// It has no result: [`crate::problem::Problem`] as JSON.
     Failed(String),
     /// The disk did not take its files: why, and bytes that they need.
     NoRoom(String, u64),

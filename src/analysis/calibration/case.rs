@@ -1,0 +1,228 @@
+//! A calibration file: `[measured]` and `[fit]` beside the sections of a case.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use crate::calibration::criterion::Criterion;
+use crate::calibration::exponent::{Exponent, FitSlice, delta_k_ratio, exponent};
+use crate::case::record::{LeaveOut, SourceFile};
+use crate::case::{Case, LawSource};
+use crate::error::{input, input_missing};
+use crate::fatigue::{Ageing, GrowthRate};
+use crate::input::{Document, Folder, LENGTH, sha256, slice};
+use crate::measured::{ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
+use crate::specimen::Specimen;
+use crate::specimen::handbook::{HandbookFormula, handbook};
+use crate::units::MM;
+
+/// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
+const LENGTH_SLACK: f64 = 1e-9;
+
+/// A checked calibration, SI inside.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationCase {
+    /// The test as a case without fatigue law. It runs to the longest reading and stops for nothing else on the way:
+    /// toughness and yield strength are taken out, since the measured specimens are known to have got there.
+    pub case: Case,
+    /// Measured curves inside the fit window, cycles counted from its first reading.
+    pub curves: Vec<MeasuredCurve>,
+    /// The exponent: fitted, given, or of a record.
+    pub exponent: Exponent,
+    /// Which lives count.
+    pub criterion: Criterion,
+    /// Measured files with their hashes.
+    pub sources: Vec<SourceFile>,
+    /// Readings that do not count, with the reasons.
+    pub left_out: Vec<LeaveOut>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// The whole file, overrides applied.
+    pub input: Table,
+    formula: Option<HandbookFormula>,
+}
+
+/// `[measured]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeasuredSlice {
+    files: Vec<String>,
+    from_crack_length_mm: Option<f64>,
+    to_crack_length_mm: Option<f64>,
+    length_unit: Option<LengthUnit>,
+    cycle_unit: Option<CycleUnit>,
+    load_unit: Option<LoadUnit>,
+    #[serde(default)]
+    columns: ColumnNames,
+    decimal: Option<Decimal>,
+    sheet: Option<Sheet>,
+    #[serde(default)]
+    leave_out: Vec<LeaveOut>,
+}
+
+impl MeasuredSlice {
+    fn import(&self) -> Import {
+        Import {
+            length: self.length_unit,
+            cycles: self.cycle_unit,
+            load: self.load_unit,
+            columns: self.columns.clone(),
+            decimal: self.decimal,
+            sheet: self.sheet.clone(),
+        }
+    }
+}
+
+impl CalibrationCase {
+    /// Reads a calibration file and the measured files it names; `overrides` are `section.key=value`.
+    pub fn from_file(path: &Path, overrides: &[String]) -> crate::Result<Self> {
+        Self::from_document(Document::read(path, overrides)?)
+    }
+
+    /// The same for text; the files it names lie in `folder`.
+    pub fn from_text(text: &str, name: &str, folder: impl Into<Folder>) -> crate::Result<Self> {
+        Self::from_document(Document::parse(text, name, folder, &[])?)
+    }
+
+    /// The same for a parsed document, which gives errors their line.
+    pub fn from_document(mut document: Document) -> crate::Result<Self> {
+        let input = document.table.clone();
+        // Taken out of the table, but not of the text: errors still find their line.
+        let measured = document.table.remove("measured");
+        let fit = document.table.remove("fit").unwrap_or_else(|| Value::Table(Table::new()));
+        let build = || {
+            let measured = measured
+                .as_ref()
+                .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
+            let case = Case::from_table(document.table.clone(), &document.name, &document.folder)?;
+            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.folder, input)
+        };
+        build().map_err(|error| document.locate(error))
+    }
+
+    fn build(mut case: Case, keys: MeasuredSlice, fit: FitSlice, folder: &Folder, input: Table) -> crate::Result<Self> {
+        if !matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
+            let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
+            return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
+        }
+        check_walker(&case)?;
+        check_growth_rate(&case)?;
+        let formula = handbook(&case.specimen);
+        let (mut measured, sources) = readings(&keys, folder)?;
+        measured.set_against(&case)?;
+        measured.leave_out(&keys.leave_out)?;
+        let Measured { curves, mut warnings } = window(&measured, &keys)?;
+        check_start(&case.specimen, &curves)?;
+        let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
+        if let Some(formula) =
+            formula.filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a)))
+        {
+            warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
+        }
+        let delta_k_ratio = formula.map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
+        let exponent = exponent(&fit, folder, case.model.method, delta_k_ratio)?;
+        warnings.extend(exponent.warning.clone());
+        let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
+        case.stop.crack_length = longest;
+        case.material.toughness = None;
+        case.material.yield_strength = None;
+        warnings.extend(unrecorded(&case));
+        warnings.extend(case.warnings.iter().cloned());
+        case.provenance = folder.opened().so_far();
+        let left_out = keys.leave_out;
+        Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out, warnings, input, formula })
+    }
+
+    /// ΔK of the handbook (Pa√m) at a crack length (m); `None` where no handbook has the specimen, as a drawn plate.
+    pub fn delta_k(&self, crack_length: f64) -> Option<f64> {
+        let loading = &self.case.loading;
+        self.formula.map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
+    }
+}
+
+/// Curves of one stress ratio say nothing about its influence, and a record means ε = s_max (1-R): another Walker exponent
+/// belongs to the case that uses the record at another ratio.
+fn check_walker(case: &Case) -> crate::Result<()> {
+    let gamma = case.fatigue.walker_gamma;
+    if gamma == 1.0 {
+        return Ok(());
+    }
+    let problem = "cannot be given to a calibration, whose curves have one stress ratio and tell nothing about its influence";
+    Err(input(
+        "fatigue.walker_gamma",
+        gamma,
+        problem,
+        "remove it here and give it in the case that uses the fit at another stress ratio",
+    ))
+}
+
+/// A and p stand for C and m of the rate over K; bonds left to their own strains grow a crack at another one, which depends on lattice
+/// and horizon.
+fn check_growth_rate(case: &Case) -> crate::Result<()> {
+    if !case.spends_bond_life() || case.fatigue.growth_rate == GrowthRate::StressIntensity {
+        return Ok(());
+    }
+    let problem = "cannot be given to a calibration: A and p are constants of the growth rate over K";
+    Err(match case.fatigue.ageing {
+        Ageing::Everywhere => input("fatigue.ageing", "\"everywhere\"", problem, "use ageing = \"crack_tip\""),
+        Ageing::CrackTip => input("fatigue.growth_rate", "\"bond_strain\"", problem, "use growth_rate = \"stress_intensity\""),
+    })
+}
+
+/// A threshold shapes no fit, since cracks grew in all of it, and stands in no record.
+fn unrecorded(case: &Case) -> Option<String> {
+    let line =
+        "fatigue.delta_k_threshold_mpa_sqrt_m does not shape the fit and stands in no record: give it in cases that use the fit";
+    (case.fatigue.threshold > 0.0).then(|| line.to_owned())
+}
+
+/// Curves of the measured files, and what the record says about the files.
+fn readings(keys: &MeasuredSlice, folder: &Folder) -> crate::Result<(Measured, Vec<SourceFile>)> {
+    if keys.files.is_empty() {
+        return Err(input("measured.files", "[]", "names no file", "name at least one measured a-N curve"));
+    }
+    let import = keys.import();
+    let mut measured = Measured::default();
+    let mut sources = Vec::with_capacity(keys.files.len());
+    for file in &keys.files {
+        let bytes = folder.read(file)?;
+        measured.add(parse(&bytes, &folder.path(file), &import)?)?;
+        sources.push(source(file, &bytes));
+    }
+    Ok((measured, sources))
+}
+
+/// What the record says about a measured file.
+pub fn source(file: &str, bytes: &[u8]) -> SourceFile {
+    SourceFile { file: file.to_owned(), sha256: sha256(bytes) }
+}
+
+fn window(measured: &Measured, keys: &MeasuredSlice) -> crate::Result<Measured> {
+    let from = LENGTH.read_optional("measured.from_crack_length_mm", keys.from_crack_length_mm)?;
+    let to = LENGTH.read_optional("measured.to_crack_length_mm", keys.to_crack_length_mm)?;
+    if let (Some(from), Some(to)) = (from, to)
+        && from >= to
+    {
+        let problem = format!("is not above from_crack_length_mm = {}", from / MM);
+        return Err(input("measured.to_crack_length_mm", to / MM, problem, "give a window that holds at least 5 readings"));
+    }
+    measured.window(from, to)
+}
+
+/// The model starts at the specimen's crack length, so no reading may come before it.
+fn check_start(specimen: &Specimen, curves: &[MeasuredCurve]) -> crate::Result<()> {
+    for curve in curves {
+        let first = curve.crack_length[0]; // a window keeps at least five readings
+        if specimen.crack_length > first + LENGTH_SLACK {
+            let mm = |length: f64| format!("{:.4}", length / MM).trim_end_matches('0').trim_end_matches('.').to_owned();
+            return Err(input(
+                "specimen.crack_length_mm",
+                mm(specimen.crack_length),
+                format!("is longer than the first reading of specimen {}, {} mm", curve.specimen, mm(first)),
+                "start the model at the first reading, or the window (measured.from_crack_length_mm) at the model",
+            ));
+        }
+    }
+    Ok(())
+}

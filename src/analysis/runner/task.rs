@@ -1,0 +1,222 @@
+//! What a document asks for, read and found right.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+use toml::Table;
+
+use crate::calibration::calibrate::Calibration;
+use crate::case::budget::Budget;
+use crate::case::{Case, Method};
+use crate::error::{Result, input};
+use crate::fracture::Scene;
+use crate::fracture::read::is_scene;
+use crate::input::Document;
+use crate::predict::tip_factors::StressIntensityMethod;
+use crate::report::output::{Room, RunKind};
+use crate::report::{fracture, run, stresses};
+use crate::sweep::design::{CASES_MAX, is_sweep};
+use crate::sweep::{DrawnCase, Sweep};
+
+/// What is done with a document.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "service", derive(utoipa::ToSchema), schema(as = JobKind))]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Fits the fatigue law to measured curves.
+    Calibration,
+    /// Runs a case.
+    Prediction,
+    /// Runs a fracture scene without cycles.
+    Scene,
+    /// Runs many cases of one.
+    Sweep,
+    /// Stress intensity factors of a case.
+    Sif,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Kind; 5] = [Kind::Calibration, Kind::Prediction, Kind::Scene, Kind::Sweep, Kind::Sif];
+
+    /// The kind of run that a document of these sections is input of.
+    pub fn of(table: &Table) -> Kind {
+        match () {
+            () if is_sweep(table) => Kind::Sweep,
+            () if is_scene(table) => Kind::Scene,
+            () if table.contains_key("measured") || table.contains_key("fit") => Kind::Calibration,
+            () => Kind::Prediction,
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Calibration => "calibration",
+            Kind::Prediction => "prediction",
+            Kind::Scene => "scene",
+            Kind::Sweep => "sweep",
+            Kind::Sif => "sif",
+        }
+    }
+
+    /// Its place in URLs.
+    pub fn collection(self) -> &'static str {
+        match self {
+            Kind::Calibration => "calibrations",
+            Kind::Prediction => "predictions",
+            Kind::Scene => "scenes",
+            Kind::Sweep => "sweeps",
+            Kind::Sif => "sif",
+        }
+    }
+
+    /// Options of its command that a job of it may have.
+    pub fn options(self) -> &'static [&'static str] {
+        if self == Kind::Sif { &["method"] } else { &[] }
+    }
+}
+
+impl FromStr for Kind {
+    type Err = ();
+
+    fn from_str(name: &str) -> std::result::Result<Self, ()> {
+        Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or(())
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A document read as what it asks for.
+#[derive(Debug, Clone)]
+pub enum Task {
+    /// A case.
+    Prediction {
+        /// The case.
+        case: Box<Case>,
+        /// Whether the residual strength over crack length is wanted as well.
+        with_strength: bool,
+    },
+    /// A fracture scene.
+    Scene(Box<Scene>),
+    /// A fit to a-N curves, or of laws over K to rates.
+    Fit(Calibration),
+    /// Stress intensity factors of a case.
+    Factors {
+        /// Its plate and load.
+        case: Box<Case>,
+        /// By which methods, each once.
+        methods: Vec<StressIntensityMethod>,
+        /// Whether nodes alone are asked for, which need no crack.
+        on_nodes: bool,
+    },
+    /// A sweep with all its cases.
+    Sweep {
+        /// The sweep.
+        sweep: Box<Sweep>,
+        /// Its cases.
+        cases: Vec<DrawnCase>,
+    },
+}
+
+impl Task {
+    /// Reads a document as input of a kind of run; `methods` are names of [`StressIntensityMethod`] where that asks for them.
+    pub fn read(kind: Kind, document: &Document, methods: &[String]) -> Result<Task> {
+        Ok(match kind {
+            Kind::Prediction => Task::Prediction { case: Box::new(Case::from_document(document)?), with_strength: false },
+            Kind::Scene => Task::Scene(Box::new(Scene::from_document(document)?)),
+            Kind::Calibration => Task::Fit(Calibration::from_document(document)?),
+            Kind::Sif => {
+                let mut chosen: Vec<StressIntensityMethod> = Vec::new();
+                for name in methods {
+                    let method = name.parse()?;
+                    if !chosen.contains(&method) {
+                        chosen.push(method);
+                    }
+                }
+                let case = Box::new(Case::plate_of(document)?);
+                let on_nodes = chosen == [StressIntensityMethod::ElementFreeGalerkin]
+                    || chosen.is_empty() && case.model.method == Method::ElementFreeGalerkin;
+                let methods = if chosen.is_empty() { StressIntensityMethod::ALL.to_vec() } else { chosen };
+                Task::Factors { case, methods, on_nodes }
+            }
+            Kind::Sweep => Task::sweep(document.clone(), &[], CASES_MAX)?,
+        })
+    }
+
+    /// Reads a sweep of at most so many cases, with overrides of design and case.
+    pub fn sweep(document: Document, overrides: &[String], most: usize) -> Result<Task> {
+        let sweep = Box::new(Sweep::with_overrides(document, overrides, most)?);
+        let cases = sweep.cases()?;
+        Ok(Task::Sweep { sweep, cases })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Task::Prediction { case, .. } | Task::Factors { case, .. } => &case.name,
+            Task::Scene(scene) => &scene.name,
+            Task::Fit(calibration) => calibration.name(),
+            Task::Sweep { sweep, .. } => &sweep.name,
+        }
+    }
+
+    /// What the user should know of it before it is run.
+    pub fn warnings(&self) -> &[String] {
+        match self {
+            Task::Prediction { case, .. } | Task::Factors { case, .. } => &case.warnings,
+            Task::Scene(scene) => &scene.warnings,
+            Task::Fit(calibration) => calibration.warnings(),
+            Task::Sweep { .. } => &[],
+        }
+    }
+
+    /// What makes folders of its results.
+    pub fn run_kind(&self) -> RunKind {
+        match self {
+            Task::Prediction { .. } => RunKind::Predict,
+            Task::Factors { .. } => RunKind::Sif,
+            Task::Scene(_) => RunKind::Fracture,
+            Task::Fit(_) => RunKind::Calibrate,
+            Task::Sweep { .. } => RunKind::Sweep,
+        }
+    }
+
+    /// The case that its run follows through cycles.
+    pub(super) fn case(&self) -> Result<&Case> {
+        match self {
+            Task::Prediction { case, .. } => Ok(case),
+            _ => Err(input("--checkpoint", self.name(), "is no run that can be kept", "leave it out")),
+        }
+    }
+
+    /// What its runs take up, of every `n`-th of many with `n` so that there are at most `most`; nothing of a fit to rates.
+    pub fn budgets(&self, most: usize) -> Result<Vec<Budget>> {
+        Ok(match self {
+            Task::Prediction { case, .. } | Task::Factors { case, .. } => vec![Budget::of(case)],
+            Task::Scene(scene) => vec![scene.budget()],
+            Task::Fit(Calibration::Lives(calibration)) => vec![Budget::of(&calibration.case)],
+            Task::Fit(Calibration::Rates(_)) => Vec::new(),
+            Task::Sweep { cases, .. } => {
+                let step = cases.len().div_ceil(most).max(1);
+                cases.iter().step_by(step).map(|case| Ok(Budget::of(&case.read()?))).collect::<Result<_>>()?
+            }
+        })
+    }
+
+    /// Bytes that it will write, roughly; 0 where that is little.
+    pub fn room(&self) -> Room {
+        match self {
+            Task::Prediction { case, .. } => run::room(case),
+            Task::Scene(scene) => fracture::room(scene),
+            Task::Factors { case, .. } => stresses::room(case),
+            Task::Fit(_) => Room { tables: 64_000, all: 1_000_000 },
+            Task::Sweep { .. } => Room::default(),
+        }
+    }
+}

@@ -1,0 +1,337 @@
+//! What is tested: a flat plate with an outline, holes, slots, cracks, loads and supports.
+//!
+//! Lengths in metres, the load direction of the standard specimens is y. A [`Specimen`] is fixed once built:
+//! nothing in a run changes it. Cracks go through the thickness; part-through and corner cracks are refused by name.
+
+mod crack_line;
+pub mod geometry;
+pub mod handbook;
+pub mod net_section;
+mod placement;
+mod plate;
+mod read;
+mod standard;
+
+pub use crack_line::{CrackLine, LineEnd};
+pub use geometry::{Component, Edge};
+pub use read::{PART_THROUGH, from_value};
+
+/// A point of the plate, metres.
+pub type Point = [f64; 2];
+
+crate::kinds! {
+    /// Shapes a case can name.
+    pub enum SpecimenKind for "specimen.kind" {
+        MiddleTension = "middle_tension": "plate with a central crack, M(T) of ASTM E647; crack length = half length a",
+        SingleEdgeTension = "single_edge_tension": "plate with one edge crack; needs ends = pinned, clamped or uniform_stress",
+        DoubleEdgeTension = "double_edge_tension": "plate with two equal edge cracks; crack length = length of each",
+        CompactTension = "compact_tension": "C(T) of ASTM E647, loaded by pins; crack length from the load line",
+        Plate = "plate": "any outline with round holes, slots and straight through cracks at any angle",
+    }
+}
+
+crate::kinds! {
+    /// How the ends of a single edge tension specimen are held.
+    pub enum Ends for "specimen.ends" {
+        Pinned = "pinned": "rigid grips free to rotate about a pin on the centre line",
+        Clamped = "clamped": "rigid grips that cannot rotate",
+        UniformStress = "uniform_stress": "uniform stress over both ends, the condition of the handbook formula",
+    }
+}
+
+/// A circle cut out of the plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hole {
+    /// Centre, m.
+    pub centre: Point,
+    /// Radius, m.
+    pub radius: f64,
+}
+
+/// A straight slot of constant width with square ends, cut out of the plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slot {
+    /// Middle of one end, m.
+    pub from: Point,
+    /// Middle of the other end, m.
+    pub to: Point,
+    /// Width across, m.
+    pub width: f64,
+}
+
+/// A straight through crack, or a straight piece of one with bends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crack {
+    /// One end, m.
+    pub from: Point,
+    /// Other end, m.
+    pub to: Point,
+    /// Whether it goes on from the end of the crack before it in the list, as the next piece of the same line.
+    pub continues: bool,
+}
+
+impl Crack {
+    /// A straight crack.
+    pub fn straight(from: Point, to: Point) -> Self {
+        Crack { from, to, continues: false }
+    }
+}
+
+/// Where growth can start: a crack end inside the plate, or the middle of a slot's end face that lies in the material
+/// (unless a crack starts from that face).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TipSeed {
+    /// Position, m.
+    pub position: Point,
+    /// Unit vector in which the crack or slot points, out of itself into the material.
+    pub direction: Point,
+    /// Whether this is the end face of a slot rather than the end of a sharp crack.
+    pub from_slot: bool,
+}
+
+/// A load on part of the boundary, per unit of the case's load magnitude.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Load {
+    /// Uniform traction on a straight stretch of the outline.
+    /// `traction` is in Pa per Pa of the case's nominal stress (so 1.0 normal to the edge for plain tension).
+    Edge {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// Traction on the plate, Pa per Pa.
+        traction: Point,
+    },
+    /// Bearing pressure `p cos(π θ / 2θ_c)` of a frictionless pin where it touches the hole, |θ| up to θ_c about `direction`.
+    /// `force` is in N per N of the case's force, along the unit vector `direction`.
+    Pin {
+        /// Index into `Specimen::holes`.
+        hole: usize,
+        /// Unit vector of the force on the plate.
+        direction: Point,
+        /// Force on the plate, N per N.
+        force: f64,
+        /// Half angle of contact θ_c, rad: up to [`SNUG_PIN`].
+        contact: f64,
+    },
+}
+
+/// Half angle of contact of a pin that fills its hole, rad: a pin without friction pushes over half the circle.
+pub const SNUG_PIN: f64 = std::f64::consts::FRAC_PI_2;
+
+/// What is held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Support {
+    /// Points within `depth` of the straight outline stretch `from`-`to` (at least one row) keep the named components at zero.
+    Fixed {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// How deep into the plate the hold reaches, m.
+        depth: f64,
+        /// Whether the x component is held.
+        x: bool,
+        /// Whether the y component is held.
+        y: bool,
+    },
+    /// Both ends move as rigid blocks that do not rotate (clamped grips); the relative displacement along y is what the load asks.
+    ClampedEnds,
+    /// Both ends move as rigid blocks that may rotate (pinned grips): end rows are made stiff, load is uniform over them.
+    RigidEnds,
+    /// What the body does not know of takes up the loads, so that they need not balance: supports and driven points of a fracture
+    /// scene, or inertia.
+    Elsewhere,
+}
+
+/// How crack length is read, see [`Specimen::crack_length`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LengthConvention {
+    /// Initial length plus the mean growth of all tips (half length of a central crack, each of two edge cracks, C(T)).
+    MeanOfTips,
+    /// Initial length of all cracks plus the growth of all tips.
+    SumOfTips,
+}
+
+/// What the nominal load of a case means for this specimen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LoadMeasure {
+    /// `stress_*_mpa`: gross stress; the force is stress x gross width x thickness.
+    Stress,
+    /// `force_*_n`: force on the pins.
+    Force,
+}
+
+/// A plate as it is tested: geometry, loads, supports, where cracks start. All lengths in metres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Specimen {
+    /// Which shape it is.
+    pub kind: SpecimenKind,
+    /// Outline, counter-clockwise, not closed (last point differs from first).
+    pub outline: Vec<Point>,
+    /// Round holes.
+    pub holes: Vec<Hole>,
+    /// Slots.
+    pub slots: Vec<Slot>,
+    /// Through cracks at the start.
+    pub cracks: Vec<Crack>,
+    /// Crack ends that can grow, in the order of result columns.
+    pub tips: Vec<TipSeed>,
+    /// Thickness, m.
+    pub thickness: f64,
+    /// Characteristic width of the specimen's standard: W, m (C(T): from the load line).
+    pub width: f64,
+    /// Width that the lattice spacing has to divide, m (C(T): 1.25 W).
+    pub gross_width: f64,
+    /// A line y = const through a horizontal crack that must fall between two rows of points; None = free.
+    pub crack_plane_y: Option<f64>,
+    /// A line x = const through a vertical crack that must fall between two columns of points; None = free.
+    pub crack_plane_x: Option<f64>,
+    /// Crack length at the start in the specimen's convention, m.
+    pub crack_length: f64,
+    /// How growth of tips adds up to crack length.
+    pub convention: LengthConvention,
+    /// Loads per unit of nominal load.
+    pub loads: Vec<Load>,
+    /// Pressure on the faces of all cracks, also where they grow, per unit of nominal load: Pa per Pa, or Pa per N.
+    pub crack_pressure: f64,
+    /// Whether the nominal load is a stress or a force.
+    pub load_measure: LoadMeasure,
+    /// Supports; empty means the loads are in equilibrium by themselves and the plate floats.
+    pub supports: Vec<Support>,
+}
+
+impl Specimen {
+    /// A plate of a standard kind under uniform stress over its ends y = ±length/2, before cracks are put in.
+    pub fn strip(kind: SpecimenKind, width: f64, length: f64, thickness: f64) -> Self {
+        let (x, y) = (width / 2.0, length / 2.0);
+        Specimen {
+            kind,
+            outline: vec![[-x, -y], [x, -y], [x, y], [-x, y]],
+            holes: Vec::new(),
+            slots: Vec::new(),
+            cracks: Vec::new(),
+            tips: Vec::new(),
+            thickness,
+            width,
+            gross_width: width,
+            crack_plane_y: Some(0.0),
+            crack_plane_x: None,
+            crack_length: 0.0,
+            convention: LengthConvention::MeanOfTips,
+            loads: vec![
+                Load::Edge { from: [-x, y], to: [x, y], traction: [0.0, 1.0] },
+                Load::Edge { from: [-x, -y], to: [x, -y], traction: [0.0, -1.0] },
+            ],
+            load_measure: LoadMeasure::Stress,
+            crack_pressure: 0.0,
+            supports: Vec::new(),
+        }
+    }
+
+    /// Size of the plate along y, m.
+    pub fn length(&self) -> f64 {
+        let [low, high] = geometry::bounding_box(&self.outline);
+        high[1] - low[1]
+    }
+
+    /// Sizes of the flaws that spacing and horizon have to resolve, m: half length of a crack with two tips, whole length of one with
+    /// one tip, length of a slot; C(T) from the load line.
+    pub fn flaw_sizes(&self) -> Vec<f64> {
+        if self.kind != SpecimenKind::Plate {
+            return vec![self.crack_length];
+        }
+        let cracks = self.crack_lines().into_iter().map(|line| line.length() / self.tips_of(&line).max(1) as f64);
+        let slots = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to));
+        cracks.chain(slots).collect()
+    }
+
+    /// Number of tips of a crack.
+    pub fn tips_of(&self, line: &CrackLine) -> usize {
+        let ends = |tip: &&TipSeed| !tip.from_slot && [true, false].iter().any(|&at_last| line.end(at_last) == tip.position);
+        self.tips.iter().filter(ends).count()
+    }
+
+    /// The smallest of the [`Specimen::flaw_sizes`], m.
+    pub fn smallest_flaw(&self) -> f64 {
+        self.flaw_sizes().into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Distance of a place from the nearest rim, m: outline, holes, slots.
+    pub fn rim_distance(&self, at: Point) -> f64 {
+        let holes = self.holes.iter().map(|hole| (geometry::distance(at, hole.centre) - hole.radius).abs());
+        let slots = self.slots.iter().map(|slot| geometry::distance_to_polygon(at, &slot.corners()));
+        holes.chain(slots).fold(geometry::distance_to_polygon(at, &self.outline), f64::min)
+    }
+
+    /// Least distance of the tip of a crack from a rim or from a crack that it does not end, m; infinite without such a tip.
+    pub fn least_gap(&self) -> f64 {
+        let lines = self.crack_lines();
+        let gap = |tip: usize| {
+            let end = self.line_end(tip)?;
+            let at = self.tips[tip].position;
+            let others = lines.iter().enumerate().filter(|(line, _)| *line != end.line).map(|(_, line)| line.distance(at));
+            Some(others.fold(self.rim_distance(at), f64::min))
+        };
+        (0..self.tips.len()).filter_map(gap).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Area of the material, m²: outline less holes and slots.
+    pub fn area(&self) -> f64 {
+        let holes: f64 = self.holes.iter().map(|hole| std::f64::consts::PI * hole.radius * hole.radius).sum();
+        let slots: f64 = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to) * slot.width).sum();
+        geometry::polygon_area(&self.outline) - holes - slots
+    }
+
+    /// Crack length in the convention of the specimen for given growths of its tips, m.
+    pub fn crack_length_after(&self, growth_of_tips: &[f64]) -> f64 {
+        let sum: f64 = growth_of_tips.iter().sum();
+        match self.convention {
+            LengthConvention::MeanOfTips => self.crack_length + sum / growth_of_tips.len().max(1) as f64,
+            LengthConvention::SumOfTips => self.crack_length + sum,
+        }
+    }
+
+    /// The cracks as lines, in their order.
+    pub fn crack_lines(&self) -> Vec<CrackLine> {
+        let mut lines: Vec<CrackLine> = Vec::with_capacity(self.cracks.len());
+        for crack in &self.cracks {
+            match lines.last_mut().filter(|_| crack.continues) {
+                Some(line) => line.grow(true, crack.to),
+                None => lines.push(CrackLine::straight(crack.from, crack.to)),
+            }
+        }
+        lines
+    }
+
+    /// Which end of which of the [`Specimen::crack_lines`] a tip is; `None` for the end face of a slot.
+    pub fn line_end(&self, tip: usize) -> Option<LineEnd> {
+        let seed = self.tips.get(tip).filter(|seed| !seed.from_slot)?;
+        let mut lines = self.crack_lines().into_iter().enumerate();
+        lines.find_map(|(line, crack)| {
+            [true, false]
+                .into_iter()
+                .find(|&at_last| crack.end(at_last) == seed.position)
+                .map(|at_last| LineEnd { line, at_last })
+        })
+    }
+
+    /// Whether it has tips, and all of them are those of sharp cracks.
+    pub fn has_sharp_tips(&self) -> bool {
+        !self.tips.is_empty() && (0..self.tips.len()).all(|tip| self.line_end(tip).is_some())
+    }
+
+    /// Moves every tip, and the end of its crack with it, by its growth, m; negative growth makes a crack shorter. The
+    /// crack length stays the one that was read.
+    pub fn move_tips(&mut self, growth_of_tips: &[f64]) {
+        for (tip, &growth) in self.tips.iter_mut().zip(growth_of_tips).filter(|(_, growth)| **growth != 0.0) {
+            let moved = [0, 1].map(|i| tip.position[i] + growth * tip.direction[i]);
+            for end in self.cracks.iter_mut().flat_map(|crack| [&mut crack.from, &mut crack.to]) {
+                if *end == tip.position {
+                    *end = moved;
+                }
+            }
+            tip.position = moved;
+        }
+    }
+}

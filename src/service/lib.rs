@@ -1,0 +1,185 @@
+//! The service: calibrate, predict and watch from a browser or a script, losing nothing.
+//!
+//! Three parts that know each other only through the [`store`]: the [`api`] takes jobs in and shows them, [`worker`]s run them by
+//! the functions that the commands call, and the store is where a job exists. One process may have both ([`serve`]), or many
+//! machines share one PostgreSQL ([`work`]).
+//!
+//! A job is accepted once it is committed, claimed by one worker at a time (a number that grows with every claim fences off one
+//! that was taken for dead and is not), run in a process of its own with so much memory and time, kept alive by signs of life, taken
+//! up from its last checkpoint wherever its worker died, and finished once, together with its files, in one transaction. After a crash a prediction goes on to the same curve, bit for bit on
+//! the same kind of processor; a calibration, which takes seconds, begins anew. The same `Idempotency-Key` makes no second job while
+//! the first is kept. A database that is gone or a disk that is full is a 503 until it is back.
+//!
+//! Owners of tokens take turns, so that nobody's thousand jobs keep the others waiting. Of tokens only hashes are kept; bodies, files,
+//! points, waiting jobs and requests a second are limited, and files go out in parts, so that readers who do not read cost little.
+
+use perilife_analysis::*;
+
+pub mod api;
+pub mod job;
+mod listen;
+pub mod problem;
+pub mod store;
+pub mod worker;
+
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::net::TcpListener;
+use tokio::runtime::{Builder, Runtime};
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::sync::Notify;
+
+use crate::error::{Error, Result, input};
+use api::{App, Audit, Limits, Security};
+use store::{Store, Upgrade};
+use worker::Workers;
+
+/// Connections to the database beyond those of the workers.
+const CONNECTIONS: u32 = 8;
+/// Time between two forgettings of callers that were not heard of.
+const FORGET_EVERY: Duration = Duration::from_secs(60);
+
+/// What a service is to do.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Address.
+    pub listen: SocketAddr,
+    /// `sqlite://FILE` or `postgres://...`.
+    pub database: String,
+    /// Who is let in; whoever listens to other machines needs tokens in any case.
+    pub security: Security,
+    /// File to which changes and refusals are appended.
+    pub audit_log: Option<PathBuf>,
+    /// How much a request may ask for.
+    pub limits: Limits,
+    /// Workers of this process; `jobs` 0 has none.
+    pub workers: worker::Settings,
+}
+
+/// Serves until the process is asked to stop (SIGINT, SIGTERM); `ready` is told the address once it answers.
+pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> {
+    runtime()?.block_on(async {
+        let store = open(&settings.database, CONNECTIONS + settings.workers.jobs as u32, Upgrade::Allowed).await?;
+        let needs_token = settings.security.needs_token || !settings.listen.ip().is_loopback();
+        let audit = settings.audit_log.as_deref().map(Audit::open).transpose()?;
+        if needs_token && store.tokens().await.map_err(|error| database(&settings.database, error))?.is_empty() {
+            let remedy = "make one first: perilife token add NAME --role admin";
+            let problem = "asks for tokens, of which there is none";
+            return Err(input("--listen", settings.listen, problem, remedy));
+        }
+        let cannot = |error| Error::file(Path::new(&settings.listen.to_string()), "cannot listen", error);
+        let listener = TcpListener::bind(settings.listen).await.map_err(cannot)?;
+        let address = listener.local_addr().map_err(cannot)?;
+
+        let wake = Arc::new(Notify::new());
+        let workers = Workers::start(store.clone(), settings.workers.clone(), Arc::clone(&wake)).map_err(threads)?;
+        let security = Security { needs_token, ..settings.security.clone() };
+        let mut app = App::new(store.clone(), settings.limits.clone(), security, settings.workers.jobs, wake);
+        app.audit = audit.map(Arc::new);
+        app.disks = Arc::new(disks(settings));
+        api::start_counting();
+        let forgetting = tokio::spawn(forget_callers(app.clone()));
+        ready(address);
+
+        let stopping = async {
+            asked_to_stop().await;
+            app.stop();
+        };
+        listen::serve(listener, api::router(app.clone()), settings.limits.connections, stopping).await;
+        tracing::info!("stopping: jobs go on from their checkpoints at the next start");
+        forgetting.abort();
+        workers.stop().await;
+        store.close().await;
+        Ok(())
+    })
+}
+
+/// Works for a service of another process until this one is asked to stop.
+pub fn work(url: &str, settings: &worker::Settings, ready: impl FnOnce()) -> Result<()> {
+    runtime()?.block_on(async {
+        let store = open(url, 1 + settings.jobs as u32, Upgrade::Refused).await?;
+        let workers = Workers::start(store.clone(), settings.clone(), Arc::new(Notify::new())).map_err(threads)?;
+        ready();
+        asked_to_stop().await;
+        tracing::info!("stopping: jobs go on from their checkpoints elsewhere");
+        workers.stop().await;
+        store.close().await;
+        Ok(())
+    })
+}
+
+/// Folders that a service writes to: of the database file, and of temporary files where it runs jobs.
+fn disks(settings: &Settings) -> Vec<(&'static str, PathBuf)> {
+    let file = settings.database.starts_with("sqlite://").then(|| PathBuf::from(without_password(&settings.database)));
+    let store = file.and_then(|file| file.parent().map(Path::to_path_buf));
+    let temporary = (settings.workers.jobs > 0).then(std::env::temp_dir);
+    [("store", store), ("temporary", temporary)].into_iter().filter_map(|(name, place)| Some((name, place?))).collect()
+}
+
+/// Does something with the store of a service.
+pub fn with_store<T>(url: &str, task: impl AsyncFnOnce(&Store) -> store::Result<T>) -> Result<T> {
+    runtime()?.block_on(async {
+        let store = open(url, 1, Upgrade::Refused).await?;
+        let done = task(&store).await.map_err(|error| database(url, error));
+        store.close().await;
+        done
+    })
+}
+
+fn runtime() -> Result<Runtime> {
+    Builder::new_multi_thread().enable_all().build().map_err(threads)
+}
+
+async fn open(url: &str, connections: u32, upgrade: Upgrade) -> Result<Store> {
+    Store::open(url, connections, upgrade).await.map_err(|error| database(url, error))
+}
+
+/// A database that cannot be used; passwords in its URL are not repeated.
+fn database(url: &str, error: sqlx::Error) -> Error {
+    Error::file(Path::new(&without_password(url)), "cannot use the database", std::io::Error::other(error))
+}
+
+/// A URL that may be shown.
+pub fn without_password(url: &str) -> String {
+    let Some((scheme, rest)) = url.split_once("://") else { return "the database".to_owned() };
+    // Query parameters may hold passwords as well.
+    let rest = rest.split('?').next().unwrap_or_default();
+    if scheme == "sqlite" {
+        // The path of a file, as its owner writes it.
+        return percent_encoding::percent_decode_str(rest).decode_utf8_lossy().into_owned();
+    }
+    match rest.rsplit_once('@') {
+        Some((user, place)) => format!("{scheme}://{}@{place}", user.split(':').next().unwrap_or_default()),
+        None => format!("{scheme}://{rest}"),
+    }
+}
+
+fn threads(error: std::io::Error) -> Error {
+    Error::file(Path::new("threads"), "cannot be started", error)
+}
+
+/// Waits for the signal to stop.
+async fn asked_to_stop() {
+    let terminated = async {
+        match signal(SignalKind::terminate()) {
+            Ok(mut terminate) => drop(terminate.recv().await),
+            // Without it the other signal is what is left.
+            Err(_) => std::future::pending().await,
+        }
+    };
+    tokio::select! {
+        _ = tokio::signal::ctrl_c() => {}
+        () = terminated => {}
+    }
+}
+
+async fn forget_callers(app: App) {
+    loop {
+        tokio::time::sleep(FORGET_EVERY).await;
+        app.forget_callers();
+        api::sum_up();
+    }
+}
