@@ -31,11 +31,15 @@
 //! # Ok::<(), perilife::Error>(())
 //! ```
 //!
-//! Rooms stand in the order in which data flows; a file uses only rooms listed above its own
-//! (kept by `tests/unit/layering.rs`).
+//! Four crates are compiled one on the other: `src/engine` from a case to its life, `src/analysis` with calibration, verification and
+//! reports, `src/service`, and here the command line. Rooms stand in the order in which data flows; a file uses only rooms listed above
+//! its own (kept by `tests/unit/layering.rs`).
 #![warn(missing_docs)]
 
+#[doc(inline)]
 pub use perilife_analysis::*;
 #[cfg(feature = "service")]
+#[doc(inline)]
 pub use perilife_service as service;
+
 pub mod commands;

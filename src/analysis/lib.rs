@@ -1,6 +1,7 @@
-//! Calibration, verification and reports.
+//! What is done with the engine: laboratory tables, calibration, verification, sweeps, reports. `perilife` has all of it.
 #![warn(missing_docs)]
 
+#[doc(inline)]
 pub use perilife_engine::*;
 
 #[cfg(feature = "tables")]

@@ -1,4 +1,4 @@
-//! The engine: from a case to its prediction, and scenes without cycles.
+//! The engine: from a case to its life, and scenes of fracture without cycles. `perilife` has all of it.
 #![warn(missing_docs)]
 
 pub mod error;

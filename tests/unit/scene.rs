@@ -286,7 +286,7 @@ fn scenes_and_cases_are_told_apart() {
 /// The example in the documentation of the reader can be read, and holds what it shows.
 #[test]
 fn the_documented_scene_is_right() {
-    let source = include_str!("../../src/fracture/read/mod.rs");
+    let source = include_str!("../../src/engine/fracture/read/mod.rs");
     let example: Vec<&str> =
         source.lines().skip_while(|line| *line != "//! ```toml").skip(1).take_while(|line| *line != "//! ```").collect();
     let text: String = example.iter().map(|line| format!("{}\n", line.trim_start_matches("//! "))).collect();
