@@ -4,9 +4,6 @@
 #[doc(inline)]
 pub use perilife_engine::*;
 
-#[cfg(feature = "tables")]
-pub mod tables;
-pub mod measured;
 pub mod calibration;
 pub mod verify;
 pub mod sweep;

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::case_without_law;
 use super::console::Console;
 use crate::calibration::outliers::doubts;
-use crate::calibration::paris::doubt;
+use crate::calibration::paris::doubt_of;
 use crate::calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
 use crate::case::Case;
 use crate::cells::field;
@@ -86,6 +86,7 @@ impl Args {
             columns,
             decimal: self.decimal.as_deref().map(str::parse::<Decimal>).transpose()?,
             sheet: self.sheet.clone().map(Sheet),
+            ..Import::default()
         })
     }
 }
@@ -97,7 +98,7 @@ pub fn run(args: &Args) -> Result<()> {
     let mut measured = read_into(&opened, &args.measured, &args.import()?)?;
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     if let Some(case) = &case {
-        measured.set_against(case)?;
+        measured.set_against(&case.specimen, &case.loading)?;
     }
     let specimens = specimen_rates(&measured, method, case.as_ref())?;
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());
@@ -135,7 +136,7 @@ fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) 
     let delta_k = |length: f64| formula.delta_k(length, case.loading.maximum, case.loading.range_share());
     for (specimen, curve) in specimens.iter_mut().zip(&measured.curves) {
         add_delta_k(&mut specimen.points, case, &delta_k);
-        let law = paris_line(&specimen.points).and_then(|law| doubt(10_f64.powf(law.intercept), law.slope));
+        let law = paris_line(&specimen.points).and_then(|law| doubt_of(10_f64.powf(law.intercept), law.slope));
         let of_law = law.map(|words| format!("specimen {}: {words}", curve.specimen));
         let outside = outside_formula(&specimen.points, &formula).map(|words| format!("specimen {}: {words}", curve.specimen));
         specimen.warnings = doubts(curve, &delta_k).into_iter().chain(of_law).chain(outside).collect();

@@ -5,6 +5,8 @@ pub mod error;
 pub mod kinds;
 pub mod units;
 pub mod cells;
+#[cfg(feature = "tables")]
+pub mod tables;
 pub mod parallel;
 pub mod watch;
 pub mod monotone;
@@ -25,6 +27,7 @@ pub mod levels;
 pub mod solver;
 pub mod element_free;
 pub mod fatigue;
+pub mod measured;
 pub mod case;
 pub mod stress_intensity;
 pub mod growth;

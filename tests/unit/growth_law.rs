@@ -17,7 +17,7 @@ fn near(a: f64, b: f64, relative: f64) {
 
 #[test]
 fn forman_becomes_unstable_at_its_toughness() {
-    let law = Forman { c: 1e-8, m: 2.5, k_c: 60.0 * MPA_SQRT_M };
+    let law = Forman { c: 1e-8, m: 2.5, k_c: 60.0 * MPA_SQRT_M, range: RangeKind::Tensile };
     // ΔK = 18 of K_max = 20 at R = 0.1: 1e-8 18^2.5 / (0.9 60 - 18).
     near(law.rate(20.0 * MPA_SQRT_M, 0.1), 1e-8 * 18.0_f64.powf(2.5) / 36.0, 1e-12);
     assert_eq!(law.rate(20.0 * MPA_SQRT_M, -1.0), law.rate(20.0 * MPA_SQRT_M, 0.0), "compression does not count");

@@ -123,7 +123,7 @@ pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
         let fit = fit_by_method(calibration, observer);
         watch::unless_cancelled(&calibration.case.name, fit)
     })?;
-    match paris::doubt(fit.paris.c, fit.paris.m) {
+    match paris::doubt_of(fit.paris.c, fit.paris.m) {
         None => Ok(fit),
         Some(doubt) => {
             let doubts: String = fit.warnings.iter().map(|line| format!("\n  {line}")).collect();

@@ -7,12 +7,12 @@ use toml::{Table, Value};
 
 use crate::calibration::criterion::Criterion;
 use crate::calibration::exponent::{Exponent, FitSlice, delta_k_ratio, exponent};
-use crate::case::record::{LeaveOut, SourceFile};
+use crate::case::record::SourceFile;
 use crate::case::{Case, LawSource};
 use crate::error::{input, input_missing};
 use crate::fatigue::{Ageing, GrowthRate};
 use crate::input::{Document, Folder, LENGTH, sha256, slice};
-use crate::measured::{ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
+use crate::measured::{ColumnNames, CycleUnit, Decimal, Import, LeaveOut, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::MM;
@@ -70,6 +70,7 @@ impl MeasuredSlice {
             columns: self.columns.clone(),
             decimal: self.decimal,
             sheet: self.sheet.clone(),
+            ..Import::default()
         }
     }
 }
@@ -110,7 +111,7 @@ impl CalibrationCase {
         check_growth_rate(&case)?;
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
-        measured.set_against(&case)?;
+        measured.set_against(&case.specimen, &case.loading)?;
         measured.leave_out(&keys.leave_out)?;
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;

@@ -9,7 +9,7 @@ use super::criterion::Criterion;
 use super::exponent::DELTA_K_RATIO_MIN;
 use super::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::median::pointwise_median;
-use super::outliers::{RobustLine, doubts, readings_apart, robust_line, runs, step_rates};
+use super::outliers::{RobustLine, doubts, readings_apart, robust_line, runs, step_rates, without};
 use super::paris::{self, Paris};
 use super::power_law::PowerLaw;
 use super::rates::STEP_MIN;
@@ -124,7 +124,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let robust = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted);
     if let Some(line) = robust {
         // Readings that do not belong must not widen the error by which they are judged.
-        let belonging = median.without(&runs(&step_rates(&median, task.delta_k), line));
+        let belonging = without(&median, &runs(&step_rates(&median, task.delta_k), line));
         let without = fit_one(&belonging, task.criterion, fixed_p, law)?;
         let error = assess(task, law, &belonging, &without, is_fitted)?.1.m_error;
         let least_squares = paris;

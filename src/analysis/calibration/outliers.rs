@@ -130,15 +130,13 @@ pub fn runs(rates: &[StepRate], line: RobustLine) -> Vec<Run> {
     runs
 }
 
-impl MeasuredCurve {
-    /// The curve with the growth of some runs left out.
-    pub fn without(&self, runs: &[Run]) -> MeasuredCurve {
-        let mut left_out: Vec<bool> = (0..self.cycles.len()).map(|step| !self.counts(step)).collect();
-        for run in runs {
-            left_out[run.from + 1..=run.to].fill(true);
-        }
-        if runs.is_empty() { self.clone() } else { MeasuredCurve { left_out, ..self.clone() } }
+/// A curve with the growth of some runs left out.
+pub fn without(curve: &MeasuredCurve, runs: &[Run]) -> MeasuredCurve {
+    let mut left_out: Vec<bool> = (0..curve.cycles.len()).map(|step| !curve.counts(step)).collect();
+    for run in runs {
+        left_out[run.from + 1..=run.to].fill(true);
     }
+    if runs.is_empty() { curve.clone() } else { MeasuredCurve { left_out, ..curve.clone() } }
 }
 
 /// What speaks against the readings of a curve: [`runs`] that do not belong, and a [shift of level](best_split).

@@ -6,6 +6,8 @@
 
 use crate::calibration::search::Constants;
 use crate::error::{Error, Result};
+use crate::fatigue::growth_law::{RangeKind, Walker, doubt};
+use crate::fatigue::paris::ParisLaw;
 use crate::line::line;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
@@ -41,21 +43,20 @@ impl Paris {
     }
 }
 
-/// Exponents and rates at ΔK = 10 MPa√m (mm/cycle) that a metal may have.
+/// Exponents that a metal may have.
 const EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=10.0;
-const RATES_AT_TEN: std::ops::RangeInclusive<f64> = 1e-8..=1e-2;
+
+/// What is wrong with an exponent m for a metal.
+pub fn doubt_of_exponent(m: f64) -> Option<String> {
+    let (low, high) = (EXPONENTS.start(), EXPONENTS.end());
+    let words = "check the units of crack length, cycles and load";
+    (!EXPONENTS.contains(&m)).then(|| format!("m = {m:.3} is outside {low} to {high}, where metals lie: {words}"))
+}
 
 /// What is wrong with `da/dN = C ΔK^m` (mm/cycle, MPa√m) as the law of a metal: a unit that slipped shows here.
-pub fn doubt(c: f64, m: f64) -> Option<String> {
-    let rate = c * 10_f64.powf(m);
-    let words = "check the units of crack length, cycles and load";
-    if !EXPONENTS.contains(&m) {
-        return Some(format!("m = {m:.3} is outside {} to {}, where metals lie: {words}", EXPONENTS.start(), EXPONENTS.end()));
-    }
-    (!RATES_AT_TEN.contains(&rate)).then(|| {
-        let (low, high) = (RATES_AT_TEN.start(), RATES_AT_TEN.end());
-        format!("the rate at ΔK = 10 MPa√m is {rate:.2e} mm/cycle, outside {low:e} to {high:e}, where metals lie: {words}")
-    })
+pub fn doubt_of(c: f64, m: f64) -> Option<String> {
+    let paris = ParisLaw { c: c * MM_PER_CYCLE, m };
+    doubt_of_exponent(m).or_else(|| doubt(&Walker { paris, gamma: 1.0, threshold: 0.0, range: RangeKind::Tensile }, 0.0))
 }
 
 /// Equally spaced lengths of the window at which rates are taken.

@@ -13,6 +13,7 @@ use super::laws::{FitLaw, LawFits};
 use super::search::FittedCurve;
 use crate::case::record::{Estimate, FittedRecord, LawRecord};
 use crate::cells::field;
+use crate::fatigue::growth_law::{GrowthLawKind, RangeKind};
 use crate::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// `fit.json` of a fit that took `wall_s` seconds; units as in the names, cycles else, null for what is not known.
@@ -244,6 +245,10 @@ pub fn law_record(case: &LawCase, fits: &LawFits) -> LawRecord {
     let mut fatigue = toml::Table::new();
     fatigue.insert("growth_law".to_owned(), law.kind.name().into());
     fatigue.extend(law.constants.iter().map(|constant| (constant.key.to_owned(), constant.value.into())));
+    // NASGRO takes R itself.
+    if let Some(range) = case.range.filter(|range| *range == RangeKind::Full && law.kind != GrowthLawKind::Nasgro) {
+        fatigue.insert("delta_k".to_owned(), range.name().into());
+    }
     let [low, high] = case.delta_k_range();
     let ratios = || case.rows.iter().map(|row| row.ratio);
     LawRecord {
@@ -279,7 +284,11 @@ pub fn law_summary(case: &LawCase, fits: &LawFits) -> Vec<String> {
     let [low, high] = case.delta_k_range();
     let ratios = case.ratios().iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
     let mut lines = vec![format!("fit of laws to {} rates at R = {ratios}, ΔK {low:.3} to {high:.3} MPa√m", case.rows.len())];
-    let asked = if case.law == FitLaw::Best { "best by AICc" } else { "as asked for" };
+    let asked = match (case.law, fits.margin) {
+        (FitLaw::Best, Some((_, margin))) if margin < 0.0 => "best by its residuals, less than half of the others",
+        (FitLaw::Best, _) => "best by AICc",
+        _ => "as asked for",
+    };
     let margin = match fits.margin {
         Some((next, margin)) if margin >= 0.0 => format!(", {margin:.1} better than {next}{}", strength(margin)),
         Some((next, margin)) => format!(", {:.1} worse than {next}", -margin),
@@ -291,6 +300,8 @@ pub fn law_summary(case: &LawCase, fits: &LawFits) -> Vec<String> {
         format!("    {:<28} {} {error}", constant.key, figure(constant.value, 5))
     }));
     lines.push("  ±              one standard error".to_owned());
+    lines.extend(case.units.iter().map(|line| format!("  read           {line}")));
+    lines.extend(case.range.map(|range| format!("  ΔK at R < 0    {range}: {}", range.meaning())));
     for candidate in &fits.candidates {
         lines.push(match &candidate.left_out {
             Some(why) => format!("  {:<14} left out: {why}", candidate.kind.name()),

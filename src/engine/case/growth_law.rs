@@ -4,9 +4,10 @@ use super::fatigue_keys::{FatigueKeys, TableEnds};
 use crate::error::{Error, InputError, Result, input, input_missing};
 use crate::fatigue::growth_law::nasgro::{Nasgro, RATIO_MIN};
 use crate::fatigue::growth_law::table::{Curve, Table};
-use crate::fatigue::growth_law::{FactorLaw, Forman, GrowthLawKind};
+use crate::fatigue::growth_law::{FactorLaw, Forman, GrowthLawKind, RangeKind};
 use crate::input::{Folder, INTENSITY, number};
 use crate::material::Material;
+use crate::measured::{RateFile, RateRow, RateTable, round_off};
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
 /// What these laws need to know about the rest of the case.
@@ -21,9 +22,16 @@ const RATE: &str = "a rate in mm/cycle";
 impl FatigueKeys {
     /// The law of this kind.
     pub fn factor_law(&self, kind: GrowthLawKind, setting: &Setting<'_>) -> Result<FactorLaw> {
-        if self.walker_gamma.is_some() {
+        if self.walker_gamma.is_some() && kind != GrowthLawKind::Table {
             let remedy = "leave it out, or use growth_law = \"walker\"";
             return Err(input_missing("fatigue.walker_gamma", format!("does not go with growth_law \"{kind}\""), remedy));
+        }
+        if let Some(range) = self.delta_k.filter(|_| kind != GrowthLawKind::Forman) {
+            let remedy = match kind {
+                GrowthLawKind::Table => "say it with the table: growth_table = { file = \"...\", delta_k = ... }",
+                _ => "leave it out: the law takes R itself",
+            };
+            return Err(input("fatigue.delta_k", format!("\"{range}\""), format!("does not go with growth_law \"{kind}\""), remedy));
         }
         if self.delta_k_threshold_mpa_sqrt_m.is_some() && kind == GrowthLawKind::Nasgro {
             let problem = "does not go with growth_law \"nasgro\", which has its own threshold";
@@ -47,6 +55,7 @@ impl FatigueKeys {
             c: number(RATE, 1e-60, 1e3).read("fatigue.forman_c_mm_per_cycle", c)? * MM_PER_CYCLE,
             m: number("an exponent", 0.5, 20.0).read("fatigue.forman_m", needed("forman_m", self.forman_m)?)?,
             k_c: self.k_c(setting)?,
+            range: self.delta_k.unwrap_or(RangeKind::Tensile),
         })
     }
 
@@ -90,18 +99,38 @@ impl FatigueKeys {
     }
 
     fn table(&self, setting: &Setting<'_>) -> Result<Table> {
-        let Some(name) = &self.growth_table else {
+        const KEY: &str = "fatigue.growth_table";
+        let Some(file) = self.growth_table.as_ref().map(RateFile::keys) else {
             let remedy =
                 "name a CSV file with the columns delta_k_mpa_sqrt_m, da_dn_mm_per_cycle and, for several ratios, stress_ratio";
-            return Err(input_missing("fatigue.growth_table", "is missing", remedy));
+            return Err(input_missing(KEY, "is missing", remedy));
         };
-        let bytes = setting.folder.read(name)?;
-        let curves = rows(&bytes).map_err(|error| error.in_file(&setting.folder.path(name)))?;
-        let table = Table { curves, holds_ends: self.growth_table_ends == Some(TableEnds::Held) };
+        let (rates, _) = file.read(setting.folder, KEY)?;
+        let table = Table {
+            curves: curves(&rates).map_err(|error| error.in_file(&setting.folder.path(&file.file)))?,
+            holds_ends: self.growth_table_ends == Some(TableEnds::Held),
+            walker_gamma: number("a Walker exponent", 0.0, 2.0).read_optional("fatigue.walker_gamma", self.walker_gamma)?,
+            says_ratio: rates.says_ratio,
+        };
+        let [first, last] = [&table.curves[0], &table.curves[table.curves.len() - 1]].map(|curve| curve.ratio);
+        if let Some(gamma) = self.walker_gamma.filter(|_| !table.says_ratio || table.curves.len() > 1) {
+            let problem = match table.says_ratio {
+                true => format!("does not go with a table of several stress ratios, {first} to {last}"),
+                false => "does not go with a table that names no stress ratio".to_owned(),
+            };
+            let remedy = "leave it out, or give a table of one stress ratio that it names, or { file = \"...\", stress_ratio = ... }";
+            return Err(input("fatigue.walker_gamma", gamma, problem, remedy));
+        }
         if !table.knows(setting.ratio) {
-            let [first, last] = [&table.curves[0], &table.curves[table.curves.len() - 1]].map(|curve| curve.ratio);
-            let problem = format!("lies beyond the ratios of {name}, {first} to {last}");
-            return Err(input("loading.stress_ratio", setting.ratio, problem, "add rates at this ratio to the table"));
+            let name = &file.file;
+            let (problem, remedy) = match table.curves.len() {
+                1 => (
+                    format!("is another stress ratio than that of {name}, {first}"),
+                    "give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or add rates at this ratio to the table",
+                ),
+                _ => (format!("lies beyond the ratios of {name}, {first} to {last}"), "add rates at this ratio to the table"),
+            };
+            return Err(input("loading.stress_ratio", setting.ratio, problem, remedy));
         }
         Ok(table)
     }
@@ -111,78 +140,46 @@ fn needed<T>(key: &str, value: Option<T>) -> Result<T> {
     value.ok_or_else(|| input_missing(&format!("fatigue.{key}"), "is missing", "give all constants of the law"))
 }
 
-const DELTA_K: &str = "delta_k_mpa_sqrt_m";
-const GROWTH_RATE: &str = "da_dn_mm_per_cycle";
-const RATIO: &str = "stress_ratio";
-
-/// Rates of a CSV file by rising ratio, each curve with at least two rows, ΔK and rate rising.
-fn rows(bytes: &[u8]) -> Result<Vec<Curve>> {
-    let wrong = |line: u64, key: &str, value: &str, problem: String| {
+/// The curves of a table by rising ratio, each with at least two rows, ΔK and rate rising.
+fn curves(rates: &RateTable) -> Result<Vec<Curve>> {
+    let wrong = |row: Option<&RateRow>, key: &str, value: f64, problem: String| {
         Error::Input(Box::new(InputError {
-            line: Some(line as usize),
+            line: row.map(|row| row.line),
             key: Some(key.to_owned()),
-            value: Some(value.to_owned()),
+            value: Some(round_off(value).to_string()),
             problem,
             remedy: "give rows of rising ΔK with rising rates, both above zero, one stress ratio after the other".to_owned(),
             ..InputError::default()
         }))
     };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(bytes);
-    let broken = |error: csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line);
-        wrong(line, "growth_table", "", format!("cannot be read as CSV: {error}"))
-    };
-    let header = reader.headers().map_err(broken)?.clone();
-    let column = |name: &str| header.iter().position(|column| column == name);
-    let [Some(delta_k), Some(rate)] = [DELTA_K, GROWTH_RATE].map(column) else {
-        let found: Vec<&str> = header.iter().collect();
-        return Err(wrong(1, "header", &found.join(","), format!("lacks the columns {DELTA_K} and {GROWTH_RATE}")));
-    };
-    let ratio = column(RATIO);
     let mut curves: Vec<Curve> = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(broken)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let value = |at: usize, key: &str| -> Result<f64> {
-            let text = record.get(at).unwrap_or("");
-            let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-            number.ok_or_else(|| wrong(line, key, text, "is not a number".to_owned()))
-        };
-        let row = [value(delta_k, DELTA_K)? * MPA_SQRT_M, value(rate, GROWTH_RATE)? * MM_PER_CYCLE];
-        for (at, key, size) in [(delta_k, DELTA_K, row[0]), (rate, GROWTH_RATE, row[1])] {
-            if size <= 0.0 {
-                return Err(wrong(line, key, &record[at], "is not above zero".to_owned()));
-            }
-        }
-        let ratio_here = ratio.map_or(Ok(0.0), |at| value(at, RATIO))?;
-        if ratio_here >= 1.0 {
-            return Err(wrong(line, RATIO, &ratio_here.to_string(), "is no stress ratio below 1".to_owned()));
-        }
-        match curves.last_mut().filter(|curve| curve.ratio == ratio_here) {
+    for row in &rates.rows {
+        let pair = [row.delta_k, row.rate];
+        match curves.last_mut().filter(|curve| curve.ratio == row.ratio) {
             Some(curve) => {
                 let last = curve.rows[curve.rows.len() - 1];
-                for (at, key, i) in [(delta_k, DELTA_K, 0), (rate, GROWTH_RATE, 1)] {
-                    if row[i] <= last[i] {
-                        return Err(wrong(line, key, &record[at], "does not rise against the row before".to_owned()));
-                    }
+                if let Some(i) = (0..2).find(|&i| pair[i] <= last[i]) {
+                    let si = [MPA_SQRT_M, MM_PER_CYCLE][i];
+                    let before = round_off(last[i] / si);
+                    return Err(wrong(Some(row), &rates.columns[i], pair[i] / si, format!("does not rise against {before}, that of the row before")));
                 }
-                curve.rows.push(row);
+                curve.rows.push(pair);
             }
             None => {
-                if let Some(last) = curves.last().filter(|last| last.ratio > ratio_here) {
+                if let Some(last) = curves.last().filter(|last| last.ratio > row.ratio) {
                     let problem = format!("falls below {}, that of the rows before", last.ratio);
-                    return Err(wrong(line, RATIO, &ratio_here.to_string(), problem));
+                    return Err(wrong(Some(row), "stress_ratio", row.ratio, problem));
                 }
-                curves.push(Curve { ratio: ratio_here, rows: vec![row] });
+                curves.push(Curve { ratio: row.ratio, rows: vec![pair] });
             }
         }
     }
     match curves.iter().find(|curve| curve.rows.len() < 2) {
-        None if curves.is_empty() => Err(wrong(1, "rows", "0", "are too few".to_owned())),
+        None if curves.is_empty() => Err(wrong(None, "rows", 0.0, "are too few".to_owned())),
         None => Ok(curves),
         Some(curve) => {
             let problem = "has a single row: a rate between rows needs two".to_owned();
-            Err(wrong(1, RATIO, &curve.ratio.to_string(), problem))
+            Err(wrong(None, "stress_ratio", curve.ratio, problem))
         }
     }
 }

@@ -8,11 +8,11 @@ use super::{Case, Choices, LawSource, Method, boundaries, fatigue, law, law_keys
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
-use crate::fatigue::growth_law::GrowthLawKind;
+use crate::fatigue::growth_law::{Bounded, GrowthLawKind, RangeKind, Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{Document, Folder, ForeignSections, LEVELS_OF_SCENES, OF_SCENES, OpenedFile, Provenance, Sections, value_at};
 use crate::loading::LoadingKind;
-use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
+use crate::units::{MM, MM_PER_CYCLE, MPA};
 use crate::{loading, material, specimen};
 
 /// What a record is called that came with no file.
@@ -211,9 +211,16 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
     let mut lines: Vec<String> = of_record.flatten().into_iter().collect();
     match &case.law {
         LawSource::Inline(_) => lines.extend(inline_line(case)),
-        LawSource::Paris(law) => lines.extend(units_line(law)),
-        LawSource::Factor(_) => {}
-        LawSource::Fitted(record) => lines.extend(law::record_lines(case, record)?),
+        LawSource::Paris(law) => lines.extend(doubt(&steady(*law), case.loading.ratio)),
+        LawSource::Factor(law) => {
+            lines.extend(doubt(&Bounded { law: law.clone(), threshold: 0.0 }, case.loading.ratio));
+            lines.extend(law.unnamed_ratio_line(case.loading.ratio));
+        }
+        LawSource::Fitted(record) => {
+            let law = ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m };
+            lines.extend(doubt(&steady(law), record.stress_ratio));
+            lines.extend(law::record_lines(case, record)?);
+        }
         LawSource::Missing(path) if path.as_os_str().is_empty() => {}
         LawSource::Missing(path) => {
             lines.push(format!("{} does not exist yet: write it with `perilife calibrate` before predicting", path.display()));
@@ -230,24 +237,15 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
     Ok(lines)
 }
 
-/// ΔK at which metals are compared, Pa√m, and the rates that they have there, mm/cycle, with room on both sides.
-const USUAL: (f64, [f64; 2]) = (10.0 * MPA_SQRT_M, [1e-6, 1e-2]);
-
-/// C in other units than those asked for makes a life wrong by powers of ten.
-fn units_line(law: &ParisLaw) -> Option<String> {
-    let (delta_k, [low, high]) = USUAL;
-    let rate = law.rate(delta_k) / MM_PER_CYCLE;
-    (!(low..=high).contains(&rate)).then(|| {
-        format!(
-            "C and m give {rate:.1e} mm/cycle at ΔK = 10 MPa√m, where metals have {low:.0e} to {high:.0e}: is C in mm/cycle and MPa√m? \
-             (C in m/cycle is to be multiplied by 1000; that for ksi√in and inch/cycle by 25.4 / 1.0988^m)"
-        )
-    })
+/// A power of ΔK whose rates are looked at.
+fn steady(paris: ParisLaw) -> Walker {
+    Walker { paris, gamma: 1.0, threshold: 0.0, range: RangeKind::Tensile }
 }
 
 /// Compression in a cycle counts as nothing, whatever Walker's exponent.
 fn compression_line(case: &Case) -> Option<String> {
-    let counts = matches!(&case.law, LawSource::Factor(law) if law.kind() == GrowthLawKind::Nasgro);
+    let by_nasgro = matches!(&case.law, LawSource::Factor(law) if law.kind() == GrowthLawKind::Nasgro);
+    let counts = by_nasgro || case.fatigue.range == RangeKind::Full;
     let ratio = case.loading.ratio;
     (ratio < 0.0 && !counts).then(|| {
         format!(

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
+use crate::measured::LeaveOut;
+
 crate::kinds! {
     /// Estimates of the constants of a law.
     pub enum Estimate for "estimate" {
@@ -105,21 +107,6 @@ pub struct SourceFile {
     pub file: String,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
-}
-
-/// Cycles of a specimen that do not count.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LeaveOut {
-    /// Name of the specimen; may be left out where there is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub specimen: Option<String>,
-    /// First cycles, as the file counts them.
-    pub from_cycles: f64,
-    /// Last cycles.
-    pub to_cycles: f64,
-    /// Why.
-    pub reason: String,
 }
 
 /// A fitted law; keys and units as in the file.

@@ -6,7 +6,7 @@ pub mod table;
 use serde::Serialize;
 
 use super::paris::ParisLaw;
-use crate::units::MPA_SQRT_M;
+use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use nasgro::Nasgro;
 use table::Table;
 
@@ -20,6 +20,51 @@ crate::kinds! {
         Nasgro = "nasgro": "crack closure, threshold and instability in one equation (Forman and Mettu 1992)",
         Table = "table": "da/dN over ΔK, and over R, as rows of a CSV file",
     }
+}
+
+crate::kinds! {
+    /// What of a cycle from R K_max to K_max is ΔK where R is negative; at R >= 0 both are (1-R) K_max.
+    pub enum RangeKind for "fatigue.delta_k" {
+        Tensile = "tensile": "K_max: compression does not count (ASTM E647)",
+        Full = "full": "(1-R) K_max, as many laboratories and NASGRO have it",
+    }
+}
+
+impl RangeKind {
+    /// ΔK over K_max at a stress ratio.
+    pub fn share(self, ratio: f64) -> f64 {
+        match self {
+            RangeKind::Tensile => 1.0 - ratio.max(0.0),
+            RangeKind::Full => 1.0 - ratio,
+        }
+    }
+}
+
+/// ΔK at which metals are compared, Pa√m, and the rates that they have there, mm/cycle, with room on both sides.
+const METALS: (f64, [f64; 2]) = (10.0 * MPA_SQRT_M, [1e-6, 1e-2]);
+/// Exponent by which these rates are taken to another ΔK.
+const METALS_EXPONENT: f64 = 3.0;
+/// ΔK over that of [`METALS`] that are tried where a law has no rate there: below its threshold, above its K_c, beyond its table.
+const ELSEWHERE: [f64; 7] = [1.0, 2.0, 0.5, 4.0, 0.25, 8.0, 0.125];
+
+/// What is wrong with the rates of a law for a metal: a unit that slipped shows here. Asked at ΔK = 10 MPa√m and the stress ratio, or where
+/// the law has rates nearest to it.
+pub fn doubt(law: &dyn GrowthLaw, ratio: f64) -> Option<String> {
+    let k_max = |delta_k: f64| delta_k / RangeKind::Tensile.share(ratio);
+    let rate_at = |delta_k: f64| {
+        let rate = law.rate(k_max(delta_k), ratio) / MM_PER_CYCLE;
+        (rate > 0.0 && rate.is_finite() && law.beyond(k_max(delta_k), ratio).is_none()).then_some((delta_k, rate))
+    };
+    let (delta_k, rate) = ELSEWHERE.iter().find_map(|factor| rate_at(factor * METALS.0))?;
+    let [low, high] = METALS.1.map(|rate| rate * (delta_k / METALS.0).powf(METALS_EXPONENT));
+    (!(low..=high).contains(&rate)).then(|| {
+        format!(
+            "the rate at ΔK = {:.0} MPa√m is {rate:.2e} mm/cycle, outside {low:.0e} to {high:.0e}, where metals lie: check the units of rate, \
+             crack length, cycles, load and stress intensity (m/cycle is 1000 mm/cycle; C for ksi√in and in/cycle is to be multiplied by \
+             25.4 / 1.0988^m)",
+            delta_k / MPA_SQRT_M
+        )
+    })
 }
 
 /// How fast a crack grows at the stress intensity of its tip.
@@ -81,6 +126,16 @@ impl FactorLaw {
         }
     }
 
+    /// What is to be said of a table that names no stress ratio.
+    pub fn unnamed_ratio_line(&self, ratio: f64) -> Option<String> {
+        matches!(self, FactorLaw::Table(table) if !table.says_ratio).then(|| {
+            format!(
+                "the table of rates names no stress ratio: its rates are used at R = {ratio} as they are; name it in a column stress_ratio or \
+                 by growth_table = {{ file = \"...\", stress_ratio = ... }}"
+            )
+        })
+    }
+
     fn law(&self) -> &dyn GrowthLaw {
         match self {
             FactorLaw::Forman(law) => law,
@@ -114,8 +169,7 @@ impl GrowthLaw for Bounded {
     }
 }
 
-/// `da/dN = C (K_max (1-R)^γ)^m` above a threshold of ΔK (Walker 1970, ASTM STP 462; γ = 1: Paris and Erdogan 1963); compression
-/// does not count.
+/// `da/dN = C (K_max (1-R)^γ)^m` above a threshold of ΔK (Walker 1970, ASTM STP 462; γ = 1: Paris and Erdogan 1963).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walker {
     /// C and m at R = 0.
@@ -124,17 +178,19 @@ pub struct Walker {
     pub gamma: f64,
     /// ΔK below which nothing grows, Pa√m.
     pub threshold: f64,
+    /// What ΔK is at negative R.
+    pub range: RangeKind,
 }
 
 impl GrowthLaw for Walker {
     fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        let range = 1.0 - ratio.max(0.0);
+        let range = self.range.share(ratio);
         if k_max * range <= self.threshold { 0.0 } else { self.paris.rate(k_max * range.powf(self.gamma)) }
     }
 }
 
 /// `da/dN = C ΔK^m / ((1-R) K_c - ΔK)`: Paris growth that becomes unstable at K_max = K_c (Forman, Kearney and Engle 1967, J. Basic
-/// Eng. 89:459). Compression does not count.
+/// Eng. 89:459).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Forman {
     /// C, m/cycle (MPa√m)^(1-m).
@@ -143,11 +199,13 @@ pub struct Forman {
     pub m: f64,
     /// K_c, Pa√m.
     pub k_c: f64,
+    /// What ΔK is at negative R.
+    pub range: RangeKind,
 }
 
 impl GrowthLaw for Forman {
     fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        let range = 1.0 - ratio.max(0.0);
+        let range = self.range.share(ratio);
         let left = range * (self.k_c - k_max) / MPA_SQRT_M;
         if left <= 0.0 { f64::INFINITY } else { self.c * (range * k_max / MPA_SQRT_M).powf(self.m) / left }
     }

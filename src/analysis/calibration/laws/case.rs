@@ -4,18 +4,19 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::candidate::Given;
-use super::rows::{RateRow, read};
 use super::{FitLaw, LawFits, fit_laws};
 use crate::calibration::case::{CalibrationCase, source};
 use crate::calibration::outliers::{StepRate, step_rates};
 use crate::case::record::SourceFile;
 use crate::error::{Result, input, input_missing};
-use crate::input::{Document, INTENSITY, number, slice, value_at};
-use crate::measured::MeasuredCurve;
+use crate::fatigue::growth_law::RangeKind;
+use crate::input::{Document, INTENSITY, slice, value_at};
+use crate::measured::rates::lacks_ratio;
+use crate::measured::{IntensityUnit, MeasuredCurve, RateFile, RateFileKeys, RateRow, RateUnit};
 use crate::units::MPA_SQRT_M;
 
 /// Keys of `[measured]` that only tables of rates have.
-const OF_RATES: [&str; 3] = ["rates", "from_delta_k_mpa_sqrt_m", "to_delta_k_mpa_sqrt_m"];
+const OF_RATES: [&str; 6] = ["rates", "intensity_unit", "rate_unit", "delta_k", "from_delta_k_mpa_sqrt_m", "to_delta_k_mpa_sqrt_m"];
 /// Keys of `[fit]` that only laws have.
 const OF_LAWS: [&str; 2] = ["law", "given"];
 
@@ -38,29 +39,21 @@ pub struct LawCase {
     pub test: Option<Box<CalibrationCase>>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// Units that the tables were read in, one line a table.
+    pub units: Vec<String>,
+    /// What ΔK is at negative R, where a row has one.
+    pub range: Option<RangeKind>,
     /// The input as given.
     pub echo: serde_json::Value,
-}
-
-/// A table of rates: its file, or with the stress ratio that it has no column of.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum TableName {
-    File(String),
-    OneRatio(OneRatio),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct OneRatio {
-    file: String,
-    stress_ratio: f64,
 }
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 struct RatesSlice {
-    rates: Vec<TableName>,
+    rates: Vec<RateFile>,
+    intensity_unit: Option<IntensityUnit>,
+    rate_unit: Option<RateUnit>,
+    delta_k: Option<RangeKind>,
     from_delta_k_mpa_sqrt_m: Option<f64>,
     to_delta_k_mpa_sqrt_m: Option<f64>,
 }
@@ -99,10 +92,19 @@ impl LawCase {
             sources: Vec::new(),
             test: None,
             warnings: Vec::new(),
+            units: Vec::new(),
+            range: None,
             echo: serde_json::to_value(&document.table).unwrap_or_default(),
         };
         for table in &rates.rates {
-            case.add_table(table, document)?;
+            let keys = table.keys();
+            let keys = RateFileKeys {
+                intensity_unit: keys.intensity_unit.or(rates.intensity_unit),
+                rate_unit: keys.rate_unit.or(rates.rate_unit),
+                delta_k: keys.delta_k.or(rates.delta_k),
+                ..keys
+            };
+            case.add_table(&keys, document)?;
         }
         if rest.table.get("measured").is_some_and(|measured| value_at(measured, "files").is_some()) {
             case.add_readings(rest)?;
@@ -117,17 +119,12 @@ impl LawCase {
         Ok(case)
     }
 
-    fn add_table(&mut self, table: &TableName, document: &Document) -> Result<()> {
-        let (name, ratio) = match table {
-            TableName::File(name) => (name, None),
-            TableName::OneRatio(table) => {
-                let ratio = number("a stress ratio below 1", -100.0, 0.999).read("measured.rates", table.stress_ratio)?;
-                (&table.file, Some(ratio))
-            }
-        };
-        let bytes = document.folder.read(name)?;
-        let path = document.folder.path(name);
-        let found = read(&bytes, &path, ratio)?;
+    fn add_table(&mut self, keys: &RateFileKeys, document: &Document) -> Result<()> {
+        let (found, bytes) = keys.read(&document.folder, "measured.rates")?;
+        let path = document.folder.path(&keys.file);
+        if !found.says_ratio {
+            return Err(lacks_ratio(&keys.file, "measured.rates").in_file(&path));
+        }
         if found.flagged > 0 {
             let of = found.flagged + found.rows.len();
             self.warnings.push(format!(
@@ -136,8 +133,16 @@ impl LawCase {
                 found.flagged
             ));
         }
+        if let Some(range) = found.range {
+            if self.range.is_some_and(|earlier| earlier != range) {
+                let problem = "is not that of an earlier table: one law has one ΔK";
+                return Err(input("delta_k", format!("\"{range}\""), problem, "convert one of the tables").in_file(&path));
+            }
+            self.range = Some(range);
+        }
+        self.units.push(format!("{}: ΔK in {}, da/dN in {}", keys.file, found.units[0], found.units[1]));
         self.rows.extend(found.rows);
-        self.sources.push(source(name, &bytes));
+        self.sources.push(source(&keys.file, &bytes));
         Ok(())
     }
 
@@ -176,7 +181,7 @@ impl LawCase {
 
     /// Fits all laws.
     pub fn fit(&self) -> Result<LawFits> {
-        fit_laws(&self.rows, self.law, &self.given)
+        fit_laws(&self.rows, self.law, &self.given, self.range.unwrap_or(RangeKind::Tensile))
     }
 
     /// Stress ratios of the rates, rising, those that agree to 0.005 as one.
@@ -240,6 +245,7 @@ fn of_readings(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64) -> V
             series: curve.specimen.clone(),
             place: format!("{}: lines {} to {}", curve.source.file.display(), curve.line(step.from), curve.line(step.to)),
             delta_k: step.log_k.exp() * MPA_SQRT_M,
+            line: curve.line(step.to),
             rate: step.log_rate.exp(),
             ratio: (step.from + 1..=step.to).map(ratio_at).sum::<f64>() / (step.to - step.from) as f64,
         };

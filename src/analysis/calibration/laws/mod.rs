@@ -6,21 +6,27 @@
 //! `AICc = n ln(S/n) + 2 k + 2 k (k + 1) / (n - k - 1)`,
 //!
 //! S the sum of squares of n rates and k the number of fitted constants with the scatter. A difference below 2 says little, one above 10
-//! nearly all (Burnham and Anderson 2002, section 2.6). Rates of parabolas through seven readings share readings: neighbours of one test whose
-//! residuals are correlated by ρ count as `n (1 - ρ)/(1 + ρ)` rates, in the criterion and in the errors.
+//! nearly all (Burnham and Anderson 2002, section 2.6). Rates of parabolas through seven readings share readings: neighbours of one test
+//! whose scatter is correlated by ρ count as `n (1 - ρ)/(1 + ρ)` rates, in the first term and in the errors. ρ is that of residuals about a
+//! smooth curve through each test, a polynomial in ln ΔK: what all laws miss is no scatter. A law whose residuals are twice those of another
+//! is not chosen, whatever the criterion says.
 
 mod candidate;
 pub mod case;
 pub mod fit;
 mod least_squares;
-pub mod rows;
 
-use crate::calibration::paris::doubt;
+use nalgebra::{DMatrix, DVector};
+
+use crate::calibration::paris::doubt_of_exponent;
 use crate::error::{Error, Result, input_missing};
-use crate::fatigue::growth_law::GrowthLawKind;
+use crate::fatigue::growth_law::nasgro::Nasgro;
+use crate::fatigue::growth_law::{Bounded, FactorLaw, Forman, GrowthLawKind, RangeKind, Walker, doubt};
+use crate::fatigue::paris::ParisLaw;
+use crate::measured::RateRow;
 pub use candidate::Given;
+use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use fit::{LawFit, fit};
-use rows::RateRow;
 
 crate::kinds! {
     /// Laws that rates are fitted by.
@@ -47,6 +53,13 @@ const ROUND_OFF: f64 = 1e-20;
 const FACTOR: f64 = 3.0;
 /// Most rows that are named.
 const NAMED: usize = 5;
+/// A law whose residuals are larger than those of another by this factor is not chosen; a law that misses smooth curves through the tests
+/// by this factor more than the rates do does not bend as they do.
+const RMS_FACTOR: f64 = 2.0;
+/// Smallest misfit of ln da/dN that is named.
+const BEND_MIN: f64 = 0.05;
+/// Largest correlation of neighbouring rates: that of parabolas through seven readings with six in common.
+const CORRELATION_MAX: f64 = 0.7;
 /// Difference of the criterion above which a law that was asked for is the wrong one.
 const WORSE: f64 = 10.0;
 
@@ -77,20 +90,17 @@ impl LawFits {
     }
 }
 
-/// Fits every law and chooses the one asked for, or the best.
+/// Fits every law and chooses the one asked for, or the best; `range` is what ΔK is at negative R.
 /// Errors: [`Error::Mechanics`] where the rates do not tell the law asked for, or none; constants that no law has, or no metal.
-pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFits> {
+pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given, range: RangeKind) -> Result<LawFits> {
     candidate::check_given(given)?;
-    let mut candidates: Vec<LawFit> = LAWS.iter().map(|(_, kind)| fit(*kind, given, rows)).collect();
-    let effective = effective_rates(rows, &candidates);
+    let mut candidates: Vec<LawFit> = LAWS.iter().map(|(_, kind)| fit(*kind, given, rows, range)).collect();
+    let smooth = Smooth::through(rows);
+    let effective = smooth.effective_rates(rows);
     for candidate in &mut candidates {
         candidate.widen((rows.len() as f64 / effective).sqrt());
         candidate.aicc = criterion(candidate, effective);
         candidate.judge_errors();
-        if candidate.left_out.is_none() && !candidate.aicc.is_finite() {
-            let words = format!("{effective:.1} independent rates are too few for its {} constants", candidate.fitted);
-            candidate.left_out = Some(words);
-        }
     }
     let chosen = choose(&candidates, wanted)?;
     let others = candidates.iter().enumerate().filter(|(i, other)| *i != chosen && other.left_out.is_none());
@@ -98,7 +108,8 @@ pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFi
     let margin = next.map(|next| (next.kind, next.aicc - candidates[chosen].aicc));
     let mut fits = LawFits { candidates, chosen, margin, effective_rates: effective, warnings: Vec::new() };
     fits.warnings = warnings(&fits, rows);
-    check_metal(fits.law())?;
+    fits.warnings.extend(smooth.misfit(rows, fits.law()));
+    check_metal(fits.law(), rows, range)?;
     Ok(fits)
 }
 
@@ -109,42 +120,99 @@ fn choose(candidates: &[LawFit], wanted: FitLaw) -> Result<usize> {
         let no_law = |why: &String| Error::Mechanics(format!("the rates do not tell the law {wanted}: {why}"));
         return candidates[place].left_out.as_ref().map_or(Ok(place), |why| Err(no_law(why)));
     }
-    let left = candidates.iter().enumerate().filter(|(_, candidate)| candidate.left_out.is_none());
-    left.min_by(|a, b| a.1.aicc.total_cmp(&b.1.aicc)).map(|(place, _)| place).ok_or_else(|| {
+    let left = || candidates.iter().enumerate().filter(|(_, candidate)| candidate.left_out.is_none());
+    let closest = left().map(|(_, candidate)| candidate.rms()).fold(f64::INFINITY, f64::min);
+    left().filter(|(_, candidate)| candidate.rms() <= (RMS_FACTOR * closest).max(ROUND_OFF.sqrt())).min_by(|a, b| a.1.aicc.total_cmp(&b.1.aicc)).map(|(place, _)| place).ok_or_else(|| {
         let reasons =
             candidates.iter().filter_map(|candidate| Some(format!("\n  {}: {}", candidate.kind, candidate.left_out.as_ref()?)));
         Error::Mechanics(format!("the rates tell no law:{}", reasons.collect::<String>()))
     })
 }
 
-/// AICc; NaN without a fit, infinite where the rates are too few.
+/// AICc; NaN without a fit. The last term counts rates as they are: constants are not too many because neighbours are alike.
 fn criterion(candidate: &LawFit, rates: f64) -> f64 {
     if candidate.residuals.is_empty() {
         return f64::NAN;
     }
-    let k = (candidate.fitted + 1) as f64;
-    if rates - k - 1.0 <= 0.0 {
-        return f64::INFINITY;
-    }
-    rates * candidate.rms().powi(2).max(ROUND_OFF).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (rates - k - 1.0)
+    let (all, k) = (candidate.residuals.len() as f64, (candidate.fitted + 1) as f64);
+    rates * candidate.rms().powi(2).max(ROUND_OFF).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (all - k - 1.0).max(1.0)
 }
 
-/// How many independent rates they are, by the residuals of the closest law.
-fn effective_rates(rows: &[RateRow], candidates: &[LawFit]) -> f64 {
-    let all = rows.len() as f64;
-    let fitted = candidates.iter().filter(|candidate| !candidate.residuals.is_empty());
-    let Some(closest) = fitted.min_by(|a, b| a.rms().total_cmp(&b.rms())) else { return all };
-    if closest.rms().powi(2) <= ROUND_OFF {
-        return all;
+/// A smooth curve through the rates of every test: a polynomial of ln da/dN over ln ΔK.
+struct Smooth {
+    /// Rate less curve, in ln, row by row; NaN where a test has too few rates.
+    residuals: Vec<f64>,
+}
+
+impl Smooth {
+    fn through(rows: &[RateRow]) -> Self {
+        let mut residuals = vec![f64::NAN; rows.len()];
+        for of_test in (0..rows.len()).collect::<Vec<_>>().chunk_by(|&a, &b| rows[a].series == rows[b].series) {
+            let x: Vec<f64> = of_test.iter().map(|&row| rows[row].delta_k.ln()).collect();
+            let y: Vec<f64> = of_test.iter().map(|&row| rows[row].log_rate()).collect();
+            for (&row, residual) in of_test.iter().zip(about_polynomial(&x, &y)) {
+                residuals[row] = residual;
+            }
+        }
+        Smooth { residuals }
     }
-    let pairs: Vec<f64> = (1..rows.len())
-        .filter(|&i| rows[i].series == rows[i - 1].series)
-        .map(|i| closest.residuals[i] * closest.residuals[i - 1])
-        .collect();
-    let correlation = pairs.iter().sum::<f64>() / (pairs.len() as f64 * closest.rms().powi(2));
-    // Twice the error of a correlation that is none.
-    let is_real = pairs.len() > 4 && correlation > 2.0 / (pairs.len() as f64).sqrt();
-    if is_real { all * (1.0 - correlation.min(0.95)) / (1.0 + correlation.min(0.95)) } else { all }
+
+    /// Pairs of neighbours of one test.
+    fn pairs<'a>(&'a self, rows: &'a [RateRow]) -> impl Iterator<Item = [f64; 2]> + 'a {
+        let same = |i: &usize| rows[*i].series == rows[*i - 1].series && self.residuals[*i].is_finite();
+        (1..rows.len()).filter(same).map(|i| [self.residuals[i - 1], self.residuals[i]])
+    }
+
+    /// How many independent rates they are.
+    fn effective_rates(&self, rows: &[RateRow]) -> f64 {
+        let all = rows.len() as f64;
+        let known = || self.residuals.iter().filter(|residual| residual.is_finite());
+        let variance = known().map(|residual| residual * residual).sum::<f64>() / known().count() as f64;
+        let pairs = self.pairs(rows).count();
+        if pairs <= 4 || variance <= ROUND_OFF {
+            return all;
+        }
+        let correlation = self.pairs(rows).map(|[a, b]| a * b).sum::<f64>() / (pairs as f64 * variance);
+        // Twice the error of a correlation that is none; parabolas through seven readings reach 0.7.
+        let correlation = correlation.min(CORRELATION_MAX);
+        let is_real = correlation > 2.0 / (pairs as f64).sqrt();
+        if is_real { all * (1.0 - correlation) / (1.0 + correlation) } else { all }
+    }
+
+    /// A line where the law does not bend as the rates of the tests do: what is left of its residuals in every test without their mean.
+    fn misfit(&self, rows: &[RateRow], law: &LawFit) -> Option<String> {
+        let known: Vec<usize> = (0..rows.len()).filter(|&row| self.residuals[row].is_finite()).collect();
+        let mut bend = 0.0;
+        for of_test in known.chunk_by(|&a, &b| rows[a].series == rows[b].series) {
+            let mean = of_test.iter().map(|&row| law.residuals[row]).sum::<f64>() / of_test.len() as f64;
+            bend += of_test.iter().map(|&row| (law.residuals[row] - mean).powi(2)).sum::<f64>();
+        }
+        let scatter: f64 = known.iter().map(|&row| self.residuals[row].powi(2)).sum();
+        let [bend, scatter] = [bend, scatter].map(|sum| (sum / known.len() as f64).sqrt());
+        (!known.is_empty() && bend > (RMS_FACTOR * scatter).max(BEND_MIN)).then(|| {
+            format!(
+                "the law {} does not bend as the rates do: they lie {bend:.3} of ln da/dN from it, and {scatter:.3} from a smooth curve through \
+                 every test; growth_law = \"table\" with growth_table takes the rates as they are",
+                law.kind
+            )
+        })
+    }
+}
+
+/// Values less their polynomial over x, of degree 4 or less, with at least three values for each of its constants; NaN where there are
+/// fewer.
+fn about_polynomial(x: &[f64], y: &[f64]) -> Vec<f64> {
+    let degree = (x.len() / 3).saturating_sub(1).min(4);
+    let (low, high) = (x.iter().copied().fold(f64::INFINITY, f64::min), x.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+    if degree == 0 || low == high {
+        return vec![f64::NAN; x.len()];
+    }
+    let columns = DMatrix::from_fn(x.len(), degree + 1, |i, power| (2.0 * (x[i] - low) / (high - low) - 1.0).powi(power as i32));
+    let y = DVector::from_column_slice(y);
+    match columns.clone().svd(true, true).solve(&y, 1e-12) {
+        Ok(constants) => (y - columns * constants).as_slice().to_vec(),
+        Err(_) => vec![f64::NAN; x.len()],
+    }
 }
 
 fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
@@ -172,10 +240,26 @@ fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
 }
 
 /// Refuses a law that no metal has: a unit that slipped shows here.
-fn check_metal(law: &LawFit) -> Result<()> {
-    let value = |key: &str| law.constants.iter().find(|constant| constant.key == key).map(|constant| constant.value);
-    let (Some(c), Some(m)) = (value("paris_c_mm_per_cycle"), value("paris_m")) else { return Ok(()) };
-    match doubt(c, m) {
+fn check_metal(law: &LawFit, rows: &[RateRow], range: RangeKind) -> Result<()> {
+    let at = |key: &str| law.constants.iter().find(|constant| constant.key == key).map_or(f64::NAN, |constant| constant.value);
+    // The middle of the ratios: a law has no rates at ratios that it was not fitted to.
+    let ratio = rows[rows.len() / 2].ratio;
+    let problem = match law.kind {
+        GrowthLawKind::Forman => {
+            let forman = Forman { c: at("forman_c_mm_per_cycle") * MM_PER_CYCLE, m: at("forman_m"), k_c: at(candidate::K_C) * MPA_SQRT_M, range };
+            doubt(&Bounded { law: FactorLaw::Forman(forman), threshold: 0.0 }, ratio)
+        }
+        GrowthLawKind::Nasgro => {
+            let law = Nasgro { c: at("nasgro_c_mm_per_cycle") * MM_PER_CYCLE, ..candidate::nasgro(&at) };
+            doubt(&Bounded { law: FactorLaw::Nasgro(law), threshold: 0.0 }, ratio)
+        }
+        kind => {
+            let gamma = if kind == GrowthLawKind::Walker { at(candidate::GAMMA) } else { 1.0 };
+            let paris = ParisLaw { c: at("paris_c_mm_per_cycle") * MM_PER_CYCLE, m: at("paris_m") };
+            doubt_of_exponent(paris.m).or_else(|| doubt(&Walker { paris, gamma, threshold: 0.0, range }, ratio))
+        }
+    };
+    match problem {
         None => Ok(()),
         Some(doubt) => Err(input_missing("measured.rates", format!("give a law that no metal has: {doubt}"), "")),
     }

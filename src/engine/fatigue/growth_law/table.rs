@@ -2,17 +2,24 @@
 
 use serde::Serialize;
 
-use super::GrowthLaw;
+use super::{GrowthLaw, RangeKind};
 use crate::units::MPA_SQRT_M;
 
+/// Stress ratios that differ by less are one.
+const SAME_RATIO: f64 = 0.02;
+
 /// da/dN over ΔK at one or several stress ratios: straight lines between its rows over ln ΔK, and between two ratios over R, in
-/// ln da/dN. One ratio alone holds for every R.
+/// ln da/dN. One ratio R₀ alone holds at another by Walker's exponent (1970): its rate is that at `ΔK₀ = K_max (1-R)^γ (1-R₀)^(1-γ)`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table {
     /// By rising ratio.
     pub curves: Vec<Curve>,
     /// Whether K beyond the ends takes the rate of the end; else it is refused.
     pub holds_ends: bool,
+    /// Walker's exponent of a table of one ratio.
+    pub walker_gamma: Option<f64>,
+    /// Whether the file, or the user, says the ratio; one that nobody says is taken to hold for every R.
+    pub says_ratio: bool,
 }
 
 /// Rates at one stress ratio.
@@ -60,13 +67,23 @@ impl Table {
     /// Whether the table speaks about a stress ratio.
     pub fn knows(&self, ratio: f64) -> bool {
         let [first, last] = [&self.curves[0], &self.curves[self.curves.len() - 1]].map(|curve| curve.ratio);
-        self.curves.len() == 1 || (first..=last).contains(&ratio)
+        let takes_any = self.curves.len() == 1 && (self.walker_gamma.is_some() || !self.says_ratio);
+        takes_any || (first - SAME_RATIO..=last + SAME_RATIO).contains(&ratio)
+    }
+
+    /// ΔK, Pa√m, at which the rows are read.
+    fn delta_k(&self, k_max: f64, ratio: f64) -> f64 {
+        let [own, of_table] = [ratio, self.curves[0].ratio].map(|ratio| RangeKind::Tensile.share(ratio));
+        match self.walker_gamma {
+            Some(gamma) => k_max * own.powf(gamma) * of_table.powf(1.0 - gamma),
+            None => k_max * own,
+        }
     }
 }
 
 impl GrowthLaw for Table {
     fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        let delta_k = (1.0 - ratio.max(0.0)) * k_max;
+        let delta_k = self.delta_k(k_max, ratio);
         if delta_k <= 0.0 {
             return 0.0;
         }
@@ -76,7 +93,7 @@ impl GrowthLaw for Table {
     }
 
     fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
-        let delta_k = (1.0 - ratio.max(0.0)) * k_max;
+        let delta_k = self.delta_k(k_max, ratio);
         let [low, high] = self.range(ratio);
         let [at, low_mpa, high_mpa] = [delta_k, low, high].map(|k| k / MPA_SQRT_M);
         // Rows that are hit but for round-off.

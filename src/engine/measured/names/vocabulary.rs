@@ -33,6 +33,34 @@ pub(super) const MIN_WORDS: &str = "pmin fmin loadmin minload forcemin minforce 
 pub(super) const MAX_STRESS: &str = "smax sigmamax maxstress stressmax oberspannung";
 pub(super) const MIN_STRESS: &str = "smin sigmamin minstress stressmin unterspannung";
 
+/// Names of the range of stress intensity.
+pub(super) const DELTA_K: [&str; 12] = [
+    "delta k",
+    "dk",
+    "deltak",
+    "delta ki",
+    "delta k i",
+    "delta k app",
+    "k range",
+    "sif range",
+    "delta sif",
+    "stress intensity range",
+    "stress intensity factor range",
+    "range of stress intensity",
+];
+/// Names of the growth in a cycle.
+pub(super) const RATE: [&str; 9] = [
+    "da dn",
+    "dadn",
+    "growth rate",
+    "crack growth rate",
+    "fatigue crack growth rate",
+    "fcgr",
+    "fcg rate",
+    "rissfortschritt",
+    "rissfortschrittsrate",
+];
+
 /// Words of other quantities of a test, of results of this program and of remarks.
 pub(super) const OTHER: &str = "k kmax kmin ki kii dk deltak keff kop kcl dkeff intensity sif j da dn dadn rate growth extension increment cod cmod \
     ctod clip gauge gage displacement disp stroke opening position strain bfs compliance stiffness time date zeit datum \
@@ -63,6 +91,7 @@ pub(super) fn words(name: &str) -> (Vec<String>, Vec<String>) {
             'δ' | '∆' => plain.push_str("delta "),
             'µ' | 'μ' => plain.push('u'),
             '²' if plain.ends_with("mm") => plain.push('2'),
+            '√' => plain.push_str(" sqrt "),
             '³' => plain.push_str(" 3"),
             '⁶' => plain.push_str(" 6"),
             '"' | '″' | '”' => plain.push_str(" inch"),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::columns::{Layout, Series, Shape, is_stress};
-use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, first_of};
+use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
 use super::import::Decimal;
 use super::names::{Column, Role};
 use super::numerals::{is_number, number};
@@ -125,12 +125,19 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
         curve.side_difference.push(high - low);
     }
     if let Some((maximum, ratio)) = load {
-        let measure = if is_stress(&series.loads[0]) { LoadMeasure::Stress } else { LoadMeasure::Force };
-        let is_range = series.load(Role::Max).is_none();
+        let measure = if series.loads.iter().any(is_stress) { LoadMeasure::Stress } else { LoadMeasure::Force };
+        let is_range = series.load(Role::Max).is_none() && series.load(Role::Range).is_some();
         let none = || Loads { measure, is_range, maximum: Vec::new(), ratio: Vec::new() };
         let loads = curve.loads.get_or_insert_with(none);
         loads.maximum.push(maximum);
         loads.ratio.push(ratio);
+    }
+    if curve.stated.is_empty() {
+        curve.stated = series.compared.iter().map(|column| Stated::new(table, *column)).collect();
+    }
+    for (stated, column) in curve.stated.iter_mut().zip(&series.compared) {
+        // A cell without a number says nothing.
+        stated.values.push(value(table, row, *column, decimal).unwrap_or(f64::NAN));
     }
     curve.cycles.push(n);
     curve.crack_length.push(a);
@@ -139,11 +146,11 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
 }
 
 /// The number in a cell in SI units.
-fn value(table: &Table, row: &Row, column: Column, decimal: Decimal) -> Result<f64> {
+pub(super) fn value(table: &Table, row: &Row, column: Column, decimal: Decimal) -> Result<f64> {
     let cell = row.cell(column.index);
     let refused = |problem: &str, remedy: &str| Err(table.cell_fault(row, column.index).error(problem, remedy));
     match number(cell, decimal) {
-        Some(number) if number.is_finite() => Ok(number * column.factor),
+        Some(number) if number.is_finite() => Ok(column.factor * if column.is_log { 10_f64.powf(number) } else { number }),
         None if cell.is_empty() => refused("is empty", "give a number or leave the whole row out"),
         None if is_number(cell) => refused(
             &format!("is not a number whose decimal sign is the {} of this file", decimal.words()),
@@ -156,24 +163,30 @@ fn value(table: &Table, row: &Row, column: Column, decimal: Decimal) -> Result<f
     }
 }
 
-/// Largest load and stress ratio of a reading, the latter NaN where the file does not say it; of a file that has ranges alone, the range
+/// Largest load and stress ratio of a reading, either NaN where the file does not say it; of a file that has ranges alone, the range
 /// in the place of the largest load.
 fn load(table: &Table, row: &Row, decimal: Decimal, series: &Series) -> Result<Option<(f64, f64)>> {
     let [maximum, minimum, range, ratio] = [Role::Max, Role::Min, Role::Range, Role::Ratio].map(|role| series.load(role));
-    let Some(column) = maximum.or(range) else { return Ok(None) };
-    let largest = value(table, row, column, decimal)?;
+    let Some(column) = maximum.or(range).or(ratio) else { return Ok(None) };
+    let of = |column: Option<Column>| column.map(|column| value(table, row, column, decimal)).transpose();
+    // A ratio alone goes with the largest load of the case, and with a smallest load says the largest.
+    let largest = match (maximum.or(range), of(minimum)?, of(ratio)?) {
+        (Some(column), ..) => value(table, row, column, decimal)?,
+        (None, Some(smallest), Some(ratio)) if smallest / ratio > 0.0 => smallest / ratio,
+        _ => f64::NAN,
+    };
     if largest <= 0.0 {
         return Err(table
             .cell_fault(row, column.index)
             .error("is not above 0", "give the largest load of a cycle, tension positive"));
     }
-    let of = |column: Option<Column>| column.map(|column| value(table, row, column, decimal)).transpose();
     let range_beside = if maximum.is_some() { of(range)? } else { None };
     let r = match (of(minimum)?, of(ratio)?, range_beside) {
         (Some(smallest), ..) if maximum.is_some() => smallest / largest,
         // The largest is the smallest and the range.
-        (Some(smallest), ..) => smallest / (smallest + largest),
-        (None, Some(ratio), _) => ratio,
+        (Some(smallest), ..) if range.is_some() => smallest / (smallest + largest),
+        (Some(_), None, _) => f64::NAN,
+        (_, Some(ratio), _) => ratio,
         (None, None, Some(range)) => 1.0 - range / largest,
         (None, None, None) => f64::NAN,
     };

@@ -13,6 +13,8 @@ fn role_of(key: &str) -> Role {
         "force_max" | "stress_max" => Role::Max,
         "force_min" | "stress_min" => Role::Min,
         "force_range" => Role::Range,
+        "delta_k" => Role::DeltaK,
+        "rate" => Role::Rate,
         _ => Role::Ratio,
     }
 }
@@ -43,8 +45,13 @@ pub(super) fn is_wide(columns: &[Column]) -> bool {
     columns.len() >= 3 && columns[1..].iter().all(|column| column.role == Role::Unknown)
 }
 
-/// Whether a row of names, with what the user says, names cycles and crack length, starts a wide table or is one of pairs.
+/// Whether a row of names, with what the user says, names cycles and crack length, starts a wide table or is one of pairs; of a table of
+/// rates, ΔK and da/dN.
 pub(super) fn names_a_test(names: &[String], import: &Import) -> bool {
+    if import.of_rates {
+        let columns = columns_of(names, names, import);
+        return [Role::DeltaK, Role::Rate].into_iter().all(|role| columns.iter().any(|column| column.role == role));
+    }
     if pairs_of(names).is_some() {
         return true;
     }

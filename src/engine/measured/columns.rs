@@ -35,6 +35,8 @@ pub struct Series {
     pub sides: Vec<Column>,
     /// Loads, of every role one at the most.
     pub loads: Vec<Column>,
+    /// Columns of quantities that the case says too: ΔK, sizes, the smallest load where no other says how large a cycle is.
+    pub compared: Vec<Column>,
     /// Columns that no other specimen has: a row in which all of them are empty is none of its readings. Empty where rows belong to all.
     pub own: Vec<usize>,
 }
@@ -101,14 +103,16 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
             let specimen = of(|column| column.role == Role::Specimen);
             let (lengths, sides) = lengths_and_sides(table, &columns, import)?;
             let cycles = cycle_column(table, *cycles, import)?;
-            let loads = loads(table, &columns, import, warnings)?;
+            let (loads, mut compared) = loads(table, &columns, import, warnings)?;
+            compared.extend(of(|column| matches!(column.role, Role::DeltaK | Role::Width | Role::Thickness)));
+            compared.retain(|column| matches!(column.unit, Named::Is(_)));
             if let Some(second) = specimen.get(1) {
                 return Err(says_the_same(table, second.index, "specimen"));
             }
             warnings.extend(not_read(table, &columns));
             let stem = table.file.file_stem().map_or_else(|| "specimen".to_owned(), |stem| stem.to_string_lossy().into_owned());
             let specimen = specimen.first().copied();
-            Ok((Shape::Long, vec![Series { name: stem, specimen, cycles, lengths, sides, loads, own: Vec::new() }]))
+            Ok((Shape::Long, vec![Series { name: stem, specimen, cycles, lengths, sides, loads, compared, own: Vec::new() }]))
         }
         ([_, second, ..], _) => Err(says_the_same(table, second.index, "cycles")),
         ([], [length]) if wide && length.index == 0 => {
@@ -129,7 +133,7 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
 
 impl Series {
     fn of_one(name: String, cycles: Column, length: Column, own: Vec<usize>) -> Series {
-        Series { name, specimen: None, cycles, lengths: vec![length], sides: Vec::new(), loads: Vec::new(), own }
+        Series { name, specimen: None, cycles, lengths: vec![length], sides: Vec::new(), loads: Vec::new(), compared: Vec::new(), own }
     }
 
     /// The load of a role.
@@ -163,7 +167,8 @@ impl Layout {
 /// Columns of numbers.
 fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
     let of = |series: &Series| -> Vec<Column> {
-        let all = std::iter::once(&series.cycles).chain(&series.lengths).chain(&series.sides).chain(&series.loads);
+        let read = std::iter::once(&series.cycles).chain(&series.lengths).chain(&series.sides);
+        let all = read.chain(&series.loads).chain(&series.compared);
         all.copied().collect()
     };
     let mut numbers: Vec<Column> = series.iter().flat_map(of).collect();
@@ -187,7 +192,7 @@ fn lengths_and_sides(table: &Table, columns: &[Column], import: &Import) -> Resu
 }
 
 /// The unit of a column: as its name says, or as the user does, and never two of them.
-fn stated_unit(table: &Table, column: Column, key: &str, given: Option<Unit>) -> Result<Option<Unit>> {
+pub(super) fn stated_unit(table: &Table, column: Column, key: &str, given: Option<Unit>) -> Result<Option<Unit>> {
     match (column.unit, given) {
         (Named::Is(named), Some(given)) if named != given => Err(table.header_fault(column.index).error(
             format!("is in {}, but measured.{key} says {}", named.name(), given.name()),
@@ -263,8 +268,14 @@ fn load_column(table: &Table, column: Column, import: &Import, warnings: &mut Ve
     Ok(None)
 }
 
-/// Columns of loads whose unit is known; for the others a warning, or an error where the loads change.
-fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<String>) -> Result<Vec<Column>> {
+/// Columns of loads whose unit is known; for the others a warning, or an error where the loads change. Second, a smallest load alone, which
+/// says no cycle, and is held against that of the case.
+fn loads(
+    table: &Table,
+    columns: &[Column],
+    import: &Import,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<Column>, Vec<Column>)> {
     let mut found: Vec<Column> = Vec::new();
     for (role, key) in
         [(Role::Max, "force_max"), (Role::Min, "force_min"), (Role::Range, "force_range"), (Role::Ratio, "stress_ratio")]
@@ -285,9 +296,9 @@ fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<
         }
         found.push(column);
     }
-    // Neither a minimum nor a ratio alone says how large a cycle is.
-    let says_size = found.iter().any(|column| matches!(column.role, Role::Max | Role::Range));
-    Ok(if says_size { found } else { Vec::new() })
+    // A minimum alone does not say how large a cycle is; a ratio goes with the largest load of the case.
+    let says_cycle = found.iter().any(|column| matches!(column.role, Role::Max | Role::Range | Role::Ratio));
+    Ok(if says_cycle { (found, Vec::new()) } else { (Vec::new(), found) })
 }
 
 /// Whether a column holds stresses.

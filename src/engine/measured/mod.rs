@@ -2,7 +2,7 @@
 //!
 //! In the order data flows: what the user says of files (`import`); words and units of column `names`, the `header` they make up,
 //! and `numerals`; the cells of a `table` (CSV in any usual dress, a workbook, with the feature `tables` also Parquet); its `columns`
-//! and the `decimal` sign; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`).
+//! and the `decimal` sign; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
 //!
 //! Every complaint names file, line, column and value. A crack length that falls from one reading to the next is reading noise and
 //! accepted; cycles that fall or repeat are a mistake of the file and refused.
@@ -16,6 +16,7 @@ mod leave_out;
 mod loads;
 mod names;
 mod numerals;
+pub mod rates;
 mod readings;
 mod table;
 
@@ -24,8 +25,10 @@ use std::path::{Path, PathBuf};
 pub use columns::{Layout, Series, Shape};
 pub use curve::{Loads, Measured, MeasuredCurve, PROBLEMS_MAX, READINGS_MIN, Source, side_difference_max};
 pub use curve::{first_of, round_off};
-pub use import::{ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Sheet, Unit};
+pub use import::{ColumnNames, CycleUnit, Decimal, Import, IntensityUnit, LengthUnit, LoadUnit, RateUnit, Sheet, Unit};
+pub use leave_out::LeaveOut;
 pub use loads::{LoadHistory, SAME_LOAD};
+pub use rates::{RateFile, RateFileKeys, RateRow, RateTable};
 pub use names::{Column, Named, Role};
 
 use crate::error::{Error, InputError, Result};

@@ -8,7 +8,7 @@ mod vocabulary;
 
 use vocabulary::*;
 
-use super::import::{CycleUnit, LengthUnit, LoadUnit, Unit};
+use super::import::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit, Unit};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +31,14 @@ pub enum Role {
     Ratio,
     /// A load, but the name does not say which.
     Load,
+    /// Range of the stress intensity.
+    DeltaK,
+    /// da/dN.
+    Rate,
+    /// Width of the specimen.
+    Width,
+    /// Thickness of the specimen.
+    Thickness,
     /// Another quantity of a test.
     Other,
     /// Nothing that the name says.
@@ -59,13 +67,15 @@ pub struct Column {
     pub unit: Named,
     /// What a number is multiplied by for SI units, or cycles: the unit, and 0.5 where the length is tip to tip.
     pub factor: f64,
+    /// Whether numbers are decimal logarithms, of the quantity in its unit.
+    pub is_log: bool,
 }
 
 impl Column {
     /// A column of one quantity in its unit.
     pub(super) fn new(index: usize, role: Role, unit: Named) -> Column {
         let factor = if let Named::Is(unit) = unit { unit.si() } else { 1.0 };
-        Column { index, role, unit, factor }
+        Column { index, role, unit, factor, is_log: false }
     }
 
     /// The same column in a unit that the name does not say.
@@ -91,6 +101,9 @@ impl Column {
                 let column = column(role, unit);
                 return Column { factor: share * column.factor, ..column };
             }
+            if let Some(column) = of_rates(index, words, bracket).or_else(|| size(index, words, bracket)) {
+                return column;
+            }
             let is_other = [OTHER, MAX, MIN].iter().any(|list| any_in(words, list)) || load(words, &[]).is_some();
             column(if is_other { Role::Other } else { Role::Unknown }, Named::No)
         })
@@ -101,6 +114,10 @@ impl Column {
         let own = Column::named(index, name);
         if role == Role::Length && own.factor < Column::new(index, Role::Length, own.unit).factor {
             return own;
+        }
+        if matches!(role, Role::DeltaK | Role::Rate) {
+            return of_words(name, |words, bracket| of_quantity(index, role, words, bracket, &|_| true))
+                .unwrap_or(Column::new(index, role, Named::No));
         }
         let known: fn(&[&str]) -> Option<Unit> = match role {
             Role::Cycles => cycle_unit,
@@ -213,6 +230,49 @@ fn load(words: &[&str], bracket: &[&str]) -> Option<(Role, Named)> {
             _ => Role::Load,
         };
         Some((role, unit))
+    })
+}
+
+/// Most words of a unit of stress intensity or rate.
+const UNIT_WORDS: usize = 5;
+
+/// A column of ΔK or da/dN: `ΔK (MPa√m)`, `log da/dN [in/cycle]`, `delta_k_mpa_sqrt_m`.
+fn of_rates(index: usize, words: &[&str], bracket: &[&str]) -> Option<Column> {
+    let delta_k = of_quantity(index, Role::DeltaK, words, bracket, &|core| DELTA_K.contains(&core.join(" ").as_str()));
+    delta_k.or_else(|| of_quantity(index, Role::Rate, words, bracket, &|core| RATE.contains(&core.join(" ").as_str())))
+}
+
+/// The column of a quantity whose unit may have blanks and brackets of its own: the longest unit at the end of all words counts.
+fn of_quantity(index: usize, role: Role, words: &[&str], bracket: &[&str], is_core: &dyn Fn(&[&str]) -> bool) -> Option<Column> {
+    let like = match role {
+        Role::DeltaK => Unit::Intensity(IntensityUnit::MpaSqrtM),
+        _ => Unit::Rate(RateUnit::Millimetre),
+    };
+    let all = [words, bracket].concat();
+    let (is_log, all) = match all.as_slice() {
+        ["log", "10", rest @ ..] | ["log" | "log10" | "lg", rest @ ..] => (true, rest),
+        all => (false, all),
+    };
+    let cuts = (1..all.len()).filter(|cut| all.len() - cut <= UNIT_WORDS);
+    let named = cuts.filter_map(|cut| Some((&all[..cut], Unit::spelled(&all[cut..], like)?))).next();
+    let named = named.map(|(core, unit)| (core.strip_suffix(&["in"]).filter(|core| !core.is_empty()).unwrap_or(core), unit));
+    let (core, unit) = match named {
+        Some((core, unit)) => (core, Named::Is(unit)),
+        None if bracket.is_empty() => (all, Named::No),
+        None => (&all[..all.len() - bracket.len()], Named::Strange),
+    };
+    is_core(core).then(|| Column { is_log, ..Column::new(index, role, unit) })
+}
+
+/// A column of the width or thickness of the specimen, in a unit.
+fn size(index: usize, words: &[&str], bracket: &[&str]) -> Option<Column> {
+    unit_of(words, bracket, length_unit).into_iter().find_map(|(words, unit)| {
+        let role = match words {
+            ["w" | "width"] | ["specimen", "width"] => Role::Width,
+            ["b" | "thickness"] | ["specimen", "thickness"] => Role::Thickness,
+            _ => return None,
+        };
+        matches!(unit, Named::Is(_)).then(|| Column::new(index, role, unit))
     })
 }
 

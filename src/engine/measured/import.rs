@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::error::{Result, input};
-use crate::units::{INCH, KGF, KN, KSI, LBF, MM, MPA};
+use crate::units::{INCH, KGF, KN, KSI, LBF, MM, MPA, MPA_SQRT_M};
 
 crate::kinds! {
     /// Units of crack length in measured files.
@@ -47,6 +47,27 @@ crate::kinds! {
     }
 }
 
+crate::kinds! {
+    /// Units of stress intensity in tables of rates.
+    pub enum IntensityUnit for "measured.intensity_unit" {
+        MpaSqrtM = "MPa sqrt(m)": "MPa√m",
+        KsiSqrtInch = "ksi sqrt(in)": "ksi√in, 1.0988 MPa√m",
+        NewtonMm = "N/mm^1.5": "N/mm^(3/2), 0.03162 MPa√m",
+        KilogramForceMm = "kgf/mm^1.5": "kgf/mm^(3/2), 0.3101 MPa√m",
+    }
+}
+
+crate::kinds! {
+    /// Units of da/dN in tables of rates.
+    pub enum RateUnit for "measured.rate_unit" {
+        Millimetre = "mm/cycle": "millimetres in a cycle",
+        Metre = "m/cycle": "metres in a cycle",
+        Inch = "in/cycle": "inches in a cycle",
+        Micrometre = "um/cycle": "micrometres in a cycle",
+        Nanometre = "nm/cycle": "nanometres in a cycle",
+    }
+}
+
 impl Decimal {
     /// The character.
     pub fn sign(self) -> char {
@@ -82,6 +103,10 @@ pub enum Unit {
     Cycles(CycleUnit),
     /// Of a force or a gross stress.
     Load(LoadUnit),
+    /// Of a stress intensity.
+    Intensity(IntensityUnit),
+    /// Of da/dN.
+    Rate(RateUnit),
 }
 
 impl Unit {
@@ -91,10 +116,12 @@ impl Unit {
             Unit::Length(unit) => unit.name(),
             Unit::Cycles(unit) => unit.name(),
             Unit::Load(unit) => unit.name(),
+            Unit::Intensity(unit) => unit.name(),
+            Unit::Rate(unit) => unit.name(),
         }
     }
 
-    /// Metres, cycles, newtons or pascals in the unit.
+    /// Metres, cycles, newtons, pascals, Pa√m or m/cycle in the unit.
     pub fn si(self) -> f64 {
         UNITS.iter().find(|(unit, ..)| *unit == self).map_or(f64::NAN, |(_, si, _)| *si)
     }
@@ -113,8 +140,12 @@ impl Unit {
     }
 }
 
+/// √m in √inch, and Pa√m in N/mm^(3/2), 1e6 √1e-3.
+const SQRT_INCH: f64 = 0.159_373_774_505_092_3;
+const N_PER_MM_1_5: f64 = 31_622.776_601_683_79;
+
 /// Units with their size in SI, or in cycles, and how tables spell them.
-const UNITS: [(Unit, f64, &str); 13] = [
+const UNITS: [(Unit, f64, &str); 22] = [
     (Unit::Length(LengthUnit::Millimetre), MM, "mm, millimetre, millimeter, millimetres, millimeters"),
     (Unit::Length(LengthUnit::Inch), INCH, "in, inch, inches"),
     (Unit::Length(LengthUnit::Metre), 1.0, "m, metre, meter, metres, meters"),
@@ -136,6 +167,41 @@ const UNITS: [(Unit, f64, &str); 13] = [
     (Unit::Load(LoadUnit::KilogramForce), KGF, "kgf, kg, kp"),
     (Unit::Load(LoadUnit::Megapascal), MPA, "mpa, n mm2, n mm 2"),
     (Unit::Load(LoadUnit::Ksi), KSI, "ksi"),
+    (
+        Unit::Intensity(IntensityUnit::MpaSqrtM),
+        MPA_SQRT_M,
+        "mpa m, mpa sqrt m, mpa sqrtm, mpa root m, mpa m 0 5, mpa m05, mpa m 1 2, mpa m1 2, mpa m½, mpam, mpasqrtm, mpam 0 5, mpam 1 2, \
+         mpam1 2, mpam½, mpa sqr m, mn m 3 2, mn m 1 5, mn m3 2",
+    ),
+    (
+        Unit::Intensity(IntensityUnit::KsiSqrtInch),
+        KSI * SQRT_INCH,
+        "ksi in, ksi inch, ksi sqrt in, ksi sqrtin, ksi sqrt inch, ksi root in, ksi in 0 5, ksi in 1 2, ksi in1 2, ksi in½, ksi inch 0 5, \
+         ksi inch 1 2, ksiin, ksisqrtin, ksiin 0 5, ksiin 1 2",
+    ),
+    (
+        Unit::Intensity(IntensityUnit::NewtonMm),
+        N_PER_MM_1_5,
+        "n mm 3 2, n mm 1 5, n mm3 2, n mm1 5, n mm15, mpa mm, mpa sqrt mm, mpa sqrtmm, mpa mm 0 5, mpa mm 1 2, n mm2 mm, n mm 2 mm",
+    ),
+    (
+        Unit::Intensity(IntensityUnit::KilogramForceMm),
+        KGF * N_PER_MM_1_5,
+        "kgf mm 3 2, kgf mm 1 5, kgf mm3 2, kgf mm1 5, kgf mm15, kg mm 3 2, kg mm 1 5, kg mm3 2, kg mm1 5, kp mm 3 2",
+    ),
+    (
+        Unit::Rate(RateUnit::Millimetre),
+        MM,
+        "mm cycle, mm cycles, mm per cycle, mm cyc, mm c, mm lw, mm zyklus, mm lastwechsel, millimetre per cycle, mm cycle 1",
+    ),
+    (Unit::Rate(RateUnit::Metre), 1.0, "m cycle, m cycles, m per cycle, m cyc, m c, metre per cycle, meter per cycle, m cycle 1"),
+    (
+        Unit::Rate(RateUnit::Inch),
+        INCH,
+        "in cycle, in cycles, in per cycle, in cyc, in c, inch cycle, inch cycles, inch per cycle, inches cycle, inches per cycle",
+    ),
+    (Unit::Rate(RateUnit::Micrometre), 1e-6, "um cycle, um cycles, um per cycle, um cyc, micrometre per cycle, micron cycle, microns cycle"),
+    (Unit::Rate(RateUnit::Nanometre), 1e-9, "nm cycle, nm cycles, nm per cycle, nm cyc"),
 ];
 
 /// What the user says about files of readings; a header that names its own unit must agree.
@@ -153,6 +219,12 @@ pub struct Import {
     pub decimal: Option<Decimal>,
     /// Sheet of a workbook.
     pub sheet: Option<Sheet>,
+    /// Unit of stress intensity, in tables of rates.
+    pub intensity: Option<IntensityUnit>,
+    /// Unit of da/dN.
+    pub rate: Option<RateUnit>,
+    /// Whether the file is a table of rates over ΔK.
+    pub of_rates: bool,
 }
 
 /// A sheet by name, or by number from 1.
@@ -168,8 +240,19 @@ pub struct ColumnNames(Vec<(&'static str, String)>);
 
 impl ColumnNames {
     /// Known keys.
-    pub const KEYS: [&'static str; 9] =
-        ["cycles", "length", "specimen", "force_max", "force_min", "force_range", "stress_max", "stress_min", "stress_ratio"];
+    pub const KEYS: [&'static str; 11] = [
+        "cycles",
+        "length",
+        "specimen",
+        "force_max",
+        "force_min",
+        "force_range",
+        "stress_max",
+        "stress_min",
+        "stress_ratio",
+        "delta_k",
+        "rate",
+    ];
 
     /// Names a column as `key=name` of the option `--column` does.
     /// Errors: a text without `=`, an unknown key, or a key given twice (crack length may be).

@@ -2,9 +2,25 @@
 
 use std::collections::HashMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::curve::{Measured, READINGS_MIN};
-use crate::case::record::LeaveOut;
 use crate::error::{Result, input, input_missing};
+
+/// Cycles of a specimen that do not count.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeaveOut {
+    /// Name of the specimen; may be left out where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specimen: Option<String>,
+    /// First cycles, as the file counts them.
+    pub from_cycles: f64,
+    /// Last cycles.
+    pub to_cycles: f64,
+    /// Why.
+    pub reason: String,
+}
 
 /// Most names of specimens in a message.
 const NAMES_MAX: usize = 20;

@@ -3,13 +3,20 @@
 //! The load at a reading is the one under which the crack grew there. Where it changes once between readings of equal loads (a step), the
 //! growth up to the reading had the new load; where it changes from reading to reading (shedding), it went from one to the other.
 
-use super::curve::{Loads, Measured, MeasuredCurve, first_of};
-use crate::case::Case;
+use super::curve::{Loads, Measured, MeasuredCurve, first_of, round_off};
+use super::names::Role;
+use super::table::Fault;
 use crate::error::Result;
-use crate::specimen::LoadMeasure;
+use crate::loading::Loading;
+use crate::specimen::handbook::{HandbookFormula, handbook};
+use crate::specimen::{LoadMeasure, Specimen};
+use crate::units::MM;
 
 /// Loads within this share of each other are equal: machines hold theirs to one percent.
 pub const SAME_LOAD: f64 = 0.01;
+
+/// Share by which a column may differ from the case: formulas for K agree to less.
+const STATED_DIFFERENCE: f64 = 0.02;
 
 /// Stress ratios that differ by less are the same.
 const SAME_RATIO: f64 = 0.02;
@@ -17,38 +24,38 @@ const SAME_RATIO: f64 = 0.02;
 impl Measured {
     /// Sets the readings against the specimen and the load of a case.
     /// Errors: readings beyond the specimen; loads that it cannot have.
-    pub fn set_against(&mut self, case: &Case) -> Result<()> {
-        let (limit, limit_name) = case.specimen.length_limit();
+    pub fn set_against(&mut self, specimen: &Specimen, loading: &Loading) -> Result<()> {
+        let (limit, limit_name) = specimen.length_limit();
         self.check_lengths(limit, limit_name)?;
-        self.resolve_loads(case)?;
-        self.check_sides(&case.specimen);
+        self.resolve_loads(specimen, loading)?;
+        self.curves.iter().try_for_each(|curve| compare(curve, specimen, loading))?;
+        self.check_sides(specimen);
         Ok(())
     }
 
     /// Sets the load of every reading against that of the case: [`MeasuredCurve::load_factor`].
     /// Errors: stresses for a specimen that is loaded by a force on pins.
-    pub fn resolve_loads(&mut self, case: &Case) -> Result<()> {
-        let specimen = &case.specimen;
-        let case_range = case.loading.maximum * case.loading.range_share();
+    pub fn resolve_loads(&mut self, specimen: &Specimen, loading: &Loading) -> Result<()> {
+        let case_range = loading.maximum * loading.range_share();
         let mut of_ratios = Vec::new();
         for curve in &mut self.curves {
             let Some(loads) = &curve.loads else { continue };
-            let per_load = match (loads.measure, specimen.load_measure) {
-                (own, of_case) if own == of_case => 1.0,
-                (LoadMeasure::Force, _) => 1.0 / (specimen.width * specimen.thickness),
-                (LoadMeasure::Stress, _) => {
-                    let problem = format!("has loads as stresses, but a {} is loaded by a force on its pins", specimen.kind);
-                    return Err(curve.fault(0).error(problem, "give columns of force_max and force_min"));
-                }
+            let Some(per_load) = nominal_per_load(loads.measure, specimen) else {
+                let problem = format!("has loads as stresses, but a {} is loaded by a force on its pins", specimen.kind);
+                return Err(curve.fault(0).error(problem, "give columns of force_max and force_min"));
             };
             let factor = |(&load, &ratio): (&f64, &f64)| {
-                let ratio = if ratio.is_nan() { case.loading.ratio } else { ratio };
-                let maximum = if loads.is_range { load / (1.0 - ratio) } else { load };
+                let ratio = if ratio.is_nan() { loading.ratio } else { ratio };
+                let maximum = match loads.is_range {
+                    _ if load.is_nan() => loading.maximum / per_load,
+                    true => load / (1.0 - ratio),
+                    false => load,
+                };
                 // As for the case, compression does not open a crack.
                 maximum * per_load * (1.0 - ratio.max(0.0)) / case_range
             };
             let factors: Vec<f64> = loads.maximum.iter().zip(&loads.ratio).map(factor).collect();
-            of_ratios.extend(ratio_warning(curve, loads, case));
+            of_ratios.extend(ratio_warning(curve, loads, loading));
             // Loads of the case as a machine keeps them are those of the case.
             let is_case = factors.iter().all(|factor| (factor - 1.0).abs() < 1e-6);
             curve.load_factor = if is_case { Vec::new() } else { factors };
@@ -56,6 +63,59 @@ impl Measured {
         self.warnings.extend(first_of(of_ratios));
         Ok(())
     }
+}
+
+/// Nominal load of the specimen over a load of a file; `None` where a stress is no load of it.
+fn nominal_per_load(measure: LoadMeasure, specimen: &Specimen) -> Option<f64> {
+    match (measure, specimen.load_measure) {
+        (own, of_case) if own == of_case => Some(1.0),
+        (LoadMeasure::Force, _) => Some(1.0 / (specimen.width * specimen.thickness)),
+        (LoadMeasure::Stress, _) => None,
+    }
+}
+
+/// Holds what the file says beside its readings against the case.
+/// Errors: a size, a smallest load or a ΔK that is another one.
+fn compare(curve: &MeasuredCurve, specimen: &Specimen, loading: &Loading) -> Result<()> {
+    for stated in &curve.stated {
+        let measure = if stated.is_stress { LoadMeasure::Stress } else { LoadMeasure::Force };
+        let per_load = nominal_per_load(measure, specimen).unwrap_or(f64::NAN);
+        let formula = handbook(specimen);
+        let of_case = |reading: usize| match stated.role {
+            Role::Width => specimen.width,
+            Role::Thickness => specimen.thickness,
+            Role::Min => loading.ratio * loading.maximum / per_load,
+            _ => {
+                let factor = curve.load_factor.get(reading).copied().unwrap_or(1.0);
+                let delta_k = |formula: HandbookFormula| {
+                    formula.delta_k(curve.crack_length[reading], loading.maximum, loading.range_share()) * factor
+                };
+                formula.map_or(f64::NAN, delta_k)
+            }
+        };
+        // A smallest load of nothing is compared with the largest.
+        let size = |reading: usize| if stated.role == Role::Min { loading.maximum / per_load } else { of_case(reading) };
+        let mut apart: Vec<(f64, usize)> = (0..stated.values.len())
+            .map(|reading| ((stated.values[reading] - of_case(reading)) / size(reading), reading))
+            .filter(|(apart, _)| apart.is_finite())
+            .collect();
+        if apart.is_empty() {
+            continue;
+        }
+        apart.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (typical, reading) = apart[apart.len() / 2];
+        if typical.abs() <= STATED_DIFFERENCE {
+            continue;
+        }
+        let value = round_off(stated.values[reading] / stated.factor).to_string();
+        let of_case = round_off(of_case(reading) / stated.factor);
+        let fault = Fault { key: Some(&stated.column), value: Some(&value), ..curve.fault(reading) };
+        return Err(fault.error(
+            format!("is {of_case} by the case, at {:.4} mm of specimen {}", curve.crack_length[reading] / MM, curve.specimen),
+            "correct the specimen and loading of the case, or the column, or leave it out",
+        ));
+    }
+    Ok(())
 }
 
 /// Range of load over that of the case along a crack.
@@ -81,15 +141,15 @@ impl LoadHistory {
 }
 
 /// A law belongs to one stress ratio.
-fn ratio_warning(curve: &MeasuredCurve, loads: &Loads, case: &Case) -> Option<String> {
+fn ratio_warning(curve: &MeasuredCurve, loads: &Loads, loading: &Loading) -> Option<String> {
     let given = || loads.ratio.iter().copied().filter(|ratio| !ratio.is_nan());
     let (low, high) = (given().fold(f64::INFINITY, f64::min), given().fold(f64::NEG_INFINITY, f64::max));
-    let apart = low - case.loading.ratio < -SAME_RATIO || high - case.loading.ratio > SAME_RATIO;
+    let apart = low - loading.ratio < -SAME_RATIO || high - loading.ratio > SAME_RATIO;
     (low <= high && apart).then(|| {
         format!(
             "specimen {}: stress ratios of the readings go from {low:.3} to {high:.3}, loading.stress_ratio is {}: ΔK is that of each \
              reading, the law is said to be of the latter",
-            curve.specimen, case.loading.ratio
+            curve.specimen, loading.ratio
         )
     })
 }

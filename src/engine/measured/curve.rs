@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use super::table::Fault;
+use super::columns::is_stress;
+use super::names::{Column, Role};
+use super::table::{Fault, Table};
 use crate::error::{Result, input};
 use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
 use crate::units::MM;
@@ -27,12 +29,36 @@ pub struct MeasuredCurve {
     pub side_difference: Vec<f64>,
     /// Loads of each reading as read; `None` where the file has none.
     pub loads: Option<Loads>,
+    /// What the file says beside readings and the case says too.
+    pub stated: Vec<Stated>,
     /// Range of load at each reading over that of the case ([`Measured::resolve_loads`]); empty where it is that of the case.
     pub load_factor: Vec<f64>,
     /// Whether the growth up to each reading is left out (`measured.leave_out`); empty where none is.
     pub left_out: Vec<bool>,
     /// Where the readings stand.
     pub source: Source,
+}
+
+/// A column of a quantity that the case says too.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stated {
+    /// What it holds.
+    pub role: Role,
+    /// Whether it holds stresses.
+    pub is_stress: bool,
+    /// Its name.
+    pub column: String,
+    /// What a number of the file is multiplied by for SI units.
+    pub factor: f64,
+    /// Of every reading, SI; NaN where the cell holds no number.
+    pub values: Vec<f64>,
+}
+
+impl Stated {
+    pub(super) fn new(table: &Table, column: Column) -> Self {
+        let name = table.header[column.index].clone();
+        Stated { role: column.role, is_stress: is_stress(&column), column: name, factor: column.factor, values: Vec::new() }
+    }
 }
 
 /// Where the readings of a curve stand; empty for computed curves.
@@ -57,7 +83,7 @@ pub struct Loads {
     pub measure: LoadMeasure,
     /// Whether `maximum` holds ranges.
     pub is_range: bool,
-    /// Largest load of a cycle.
+    /// Largest load of a cycle; NaN where that of the case holds.
     pub maximum: Vec<f64>,
     /// Smallest over largest load; NaN where the file does not say it, and that of the case holds.
     pub ratio: Vec<f64>,
@@ -100,6 +126,7 @@ impl MeasuredCurve {
             crack_length: some(&self.crack_length, readings),
             side_difference: some(&self.side_difference, readings),
             loads: self.loads.as_ref().map(|loads| loads.of_readings(readings)),
+            stated: Vec::new(),
             load_factor: some(&self.load_factor, readings),
             left_out: if self.left_out.is_empty() { Vec::new() } else { left_out.collect() },
             source: Source {
