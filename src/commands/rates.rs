@@ -98,7 +98,7 @@ pub fn run(args: &Args) -> Result<()> {
     let mut measured = read_into(&opened, &args.measured, &args.import()?)?;
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     if let Some(case) = &case {
-        measured.set_against(&case.specimen, &case.loading)?;
+        measured.set_against(&case.specimen, &case.material, &case.loading)?;
     }
     let specimens = specimen_rates(&measured, method, case.as_ref())?;
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());

@@ -127,6 +127,8 @@ pub struct Stop {
     pub crack_length: f64,
     /// Run-out.
     pub cycles_max: f64,
+    /// Load that the plate has to bear over the largest of a cycle, at least 1: the life ends where it no longer does.
+    pub required: Option<f64>,
 }
 
 /// Where the constants of the fatigue law come from.

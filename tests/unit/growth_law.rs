@@ -5,7 +5,7 @@ use std::path::Path;
 use perilife::case::{Case, LawSource};
 use perilife::fatigue::growth_law::nasgro::Nasgro;
 use perilife::fatigue::growth_law::table::{Curve, Table};
-use perilife::fatigue::growth_law::{Forman, GrowthLaw, GrowthLawKind};
+use perilife::fatigue::growth_law::{Forman, GrowthLaw, GrowthLawKind, RangeKind};
 use perilife::input::Folder;
 use perilife::predict::{Silent, predict};
 use perilife::quadrature::integrate;

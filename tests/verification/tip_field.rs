@@ -9,7 +9,7 @@ use std::sync::Arc;
 use perilife::body::pre_crack::bonds_across;
 use perilife::body::{Body, Bond};
 use perilife::case::{Case, RESIDUAL};
-use perilife::fatigue::growth_law::Walker;
+use perilife::fatigue::growth_law::{RangeKind, Walker};
 use perilife::growth::CrackGrowth;
 use perilife::growth::tip_field::TipField;
 use perilife::growth::tip_field::kink::coefficients;

@@ -111,7 +111,7 @@ impl CalibrationCase {
         check_growth_rate(&case)?;
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
-        measured.set_against(&case.specimen, &case.loading)?;
+        measured.set_against(&case.specimen, &case.material, &case.loading)?;
         measured.leave_out(&keys.leave_out)?;
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;
@@ -126,6 +126,7 @@ impl CalibrationCase {
         warnings.extend(exponent.warning.clone());
         let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
         case.stop.crack_length = longest;
+        case.stop.required = None;
         case.material.toughness = None;
         case.material.yield_strength = None;
         warnings.extend(unrecorded(&case));

@@ -179,9 +179,10 @@ fn mean_ratio(curve: &MeasuredCurve, readings: RangeInclusive<usize>) -> f64 {
     of.map_or(f64::NAN, |ratios| ratios.iter().sum::<f64>() / ratios.len() as f64)
 }
 
-/// Line through log10 da/dN (mm/cycle) over log10 ΔK (MPa√m), points that do not grow left out: `intercept` is log10 C, `slope` m.
+/// Line through log10 da/dN (mm/cycle) over log10 ΔK (MPa√m), points that carry a flag left out: `intercept` is log10 C, `slope` m.
 pub fn paris_line(points: &[RatePoint]) -> Option<Line> {
-    let usable = || points.iter().filter(|point| point.rate > 0.0 && point.delta_k > 0.0);
+    let belongs = |point: &&RatePoint| !Flags { load_changes: false, ..point.flags }.any();
+    let usable = || points.iter().filter(belongs).filter(|point| point.rate > 0.0 && point.delta_k > 0.0);
     let log_k: Vec<f64> = usable().map(|point| (point.delta_k / MPA_SQRT_M).log10()).collect();
     let log_rate: Vec<f64> = usable().map(|point| (point.rate / MM_PER_CYCLE).log10()).collect();
     line(&log_k, &log_rate)

@@ -147,7 +147,8 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         lines.push(line("ageing", words));
     }
     lines.push(line("handbook K", formula));
-    lines.push(line("stop", format!("{end}{} cycles", case.stop.cycles_max)));
+    let bears = case.stop.required.map(|factor| format!("not bearing {factor:.4} times the largest load, or "));
+    lines.push(line("stop", format!("{end}{}{} cycles", bears.unwrap_or_default(), case.stop.cycles_max)));
     lines
 }
 

@@ -160,7 +160,7 @@ pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
 pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value {
     let there = || outcomes.iter().flatten();
     let numbered = || outcomes.iter().enumerate().filter_map(|(i, outcome)| Some((label(i + 1), outcome.as_ref()?)));
-    let lives = lives(outcomes);
+    let lives = Lives::of(outcomes);
     let failures: Vec<Value> =
         numbered().filter_map(|(case, outcome)| Some(json!({ "case": case, "problem": outcome.problem.as_ref()? }))).collect();
     let missing: Vec<String> =
@@ -169,17 +169,13 @@ pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value 
     json!({
         "name": plan.name,
         "cases": plan.cases.len(),
-        "succeeded": lives.len(),
+        "succeeded": there().filter(|outcome| outcome.problem.is_none()).count(),
         "failed": failures.len(),
         "missing": missing.len(),
         "run_outs": there().filter(run_out).count(),
-        "life_cycles": {
-            "p05": quantile(&lives, 0.05),
-            "p50": quantile(&lives, 0.5),
-            "p95": quantile(&lives, 0.95),
-            "least": lives.first(),
-            "most": lives.last(),
-        },
+        "unlimited": lives.unlimited,
+        "lower_bounds": lives.bounds,
+        "life_cycles": lives.figures(),
         "failures": failures.iter().take(FAILURES_MAX).collect::<Vec<_>>(),
         "missing_cases": missing,
         "warnings": warnings(outcomes),
@@ -191,11 +187,56 @@ pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value 
     })
 }
 
-/// Lives of the cases that have one, upwards.
-fn lives(outcomes: &[Option<Outcome>]) -> Vec<f64> {
-    let mut lives: Vec<f64> = outcomes.iter().flatten().filter_map(|outcome| outcome.life_cycles).collect();
-    lives.sort_by(f64::total_cmp);
-    lives
+/// Lives of the cases that have one.
+struct Lives {
+    /// Upwards, each with whether it is a lower bound; unlimited ones at the end, infinite.
+    sorted: Vec<(f64, bool)>,
+    /// How many are unlimited.
+    unlimited: usize,
+    /// How many are lower bounds.
+    bounds: usize,
+}
+
+impl Lives {
+    fn of(outcomes: &[Option<Outcome>]) -> Self {
+        let there = || outcomes.iter().flatten().filter(|outcome| outcome.problem.is_none());
+        let is_bound = |outcome: &Outcome| outcome.is_lower_bound() == Some(true);
+        let mut sorted: Vec<(f64, bool)> =
+            there().map(|outcome| (outcome.life_cycles.unwrap_or(f64::INFINITY), is_bound(outcome))).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let unlimited = sorted.iter().filter(|(life, _)| life.is_infinite()).count();
+        let bounds = sorted.iter().filter(|(_, is_bound)| *is_bound).count();
+        Lives { sorted, unlimited, bounds }
+    }
+
+    /// A quantile: its figure where no bound lies below it, and in words. A bound is at least its figure, so that the quantile of the
+    /// figures is a bound as well.
+    fn quantile(&self, q: f64) -> (Option<f64>, Option<String>) {
+        let figures: Vec<f64> = self.sorted.iter().map(|(life, _)| *life).collect();
+        let value = quantile(&figures, q);
+        if figures.is_empty() {
+            return (None, None);
+        }
+        if !value.is_finite() {
+            return (None, Some("unlimited".to_owned()));
+        }
+        let is_bound = self.sorted.iter().any(|(life, is_bound)| *is_bound && *life <= value);
+        if is_bound { (None, Some(format!("above {value:.0}"))) } else { (Some(value), Some(format!("{value:.0}"))) }
+    }
+
+    /// Quantiles by [`quantile`], null where the cases do not say them, and in words.
+    fn figures(&self) -> Value {
+        let [p05, p50, p95] = [0.05, 0.5, 0.95].map(|q| self.quantile(q));
+        let ends = || self.sorted.iter().filter(|(life, _)| life.is_finite()).map(|(life, _)| *life);
+        json!({
+            "p05": p05.0,
+            "p50": p50.0,
+            "p95": p95.0,
+            "words": { "p05": p05.1, "p50": p50.1, "p95": p95.1 },
+            "least": ends().next(),
+            "most": ends().last(),
+        })
+    }
 }
 
 /// Writes table, figures and picture into the folder of a sweep; returns the figures.
@@ -226,10 +267,12 @@ fn draw(path: &Path, plan: &Plan, outcomes: &[Option<Outcome>]) -> Result<()> {
         let series = Series { name: format!("{} cases", over.len()), points: over, mark };
         return chart::linear(path, &title("life"), [key, "Life N, cycles"], &[series]);
     }
-    let lives = lives(outcomes);
+    let lives = Lives::of(outcomes).sorted;
     let share = |i: usize| 100.0 * (i as f64 + 0.5) / lives.len() as f64;
-    let points = lives.iter().enumerate().map(|(i, life)| (*life, share(i))).collect();
-    let series = Series { name: format!("{} cases", lives.len()), points, mark: Mark::Dots };
+    // One that goes on has not ended.
+    let ended = lives.iter().enumerate().filter(|(_, (life, is_bound))| life.is_finite() && !is_bound);
+    let points: Vec<(f64, f64)> = ended.map(|(i, (life, _))| (*life, share(i))).collect();
+    let series = Series { name: format!("{} of {} cases", points.len(), lives.len()), points, mark: Mark::Dots };
     chart::linear(path, &title("distribution of life"), ["Life N, cycles", "Share of cases that have ended, %"], &[series])
 }
 

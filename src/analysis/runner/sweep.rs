@@ -95,7 +95,8 @@ pub fn collect(folder: &SweepFolder, begun: Instant, watcher: &dyn Watcher) -> R
 }
 
 fn words(path: &Path, plan: &Plan, figures: &Value) -> Vec<String> {
-    let life = |key: &str| figures["life_cycles"][key].as_f64();
+    let life = |key: &str| figures["life_cycles"]["words"][key].as_str();
+    let percent = |count: u64| 100.0 * count as f64 / figures["succeeded"].as_f64().unwrap_or(f64::NAN);
     let counts = ["succeeded", "failed", "missing"].map(|key| figures[key].as_u64().unwrap_or(0));
     let mut lines = vec![format!(
         "{}: {} cases, {} succeeded, {} failed, {} missing",
@@ -106,10 +107,13 @@ fn words(path: &Path, plan: &Plan, figures: &Value) -> Vec<String> {
         counts[2]
     )];
     if let (Some(low), Some(middle), Some(high)) = (life("p05"), life("p50"), life("p95")) {
-        lines.push(format!("  life           5 % {low:.0}, median {middle:.0}, 95 % {high:.0} cycles"));
+        lines.push(format!("  life           5 % {low}, median {middle}, 95 % {high} cycles"));
     }
     if let Some(count) = figures["run_outs"].as_u64().filter(|count| *count > 0) {
-        lines.push(format!("  run-outs       {count}: their lives end at stop.cycles_max"));
+        lines.push(format!("  run-outs       {count} ({:.0} %): their lives are above stop.cycles_max", percent(count)));
+    }
+    if let Some(count) = figures["unlimited"].as_u64().filter(|count| *count > 0) {
+        lines.push(format!("  unlimited      {count} ({:.0} %): nothing grows", percent(count)));
     }
     lines.extend(first(figures, "failures").iter().map(|failure| {
         format!(

@@ -14,7 +14,8 @@ use crate::fatigue::{
 use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
 use crate::loading::Loading;
 use crate::material::Material;
-use crate::specimen::{LengthConvention, Specimen};
+use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
+use crate::units::MPA;
 
 const CYCLES_MAX: f64 = 1e9;
 
@@ -130,10 +131,15 @@ fn read_step_error(slice: &FatigueKeys, driver: Driver) -> Result<f64> {
 struct StopInput {
     crack_length_mm: Option<f64>,
     cycles_max: Option<f64>,
+    required_strength_mpa: Option<f64>,
+    limit_load_factor: Option<f64>,
 }
 
 /// Reads `[stop]`.
-pub(super) fn stop_from_value(value: &Value, specimen: &Specimen) -> Result<Stop> {
+pub(super) fn stop_from_value(
+    value: &Value,
+    (specimen, material, loading): (&Specimen, &Material, &Loading),
+) -> Result<Stop> {
     let slice: StopInput = slice(value, "stop")?;
     let crack_length = LENGTH.read_optional("stop.crack_length_mm", slice.crack_length_mm)?;
     if let (Some(length), Some(given)) = (crack_length, slice.crack_length_mm) {
@@ -159,5 +165,39 @@ pub(super) fn stop_from_value(value: &Value, specimen: &Specimen) -> Result<Stop
         }
     }
     let cycles_max = number("a number of cycles", 1.0, 1e15).read("stop.cycles_max", slice.cycles_max.unwrap_or(CYCLES_MAX))?;
-    Ok(Stop { crack_length: crack_length.unwrap_or(f64::INFINITY), cycles_max })
+    let required = required_load(&slice, specimen, material, loading)?;
+    Ok(Stop { crack_length: crack_length.unwrap_or(f64::INFINITY), cycles_max, required })
+}
+
+/// The load that the plate has to bear, over the largest of a cycle.
+fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<Option<f64>> {
+    const FACTOR: &str = "stop.limit_load_factor";
+    const STRENGTH: &str = "stop.required_strength_mpa";
+    let (key, given, factor) = match (stop.limit_load_factor, stop.required_strength_mpa) {
+        (None, None) => return Ok(None),
+        (Some(factor), Some(_)) => {
+            return Err(input(FACTOR, factor, format!("stands beside {STRENGTH}: the load is given twice"), "give one of them"));
+        }
+        (Some(factor), None) => (FACTOR, factor, factor),
+        (None, Some(strength)) if specimen.load_measure == LoadMeasure::Stress => {
+            (STRENGTH, strength, strength * MPA / loading.maximum)
+        }
+        (None, Some(strength)) => {
+            let problem = format!("is a gross stress, and a {} is loaded by a force on its pins", specimen.kind);
+            return Err(input(STRENGTH, strength, problem, format!("give {FACTOR}, the load to bear over the largest of a cycle")));
+        }
+    };
+    if loading.displacement().is_some() {
+        let problem = "is a load, and the cycles are of a displacement";
+        return Err(input(key, given, problem, "leave it out, or give the load of the cycles"));
+    }
+    if !(factor.is_finite() && factor >= 1.0) {
+        let problem = "is less than the largest load of a cycle, which the plate has to bear anyhow";
+        return Err(input(key, given, problem, "give the limit load that it has to bear at the end of its life"));
+    }
+    if material.toughness.is_none() && material.yield_strength.is_none() {
+        let remedy = "give material.toughness_mpa_sqrt_m, yield_strength_mpa or both";
+        return Err(input(key, given, "cannot be compared: the material has neither toughness nor yield strength", remedy));
+    }
+    Ok(Some(factor))
 }

@@ -108,7 +108,7 @@ impl Case {
             folder,
             &mut choices,
         )?;
-        let stop = fatigue::stop_from_value(sections.optional("stop"), &specimen)?;
+        let stop = fatigue::stop_from_value(sections.optional("stop"), (&specimen, &material, &loading))?;
         let mut case = Case {
             name: name.to_owned(),
             specimen,

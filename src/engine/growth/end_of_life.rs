@@ -18,11 +18,12 @@ pub struct End {
     pub reason: StopReason,
 }
 
-/// The first of: the length the case stops at, K_max = toughness (where a handbook has K), yield of the whole net section
+/// The first of: the length the case stops at, K = toughness under the load to bear (where a handbook has K), yield of the whole net section
 /// (standard kinds). `None` where nothing of that is given. Where cycles are of a displacement the load is not known before the run:
 /// only the length that the case stops at is.
 pub fn first_end(case: &Case) -> Option<End> {
-    let (specimen, load) = (&case.specimen, case.loading.maximum);
+    // The plate has to bear a load, that of the cycles or a larger one.
+    let (specimen, load) = (&case.specimen, case.loading.maximum * case.stop.required.unwrap_or(1.0));
     let (start, limit) = (specimen.crack_length, specimen.length_limit().0);
     let end = |crack_length: f64, reason| End { crack_length, reason };
     let wanted = case.stop.crack_length.is_finite().then(|| end(case.stop.crack_length, StopReason::CrackLengthReached));
@@ -31,16 +32,16 @@ pub fn first_end(case: &Case) -> Option<End> {
     }
     let toughness =
         case.material.toughness.zip(handbook(specimen)).map(|(toughness, formula)| {
-            end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), StopReason::Toughness)
+            end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), strength_reason(case, StopReason::Toughness))
         });
     let net_section = case.material.yield_strength.filter(|_| specimen.ligament(start).is_some()).map(|strength| {
         // Known for this kind, so the default is never taken.
         let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
-        end(first_reach(stress, strength, start, limit), StopReason::NetSectionYield)
+        end(first_reach(stress, strength, start, limit), strength_reason(case, StopReason::NetSectionYield))
     });
     // A plate of any shape: its edges carry the gross stress at least.
     let gross = case.material.yield_strength.zip(specimen.gross_stress(load).filter(|_| specimen.ligament(start).is_none()));
-    let gross = gross.filter(|(strength, stress)| stress >= strength).map(|_| end(start, StopReason::NetSectionYield));
+    let gross = gross.filter(|(strength, stress)| stress >= strength).map(|_| end(start, strength_reason(case, StopReason::NetSectionYield)));
     [wanted, toughness, net_section, gross].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
 }
 
@@ -62,9 +63,14 @@ fn first_reach(value: impl Fn(f64) -> f64, wanted: f64, from: f64, to: f64) -> f
     }
 }
 
-/// Range of K at which its maximum is the toughness, Pa√m.
+/// Range of K at which its maximum under the load to bear is the toughness, Pa√m.
 fn delta_k_most(case: &Case) -> Option<f64> {
-    case.material.toughness.map(|toughness| case.loading.range_share() * toughness)
+    case.material.toughness.map(|toughness| case.loading.range_share() * toughness / case.stop.required.unwrap_or(1.0))
+}
+
+/// Why a run ends where the plate no longer bears its load, by what breaks under it: that of the cycles, or one that it has to bear.
+pub fn strength_reason(case: &Case, breaks: StopReason) -> StopReason {
+    if case.stop.required.is_some() { StopReason::RequiredStrength } else { breaks }
 }
 
 /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or `grows`.
@@ -79,7 +85,7 @@ pub(super) fn reason_to_stop(
         return Some(end.reason);
     }
     if delta_k_most(case).is_some_and(|most| last.delta_k >= most) {
-        return Some(StopReason::Toughness);
+        return Some(strength_reason(case, StopReason::Toughness));
     }
     if !states.contains(&TipState::Active) {
         return Some(gone(states));
@@ -101,7 +107,7 @@ pub(super) fn row_after(
     }
     if let Some(most) = delta_k_most(case).filter(|most| next.delta_k > *most && last.delta_k < *most) {
         let fraction = (most - last.delta_k) / (next.delta_k - last.delta_k);
-        return (next.between(last, fraction), Some(StopReason::Toughness));
+        return (next.between(last, fraction), Some(strength_reason(case, StopReason::Toughness)));
     }
     (next, end)
 }

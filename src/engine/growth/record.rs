@@ -19,20 +19,23 @@ crate::kinds! {
         LigamentUnresolved = "ligament_unresolved": "a crack tip passes a rim within a spacing: points do not resolve what is between them; the life is a lower bound",
         NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
         NoGrowth = "no_growth": "bonds went on breaking, but no crack tip grew",
-        RunOut = "run_out": "cycles_max was reached",
+        RequiredStrength = "required_strength": "the plate no longer bears the load that it has to (stop.required_strength_mpa or limit_load_factor)",
+        RunOut = "run_out": "stop.cycles_max was reached: the life is a lower bound",
         NoConvergence = "no_convergence": "the equilibrium solver did not converge",
     }
 }
 
 impl StopReason {
-    /// Whether a plate that has ended so lives on: what a crack does behind a hole, or one that has joined others, is not computed.
+    /// Whether a plate that has ended so lives on: what a crack does behind a hole, or one that has joined others, is not computed, nor
+    /// what comes after the cycles that were asked for.
     pub fn is_lower_bound(self) -> bool {
-        matches!(self, StopReason::EnteredHole | StopReason::CracksJoined | StopReason::LigamentUnresolved)
+        use StopReason::{CracksJoined, EnteredHole, LigamentUnresolved, RunOut};
+        matches!(self, EnteredHole | CracksJoined | LigamentUnresolved | RunOut)
     }
 
     /// Whether the load breaks a plate that has ended so.
     pub fn is_strength(self) -> bool {
-        matches!(self, StopReason::Toughness | StopReason::NetSectionYield)
+        matches!(self, StopReason::Toughness | StopReason::NetSectionYield | StopReason::RequiredStrength)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the columns of a measured file are: one row a reading, or columns of every specimen; and in which units.
 
 use super::decimal::decide;
-use super::header::{columns_of, is_length, is_wide, pairs_of, place_of};
+use super::header::{columns_of, cut, is_length, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, CycleUnit, Decimal, Import, LoadUnit, Unit};
 use super::names::{Column, Named, Role, length_unit_at_end};
 use super::table::{Fault, Table};
@@ -122,6 +122,14 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
                 specimens().map(|(name, i)| Series::of_one(name, Column::new(i, Role::Cycles, unit), length, vec![i])).collect();
             Ok((Shape::WideCycles, series))
         }
+        ([_], []) if wide && are_places_of_one_crack(&table.header[1..]) => Err(table.header_fault(1).error(
+            "begins a row of numbered crack lengths, which are places on the front of one crack or cracks of several specimens",
+            format!(
+                "for one crack give measured.columns = {{ length = [\"{}\"] }} (--column length=... for each), whose mean counts; name columns \
+                 of specimens S1, S2, ...",
+                table.header[1..].join("\", \"")
+            ),
+        )),
         ([cycles], []) if wide && cycles.index == 0 => {
             let cycles = cycle_column(table, *cycles, import)?;
             let series = specimens().map(|(name, i)| Ok(Series::of_one(name, cycles, wide_length(table, i, import)?, vec![i])));
@@ -217,6 +225,15 @@ fn length_column(table: &Table, column: Column, import: &Import) -> Result<Colum
             "name it crack_length_mm, crack_length_inch or crack_length_m, or set measured.length_unit (--length-unit)",
         )),
     }
+}
+
+/// Whether the names of columns are `a1`, `a2`, ...: one letter or word of crack length, numbered.
+fn are_places_of_one_crack(names: &[String]) -> bool {
+    let is_numbered = |(place, name): (usize, &String)| {
+        let (base, number) = cut(name);
+        number == Some((place + 1).to_string().as_str()) && is_length(&Column::named(0, &base))
+    };
+    names.len() > 1 && names.iter().enumerate().all(is_numbered)
 }
 
 /// A specimen's column in a wide table: in the unit of its name, or as the user says.

@@ -13,6 +13,11 @@ use crate::units::MM;
 /// Fewest readings a curve can have.
 pub const READINGS_MIN: usize = 5;
 
+/// Fall of a crack length over the scatter of readings, and over the whole growth, beyond which a reading is a slip.
+const SLIP_SCATTERS: f64 = 10.0;
+/// See [`SLIP_SCATTERS`].
+const SLIP_SHARE: f64 = 0.02;
+
 /// Slack of window ends against readings, m: `9.0 mm` in a file and in a key need not be the same binary number.
 const LENGTH_SLACK: f64 = 1e-9;
 
@@ -72,6 +77,8 @@ pub struct Source {
     pub length_column: String,
     /// Metres per unit of that column.
     pub length_unit: f64,
+    /// Whether the specimen has the name of its file.
+    pub is_named_by_file: bool,
     /// Cycles of the file at the first reading of a window, which counts them from 0.
     pub cycles_before: f64,
 }
@@ -163,9 +170,60 @@ impl MeasuredCurve {
             .collect()
     }
 
+    /// Usual scatter of a reading about the straight line between its neighbours, m: 1.4826 times the median of the distances, as a standard
+    /// deviation of one reading.
+    pub fn scatter(&self) -> f64 {
+        let mut distances: Vec<f64> = (1..self.cycles.len().saturating_sub(1)).map(|i| self.off_line(i).abs()).collect();
+        distances.sort_by(f64::total_cmp);
+        // The line has half the variance of a reading beside that of the reading itself.
+        distances.get(distances.len() / 2).map_or(0.0, |median| 1.4826 * median / 1.5_f64.sqrt())
+    }
+
+    /// Distance of a reading from the straight line between its neighbours, m; 0 at the ends.
+    fn off_line(&self, i: usize) -> f64 {
+        if i == 0 || i + 1 >= self.cycles.len() {
+            return 0.0;
+        }
+        let [n, a] = [&self.cycles, &self.crack_length];
+        let share = (n[i] - n[i - 1]) / (n[i + 1] - n[i - 1]);
+        a[i] - a[i - 1] - share * (a[i + 1] - a[i - 1])
+    }
+
+    /// The readings from which, or to which, the crack falls back by more than ten times the scatter and two percent of its growth, where
+    /// leaving that one reading out mends it: typing errors.
+    pub(super) fn slips(&self) -> Vec<usize> {
+        let last = self.cycles.len() - 1;
+        let least = (SLIP_SCATTERS * self.scatter()).max(SLIP_SHARE * (self.crack_length[last] - self.crack_length[0]));
+        let mut slips: Vec<usize> = Vec::new();
+        for i in 1..=last {
+            if self.crack_length[i - 1] - self.crack_length[i] <= least || slips.last() == Some(&(i - 1)) {
+                continue;
+            }
+            let wrong = if self.off_line(i - 1).abs() > self.off_line(i).abs() { i - 1 } else { i };
+            let mends = wrong == 0 || wrong == last || self.crack_length[wrong + 1] - self.crack_length[wrong - 1] > -least;
+            if mends {
+                slips.push(wrong);
+            }
+        }
+        slips
+    }
+
     /// Where a reading stands, for messages: its line, or its number where there is no file.
     pub fn line(&self, reading: usize) -> usize {
         self.source.lines.get(reading).copied().unwrap_or(reading + 1)
+    }
+
+    /// Stem of the file of a curve that is the only one of its file and has no name of its own.
+    fn file_stem(&self) -> Option<String> {
+        self.source.is_named_by_file.then(|| self.source.file.file_stem().unwrap_or_default().to_string_lossy().into_owned())
+    }
+
+    fn named_by_file(&self) -> Option<String> {
+        self.file_stem().filter(|stem| *stem == self.specimen)
+    }
+
+    fn folder_name(&self) -> Option<String> {
+        Some(self.source.file.parent()?.file_name()?.to_string_lossy().into_owned())
     }
 
     /// What is wrong with a reading.
@@ -212,8 +270,20 @@ pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f6
 
 impl Measured {
     /// Puts the curves of another file behind these.
+    /// Specimens named by files of one stem have the names of their folders.
     /// Errors: a specimen whose name another one has.
     pub fn add(&mut self, other: Measured) -> Result<()> {
+        let mut other = other;
+        for curve in &mut other.curves {
+            let Some(stem) = curve.named_by_file() else { continue };
+            if !self.curves.iter().any(|earlier| earlier.specimen == stem || earlier.file_stem() == Some(stem.clone())) {
+                continue;
+            }
+            let alike = |earlier: &&mut MeasuredCurve| earlier.file_stem() == Some(stem.clone());
+            for curve in self.curves.iter_mut().filter(alike).chain([curve]) {
+                curve.specimen = curve.folder_name().unwrap_or(stem.clone());
+            }
+        }
         let own: HashMap<&str, &MeasuredCurve> = self.curves.iter().map(|curve| (curve.specimen.as_str(), curve)).collect();
         for curve in &other.curves {
             let Some(earlier) = own.get(curve.specimen.as_str()) else { continue };
@@ -224,6 +294,32 @@ impl Measured {
         self.curves.extend(other.curves);
         self.warnings.extend(other.warnings);
         Ok(())
+    }
+
+    /// Takes slips of the pen out of the curves.
+    pub(super) fn leave_slips_out(&mut self) {
+        let mut left_out = Vec::new();
+        for curve in self.curves.iter_mut().filter(|curve| curve.cycles.len() > READINGS_MIN) {
+            let slips = curve.slips();
+            left_out.extend(slips.iter().map(|&reading| {
+                let before = if reading == 0 { 1 } else { reading - 1 };
+                format!(
+                    "{}: line {}: specimen {}: {} mm is no crack length beside {} mm on line {}, and the crack falls back: a slip of the pen, \
+                     not fitted; correct the number",
+                    curve.source.file.display(),
+                    curve.line(reading),
+                    curve.specimen,
+                    round_off(curve.crack_length[reading] / MM),
+                    round_off(curve.crack_length[before] / MM),
+                    curve.line(before)
+                )
+            }));
+            if !slips.is_empty() {
+                let kept: Vec<usize> = (0..curve.cycles.len()).filter(|reading| !slips.contains(reading)).collect();
+                *curve = curve.of_readings(&kept);
+            }
+        }
+        self.warnings.extend(first_of(left_out));
     }
 
     /// Refuses readings beyond the specimen: `limit` in m, and its name, for example "half width". Meant for the whole

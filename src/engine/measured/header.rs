@@ -48,6 +48,7 @@ pub(super) fn is_wide(columns: &[Column]) -> bool {
 /// Whether a row of names, with what the user says, names cycles and crack length, starts a wide table or is one of pairs; of a table of
 /// rates, ΔK and da/dN.
 pub(super) fn names_a_test(names: &[String], import: &Import) -> bool {
+    let import = &Import { columns: import.columns.by_name(), ..import.clone() };
     if import.of_rates {
         let columns = columns_of(names, names, import);
         return [Role::DeltaK, Role::Rate].into_iter().all(|role| columns.iter().any(|column| column.role == role));
@@ -76,7 +77,7 @@ pub(super) fn place_of(wanted: &str, header: &[String], names: &[String]) -> Opt
 }
 
 /// A name without its number, and the number: `a1 (mm)` is `a (mm)` and 1.
-fn cut(name: &str) -> (String, Option<&str>) {
+pub(super) fn cut(name: &str) -> (String, Option<&str>) {
     let end = name.find(['(', '[', '{']).unwrap_or(name.len());
     let (words, unit) = (name[..end].trim_end(), &name[end..]);
     let base = words.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -90,8 +91,10 @@ fn cut(name: &str) -> (String, Option<&str>) {
 /// Names that are cycles and length in turn: the number of each pair, or its place, with its columns. All have a number and no other the
 /// same, or none has.
 pub(super) fn pairs_of(names: &[String]) -> Option<Vec<(String, [Column; 2])>> {
-    let names: Vec<(String, Option<&str>)> = names.iter().map(|name| cut(name)).collect();
-    let columns: Vec<Column> = names.iter().enumerate().map(|(index, (base, _))| Column::named(index, base)).collect();
+    // Tables beside each other have an empty column between them.
+    let (places, names): (Vec<usize>, Vec<(String, Option<&str>)>) =
+        names.iter().enumerate().filter(|(_, name)| !name.is_empty()).map(|(place, name)| (place, cut(name))).unzip();
+    let columns: Vec<Column> = places.iter().zip(&names).map(|(&index, (base, _))| Column::named(index, base)).collect();
     let count = names.len() / 2;
     let is_pair = |pair: usize| {
         let [cycles, length] = [2 * pair, 2 * pair + 1];

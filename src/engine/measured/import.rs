@@ -282,6 +282,11 @@ impl ColumnNames {
         keys.flat_map(|key| self.0.iter().filter(move |(own, _)| *own == key).map(|(own, name)| (*own, name.as_str())))
     }
 
+    /// Those that are named, without those given by number: a number is there in every table.
+    pub(super) fn by_name(&self) -> ColumnNames {
+        ColumnNames(self.0.iter().filter(|(_, name)| name.parse::<usize>().is_err()).cloned().collect())
+    }
+
     /// Whether several columns are crack lengths.
     pub(super) fn has_sides(&self) -> bool {
         self.given().filter(|(key, _)| *key == "length").count() > 1

@@ -8,9 +8,10 @@ use super::names::Role;
 use super::table::Fault;
 use crate::error::Result;
 use crate::loading::Loading;
+use crate::material::Material;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::specimen::{LoadMeasure, Specimen};
-use crate::units::MM;
+use crate::units::{MM, MPA_SQRT_M};
 
 /// Loads within this share of each other are equal: machines hold theirs to one percent.
 pub const SAME_LOAD: f64 = 0.01;
@@ -18,19 +19,67 @@ pub const SAME_LOAD: f64 = 0.01;
 /// Share by which a column may differ from the case: formulas for K agree to less.
 const STATED_DIFFERENCE: f64 = 0.02;
 
+/// Share of the plate, multiple of the toughness and leap of K beyond which a reading is of the fracture and not of fatigue.
+const LIGAMENT_LEFT: f64 = 0.95;
+/// See [`LIGAMENT_LEFT`].
+const TOUGHNESS_FACTOR: f64 = 1.5;
+/// See [`LIGAMENT_LEFT`].
+const LEAP_OF_K: f64 = 2.0;
+
 /// Stress ratios that differ by less are the same.
 const SAME_RATIO: f64 = 0.02;
 
 impl Measured {
     /// Sets the readings against the specimen and the load of a case.
     /// Errors: readings beyond the specimen; loads that it cannot have.
-    pub fn set_against(&mut self, specimen: &Specimen, loading: &Loading) -> Result<()> {
+    pub fn set_against(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
         let (limit, limit_name) = specimen.length_limit();
+        self.leave_slips_out();
         self.check_lengths(limit, limit_name)?;
         self.resolve_loads(specimen, loading)?;
         self.curves.iter().try_for_each(|curve| compare(curve, specimen, loading))?;
+        self.leave_fracture_out(specimen, material, loading);
         self.check_sides(specimen);
         Ok(())
+    }
+
+    /// Takes readings of the fracture off the ends of the curves: those beyond 0.95 of the plate, those whose K is beyond 1.5 times the
+    /// toughness, and, where no toughness is known, a last one whose K is twice that of the one before.
+    fn leave_fracture_out(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) {
+        let formula = handbook(specimen);
+        let (limit, limit_name) = specimen.length_limit();
+        let mut left_out = Vec::new();
+        for curve in &mut self.curves {
+            let k_max = |reading: usize| {
+                let factor = curve.load_factor.get(reading).copied().unwrap_or(1.0);
+                formula.map_or(f64::NAN, |formula| formula.k_i(curve.crack_length[reading], loading.maximum) * factor)
+            };
+            let is_last = |reading: usize| reading > 0 && reading + 1 == curve.cycles.len();
+            let why = |reading: usize| match material.toughness {
+                _ if curve.crack_length[reading] > LIGAMENT_LEFT * limit => {
+                    Some(format!("{:.3} of the {limit_name}", curve.crack_length[reading] / limit))
+                }
+                Some(toughness) if k_max(reading) > TOUGHNESS_FACTOR * toughness => {
+                    Some(format!("K_max {:.1} MPa√m, the toughness being {:.1}", k_max(reading) / MPA_SQRT_M, toughness / MPA_SQRT_M))
+                }
+                None if is_last(reading) && k_max(reading) > LEAP_OF_K * k_max(reading - 1) => {
+                    Some(format!("K_max is {:.1} times that of the reading before", k_max(reading) / k_max(reading - 1)))
+                }
+                _ => None,
+            };
+            let Some((first, why)) = (0..curve.cycles.len()).find_map(|reading| Some((reading, why(reading)?))) else { continue };
+            let more = curve.cycles.len() - first - 1;
+            left_out.push(format!(
+                "{}: line {}: specimen {}: the reading at {} mm is of the fracture ({why}): not fitted{}",
+                curve.source.file.display(),
+                curve.line(first),
+                curve.specimen,
+                round_off(curve.crack_length[first] / MM),
+                if more > 0 { format!(", nor are the {more} behind it") } else { String::new() }
+            ));
+            *curve = curve.of_readings(&(0..first).collect::<Vec<_>>());
+        }
+        self.warnings.extend(first_of(left_out));
     }
 
     /// Sets the load of every reading against that of the case: [`MeasuredCurve::load_factor`].

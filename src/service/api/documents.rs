@@ -220,14 +220,15 @@ async fn parts_of_form(app: &App, request: Request) -> Answer<Fields> {
         let (name, file) = (part.name().unwrap_or_default().to_owned(), part.file_name().map(str::to_owned));
         let content = part.bytes().await.map_err(broken)?.to_vec();
         match file {
-            Some(file) => {
+            // `curl -F input=@case.toml` sends a field with the name of a file.
+            Some(file) if name != "input" => {
                 check_name("file", &file)?;
                 if files.iter().any(|(other, _)| *other == file) {
                     return Err(Problem::bad_request(format!("two files are called {file:?}; give every file its own name")));
                 }
                 files.push((file, content));
             }
-            None => {
+            _ => {
                 let text = String::from_utf8(content).map_err(|_| Problem::bad_request(format!("`{name}` is not UTF-8 text")))?;
                 fields.insert(name, text);
             }

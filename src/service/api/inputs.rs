@@ -116,6 +116,7 @@ pub async fn measured(State(app): State<App>, Extension(caller): Extension<Calle
         columns: field("columns").map(|text| columns(text)).transpose()?.unwrap_or_default(),
         decimal: field("decimal").map(|name| named(Decimal::ALL, Decimal::name, "decimal", name)).transpose()?,
         sheet: field("sheet").map(|name| Sheet(name.clone())),
+        ..Import::default()
     };
     let look = move || {
         // Taken up until the work is done, even if nobody waits for it any more.

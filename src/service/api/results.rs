@@ -185,7 +185,7 @@ pub struct Remaining {
     factor: f64,
     /// Remaining cycles over the factor.
     inspection_interval_cycles: f64,
-    /// Whether the plate lives on where its curve ends, at a hole or where cracks have joined.
+    /// Whether the plate lives on where its curve ends: at a hole, where cracks have joined, or at stop.cycles_max.
     life_is_lower_bound: bool,
 }
 

@@ -6,7 +6,7 @@ use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::fatigue::ageing::FatigueBond;
 use crate::fatigue::crack_tip::{CrackTip, TipState};
-use crate::growth::end_of_life::End;
+use crate::growth::end_of_life::{End, strength_reason};
 use crate::growth::record::StopReason;
 use crate::specimen::Specimen;
 use crate::specimen::geometry::distance;
@@ -26,8 +26,9 @@ pub(super) fn before_block(
     // Where no handbook knows K, the energy released so far does.
     let horizon = case.model.horizon_ratio * case.model.spacing;
     let released = case.material.toughness.zip(track.k_max_released(case, horizon));
-    if released.is_some_and(|(toughness, k_max)| k_max >= toughness) {
-        return Some(StopReason::Toughness);
+    let factor = case.stop.required.unwrap_or(1.0);
+    if released.is_some_and(|(toughness, k_max)| k_max * factor >= toughness) {
+        return Some(strength_reason(case, StopReason::Toughness));
     }
     let gone = !tips.is_empty() && tips.iter().all(|tip| !tip.is_active());
     if gone && case.fatigue.ageing == crate::fatigue::Ageing::CrackTip {
