@@ -12,6 +12,8 @@ const RESOLUTIONS_MIN: f64 = 2.0;
 const DEVIATIONS_MIN: f64 = 4.0;
 /// Fewest readings whose third differences tell the error of one from the bend of the curve.
 const READINGS_FOR_ERROR: usize = 12;
+/// Share of a length by which two readings of it may differ.
+const SAME_LENGTH: f64 = 1e-9;
 /// Largest change of ln ΔK over the four points of a quadrature.
 const STEP_OF_LOG_K: f64 = 0.1;
 /// Gauss-Legendre abscissas on -1..1 and weights that add up to 1.
@@ -165,16 +167,18 @@ fn integrate(lengths: &[f64], zone: f64, delta_k: RangeOfK<'_>) -> Result<Interv
 
 /// Growth below which two readings do not tell a rate, m.
 fn least_growth(readings: &[Reading]) -> f64 {
+    // Readings repeated at one length would make a smooth curve look rough.
     let mut lengths: Vec<f64> = readings.iter().map(|reading| reading.length).collect();
+    lengths.dedup_by(|a, b| (*a - *b).abs() <= SAME_LENGTH * b.abs());
     let third: Vec<f64> = lengths.windows(4).map(|a| (a[3] - 3.0 * a[2] + 3.0 * a[1] - a[0]).abs()).collect();
     // Of readings with equal errors s, a third difference has the deviation √20 s; 0.6745 of it is the median of its size.
-    let error = if readings.len() < READINGS_FOR_ERROR { 0.0 } else { median(&third) / (0.6745 * 20.0_f64.sqrt()) };
+    let error = if lengths.len() < READINGS_FOR_ERROR { 0.0 } else { median(&third) / (0.6745 * 20.0_f64.sqrt()) };
+    let steps: Vec<f64> = lengths.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    let typical = if steps.is_empty() { 0.0 } else { median(&steps) };
     lengths.sort_by(f64::total_cmp);
-    let steps = lengths.windows(2).map(|pair| pair[1] - pair[0]);
-    let longest = lengths.last().copied().unwrap_or(0.0);
-    let resolution = steps.filter(|step| *step > 1e-9 * longest).fold(f64::INFINITY, f64::min);
+    let apart = lengths.windows(2).map(|pair| (pair[1] - pair[0], SAME_LENGTH * pair[1]));
+    let resolution = apart.filter(|(step, same)| step > same).map(|(step, _)| step).fold(f64::INFINITY, f64::min);
     // Readings at set lengths have their spacing, not their resolution, as the smallest step.
-    let typical = median(&readings.windows(2).map(|pair| (pair[1].length - pair[0].length).abs()).collect::<Vec<_>>());
     let rounding = if resolution < 0.5 * typical { RESOLUTIONS_MIN * resolution } else { 0.0 };
     rounding.min(typical).max(DEVIATIONS_MIN * error)
 }
