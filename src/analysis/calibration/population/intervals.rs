@@ -2,6 +2,7 @@
 
 use crate::calibration::median::median;
 use crate::error::{Result, input};
+use crate::measured::MeasuredCurve;
 use crate::units::{MM, MPA_SQRT_M};
 
 /// Most intervals of a specimen: more change neither constants nor bands, and time goes with their cube.
@@ -67,6 +68,15 @@ pub struct Specimen {
 }
 
 impl Specimen {
+    /// Readings of a curve under its own loads; `delta_k` is that of the load of the case.
+    /// Errors: as [`Specimen::new`].
+    pub fn of_curve(curve: &MeasuredCurve, delta_k: RangeOfK<'_>) -> Result<Self> {
+        let reading = |i: usize| Reading { length: curve.crack_length[i], cycles: curve.cycles[i], counts: curve.counts(i) };
+        let readings: Vec<Reading> = (0..curve.cycles.len()).map(reading).collect();
+        let loads = curve.load_history();
+        Specimen::new(&curve.specimen, &readings, &|length| delta_k(length) * loads.at(length), INTERVALS_MAX)
+    }
+
     /// Joins readings to at most `intervals_max` intervals that grow by more than the error of a reading in more than no cycles.
     ///
     /// Readings at one length or one cycle count, and readings that fall back, are passed over: an interval goes on until both have risen.
