@@ -17,6 +17,7 @@ use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, input_missing};
+use crate::fatigue::STEADY_EXPONENTS;
 use crate::units::MM;
 use intervals::{Interval, Specimen};
 use law::{EFFECTS, KNOTS, MeanLaw, Row};
@@ -33,6 +34,8 @@ const SHAPE_DEVIATION: f64 = 0.3;
 const SHAPE_RANGE_MIN: f64 = 1.3;
 /// Intervals for which a law can have a shape.
 const SHAPE_INTERVALS_MIN: usize = 5 * KNOTS;
+/// Range of ΔK below which rates of every exponent are alike.
+const RANGE_MIN: f64 = 1.01;
 /// Exponent from which the search for the law starts.
 const SLOPE_START: f64 = 3.0;
 /// Change of m at which the law stands still.
@@ -71,6 +74,8 @@ pub struct Errors {
     pub level: f64,
     /// Of the slope.
     pub slope: f64,
+    /// Of the slope were it the same in all specimens: what the readings leave open, without scatter between specimens.
+    pub slope_of_readings: f64,
     /// Of the shape.
     pub shape: [f64; KNOTS],
     /// Of ln sd of the level between specimens.
@@ -111,6 +116,8 @@ pub struct Member {
 pub struct Population {
     /// Law of the lot.
     pub law: MeanLaw,
+    /// The same model with a law that has no shape: its slope is the m of Paris that all readings agree on best.
+    pub power_law: MeanLaw,
     /// T.
     pub between: Between,
     /// Noise along a crack.
@@ -150,8 +157,7 @@ impl Priors {
             true => [(0.12_f64.ln(), 0.4), (0.15_f64.ln(), 0.4)],
             false => [(0.07_f64.ln(), 1.0), (0.15_f64.ln(), 0.8)],
         };
-        let noise =
-            [(0.16_f64.ln(), f64::INFINITY), ((0.67 * MM).ln(), 1.5), ((0.065 * root_mm).ln(), 2.0), ((0.01 * MM).ln(), 2.0)];
+        let noise = [(0.16_f64.ln(), 2.0), ((0.67 * MM).ln(), 1.5), ((0.065 * root_mm).ln(), 2.0), ((0.01 * MM).ln(), 2.0)];
         Priors {
             normal: [between[0], between[1], (0.0, 1.0), noise[0], noise[1], noise[2], noise[3]],
             least: [1e-9, 1e-9, f64::NEG_INFINITY, 1e-4, 1e-3 * MM, 1e-4 * root_mm, 1e-7 * MM].map(limit),
@@ -185,30 +191,84 @@ fn limit(value: f64) -> f64 {
     if value.is_finite() { value.ln() } else { value }
 }
 
+/// A law with its variances and their likelihood, priors counted.
+#[derive(Clone, Copy)]
+struct Found {
+    law: MeanLaw,
+    at: Parameters,
+    value: f64,
+}
+
 /// Fits the model to specimens of one lot. `slope` is m where the user gives it.
-/// Errors: no specimen; [`Error::Mechanics`] where the readings have no law.
+///
+/// The law has a shape where the likelihood says so: the ridge makes that of both laws comparable, so that readings of a plain power law,
+/// however exact, give one.
+/// Errors: no specimen; [`Error::Mechanics`] where the readings have no law, or do not tell its exponent.
 pub fn fit(specimens: &[Specimen], slope: Option<f64>) -> Result<Population> {
-    let mut law = start(specimens, slope)?;
     let priors = Priors::of(specimens.len());
     let no_law = || Error::Mechanics("the readings give no growth law: their rates have no smallest misfit".to_owned());
-    let mut at = priors.start(0.22);
-    law = settle(specimens, law, slope, &at).ok_or_else(no_law)?;
-    at = priors.start(rms(&groups(specimens, &law)));
+    let law = start(specimens, slope)?;
+    let at = priors.start(0.22);
+    let law = settle(specimens, law, slope, &at).ok_or_else(no_law)?;
+    let at = priors.start(rms(&groups(specimens, &law)));
+    let straight = search(specimens, law, slope, &priors, at).ok_or_else(no_law)?;
+    check_identified(specimens, &straight, slope)?;
+    let count: usize = specimens.iter().map(|specimen| specimen.intervals.len()).sum();
+    let mut found = straight;
+    if law.range[1] / law.range[0] >= SHAPE_RANGE_MIN && count >= SHAPE_INTERVALS_MIN {
+        let bent = MeanLaw { shape: Some([0.0; KNOTS]), ..straight.law };
+        let bent = search(specimens, bent, slope, &priors, straight.at).ok_or_else(no_law)?;
+        found = if bent.value < straight.value { bent } else { straight };
+    }
+    assess(specimens, &found, &straight, slope, &priors).ok_or_else(no_law)
+}
+
+/// Variances and law in turn, until m stands still.
+fn search(specimens: &[Specimen], mut law: MeanLaw, slope: Option<f64>, priors: &Priors, mut at: Parameters) -> Option<Found> {
     for round in 0..ROUNDS_MAX {
         let before = law;
         let groups = groups(specimens, &law);
         let penalty = penalty(&law, slope);
-        at = minimise(&groups, &penalty, &priors, &at);
-        law = settle(specimens, law, slope, &at).ok_or_else(no_law)?;
-        let error = estimate(&groups, &at, &penalty).map_or(0.0, |found| found.covariance[(1, 1)].max(0.0).sqrt());
+        at = minimise(&groups, &penalty, priors, &at);
+        law = settle(specimens, law, slope, &at)?;
+        let error = estimate(&groups, &at, &penalty)?.covariance[(1, 1)].max(0.0).sqrt();
         if round > 0 && (law.slope - before.slope).abs() < 10.0 * SLOPE_SAME + 1e-3 * error {
             break;
         }
     }
-    assess(specimens, law, slope, &priors, &at).ok_or_else(no_law)
+    let value = estimate(&groups(specimens, &law), &at, &penalty(&law, slope))?.value + priors.penalty(&at);
+    Some(Found { law, at, value })
 }
 
-/// Range, pivot and whether there is a shape, and the straight law from which the search starts.
+/// Refuses readings whose m is anywhere in the exponents that laws have.
+fn check_identified(specimens: &[Specimen], found: &Found, slope: Option<f64>) -> Result<()> {
+    if slope.is_some() {
+        return Ok(());
+    }
+    let law = &found.law;
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    let error = slope_of_readings(specimens, found).unwrap_or(f64::INFINITY);
+    let ratio = law.range[1] / law.range[0];
+    if STEADY_EXPONENTS.contains(&law.slope) && error < (high - low) / 12.0_f64.sqrt() && ratio > RANGE_MIN {
+        return Ok(());
+    }
+    Err(Error::Mechanics(format!(
+        "the readings do not tell the exponent: m = {:.3}, its standard error is {error:.2} where {low} to {high} are searched, and ΔK varies \
+         by a factor {ratio:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] parameters = \
+         [\"a\"] and p = ...",
+        law.slope
+    )))
+}
+
+/// Standard error of m were it the same in all specimens.
+fn slope_of_readings(specimens: &[Specimen], found: &Found) -> Option<f64> {
+    let mut at = found.at;
+    at[1] = 1e-9_f64.ln();
+    let found = estimate(&groups(specimens, &found.law), &at, &penalty(&found.law, None))?;
+    Some(found.covariance[(1, 1)].max(0.0).sqrt())
+}
+
+/// Range, pivot, and the power law from which the search starts.
 fn start(specimens: &[Specimen], slope: Option<f64>) -> Result<MeanLaw> {
     let all = || specimens.iter().flat_map(|specimen| &specimen.intervals);
     let count = all().count();
@@ -224,9 +284,7 @@ fn start(specimens: &[Specimen], slope: Option<f64>) -> Result<MeanLaw> {
         sum += interval.cycles * 0.5 * (interval.ends[0] + interval.ends[1]);
     }
     let (range, pivot) = ([low.exp(), high.exp()], (sum / cycles).exp());
-    let has_shape = range[1] / range[0] >= SHAPE_RANGE_MIN && count >= SHAPE_INTERVALS_MIN;
-    let shape = has_shape.then_some([0.0; KNOTS]);
-    let mut law = MeanLaw { pivot, level: 0.0, slope: slope.unwrap_or(SLOPE_START), range, shape };
+    let mut law = MeanLaw { pivot, level: 0.0, slope: slope.unwrap_or(SLOPE_START), range, shape: None };
     let mean: f64 = all().map(|interval| law.rows(std::slice::from_ref(interval))[0].log_cycles - interval.cycles.ln()).sum();
     law.level = mean / count as f64;
     Ok(law)
@@ -293,7 +351,9 @@ fn settle(specimens: &[Specimen], mut law: MeanLaw, slope: Option<f64>, at: &Par
 }
 
 /// All results at the variances that were found.
-fn assess(specimens: &[Specimen], law: MeanLaw, slope: Option<f64>, priors: &Priors, at: &Parameters) -> Option<Population> {
+fn assess(specimens: &[Specimen], best: &Found, straight: &Found, slope: Option<f64>, priors: &Priors) -> Option<Population> {
+    let Found { law, at, .. } = best;
+    let (law, at) = (*law, at);
     let groups = groups(specimens, &law);
     let penalty = penalty(&law, slope);
     let found = estimate(&groups, at, &penalty)?;
@@ -329,11 +389,13 @@ fn assess(specimens: &[Specimen], law: MeanLaw, slope: Option<f64>, priors: &Pri
     let freedom = specimens.len() as f64 - 1.0 + if few { ASSUMED_FREEDOM } else { 0.0 };
     Some(Population {
         law,
+        power_law: straight.law,
         between,
         noise,
         errors: Errors {
             level: error(0),
             slope: error(1),
+            slope_of_readings: if slope.is_some() { 0.0 } else { slope_of_readings(specimens, best)? },
             shape: std::array::from_fn(|k| if law.shape.is_some() { error(2 + k) } else { 0.0 }),
             between_level: variance_error(&[(0, 1.0)]),
             between_slope: variance_error(&[(1, 1.0)]),
