@@ -36,6 +36,7 @@ mod obstacles;
 mod output;
 mod pairs;
 mod pictures;
+mod population;
 mod practice;
 mod quadrature;
 mod rates;

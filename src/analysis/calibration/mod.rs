@@ -18,6 +18,7 @@ pub mod laws;
 pub mod median;
 pub mod outliers;
 pub mod paris;
+pub mod population;
 pub mod power_law;
 pub mod rates;
 pub mod results;

@@ -19,9 +19,9 @@ use super::caller::Caller;
 use super::{App, Limits};
 use crate::error::input;
 use crate::input::Document;
-use crate::runner::Task;
 use crate::job::{FITTED, JobKind, State, Submission, is_id};
 use crate::problem::{Answer, Problem};
+use crate::runner::Task;
 use crate::store::{Origin, hex};
 use crate::watch::{self, Watch};
 

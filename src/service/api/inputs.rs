@@ -14,10 +14,10 @@ use super::documents::{self, JobRequest, submission, while_asked};
 
 use crate::check;
 use crate::error::{Error, input};
+use crate::job::JobKind;
 use crate::measured::{
     Column, ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, MeasuredCurve, Named, Shape, Sheet, Survey, survey,
 };
-use crate::job::JobKind;
 use crate::problem::{Answer, Place, Problem};
 use crate::units::MM;
 use crate::watch;

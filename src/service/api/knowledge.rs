@@ -13,8 +13,8 @@ use super::App;
 use super::caller::Caller;
 use crate::input::Folder;
 use crate::material::library::{self, Property};
-use crate::report::catalogue;
 use crate::problem::{Answer, Problem};
+use crate::report::catalogue;
 use crate::store::{Role, hex};
 
 /// The service and what it allows.

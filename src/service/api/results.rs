@@ -15,10 +15,10 @@ use super::App;
 use super::collections::job_of;
 use super::sending::Stored;
 use crate::error::input;
-use crate::report::csv::{self, A_N_FILE, Row};
-use crate::report::resample::{Sampling, cycles_over_length};
 use crate::job::{Job, State, is_id};
 use crate::problem::{Answer, Problem};
+use crate::report::csv::{self, A_N_FILE, Row};
+use crate::report::resample::{Sampling, cycles_over_length};
 use crate::store::{Origin, media_type};
 
 /// Rows of a resampled curve: as many as a table can show.

@@ -18,10 +18,10 @@ use super::telling::Teller;
 use super::{bytes, free_bytes, packed};
 use crate::calibration::calibrate::Calibration;
 use crate::error::{Error, Result};
+use crate::problem::Problem;
 use crate::report::json::RESULT_FILE;
 use crate::report::output::{Room, write_file};
 use crate::runner::{self, Task, TaskCheckpoint};
-use crate::problem::Problem;
 use crate::store::Growth;
 
 /// Time between two tellings.

@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 
 use super::process::News;
 use crate::fracture::{SceneObserver, SceneProgress};
+use crate::job::JobProgress;
 use crate::predict::checkpoint::Checkpoint;
 use crate::predict::{Observer, PointGrid, Progress, Snapshot, TipRecord};
 use crate::report::damage::{DamagePicture, PointField, cycles_and_length};
 use crate::runner::Watcher;
-use crate::job::JobProgress;
-use crate::store::Growth;
 use crate::specimen::{Crack, Point};
+use crate::store::Growth;
 use crate::units::MM;
 use crate::watch::{Stage, Watch};
 
