@@ -11,8 +11,8 @@ use perilife::case::Case;
 use perilife::fatigue::growth_law::Forman;
 use perilife::fatigue::growth_law::GrowthLaw;
 use perilife::fatigue::growth_law::GrowthLawKind;
-use perilife::fatigue::growth_law::{RangeKind, Walker};
 use perilife::fatigue::growth_law::nasgro::Nasgro;
+use perilife::fatigue::growth_law::{RangeKind, Walker};
 use perilife::fatigue::paris::ParisLaw;
 use perilife::input::{Document, Folder};
 use perilife::measured::rates::read;
@@ -101,7 +101,9 @@ fn constant(law: &LawFit, key: &str) -> (f64, f64) {
 #[test]
 fn known_constants_are_found_and_their_law_wins() {
     for (kind, law, constants, k_max) in truths() {
-        let fits = fit_laws(&rows(&table(&*law, &RATIOS, [4.0, k_max], 30, 0.0, 1)), FitLaw::Best, &Given::new(), RangeKind::Tensile).unwrap();
+        let fits =
+            fit_laws(&rows(&table(&*law, &RATIOS, [4.0, k_max], 30, 0.0, 1)), FitLaw::Best, &Given::new(), RangeKind::Tensile)
+                .unwrap();
         assert_eq!(fits.law().kind, kind, "{:#?}", fits.candidates);
         for (key, truth) in constants {
             let (value, _) = constant(fits.law(), key);
@@ -172,7 +174,8 @@ fn constants_can_be_given() {
     let (n, error) = constant(fits.law(), "nasgro_n");
     assert!((n - 3.2).abs() < 3.0 * error && error < 0.05, "n {n} ± {error}");
     assert_eq!(fits.law().fitted, 2);
-    let refused = fit_laws(&rows(&text), FitLaw::Nasgro, &Given::from([("k_c_mpa_sqrt_m".to_owned(), 20.0)]), RangeKind::Tensile).unwrap_err();
+    let refused = fit_laws(&rows(&text), FitLaw::Nasgro, &Given::from([("k_c_mpa_sqrt_m".to_owned(), 20.0)]), RangeKind::Tensile)
+        .unwrap_err();
     assert!(refused.to_string().contains("a crack grew at K_max = 25.000"), "{refused}");
 }
 

@@ -12,7 +12,9 @@ use crate::case::{Case, LawSource};
 use crate::error::{input, input_missing};
 use crate::fatigue::{Ageing, GrowthRate};
 use crate::input::{Document, Folder, LENGTH, sha256, slice};
-use crate::measured::{ColumnNames, CycleUnit, Decimal, Import, LeaveOut, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse};
+use crate::measured::{
+    ColumnNames, CycleUnit, Decimal, Import, LeaveOut, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse,
+};
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::MM;

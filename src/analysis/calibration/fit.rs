@@ -8,12 +8,13 @@ use super::confidence::{Confidence, check_identified, confidence, end_of_range};
 use super::criterion::Criterion;
 use super::exponent::DELTA_K_RATIO_MIN;
 use super::lack_of_fit::{LackOfFit, lack_of_fit};
-use super::median::pointwise_median;
-use super::outliers::{RobustLine, doubts, readings_apart, robust_line, runs, step_rates, without};
+use super::outliers::{RobustLine, Run, StepRate, doubts, readings_apart, robust_line_of_all, runs, step_rates, without};
 use super::paris::{self, Paris};
+use super::population::intervals::Specimen;
+use super::population::{Population, fit as fit_population};
 use super::power_law::PowerLaw;
 use super::rates::STEP_MIN;
-use super::search::{Constants, FittedCurve, as_fitted, at_case_load, fit_one, fitted_curve, is_at_end, own_law};
+use super::search::{Constants, FittedCurve, as_fitted, fit_all, fit_one, fitted_curve, is_at_end, own_law, picture};
 use crate::case::record::Estimate;
 use crate::error::{Error, Result, input};
 use crate::fatigue::STEADY_EXPONENTS;
@@ -30,6 +31,7 @@ const ERRORS_APART: f64 = 2.0;
 const APART_MIN: f64 = 0.05;
 
 /// What is fitted to what.
+#[derive(Clone, Copy)]
 pub struct FitTask<'a> {
     /// Curves inside the fit window ([`crate::measured::Measured::window`]).
     pub curves: &'a [MeasuredCurve],
@@ -44,7 +46,7 @@ pub struct FitTask<'a> {
 /// Result of a calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// The curve of the record: the pointwise median of several specimens, or the only one.
+    /// The curve that the constants are shown beside: the pointwise median of several specimens, or the only one.
     pub record: FittedCurve,
     /// Each specimen with its own fit.
     pub specimens: Vec<FittedCurve>,
@@ -62,6 +64,8 @@ pub struct Fit {
     pub bonds: Option<Bonds>,
     /// K along the crack's own path, where no handbook has it.
     pub own_path: Option<OwnPath>,
+    /// Scatter of the specimens; `None` where their readings do not tell it.
+    pub population: Option<Population>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -86,17 +90,20 @@ pub struct OwnPath {
     pub runs: usize,
 }
 
-/// Fits A and p to the pointwise median, and again to each specimen.
-/// Errors: curves without common lengths; readings outside the table of ΔK; [`Error::Mechanics`] where the smallest misfit of the
-/// median lies at an end of the exponents searched.
+/// Fits A and p to all readings of all specimens, and again to each specimen.
+/// Errors: readings outside the table of ΔK; [`Error::Mechanics`] where the smallest misfit lies at an end of the exponents searched, or
+/// the readings do not tell p.
 pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let fixed_p = task.fixed_p.map(checked_p).transpose()?;
     let is_fitted = fixed_p.is_none();
-    let median = match task.curves {
-        curves if curves.len() == 1 || curves.iter().all(MeasuredCurve::is_plain) => pointwise_median(curves)?,
-        curves => pointwise_median(&at_case_load(curves, task.criterion, fixed_p, law)?)?,
+    let constants = fit_all(task.curves, task.criterion, fixed_p, law)?;
+    let mut specimens: Vec<FittedCurve> =
+        task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?;
+    let picture = match task.curves {
+        [only] => only.clone(),
+        curves => picture(curves, &specimens, constants, law)?,
     };
-    let mut record = fit_one(&median, task.criterion, fixed_p, law)?;
+    let mut record = fitted_curve(&picture, constants, law)?;
     let mut warnings = remarks(task);
     if is_fitted && is_at_end(record.constants.p) {
         return Err(Error::Mechanics(format!(
@@ -107,43 +114,50 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
             warnings.iter().map(|line| format!("\n  {line}")).collect::<String>()
         )));
     }
-    let mut specimens: Vec<FittedCurve> = match task.curves.len() {
-        1 => Vec::new(),
-        _ => task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?,
-    };
-    let at_ends = specimens.iter().filter(|curve| is_fitted && is_at_end(curve.constants.p));
-    warnings
-        .extend(first_of(at_ends.map(|curve| format!("specimen {}: {}", curve.name, end_of_range(curve.constants.p))).collect()));
-    warnings.extend(short_steps_warning(&median.crack_length));
+    if task.curves.len() > 1 {
+        let at_ends = specimens.iter().filter(|curve| is_fitted && is_at_end(curve.constants.p));
+        let lines = at_ends.map(|curve| format!("specimen {}: {}", curve.name, end_of_range(curve.constants.p)));
+        warnings.extend(first_of(lines.collect()));
+    }
+    warnings.extend(task.curves.iter().find_map(|curve| short_steps_warning(&curve.crack_length)));
 
-    let (mut confidence, mut paris) = assess(task, law, &median, &record, is_fitted)?;
+    let population = population(task, law, constants.p, &mut warnings);
+    let (mut confidence, mut paris) = assess(task, law, &picture, &record, population.as_ref())?;
     if is_fitted {
         check_identified(&record.name, &confidence, &paris)?;
     }
     let mut estimate = Estimate::LeastSquares;
-    let robust = robust_line(&step_rates(&median, task.delta_k)).filter(|_| is_fitted);
-    if let Some(line) = robust {
+    let step_rates: Vec<Vec<StepRate>> = task.curves.iter().map(|curve| step_rates(curve, task.delta_k)).collect();
+    let robust = robust_line_of_all(&step_rates).filter(|_| is_fitted);
+    let strange: Vec<Vec<Run>> =
+        step_rates.iter().map(|rates| robust.map_or_else(Vec::new, |line| runs(rates, line.at_level_of(rates)))).collect();
+    let is_strange = strange.iter().any(|runs| !runs.is_empty());
+    if let Some(line) = robust.filter(|_| is_strange || task.curves.len() == 1) {
         // Readings that do not belong must not widen the error by which they are judged.
-        let belonging = without(&median, &runs(&step_rates(&median, task.delta_k), line));
-        let without = fit_one(&belonging, task.criterion, fixed_p, law)?;
-        let error = assess(task, law, &belonging, &without, is_fitted)?.1.m_error;
+        let belonging: Vec<MeasuredCurve> = task.curves.iter().zip(&strange).map(|(curve, runs)| without(curve, runs)).collect();
+        let of_belonging = FitTask { curves: &belonging, ..*task };
+        let their = fit_all(&belonging, task.criterion, fixed_p, law)?;
+        let population_of = self::population(&of_belonging, law, their.p, &mut Vec::new());
+        let their_picture = if belonging.len() == 1 { belonging[0].clone() } else { picture.clone() };
+        let without = fitted_curve(&their_picture, their, law)?;
+        let error = assess(&of_belonging, law, &their_picture, &without, population_of.as_ref())?.1.m_error;
         let least_squares = paris;
         if (line.m - least_squares.m).abs() > (ERRORS_APART * error).max(APART_MIN) {
-            if let Some(constants) = robust_constants(&median, law, record.constants.p) {
+            if let Some(constants) = robust_constants(task, law, record.constants.p).filter(|_| is_strange) {
                 estimate = Estimate::Robust;
-                record = fitted_curve(&median, constants, law)?;
-                (confidence, paris) = assess(task, law, &belonging, &record, is_fitted)?;
+                record = fitted_curve(&picture, constants, law)?;
+                (confidence, paris) = assess(&of_belonging, law, &their_picture, &record, population_of.as_ref())?;
             }
             warnings.push(apart(&least_squares, error, line, estimate));
         }
     }
     if task.curves.len() == 1 {
-        specimens.push(record.clone());
+        specimens = vec![record.clone()];
     }
     let ratio = paris.delta_k_max / paris.delta_k_min;
     if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
-            "p is not identified: the fit window spans only a factor {ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} is needed); \
+            "p is not identified: the readings span only a factor {ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} is needed); \
              widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
@@ -151,16 +165,28 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         task.curves.iter().map(|curve| as_fitted(curve, record.constants, law)).collect::<Result<_>>()?;
     let lack_of_fit = lack_of_fit(task.curves, &fitted, task.delta_k);
     let (bonds, own_path) = (None, None);
-    Ok(Fit { record, specimens, confidence, paris, estimate, robust, lack_of_fit, bonds, own_path, warnings })
+    Ok(Fit { record, specimens, confidence, paris, estimate, robust, lack_of_fit, bonds, own_path, population, warnings })
 }
 
-/// C and m by the repeated median over ΔK of the law that is fitted; `None` where all readings belong, or the law has no such m.
-/// `p` is the exponent of least squares, which several tips count together by.
-fn robust_constants(curve: &MeasuredCurve, law: &PowerLaw, p: f64) -> Option<Constants> {
-    let rates = step_rates(curve, &|length| law.delta_k(length, p) * MPA_SQRT_M);
-    let line = robust_line(&rates)?;
-    let some = !runs(&rates, line).is_empty() && STEADY_EXPONENTS.contains(&line.m);
-    some.then(|| Constants { a: line.intercept.exp(), p: line.m })
+/// Scatter of the specimens about a common law; `None`, with a warning, where their readings do not tell it.
+fn population(task: &FitTask<'_>, law: &PowerLaw, p: f64, warnings: &mut Vec<String>) -> Option<Population> {
+    let delta_k = |length: f64| law.delta_k(length, p) * MPA_SQRT_M;
+    let specimens = task.curves.iter().map(|curve| Specimen::of_curve(curve, &delta_k)).collect::<Result<Vec<_>>>();
+    match specimens.and_then(|specimens| fit_population(&specimens, task.fixed_p)) {
+        Ok(population) => Some(population),
+        Err(error) => {
+            warnings.push(format!("no scatter of lives is given: {error}"));
+            None
+        }
+    }
+}
+
+/// C and m by the repeated median over ΔK of the law that is fitted; `None` where the law has no such m. `p` is the exponent of least
+/// squares, which several tips count together by.
+fn robust_constants(task: &FitTask<'_>, law: &PowerLaw, p: f64) -> Option<Constants> {
+    let rates = |curve| step_rates(curve, &|length| law.delta_k(length, p) * MPA_SQRT_M);
+    let line = robust_line_of_all(&task.curves.iter().map(rates).collect::<Vec<_>>())?;
+    STEADY_EXPONENTS.contains(&line.m).then(|| Constants { a: line.intercept.exp(), p: line.m })
 }
 
 /// Both estimates in words, and which is written; `error` is that of m without the readings that do not belong.
@@ -179,14 +205,15 @@ fn apart(least_squares: &Paris, error: f64, robust: RobustLine, written: Estimat
     )
 }
 
-/// How sure A and p of a curve are, and what they mean as C and m.
+/// How sure A and p are, and what they mean as C and m along a curve. Of several specimens their scatter says it.
 fn assess(
     task: &FitTask<'_>,
     law: &PowerLaw,
     curve: &MeasuredCurve,
     record: &FittedCurve,
-    is_fitted: bool,
+    population: Option<&Population>,
 ) -> Result<(Confidence, Paris)> {
+    let is_fitted = task.fixed_p.is_none();
     let Constants { a, p } = record.constants;
     let own = own_law(law, curve);
     let per_p = |lengths: &[f64]| is_fitted.then(|| own.cycles_per_p(p, lengths)).transpose();
@@ -195,7 +222,10 @@ fn assess(
     let counted = curve.cycles_counted();
     let measured: Vec<f64> = apart.iter().map(|&i| counted[i]).collect();
     let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
-    let confidence = confidence(task.criterion, &model, model_per_p.as_deref(), &measured, 1.0 / a);
+    let mut confidence = confidence(task.criterion, &model, model_per_p.as_deref(), &measured, 1.0 / a);
+    if let Some(population) = population.filter(|_| task.curves.len() > 1) {
+        confidence.covariance = population.covariance_of_constants(is_fitted);
+    }
     // Under changing loads an interval must not reach over two of them.
     let loads = curve.load_history();
     let lengths = match curve.is_plain() {
@@ -204,8 +234,22 @@ fn assess(
     };
     let delta_k = |length: f64| (task.delta_k)(length) * loads.at(length);
     let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
-    let paris = paris::equivalents(&lengths, &model, model_per_p.as_deref(), a, confidence.covariance, &delta_k)?;
+    let mut paris = paris::equivalents(&lengths, &model, model_per_p.as_deref(), a, confidence.covariance, &delta_k)?;
+    // Of several specimens each has been where its own load took it.
+    if task.curves.len() > 1 {
+        [paris.delta_k_min, paris.delta_k_max] = delta_k_range(task);
+    }
     Ok((confidence, paris))
+}
+
+/// Smallest and largest ΔK, MPa√m, of the readings, each under its own load.
+fn delta_k_range(task: &FitTask<'_>) -> [f64; 2] {
+    let of_curve = |curve: &MeasuredCurve| -> Vec<f64> {
+        let loads = curve.load_history();
+        loads.lengths.iter().map(|&length| (task.delta_k)(length) * loads.at(length) / MPA_SQRT_M).collect()
+    };
+    let all = task.curves.iter().flat_map(of_curve);
+    all.fold([f64::INFINITY, 0.0], |[low, high], k| [k.min(low), k.max(high)])
 }
 
 /// What speaks against the readings of the specimens.

@@ -1,84 +1,110 @@
 //! By how much a law misses the measured rates at both ends of its range: a power of ΔK through a bent curve lies above it at one end
 //! and below it at the other, and the error of the fit does not say so.
+//!
+//! Rates are sums: the cycles that the law takes for the growth of every specimen through that end, over those that were counted. Rates of
+//! single readings would not do, since noise makes some of them negative, which have no logarithm.
 
 use serde::Serialize;
 
-use crate::calibration::median::median;
-use crate::calibration::rates::polynomial7;
 use crate::measured::MeasuredCurve;
 use crate::units::MPA_SQRT_M;
 
 /// Share of the range of ln ΔK that is an end of it.
-const END: f64 = 0.05;
-
-/// Fewest rates at an end.
-const RATES_MIN: usize = 3;
+const END: f64 = 0.1;
+/// Standard errors from which on a miss is given.
+const ERRORS: f64 = 2.0;
+/// Smallest miss worth a word: exact curves have no error.
+const MISS_MIN: f64 = 0.005;
 
 /// One end of the range.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EndMiss {
-    /// Smallest ΔK of its rates.
+    /// Smallest ΔK there.
     pub delta_k_from_mpa_sqrt_m: f64,
     /// Largest.
     pub delta_k_to_mpa_sqrt_m: f64,
-    /// Seven-point rates there.
-    pub rates: usize,
-    /// Median of measured over fitted rate, less one, in percent: positive where cracks grow faster than the law says.
+    /// Reading intervals there.
+    pub intervals: usize,
+    /// Measured over fitted rate, less one, in percent: positive where cracks grow faster than the law says.
     pub rate_over_law_percent: f64,
+    /// Its standard error, by the scatter of readings and that between specimens.
+    pub error_percent: f64,
 }
 
-/// Both ends of the range.
+/// Ends of the range at which the law misses the rates by more than two standard errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LackOfFit {
     /// Smallest ΔK.
-    pub low: EndMiss,
+    pub low: Option<EndMiss>,
     /// Largest ΔK.
-    pub high: EndMiss,
+    pub high: Option<EndMiss>,
 }
 
-/// Seven-point rates of all curves at the ends of their range against those of the same curves by the law, which have the same error of
-/// the parabola; `None` for fewer than six rates. `delta_k` is that of the case's load (Pa√m) at a length (m).
+/// Growth of a specimen through an end of the range.
+struct Through {
+    /// ln of measured over fitted rate.
+    miss: f64,
+    /// Variance of the mean rate by the scatter of readings.
+    variance: f64,
+    intervals: usize,
+}
+
+/// Misses at both ends of the range of ΔK of all curves, each beside the same curve by the law, whose level is its own; `None` where
+/// neither end has one. `delta_k` is that of the case's load (Pa√m) at a length (m).
 pub fn lack_of_fit(measured: &[MeasuredCurve], fitted: &[MeasuredCurve], delta_k: &dyn Fn(f64) -> f64) -> Option<LackOfFit> {
-    let mut misses: Vec<(f64, f64)> = Vec::new();
-    for (measured, fitted) in measured.iter().zip(fitted) {
-        for middle in 0..measured.cycles.len() {
-            let (Some(point), Some(law)) = (polynomial7(measured, middle), polynomial7(fitted, middle)) else { continue };
-            let k = delta_k(point.crack_length) * point.load_factor / MPA_SQRT_M;
-            let miss = (point.rate / law.rate).ln();
-            if k.is_finite() && miss.is_finite() {
-                misses.push((k, miss));
-            }
-        }
-    }
-    misses.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if misses.len() < 2 * RATES_MIN {
-        return None;
-    }
-    let (first, last) = (misses[0].0, misses[misses.len() - 1].0);
-    let width = (last / first).powf(END);
-    let low = misses.partition_point(|(k, _)| *k <= first * width).max(RATES_MIN);
-    let high = misses.partition_point(|(k, _)| *k < last / width).min(misses.len() - RATES_MIN);
-    let end = |of: &[(f64, f64)]| {
-        let logs: Vec<f64> = of.iter().map(|(_, miss)| *miss).collect();
-        EndMiss {
-            delta_k_from_mpa_sqrt_m: of[0].0,
-            delta_k_to_mpa_sqrt_m: of[of.len() - 1].0,
-            rates: of.len(),
-            rate_over_law_percent: 100.0 * median(&logs).exp_m1(),
-        }
+    let log_k = |curve: &MeasuredCurve, reading: usize| {
+        let factor = curve.load_factor.get(reading).copied().unwrap_or(1.0);
+        (delta_k(curve.crack_length[reading]) * factor / MPA_SQRT_M).ln()
     };
-    Some(LackOfFit { low: end(&misses[..low]), high: end(&misses[high..]) })
+    let all = || measured.iter().flat_map(|curve| (0..curve.cycles.len()).map(|reading| log_k(curve, reading)));
+    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    let width = END * (high - low);
+    let end = |from: f64, to: f64| {
+        let through = |(curve, law): (&MeasuredCurve, &MeasuredCurve)| {
+            let inside: Vec<usize> = (1..curve.cycles.len())
+                .filter(|&i| curve.counts(i) && (i - 1..=i).all(|reading| (from..=to).contains(&log_k(curve, reading))))
+                .collect();
+            let sum = |of: &[f64], steps: &mut dyn Iterator<Item = usize>| steps.map(|i| of[i] - of[i - 1]).sum::<f64>();
+            // The level of the specimen: all its counted cycles over those of the law.
+            let level = sum(&law.cycles, &mut (1..law.cycles.len()).filter(|&i| curve.counts(i)))
+                / sum(&curve.cycles, &mut (1..curve.cycles.len()).filter(|&i| curve.counts(i)));
+            let [by_law, counted, grown] =
+                [&law.cycles, &curve.cycles, &curve.crack_length].map(|of| sum(of, &mut inside.iter().copied()));
+            let is_known = inside.len() > 1 && by_law > 0.0 && counted > 0.0 && grown > 0.0;
+            is_known.then(|| Through {
+                miss: (by_law / counted / level).ln(),
+                variance: 2.0 * (curve.scatter() / grown).powi(2),
+                intervals: inside.len(),
+            })
+        };
+        let all: Vec<Through> = measured.iter().zip(fitted).filter_map(through).collect();
+        let n = all.len() as f64;
+        let mean = all.iter().map(|one| one.miss).sum::<f64>() / n;
+        let between = all.iter().map(|one| (one.miss - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+        let of_readings = all.iter().map(|one| one.variance).sum::<f64>() / n;
+        let error = (between.max(of_readings) / n).sqrt();
+        (mean.abs() > ERRORS * error && mean.abs() > MISS_MIN).then(|| EndMiss {
+            delta_k_from_mpa_sqrt_m: from.exp(),
+            delta_k_to_mpa_sqrt_m: to.exp(),
+            intervals: all.iter().map(|one| one.intervals).sum(),
+            rate_over_law_percent: 100.0 * mean.exp_m1(),
+            error_percent: 100.0 * error,
+        })
+    };
+    let found = LackOfFit { low: end(low, low + width), high: end(high - width, high) };
+    (found.low.is_some() || found.high.is_some()).then_some(found)
 }
 
 impl LackOfFit {
-    /// Both ends in one line.
+    /// The ends in one line.
     pub fn words(&self) -> String {
-        let end = |end: &EndMiss| {
+        let end = |end: EndMiss| {
             format!(
-                "{:+.1} % at ΔK {:.2} to {:.2}",
-                end.rate_over_law_percent, end.delta_k_from_mpa_sqrt_m, end.delta_k_to_mpa_sqrt_m
+                "{:+.1} ± {:.1} % at ΔK {:.2} to {:.2}",
+                end.rate_over_law_percent, end.error_percent, end.delta_k_from_mpa_sqrt_m, end.delta_k_to_mpa_sqrt_m
             )
         };
-        format!("measured rate over law {}, {} MPa√m", end(&self.low), end(&self.high))
+        let ends: Vec<String> = [self.low, self.high].into_iter().flatten().map(end).collect();
+        format!("measured rate over law {} MPa√m", ends.join(", "))
     }
 }

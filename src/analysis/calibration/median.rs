@@ -32,6 +32,13 @@ impl Rising {
         Rising { readings }
     }
 
+    /// The readings (m, cycles) around a length that lies between two; `None` at a reading, or outside.
+    pub(super) fn around(&self, crack_length: f64) -> Option<[(f64, f64); 2]> {
+        let place = self.readings.partition_point(|&(a, _)| a < crack_length && (crack_length - a).abs() > SAME_LENGTH);
+        let after = *self.readings.get(place).filter(|(a, _)| (crack_length - a).abs() > SAME_LENGTH)?;
+        Some([*self.readings.get(place.checked_sub(1)?)?, after])
+    }
+
     /// As the function of that name.
     pub(super) fn cycles_at(&self, crack_length: f64) -> Option<f64> {
         // The first reading that is as long or longer.

@@ -50,6 +50,12 @@ pub struct RobustLine {
 }
 
 impl RobustLine {
+    /// The line of this slope through the middle of some rates.
+    pub fn at_level_of(self, rates: &[StepRate]) -> RobustLine {
+        let levels: Vec<f64> = rates.iter().map(|rate| rate.log_rate - self.m * rate.log_k).collect();
+        RobustLine { intercept: median(&levels), ..self }
+    }
+
     /// C in mm/cycle and MPa√m.
     pub fn c(&self) -> f64 {
         self.intercept.exp() / MM_PER_CYCLE
@@ -107,8 +113,19 @@ pub fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
     };
     let slopes: Vec<f64> = rates.iter().filter_map(slope).collect();
     let m = if slopes.is_empty() { return None } else { median(&slopes) };
-    let levels: Vec<f64> = rates.iter().map(|rate| rate.log_rate - m * rate.log_k).collect();
-    Some(RobustLine { intercept: median(&levels), m })
+    Some(RobustLine { intercept: f64::NAN, m }.at_level_of(&rates))
+}
+
+/// The line of several specimens: the median of their slopes, and of their levels at it.
+pub fn robust_line_of_all(specimens: &[Vec<StepRate>]) -> Option<RobustLine> {
+    let known: Vec<(&Vec<StepRate>, RobustLine)> =
+        specimens.iter().filter_map(|rates| Some((rates, robust_line(rates)?))).collect();
+    if known.is_empty() {
+        return None;
+    }
+    let line = RobustLine { m: median(&known.iter().map(|(_, line)| line.m).collect::<Vec<_>>()), intercept: f64::NAN };
+    let levels: Vec<f64> = known.iter().map(|(rates, _)| line.at_level_of(rates).intercept).collect();
+    Some(RobustLine { intercept: median(&levels), ..line })
 }
 
 /// Runs of neighbouring rates that do not belong to the line.

@@ -59,6 +59,7 @@ pub fn report(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Value {
         "robust_paris_m": fit.robust.map(|line| line.m),
         "robust_paris_c_mm_per_cycle": fit.robust.map(|line| line.c()),
         "lack_of_fit": fit.lack_of_fit,
+        "population": fit.population,
         "left_out": law.left_out,
         "evaluations": fit.own_path.as_ref().map_or(1, |path| path.runs),
         "wall_s": wall_s,
@@ -119,6 +120,7 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         sources: calibration.sources.clone(),
         estimate: fit.estimate,
         left_out: calibration.left_out.clone(),
+        population: fit.population.as_ref().and_then(|population| toml::Table::try_from(population).ok()),
     }
 }
 

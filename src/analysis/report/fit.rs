@@ -13,9 +13,9 @@ use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::Fit;
 use crate::calibration::laws::LawFits;
 use crate::calibration::laws::case::LawCase;
-use crate::measured::RateRow;
 use crate::calibration::results::{fit_curves_csv, rates_csv};
 use crate::error::{Error, Result};
+use crate::measured::RateRow;
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Writes all files of a fit into `folder`; `report` is the content of `fit.json`.

@@ -136,10 +136,7 @@ struct StopInput {
 }
 
 /// Reads `[stop]`.
-pub(super) fn stop_from_value(
-    value: &Value,
-    (specimen, material, loading): (&Specimen, &Material, &Loading),
-) -> Result<Stop> {
+pub(super) fn stop_from_value(value: &Value, (specimen, material, loading): (&Specimen, &Material, &Loading)) -> Result<Stop> {
     let slice: StopInput = slice(value, "stop")?;
     let crack_length = LENGTH.read_optional("stop.crack_length_mm", slice.crack_length_mm)?;
     if let (Some(length), Some(given)) = (crack_length, slice.crack_length_mm) {
@@ -184,7 +181,12 @@ fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loa
         }
         (None, Some(strength)) => {
             let problem = format!("is a gross stress, and a {} is loaded by a force on its pins", specimen.kind);
-            return Err(input(STRENGTH, strength, problem, format!("give {FACTOR}, the load to bear over the largest of a cycle")));
+            return Err(input(
+                STRENGTH,
+                strength,
+                problem,
+                format!("give {FACTOR}, the load to bear over the largest of a cycle"),
+            ));
         }
     };
     if loading.displacement().is_some() {

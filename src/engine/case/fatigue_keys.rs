@@ -6,8 +6,8 @@ use toml::{Table, Value};
 use super::Failure;
 use crate::fatigue::growth_law::GrowthLawKind::{self, BondLaw, Forman, Nasgro, Paris, Walker};
 use crate::fatigue::growth_law::RangeKind;
-use crate::measured::RateFile;
 use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
+use crate::measured::RateFile;
 
 crate::kinds! {
     /// What K beyond the rows of a table of rates does.

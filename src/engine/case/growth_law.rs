@@ -31,7 +31,12 @@ impl FatigueKeys {
                 GrowthLawKind::Table => "say it with the table: growth_table = { file = \"...\", delta_k = ... }",
                 _ => "leave it out: the law takes R itself",
             };
-            return Err(input("fatigue.delta_k", format!("\"{range}\""), format!("does not go with growth_law \"{kind}\""), remedy));
+            return Err(input(
+                "fatigue.delta_k",
+                format!("\"{range}\""),
+                format!("does not go with growth_law \"{kind}\""),
+                remedy,
+            ));
         }
         if self.delta_k_threshold_mpa_sqrt_m.is_some() && kind == GrowthLawKind::Nasgro {
             let problem = "does not go with growth_law \"nasgro\", which has its own threshold";
@@ -118,7 +123,8 @@ impl FatigueKeys {
                 true => format!("does not go with a table of several stress ratios, {first} to {last}"),
                 false => "does not go with a table that names no stress ratio".to_owned(),
             };
-            let remedy = "leave it out, or give a table of one stress ratio that it names, or { file = \"...\", stress_ratio = ... }";
+            let remedy =
+                "leave it out, or give a table of one stress ratio that it names, or { file = \"...\", stress_ratio = ... }";
             return Err(input("fatigue.walker_gamma", gamma, problem, remedy));
         }
         if !table.knows(setting.ratio) {
@@ -161,7 +167,12 @@ fn curves(rates: &RateTable) -> Result<Vec<Curve>> {
                 if let Some(i) = (0..2).find(|&i| pair[i] <= last[i]) {
                     let si = [MPA_SQRT_M, MM_PER_CYCLE][i];
                     let before = round_off(last[i] / si);
-                    return Err(wrong(Some(row), &rates.columns[i], pair[i] / si, format!("does not rise against {before}, that of the row before")));
+                    return Err(wrong(
+                        Some(row),
+                        &rates.columns[i],
+                        pair[i] / si,
+                        format!("does not rise against {before}, that of the row before"),
+                    ));
                 }
                 curve.rows.push(pair);
             }

@@ -93,6 +93,9 @@ pub struct FittedRecord {
     /// Readings that were left out, with the reasons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeaveOut>,
+    /// Scatter of the specimens about a common law; what it holds is the calibration's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub population: Option<Table>,
 }
 
 fn least_squares() -> Estimate {

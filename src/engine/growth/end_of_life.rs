@@ -30,10 +30,9 @@ pub fn first_end(case: &Case) -> Option<End> {
     if case.loading.displacement().is_some() {
         return wanted;
     }
-    let toughness =
-        case.material.toughness.zip(handbook(specimen)).map(|(toughness, formula)| {
-            end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), strength_reason(case, StopReason::Toughness))
-        });
+    let toughness = case.material.toughness.zip(handbook(specimen)).map(|(toughness, formula)| {
+        end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), strength_reason(case, StopReason::Toughness))
+    });
     let net_section = case.material.yield_strength.filter(|_| specimen.ligament(start).is_some()).map(|strength| {
         // Known for this kind, so the default is never taken.
         let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
@@ -41,7 +40,9 @@ pub fn first_end(case: &Case) -> Option<End> {
     });
     // A plate of any shape: its edges carry the gross stress at least.
     let gross = case.material.yield_strength.zip(specimen.gross_stress(load).filter(|_| specimen.ligament(start).is_none()));
-    let gross = gross.filter(|(strength, stress)| stress >= strength).map(|_| end(start, strength_reason(case, StopReason::NetSectionYield)));
+    let gross = gross
+        .filter(|(strength, stress)| stress >= strength)
+        .map(|_| end(start, strength_reason(case, StopReason::NetSectionYield)));
     [wanted, toughness, net_section, gross].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
 }
 

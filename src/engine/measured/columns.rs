@@ -141,7 +141,16 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
 
 impl Series {
     fn of_one(name: String, cycles: Column, length: Column, own: Vec<usize>) -> Series {
-        Series { name, specimen: None, cycles, lengths: vec![length], sides: Vec::new(), loads: Vec::new(), compared: Vec::new(), own }
+        Series {
+            name,
+            specimen: None,
+            cycles,
+            lengths: vec![length],
+            sides: Vec::new(),
+            loads: Vec::new(),
+            compared: Vec::new(),
+            own,
+        }
     }
 
     /// The load of a role.
@@ -287,12 +296,7 @@ fn load_column(table: &Table, column: Column, import: &Import, warnings: &mut Ve
 
 /// Columns of loads whose unit is known; for the others a warning, or an error where the loads change. Second, a smallest load alone, which
 /// says no cycle, and is held against that of the case.
-fn loads(
-    table: &Table,
-    columns: &[Column],
-    import: &Import,
-    warnings: &mut Vec<String>,
-) -> Result<(Vec<Column>, Vec<Column>)> {
+fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<String>) -> Result<(Vec<Column>, Vec<Column>)> {
     let mut found: Vec<Column> = Vec::new();
     for (role, key) in
         [(Role::Max, "force_max"), (Role::Min, "force_min"), (Role::Range, "force_range"), (Role::Ratio, "stress_ratio")]

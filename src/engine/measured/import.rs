@@ -200,7 +200,11 @@ const UNITS: [(Unit, f64, &str); 22] = [
         INCH,
         "in cycle, in cycles, in per cycle, in cyc, in c, inch cycle, inch cycles, inch per cycle, inches cycle, inches per cycle",
     ),
-    (Unit::Rate(RateUnit::Micrometre), 1e-6, "um cycle, um cycles, um per cycle, um cyc, micrometre per cycle, micron cycle, microns cycle"),
+    (
+        Unit::Rate(RateUnit::Micrometre),
+        1e-6,
+        "um cycle, um cycles, um per cycle, um cyc, micrometre per cycle, micron cycle, microns cycle",
+    ),
     (Unit::Rate(RateUnit::Nanometre), 1e-9, "nm cycle, nm cycles, nm per cycle, nm cyc"),
 ];
 

@@ -59,9 +59,11 @@ impl Measured {
                 _ if curve.crack_length[reading] > LIGAMENT_LEFT * limit => {
                     Some(format!("{:.3} of the {limit_name}", curve.crack_length[reading] / limit))
                 }
-                Some(toughness) if k_max(reading) > TOUGHNESS_FACTOR * toughness => {
-                    Some(format!("K_max {:.1} MPa√m, the toughness being {:.1}", k_max(reading) / MPA_SQRT_M, toughness / MPA_SQRT_M))
-                }
+                Some(toughness) if k_max(reading) > TOUGHNESS_FACTOR * toughness => Some(format!(
+                    "K_max {:.1} MPa√m, the toughness being {:.1}",
+                    k_max(reading) / MPA_SQRT_M,
+                    toughness / MPA_SQRT_M
+                )),
                 None if is_last(reading) && k_max(reading) > LEAP_OF_K * k_max(reading - 1) => {
                     Some(format!("K_max is {:.1} times that of the reading before", k_max(reading) / k_max(reading - 1)))
                 }

@@ -28,8 +28,8 @@ pub use curve::{first_of, round_off};
 pub use import::{ColumnNames, CycleUnit, Decimal, Import, IntensityUnit, LengthUnit, LoadUnit, RateUnit, Sheet, Unit};
 pub use leave_out::LeaveOut;
 pub use loads::{LoadHistory, SAME_LOAD};
-pub use rates::{RateFile, RateFileKeys, RateRow, RateTable};
 pub use names::{Column, Named, Role};
+pub use rates::{RateFile, RateFileKeys, RateRow, RateTable};
 
 use crate::error::{Error, InputError, Result};
 use crate::input::Opened;

@@ -8,11 +8,11 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::columns::stated_unit;
-use super::readings::value;
 use super::decimal::decide;
 use super::header::columns_of;
 use super::import::{ColumnNames, Decimal, Import, IntensityUnit, RateUnit, Sheet, Unit};
 use super::names::{Column, Named, Role};
+use super::readings::value;
 use super::table::{self, Fault, Table, whole_file};
 use crate::error::{Result, input_missing};
 use crate::fatigue::growth_law::RangeKind;
@@ -192,7 +192,8 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
         }
         let full = above_zero(delta_k)?;
         table.rows.push(RateRow {
-            series: specimen.map_or_else(|| format!("{name}, R {of_row}"), |column| format!("{name}, {}", row.cell(column.index))),
+            series: specimen
+                .map_or_else(|| format!("{name}, R {of_row}"), |column| format!("{name}, {}", row.cell(column.index))),
             place: format!("{}: line {}", file.display(), row.line),
             line: row.line,
             delta_k: if of_row < 0.0 && keys.delta_k == Some(RangeKind::Full) { full / (1.0 - of_row) } else { full },

@@ -5,12 +5,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::measured::RateRow;
 use crate::error::{Result, input};
 use crate::fatigue::growth_law::nasgro::{Nasgro, RATIO_MIN};
 use crate::fatigue::growth_law::{Forman, GrowthLaw, GrowthLawKind, RangeKind, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{INTENSITY, Quantity, number};
+use crate::measured::RateRow;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Constants that the user gives, by their keys.
@@ -126,12 +126,7 @@ pub(super) struct Candidate<'a> {
 impl<'a> Candidate<'a> {
     /// The law over the rows.
     /// Errors: in words, why these rows say nothing about it.
-    pub fn new(
-        kind: GrowthLawKind,
-        given: &Given,
-        rows: &'a [RateRow],
-        range: RangeKind,
-    ) -> std::result::Result<Self, String> {
+    pub fn new(kind: GrowthLawKind, given: &Given, rows: &'a [RateRow], range: RangeKind) -> std::result::Result<Self, String> {
         let parameters = parameters(kind).1;
         let values = parameters.iter().map(|parameter| given.get(parameter.key).copied().or(parameter.default)).collect();
         let candidate = Candidate { kind, parameters, given: values, rows, range };
@@ -198,11 +193,16 @@ impl<'a> Candidate<'a> {
         match self.kind {
             GrowthLawKind::Forman => {
                 Box::new(Forman { c: MM_PER_CYCLE, m: at("forman_m"), k_c: at(K_C) * MPA_SQRT_M, range: self.range })
-            },
+            }
             GrowthLawKind::Nasgro => Box::new(nasgro(&at)),
             kind => {
                 let gamma = if kind == GrowthLawKind::Walker { at(GAMMA) } else { 1.0 };
-                Box::new(Walker { paris: ParisLaw { c: MM_PER_CYCLE, m: at("paris_m") }, gamma, threshold: 0.0, range: self.range })
+                Box::new(Walker {
+                    paris: ParisLaw { c: MM_PER_CYCLE, m: at("paris_m") },
+                    gamma,
+                    threshold: 0.0,
+                    range: self.range,
+                })
             }
         }
     }

@@ -16,7 +16,8 @@ use crate::measured::{IntensityUnit, MeasuredCurve, RateFile, RateFileKeys, Rate
 use crate::units::MPA_SQRT_M;
 
 /// Keys of `[measured]` that only tables of rates have.
-const OF_RATES: [&str; 6] = ["rates", "intensity_unit", "rate_unit", "delta_k", "from_delta_k_mpa_sqrt_m", "to_delta_k_mpa_sqrt_m"];
+const OF_RATES: [&str; 6] =
+    ["rates", "intensity_unit", "rate_unit", "delta_k", "from_delta_k_mpa_sqrt_m", "to_delta_k_mpa_sqrt_m"];
 /// Keys of `[fit]` that only laws have.
 const OF_LAWS: [&str; 2] = ["law", "given"];
 

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::candidate::{Candidate, Given, K_C, Parameter, THRESHOLD, parameters};
 use super::least_squares::{Minimum, minimise, without_level};
-use crate::measured::RateRow;
 use crate::fatigue::growth_law::{GrowthLawKind, RangeKind};
+use crate::measured::RateRow;
 
 /// Share of the range of a variable within which an optimum lies at its end.
 const AT_END: f64 = 1e-3;

@@ -24,8 +24,8 @@ use crate::fatigue::growth_law::nasgro::Nasgro;
 use crate::fatigue::growth_law::{Bounded, FactorLaw, Forman, GrowthLawKind, RangeKind, Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
 use crate::measured::RateRow;
-pub use candidate::Given;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
+pub use candidate::Given;
 use fit::{LawFit, fit};
 
 crate::kinds! {
@@ -122,11 +122,16 @@ fn choose(candidates: &[LawFit], wanted: FitLaw) -> Result<usize> {
     }
     let left = || candidates.iter().enumerate().filter(|(_, candidate)| candidate.left_out.is_none());
     let closest = left().map(|(_, candidate)| candidate.rms()).fold(f64::INFINITY, f64::min);
-    left().filter(|(_, candidate)| candidate.rms() <= (RMS_FACTOR * closest).max(ROUND_OFF.sqrt())).min_by(|a, b| a.1.aicc.total_cmp(&b.1.aicc)).map(|(place, _)| place).ok_or_else(|| {
-        let reasons =
-            candidates.iter().filter_map(|candidate| Some(format!("\n  {}: {}", candidate.kind, candidate.left_out.as_ref()?)));
-        Error::Mechanics(format!("the rates tell no law:{}", reasons.collect::<String>()))
-    })
+    left()
+        .filter(|(_, candidate)| candidate.rms() <= (RMS_FACTOR * closest).max(ROUND_OFF.sqrt()))
+        .min_by(|a, b| a.1.aicc.total_cmp(&b.1.aicc))
+        .map(|(place, _)| place)
+        .ok_or_else(|| {
+            let reasons = candidates
+                .iter()
+                .filter_map(|candidate| Some(format!("\n  {}: {}", candidate.kind, candidate.left_out.as_ref()?)));
+            Error::Mechanics(format!("the rates tell no law:{}", reasons.collect::<String>()))
+        })
 }
 
 /// AICc; NaN without a fit. The last term counts rates as they are: constants are not too many because neighbours are alike.
@@ -246,7 +251,12 @@ fn check_metal(law: &LawFit, rows: &[RateRow], range: RangeKind) -> Result<()> {
     let ratio = rows[rows.len() / 2].ratio;
     let problem = match law.kind {
         GrowthLawKind::Forman => {
-            let forman = Forman { c: at("forman_c_mm_per_cycle") * MM_PER_CYCLE, m: at("forman_m"), k_c: at(candidate::K_C) * MPA_SQRT_M, range };
+            let forman = Forman {
+                c: at("forman_c_mm_per_cycle") * MM_PER_CYCLE,
+                m: at("forman_m"),
+                k_c: at(candidate::K_C) * MPA_SQRT_M,
+                range,
+            };
             doubt(&Bounded { law: FactorLaw::Forman(forman), threshold: 0.0 }, ratio)
         }
         GrowthLawKind::Nasgro => {

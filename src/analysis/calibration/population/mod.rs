@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::STEADY_EXPONENTS;
-use crate::units::MM;
+use crate::units::{MM, MPA_SQRT_M};
 use intervals::{Interval, Specimen};
 use law::{EFFECTS, KNOTS, MeanLaw, Row};
 use noise::{Noise, cholesky, whiten};
@@ -136,6 +136,19 @@ pub struct Population {
     pub restricted_likelihood: f64,
     /// Specimens.
     pub specimens: Vec<Member>,
+}
+
+impl Population {
+    /// Covariance of ln A (A the rate at 1 MPa√m) and the exponent; with a given exponent of ln A alone.
+    pub fn covariance_of_constants(&self, is_fitted: bool) -> [[f64; 2]; 2] {
+        let [[level, both, ..], [_, slope, ..], ..] = self.covariance;
+        let pivot = (self.law.pivot / MPA_SQRT_M).ln();
+        if !is_fitted {
+            return [[level, 0.0], [0.0, 0.0]];
+        }
+        let cross = both - pivot * slope;
+        [[level - 2.0 * pivot * both + pivot * pivot * slope, cross], [cross, slope]]
+    }
 }
 
 /// What is known of the variances before the readings: normal in the logarithm, and limits of what is told from none.

@@ -116,8 +116,11 @@ impl Column {
             return own;
         }
         if matches!(role, Role::DeltaK | Role::Rate) {
-            return of_words(name, |words, bracket| of_quantity(index, role, words, bracket, &|_| true))
-                .unwrap_or(Column::new(index, role, Named::No));
+            return of_words(name, |words, bracket| of_quantity(index, role, words, bracket, &|_| true)).unwrap_or(Column::new(
+                index,
+                role,
+                Named::No,
+            ));
         }
         let known: fn(&[&str]) -> Option<Unit> = match role {
             Role::Cycles => cycle_unit,
