@@ -78,5 +78,6 @@ pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
         sources: Vec::new(),
         estimate: Estimate::LeastSquares,
         left_out: Vec::new(),
+        population: None,
     }))
 }

@@ -54,6 +54,7 @@ fn record() -> FittedRecord {
         sources: vec![],
         estimate: Estimate::LeastSquares,
         left_out: Vec::new(),
+        population: None,
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use perilife::case::{Case, LawSource};
 use perilife::fatigue::growth_law::nasgro::Nasgro;
 use perilife::fatigue::growth_law::table::{Curve, Table};
-use perilife::fatigue::growth_law::{Forman, GrowthLaw, GrowthLawKind, RangeKind};
+use perilife::fatigue::growth_law::{Forman, GrowthLaw, GrowthLawKind};
 use perilife::input::Folder;
 use perilife::predict::{Silent, predict};
 use perilife::quadrature::integrate;
@@ -17,7 +17,7 @@ fn near(a: f64, b: f64, relative: f64) {
 
 #[test]
 fn forman_becomes_unstable_at_its_toughness() {
-    let law = Forman { c: 1e-8, m: 2.5, k_c: 60.0 * MPA_SQRT_M, range: RangeKind::Tensile };
+    let law = Forman { c: 1e-8, m: 2.5, k_c: 60.0 * MPA_SQRT_M };
     // ΔK = 18 of K_max = 20 at R = 0.1: 1e-8 18^2.5 / (0.9 60 - 18).
     near(law.rate(20.0 * MPA_SQRT_M, 0.1), 1e-8 * 18.0_f64.powf(2.5) / 36.0, 1e-12);
     assert_eq!(law.rate(20.0 * MPA_SQRT_M, -1.0), law.rate(20.0 * MPA_SQRT_M, 0.0), "compression does not count");
@@ -62,7 +62,7 @@ fn a_table_is_straight_in_logarithms() {
         ratio,
         rows: [5.0, 10.0, 40.0].map(|k: f64| [k * MPA_SQRT_M, scale * 1e-10 * k.powi(3)]).to_vec(),
     };
-    let one = Table { curves: vec![curve(0.1, 1.0)], holds_ends: false };
+    let one = Table { curves: vec![curve(0.1, 1.0)], holds_ends: false, walker_gamma: None, says_ratio: false };
     // Three rows of a power law give that power law between them, at any ratio.
     for (k, ratio) in [(7.0, 0.1), (23.0, 0.1), (23.0, 0.4)] {
         near(one.rate(k / (1.0 - ratio) * MPA_SQRT_M, ratio), 1e-10 * f64::powi(k, 3), 1e-12);
@@ -70,7 +70,7 @@ fn a_table_is_straight_in_logarithms() {
     assert!(one.beyond(7.0 * MPA_SQRT_M, 0.0).is_none());
     assert!(one.beyond(41.0 * MPA_SQRT_M, 0.0).unwrap().contains("5.0000 to 40.0000"));
     near(one.rate(80.0 * MPA_SQRT_M, 0.0), 1e-10 * 40.0_f64.powi(3), 1e-12);
-    let two = Table { curves: vec![curve(0.0, 1.0), curve(0.5, 4.0)], holds_ends: true };
+    let two = Table { curves: vec![curve(0.0, 1.0), curve(0.5, 4.0)], holds_ends: true, walker_gamma: None, says_ratio: true };
     near(two.rate(20.0 * MPA_SQRT_M, 0.25), 2.0 * 1e-10 * 15.0_f64.powi(3), 1e-12);
     assert!(two.knows(0.5) && !two.knows(0.6) && one.knows(0.6));
 }

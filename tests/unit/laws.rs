@@ -11,8 +11,8 @@ use perilife::case::Case;
 use perilife::fatigue::growth_law::Forman;
 use perilife::fatigue::growth_law::GrowthLaw;
 use perilife::fatigue::growth_law::GrowthLawKind;
+use perilife::fatigue::growth_law::Walker;
 use perilife::fatigue::growth_law::nasgro::Nasgro;
-use perilife::fatigue::growth_law::{RangeKind, Walker};
 use perilife::fatigue::paris::ParisLaw;
 use perilife::input::{Document, Folder};
 use perilife::measured::rates::read;
@@ -41,8 +41,8 @@ type Truth = (GrowthLawKind, Box<dyn GrowthLaw>, Vec<(&'static str, f64)>, f64);
 
 fn truths() -> Vec<Truth> {
     let paris = ParisLaw { c: 1e-8 * MM_PER_CYCLE, m: 3.1 };
-    let of = |gamma| Box::new(Walker { paris, gamma, threshold: 0.0, range: RangeKind::Tensile });
-    let forman = Forman { c: 6e-6 * MM_PER_CYCLE, m: 2.7, k_c: 62.0 * MPA_SQRT_M, range: RangeKind::Tensile };
+    let of = |gamma| Box::new(Walker { paris, gamma, threshold: 0.0 });
+    let forman = Forman { c: 6e-6 * MM_PER_CYCLE, m: 2.7, k_c: 62.0 * MPA_SQRT_M };
     let [c, n, p, q, alpha, s, threshold, c_th, k_c] = NASGRO.map(|(_, value)| value);
     let nasgro = Nasgro {
         c: c * MM_PER_CYCLE,
@@ -101,9 +101,7 @@ fn constant(law: &LawFit, key: &str) -> (f64, f64) {
 #[test]
 fn known_constants_are_found_and_their_law_wins() {
     for (kind, law, constants, k_max) in truths() {
-        let fits =
-            fit_laws(&rows(&table(&*law, &RATIOS, [4.0, k_max], 30, 0.0, 1)), FitLaw::Best, &Given::new(), RangeKind::Tensile)
-                .unwrap();
+        let fits = fit_laws(&rows(&table(&*law, &RATIOS, [4.0, k_max], 30, 0.0, 1)), FitLaw::Best, &Given::new()).unwrap();
         assert_eq!(fits.law().kind, kind, "{:#?}", fits.candidates);
         for (key, truth) in constants {
             let (value, _) = constant(fits.law(), key);
@@ -120,7 +118,7 @@ fn scatter_moves_constants_by_no_more_than_their_errors() {
         let (mut outside, mut all, mut wins) = (0, 0, 0);
         for seed in 1..=12 {
             let rows = rows(&table(&*law, &RATIOS, [4.0, k_max], 30, 0.1, seed));
-            let fits = fit_laws(&rows, FitLaw::Best, &Given::new(), RangeKind::Tensile).unwrap();
+            let fits = fit_laws(&rows, FitLaw::Best, &Given::new()).unwrap();
             wins += usize::from(fits.law().kind == kind);
             let own = of_kind(&fits, kind);
             for (key, truth) in constants.iter().filter(|_| own.left_out.is_none()) {
@@ -154,11 +152,11 @@ fn what_rates_do_not_tell_is_named() {
         (&middle, FitLaw::Nasgro, "not identified"),
     ];
     for (text, law, words) in cases {
-        let error = fit_laws(&rows(text), law, &Given::new(), RangeKind::Tensile).unwrap_err();
+        let error = fit_laws(&rows(text), law, &Given::new()).unwrap_err();
         assert_eq!(error.exit_code(), 3, "{law}: {error}");
         assert!(error.to_string().contains(words), "{law}: {words} in {error}");
         // The best law is one of the others, with the reason beside it.
-        let best = fit_laws(&rows(text), FitLaw::Best, &Given::new(), RangeKind::Tensile).unwrap();
+        let best = fit_laws(&rows(text), FitLaw::Best, &Given::new()).unwrap();
         let reasons: Vec<&String> = best.candidates.iter().filter_map(|law| law.left_out.as_ref()).collect();
         assert!(reasons.iter().any(|reason| reason.contains(words)), "{law}: {reasons:?}");
     }
@@ -170,12 +168,11 @@ fn constants_can_be_given() {
     let laws = truths();
     let text = table(&*laws[3].1, &RATIOS, [12.0, 25.0], 25, 0.02, 4);
     let given: Given = NASGRO[2..].iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
-    let fits = fit_laws(&rows(&text), FitLaw::Nasgro, &given, RangeKind::Tensile).unwrap();
+    let fits = fit_laws(&rows(&text), FitLaw::Nasgro, &given).unwrap();
     let (n, error) = constant(fits.law(), "nasgro_n");
     assert!((n - 3.2).abs() < 3.0 * error && error < 0.05, "n {n} ± {error}");
     assert_eq!(fits.law().fitted, 2);
-    let refused = fit_laws(&rows(&text), FitLaw::Nasgro, &Given::from([("k_c_mpa_sqrt_m".to_owned(), 20.0)]), RangeKind::Tensile)
-        .unwrap_err();
+    let refused = fit_laws(&rows(&text), FitLaw::Nasgro, &Given::from([("k_c_mpa_sqrt_m".to_owned(), 20.0)])).unwrap_err();
     assert!(refused.to_string().contains("a crack grew at K_max = 25.000"), "{refused}");
 }
 
@@ -192,7 +189,7 @@ fn correlated_rates_count_as_fewer() {
             let mean = white[i..i + smooth].iter().sum::<f64>() / smooth as f64;
             row.rate = laws[0].1.rate(row.k_max(), 0.1) * mean.exp();
         }
-        let fits = fit_laws(&rows, FitLaw::Paris, &Given::new(), RangeKind::Tensile).unwrap();
+        let fits = fit_laws(&rows, FitLaw::Paris, &Given::new()).unwrap();
         errors.push((fits.effective_rates, constant(fits.law(), "paris_m").1 / fits.law().rms()));
         assert_eq!(fits.warnings.iter().any(|line| line.contains("correlated")), smooth > 1, "{:?}", fits.warnings);
     }
@@ -232,7 +229,7 @@ fn the_shared_constants_are_found_from_their_rates() {
         let given = Given::from([("nasgro_smax_over_flow".to_owned(), at("smax_s0"))]);
         let name = [&record[0], &record[1], &record[2], &record[3]].join(", ");
         let rows = rows(&text);
-        match fit_laws(&rows, FitLaw::Nasgro, &given, RangeKind::Tensile) {
+        match fit_laws(&rows, FitLaw::Nasgro, &given) {
             Ok(fits) => {
                 assert!(fits.law().rms() < 1e-6, "{name}: rms {}", fits.law().rms());
                 let of = |key: &str| constant(fits.law(), key).0;

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use perilife::calibration::median::{common_lengths, cycles_at, median, pointwise_median, pointwise_median_at};
-use perilife::case::record::LeaveOut;
-use perilife::measured::{CycleUnit, Import, LengthUnit, Measured, MeasuredCurve, PROBLEMS_MAX, parse, read, survey};
+use perilife::measured::{CycleUnit, Import, LeaveOut, LengthUnit, Measured, MeasuredCurve, PROBLEMS_MAX, parse, read, survey};
 use perilife::units::MM;
 use proptest::prelude::*;
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use perilife::body::pre_crack::bonds_across;
 use perilife::body::{Body, Bond};
 use perilife::case::{Case, RESIDUAL};
-use perilife::fatigue::growth_law::{RangeKind, Walker};
+use perilife::fatigue::growth_law::Walker;
 use perilife::growth::CrackGrowth;
 use perilife::growth::tip_field::TipField;
 use perilife::growth::tip_field::kink::coefficients;
@@ -183,7 +183,7 @@ fn no_bond_is_left_across_the_crack() {
         );
         let case = case(&specimen, PULL, &["model.spacing_mm=1", &format!("model.lattice_angle_deg={lattice}")]);
         let body = Arc::new(case.model.body(&case.specimen, &case.material).unwrap());
-        let law = Walker { paris: case.paris_law().unwrap(), gamma: 1.0, threshold: 0.0, range: RangeKind::Tensile };
+        let law = Walker { paris: case.paris_law().unwrap(), gamma: 1.0, threshold: 0.0 };
         let mut growth = TipField::start_on(&case, body.clone(), Box::new(law)).unwrap();
         growth.open().unwrap();
         let mut turned = 0.0_f64;

@@ -6,7 +6,7 @@
 
 use crate::calibration::search::Constants;
 use crate::error::{Error, Result};
-use crate::fatigue::growth_law::{RangeKind, Walker, doubt};
+use crate::fatigue::growth_law::{Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
 use crate::line::line;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
@@ -56,7 +56,7 @@ pub fn doubt_of_exponent(m: f64) -> Option<String> {
 /// What is wrong with `da/dN = C ΔK^m` (mm/cycle, MPa√m) as the law of a metal: a unit that slipped shows here.
 pub fn doubt_of(c: f64, m: f64) -> Option<String> {
     let paris = ParisLaw { c: c * MM_PER_CYCLE, m };
-    doubt_of_exponent(m).or_else(|| doubt(&Walker { paris, gamma: 1.0, threshold: 0.0, range: RangeKind::Tensile }, 0.0))
+    doubt_of_exponent(m).or_else(|| doubt(&Walker { paris, gamma: 1.0, threshold: 0.0 }, 0.0))
 }
 
 /// Equally spaced lengths of the window at which rates are taken.

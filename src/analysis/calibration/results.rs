@@ -13,7 +13,6 @@ use super::laws::{FitLaw, LawFits};
 use super::search::FittedCurve;
 use crate::case::record::{Estimate, FittedRecord, LawRecord};
 use crate::cells::field;
-use crate::fatigue::growth_law::{GrowthLawKind, RangeKind};
 use crate::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// `fit.json` of a fit that took `wall_s` seconds; units as in the names, cycles else, null for what is not known.
@@ -247,10 +246,6 @@ pub fn law_record(case: &LawCase, fits: &LawFits) -> LawRecord {
     let mut fatigue = toml::Table::new();
     fatigue.insert("growth_law".to_owned(), law.kind.name().into());
     fatigue.extend(law.constants.iter().map(|constant| (constant.key.to_owned(), constant.value.into())));
-    // NASGRO takes R itself.
-    if let Some(range) = case.range.filter(|range| *range == RangeKind::Full && law.kind != GrowthLawKind::Nasgro) {
-        fatigue.insert("delta_k".to_owned(), range.name().into());
-    }
     let [low, high] = case.delta_k_range();
     let ratios = || case.rows.iter().map(|row| row.ratio);
     LawRecord {
@@ -303,7 +298,7 @@ pub fn law_summary(case: &LawCase, fits: &LawFits) -> Vec<String> {
     }));
     lines.push("  ±              one standard error".to_owned());
     lines.extend(case.units.iter().map(|line| format!("  read           {line}")));
-    lines.extend(case.range.map(|range| format!("  ΔK at R < 0    {range}: {}", range.meaning())));
+    lines.extend(case.range.map(|range| format!("  ΔK at R < 0    taken as {range} from the tables: {}", range.meaning())));
     for candidate in &fits.candidates {
         lines.push(match &candidate.left_out {
             Some(why) => format!("  {:<14} left out: {why}", candidate.kind.name()),

@@ -7,7 +7,6 @@ use super::fatigue_keys::FatigueKeys;
 use super::growth_law::Setting;
 use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
-use crate::fatigue::growth_law::RangeKind;
 use crate::fatigue::{
     Ageing, Driver, FatigueSettings, GrowthRate, OVERLOAD_STRETCH, Precrack, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS,
 };
@@ -56,7 +55,6 @@ pub(super) fn from_value(
         critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
-        range: input.delta_k.unwrap_or(RangeKind::Tensile),
         growth_rate: read_growth_rate(&input)?,
     };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);

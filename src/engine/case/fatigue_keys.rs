@@ -5,7 +5,6 @@ use toml::{Table, Value};
 
 use super::Failure;
 use crate::fatigue::growth_law::GrowthLawKind::{self, BondLaw, Forman, Nasgro, Paris, Walker};
-use crate::fatigue::growth_law::RangeKind;
 use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
 use crate::measured::RateFile;
 
@@ -49,7 +48,6 @@ pub(super) struct FatigueKeys {
     pub step_error_percent: Option<f64>,
     pub critical_stretch: Option<f64>,
     pub walker_gamma: Option<f64>,
-    pub delta_k: Option<RangeKind>,
     pub delta_k_threshold_mpa_sqrt_m: Option<f64>,
     pub growth_rate: Option<GrowthRate>,
     pub allow_extrapolation: Option<bool>,
@@ -82,7 +80,7 @@ pub(super) const LAWS: [(&[GrowthLawKind], &[&str]); 6] = [
 
 /// All keys that give a law, for those who take it out of a file.
 pub fn law_keys() -> impl Iterator<Item = &'static str> {
-    LAWS.iter().flat_map(|(_, keys)| keys.iter().copied()).chain(["growth_law", "k_c_mpa_sqrt_m", "delta_k"])
+    LAWS.iter().flat_map(|(_, keys)| keys.iter().copied()).chain(["growth_law", "k_c_mpa_sqrt_m"])
 }
 
 /// Takes the law out of the sections of a case that is to get another one, or needs none.

@@ -4,7 +4,7 @@ use super::fatigue_keys::{FatigueKeys, TableEnds};
 use crate::error::{Error, InputError, Result, input, input_missing};
 use crate::fatigue::growth_law::nasgro::{Nasgro, RATIO_MIN};
 use crate::fatigue::growth_law::table::{Curve, Table};
-use crate::fatigue::growth_law::{FactorLaw, Forman, GrowthLawKind, RangeKind};
+use crate::fatigue::growth_law::{FactorLaw, Forman, GrowthLawKind};
 use crate::input::{Folder, INTENSITY, number};
 use crate::material::Material;
 use crate::measured::{RateFile, RateRow, RateTable, round_off};
@@ -25,18 +25,6 @@ impl FatigueKeys {
         if self.walker_gamma.is_some() && kind != GrowthLawKind::Table {
             let remedy = "leave it out, or use growth_law = \"walker\"";
             return Err(input_missing("fatigue.walker_gamma", format!("does not go with growth_law \"{kind}\""), remedy));
-        }
-        if let Some(range) = self.delta_k.filter(|_| kind != GrowthLawKind::Forman) {
-            let remedy = match kind {
-                GrowthLawKind::Table => "say it with the table: growth_table = { file = \"...\", delta_k = ... }",
-                _ => "leave it out: the law takes R itself",
-            };
-            return Err(input(
-                "fatigue.delta_k",
-                format!("\"{range}\""),
-                format!("does not go with growth_law \"{kind}\""),
-                remedy,
-            ));
         }
         if self.delta_k_threshold_mpa_sqrt_m.is_some() && kind == GrowthLawKind::Nasgro {
             let problem = "does not go with growth_law \"nasgro\", which has its own threshold";
@@ -60,7 +48,6 @@ impl FatigueKeys {
             c: number(RATE, 1e-60, 1e3).read("fatigue.forman_c_mm_per_cycle", c)? * MM_PER_CYCLE,
             m: number("an exponent", 0.5, 20.0).read("fatigue.forman_m", needed("forman_m", self.forman_m)?)?,
             k_c: self.k_c(setting)?,
-            range: self.delta_k.unwrap_or(RangeKind::Tensile),
         })
     }
 

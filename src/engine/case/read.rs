@@ -8,7 +8,7 @@ use super::{Case, Choices, LawSource, Method, boundaries, fatigue, law, law_keys
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
-use crate::fatigue::growth_law::{Bounded, GrowthLawKind, RangeKind, Walker, doubt};
+use crate::fatigue::growth_law::{Bounded, GrowthLawKind, Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{Document, Folder, ForeignSections, LEVELS_OF_SCENES, OF_SCENES, OpenedFile, Provenance, Sections, value_at};
 use crate::loading::LoadingKind;
@@ -239,13 +239,12 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
 
 /// A power of ΔK whose rates are looked at.
 fn steady(paris: ParisLaw) -> Walker {
-    Walker { paris, gamma: 1.0, threshold: 0.0, range: RangeKind::Tensile }
+    Walker { paris, gamma: 1.0, threshold: 0.0 }
 }
 
 /// Compression in a cycle counts as nothing, whatever Walker's exponent.
 fn compression_line(case: &Case) -> Option<String> {
-    let by_nasgro = matches!(&case.law, LawSource::Factor(law) if law.kind() == GrowthLawKind::Nasgro);
-    let counts = by_nasgro || case.fatigue.range == RangeKind::Full;
+    let counts = matches!(&case.law, LawSource::Factor(law) if law.kind() == GrowthLawKind::Nasgro);
     let ratio = case.loading.ratio;
     (ratio < 0.0 && !counts).then(|| {
         format!(

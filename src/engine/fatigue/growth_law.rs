@@ -23,20 +23,11 @@ crate::kinds! {
 }
 
 crate::kinds! {
-    /// What of a cycle from R K_max to K_max is ΔK where R is negative; at R >= 0 both are (1-R) K_max.
-    pub enum RangeKind for "fatigue.delta_k" {
+    /// What of a cycle from R K_max to K_max is ΔK in a table of rates where R is negative; at R >= 0 both are (1-R) K_max. Laws take its
+    /// tensile part.
+    pub enum RangeKind for "measured.delta_k" {
         Tensile = "tensile": "K_max: compression does not count (ASTM E647)",
         Full = "full": "(1-R) K_max, as many laboratories and NASGRO have it",
-    }
-}
-
-impl RangeKind {
-    /// ΔK over K_max at a stress ratio.
-    pub fn share(self, ratio: f64) -> f64 {
-        match self {
-            RangeKind::Tensile => 1.0 - ratio.max(0.0),
-            RangeKind::Full => 1.0 - ratio,
-        }
     }
 }
 
@@ -50,7 +41,7 @@ const ELSEWHERE: [f64; 7] = [1.0, 2.0, 0.5, 4.0, 0.25, 8.0, 0.125];
 /// What is wrong with the rates of a law for a metal: a unit that slipped shows here. Asked at ΔK = 10 MPa√m and the stress ratio, or where
 /// the law has rates nearest to it.
 pub fn doubt(law: &dyn GrowthLaw, ratio: f64) -> Option<String> {
-    let k_max = |delta_k: f64| delta_k / RangeKind::Tensile.share(ratio);
+    let k_max = |delta_k: f64| delta_k / (1.0 - ratio.max(0.0));
     let rate_at = |delta_k: f64| {
         let rate = law.rate(k_max(delta_k), ratio) / MM_PER_CYCLE;
         (rate > 0.0 && rate.is_finite() && law.beyond(k_max(delta_k), ratio).is_none()).then_some((delta_k, rate))
@@ -169,7 +160,8 @@ impl GrowthLaw for Bounded {
     }
 }
 
-/// `da/dN = C (K_max (1-R)^γ)^m` above a threshold of ΔK (Walker 1970, ASTM STP 462; γ = 1: Paris and Erdogan 1963).
+/// `da/dN = C (K_max (1-R)^γ)^m` above a threshold of ΔK (Walker 1970, ASTM STP 462; γ = 1: Paris and Erdogan 1963); compression
+/// does not count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walker {
     /// C and m at R = 0.
@@ -178,19 +170,17 @@ pub struct Walker {
     pub gamma: f64,
     /// ΔK below which nothing grows, Pa√m.
     pub threshold: f64,
-    /// What ΔK is at negative R.
-    pub range: RangeKind,
 }
 
 impl GrowthLaw for Walker {
     fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        let range = self.range.share(ratio);
+        let range = 1.0 - ratio.max(0.0);
         if k_max * range <= self.threshold { 0.0 } else { self.paris.rate(k_max * range.powf(self.gamma)) }
     }
 }
 
 /// `da/dN = C ΔK^m / ((1-R) K_c - ΔK)`: Paris growth that becomes unstable at K_max = K_c (Forman, Kearney and Engle 1967, J. Basic
-/// Eng. 89:459).
+/// Eng. 89:459). Compression does not count.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Forman {
     /// C, m/cycle (MPa√m)^(1-m).
@@ -199,13 +189,11 @@ pub struct Forman {
     pub m: f64,
     /// K_c, Pa√m.
     pub k_c: f64,
-    /// What ΔK is at negative R.
-    pub range: RangeKind,
 }
 
 impl GrowthLaw for Forman {
     fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        let range = self.range.share(ratio);
+        let range = 1.0 - ratio.max(0.0);
         let left = range * (self.k_c - k_max) / MPA_SQRT_M;
         if left <= 0.0 { f64::INFINITY } else { self.c * (range * k_max / MPA_SQRT_M).powf(self.m) / left }
     }

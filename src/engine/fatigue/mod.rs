@@ -103,8 +103,6 @@ pub struct FatigueSettings {
     pub step_error_percent: f64,
     /// Bond stretch s_t above which a bond breaks at once.
     pub critical_stretch: f64,
-    /// What ΔK is at negative R, for laws over K.
-    pub range: growth_law::RangeKind,
     /// Walker exponent γ: ε = s_max (1-R)^γ; 1 = no mean-stress effect.
     pub walker_gamma: f64,
     /// Threshold of ΔK, Pa√m; 0 = none.

@@ -33,7 +33,7 @@ use crate::body::pre_crack::bonds_across;
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::{Error, Result, input};
-use crate::fatigue::growth_law::{GrowthLaw, RangeKind, Walker};
+use crate::fatigue::growth_law::{GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::solver::Equilibrium;
@@ -206,7 +206,7 @@ pub struct InitialTips {
 
 /// Reads the initial tips of a case: those of the first row of its prediction by K.
 pub fn initial_tips(case: &Case) -> Result<InitialTips> {
-    let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0, range: RangeKind::Tensile };
+    let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
     let mut growth = TipField::start(case, Box::new(law))?;
     growth.open()?;
     let in_contact = growth.contact.closed_places().next().is_some();

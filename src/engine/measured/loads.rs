@@ -7,6 +7,7 @@ use super::curve::{Loads, Measured, MeasuredCurve, first_of, round_off};
 use super::names::Role;
 use super::table::Fault;
 use crate::error::Result;
+use crate::line::line;
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::specimen::handbook::{HandbookFormula, handbook};
@@ -64,8 +65,9 @@ impl Measured {
                     k_max(reading) / MPA_SQRT_M,
                     toughness / MPA_SQRT_M
                 )),
-                None if is_last(reading) && k_max(reading) > LEAP_OF_K * k_max(reading - 1) => {
-                    Some(format!("K_max is {:.1} times that of the reading before", k_max(reading) / k_max(reading - 1)))
+                None if is_last(reading) && k_max(reading) > LEAP_OF_K * k_max(reading - 1) && !follows(curve, &k_max) => {
+                    let times = k_max(reading) / k_max(reading - 1);
+                    Some(format!("K_max is {times:.1} times that of the reading before, and the growth not that of the others"))
                 }
                 _ => None,
             };
@@ -114,6 +116,26 @@ impl Measured {
         self.warnings.extend(first_of(of_ratios));
         Ok(())
     }
+}
+
+/// Whether the growth up to the last reading took the cycles that the power of K of the growth before it says, within a factor
+/// [`LEAP_OF_K`].
+fn follows(curve: &MeasuredCurve, k_max: &dyn Fn(usize) -> f64) -> bool {
+    let last = curve.cycles.len() - 1;
+    let rate = |i: usize| (curve.crack_length[i] - curve.crack_length[i - 1]) / (curve.cycles[i] - curve.cycles[i - 1]);
+    let middle = |i: usize| (k_max(i) * k_max(i - 1)).sqrt().ln();
+    let known: Vec<usize> = (1..last).filter(|&i| rate(i) > 0.0).collect();
+    let [x, y]: [Vec<f64>; 2] =
+        [&middle as &dyn Fn(usize) -> f64, &|i| rate(i).ln()].map(|of| known.iter().map(|&i| of(i)).collect());
+    let Some(law) = line(&x, &y) else { return false };
+    // Over a leap of K the mean rate is that of the mean cycles: K between the readings as a power of length.
+    let (from, to) = (k_max(last - 1), k_max(last));
+    let steps = 64;
+    let slowness = |i: usize| (-law.at((from * (to / from).powf((i as f64 + 0.5) / f64::from(steps))).ln())).exp();
+    let cycles = (0..steps as usize).map(slowness).sum::<f64>() / f64::from(steps)
+        * (curve.crack_length[last] - curve.crack_length[last - 1]);
+    let counted = curve.cycles[last] - curve.cycles[last - 1];
+    (1.0 / LEAP_OF_K..=LEAP_OF_K).contains(&(counted / cycles))
 }
 
 /// Nominal load of the specimen over a load of a file; `None` where a stress is no load of it.

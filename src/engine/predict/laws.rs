@@ -17,7 +17,7 @@ pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
     let threshold = case.fatigue.threshold;
     Ok(match &case.law {
         LawSource::Factor(law) => Box::new(Bounded { law: law.clone(), threshold }),
-        _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold, range: case.fatigue.range }),
+        _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold }),
     })
 }
 

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::error::{Result, input};
 use crate::fatigue::growth_law::nasgro::{Nasgro, RATIO_MIN};
-use crate::fatigue::growth_law::{Forman, GrowthLaw, GrowthLawKind, RangeKind, Walker};
+use crate::fatigue::growth_law::{Forman, GrowthLaw, GrowthLawKind, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{INTENSITY, Quantity, number};
 use crate::measured::RateRow;
@@ -120,22 +120,21 @@ pub(super) struct Candidate<'a> {
     parameters: Vec<Parameter>,
     given: Vec<Option<f64>>,
     rows: &'a [RateRow],
-    range: RangeKind,
 }
 
 impl<'a> Candidate<'a> {
     /// The law over the rows.
     /// Errors: in words, why these rows say nothing about it.
-    pub fn new(kind: GrowthLawKind, given: &Given, rows: &'a [RateRow], range: RangeKind) -> std::result::Result<Self, String> {
+    pub fn new(kind: GrowthLawKind, given: &Given, rows: &'a [RateRow]) -> std::result::Result<Self, String> {
         let parameters = parameters(kind).1;
         let values = parameters.iter().map(|parameter| given.get(parameter.key).copied().or(parameter.default)).collect();
-        let candidate = Candidate { kind, parameters, given: values, rows, range };
-        let ratios = || rows.iter().map(|row| 1.0 - range.share(row.ratio));
+        let candidate = Candidate { kind, parameters, given: values, rows };
+        let ratios = || rows.iter().map(|row| row.ratio.max(0.0));
         let (low, high) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(f64::NEG_INFINITY, f64::max));
         let several = [GAMMA, "nasgro_alpha", "nasgro_c_th"];
         let lacks: Vec<&str> = candidate.free().map(|parameter| parameter.key).filter(|key| several.contains(key)).collect();
         if high - low < SAME_RATIO && !lacks.is_empty() {
-            let one = format!("all rates are of one stress ratio, R = {:.3}{}", rows[0].ratio, closed(range, rows));
+            let one = format!("all rates are of one stress ratio, R = {:.3}{}", rows[0].ratio, closed(rows));
             return Err(format!("{} not identified: {one}; give by fit.given", lacks.join(", ")));
         }
         let least = rows.iter().map(|row| row.ratio).fold(f64::INFINITY, f64::min);
@@ -191,18 +190,11 @@ impl<'a> Candidate<'a> {
     fn law(&self, constants: &[(&'static str, f64)]) -> Box<dyn GrowthLaw> {
         let at = |key: &str| constants.iter().find(|(own, _)| *own == key).map_or(0.0, |(_, value)| *value);
         match self.kind {
-            GrowthLawKind::Forman => {
-                Box::new(Forman { c: MM_PER_CYCLE, m: at("forman_m"), k_c: at(K_C) * MPA_SQRT_M, range: self.range })
-            }
+            GrowthLawKind::Forman => Box::new(Forman { c: MM_PER_CYCLE, m: at("forman_m"), k_c: at(K_C) * MPA_SQRT_M }),
             GrowthLawKind::Nasgro => Box::new(nasgro(&at)),
             kind => {
                 let gamma = if kind == GrowthLawKind::Walker { at(GAMMA) } else { 1.0 };
-                Box::new(Walker {
-                    paris: ParisLaw { c: MM_PER_CYCLE, m: at("paris_m") },
-                    gamma,
-                    threshold: 0.0,
-                    range: self.range,
-                })
+                Box::new(Walker { paris: ParisLaw { c: MM_PER_CYCLE, m: at("paris_m") }, gamma, threshold: 0.0 })
             }
         }
     }
@@ -216,9 +208,9 @@ impl<'a> Candidate<'a> {
 }
 
 /// Why rates at several negative ratios count as one.
-fn closed(range: RangeKind, rows: &[RateRow]) -> &'static str {
+fn closed(rows: &[RateRow]) -> &'static str {
     let differ = rows.iter().any(|row| (row.ratio - rows[0].ratio).abs() >= SAME_RATIO);
-    if differ && range == RangeKind::Tensile { ", and negative ones that count as 0 by delta_k = \"tensile\"" } else { "" }
+    if differ { ", and negative ones count as 0: compression does not open a crack" } else { "" }
 }
 
 pub(super) fn nasgro(at: &dyn Fn(&str) -> f64) -> Nasgro {

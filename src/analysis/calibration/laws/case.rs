@@ -42,7 +42,7 @@ pub struct LawCase {
     pub warnings: Vec<String>,
     /// Units that the tables were read in, one line a table.
     pub units: Vec<String>,
-    /// What ΔK is at negative R, where a row has one.
+    /// What ΔK was in the tables at negative R, where a row has one.
     pub range: Option<RangeKind>,
     /// The input as given.
     pub echo: serde_json::Value,
@@ -135,10 +135,6 @@ impl LawCase {
             ));
         }
         if let Some(range) = found.range {
-            if self.range.is_some_and(|earlier| earlier != range) {
-                let problem = "is not that of an earlier table: one law has one ΔK";
-                return Err(input("delta_k", format!("\"{range}\""), problem, "convert one of the tables").in_file(&path));
-            }
             self.range = Some(range);
         }
         self.units.push(format!("{}: ΔK in {}, da/dN in {}", keys.file, found.units[0], found.units[1]));
@@ -182,7 +178,7 @@ impl LawCase {
 
     /// Fits all laws.
     pub fn fit(&self) -> Result<LawFits> {
-        fit_laws(&self.rows, self.law, &self.given, self.range.unwrap_or(RangeKind::Tensile))
+        fit_laws(&self.rows, self.law, &self.given)
     }
 
     /// Stress ratios of the rates, rising, those that agree to 0.005 as one.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::candidate::{Candidate, Given, K_C, Parameter, THRESHOLD, parameters};
 use super::least_squares::{Minimum, minimise, without_level};
-use crate::fatigue::growth_law::{GrowthLawKind, RangeKind};
+use crate::fatigue::growth_law::GrowthLawKind;
 use crate::measured::RateRow;
 
 /// Share of the range of a variable within which an optimum lies at its end.
@@ -73,8 +73,8 @@ impl LawFit {
 }
 
 /// Fits a law by least squares on ln da/dN.
-pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow], range: RangeKind) -> LawFit {
-    let candidate = match Candidate::new(kind, given, rows, range) {
+pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFit {
+    let candidate = match Candidate::new(kind, given, rows) {
         Ok(candidate) => candidate,
         Err(why) => return LawFit::none(kind, why),
     };

@@ -21,7 +21,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::calibration::paris::doubt_of_exponent;
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::growth_law::nasgro::Nasgro;
-use crate::fatigue::growth_law::{Bounded, FactorLaw, Forman, GrowthLawKind, RangeKind, Walker, doubt};
+use crate::fatigue::growth_law::{Bounded, FactorLaw, Forman, GrowthLawKind, Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
 use crate::measured::RateRow;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
@@ -90,11 +90,11 @@ impl LawFits {
     }
 }
 
-/// Fits every law and chooses the one asked for, or the best; `range` is what ΔK is at negative R.
+/// Fits every law and chooses the one asked for, or the best.
 /// Errors: [`Error::Mechanics`] where the rates do not tell the law asked for, or none; constants that no law has, or no metal.
-pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given, range: RangeKind) -> Result<LawFits> {
+pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFits> {
     candidate::check_given(given)?;
-    let mut candidates: Vec<LawFit> = LAWS.iter().map(|(_, kind)| fit(*kind, given, rows, range)).collect();
+    let mut candidates: Vec<LawFit> = LAWS.iter().map(|(_, kind)| fit(*kind, given, rows)).collect();
     let smooth = Smooth::through(rows);
     let effective = smooth.effective_rates(rows);
     for candidate in &mut candidates {
@@ -109,7 +109,7 @@ pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given, range: RangeKin
     let mut fits = LawFits { candidates, chosen, margin, effective_rates: effective, warnings: Vec::new() };
     fits.warnings = warnings(&fits, rows);
     fits.warnings.extend(smooth.misfit(rows, fits.law()));
-    check_metal(fits.law(), rows, range)?;
+    check_metal(fits.law(), rows)?;
     Ok(fits)
 }
 
@@ -245,18 +245,14 @@ fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
 }
 
 /// Refuses a law that no metal has: a unit that slipped shows here.
-fn check_metal(law: &LawFit, rows: &[RateRow], range: RangeKind) -> Result<()> {
+fn check_metal(law: &LawFit, rows: &[RateRow]) -> Result<()> {
     let at = |key: &str| law.constants.iter().find(|constant| constant.key == key).map_or(f64::NAN, |constant| constant.value);
     // The middle of the ratios: a law has no rates at ratios that it was not fitted to.
     let ratio = rows[rows.len() / 2].ratio;
     let problem = match law.kind {
         GrowthLawKind::Forman => {
-            let forman = Forman {
-                c: at("forman_c_mm_per_cycle") * MM_PER_CYCLE,
-                m: at("forman_m"),
-                k_c: at(candidate::K_C) * MPA_SQRT_M,
-                range,
-            };
+            let forman =
+                Forman { c: at("forman_c_mm_per_cycle") * MM_PER_CYCLE, m: at("forman_m"), k_c: at(candidate::K_C) * MPA_SQRT_M };
             doubt(&Bounded { law: FactorLaw::Forman(forman), threshold: 0.0 }, ratio)
         }
         GrowthLawKind::Nasgro => {
@@ -266,7 +262,7 @@ fn check_metal(law: &LawFit, rows: &[RateRow], range: RangeKind) -> Result<()> {
         kind => {
             let gamma = if kind == GrowthLawKind::Walker { at(candidate::GAMMA) } else { 1.0 };
             let paris = ParisLaw { c: at("paris_c_mm_per_cycle") * MM_PER_CYCLE, m: at("paris_m") };
-            doubt_of_exponent(paris.m).or_else(|| doubt(&Walker { paris, gamma, threshold: 0.0, range }, ratio))
+            doubt_of_exponent(paris.m).or_else(|| doubt(&Walker { paris, gamma, threshold: 0.0 }, ratio))
         }
     };
     match problem {

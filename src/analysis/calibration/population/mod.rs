@@ -139,15 +139,22 @@ pub struct Population {
 }
 
 impl Population {
-    /// Covariance of ln A (A the rate at 1 MPa√m) and the exponent; with a given exponent of ln A alone.
+    /// Covariance of ln A (A the rate at 1 MPa√m) and the exponent of the law of all; with a given exponent of ln A alone. Level and slope
+    /// are uncorrelated at the pivot. Each is as uncertain as the mean of those of the specimens, whose scatter is that of reading and of
+    /// material together, and at least as the readings alone leave it.
     pub fn covariance_of_constants(&self, is_fitted: bool) -> [[f64; 2]; 2] {
-        let [[level, both, ..], [_, slope, ..], ..] = self.covariance;
-        let pivot = (self.law.pivot / MPA_SQRT_M).ln();
+        let n = self.specimens.len() as f64;
+        let of_mean = |of: &dyn Fn(&Member) -> f64| {
+            let mean = self.specimens.iter().map(of).sum::<f64>() / n;
+            self.specimens.iter().map(|own| (of(own) - mean).powi(2)).sum::<f64>() / ((n - 1.0).max(1.0) * n)
+        };
+        let slope = of_mean(&|own| own.own[1]).max(self.errors.slope_of_readings.powi(2));
+        let level = of_mean(&|own| own.level);
         if !is_fitted {
             return [[level, 0.0], [0.0, 0.0]];
         }
-        let cross = both - pivot * slope;
-        [[level - 2.0 * pivot * both + pivot * pivot * slope, cross], [cross, slope]]
+        let pivot = (self.law.pivot / MPA_SQRT_M).ln();
+        [[level + pivot * pivot * slope, -pivot * slope], [-pivot * slope, slope]]
     }
 }
 

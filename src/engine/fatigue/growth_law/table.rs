@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{GrowthLaw, RangeKind};
+use super::GrowthLaw;
 use crate::units::MPA_SQRT_M;
 
 /// Stress ratios that differ by less are one.
@@ -73,7 +73,7 @@ impl Table {
 
     /// ΔK, Pa√m, at which the rows are read.
     fn delta_k(&self, k_max: f64, ratio: f64) -> f64 {
-        let [own, of_table] = [ratio, self.curves[0].ratio].map(|ratio| RangeKind::Tensile.share(ratio));
+        let [own, of_table] = [ratio, self.curves[0].ratio].map(|ratio| 1.0 - ratio.max(0.0));
         match self.walker_gamma {
             Some(gamma) => k_max * own.powf(gamma) * of_table.powf(1.0 - gamma),
             None => k_max * own,

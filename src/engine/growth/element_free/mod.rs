@@ -21,7 +21,7 @@ use crate::element_free::field::Discretisation;
 use crate::element_free::resolution::ElementFreeSettings;
 use crate::element_free::solve::Solution;
 use crate::error::{Result, input};
-use crate::fatigue::growth_law::{GrowthLaw, RangeKind, Walker};
+use crate::fatigue::growth_law::{GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::specimen::{CrackLine, Point, Specimen};
 use crate::williams::Elasticity;
@@ -131,7 +131,7 @@ pub fn initial_plate(case: &Case) -> Result<Discretisation> {
 
 /// K and T of the initial tips of a case at maximum load, in the order of `Specimen::tips`.
 pub fn initial_tips(case: &Case) -> Result<Vec<TipRecord>> {
-    let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0, range: RangeKind::Tensile };
+    let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
     let mut growth = ElementFree::start(case, Box::new(law))?;
     growth.open()?;
     Ok(growth.now().tips.to_vec())
