@@ -34,10 +34,28 @@ impl Postgres {
         if is_root() {
             run(Command::new("chown").arg("postgres").arg(server.folder.path()))?;
         }
-        let data = server.data();
-        run(server.program("initdb").args(["-U", "perilife", "-A", "trust", "--no-sync", "-D"]).arg(&data))?;
+        server.lay_out()?;
         server.up()?;
         Ok(server)
+    }
+
+    /// An empty cluster: laid out once for each version of the programs, and copied from then on.
+    fn lay_out(&self) -> Result<(), String> {
+        let version = self.programs.parent().and_then(Path::file_name).unwrap_or_default();
+        let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join("postgres").join(version);
+        let copy = |from: &Path, to: &Path| run(Command::new("cp").arg("-a").args([from, to]));
+        if kept.is_dir() {
+            return copy(&kept, &self.data());
+        }
+        run(self.program("initdb").args(["-U", "perilife", "-A", "trust", "--no-sync", "-D"]).arg(self.data()))?;
+        let part = kept.with_file_name(format!("part-{}", self.port));
+        std::fs::create_dir_all(kept.parent().unwrap_or(&kept)).map_err(|error| error.to_string())?;
+        copy(&self.data(), &part)?;
+        // Another test may have been first.
+        if std::fs::rename(&part, &kept).is_err() {
+            let _ = std::fs::remove_dir_all(&part);
+        }
+        Ok(())
     }
 
     /// Starts the server, which is not running.

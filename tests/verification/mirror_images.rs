@@ -66,10 +66,10 @@ fn live_as_long(heights: impl Iterator<Item = f64>) {
     }
 }
 
-/// Even and odd numbers of spacings, some of them but for round-off.
+/// An odd number of spacings, and an even one but for round-off.
 #[test]
 fn the_mirror_image_of_a_plate_lives_as_long() {
-    live_as_long(heights().step_by(4));
+    live_as_long(heights().skip(4).step_by(4).take(2));
 }
 
 #[test]

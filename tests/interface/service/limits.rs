@@ -36,7 +36,7 @@ fn a_job_ends_alone_at_its_limits() {
     with_store("limits", |place| {
         for (limit, text, title, words) in [
             (["--job-memory", "256"], spaced(0.12), "Too large", "more than the 268 MB of memory"),
-            (["--job-hours", "0.003"], spaced(0.12), "Too slow", "--job-hours"),
+            (["--job-hours", "0.0015"], spaced(0.12), "Too slow", "--job-hours"),
         ] {
             // What is accepted may be more than a worker of a smaller machine has.
             let service = Server::start(place, &["--jobs", "0"]);
@@ -153,7 +153,7 @@ fn a_jump_of_the_clock_deletes_nothing() {
             on_store(place, &format!("UPDATE jobs SET finished_ms = finished_ms {year_ms}"));
             // Kept for six minutes, which are longer than the longest step that is counted.
             let mut service = Server::start(place, &["--jobs", "1", "--keep-days", "0.0042"]);
-            std::thread::sleep(Duration::from_secs(2));
+            std::thread::sleep(Duration::from_secs(1));
             service.get(&job).expect(200);
             service.stop();
             on_store(place, "UPDATE clock SET counted_ms = 0");
