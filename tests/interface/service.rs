@@ -29,6 +29,12 @@ pub const SLOW: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 70.0\nlength_mm
     [loading]\nstress_max_mpa = 70.0\nstress_ratio = 0.1\n[model]\nspacing_mm = 1.2\n\
     [fatigue]\na = 6450.0\np = 2.86\nhorizon_mm = 3.015\ndriver = \"bond_strain\"\n";
 
+/// The quick plate by hand: a job of milliseconds.
+pub fn tiny() -> String {
+    const PARIS: &str = "growth_law = \"paris\"\nparis_c_mm_per_cycle = 1e-8\nparis_m = 2.86";
+    QUICK.replace("spacing_mm = 1.5", "method = \"handbook\"").replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015", PARIS)
+}
+
 /// The body of a submission of TOML text.
 pub fn of(name: &str, text: &str) -> Value {
     json!({ "name": name, "input": text })

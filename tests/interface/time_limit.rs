@@ -31,7 +31,7 @@ fn a_run_ends_when_its_time_is_over() {
     }
     // With a checkpoint the same command goes on, as often as it takes, to the same histories.
     let keep = ["--checkpoint", "run.ckpt", "--checkpoint-every", "0"];
-    let shorter = ["--set", "loading.duration_s=2e-3"];
+    let shorter = ["--set", "loading.duration_s=1e-4"];
     let whole = perilife(here, &[&["fracture", "long.toml", "--out", "whole", "-q"], &shorter[..]].concat());
     assert!(whole.status.success(), "{}", texts(&whole).1);
     let mut calls = 0;

@@ -64,7 +64,9 @@ fn k_of_every_reading_is_that_of_its_own_load() {
         };
         let ranges = format!("cycles,crack_length_mm,force_range_kn\n{}", rows(&made, |i| format!(",{:.9}", force(lengths[i]))));
         is_the_law(&format!("{name}, ranges"), &fitted(&ranges, ""), M);
-        for (unit, per_kn) in [("kN", 1.0), ("N", 1e3), ("lbf", 1e3 / 4.448_221_615_260_5), ("kgf", 1e3 / 9.806_65)] {
+        // Units do not know how the load changes.
+        let units = [("kN", 1.0), ("N", 1e3), ("lbf", 1e3 / 4.448_221_615_260_5), ("kgf", 1e3 / 9.806_65)];
+        for (unit, per_kn) in units.into_iter().take(if name == "two steps" { 4 } else { 1 }) {
             let fit = fitted(&with(unit, per_kn), "");
             is_the_law(&format!("{name}, {unit}"), &fit, M);
             assert!(!fit.warnings.iter().any(|line| line.contains("no one power")), "{name}: {:?}", fit.warnings);

@@ -121,14 +121,16 @@ fn shipped_cases_pass() {
     let is_toml = |file: &PathBuf| file.extension().is_some_and(|extension| extension == "toml");
     let files: Vec<PathBuf> = files.flatten().filter(is_toml).collect();
     assert!(files.len() > 2);
-    for file in files {
+    for (number, file) in files.into_iter().enumerate() {
         let picture = folder.path().join("picture.svg");
         let args = check::Args { file, picture: Some(picture.clone()), set: vec![], console: QUIET };
         check::run(&args).unwrap();
         assert!(fs::read_to_string(&picture).unwrap().ends_with("</svg>\n"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-        let nowhere = check::Args { picture: Some(folder.path().join("no/such/folder.svg")), ..args };
-        assert_eq!(check::run(&nowhere).unwrap_err().exit_code(), 4);
+        if number % 10 == 0 {
+            let nowhere = check::Args { picture: Some(folder.path().join("no/such/folder.svg")), ..args };
+            assert_eq!(check::run(&nowhere).unwrap_err().exit_code(), 4);
+        }
     }
 }
 

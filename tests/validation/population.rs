@@ -265,3 +265,26 @@ fn lives_of_two_hundred_halves_kept_back_lie_in_their_bands() {
     check_halves(&scores, [([0.88, 0.94], [0.0, 4.2], 1.02), ([0.87, 0.94], [0.0, 4.9], 0.95), ([0.86, 0.93], [0.0, 6.3], 0.98)]);
     assert!(scores.model[2].coverage() >= 0.84, "from 30 mm without own readings: {}", scores.model[2].coverage());
 }
+
+/// Bands of few panels rest on scatter that is assumed: wide on purpose, by the half widths of the trial.
+#[test]
+fn bands_of_few_panels_are_wide_enough() {
+    let Some(panels) = panels() else { return };
+    let all = specimens(&panels, 50);
+    let lives: Vec<f64> = panels.iter().map(|panel| cycles(panel, 9.0 * MM, 49.8 * MM)).collect();
+    for (count, width) in [(1, 0.49), (2, 0.32), (3, 0.26), (5, 0.21)] {
+        let (mut inside, mut judged, mut half) = (0, 0, 0.0);
+        let groups = all.chunks_exact(count).take(8);
+        for (place, few) in groups.clone().enumerate() {
+            let band = fit(few, None).unwrap().forecast(&path(9.0), None, Lot::Same).unwrap().life().band(0.9);
+            half += (band[1] / band[0]).sqrt() - 1.0;
+            let others = (0..lives.len()).filter(|i| i / count != place);
+            inside += others.clone().filter(|&i| (band[0]..=band[1]).contains(&lives[i])).count();
+            judged += others.count();
+        }
+        let (coverage, half) = (inside as f64 / judged as f64, half / groups.len() as f64);
+        println!("{count} panels: coverage {coverage:.3}, half width {half:.3} of life, trial {width}");
+        assert!(coverage > 0.93, "{count} panels: {coverage}");
+        assert!((half / width - 1.0).abs() < 0.25, "{count} panels: {half} for {width}");
+    }
+}

@@ -67,11 +67,14 @@ fn stretch_difference(a: &Loaded, b: &Loaded) -> f64 {
 
 /// Strains and work of the part are those of the whole plate. Multipliers in single precision carry the order of sums of the
 /// surface correction: 1e-7 of a bond, of which the fields keep a part.
-fn says_everything(scenes: impl Iterator<Item = Scene>) {
+/// Solvers take turns unless each law is asked for by both.
+fn says_everything(scenes: impl Iterator<Item = Scene>, by_both: bool) {
     let mut faults = Vec::new();
-    for scene in scenes {
-        for &(law, choices) in LAWS {
-            for solver in [SolverKind::Direct, SolverKind::Multigrid] {
+    for (s, scene) in scenes.enumerate() {
+        for (l, &(law, choices)) in LAWS.iter().enumerate() {
+            for (_, solver) in
+                [SolverKind::Direct, SolverKind::Multigrid].into_iter().enumerate().filter(|(i, _)| by_both || (s + l) % 2 == *i)
+            {
                 let chosen = format!("model.solver={solver}");
                 let of = |symmetry: &str| {
                     let all: Vec<&str> = [symmetry, &*chosen]
@@ -104,13 +107,13 @@ fn says_everything(scenes: impl Iterator<Item = Scene>) {
 
 #[test]
 fn a_part_of_a_symmetric_plate_says_everything() {
-    says_everything(scenes().into_iter().filter(|scene| QUICK.contains(&scene.name)));
+    says_everything(scenes().into_iter().filter(|scene| QUICK.contains(&scene.name)), false);
 }
 
 #[test]
 #[ignore = "long: ten seconds"]
 fn a_part_of_every_symmetric_plate_says_everything() {
-    says_everything(scenes().into_iter());
+    says_everything(scenes().into_iter(), true);
 }
 
 /// The same bonds break at the same cycles whether the plate is solved as a whole or on its part.
@@ -148,7 +151,8 @@ fn grows_alike(driver: &str, scenes: impl Iterator<Item = Scene>) {
 
 #[test]
 fn a_part_grows_the_crack_of_the_whole() {
-    grows_alike(TIP_FIELD, scenes().into_iter().filter(|scene| QUICK.contains(&scene.name)));
+    const GROWN: [&str; 3] = ["odd columns", "clamped", "hole, crack one side"];
+    grows_alike(TIP_FIELD, scenes().into_iter().filter(|scene| GROWN.contains(&scene.name)));
 }
 
 #[test]

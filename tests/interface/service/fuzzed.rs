@@ -218,8 +218,8 @@ fn flooded(count: u64) {
 }
 
 #[test]
-fn thousands_of_broken_bodies_break_nothing() {
-    flooded(4000);
+fn a_thousand_broken_bodies_break_nothing() {
+    flooded(1000);
 }
 
 #[test]

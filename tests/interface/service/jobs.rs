@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
-use super::{QUICK, SLOW, of};
+use super::{QUICK, SLOW, of, tiny};
 use crate::support::postgres::Postgres;
 use crate::support::server::{PATIENCE, Server, in_folder};
 
@@ -130,13 +130,12 @@ fn lists_come_in_parts() {
     });
 }
 
-/// 200 clients at once, each sending everything twice as a bad network would: none lost, none run twice.
+/// 100 clients at once, each sending everything twice as a bad network would: none lost, none run twice.
 #[test]
 fn many_clients_at_once_lose_nothing() {
     with_each_store("crowd", |place| {
         let service = Server::start(place, &["--jobs", "2"]);
-        let hand = QUICK.replace("[model]\nspacing_mm = 1.5\n", "[model]\nmethod = \"handbook\"\n");
-        let hand = hand.replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015", "paris_c_mm_per_cycle = 9e-8\nparis_m = 2.87");
+        let hand = tiny();
         let accepted: Vec<String> = std::thread::scope(|scope| {
             let client = |number: usize| {
                 let (service, hand) = (&service, &hand);
@@ -154,10 +153,10 @@ fn many_clients_at_once_lose_nothing() {
                     first
                 }
             };
-            let clients: Vec<_> = (0..200).map(|number| scope.spawn(client(number))).collect();
+            let clients: Vec<_> = (0..100).map(|number| scope.spawn(client(number))).collect();
             clients.into_iter().map(|client| client.join().unwrap()).collect()
         });
-        assert_eq!(accepted.iter().collect::<HashSet<_>>().len(), 200);
+        assert_eq!(accepted.iter().collect::<HashSet<_>>().len(), 100);
         for id in &accepted {
             let job = service.succeeded(&format!("/v1/predictions/{id}"));
             assert_eq!(job["attempts"], 1, "run once");

@@ -12,17 +12,10 @@ use tempfile::tempdir;
 use super::crashes::{SmallDisk, undisturbed};
 use super::limits::spaced;
 use super::queue::on_store;
-use super::{QUICK, SLOW, of};
+use super::{QUICK, SLOW, of, tiny};
 use crate::support::noise::Noise;
 use crate::support::postgres::Postgres;
 use crate::support::server::{Server, in_folder};
-
-/// A hand calculation, which takes milliseconds.
-fn tiny() -> String {
-    QUICK.replace("spacing_mm = 1.5", "method = \"handbook\"").replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015", PARIS)
-}
-
-const PARIS: &str = "growth_law = \"paris\"\nparis_c_mm_per_cycle = 1e-8\nparis_m = 2.86";
 
 /// One job of the soak: its body, and the curve that it must have.
 struct Load {

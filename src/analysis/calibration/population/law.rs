@@ -48,9 +48,14 @@ pub(super) struct Row {
 }
 
 impl MeanLaw {
+    /// Largest over smallest calibrated ΔK.
+    pub fn range_ratio(&self) -> f64 {
+        self.range[1] / self.range[0]
+    }
+
     /// Spacing of the knots in ln ΔK.
     pub fn knot_spacing(&self) -> f64 {
-        (self.range[1] / self.range[0]).ln() / (KNOTS + 1) as f64
+        self.range_ratio().ln() / (KNOTS + 1) as f64
     }
 
     /// ΔK of the knots, Pa√m.

@@ -228,14 +228,19 @@ pub fn fit(specimens: &[Specimen], slope: Option<f64>) -> Result<Population> {
     let priors = Priors::of(specimens.len());
     let no_law = || Error::Mechanics("the readings give no growth law: their rates have no smallest misfit".to_owned());
     let law = start(specimens, slope)?;
+    if slope.is_none() && law.range_ratio() < RANGE_MIN {
+        check_identified(&law, f64::INFINITY)?;
+    }
     let at = priors.start(0.22);
     let law = settle(specimens, law, slope, &at).ok_or_else(no_law)?;
     let at = priors.start(rms(&groups(specimens, &law)));
     let straight = search(specimens, law, slope, &priors, at).ok_or_else(no_law)?;
-    check_identified(specimens, &straight, slope)?;
+    if slope.is_none() {
+        check_identified(&straight.law, slope_of_readings(specimens, &straight).unwrap_or(f64::INFINITY))?;
+    }
     let count: usize = specimens.iter().map(|specimen| specimen.intervals.len()).sum();
     let mut found = straight;
-    if law.range[1] / law.range[0] >= SHAPE_RANGE_MIN && count >= SHAPE_INTERVALS_MIN {
+    if law.range_ratio() >= SHAPE_RANGE_MIN && count >= SHAPE_INTERVALS_MIN {
         let bent = MeanLaw { shape: Some([0.0; KNOTS]), ..straight.law };
         let bent = search(specimens, bent, slope, &priors, straight.at).ok_or_else(no_law)?;
         found = if bent.value < straight.value { bent } else { straight };
@@ -260,23 +265,18 @@ fn search(specimens: &[Specimen], mut law: MeanLaw, slope: Option<f64>, priors: 
     Some(Found { law, at, value })
 }
 
-/// Refuses readings whose m is anywhere in the exponents that laws have.
-fn check_identified(specimens: &[Specimen], found: &Found, slope: Option<f64>) -> Result<()> {
-    if slope.is_some() {
-        return Ok(());
-    }
-    let law = &found.law;
+/// Refuses readings whose m, with its standard error, is anywhere in the exponents that laws have.
+fn check_identified(law: &MeanLaw, error: f64) -> Result<()> {
     let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
-    let error = slope_of_readings(specimens, found).unwrap_or(f64::INFINITY);
-    let ratio = law.range[1] / law.range[0];
-    if STEADY_EXPONENTS.contains(&law.slope) && error < (high - low) / 12.0_f64.sqrt() && ratio > RANGE_MIN {
+    if STEADY_EXPONENTS.contains(&law.slope) && error < (high - low) / 12.0_f64.sqrt() {
         return Ok(());
     }
     Err(Error::Mechanics(format!(
         "the readings do not tell the exponent: m = {:.3}, its standard error is {error:.2} where {low} to {high} are searched, and ΔK varies \
-         by a factor {ratio:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] parameters = \
+         by a factor {:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] parameters = \
          [\"a\"] and p = ...",
-        law.slope
+        law.slope,
+        law.range_ratio()
     )))
 }
 
