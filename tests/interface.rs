@@ -17,6 +17,7 @@ mod fracture;
 mod hand_calculation;
 mod laws;
 mod nothing_lost;
+mod practice;
 mod rates;
 mod service;
 mod sif;

@@ -39,6 +39,7 @@ mod pictures;
 mod population;
 mod practice;
 mod quadrature;
+mod rate_tables;
 mod rates;
 mod record;
 mod report;

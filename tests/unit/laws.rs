@@ -302,8 +302,8 @@ fn wrong_files_say_what_would_be_right() {
         (all.to_owned(), good.replace("12,", "x,"), "r.csv:3: delta_k_mpa_sqrt_m = x: is not a number"),
         (all.to_owned(), good.replace("2e-5", "-2e-5"), "r.csv:3: da_dn_mm_per_cycle = -2e-5: is not above zero"),
         (all.to_owned(), good.replace("16,4e-5,0.5", "16,4e-5,1.5"), "stress_ratio = 1.5: is no stress ratio below 1"),
-        (all.to_owned(), good.replace(",stress_ratio", ",r"), "is no column, and no stress_ratio is given for the file"),
-        (all.to_owned(), good.replace("delta_k_mpa", "dk_mpa"), "lacks the columns delta_k_mpa_sqrt_m and da_dn_mm_per_cycle"),
+        (all.to_owned(), good.replace(",stress_ratio", ",x"), "is no column, and no stress_ratio is given for the file"),
+        (all.to_owned(), good.replace("delta_k_mpa", "kk_mpa"), "lacks the columns delta_k_mpa_sqrt_m and da_dn_mm_per_cycle"),
         (all.to_owned(), good.replace("12,", ","), "`perilife rates --specimen CASE.toml` knows it"),
         (
             "[measured]\nrates = [{ file = \"r.csv\", stress_ratio = 0.1 }]\n".to_owned(),

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::case::CalibrationCase;
-use super::fit::{Bonds, Fit, FitTask, OwnPath, fit};
+use super::fit::{Bonds, Fit, FitTask, OwnPath, fit, population};
 use super::laws::LawFits;
 use super::laws::case::{LawCase, is_law_fit};
 use super::paris;
@@ -139,15 +139,25 @@ fn fit_by_method(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
     let delta_k = |length: f64| calibration.delta_k(length).unwrap_or(f64::NAN);
     let task = task(calibration, &delta_k);
     if case.model.method == Method::Handbook {
-        return Ok(fit(&task, &PowerLaw::new(from, to, &delta_k)?)?.of_power_law());
+        let law = PowerLaw::new(from, to, &delta_k)?;
+        return Ok(with_scatter(fit(&task, &law)?.of_power_law(), &task, &law));
     }
     let factors = FactorCurve::of(case, observer)?;
     let of_run = |length: f64| case.loading.range_share() * factors.at(length);
-    let fit = fit(&task, &PowerLaw::new(from, to, &of_run)?)?;
+    let law = PowerLaw::new(from, to, &of_run)?;
+    let fit = with_scatter(fit(&task, &law)?, &task, &law);
     match case.model.method {
         Method::Peridynamics => of_run_on_plate(fit, case, factors),
         _ => of_run_on_plate(fit.of_power_law(), case, factors),
     }
+}
+
+/// The fit with the scatter of lives, which of one specimen is assumed.
+fn with_scatter(mut fit: Fit, task: &FitTask<'_>, law: &PowerLaw) -> Fit {
+    if fit.population.is_none() && task.curves.len() == 1 {
+        fit.population = population(task, law, fit.record.constants.p, &mut fit.warnings);
+    }
+    fit
 }
 
 fn task<'a>(calibration: &'a CalibrationCase, delta_k: &'a dyn Fn(f64) -> f64) -> FitTask<'a> {
@@ -180,7 +190,8 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
         if fitted != m {
             fit = at_exponent(fitted)?;
         }
-        let mut fit = fit.of_power_law();
+        let mut fit =
+            with_scatter(fit.of_power_law(), &task(calibration, &|length| law.delta_k(length, fitted) * MPA_SQRT_M), &law);
         let reached = |fold: fn(f64, f64) -> f64, start: f64| {
             fit.record.crack_length.iter().map(|&length| law.largest_delta_k(length)).fold(start, fold)
         };

@@ -121,7 +121,9 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     }
     warnings.extend(task.curves.iter().find_map(|curve| short_steps_warning(&curve.crack_length)));
 
-    let population = population(task, law, constants.p, &mut warnings);
+    // The scatter of several specimens says how sure their constants are; that of one is assumed, and has no part in its fit.
+    let several = task.curves.len() > 1;
+    let population = several.then(|| population(task, law, constants.p, &mut warnings)).flatten();
     let (mut confidence, mut paris) = assess(task, law, &picture, &record, population.as_ref())?;
     if is_fitted {
         check_identified(&record.name, &confidence, &paris)?;
@@ -137,7 +139,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         let belonging: Vec<MeasuredCurve> = task.curves.iter().zip(&strange).map(|(curve, runs)| without(curve, runs)).collect();
         let of_belonging = FitTask { curves: &belonging, ..*task };
         let their = fit_all(&belonging, task.criterion, fixed_p, law)?;
-        let population_of = self::population(&of_belonging, law, their.p, &mut Vec::new());
+        let population_of = several.then(|| self::population(&of_belonging, law, their.p, &mut Vec::new())).flatten();
         let their_picture = if belonging.len() == 1 { belonging[0].clone() } else { picture.clone() };
         let without = fitted_curve(&their_picture, their, law)?;
         let error = assess(&of_belonging, law, &their_picture, &without, population_of.as_ref())?.1.m_error;
@@ -169,7 +171,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
 }
 
 /// Scatter of the specimens about a common law; `None`, with a warning, where their readings do not tell it.
-fn population(task: &FitTask<'_>, law: &PowerLaw, p: f64, warnings: &mut Vec<String>) -> Option<Population> {
+pub(super) fn population(task: &FitTask<'_>, law: &PowerLaw, p: f64, warnings: &mut Vec<String>) -> Option<Population> {
     let delta_k = |length: f64| law.delta_k(length, p) * MPA_SQRT_M;
     let specimens = task.curves.iter().map(|curve| Specimen::of_curve(curve, &delta_k)).collect::<Result<Vec<_>>>();
     match specimens.and_then(|specimens| fit_population(&specimens, task.fixed_p)) {

@@ -13,6 +13,7 @@ use crate::case::{Failure, Method};
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
+use crate::fatigue::growth_law::RangeKind;
 use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind, Transverse};
@@ -21,7 +22,7 @@ use crate::input::Folder;
 use crate::kinds::KindLine;
 use crate::loading::LoadingKind;
 use crate::material::{Plane, library};
-use crate::measured::{CycleUnit, Decimal, LengthUnit, LoadUnit};
+use crate::measured::{CycleUnit, Decimal, IntensityUnit, LengthUnit, LoadUnit, RateUnit};
 use crate::predict::StopReason;
 use crate::predict::tip_factors::StressIntensityMethod;
 use crate::solver::{SolverKind, SolverUsed, Symmetry};
@@ -76,6 +77,9 @@ pub fn lines() -> Vec<(String, String, String)> {
         LengthUnit::lines(),
         CycleUnit::lines(),
         LoadUnit::lines(),
+        IntensityUnit::lines(),
+        RateUnit::lines(),
+        RangeKind::lines(),
         Decimal::lines(),
         Estimate::lines(),
         RateMethod::lines(),

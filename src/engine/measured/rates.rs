@@ -175,6 +175,10 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
             continue;
         }
         let above_zero = |column: Column| {
+            if column.role == Role::DeltaK && row.cell(column.index).is_empty() {
+                let remedy = "give ΔK in every row: `perilife rates --specimen CASE.toml` knows it";
+                return Err(cells.cell_fault(row, column.index).error("is empty", remedy));
+            }
             let size = value(&cells, row, column, decimal)?;
             let fault = cells.cell_fault(row, column.index);
             match size > 0.0 {

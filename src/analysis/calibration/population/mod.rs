@@ -114,16 +114,6 @@ pub struct Member {
 /// What the readings of a lot say of its law and its scatter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Population {
-    /// Law of the lot.
-    pub law: MeanLaw,
-    /// The same model with a law that has no shape: its slope is the m of Paris that all readings agree on best.
-    pub power_law: MeanLaw,
-    /// T.
-    pub between: Between,
-    /// Noise along a crack.
-    pub noise: Noise,
-    /// Standard errors of all that.
-    pub errors: Errors,
     /// V: covariance of level, slope and shape.
     pub covariance: [[f64; EFFECTS]; EFFECTS],
     /// ν of Student's t.
@@ -134,6 +124,16 @@ pub struct Population {
     pub interval_variance: f64,
     /// Negative logarithm of the restricted likelihood; compares fits of equal fixed effects.
     pub restricted_likelihood: f64,
+    /// Law of the lot.
+    pub law: MeanLaw,
+    /// The same model with a law that has no shape: its slope is the m of Paris that all readings agree on best.
+    pub power_law: MeanLaw,
+    /// T.
+    pub between: Between,
+    /// Noise along a crack.
+    pub noise: Noise,
+    /// Standard errors of all that.
+    pub errors: Errors,
     /// Specimens.
     pub specimens: Vec<Member>,
 }

@@ -1,0 +1,159 @@
+//! Tables of da/dN over ΔK in every dress: read to the last digit, or refused by name.
+
+use std::path::Path;
+
+use perilife::fatigue::growth_law::RangeKind;
+use perilife::measured::rates::read;
+use perilife::measured::{RateFileKeys, RateTable};
+use perilife::units::{MM_PER_CYCLE, MPA_SQRT_M};
+
+/// Names of ΔK and da/dN with MPa√m and mm/cycle in a unit of theirs. Inch 25.4 mm, ksi 6.894757293168 MPa, kgf 9.80665 N.
+const DELTA_K: [(&str, f64); 12] = [
+    ("delta_k_mpa_sqrt_m", 1.0),
+    ("ΔK (MPa√m)", 1.0),
+    ("Delta K [MPa m^0.5]", 1.0),
+    ("dK, MPa*sqrt(m)", 1.0),
+    ("DELTA K (MPA SQRT(M))", 1.0),
+    ("∆K / MPa m^1/2", 1.0),
+    ("Stress intensity range (MPa√m)", 1.0),
+    ("Delta K (ksi√in)", 1.098_843_453_6),
+    ("dK (ksi sqrt(in))", 1.098_843_453_6),
+    ("ΔK [N/mm^1.5]", 0.031_622_776_601_7),
+    ("Delta K (N/mm^(3/2))", 0.031_622_776_601_7),
+    ("ΔK (kgf/mm^1.5)", 0.310_113_502_2),
+];
+const RATE: [(&str, f64); 9] = [
+    ("da_dn_mm_per_cycle", 1.0),
+    ("da/dN (mm/cycle)", 1.0),
+    ("DA/DN [mm/Cycle]", 1.0),
+    ("Crack growth rate (mm/cycle)", 1.0),
+    ("da/dN (m/cycle)", 1e3),
+    ("da/dN [m/cyc]", 1e3),
+    ("da/dN (in/cycle)", 25.4),
+    ("dadN (inch/cycle)", 25.4),
+    ("da/dN (µm/cycle)", 1e-3),
+];
+
+/// Whole numbers that look random and are the same on every machine (Park and Miller 1988, Commun. ACM 31:1192).
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0 * 48_271 % 2_147_483_647;
+        (self.0 as usize / 7) % bound
+    }
+}
+
+/// Writes a table of rates by chance, reads it, and holds it against the truth; `true` where it was read.
+fn try_table(seed: u64) -> bool {
+    let mut chance = Chance(seed * 7919 + 1);
+    let ((k_name, k_unit), (rate_name, rate_unit)) = (DELTA_K[chance.below(DELTA_K.len())], RATE[chance.below(RATE.len())]);
+    let (mut k_name, mut rate_name) = (k_name.to_owned(), rate_name.to_owned());
+    let [log_k, log_rate] = [chance.below(6) == 0, chance.below(6) == 0];
+    if log_k {
+        k_name = format!("log10 {k_name}");
+    }
+    if log_rate {
+        rate_name = format!("log {rate_name}");
+    }
+    let is_comma = chance.below(3) == 0;
+    let separators: &[&str] = if is_comma { &[";", "\t", "; "] } else { &[",", ";", "\t", ", ", "|"] };
+    let separator = separators[chance.below(separators.len())];
+    // A name with the separator in it stands in quotes.
+    let quoted = |name: &str| {
+        if name.contains(separator.trim()) && !separator.trim().is_empty() { format!("\"{name}\"") } else { name.to_owned() }
+    };
+    let number = |value: f64, digits: usize| {
+        let text = format!("{value:.digits$e}");
+        if is_comma { text.replace('.', ",") } else { text }
+    };
+    let (says_ratio, swapped, count) = (chance.below(2) == 0, chance.below(2) == 0, 4 + chance.below(20));
+    let damage = chance.below(8);
+    let hurt = chance.below(count);
+    let truth: Vec<(f64, f64)> =
+        (0..count).map(|i| 6.0 * 7.0_f64.powf(i as f64 / (count - 1) as f64)).map(|k| (k, 3e-8 * k.powf(3.2))).collect();
+    let row = |(i, (k, rate)): (usize, &(f64, f64))| {
+        let scaled = |value: f64, is_log: bool| if is_log { value.log10() } else { value };
+        let mut cells = vec![number(scaled(k / k_unit, log_k), 9), number(scaled(rate / rate_unit, log_rate), 9)];
+        if swapped {
+            cells.swap(0, 1);
+        }
+        if says_ratio {
+            cells.push(number(0.1, 3));
+        }
+        match damage {
+            0 if i == hurt => cells[0].clear(),
+            1 if i == hurt => cells[1] = "n/a".to_owned(),
+            2 if i == hurt => drop(cells.pop()),
+            _ => {}
+        }
+        cells.join(separator)
+    };
+    let mut names = vec![quoted(&k_name), quoted(&rate_name)];
+    if swapped {
+        names.swap(0, 1);
+    }
+    if says_ratio {
+        names.push(["stress_ratio", "R", "R ratio"][chance.below(3)].to_owned());
+    }
+    let rows: Vec<String> = truth.iter().enumerate().map(row).collect();
+    let text = format!("{}\n{}\n", names.join(separator), rows.join("\n"));
+    let keys = RateFileKeys { stress_ratio: (!says_ratio).then_some(0.1), ..RateFileKeys::default() };
+    match read(text.as_bytes(), Path::new("chance.csv"), &keys) {
+        Err(error) => {
+            assert!(error.exit_code() == 2 && error.to_string().contains("chance.csv"), "{error}\n{text}");
+            assert!(damage < 3, "refused without a fault: {error}\n{text}");
+            false
+        }
+        Ok(table) => {
+            assert_eq!(table.rows.len(), count, "{text}");
+            for (row, (k, rate)) in table.rows.iter().zip(&truth) {
+                let (own_k, own_rate) = (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE);
+                assert!((own_k / k - 1.0).abs() < 1e-7 && (own_rate / rate - 1.0).abs() < 1e-7, "{own_k} {own_rate}\n{text}");
+                assert_eq!(row.ratio, 0.1, "{text}");
+            }
+            true
+        }
+    }
+}
+
+#[test]
+fn tables_of_rates_by_chance_are_read_or_refused() {
+    let read = (0..300).filter(|&seed| try_table(seed)).count();
+    assert!(read > 150, "only {read} of 300 were read");
+}
+
+#[test]
+#[ignore = "long: 2000 tables of rates by chance, cargo test --test all -- --ignored unit::rate_tables"]
+fn many_tables_of_rates_by_chance_are_read_or_refused() {
+    let read = (0..2000).filter(|&seed| try_table(seed)).count();
+    println!("{read} of 2000 tables were read, the others refused by name");
+    assert!(read > 1000);
+}
+
+fn table(text: &str, keys: &RateFileKeys) -> perilife::Result<RateTable> {
+    read(text.as_bytes(), Path::new("rates.csv"), keys)
+}
+
+/// What a table does not say is asked for, and two answers are refused.
+#[test]
+fn what_a_table_of_rates_does_not_say_is_asked_for() {
+    let plain = RateFileKeys::default();
+    let with = |text: &str, keys: &RateFileKeys, words: &str| {
+        let error = table(text, keys).unwrap_err().to_string();
+        assert!(error.contains(words), "{words} in {error}");
+    };
+    with("dK,da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "does not say its unit");
+    with("dK (Pa),da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "has a unit that is not known");
+    with("dK (MPa√m),da/dN (mm/cycle),R\n-0.7,1e-5,0.1\n", &plain, "log10");
+    with("dK (MPa√m),da/dN (mm/cycle),R\n6,1e-5,1.1\n", &plain, "no stress ratio below 1");
+    let given = RateFileKeys { stress_ratio: Some(0.1), ..RateFileKeys::default() };
+    with("dK (MPa√m),da/dN (mm/cycle),R\n6,1e-5,0.1\n", &given, "is a column, and stress_ratio = 0.1");
+    let negative = "dK (MPa√m),da/dN (mm/cycle),R\n12,1e-5,-0.5\n";
+    with(negative, &plain, "delta_k = \"full\"");
+    for (range, tensile) in [(RangeKind::Full, 8.0), (RangeKind::Tensile, 12.0)] {
+        let keys = RateFileKeys { delta_k: Some(range), ..RateFileKeys::default() };
+        let found = table(negative, &keys).unwrap();
+        assert!((found.rows[0].delta_k / MPA_SQRT_M / tensile - 1.0).abs() < 1e-12 && found.range == Some(range));
+    }
+}
