@@ -205,31 +205,26 @@ proptest! {
     }
 }
 
-/// Names are looked up, not searched: 40 000 of them twice, interleaved, in two files, take some four times as long as 10 000, and
-/// would take sixteen times as long.
+/// Names are looked up, not searched: 200 000 of them twice, interleaved, in two files.
 #[test]
 fn many_specimens_take_no_longer_each_than_few() {
-    const COUNT: usize = 40_000;
+    const COUNT: usize = 200_000;
     // In rounds, so that no row belongs to the curve of the row before; lengths fall once in every curve.
-    let file = |prefix: char, count: usize| {
+    let file = |prefix: char| {
         let row =
             |round: usize, i: usize| format!("{prefix}{i},{},{}\n", 1000 * round, 10.0 - 0.1 * (round as f64 - 1.0).powi(2));
-        let rows = (0..5).flat_map(|round| (0..count).map(move |i| row(round, i)));
+        let rows = (0..5).flat_map(|round| (0..COUNT).map(move |i| row(round, i)));
         std::iter::once("specimen,cycles,crack_length_mm\n".to_owned()).chain(rows).collect::<String>()
     };
-    let joined = |count: usize| {
-        let files = ['a', 'b'].map(|prefix| file(prefix, count));
-        let started = std::time::Instant::now();
-        let [mut first, second] = files.map(|text| parsed(&text));
-        first.add(second).unwrap();
-        (first, started.elapsed().as_secs_f64())
-    };
-    let (_, few) = joined(COUNT / 4);
-    let (mut first, many) = joined(COUNT);
-    println!("{} specimens twice: {few:.2} s, {COUNT}: {many:.2} s", COUNT / 4);
+    let started = std::time::Instant::now();
+    let [mut first, second] = ['a', 'b'].map(|prefix| parsed(&file(prefix)));
+    first.add(second).unwrap();
+    let seconds = started.elapsed().as_secs_f64();
+    println!("{COUNT} specimens twice: {seconds:.1} s");
     assert_eq!(first.curves.len(), 2 * COUNT);
     assert_eq!([&first.curves[7].specimen, &first.curves[COUNT].specimen], ["a7", "b0"], "in the order of the files");
-    assert!(many < 10.0 * few, "{many:.2} s, {few:.2} s for a quarter of them");
+    // A search for each took minutes.
+    assert!(seconds < 30.0, "{seconds:.1} s");
     // What is to be said of each of them is said of the first hundred.
     assert_eq!(first.warnings.len(), 2 * 101, "{:?}", &first.warnings[..3]);
     assert_eq!(first.warnings[100], format!("and {} more warnings of this kind", COUNT - 100));
@@ -238,9 +233,8 @@ fn many_specimens_take_no_longer_each_than_few() {
         vec![LeaveOut { specimen: Some(name.to_owned()), from_cycles: 0.0, to_cycles: 500.0, reason }]
     };
     let unknown = first.leave_out(&window("c")).unwrap_err().to_string();
-    assert!(unknown.len() < 1000 && unknown.contains("79980 more"), "{unknown}");
-    let problems =
-        survey(file('a', COUNT).replace(",1000,", ",x,").as_bytes(), Path::new("bad.csv"), &Import::default()).problems;
+    assert!(unknown.len() < 1000 && unknown.contains("399980 more"), "{unknown}");
+    let problems = survey(file('a').replace(",1000,", ",x,").as_bytes(), Path::new("bad.csv"), &Import::default()).problems;
     assert_eq!(problems.len(), PROBLEMS_MAX + 1);
 }
 
