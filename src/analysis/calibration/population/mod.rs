@@ -22,7 +22,7 @@ use crate::units::{MM, MPA_SQRT_M};
 use intervals::{Interval, Specimen};
 use law::{EFFECTS, KNOTS, MeanLaw, Row};
 use noise::{Noise, cholesky, whiten};
-use reml::{Effects, Group, PARAMETERS, Parameters, Penalty, departures, estimate, minimise, uncertainty, variances};
+use reml::{Effects, Group, PARAMETERS, Parameters, Penalty, departures, estimate, likelihood, minimise, uncertainty, variances};
 
 /// Specimens from which on no scatter is assumed.
 const SPECIMENS_FOR_SCATTER: usize = 10;
@@ -180,7 +180,7 @@ impl Priors {
         let noise = [(0.16_f64.ln(), 2.0), ((0.67 * MM).ln(), 1.5), ((0.065 * root_mm).ln(), 2.0), ((0.01 * MM).ln(), 2.0)];
         Priors {
             normal: [between[0], between[1], (0.0, 1.0), noise[0], noise[1], noise[2], noise[3]],
-            least: [1e-9, 1e-9, f64::NEG_INFINITY, 1e-4, 1e-3 * MM, 1e-4 * root_mm, 1e-7 * MM].map(limit),
+            least: [1e-5, 1e-5, f64::NEG_INFINITY, 3e-4, 0.005 * MM, 3e-4 * root_mm, 1e-5 * MM].map(limit),
             most: [2.0, 5.0, f64::INFINITY, 3.0, 100.0 * MM, 3.0 * root_mm, 5.0 * MM].map(limit),
         }
     }
@@ -228,7 +228,8 @@ pub fn fit(specimens: &[Specimen], slope: Option<f64>) -> Result<Population> {
     let priors = Priors::of(specimens.len());
     let no_law = || Error::Mechanics("the readings give no growth law: their rates have no smallest misfit".to_owned());
     let law = start(specimens, slope)?;
-    if slope.is_none() && law.range_ratio() < RANGE_MIN {
+    let count: usize = specimens.iter().map(|specimen| specimen.intervals.len()).sum();
+    if slope.is_none() && (law.range_ratio() < RANGE_MIN || count < 2) {
         check_identified(&law, f64::INFINITY)?;
     }
     let at = priors.start(0.22);
@@ -238,7 +239,6 @@ pub fn fit(specimens: &[Specimen], slope: Option<f64>) -> Result<Population> {
     if slope.is_none() {
         check_identified(&straight.law, slope_of_readings(specimens, &straight).unwrap_or(f64::INFINITY))?;
     }
-    let count: usize = specimens.iter().map(|specimen| specimen.intervals.len()).sum();
     let mut found = straight;
     if law.range_ratio() >= SHAPE_RANGE_MIN && count >= SHAPE_INTERVALS_MIN {
         let bent = MeanLaw { shape: Some([0.0; KNOTS]), ..straight.law };
@@ -261,7 +261,7 @@ fn search(specimens: &[Specimen], mut law: MeanLaw, slope: Option<f64>, priors: 
             break;
         }
     }
-    let value = estimate(&groups(specimens, &law), &at, &penalty(&law, slope))?.value + priors.penalty(&at);
+    let value = likelihood(&groups(specimens, &law), &at, &penalty(&law, slope))? + priors.penalty(&at);
     Some(Found { law, at, value })
 }
 
@@ -429,7 +429,7 @@ fn assess(specimens: &[Specimen], best: &Found, straight: &Found, slope: Option<
         freedom,
         assumed_scatter: few,
         interval_variance: noisy / cycles,
-        restricted_likelihood: found.value,
+        restricted_likelihood: likelihood(&groups, at, &penalty)?,
         specimens: members.into_iter().collect::<Option<_>>()?,
     })
 }

@@ -26,6 +26,8 @@ const STEP: f64 = 1e-4;
 const GRADIENT_MIN: f64 = 1e-4;
 /// Most steps of the search.
 const STEPS_MAX: u64 = 100;
+/// Standard deviation that levels have in the estimate of the law.
+const LEVEL_FREE: f64 = 1.0;
 /// Likelihood where a covariance is not positive definite.
 const IMPOSSIBLE: f64 = 1e12;
 
@@ -40,6 +42,11 @@ pub(super) struct Group {
     pub residuals: Vec<Vec<f64>>,
     /// Places of the specimens among all.
     pub members: Vec<usize>,
+}
+
+/// The likelihood of all specimens at given variances.
+pub(super) fn likelihood(groups: &[Group], at: &Parameters, penalty: &Penalty) -> Option<f64> {
+    Some(estimate_of(&products(groups, at)?, at, penalty, 0.0)?.value)
 }
 
 /// Products `[X r]ᵀ cov(e)⁻¹ [X r]` of a group, noise in units of s.
@@ -126,39 +133,54 @@ fn first_two(vector: &Effects) -> Vector2<f64> {
     Vector2::new(vector[0], vector[1])
 }
 
-/// Generalised least squares from products.
-fn estimate_of(products: &[Products], at: &Parameters, penalty: &Penalty) -> Option<Estimate> {
+/// Generalised least squares from products, by weights as if levels had a variance that is larger by `free`.
+fn estimate_of(products: &[Products], at: &Parameters, penalty: &Penalty, free: f64) -> Option<Estimate> {
     let (between, noise) = variances(at);
-    let t = between.matrix();
+    let t = between.matrix() + Matrix2::new(free, 0.0, 0.0, 0.0);
     let (variance, log_variance) = (noise.scatter * noise.scatter, 2.0 * noise.scatter.ln());
     let mut curvature = EffectsMatrix::from_diagonal(&penalty.curvature);
+    let mut of_free = EffectsMatrix::zeros();
     let mut right = -penalty.curvature.component_mul(&penalty.from_place);
     let mut twice = penalty.curvature.component_mul(&penalty.from_place).dot(&penalty.from_place);
     for group in products {
         let specimens = group.rr.len() as f64;
         let xx = group.xx / variance;
-        let mixed = Matrix2::identity() + top(&xx) * t;
-        let determinant = mixed.determinant();
-        // M = (T⁻¹ + Zᵀ cov(e)⁻¹ Z)⁻¹, written so that T may be singular.
-        let m = t * mixed.try_inverse()?;
         let zx = xx.fixed_rows::<2>(0).into_owned();
-        curvature += (xx - zx.transpose() * m * zx) * specimens;
-        twice += specimens * (group.log_determinant + group.intervals * log_variance + determinant.ln());
+        let mixed = Matrix2::identity() + top(&xx) * t;
+        let inverse = mixed.try_inverse()?;
+        // M = (T⁻¹ + Zᵀ cov(e)⁻¹ Z)⁻¹, written so that T may be singular.
+        let m = t * inverse;
+        // Xᵀ S⁻¹ X = Xᵀ cov(e)⁻¹ X - (Xᵀ cov(e)⁻¹ Z) M (Zᵀ cov(e)⁻¹ X). Of Z itself hardly anything is left of the difference, where
+        // noise is small; there it is (I + A T)⁻¹ Zᵀ cov(e)⁻¹ X.
+        let of_z = inverse * zx;
+        let mut one = xx - zx.transpose() * m * zx;
+        one.fixed_rows_mut::<2>(0).copy_from(&of_z);
+        one.fixed_columns_mut::<2>(0).copy_from(&of_z.transpose());
+        curvature += one * specimens;
+        // Z is the start of X: what the variance of the levels adds to Xᵀ S⁻¹ r.
+        of_free += one.column(0) * one.column(0).transpose() * (specimens * free);
+        twice += specimens * (group.log_determinant + group.intervals * log_variance + mixed.determinant().ln());
         for (xr, rr) in group.xr.iter().zip(&group.rr) {
             let (xr, zr) = (xr / variance, first_two(xr) / variance);
-            right += xr - zx.transpose() * (m * zr);
-            twice += rr / variance - zr.dot(&(m * zr));
+            let of_z = inverse * zr;
+            let mut of_specimen = xr - zx.transpose() * (m * zr);
+            of_specimen.fixed_rows_mut::<2>(0).copy_from(&of_z);
+            right += of_specimen;
+            twice += rr / variance - zr.dot(&(t * of_z));
         }
     }
     let factor = curvature.cholesky()?;
     let change = factor.solve(&right);
     twice += 2.0 * factor.l_dirty().diagonal().iter().map(|l| l.ln()).sum::<f64>() - right.dot(&change);
-    twice.is_finite().then(|| Estimate { change, covariance: factor.inverse(), value: 0.5 * twice })
+    let inverse = factor.inverse();
+    let covariance = inverse - inverse * of_free * inverse;
+    twice.is_finite().then_some(Estimate { change, covariance, value: 0.5 * twice })
 }
 
-/// Generalised least squares at given variances.
+/// Generalised least squares of the law at given variances. Levels are all but free ([`LEVEL_FREE`]), so that m is that of the growth within
+/// specimens: a lot of which each is exact has their m, whatever their levels. The covariance is that of this estimate under the variances.
 pub(super) fn estimate(groups: &[Group], at: &Parameters, penalty: &Penalty) -> Option<Estimate> {
-    estimate_of(&products(groups, at)?, at, penalty)
+    estimate_of(&products(groups, at)?, at, penalty, LEVEL_FREE * LEVEL_FREE)
 }
 
 /// Departures of the specimens of a group from the law, b_i and m_i, and the mean square of what is left in units of its deviation.
@@ -193,7 +215,7 @@ impl Search<'_> {
     }
 
     fn value_of(&self, products: Option<&[Products]>, at: &Parameters) -> f64 {
-        let found = products.and_then(|products| estimate_of(products, at, self.penalty));
+        let found = products.and_then(|products| estimate_of(products, at, self.penalty, 0.0));
         found.map_or(IMPOSSIBLE, |found| found.value + self.priors.penalty(at))
     }
 
