@@ -161,33 +161,33 @@ fn imports_are_taken_apart() {
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
     ("fracture", 6766),
-    ("report", 6240),
-    ("service", 5671),
-    ("growth", 5329),
+    ("report", 6293),
+    ("service", 5657),
+    ("calibration", 5538),
+    ("growth", 5340),
     ("solver", 5120),
     ("verify", 4803),
-    ("calibration", 3800),
+    ("measured", 3695),
     ("element_free", 3270),
-    ("measured", 2912),
-    ("commands", 2704),
+    ("commands", 2705),
+    ("case", 2479),
     ("body", 2464),
-    ("case", 2452),
     ("specimen", 1736),
     ("levels", 1728),
     ("predict", 1514),
-    ("fatigue", 1276),
+    ("fatigue", 1339),
     ("sweep", 1074),
-    ("runner", 839),
+    ("runner", 859),
     ("loading", 718),
     ("input", 699),
     ("stress_intensity", 681),
-    ("check", 545),
+    ("check", 546),
     ("bond_law", 394),
     ("tables", 342),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 64712;
+const LINES_OF_ALL: usize = 67412;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -59,7 +59,8 @@ fn try_table(seed: u64) -> bool {
     let is_comma = chance.below(3) == 0;
     let separators: &[&str] = if is_comma { &[";", "\t", "; "] } else { &[",", ";", "\t", ", ", "|"] };
     let separator = separators[chance.below(separators.len())];
-    // A name with the separator in it stands in quotes.
+    // A name with the separator in it stands in quotes, which begin where the cell does.
+    let separator = if k_name.contains(',') { separator.trim_end_matches(' ') } else { separator };
     let quoted = |name: &str| {
         if name.contains(separator.trim()) && !separator.trim().is_empty() { format!("\"{name}\"") } else { name.to_owned() }
     };

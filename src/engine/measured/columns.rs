@@ -317,21 +317,19 @@ fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<
         }
         found.push(column);
     }
-    // R alone with numbers from 1 on is no stress ratio: the right side of a specimen, perhaps.
-    let is_ratio = |column: &Column| {
-        let numbers = table.rows.iter().filter_map(|row| row.cell(column.index).replace(',', ".").parse::<f64>().ok());
-        numbers.fold(f64::NEG_INFINITY, f64::max) < 1.0
-    };
+    // R alone with numbers from 1 on is no stress ratio, but the right side of a specimen, perhaps; without any it says nothing.
     if let [column] = found.as_slice()
         && column.role == Role::Ratio
-        && !is_ratio(column)
     {
-        warnings.push(format!(
-            "{}: {} is no stress ratio below 1: not read, that of the case holds",
-            table.file.display(),
-            table.header[column.index]
-        ));
-        found.clear();
+        let numbers = table.rows.iter().filter_map(|row| row.cell(column.index).replace(',', ".").parse::<f64>().ok());
+        let largest = numbers.reduce(f64::max);
+        warnings.extend(largest.filter(|largest| *largest >= 1.0).map(|_| {
+            let name = &table.header[column.index];
+            format!("{}: {name} is no stress ratio below 1: not read, that of the case holds", table.file.display())
+        }));
+        if largest.is_none_or(|largest| largest >= 1.0) {
+            found.clear();
+        }
     }
     // A minimum alone does not say how large a cycle is; a ratio goes with the largest load of the case.
     let says_cycle = found.iter().any(|column| matches!(column.role, Role::Max | Role::Range | Role::Ratio));
