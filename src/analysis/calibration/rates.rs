@@ -179,10 +179,19 @@ fn mean_ratio(curve: &MeasuredCurve, readings: RangeInclusive<usize>) -> f64 {
     of.map_or(f64::NAN, |ratios| ratios.iter().sum::<f64>() / ratios.len() as f64)
 }
 
-/// Line through log10 da/dN (mm/cycle) over log10 ΔK (MPa√m), points that carry a flag left out: `intercept` is log10 C, `slope` m.
+/// Share of rates, a tenth, that a line needs to stand for all.
+const SHARE_OF_LINE: usize = 10;
+
+/// Line through log10 da/dN (mm/cycle) over log10 ΔK (MPa√m): `intercept` is log10 C, `slope` m. Rates that carry a flag are left out; short
+/// steps alone are no reason as long as every rate grows, since then noise is small beside them. `None` where fewer than a tenth are left:
+/// of those that grow by chance a line would be flat.
 pub fn paris_line(points: &[RatePoint]) -> Option<Line> {
-    let belongs = |point: &&RatePoint| !Flags { load_changes: false, ..point.flags }.any();
+    let is_noisy = points.iter().any(|point| point.flags.not_growing);
+    let belongs = |point: &&RatePoint| !Flags { short_step: point.flags.short_step && is_noisy, ..point.flags }.any();
     let usable = || points.iter().filter(belongs).filter(|point| point.rate > 0.0 && point.delta_k > 0.0);
+    if usable().count() * SHARE_OF_LINE < points.len() {
+        return None;
+    }
     let log_k: Vec<f64> = usable().map(|point| (point.delta_k / MPA_SQRT_M).log10()).collect();
     let log_rate: Vec<f64> = usable().map(|point| (point.rate / MM_PER_CYCLE).log10()).collect();
     line(&log_k, &log_rate)
