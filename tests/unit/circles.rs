@@ -163,11 +163,11 @@ const LINES: &[(&str, usize)] = &[
     ("fracture", 6766),
     ("report", 6293),
     ("service", 5657),
-    ("calibration", 5547),
+    ("calibration", 5546),
     ("growth", 5340),
     ("solver", 5120),
     ("verify", 4803),
-    ("measured", 3695),
+    ("measured", 3711),
     ("element_free", 3270),
     ("commands", 2705),
     ("case", 2479),
@@ -187,7 +187,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 67421;
+const LINES_OF_ALL: usize = 67436;
 
 #[test]
 fn rooms_do_not_grow() {

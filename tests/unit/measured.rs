@@ -257,3 +257,30 @@ fn lengths_are_found_in_long_curves() {
         assert!((cycles - 10.0 * reached as f64).abs() < 100.0, "{length}: {cycles} against reading {reached}");
     }
 }
+
+/// A number typed wrong, from which the crack falls back, is named by its line and taken out; noise is not.
+#[test]
+fn slips_of_the_pen_are_named() {
+    let case = crate::support::hand_cases::hand_case(crate::support::hand_cases::PANEL, &[]);
+    let read_with = |wrong: &[(usize, f64)]| {
+        // Growth that doubles every ten readings, with noise of 0.01 mm.
+        let mut noise = crate::support::noise::Noise::new(5);
+        let mut lengths: Vec<f64> = (0..31).map(|i| 9.0 + 2.0_f64.powf(f64::from(i) / 10.0) + 0.01 * noise.normal()).collect();
+        for (reading, by) in wrong {
+            lengths[*reading] += by;
+        }
+        let rows: String = lengths.iter().enumerate().map(|(i, a)| format!("{},{a:.4}\n", 1000 * i)).collect();
+        let text = format!("cycles,crack_length_mm\n{rows}");
+        let mut measured = parse(text.as_bytes(), Path::new("typed.csv"), &Import::default()).unwrap();
+        measured.set_against(&case.specimen, &case.material, &case.loading).unwrap();
+        measured
+    };
+    let slips = |measured: &Measured| measured.warnings.iter().filter(|line| line.contains("a slip of the pen")).count();
+    assert_eq!(slips(&read_with(&[])), 0);
+    for (reading, by) in [(12, 10.0), (12, -1.0), (25, 3.0), (29, -2.0)] {
+        let measured = read_with(&[(reading, by)]);
+        let line = format!("typed.csv: line {}: ", reading + 2);
+        assert!(measured.warnings.iter().any(|words| words.starts_with(&line)), "{reading} {by}: {:?}", measured.warnings);
+        assert_eq!((slips(&measured), measured.curves[0].cycles.len()), (1, 30), "{reading} {by}");
+    }
+}

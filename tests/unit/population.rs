@@ -76,6 +76,24 @@ fn few_exact_readings_over_long_growths_give_their_law() {
     }
 }
 
+/// Levels of specimens that were read at unlike ΔK are no slope.
+#[test]
+fn the_slope_is_within_those_of_the_specimens() {
+    let lot: [(usize, f64, f64, f64, f64); 4] =
+        [(30, 9.0, 25.0, 35.0, 1.0), (25, 24.0, 60.0, 60.0, 1.1), (6, 8.0, 50.0, 45.0, 1.5), (2, 17.0, 65.0, 55.0, 0.7)];
+    let one = |(i, (count, from, to, stress, factor)): (usize, (usize, f64, f64, f64, f64))| {
+        let delta_k = panel(152.4 * MM, stress);
+        let m = [2.95, 2.97, 2.96, 2.96][i];
+        let readings = exact(&spaced(from, to, count), &delta_k, &|k| 1e-11 * factor * k.powf(m));
+        Specimen::new(&format!("S{i}"), &readings, &delta_k, INTERVALS_MAX).unwrap()
+    };
+    let lot = fit(&lot.into_iter().enumerate().map(one).collect::<Vec<_>>(), None).unwrap();
+    let own: Vec<f64> = lot.specimens.iter().filter(|member| member.intervals > 1).map(|member| member.own[1]).collect();
+    let (least, most) = own.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), m| (low.min(*m), high.max(*m)));
+    println!("{own:?}: {}", lot.power_law.slope);
+    assert!((least - 1e-3..=most + 1e-3).contains(&lot.power_law.slope), "{own:?}: {}", lot.power_law.slope);
+}
+
 #[test]
 fn the_range_is_that_of_every_specimen_under_its_own_load() {
     let lot = fit(&sparse_lot(3.0), None).unwrap();

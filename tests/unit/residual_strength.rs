@@ -3,8 +3,10 @@
 use perilife::predict::StopReason;
 use perilife::predict::residual_strength::{check_strength, residual_strength};
 use perilife::report::run::strength_table as table;
+use perilife::specimen::handbook::handbook;
+use perilife::units::{MPA, MPA_SQRT_M};
 
-use crate::support::hand_cases::{ALL, hand_case, hand_run};
+use crate::support::hand_cases::{ALL, PANEL, hand_case, hand_run, try_hand_case};
 use crate::support::{made_up_case, made_up_run};
 
 #[test]
@@ -37,5 +39,51 @@ fn the_table_names_the_unit_of_the_load() {
         let [least, toughness, net_section] = [1, 2, 3].map(|column| row[column].parse::<f64>().unwrap());
         assert_eq!(least, toughness.min(net_section), "{specimen}");
         assert!(text.lines().count() > 100 && text.lines().last().unwrap().ends_with("net_section_yield"), "{text}");
+    }
+}
+
+/// A life ends where the plate no longer bears the load that it has to: K of that load is the toughness, or its net section yields, whatever
+/// comes first, and before that of the cycles does.
+#[test]
+fn a_required_load_ends_the_life() {
+    for specimen in ALL {
+        let strengths = ["material.toughness_mpa_sqrt_m=60", "material.yield_strength_mpa=345"];
+        let plain = hand_run(specimen, &strengths);
+        for factor in [1.0, 1.4, 2.0] {
+            let key = format!("stop.limit_load_factor={factor}");
+            let set = [strengths[0], strengths[1], &key];
+            let (case, run) = (hand_case(specimen, &set), hand_run(specimen, &set));
+            assert_eq!(run.stop, StopReason::RequiredStrength, "{specimen}");
+            let (a, load) = (run.crack_length_final(), factor * case.loading.maximum);
+            let k = handbook(&case.specimen).unwrap().k_i(a, load) / (60.0 * MPA_SQRT_M);
+            let section = case.specimen.net_section_stress(a, load).unwrap() / (345.0 * MPA);
+            assert!((k.max(section) - 1.0).abs() < 1e-9, "{specimen}: {k} {section}");
+            if factor == 1.0 {
+                assert_eq!((run.life(), a), (plain.life(), plain.crack_length_final()), "{specimen}");
+            } else {
+                assert!(run.life().unwrap() < plain.life().unwrap(), "{specimen}");
+            }
+        }
+    }
+    // The same load as a gross stress: 48.28 MPa of range at R = 0.2 has a largest stress of 60.35 MPa.
+    let toughness = "material.toughness_mpa_sqrt_m=60";
+    let [by_factor, by_stress] = ["stop.limit_load_factor=2", "stop.required_strength_mpa=120.7"]
+        .map(|key| hand_run(PANEL, &[toughness, key]).life().unwrap());
+    assert!((by_factor / by_stress - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_required_load_that_says_nothing_is_refused() {
+    let toughness = "material.toughness_mpa_sqrt_m=60";
+    let wrong: [(&str, &[&str], &str); 5] = [
+        (PANEL, &[toughness, "stop.required_strength_mpa=50"], "less than the largest load of a cycle"),
+        (PANEL, &[toughness, "stop.limit_load_factor=0.9"], "less than the largest load of a cycle"),
+        (PANEL, &["stop.limit_load_factor=2"], "has neither toughness nor yield strength"),
+        (PANEL, &[toughness, "stop.limit_load_factor=2", "stop.required_strength_mpa=150"], "the load is given twice"),
+        (ALL[3], &[toughness, "stop.required_strength_mpa=150"], "give stop.limit_load_factor"),
+    ];
+    for (specimen, set, words) in wrong {
+        let error = try_hand_case(specimen, set).unwrap_err().to_string();
+        assert!(error.contains(words), "{words} in {error}");
     }
 }

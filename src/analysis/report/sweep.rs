@@ -234,7 +234,7 @@ impl Lives {
             "p95": p95.0,
             "words": { "p05": p05.1, "p50": p50.1, "p95": p95.1 },
             "least": ends().next(),
-            "most": ends().last(),
+            "most": ends().next_back(),
         })
     }
 }

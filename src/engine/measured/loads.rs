@@ -11,7 +11,7 @@ use crate::line::line;
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::specimen::handbook::{HandbookFormula, handbook};
-use crate::specimen::{LoadMeasure, Specimen};
+use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
 use crate::units::{MM, MPA_SQRT_M};
 
 /// Loads within this share of each other are equal: machines hold theirs to one percent.
@@ -37,11 +37,27 @@ impl Measured {
         let (limit, limit_name) = specimen.length_limit();
         self.leave_slips_out();
         self.check_lengths(limit, limit_name)?;
+        self.check_half_lengths(specimen)?;
         self.resolve_loads(specimen, loading)?;
         self.curves.iter().try_for_each(|curve| compare(curve, specimen, loading))?;
         self.leave_fracture_out(specimen, material, loading);
         self.check_sides(specimen);
         Ok(())
+    }
+
+    /// Refuses lengths tip to tip of a central crack whose case has the half: a first reading that is twice the crack of the case.
+    fn check_half_lengths(&self, specimen: &Specimen) -> Result<()> {
+        let is_double =
+            |curve: &&MeasuredCurve| (curve.crack_length[0] / specimen.crack_length - 2.0).abs() < STATED_DIFFERENCE / 4.0;
+        let double = self.curves.iter().filter(|_| specimen.kind == SpecimenKind::MiddleTension).find(is_double);
+        double.map_or(Ok(()), |curve| {
+            let value = round_off(curve.crack_length[0] / curve.source.length_unit).to_string();
+            let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(0) };
+            Err(fault.error(
+                "is twice the crack length of the case, which is half the length tip to tip",
+                "name a column of whole lengths 2a (mm), or give the length at the first reading as specimen.crack_length_mm",
+            ))
+        })
     }
 
     /// Takes readings of the fracture off the ends of the curves: those beyond 0.95 of the plate, those whose K is beyond 1.5 times the

@@ -154,7 +154,8 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         }
         let form = multipart(&[
             ("name", None, name),
-            ("input", None, &text.replace("files = [\"curve.csv\"]", "")),
+            // `curl -F input=@case.toml` names the file that the text is from.
+            ("input", (name == "hand").then_some("case.toml"), &text.replace("files = [\"curve.csv\"]", "")),
             ("file", Some("curve.csv"), &curve),
         ]);
         let again =

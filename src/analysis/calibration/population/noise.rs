@@ -73,8 +73,7 @@ pub(super) fn cholesky(lower: &mut [f64], n: usize) -> Option<()> {
             row[j] = (row[j] - dot(&row[..j], &factor[..j])) / factor[j];
         }
         let pivot = row[i] - dot(&row[..i], &row[..i]);
-        // Written so that NaN fails too.
-        if !(pivot > 0.0) {
+        if pivot.is_nan() || pivot <= 0.0 {
             return None;
         }
         row[i] = pivot.sqrt();

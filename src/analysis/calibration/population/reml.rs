@@ -110,14 +110,14 @@ fn of_group(group: &Group, unit: &Noise) -> Option<Products> {
     };
     for row in white.chunks_exact(columns) {
         let (x, residuals) = row.split_at(EFFECTS);
-        for i in 0..EFFECTS {
-            for j in 0..EFFECTS {
-                found.xx[(i, j)] += x[i] * x[j];
+        for (i, a) in x.iter().enumerate() {
+            for (j, b) in x.iter().enumerate() {
+                found.xx[(i, j)] += a * b;
             }
         }
         for (k, r) in residuals.iter().enumerate() {
-            for i in 0..EFFECTS {
-                found.xr[k][i] += x[i] * r;
+            for (i, a) in x.iter().enumerate() {
+                found.xr[k][i] += a * r;
             }
             found.rr[k] += r * r;
         }
