@@ -105,7 +105,8 @@ fn absolute(own: &[String], path: &[String], modules: &BTreeSet<Module>) -> Opti
     match path.first()?.as_str() {
         // The service is a crate of its own: what it calls by `crate` is one of its modules or a room above it.
         "crate" => {
-            let within = own.first().filter(|room| *room == "service").map(|room| [&[room.clone()], &path[1..]].concat());
+            let within =
+                own.first().filter(|room| *room == "service").map(|room| [std::slice::from_ref(room), &path[1..]].concat());
             Some(within.filter(|within| modules.contains(&within[..2.min(within.len())])).unwrap_or_else(|| path[1..].to_vec()))
         }
         "super" => Some([&own[..own.len().checked_sub(supers)?], &path[supers..]].concat()),
