@@ -168,7 +168,7 @@ const LINES: &[(&str, usize)] = &[
     ("growth", 5340),
     ("solver", 5120),
     ("verify", 4803),
-    ("measured", 3711),
+    ("measured", 3722),
     ("element_free", 3270),
     ("commands", 2705),
     ("case", 2479),
@@ -188,7 +188,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 67436;
+const LINES_OF_ALL: usize = 67447;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -260,7 +260,7 @@ fn lengths_are_found_in_long_curves() {
 
 /// A number typed wrong, from which the crack falls back, is named by its line and taken out; noise is not.
 #[test]
-fn slips_of_the_pen_are_named() {
+fn typing_errors_are_named() {
     let case = crate::support::hand_cases::hand_case(crate::support::hand_cases::PANEL, &[]);
     let read_with = |wrong: &[(usize, f64)]| {
         // Growth that doubles every ten readings, with noise of 0.01 mm.
@@ -275,12 +275,12 @@ fn slips_of_the_pen_are_named() {
         measured.set_against(&case.specimen, &case.material, &case.loading).unwrap();
         measured
     };
-    let slips = |measured: &Measured| measured.warnings.iter().filter(|line| line.contains("a slip of the pen")).count();
-    assert_eq!(slips(&read_with(&[])), 0);
+    let errors = |measured: &Measured| measured.warnings.iter().filter(|line| line.contains("a typing error")).count();
+    assert_eq!(errors(&read_with(&[])), 0);
     for (reading, by) in [(12, 10.0), (12, -1.0), (25, 3.0), (29, -2.0)] {
         let measured = read_with(&[(reading, by)]);
         let line = format!("typed.csv: line {}: ", reading + 2);
         assert!(measured.warnings.iter().any(|words| words.starts_with(&line)), "{reading} {by}: {:?}", measured.warnings);
-        assert_eq!((slips(&measured), measured.curves[0].cycles.len()), (1, 30), "{reading} {by}");
+        assert_eq!((errors(&measured), measured.curves[0].cycles.len()), (1, 30), "{reading} {by}");
     }
 }

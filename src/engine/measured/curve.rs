@@ -13,10 +13,10 @@ use crate::units::MM;
 /// Fewest readings a curve can have.
 pub const READINGS_MIN: usize = 5;
 
-/// Fall of a crack length over the scatter of readings, and over the whole growth, beyond which a reading is a slip.
-const SLIP_SCATTERS: f64 = 10.0;
-/// See [`SLIP_SCATTERS`].
-const SLIP_SHARE: f64 = 0.02;
+/// Fall of a crack length over the scatter of readings, and over the whole growth, beyond which a reading is a typing error.
+const FALL_SCATTERS: f64 = 10.0;
+/// See [`FALL_SCATTERS`].
+const FALL_SHARE: f64 = 0.02;
 
 /// Slack of window ends against readings, m: `9.0 mm` in a file and in a key need not be the same binary number.
 const LENGTH_SLACK: f64 = 1e-9;
@@ -191,21 +191,21 @@ impl MeasuredCurve {
 
     /// The readings from which, or to which, the crack falls back by more than ten times the scatter and two percent of its growth, where
     /// leaving that one reading out mends it: typing errors.
-    pub(super) fn slips(&self) -> Vec<usize> {
+    pub(super) fn typing_errors(&self) -> Vec<usize> {
         let last = self.cycles.len() - 1;
-        let least = (SLIP_SCATTERS * self.scatter()).max(SLIP_SHARE * (self.crack_length[last] - self.crack_length[0]));
-        let mut slips: Vec<usize> = Vec::new();
+        let least = (FALL_SCATTERS * self.scatter()).max(FALL_SHARE * (self.crack_length[last] - self.crack_length[0]));
+        let mut errors: Vec<usize> = Vec::new();
         for i in 1..=last {
-            if self.crack_length[i - 1] - self.crack_length[i] <= least || slips.last() == Some(&(i - 1)) {
+            if self.crack_length[i - 1] - self.crack_length[i] <= least || errors.last() == Some(&(i - 1)) {
                 continue;
             }
             let wrong = if self.off_line(i - 1).abs() > self.off_line(i).abs() { i - 1 } else { i };
             let mends = wrong == 0 || wrong == last || self.crack_length[wrong + 1] - self.crack_length[wrong - 1] > -least;
             if mends {
-                slips.push(wrong);
+                errors.push(wrong);
             }
         }
-        slips
+        errors
     }
 
     /// Where a reading stands, for messages: its line, or its number where there is no file.
@@ -296,15 +296,15 @@ impl Measured {
         Ok(())
     }
 
-    /// Takes slips of the pen out of the curves.
-    pub(super) fn leave_slips_out(&mut self) {
+    /// Takes typing errors out of the curves.
+    pub(super) fn leave_typing_errors_out(&mut self) {
         let mut left_out = Vec::new();
         for curve in self.curves.iter_mut().filter(|curve| curve.cycles.len() > READINGS_MIN) {
-            let slips = curve.slips();
-            left_out.extend(slips.iter().map(|&reading| {
+            let errors = curve.typing_errors();
+            left_out.extend(errors.iter().map(|&reading| {
                 let before = if reading == 0 { 1 } else { reading - 1 };
                 format!(
-                    "{}: line {}: specimen {}: {} mm is no crack length beside {} mm on line {}, and the crack falls back: a slip of the pen, \
+                    "{}: line {}: specimen {}: {} mm is no crack length beside {} mm on line {}, and the crack falls back: a typing error, \
                      not fitted; correct the number",
                     curve.source.file.display(),
                     curve.line(reading),
@@ -314,8 +314,8 @@ impl Measured {
                     curve.line(before)
                 )
             }));
-            if !slips.is_empty() {
-                let kept: Vec<usize> = (0..curve.cycles.len()).filter(|reading| !slips.contains(reading)).collect();
+            if !errors.is_empty() {
+                let kept: Vec<usize> = (0..curve.cycles.len()).filter(|reading| !errors.contains(reading)).collect();
                 *curve = curve.of_readings(&kept);
             }
         }

@@ -3,7 +3,7 @@
 //! The load at a reading is the one under which the crack grew there. Where it changes once between readings of equal loads (a step), the
 //! growth up to the reading had the new load; where it changes from reading to reading (shedding), it went from one to the other.
 
-use super::curve::{Loads, Measured, MeasuredCurve, first_of, round_off};
+use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, first_of, round_off};
 use super::names::Role;
 use super::table::Fault;
 use crate::error::Result;
@@ -35,12 +35,12 @@ impl Measured {
     /// Errors: readings beyond the specimen; loads that it cannot have.
     pub fn set_against(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
         let (limit, limit_name) = specimen.length_limit();
-        self.leave_slips_out();
+        self.leave_typing_errors_out();
         self.check_lengths(limit, limit_name)?;
         self.check_half_lengths(specimen)?;
         self.resolve_loads(specimen, loading)?;
         self.curves.iter().try_for_each(|curve| compare(curve, specimen, loading))?;
-        self.leave_fracture_out(specimen, material, loading);
+        self.leave_fracture_out(specimen, material, loading)?;
         self.check_sides(specimen);
         Ok(())
     }
@@ -62,7 +62,8 @@ impl Measured {
 
     /// Takes readings of the fracture off the ends of the curves: those beyond 0.95 of the plate, those whose K is beyond 1.5 times the
     /// toughness, and, where no toughness is known, a last one whose K is twice that of the one before.
-    fn leave_fracture_out(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) {
+    /// Errors: fewer than [`READINGS_MIN`] readings before it.
+    fn leave_fracture_out(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
         let formula = handbook(specimen);
         let (limit, limit_name) = specimen.length_limit();
         let mut left_out = Vec::new();
@@ -88,6 +89,15 @@ impl Measured {
                 _ => None,
             };
             let Some((first, why)) = (0..curve.cycles.len()).find_map(|reading| Some((reading, why(reading)?))) else { continue };
+            if first < READINGS_MIN {
+                let value = round_off(curve.crack_length[first] / curve.source.length_unit).to_string();
+                let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(first) };
+                let problem = format!("is of the fracture ({why}), and {first} readings stand before it");
+                return Err(fault.error(
+                    problem,
+                    format!("give at least {READINGS_MIN} readings of fatigue growth; check the unit and the load"),
+                ));
+            }
             let more = curve.cycles.len() - first - 1;
             left_out.push(format!(
                 "{}: line {}: specimen {}: the reading at {} mm is of the fracture ({why}): not fitted{}",
@@ -100,6 +110,7 @@ impl Measured {
             *curve = curve.of_readings(&(0..first).collect::<Vec<_>>());
         }
         self.warnings.extend(first_of(left_out));
+        Ok(())
     }
 
     /// Sets the load of every reading against that of the case: [`MeasuredCurve::load_factor`].
