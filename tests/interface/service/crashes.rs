@@ -192,7 +192,7 @@ fn another_worker_takes_over() {
 
 const CALIBRATION: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\n\
     thickness_mm = 2\ncrack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.1\n\
-    [model]\nspacing_mm = 0.4\nsymmetry = \"off\"\n";
+    [model]\nspacing_mm = 0.25\nsymmetry = \"off\"\n";
 const READINGS: &str =
     "cycles,crack_length_mm\n0,9\n20000,10\n37000,11\n51000,12\n63000,13\n73000,14\n82000,15.2\n89000,16.4\n95000,18\n";
 

@@ -37,8 +37,7 @@ fn in_folder_of_its_own(test: &impl Fn(&[&str])) {
 fn a_job_is_watched_to_its_end() {
     with_store("watched", |place| {
         let service = Server::start(place, &["--jobs", "1"]);
-        // Long enough for many pieces.
-        let job = service.submit("predictions", &of("slow", &SLOW.replace("spacing_mm = 1.2", "spacing_mm = 0.8")));
+        let job = service.submit("predictions", &of("slow", SLOW));
         let events = service.events(&job, &[]);
         let (name, last) = events.last().unwrap();
         assert!(name == "job" && last["state"] == "succeeded", "{last:#}");
