@@ -15,6 +15,7 @@ mod fracture_relaxation;
 mod hand_calculation;
 mod hard_plates;
 mod joined_cracks;
+mod limit_load;
 mod loads;
 mod mirror_images;
 mod near_tip_fields;

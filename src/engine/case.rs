@@ -129,6 +129,10 @@ pub struct Stop {
     pub cycles_max: f64,
     /// Load that the plate has to bear over the largest of a cycle, at least 1: the life ends where it no longer does.
     pub required: Option<f64>,
+    /// Whether the life ends where K_max is the toughness of the material.
+    pub by_toughness: bool,
+    /// Whether it ends where a section of the plate is fully plastic at the yield strength.
+    pub by_net_section: bool,
 }
 
 /// Where the constants of the fatigue law come from.

@@ -20,6 +20,7 @@ impl Steady {
             delta_k: 1e7,
             growth_rate: 1e-6,
             work: f64::NAN,
+            limit_load: f64::NAN,
             broken_bonds: 0,
             tips: vec![TipRecord {
                 state: perilife::fatigue::crack_tip::TipState::Active,

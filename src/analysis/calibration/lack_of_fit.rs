@@ -40,6 +40,14 @@ pub struct LackOfFit {
     pub high: Option<EndMiss>,
 }
 
+impl LackOfFit {
+    /// The larger miss of both ends, percent.
+    pub fn largest(&self) -> f64 {
+        let misses = [self.low, self.high].into_iter().flatten().map(|end| end.rate_over_law_percent);
+        misses.fold(0.0, |most: f64, miss| if miss.abs() > most.abs() { miss } else { most })
+    }
+}
+
 /// Growth of a specimen through an end of the range.
 struct Through {
     /// ln of measured over fitted rate.

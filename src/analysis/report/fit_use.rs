@@ -7,6 +7,8 @@ use crate::units::MPA_SQRT_M;
 
 /// Share of life outside the fitted ΔK range above which a run is warned about, and of a side of the range that is named then.
 const WARNED: f64 = 0.05;
+/// Share of life above the fitted range from which a run is refused unless the case allows it: there cracks grow faster than computed.
+pub(super) const EXTRAPOLATION_REFUSED: f64 = 0.25;
 const NAMED: f64 = 0.01;
 
 /// Share of the life that was spent at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
@@ -14,6 +16,13 @@ const NAMED: f64 = 0.01;
 pub fn life_share_extrapolated(case: &Case, prediction: &Prediction) -> Option<f64> {
     let [low, high] = fitted_range(case)?;
     life_share_outside(prediction, low, high)
+}
+
+/// Share of the life below the fitted range, where lives come out too short, and above it, where they come out too long; `None` as
+/// [`life_share_extrapolated`].
+pub fn life_shares_outside(case: &Case, prediction: &Prediction) -> Option<[f64; 2]> {
+    let [low, high] = fitted_range(case)?;
+    Some([life_share_outside(prediction, low, f64::INFINITY)?, life_share_outside(prediction, 0.0, high)?])
 }
 
 /// What is to be said about life outside the fitted range of ΔK, the larger share first.

@@ -9,8 +9,10 @@ use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
+use super::checks;
 use super::fit_use::extrapolated;
 pub use super::fit_use::life_share_extrapolated;
+use super::run::{crack_length_of, leading_tip};
 use super::model_words::{self, clean};
 
 /// Name of the file.
@@ -22,16 +24,17 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
     let extrapolated = extrapolated(case, prediction);
     // What the run found comes first: it counts more than what an assumption may do.
     let warnings: Vec<&String> = prediction.warnings.iter().chain(&extrapolated).chain(&case.warnings).collect();
+    let checks = checks::of_run(case, prediction);
     json!({
         "name": case.name,
         "life_cycles": prediction.life(),
-        "life_is_lower_bound": prediction.stop.is_lower_bound(),
+        "life_is_lower_bound": checks::is_bound_below(case, prediction),
         "stop_reason": prediction.stop.name(),
         "stop_meaning": prediction.stop.meaning(),
         "converged": prediction.stop != StopReason::NoConvergence,
         "crack_length_initial_mm": clean(case.specimen.crack_length / MM),
         "crack_length_final_mm": clean(prediction.crack_length_final() / MM),
-        "tips": tips(prediction),
+        "tips": tips(case, prediction),
         "life_share_extrapolated": life_share_extrapolated(case, prediction),
         "plastic_zone": plastic_zone(case, prediction),
         "k_cross_check": prediction.cross_check.map(|check| json!({
@@ -49,6 +52,8 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "memory_mb": figures.memory_mb,
         "model": model_words::object(&model_words::of_case(case, Some(figures))),
         "law": law(case, prediction),
+        "verdict": checks::verdict(&checks),
+        "checks": checks::json(&checks),
         "warnings": warnings,
         "version": env!("CARGO_PKG_VERSION"),
         "case": case.echo,
@@ -56,10 +61,14 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
 }
 
 /// Every tip at the start and at the end: state, place, growth.
-fn tips(prediction: &Prediction) -> Vec<Value> {
+fn tips(case: &Case, prediction: &Prediction) -> Vec<Value> {
     let [Some(first), Some(last)] = [prediction.curve.first(), prediction.curve.last()] else { return Vec::new() };
-    let of_tip = |(start, end): (&TipRecord, &TipRecord)| {
+    let leads = leading_tip(case, prediction).map(|(tip, _)| tip);
+    let of_tip = |(tip, (start, end)): (usize, (&TipRecord, &TipRecord))| {
         json!({
+            "leads": leads.is_none_or(|leads| leads == tip),
+            "crack_length_initial_mm": crack_length_of(case, first, tip).map(|length| clean(length / MM)),
+            "crack_length_final_mm": crack_length_of(case, last, tip).map(|length| clean(length / MM)),
             "state_initial": start.state.name(),
             "state": end.state.name(),
             "x_mm": clean(end.position[0] / MM),
@@ -67,7 +76,7 @@ fn tips(prediction: &Prediction) -> Vec<Value> {
             "growth_mm": clean(end.growth / MM),
         })
     };
-    first.tips.iter().zip(&last.tips).map(of_tip).collect()
+    first.tips.iter().zip(&last.tips).enumerate().map(of_tip).collect()
 }
 
 /// Plastic zone at the first and the last row whose K is known; `null` without yield strength.

@@ -4,6 +4,7 @@
 
 pub mod catalogue;
 pub mod chart;
+pub mod checks;
 pub mod csv;
 pub mod damage;
 pub mod fit;

@@ -12,18 +12,18 @@ use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_u
 pub use super::json::result;
 use super::output::{Room, write_file};
 use super::specimen_picture::{nodes_svg, tip_svg};
-use super::{fit_use, json, provenance, vtk};
+use super::{checks, fit_use, json, provenance, vtk};
 use crate::case::budget::Budget;
 use crate::case::{Case, Method, RECORD, first_load};
 use crate::error::{Error, Result, input};
-use crate::predict::plastic_zone::PlasticZone;
+use crate::predict::plastic_zone::{self, PlasticZone};
 use crate::predict::record::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::residual_strength::Strength;
-use crate::predict::{Prediction, StopReason};
+use crate::predict::{CurvePoint, Prediction, StopReason};
 use crate::specimen::geometry::distance;
 use crate::specimen::handbook::handbook;
-use crate::specimen::{LoadMeasure, Point};
-use crate::units::{KN, MM, MPA};
+use crate::specimen::{LoadMeasure, Point, SpecimenKind};
+use crate::units::{KN, MM, MPA, MPA_SQRT_M};
 
 /// Half the width of the picture of the fatigue zone, in horizons.
 const ZONE_HORIZONS: f64 = 4.0;
@@ -31,8 +31,6 @@ const ZONE_HORIZONS: f64 = 4.0;
 const CRACK_PATH_FILE: &str = "crack_path.csv";
 /// Folder of the ParaView files in that of a run.
 pub const PARAVIEW: &str = "paraview";
-/// Share of life outside the fitted ΔK range above which a run is refused unless the case allows it.
-const EXTRAPOLATION_REFUSED: f64 = 0.25;
 
 /// Whether a run counts as a result; what the user should know about it beyond what the run itself says.
 /// Errors: [`Error::Mechanics`] if the run ended before the crack grew.
@@ -95,24 +93,38 @@ fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
     prediction.stop.is_strength().then(|| words().unwrap_or_else(|| format!("{} at the first load", prediction.stop.meaning())))
 }
 
-/// Why a run does not count though it came to an end: more than a quarter of its life lies outside the fitted range of ΔK, and the
+/// Why a run does not count though it came to an end: more than a quarter of its life lies above the fitted range of ΔK, and the
 /// case does not allow that. It is written all the same, marked as refused: what it cost is not thrown away.
 pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
     if let Some(problem) = breaks_at_once(case, prediction) {
         return Some(Error::Mechanics(format!("{}: {problem}", case.name)));
     }
-    let share = json::life_share_extrapolated(case, prediction).unwrap_or(0.0);
-    let [low, high] = fit_use::fitted_range(case)?;
-    if share <= EXTRAPOLATION_REFUSED || case.allow_extrapolation {
-        return None;
+    let [_, above] = fit_use::life_shares_outside(case, prediction)?;
+    (above > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation)
+        .then(|| extrapolates(case, &format!("{:.1} % of the life lies above", 100.0 * above), "; the results are marked as refused"))
+}
+
+/// Why a case is refused before it is run: its first ΔK lies above the fitted range, and K only rises from there.
+/// Errors: [`Error::Input`] where it does.
+pub fn refuse_beforehand(case: &Case) -> Result<()> {
+    let Some([_, high]) = fit_use::fitted_range(case).filter(|_| !case.allow_extrapolation) else { return Ok(()) };
+    match checks::first_delta_k(case).map(|delta_k| delta_k / MPA_SQRT_M) {
+        Some(first) if first > high * (1.0 + 1e-6) => {
+            Err(extrapolates(case, &format!("ΔK {first:.2} MPa√m at the start, and the whole life, lies above"), ""))
+        }
+        _ => Ok(()),
     }
-    let text = format!("{:.1} % of the life lies outside the fitted range of ΔK, {low:.2} to {high:.2} MPa√m", 100.0 * share);
+}
+
+fn extrapolates(case: &Case, what: &str, more: &str) -> Error {
+    let [low, high] = fit_use::fitted_range(case).unwrap_or([f64::NAN; 2]);
+    let text = format!("{what} the fitted range of ΔK, {low:.2} to {high:.2} MPa√m, where cracks grow faster than computed");
     let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
-    Some(input("fatigue.allow_extrapolation", false, format!("{}: {text}; the results are marked as refused", case.name), remedy))
+    input("fatigue.allow_extrapolation", false, format!("{}: {text}{more}", case.name), remedy)
 }
 
 /// Keys of `result.json` that a listing of runs shows.
-pub const FIGURES: [&str; 14] = [
+pub const FIGURES: [&str; 16] = [
     "life_cycles",
     "life_is_lower_bound",
     "stop_reason",
@@ -121,6 +133,8 @@ pub const FIGURES: [&str; 14] = [
     "crack_length_final_mm",
     "life_share_extrapolated",
     "refused",
+    "verdict",
+    "checks",
     "points",
     "points_solved",
     "blocks",
@@ -231,21 +245,64 @@ fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction) -> Result<()
 
 /// What came of a run, in words.
 pub fn words(case: &Case, prediction: &Prediction) -> Vec<String> {
-    let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
+    let checks = checks::of_run(case, prediction);
     let mut lines = vec![
         match prediction.life() {
             Some(life) if prediction.stop == StopReason::EnteredHole => format!("{}: {life:.1} cycles to the hole", case.name),
-            Some(life) if prediction.stop.is_lower_bound() => format!("{}: life at least {life:.1} cycles", case.name),
+            Some(life) if checks::is_bound_below(case, prediction) => format!("{}: life at least {life:.1} cycles", case.name),
+            Some(life) if prediction.stop.is_lower_bound() => format!("{}: {life:.1} cycles to the end of the run", case.name),
             Some(life) => format!("{}: life {life:.1} cycles", case.name),
             None => format!("{}: life unlimited", case.name),
         },
-        format!("  crack length   {from:.3} mm to {to:.3} mm"),
+        format!("  crack length   {}", length_words(case, prediction)),
         format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
+        format!("  verdict        {}", checks::verdict(&checks)),
     ];
+    lines.extend(checks::lines(&checks).into_iter().map(|line| format!("  - {line}")));
     lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
     lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
     lines.push(format!("  computed       {}", computed(case, prediction)));
     lines
+}
+
+/// Warnings of a run that its checks say in a line each.
+pub fn told_by_checks(case: &Case, prediction: &Prediction) -> Vec<String> {
+    let yielding = plastic_zone::warnings(case, &prediction.curve).into_iter().filter(|line| line.starts_with("small-scale"));
+    let cross_check = prediction.cross_check.and_then(|check| check.warning());
+    yielding.chain(cross_check).chain(fit_use::extrapolated(case, prediction)).collect()
+}
+
+/// How far the crack grew: by the length of the standard of the specimen, or that of the crack whose tip leads, and what all of them sum to.
+fn length_words(case: &Case, prediction: &Prediction) -> String {
+    let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
+    match leading_tip(case, prediction) {
+        Some((tip, [first, last])) => {
+            let all = if case.specimen.crack_lines().len() > 1 { format!("; all cracks {from:.3} mm to {to:.3} mm") } else { String::new() };
+            format!("tip {tip}: its crack {:.3} mm to {:.3} mm{all}", first / MM, last / MM)
+        }
+        None => format!("{from:.3} mm to {to:.3} mm"),
+    }
+}
+
+/// The tip that ends the life of a plate, which grew fastest at the end, and the length of its crack at the start and there, m; `None` of
+/// standard specimens, whose crack length is that of their standard, and of ends of slots.
+pub fn leading_tip(case: &Case, prediction: &Prediction) -> Option<(usize, [f64; 2])> {
+    if case.specimen.kind != SpecimenKind::Plate {
+        return None;
+    }
+    let rows = &prediction.curve;
+    let (before, last) = (rows.get(rows.len().checked_sub(2)?)?, rows.last()?);
+    let grown = |tip: usize| last.tips[tip].growth - before.tips[tip].growth;
+    let tip = (0..last.tips.len()).max_by(|a, b| grown(*a).total_cmp(&grown(*b)))?;
+    Some((tip, [crack_length_of(case, &rows[0], tip)?, crack_length_of(case, last, tip)?]))
+}
+
+/// Length of the crack that a tip ends, with the growth of all its tips, m.
+pub fn crack_length_of(case: &Case, row: &CurvePoint, tip: usize) -> Option<f64> {
+    let line = case.specimen.line_end(tip)?.line;
+    let of_line = |other: &usize| case.specimen.line_end(*other).is_some_and(|end| end.line == line);
+    let growth: f64 = (0..row.tips.len()).filter(of_line).map(|other| row.tips[other].growth).sum();
+    Some(case.specimen.crack_lines()[line].length() + growth)
 }
 
 /// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.

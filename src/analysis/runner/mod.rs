@@ -101,6 +101,7 @@ pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, wat
                 // A plate without known strength should not cost a run; K of its curve comes later.
                 check_strength(case)?;
             }
+            report::run::refuse_beforehand(case)?;
             let prediction = match from {
                 Some(TaskCheckpoint::Cycles(checkpoint)) => resume(case, *checkpoint, watcher)?,
                 _ => predict(case, watcher)?,
@@ -138,9 +139,11 @@ pub fn of_prediction(
     watcher: &dyn Watcher,
 ) -> Result<Summary> {
     use report::run;
-    prediction.warnings.iter().for_each(|warning| watcher.warn(warning));
     let judged = run::judge(case, prediction)?;
-    judged.iter().for_each(|warning| watcher.warn(warning));
+    // What a check says in a line stands in the file at length.
+    let told = run::told_by_checks(case, prediction);
+    let warnings = prediction.warnings.iter().chain(&judged).filter(|warning| !told.contains(warning));
+    warnings.for_each(|warning| watcher.warn(warning));
     // If that fails, the run itself is written all the same.
     let strengths = with_strength.then(|| residual_strength(case, &prediction.curve)).transpose();
     let result = match folder {

@@ -212,27 +212,27 @@ pub(super) fn first_load_warning(case: &Case) -> Option<String> {
 
 /// The strengths that a largest nominal load (Pa or N) with this K_max, Pa√m, exceeds at N = 0, and the load that all of them bear.
 pub fn first_load(case: &Case, load: f64, k_max: Option<f64>) -> Option<String> {
-    let material = &case.material;
-    let stress = case.specimen.net_section_stress(case.specimen.crack_length, load).or_else(|| case.specimen.gross_stress(load));
-    let by_toughness = k_max.zip(material.toughness).filter(|(k_max, toughness)| k_max >= toughness);
-    let by_yield = stress.zip(material.yield_strength).filter(|(stress, strength)| stress >= strength);
+    let limit = case.limit_load(case.specimen.crack_length, &case.specimen.crack_lines());
+    let by_toughness = k_max.zip(case.toughness_at_end()).filter(|(k_max, toughness)| k_max >= toughness);
+    let by_yield = limit.zip(case.yield_strength_at_end()).filter(|(limit, _)| load >= *limit);
+    let in_words = |load: f64| match case.specimen.load_measure {
+        LoadMeasure::Stress => format!("{:.2} MPa", load / MPA),
+        LoadMeasure::Force => format!("{:.4} kN", load / KN),
+    };
     let mut causes = Vec::new();
     if let Some((k_max, toughness)) = by_toughness {
         causes.push(format!("K_max {:.2} MPa√m is beyond the toughness {:.2} MPa√m", k_max / MPA_SQRT_M, toughness / MPA_SQRT_M));
     }
-    if let Some((stress, strength)) = by_yield {
+    if let Some((limit, strength)) = by_yield {
         causes.push(format!(
-            "the section beside the crack carries {:.1} MPa, beyond the yield strength {:.1} MPa",
-            stress / MPA,
+            "{} is beyond the limit load of what the cracks leave, {} at the yield strength {:.1} MPa",
+            in_words(load),
+            in_words(limit),
             strength / MPA
         ));
     }
-    let shares = [by_toughness, by_yield].into_iter().flatten().map(|(is, may)| may / is);
-    let borne = load * shares.fold(f64::INFINITY, f64::min);
-    let borne = match case.specimen.load_measure {
-        LoadMeasure::Stress => format!("{:.2} MPa", borne / MPA),
-        LoadMeasure::Force => format!("{:.4} kN", borne / KN),
-    };
+    let by_toughness = by_toughness.map(|(is, may)| load * may / is);
+    let borne = in_words([by_toughness, by_yield.map(|(limit, _)| limit)].into_iter().flatten().fold(f64::INFINITY, f64::min));
     (!causes.is_empty()).then(|| {
         format!(
             "the first load breaks the plate: {}; it would bear {borne} at this crack length, and there is no life",

@@ -131,6 +131,8 @@ struct StopInput {
     cycles_max: Option<f64>,
     required_strength_mpa: Option<f64>,
     limit_load_factor: Option<f64>,
+    toughness: Option<bool>,
+    net_section: Option<bool>,
 }
 
 /// Reads `[stop]`.
@@ -161,7 +163,22 @@ pub(super) fn stop_from_value(value: &Value, (specimen, material, loading): (&Sp
     }
     let cycles_max = number("a number of cycles", 1.0, 1e15).read("stop.cycles_max", slice.cycles_max.unwrap_or(CYCLES_MAX))?;
     let required = required_load(&slice, specimen, material, loading)?;
-    Ok(Stop { crack_length: crack_length.unwrap_or(f64::INFINITY), cycles_max, required })
+    let [by_toughness, by_net_section] = ends_by(&slice, material)?;
+    Ok(Stop { crack_length: crack_length.unwrap_or(f64::INFINITY), cycles_max, required, by_toughness, by_net_section })
+}
+
+/// Whether the life ends at the toughness, at the limit load of a section: where the material has the strength, unless that is turned off.
+fn ends_by(stop: &StopInput, material: &Material) -> Result<[bool; 2]> {
+    let strengths = [
+        ("stop.toughness", stop.toughness, material.toughness, "material.toughness_mpa_sqrt_m"),
+        ("stop.net_section", stop.net_section, material.yield_strength, "material.yield_strength_mpa"),
+    ];
+    for (key, asked, strength, name) in strengths {
+        if asked == Some(true) && strength.is_none() {
+            return Err(input(key, true, format!("cannot be checked: the material has no {name}"), format!("give {name}")));
+        }
+    }
+    Ok(strengths.map(|(_, asked, strength, _)| strength.is_some() && asked.unwrap_or(true)))
 }
 
 /// The load that the plate has to bear, over the largest of a cycle.
@@ -195,7 +212,7 @@ fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loa
         let problem = "is less than the largest load of a cycle, which the plate has to bear anyhow";
         return Err(input(key, given, problem, "give the limit load that it has to bear at the end of its life"));
     }
-    if material.toughness.is_none() && material.yield_strength.is_none() {
+    if ends_by(stop, material)? == [false; 2] {
         let remedy = "give material.toughness_mpa_sqrt_m, yield_strength_mpa or both";
         return Err(input(key, given, "cannot be compared: the material has neither toughness nor yield strength", remedy));
     }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use super::{Case, LawSource, Method};
+use crate::specimen::CrackLine;
 use crate::case::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::paris::ParisLaw;
@@ -156,6 +157,22 @@ fn material_line(material: &Material, record: &FittedRecord, bonds: bool) -> Res
 }
 
 impl Case {
+    /// Toughness, Pa√m, where the life ends at it.
+    pub fn toughness_at_end(&self) -> Option<f64> {
+        self.material.toughness.filter(|_| self.stop.by_toughness)
+    }
+
+    /// Yield strength, Pa, where the life ends at the limit load of a section.
+    pub fn yield_strength_at_end(&self) -> Option<f64> {
+        self.material.yield_strength.filter(|_| self.stop.by_net_section)
+    }
+
+    /// Nominal load, Pa or N, at which the weakest section is fully plastic, for a crack length, m, of a standard kind, or the cracks of
+    /// a plate; `None` without yield strength, or where the loads determine what no section bears.
+    pub fn limit_load(&self, crack_length: f64, cracks: &[CrackLine]) -> Option<f64> {
+        self.specimen.limit_load(crack_length, cracks, self.material.yield_strength?)
+    }
+
     /// Whether its crack grows as bonds lose remaining life, not by the K of its tips.
     pub fn spends_bond_life(&self) -> bool {
         self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::BondStrain

@@ -381,6 +381,9 @@ impl CrackGrowth for BondStrain<'_> {
 
     fn close(&mut self, stop: StopReason) -> Result<StopReason> {
         let (body, run) = (&self.body, &mut self.run);
+        // Of a plate its sections are known afterwards, with its curve.
+        let at_section = stop::at_section(self.case, &run.track.curve(self.case, body, self.end).0);
+        self.end = [self.end, at_section].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length));
         let stop = stop::settled(self.end, &run.track, stop);
         if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
             run.iterations += self.equilibrium.complete(body, &run.bonds, &mut self.displacement)?;

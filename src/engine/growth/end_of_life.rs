@@ -18,8 +18,8 @@ pub struct End {
     pub reason: StopReason,
 }
 
-/// The first of: the length the case stops at, K = toughness under the load to bear (where a handbook has K), yield of the whole net section
-/// (standard kinds). `None` where nothing of that is given. Where cycles are of a displacement the load is not known before the run:
+/// The first of: the length the case stops at, K = toughness under the load to bear (where a handbook has K), yield of a whole section (of a
+/// plate that with its initial cracks). `None` where nothing of that is given. Where cycles are of a displacement the load is not known before the run:
 /// only the length that the case stops at is.
 pub fn first_end(case: &Case) -> Option<End> {
     // The plate has to bear a load, that of the cycles or a larger one.
@@ -30,20 +30,21 @@ pub fn first_end(case: &Case) -> Option<End> {
     if case.loading.displacement().is_some() {
         return wanted;
     }
-    let toughness = case.material.toughness.zip(handbook(specimen)).map(|(toughness, formula)| {
+    let toughness = case.toughness_at_end().zip(handbook(specimen)).map(|(toughness, formula)| {
         end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), strength_reason(case, StopReason::Toughness))
     });
-    let net_section = case.material.yield_strength.filter(|_| specimen.ligament(start).is_some()).map(|strength| {
-        // Known for this kind, so the default is never taken.
-        let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
-        end(first_reach(stress, strength, start, limit), strength_reason(case, StopReason::NetSectionYield))
+    let net_section = case.yield_strength_at_end().and_then(|strength| {
+        let yields = strength_reason(case, StopReason::NetSectionYield);
+        if specimen.ligament(start).is_some() {
+            // Known for this kind, so the default is never taken.
+            let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
+            return Some(end(first_reach(stress, strength, start, limit), yields));
+        }
+        // Of a plate only that of its initial cracks is known before the run.
+        let borne = specimen.limit_load(start, &specimen.crack_lines(), strength)?;
+        (borne <= load).then(|| end(start, yields))
     });
-    // A plate of any shape: its edges carry the gross stress at least.
-    let gross = case.material.yield_strength.zip(specimen.gross_stress(load).filter(|_| specimen.ligament(start).is_none()));
-    let gross = gross
-        .filter(|(strength, stress)| stress >= strength)
-        .map(|_| end(start, strength_reason(case, StopReason::NetSectionYield)));
-    [wanted, toughness, net_section, gross].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
+    [wanted, toughness, net_section].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
 }
 
 /// Smallest `a` in `from..=to` at which `value`, which rises with `a`, has reached `wanted`. NaN counts as reached: formulas end
@@ -64,9 +65,17 @@ fn first_reach(value: impl Fn(f64) -> f64, wanted: f64, from: f64, to: f64) -> f
     }
 }
 
-/// Range of K at which its maximum under the load to bear is the toughness, Pa√m.
-fn delta_k_most(case: &Case) -> Option<f64> {
-    case.material.toughness.map(|toughness| case.loading.range_share() * toughness / case.stop.required.unwrap_or(1.0))
+/// By how much the load that the plate has to bear exceeds its strengths at a row, as far as each ends the life: `K_max/K_c - 1` and
+/// `1 - limit load/load`; negative while it bears it.
+fn excess(case: &Case, row: &CurvePoint) -> [(Option<f64>, StopReason); 2] {
+    let required = case.stop.required.unwrap_or(1.0);
+    let k_max = row.delta_k / case.loading.range_share();
+    let load = case.loading.maximum * case.loading.share(row.work);
+    let known = |excess: f64| Some(excess).filter(|excess| excess.is_finite());
+    [
+        (case.toughness_at_end().and_then(|toughness| known(required * k_max / toughness - 1.0)), StopReason::Toughness),
+        (case.yield_strength_at_end().and_then(|_| known(1.0 - row.limit_load / (required * load))), StopReason::NetSectionYield),
+    ]
 }
 
 /// Why a run ends where the plate no longer bears its load, by what breaks under it: that of the cycles, or one that it has to bear.
@@ -85,8 +94,8 @@ pub(super) fn reason_to_stop(
     if let Some(end) = end.filter(|end| last.crack_length >= end.crack_length * (1.0 - ROUND_OFF)) {
         return Some(end.reason);
     }
-    if delta_k_most(case).is_some_and(|most| last.delta_k >= most) {
-        return Some(strength_reason(case, StopReason::Toughness));
+    if let Some((_, breaks)) = excess(case, last).into_iter().find(|(excess, _)| excess.is_some_and(|excess| excess >= 0.0)) {
+        return Some(strength_reason(case, breaks));
     }
     if !states.contains(&TipState::Active) {
         return Some(gone(states));
@@ -94,7 +103,8 @@ pub(super) fn reason_to_stop(
     (!grows).then_some(StopReason::NothingAges)
 }
 
-/// The row after an increment, and the reason to stop: run-out and toughness end the run between two rows, `end` after this one.
+/// The row after an increment, and the reason to stop: run-out and what breaks the plate end the run between two rows, whichever is first,
+/// `end` after this one.
 pub(super) fn row_after(
     case: &Case,
     last: &CurvePoint,
@@ -102,15 +112,16 @@ pub(super) fn row_after(
     end: Option<StopReason>,
 ) -> (CurvePoint, Option<StopReason>) {
     let cycles_max = case.stop.cycles_max;
-    if next.cycles > cycles_max {
-        let share = (cycles_max - last.cycles) / (next.cycles - last.cycles);
-        return (next.between(last, share), Some(StopReason::RunOut));
+    let run_out = (next.cycles > cycles_max)
+        .then(|| ((cycles_max - last.cycles) / (next.cycles - last.cycles), StopReason::RunOut));
+    let broken = excess(case, last).into_iter().zip(excess(case, &next)).filter_map(|((before, breaks), (now, _))| {
+        let (before, now) = (before?, now?);
+        (before < 0.0 && now > 0.0).then(|| (before / (before - now), strength_reason(case, breaks)))
+    });
+    match run_out.into_iter().chain(broken).min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((share, reason)) => (next.between(last, share), Some(reason)),
+        None => (next, end),
     }
-    if let Some(most) = delta_k_most(case).filter(|most| next.delta_k > *most && last.delta_k < *most) {
-        let fraction = (most - last.delta_k) / (next.delta_k - last.delta_k);
-        return (next.between(last, fraction), Some(strength_reason(case, StopReason::Toughness)));
-    }
-    (next, end)
 }
 
 /// Why growth ends where no tip is left, by what became of the last ones.

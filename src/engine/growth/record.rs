@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
 use crate::fatigue::crack_tip::TipState;
-use crate::specimen::Point;
+use crate::specimen::{CrackLine, Point};
 
 crate::kinds! {
     /// Why a run ended.
@@ -68,6 +68,9 @@ pub struct CurvePoint {
     /// Work of the loads over the displacement at maximum load, f·u, J: twice the strain energy, the load squared times the
     /// compliance; NaN where the plate is severed and in hand calculation.
     pub work: f64,
+    /// Nominal load at which the weakest section is fully plastic, Pa or N; NaN without yield strength, or where no section is determined
+    /// by the loads.
+    pub limit_load: f64,
     /// Bonds broken since the start, initial cracks not counted.
     pub broken_bonds: usize,
     /// Tips, in the order of `Specimen::tips`.
@@ -75,19 +78,21 @@ pub struct CurvePoint {
 }
 
 impl CurvePoint {
-    /// The row of tips that are driven by their K; `lead` is K_eq, Pa√m, and da/dN, m/cycle, of the fastest.
+    /// The row of tips that are driven by their K; `lead` is K_eq, Pa√m, and da/dN, m/cycle, of the fastest, and `cracks` what the tips end.
     pub fn of_tips(
         case: &Case,
         [cycles, work]: [f64; 2],
         broken_bonds: usize,
-        tips: Vec<TipRecord>,
+        (tips, cracks): (Vec<TipRecord>, &[CrackLine]),
         lead: Option<(f64, f64)>,
     ) -> CurvePoint {
         let growths: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
         let (k_max, growth_rate) = lead.unwrap_or((f64::NAN, f64::NAN));
+        let crack_length = case.specimen.crack_length_after(&growths);
         CurvePoint {
             cycles,
-            crack_length: case.specimen.crack_length_after(&growths),
+            crack_length,
+            limit_load: case.limit_load(crack_length, cracks).unwrap_or(f64::NAN),
             delta_k: case.loading.range_share() * k_max,
             growth_rate,
             work,
@@ -112,6 +117,7 @@ impl CurvePoint {
             delta_k: mix(before.delta_k, self.delta_k),
             growth_rate: mix(before.growth_rate, self.growth_rate),
             work: mix(before.work, self.work),
+            limit_load: mix(before.limit_load, self.limit_load),
             broken_bonds: self.broken_bonds,
             tips: before.tips.iter().zip(&self.tips).map(tip).collect(),
         }

@@ -38,7 +38,7 @@ pub struct PlasticZone {
 
 /// The plastic zone of a run; `None` where yield strength or K is not known.
 ///
-/// Small-scale yielding: the ligament is as large as ASTM E647 asks ([`crate::specimen::net_section::small_scale_yielding`]); in
+/// Small-scale yielding: the ligament is as large as ASTM E647 asks ([`Specimen::ligament_asked`]); in
 /// a plate the nearest free edge is at least `(4/π) (K_max/σ_Y)²` away from every tip.
 pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     let strength = case.material.yield_strength?;
@@ -51,13 +51,21 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     // Once the zone has outgrown the ligament, K says nothing about either.
     let yielded = known.iter().find(|(_, zone)| zone.size >= zone.ligament);
     let (first, last) = (known.first()?.1, yielded.or(known.last())?.1);
-    let outgrown = known.iter().find(|(_, zone)| !small(case, zone, strength));
+    // How much of the ligament that is asked for is missing is linear between two rows.
+    let missing = |zone: &Zone| 1.0 - zone.ligament / asked(case, zone, strength);
+    let outgrown = known.iter().position(|(_, zone)| missing(zone) > 0.0).map(|row| {
+        let (point, zone) = &known[row];
+        let Some((before, smaller)) = row.checked_sub(1).map(|row| &known[row]) else { return (point.crack_length, point.cycles) };
+        let share = missing(smaller) / (missing(smaller) - missing(zone));
+        let at = |from: f64, to: f64| from + share * (to - from);
+        (at(before.crack_length, point.crack_length), at(before.cycles, point.cycles))
+    });
     let life = curve.last()?.cycles;
     Some(PlasticZone {
         first,
         last,
-        too_large_from: outgrown.map(|(point, _)| point.crack_length),
-        life_share_too_large: outgrown.filter(|_| life > 0.0).map_or(0.0, |(point, _)| (life - point.cycles) / life),
+        too_large_from: outgrown.map(|(length, _)| length),
+        life_share_too_large: outgrown.filter(|_| life > 0.0).map_or(0.0, |(_, cycles)| (life - cycles) / life),
     })
 }
 
@@ -78,12 +86,13 @@ fn way_to_edge(specimen: &Specimen, tip: [f64; 2]) -> f64 {
     holes.fold(distance_to_polygon(tip, &specimen.outline), f64::min)
 }
 
-fn small(case: &Case, zone: &Zone, strength: f64) -> bool {
+/// Ligament that small-scale yielding asks for, m.
+fn asked(case: &Case, zone: &Zone, strength: f64) -> f64 {
     match case.specimen.kind {
         // ASTM's condition asks for the load, which cycles of a displacement do not keep.
-        _ if case.loading.displacement().is_some() => zone.ligament >= ligament_needed(zone.k_max, strength),
-        SpecimenKind::Plate => zone.ligament >= ligament_needed(zone.k_max, strength),
-        _ => case.specimen.small_scale_yielding(zone.crack_length, case.loading.maximum, zone.k_max, strength),
+        _ if case.loading.displacement().is_some() => ligament_needed(zone.k_max, strength),
+        SpecimenKind::Plate => ligament_needed(zone.k_max, strength),
+        _ => case.specimen.ligament_asked(case.loading.maximum, zone.k_max, strength),
     }
 }
 
@@ -93,7 +102,7 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(length) = zone.too_large_from {
         lines.push(format!(
-            "small-scale yielding does not hold from a crack length of {:.3} mm on ({:.2} % of the life): the ligament is smaller \
+            "small-scale yielding does not hold from a crack length of {:.1} mm on ({:.2} % of the life): the ligament is smaller \
              than ASTM E647 asks for, and the crack grows faster than K says (plastic zone at the end {:.3} mm, ligament {:.3} mm)",
             length / MM,
             100.0 * zone.life_share_too_large,

@@ -1,12 +1,11 @@
 //! Residual strength: the load that would end the plate at once, over crack length.
 //!
-//! `load_c(a) = load_max min(K_c / K_max(a), σ_Y / σ_net(a))`: K and net-section stress are proportional to load. Where the curve
-//! falls to the maximum load of the cycle, the run ends.
+//! `load_c(a) = min(load_max K_c / K_max(a), limit load(a))`: K is proportional to load, and the limit load that of the weakest section
+//! ([`crate::specimen::limit_load`]). Where the curve falls to the maximum load of the cycle, the run ends.
 
 use super::CurvePoint;
 use crate::case::Case;
 use crate::error::{Result, input_missing};
-use crate::specimen::SpecimenKind;
 use crate::specimen::handbook::handbook;
 
 /// Crack lengths of the curve of a specimen whose K(a) is known.
@@ -19,7 +18,7 @@ pub struct Strength {
     pub crack_length: f64,
     /// Load at which K reaches the toughness; `None` where one of them is not known.
     pub by_toughness: Option<f64>,
-    /// Load at which the net section yields throughout; `None` without yield strength, or in a `plate`.
+    /// Load at which the net section yields throughout; `None` without yield strength, or where no section is determined by the loads.
     pub by_net_section: Option<f64>,
 }
 
@@ -45,44 +44,41 @@ impl Strength {
 /// Errors: neither toughness nor yield strength is given, or neither says anything about this plate.
 pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Strength>> {
     check_strength(case)?;
-    let material = &case.material;
     let load = case.loading.maximum;
-    let strength = |crack_length: f64, k_max: Option<f64>| Strength {
+    let strength = |crack_length: f64, k_max: Option<f64>, limit_load: Option<f64>| Strength {
         crack_length,
-        by_toughness: material.toughness.zip(k_max).map(|(toughness, k_max)| load * toughness / k_max),
-        by_net_section: material
-            .yield_strength
-            .zip(case.specimen.net_section_stress(crack_length, load))
-            .map(|(strength, stress)| load * strength / stress),
+        by_toughness: case.material.toughness.zip(k_max).map(|(toughness, k_max)| load * toughness / k_max),
+        by_net_section: limit_load,
     };
     let all: Vec<Strength> = match handbook(&case.specimen) {
         Some(formula) => {
             let (from, to) = (case.specimen.crack_length, case.specimen.length_limit().0);
             let lengths = (0..STEPS).map(|i| from + (to - from) * i as f64 / STEPS as f64);
-            lengths.map(|a| strength(a, Some(formula.k_i(a, load)))).collect()
+            lengths.map(|a| strength(a, Some(formula.k_i(a, load)), case.limit_load(a, &[]))).collect()
         }
         None => {
             let known = |point: &CurvePoint| Some(point.delta_k / case.loading.range_share()).filter(|k| *k > 0.0);
-            curve.iter().map(|point| strength(point.crack_length, known(point))).collect()
+            let limit = |point: &CurvePoint| Some(point.limit_load).filter(|load| !load.is_nan());
+            curve.iter().map(|point| strength(point.crack_length, known(point), limit(point))).collect()
         }
     };
     Ok(all.into_iter().filter(|strength| strength.load().is_finite()).collect())
 }
 
 /// Whether the material has a strength that says anything about this plate.
-/// Errors: it has none; the net section of a `plate` is not known, so that its yield strength says nothing.
+/// Errors: it has none, or only a yield strength, and the loads determine what no section bears.
 pub fn check_strength(case: &Case) -> Result<()> {
     if case.loading.displacement().is_some() {
         let problem = "does not go with cycles of a displacement, whose load is not that of a strength";
         return Err(input_missing("--residual-strength", problem, "give a case with cycles of a load"));
     }
-    let net_section = case.specimen.ligament(case.specimen.crack_length).and(case.material.yield_strength);
-    if case.material.toughness.or(net_section).is_some() {
+    let limit = case.limit_load(case.specimen.crack_length, &case.specimen.crack_lines());
+    if case.material.toughness.or(limit).is_some() {
         return Ok(());
     }
-    let remedy = match case.specimen.kind {
-        SpecimenKind::Plate => "give material.toughness_mpa_sqrt_m",
-        _ => "give material.toughness_mpa_sqrt_m, material.yield_strength_mpa, or both",
+    let remedy = match case.material.yield_strength {
+        Some(_) => "give material.toughness_mpa_sqrt_m: supports on both sides of every section hide what it bears",
+        None => "give material.toughness_mpa_sqrt_m, material.yield_strength_mpa, or both",
     };
     Err(input_missing("--residual-strength", "needs a strength of the material", remedy))
 }

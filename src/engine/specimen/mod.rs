@@ -6,6 +6,7 @@
 mod crack_line;
 pub mod geometry;
 pub mod handbook;
+pub mod limit_load;
 pub mod net_section;
 mod placement;
 mod plate;

@@ -58,9 +58,18 @@ impl Specimen {
         (pulled && self.load_measure == LoadMeasure::Stress).then_some(load)
     }
 
-    /// Whether the ligament is large enough for K to describe the crack, see [`small_scale_yielding`]; for a standard kind.
+    /// Whether the ligament of a standard kind is large enough for K to describe the crack ([`Specimen::ligament_asked`]).
     pub fn small_scale_yielding(&self, crack_length: f64, load_max: f64, k_max: f64, yield_strength: f64) -> bool {
-        small_scale_yielding(self.kind, self.width, crack_length, self.force_per_thickness(load_max), k_max, yield_strength)
+        ligament(self.kind, self.width, crack_length) >= self.ligament_asked(load_max, k_max, yield_strength)
+    }
+
+    /// Ligament that is large enough for its plastic zone (ASTM E647, 7.2), m: of M(T) `W - 2a ≥ 1.25 P_max / (B σ_Y)`, that is 80 % of
+    /// net-section yield; of C(T) and, by the same reasoning, edge cracks `b ≥ (4/π) (K_max/σ_Y)²`.
+    pub fn ligament_asked(&self, load_max: f64, k_max: f64, yield_strength: f64) -> f64 {
+        match self.kind {
+            SpecimenKind::MiddleTension => 1.25 * self.force_per_thickness(load_max) / yield_strength,
+            _ => ligament_needed(k_max, yield_strength),
+        }
     }
 
     /// Force over thickness, N/m, of a nominal load.
@@ -70,23 +79,6 @@ impl Specimen {
             LoadMeasure::Force => load / self.thickness,
         }
     }
-}
-
-/// Whether the ligament is large enough for its plastic zone (ASTM E647, 7.2): M(T) `W - 2a ≥ 1.25 P_max / (B σ_Y)`, that is
-/// 80 % of net-section yield; C(T) and, by the same reasoning, edge cracks `b ≥ (4/π) (K_max/σ_Y)²`.
-pub fn small_scale_yielding(
-    kind: SpecimenKind,
-    width: f64,
-    crack_length: f64,
-    force_per_thickness: f64,
-    k_max: f64,
-    yield_strength: f64,
-) -> bool {
-    let needed = match kind {
-        SpecimenKind::MiddleTension => 1.25 * force_per_thickness / yield_strength,
-        _ => ligament_needed(k_max, yield_strength),
-    };
-    ligament(kind, width, crack_length) >= needed
 }
 
 /// `(4/π) (K_max/σ_Y)²`, the ligament ASTM E647 asks for, m: four times the plastic zone of plane stress.

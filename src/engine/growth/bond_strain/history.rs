@@ -270,7 +270,18 @@ impl GrowthHistory {
         // The first row is the plate at N = 0 exactly, with what the row there or just after it says.
         let start = rows.partition_point(|row| row.cycles < zero).min(rows.len() - 1);
         let broken_before = self.past.rows[start].broken_bonds;
+        let cracks = case.specimen.crack_lines();
+        let limit_load = |tips: &[TipRecord], crack_length: f64| {
+            let mut cracks = cracks.clone();
+            for (tip, record) in tips.iter().enumerate() {
+                if let Some(end) = case.specimen.line_end(tip).filter(|_| record.growth > 0.0) {
+                    cracks[end.line].grow(end.at_last, record.position);
+                }
+            }
+            case.limit_load(crack_length, &cracks).unwrap_or(f64::NAN)
+        };
         let point = |i: usize, cycles: f64, crack_length: f64| CurvePoint {
+            limit_load: limit_load(&rows[i].tips, crack_length),
             cycles,
             crack_length,
             delta_k: match &self.formula {

@@ -6,8 +6,8 @@ use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::fatigue::ageing::FatigueBond;
 use crate::fatigue::crack_tip::{CrackTip, TipState};
-use crate::growth::end_of_life::{End, strength_reason};
-use crate::growth::record::StopReason;
+use crate::growth::end_of_life::{End, row_after, strength_reason};
+use crate::growth::record::{CurvePoint, StopReason};
 use crate::specimen::Specimen;
 use crate::specimen::geometry::distance;
 use crate::state::Bonds;
@@ -25,7 +25,7 @@ pub(super) fn before_block(
     }
     // Where no handbook knows K, the energy released so far does.
     let horizon = case.model.horizon_ratio * case.model.spacing;
-    let released = case.material.toughness.zip(track.k_max_released(case, horizon));
+    let released = case.toughness_at_end().zip(track.k_max_released(case, horizon));
     let factor = case.stop.required.unwrap_or(1.0);
     if released.is_some_and(|(toughness, k_max)| k_max * factor >= toughness) {
         return Some(strength_reason(case, StopReason::Toughness));
@@ -42,6 +42,14 @@ pub(super) fn before_block(
 /// a spacing of growth is known up to the end; the curve stops there.
 pub(super) fn after_block(case: &Case, end: Option<End>, track: &GrowthHistory) -> Option<StopReason> {
     end.filter(|end| track.last().crack_length >= end.crack_length + case.model.spacing).map(|end| end.reason)
+}
+
+/// Where on its curve a plate no longer bears its load.
+pub(super) fn at_section(case: &Case, curve: &[CurvePoint]) -> Option<End> {
+    curve.windows(2).find_map(|rows| {
+        let (row, reason) = row_after(case, &rows[0], rows[1].clone(), None);
+        reason.filter(|reason| reason.is_strength()).map(|reason| End { crack_length: row.crack_length, reason })
+    })
 }
 
 /// The reason that counts where a run had passed a known end before it stopped for another reason.

@@ -55,7 +55,8 @@ impl ElementFree<'_> {
         let tips = self.state.fronts.iter().map(now).collect();
         let lead = self.fastest().map(|tip| &self.state.fronts[tip]);
         let cycles = self.curve.last().map_or(0.0, |row| row.cycles) + cycles;
-        CurvePoint::of_tips(self.case, [cycles, work], 0, tips, lead.map(|front| (front.equivalent(), front.rate)))
+        let (tips, lead) = ((tips, &self.state.lines[..]), lead.map(|front| (front.equivalent(), front.rate)));
+        CurvePoint::of_tips(self.case, [cycles, work], 0, tips, lead)
     }
 }
 

@@ -40,7 +40,8 @@ impl TipField<'_> {
         };
         let tips = self.state.tips.iter().map(now).collect();
         let lead = self.fastest().map(|tip| &self.state.tips[tip]);
-        CurvePoint::of_tips(self.case, [cycles, work], broken_bonds, tips, lead.map(|tip| (tip.equivalent(), tip.rate)))
+        let (tips, lead) = ((tips, &self.state.lines[..]), lead.map(|tip| (tip.equivalent(), tip.rate)));
+        CurvePoint::of_tips(self.case, [cycles, work], broken_bonds, tips, lead)
     }
 
     /// Lets the bonds ahead of all active tips lose remaining life λ up to where the tips are now; broken bonds are left out.
