@@ -69,9 +69,9 @@ fn how_lives_end() {
             loading: "stress_max_mpa = 900",
             method: points,
             exit: 3,
-            stop: "net_section_yield",
+            stop: "toughness",
             is_lower_bound: false,
-            words: "beyond the yield strength 345.0 MPa",
+            words: "beyond the limit load of what the cracks leave, 215.49 MPa",
         },
         Ending {
             specimen: HOLE,

@@ -61,6 +61,7 @@ pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
         p_error: 0.02,
         delta_k_min_mpa_sqrt_m: delta_k_min,
         delta_k_max_mpa_sqrt_m: delta_k_max,
+        lack_of_fit_percent: None,
         stress_ratio: 0.1,
         bond_law: "two_parameter".to_owned(),
         kernel: "conical".to_owned(),

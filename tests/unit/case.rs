@@ -37,6 +37,7 @@ fn record() -> FittedRecord {
         p_error: 0.02,
         delta_k_min_mpa_sqrt_m: 8.0,
         delta_k_max_mpa_sqrt_m: 27.0,
+        lack_of_fit_percent: None,
         stress_ratio: 0.2,
         bond_law: "two_parameter".into(),
         kernel: "constant".into(),
@@ -234,7 +235,7 @@ fn what_belongs_to_scenes_is_sent_there() {
 fn coarse_horizons_and_overloads_are_said() {
     let words = |overrides: &[&str]| read(INLINE, overrides).unwrap().warnings.join("\n");
     assert!(words(&["model.spacing_mm=2"]).contains("more than a third of the crack"));
-    assert!(words(&["loading.stress_range_mpa=400", "material.yield_strength_mpa=345"]).contains("beyond the yield strength"));
+    assert!(words(&["loading.stress_range_mpa=400", "material.yield_strength_mpa=345"]).contains("beyond the limit load"));
     assert!(words(&["model.kernel=constant"]).contains("belongs to the default bond law"));
 }
 

@@ -53,12 +53,15 @@ fn no_convergence_is_refused_only_where_there_is_no_curve() {
 fn far_extrapolation_is_refused_unless_allowed_but_kept() {
     let dir = tempdir().unwrap();
     let mut case = made_up_case::case();
-    // Most of the life is spent below 12 MPa√m.
+    // Below the lowest fitted ΔK lives come out short: that is told, and counts.
     case.law = made_up_case::fitted(12.0, 30.0);
+    keep(&case, made_up_run::prediction(0.0), &dir.path().join("run")).unwrap();
+    // All of the life is spent above 1 MPa√m.
+    case.law = made_up_case::fitted(0.5, 1.0);
     let error = keep(&case, made_up_run::prediction(0.0), &dir.path().join("run")).unwrap_err();
     assert_eq!(error.exit_code(), 2);
     assert!(
-        error.to_string().contains("12.00 to 30.00 MPa√m") && error.to_string().contains("allow_extrapolation = true"),
+        error.to_string().contains("0.50 to 1.00 MPa√m") && error.to_string().contains("allow_extrapolation = true"),
         "{error}"
     );
     // What it cost is kept, and marked.
@@ -66,7 +69,7 @@ fn far_extrapolation_is_refused_unless_allowed_but_kept() {
         let text = fs::read_to_string(dir.path().join("run/result.json")).unwrap();
         serde_json::from_str::<serde_json::Value>(&text).unwrap()["refused"].as_str().map(str::to_owned)
     };
-    assert!(refused().unwrap().contains("outside the fitted range of ΔK"));
+    assert!(refused().unwrap().contains("above the fitted range of ΔK"));
     case.allow_extrapolation = true;
     keep(&case, made_up_run::prediction(0.0), &dir.path().join("run")).unwrap();
     assert_eq!(refused(), None);

@@ -20,8 +20,10 @@ use crate::fracture::Scene;
 use crate::fracture::assembly::preview as preview_scene;
 use crate::fracture::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSupport};
 use crate::input::{Document, Provenance};
+use crate::report::checks;
 use crate::report::model_words::{self, mm, short};
 use crate::report::specimen_picture::{scene_svg, specimen_svg};
+use crate::report::run::refuse_beforehand;
 use crate::runner::{Kind, Task};
 use crate::sweep::design::{self, CASES_MAX};
 use crate::sweep::{DrawnCase, Sweep};
@@ -79,7 +81,16 @@ pub fn check(document: &Document, task: &Task) -> Result<Checked> {
             checked.lines.insert(0, curves_line(&calibration.curves));
             Ok(checked)
         }
-        Task::Prediction { case, .. } | Task::Factors { case, .. } => checked_case(document, "case", case, &case.warnings),
+        Task::Prediction { case, .. } => {
+            refuse_beforehand(case).map_err(|error| document.locate(error))?;
+            let mut checked = checked_case(document, "case", case, &case.warnings)?;
+            // What a life will rest on, as far as that is known before it.
+            let checks = checks::of_case(case);
+            checked.lines.push(line("verdict", checks::verdict(&checks)));
+            checked.warnings.extend(checks::lines(&checks));
+            Ok(checked)
+        }
+        Task::Factors { case, .. } => checked_case(document, "case", case, &case.warnings),
     }
 }
 

@@ -15,8 +15,8 @@ use crate::units::{MM, MPA_SQRT_M};
 
 /// Lines that are printed below a verdict at the most.
 const LINES_MOST: usize = 5;
-/// Letters of a printed line at the most.
-const LETTERS_MOST: usize = 80;
+/// Letters of a line at the most, so that it is one of 80 with what stands before it.
+const LETTERS_MOST: usize = 71;
 /// Effect on life, percent, from which a condition is doubtful; none has an effect that is known better.
 const DOUBTFUL_PERCENT: f64 = 1.0;
 /// Share of life outside the fitted ΔK range from which the law is doubtful.
@@ -63,7 +63,7 @@ pub struct Check {
     pub effect_percent: Option<f64>,
     /// On which side of the true life the life is by that.
     pub side: Option<Side>,
-    /// In words, at most 80 letters.
+    /// In words, a line.
     pub words: String,
     /// What to do about it.
     pub remedy: Option<String>,
@@ -170,7 +170,7 @@ fn strength(case: &Case, name: &'static str) -> Check {
             case.stop.by_net_section,
             "yielding: not checked, no yield strength given",
             "material.yield_strength_mpa",
-            "yielding of the section: not checked, turned off by stop.net_section",
+            "yielding: not checked, turned off by stop.net_section",
         ),
     };
     match (is_given, is_asked) {
@@ -206,7 +206,7 @@ fn ligament(case: &Case, prediction: &Prediction) -> Check {
     let load = |row: &crate::predict::CurvePoint| case.loading.maximum * case.loading.share(row.work) / row.limit_load;
     let most = prediction.curve.iter().map(load).filter(|used| used.is_finite()).fold(f64::NAN, f64::max);
     if most.is_nan() {
-        let words = "yielding of the section: not checked, supports on both sides of every cut";
+        let words = "yielding: not checked, supports on both sides of every section";
         return Check::not_checked(NAME, words, "give the loads of both ends instead of a support");
     }
     Check { words: format!("section: the load is {:.1} % of its limit load at the most", 100.0 * most), ..given }
@@ -249,13 +249,13 @@ fn extrapolation(case: &Case, prediction: &Prediction) -> Vec<Check> {
             "extrapolation_below",
             below,
             Side::Safe,
-            format!("law: {:.1} % of life at ΔK below {low:.2} MPa√m, the lowest fitted (safe side)", 100.0 * below),
+            format!("law: {:.1} % of life below ΔK {low:.2}, the lowest fitted (safe side)", 100.0 * below),
         ),
         of_side(
             "extrapolation_above",
             above,
             Side::Unsafe,
-            format!("law: {:.1} % of life at ΔK above {high:.2} MPa√m, the highest fitted (unsafe)", 100.0 * above),
+            format!("law: {:.1} % of life above ΔK {high:.2}, the highest fitted (unsafe side)", 100.0 * above),
         ),
     ]
 }
@@ -273,12 +273,12 @@ fn first_extrapolation(case: &Case) -> Option<Check> {
     let Some([low, high]) = fit_use::fitted_range(case) else { return Some(unknown_range()) };
     let first = first_delta_k(case)? / MPA_SQRT_M;
     if first > high * (1.0 + 1e-6) {
-        let words = format!("law: ΔK {first:.2} MPa√m at the start is above the highest fitted, {high:.2}");
+        let words = format!("law: ΔK {first:.2} at the start is above the highest fitted, {high:.2}");
         let check = Check::sized("extrapolation_above", 100.0, true, Side::Unsafe, words, "lower the load, or calibrate on longer cracks");
         return Some(if case.allow_extrapolation { check } else { Check { verdict: Verdict::Fails, ..check } });
     }
     (first < low * (1.0 - 1e-6)).then(|| {
-        let words = format!("law: ΔK {first:.2} MPa√m at the start is below the lowest fitted, {low:.2} (safe)");
+        let words = format!("law: ΔK {first:.2} at the start is below the lowest fitted, {low:.2} (safe)");
         Check { side: Some(Side::Safe), ..Check::new("extrapolation_below", Verdict::Doubtful, words) }
     })
 }
@@ -299,7 +299,7 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
     };
     let percent = 100.0 * exponent * check.difference;
     let words = format!(
-        "K: {:+.1} % from the energy of the whole plate at {} mm, {:+.0} % of the rate there",
+        "K: {:+.1} % from the energy of the plate at {} mm, {:+.0} % of da/dN there",
         100.0 * check.difference,
         two_digits(check.crack_length / MM),
         percent

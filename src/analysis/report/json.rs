@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::case::{Case, LawSource};
+use crate::growth::end_of_life::critical_length;
 use crate::growth::record::TipRecord;
 use crate::predict::laws::paris_law;
 use crate::predict::plastic_zone::{PlasticZone, Zone};
@@ -12,7 +13,6 @@ use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use super::checks;
 use super::fit_use::extrapolated;
 pub use super::fit_use::life_share_extrapolated;
-use super::run::{crack_length_of, leading_tip};
 use super::model_words::{self, clean};
 
 /// Name of the file.
@@ -34,6 +34,7 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "converged": prediction.stop != StopReason::NoConvergence,
         "crack_length_initial_mm": clean(case.specimen.crack_length / MM),
         "crack_length_final_mm": clean(prediction.crack_length_final() / MM),
+        "critical": critical(case, prediction),
         "tips": tips(case, prediction),
         "life_share_extrapolated": life_share_extrapolated(case, prediction),
         "plastic_zone": plastic_zone(case, prediction),
@@ -60,15 +61,25 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
     })
 }
 
+/// The crack length at which the plate no longer bears its load, and by what; `null` where the run did not come to it and no formula
+/// says it.
+fn critical(case: &Case, prediction: &Prediction) -> Value {
+    let by_run = prediction.stop.is_strength().then(|| (prediction.crack_length_final(), prediction.stop));
+    let by_formula = || critical_length(case).map(|end| (end.crack_length, end.reason));
+    by_run.or_else(by_formula).map_or(Value::Null, |(length, reason)| {
+        json!({ "crack_length_mm": clean(length / MM), "criterion": reason.name(), "meaning": reason.meaning() })
+    })
+}
+
 /// Every tip at the start and at the end: state, place, growth.
 fn tips(case: &Case, prediction: &Prediction) -> Vec<Value> {
     let [Some(first), Some(last)] = [prediction.curve.first(), prediction.curve.last()] else { return Vec::new() };
-    let leads = leading_tip(case, prediction).map(|(tip, _)| tip);
+    let leads = prediction.leading_tip(&case.specimen).map(|(tip, _)| tip);
     let of_tip = |(tip, (start, end)): (usize, (&TipRecord, &TipRecord))| {
         json!({
             "leads": leads.is_none_or(|leads| leads == tip),
-            "crack_length_initial_mm": crack_length_of(case, first, tip).map(|length| clean(length / MM)),
-            "crack_length_final_mm": crack_length_of(case, last, tip).map(|length| clean(length / MM)),
+            "crack_length_initial_mm": first.crack_length_of(&case.specimen, tip).map(|length| clean(length / MM)),
+            "crack_length_final_mm": last.crack_length_of(&case.specimen, tip).map(|length| clean(length / MM)),
             "state_initial": start.state.name(),
             "state": end.state.name(),
             "x_mm": clean(end.position[0] / MM),

@@ -19,10 +19,10 @@ use crate::error::{Error, Result, input};
 use crate::predict::plastic_zone::{self, PlasticZone};
 use crate::predict::record::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::residual_strength::Strength;
-use crate::predict::{CurvePoint, Prediction, StopReason};
+use crate::predict::{Prediction, StopReason};
 use crate::specimen::geometry::distance;
 use crate::specimen::handbook::handbook;
-use crate::specimen::{LoadMeasure, Point, SpecimenKind};
+use crate::specimen::{LoadMeasure, Point};
 use crate::units::{KN, MM, MPA, MPA_SQRT_M};
 
 /// Half the width of the picture of the fatigue zone, in horizons.
@@ -258,7 +258,6 @@ pub fn words(case: &Case, prediction: &Prediction) -> Vec<String> {
         format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
         format!("  verdict        {}", checks::verdict(&checks)),
     ];
-    lines.extend(checks::lines(&checks).into_iter().map(|line| format!("  - {line}")));
     lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
     lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
     lines.push(format!("  computed       {}", computed(case, prediction)));
@@ -275,34 +274,13 @@ pub fn told_by_checks(case: &Case, prediction: &Prediction) -> Vec<String> {
 /// How far the crack grew: by the length of the standard of the specimen, or that of the crack whose tip leads, and what all of them sum to.
 fn length_words(case: &Case, prediction: &Prediction) -> String {
     let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
-    match leading_tip(case, prediction) {
+    match prediction.leading_tip(&case.specimen) {
         Some((tip, [first, last])) => {
             let all = if case.specimen.crack_lines().len() > 1 { format!("; all cracks {from:.3} mm to {to:.3} mm") } else { String::new() };
             format!("tip {tip}: its crack {:.3} mm to {:.3} mm{all}", first / MM, last / MM)
         }
         None => format!("{from:.3} mm to {to:.3} mm"),
     }
-}
-
-/// The tip that ends the life of a plate, which grew fastest at the end, and the length of its crack at the start and there, m; `None` of
-/// standard specimens, whose crack length is that of their standard, and of ends of slots.
-pub fn leading_tip(case: &Case, prediction: &Prediction) -> Option<(usize, [f64; 2])> {
-    if case.specimen.kind != SpecimenKind::Plate {
-        return None;
-    }
-    let rows = &prediction.curve;
-    let (before, last) = (rows.get(rows.len().checked_sub(2)?)?, rows.last()?);
-    let grown = |tip: usize| last.tips[tip].growth - before.tips[tip].growth;
-    let tip = (0..last.tips.len()).max_by(|a, b| grown(*a).total_cmp(&grown(*b)))?;
-    Some((tip, [crack_length_of(case, &rows[0], tip)?, crack_length_of(case, last, tip)?]))
-}
-
-/// Length of the crack that a tip ends, with the growth of all its tips, m.
-pub fn crack_length_of(case: &Case, row: &CurvePoint, tip: usize) -> Option<f64> {
-    let line = case.specimen.line_end(tip)?.line;
-    let of_line = |other: &usize| case.specimen.line_end(*other).is_some_and(|end| end.line == line);
-    let growth: f64 = (0..row.tips.len()).filter(of_line).map(|other| row.tips[other].growth).sum();
-    Some(case.specimen.crack_lines()[line].length() + growth)
 }
 
 /// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.

@@ -66,6 +66,9 @@ pub struct Outcome {
     /// Why it ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop_reason: Option<String>,
+    /// Whether that is less than what the plate lives, all that could end it sooner being checked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub life_is_lower_bound: Option<bool>,
     /// Crack length at the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crack_length_final_mm: Option<f64>,
@@ -85,9 +88,9 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whether its life is a lower bound ([`StopReason::is_lower_bound`]); `None` without one.
-    pub fn is_lower_bound(&self) -> Option<bool> {
-        Some(self.stop_reason.as_deref()?.parse::<StopReason>().ok()?.is_lower_bound())
+    /// Whether its run ended before the plate did ([`StopReason::is_lower_bound`]).
+    fn is_cut_off(&self) -> bool {
+        self.stop_reason.as_deref().and_then(|reason| reason.parse::<StopReason>().ok()).is_some_and(StopReason::is_lower_bound)
     }
 
     /// A case without a result.
@@ -96,6 +99,7 @@ impl Outcome {
             input: case.hash.clone(),
             life_cycles: None,
             stop_reason: None,
+            life_is_lower_bound: None,
             crack_length_final_mm: None,
             wall_s,
             problem: Some(problem.to_owned()),
@@ -147,7 +151,7 @@ pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
                 outcome.crack_length_final_mm.map_or_else(String::new, csv::number),
                 csv::exact(outcome.wall_s),
                 field(&outcome.problem.as_deref().unwrap_or_default().replace('\n', " ")),
-                outcome.is_lower_bound().map_or_else(String::new, |is_lower| is_lower.to_string())
+                outcome.life_is_lower_bound.map_or_else(String::new, |is_lower| is_lower.to_string())
             ),
             None => writeln!(text, ",,,,not run yet,"),
         };
@@ -200,9 +204,8 @@ struct Lives {
 impl Lives {
     fn of(outcomes: &[Option<Outcome>]) -> Self {
         let there = || outcomes.iter().flatten().filter(|outcome| outcome.problem.is_none());
-        let is_bound = |outcome: &Outcome| outcome.is_lower_bound() == Some(true);
         let mut sorted: Vec<(f64, bool)> =
-            there().map(|outcome| (outcome.life_cycles.unwrap_or(f64::INFINITY), is_bound(outcome))).collect();
+            there().map(|outcome| (outcome.life_cycles.unwrap_or(f64::INFINITY), outcome.is_cut_off())).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let unlimited = sorted.iter().filter(|(life, _)| life.is_infinite()).count();
         let bounds = sorted.iter().filter(|(_, is_bound)| *is_bound).count();

@@ -144,6 +144,7 @@ pub fn of_prediction(
     let told = run::told_by_checks(case, prediction);
     let warnings = prediction.warnings.iter().chain(&judged).filter(|warning| !told.contains(warning));
     warnings.for_each(|warning| watcher.warn(warning));
+    report::checks::lines(&report::checks::of_run(case, prediction)).iter().for_each(|line| watcher.warn(line));
     // If that fails, the run itself is written all the same.
     let strengths = with_strength.then(|| residual_strength(case, &prediction.curve)).transpose();
     let result = match folder {

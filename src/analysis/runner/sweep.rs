@@ -59,6 +59,7 @@ fn outcome(case: &DrawnCase, files: Option<&Path>) -> Result<Outcome> {
             input: case.hash.clone(),
             life_cycles: result["life_cycles"].as_f64(),
             stop_reason: text(&result["stop_reason"]),
+            life_is_lower_bound: result["life_is_lower_bound"].as_bool(),
             crack_length_final_mm: result["crack_length_final_mm"].as_f64(),
             wall_s: result["wall_s"].as_f64().unwrap_or(0.0),
             problem: None,

@@ -176,6 +176,7 @@ fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Resu
         // The summary says whether there is an end.
         life_cycles: rows.last().map(|row| row.cycles).filter(|_| !summary["life_cycles"].is_null()),
         stop_reason: summary["stop_reason"].as_str().map(str::to_owned),
+        life_is_lower_bound: summary["life_is_lower_bound"].as_bool(),
         crack_length_final_mm: rows.last().map(|row| row.crack_length_mm),
         wall_s: summary["wall_s"].as_f64().unwrap_or(0.0),
         problem: None,

@@ -163,22 +163,8 @@ pub(super) fn stop_from_value(value: &Value, (specimen, material, loading): (&Sp
     }
     let cycles_max = number("a number of cycles", 1.0, 1e15).read("stop.cycles_max", slice.cycles_max.unwrap_or(CYCLES_MAX))?;
     let required = required_load(&slice, specimen, material, loading)?;
-    let [by_toughness, by_net_section] = ends_by(&slice, material)?;
+    let [by_toughness, by_net_section] = [slice.toughness, slice.net_section].map(|asked| asked.unwrap_or(true));
     Ok(Stop { crack_length: crack_length.unwrap_or(f64::INFINITY), cycles_max, required, by_toughness, by_net_section })
-}
-
-/// Whether the life ends at the toughness, at the limit load of a section: where the material has the strength, unless that is turned off.
-fn ends_by(stop: &StopInput, material: &Material) -> Result<[bool; 2]> {
-    let strengths = [
-        ("stop.toughness", stop.toughness, material.toughness, "material.toughness_mpa_sqrt_m"),
-        ("stop.net_section", stop.net_section, material.yield_strength, "material.yield_strength_mpa"),
-    ];
-    for (key, asked, strength, name) in strengths {
-        if asked == Some(true) && strength.is_none() {
-            return Err(input(key, true, format!("cannot be checked: the material has no {name}"), format!("give {name}")));
-        }
-    }
-    Ok(strengths.map(|(_, asked, strength, _)| strength.is_some() && asked.unwrap_or(true)))
 }
 
 /// The load that the plate has to bear, over the largest of a cycle.
@@ -212,9 +198,10 @@ fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loa
         let problem = "is less than the largest load of a cycle, which the plate has to bear anyhow";
         return Err(input(key, given, problem, "give the limit load that it has to bear at the end of its life"));
     }
-    if ends_by(stop, material)? == [false; 2] {
+    let ends = [(stop.toughness, material.toughness), (stop.net_section, material.yield_strength)];
+    if !ends.iter().any(|(asked, strength)| asked.unwrap_or(true) && strength.is_some()) {
         let remedy = "give material.toughness_mpa_sqrt_m, yield_strength_mpa or both";
-        return Err(input(key, given, "cannot be compared: the material has neither toughness nor yield strength", remedy));
+        return Err(input(key, given, "cannot be compared: no toughness and no yield strength ends the life", remedy));
     }
     Ok(Some(factor))
 }

@@ -24,27 +24,39 @@ pub struct End {
 pub fn first_end(case: &Case) -> Option<End> {
     // The plate has to bear a load, that of the cycles or a larger one.
     let (specimen, load) = (&case.specimen, case.loading.maximum * case.stop.required.unwrap_or(1.0));
-    let (start, limit) = (specimen.crack_length, specimen.length_limit().0);
+    let start = specimen.crack_length;
     let end = |crack_length: f64, reason| End { crack_length, reason };
     let wanted = case.stop.crack_length.is_finite().then(|| end(case.stop.crack_length, StopReason::CrackLengthReached));
     if case.loading.displacement().is_some() {
         return wanted;
     }
-    let toughness = case.toughness_at_end().zip(handbook(specimen)).map(|(toughness, formula)| {
-        end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), strength_reason(case, StopReason::Toughness))
-    });
-    let net_section = case.yield_strength_at_end().and_then(|strength| {
-        let yields = strength_reason(case, StopReason::NetSectionYield);
-        if specimen.ligament(start).is_some() {
-            // Known for this kind, so the default is never taken.
-            let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
-            return Some(end(first_reach(stress, strength, start, limit), yields));
-        }
-        // Of a plate only that of its initial cracks is known before the run.
+    let yields_at_once = case.yield_strength_at_end().filter(|_| specimen.ligament(start).is_none()).and_then(|strength| {
+        // Of a plate only the section that its initial cracks leave is known before the run.
         let borne = specimen.limit_load(start, &specimen.crack_lines(), strength)?;
-        (borne <= load).then(|| end(start, yields))
+        (borne <= load).then(|| end(start, strength_reason(case, StopReason::NetSectionYield)))
     });
-    [wanted, toughness, net_section].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
+    [wanted, critical_length(case), yields_at_once].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
+}
+
+/// The crack length at which a standard specimen no longer bears the load that it has to, by K = toughness or yield of the whole section,
+/// whichever is first; `None` where neither is known before a run.
+pub fn critical_length(case: &Case) -> Option<End> {
+    if case.loading.displacement().is_some() {
+        return None;
+    }
+    let (specimen, load) = (&case.specimen, case.loading.maximum * case.stop.required.unwrap_or(1.0));
+    let (start, limit) = (specimen.crack_length, specimen.length_limit().0);
+    let end = |crack_length: f64, breaks| End { crack_length, reason: strength_reason(case, breaks) };
+    let toughness = case
+        .toughness_at_end()
+        .zip(handbook(specimen))
+        .map(|(toughness, formula)| end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), StopReason::Toughness));
+    let net_section = case.yield_strength_at_end().filter(|_| specimen.ligament(start).is_some()).map(|strength| {
+        // Known for this kind, so the default is never taken.
+        let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
+        end(first_reach(stress, strength, start, limit), StopReason::NetSectionYield)
+    });
+    [toughness, net_section].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
 }
 
 /// Smallest `a` in `from..=to` at which `value`, which rises with `a`, has reached `wanted`. NaN counts as reached: formulas end

@@ -7,7 +7,7 @@
 pub mod bond_strain;
 pub mod cross_check;
 pub mod element_free;
-mod end_of_life;
+pub mod end_of_life;
 pub mod hand_calculation;
 pub mod plate;
 pub mod record;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
 use crate::fatigue::crack_tip::TipState;
-use crate::specimen::{CrackLine, Point};
+use crate::specimen::{CrackLine, Point, Specimen};
 
 crate::kinds! {
     /// Why a run ended.
@@ -99,6 +99,14 @@ impl CurvePoint {
             broken_bonds,
             tips,
         }
+    }
+
+    /// Length of the crack that a tip ends, with the growth of all its tips, m; `None` of the end of a slot.
+    pub fn crack_length_of(&self, specimen: &Specimen, tip: usize) -> Option<f64> {
+        let line = specimen.line_end(tip)?.line;
+        let is_of_line = |other: &usize| specimen.line_end(*other).is_some_and(|end| end.line == line);
+        let growth: f64 = (0..self.tips.len()).filter(is_of_line).map(|other| self.tips[other].growth).sum();
+        Some(specimen.crack_lines()[line].length() + growth)
     }
 
     /// The row at a share of the way from another to this one; bonds broken are those of this one.

@@ -10,6 +10,7 @@ pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
 use crate::growth::{CrackGrowth, GrowthStatus};
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
+use crate::specimen::{Specimen, SpecimenKind};
 use crate::units::MM;
 
 /// Picture of the damaged plate at one moment.
@@ -105,6 +106,16 @@ impl Prediction {
     /// Cycles from N = 0 to the end of the run.
     pub fn life_cycles(&self) -> f64 {
         self.curve.last().map_or(0.0, |point| point.cycles)
+    }
+
+    /// The tip that ends the life of a plate, which grew fastest at the end, and the length of its crack at the start and there, m; `None` of
+    /// standard specimens, whose crack length is that of their standard, and of ends of slots.
+    pub fn leading_tip(&self, specimen: &Specimen) -> Option<(usize, [f64; 2])> {
+        let [first, .., before, last] = &self.curve[..] else { return None };
+        let grown = |tip: &usize| last.tips[*tip].growth - before.tips[*tip].growth;
+        let tip = (0..last.tips.len()).max_by(|a, b| grown(a).total_cmp(&grown(b)))?;
+        let lengths = [first, last].map(|row| row.crack_length_of(specimen, tip));
+        (specimen.kind == SpecimenKind::Plate).then_some((tip, [lengths[0]?, lengths[1]?]))
     }
 
     /// Crack length at the end, mm.

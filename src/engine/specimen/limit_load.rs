@@ -123,7 +123,14 @@ impl<'a> Plate<'a> {
         let size = force[0].hypot(force[1]);
         let of_force = if dot(force, across) < 0.0 { -size } else { size };
         let normals = [Some(across), (size > 0.0).then(|| force.map(|f| f / of_force))];
-        let bears = |normal: Point| plastic_load(&Piece::of(cut, from, normal), normal, force, turns.then_some(moment));
+        let bears = |normal: Point| {
+            let mut pieces = Piece::of(cut, from, normal);
+            if dot(force, normal).abs() < size * (1.0 - 1e-12) {
+                // A piece askew bears no more than one across where there is a force across as well.
+                pieces.iter_mut().for_each(|piece| piece.strength = piece.strength.min(1.0));
+            }
+            plastic_load(&pieces, normal, force, turns.then_some(moment))
+        };
         normals.into_iter().flatten().filter_map(bears).reduce(f64::max).filter(|load| load.is_finite())
     }
 

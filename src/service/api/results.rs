@@ -215,6 +215,9 @@ pub async fn remaining(
     if summary.as_ref().is_some_and(|summary| summary["life_cycles"].is_null()) {
         return Err(Problem::conflict("the cracks stand still under these loads: the life is unlimited"));
     }
+    if let Some(refused) = summary.as_ref().and_then(|summary| summary["refused"].as_str()) {
+        return Err(Problem::conflict(format!("the run has no life: {refused}")));
+    }
     let (cycles_at, life_cycles) = (cycles_at(&rows, from.crack_length_mm)?, rows[rows.len() - 1].cycles);
     let remaining_cycles = life_cycles - cycles_at;
     Ok(Json(Remaining {

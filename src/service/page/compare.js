@@ -10,7 +10,7 @@ import { COMPARE_MAX } from "./runs.js";
 export async function openComparison(root, ids, signal) {
   const chosen = ids.slice(0, COMPARE_MAX);
   const jobs = await Promise.all(chosen.map((id) => getJson(`/v1/predictions/${encodeURIComponent(id)}`, signal)));
-  const done = jobs.filter((job) => job.state === "succeeded");
+  const done = jobs.filter((job) => job.state === "succeeded" && !job.summary.refused);
   const curves = await Promise.all(done.map((job) => getText(`${pathOf(job)}/files/a_n.csv?points=600`, signal).then(readCsv)));
   if (signal.aborted) return;
   const chartPlace = element("div");
@@ -22,7 +22,7 @@ export async function openComparison(root, ids, signal) {
     element("header", { class: "job-head", id: "comparison" },
       element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, "Comparison of predictions"),
         element("div", { class: "tool-row end" }, element("a", { class: "button", href: "#/runs" }, "Back to the runs")))),
-    done.length < jobs.length && element("p", { class: "notice warn" }, "Runs that have not succeeded are left out."),
+    done.length < jobs.length && element("p", { class: "notice warn" }, "Runs without a life that counts are left out."),
     section("compare-curves", "Crack length against cycles", chartPlace),
     section("compare-lives", "Lives",
       element("div", { class: "field inline" }, element("label", { for: "compare-base" }, "Ratios to"), base), ratios));

@@ -55,8 +55,9 @@ export function powerOf(exponent) {
   return String(exponent).replace(/./g, (sign) => SUPERSCRIPT[sign]);
 }
 
-/** The life of a summary: cycles, at least so many where the plate lives on, or that it has no end. */
+/** The life of a summary: cycles, at least so many where the plate lives on, that it has no end, or none that counts. */
 export function lifeOf(summary) {
+  if (summary.refused) return "none";
   if (summary.life_cycles === null) return "unlimited";
   return `${summary.life_is_lower_bound ? "≥ " : ""}${cycles(Math.round(summary.life_cycles))}`;
 }

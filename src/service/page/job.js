@@ -15,8 +15,10 @@ export const pathOf = (job) => `/v1/${collectionOf(job)}/${encodeURIComponent(jo
 export const nameOf = (job) => job.name || job.id;
 export const isFinal = (job) => FINAL.includes(job.state);
 
-export function stateBadge(state) {
-  return element("span", { class: `badge ${state}`, "data-state": state }, sentence(state));
+/** State of a run; one whose life does not count is refused, whatever its worker made of it. */
+export function stateBadge({ state, summary }) {
+  const shown = state === "succeeded" && summary?.refused ? "refused" : state;
+  return element("span", { class: `badge ${shown}`, "data-state": shown }, sentence(shown));
 }
 
 /** Asks before a run is deleted; true when it is gone. */
@@ -97,7 +99,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     job = { ...job, ...next };
     node.dataset.jobState = job.state;
     node.dataset.jobId = job.id;
-    show(badge, stateBadge(job.state));
+    show(badge, stateBadge(job));
     const ended = isFinal(job);
     cancel.hidden = ended;
     cancel.disabled = job.cancel_asked === true;

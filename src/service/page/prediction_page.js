@@ -97,7 +97,8 @@ export async function openPrediction(root, id, signal) {
   async function finish(last) {
     const whole = { ...job, ...last, input: job.input };
     if (whole.state !== "succeeded") show(outcome, failureOf(whole));
-    else show(outcome, result(whole.summary), whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings));
+    else show(outcome, result(whole.summary), checksOf(whole.summary), whole.summary.warnings?.length > 0
+      && element("details", { class: "quiet" }, element("summary", null, "All that was noticed"), warningList(whole.summary.warnings)));
     const special = { "a_n.csv": curveChoices };
     show(below, downloadList(whole, special), inputText(whole));
     await loadFiles(whole);
@@ -114,7 +115,7 @@ export async function openPrediction(root, id, signal) {
         Object.assign(curve, { x: columns.cycles, y: columns.crack_length_mm });
         chart.set([curve, today]);
         drawRates(columns);
-        if (whole.state === "succeeded") {
+        if (whole.state === "succeeded" && !whole.summary.refused) {
           outcome.append(createRemaining(whole, columns, (at, length) => {
             Object.assign(today, { x: at === null ? [] : [at], y: at === null ? [] : [length] });
             chart.set([curve, today]);
@@ -174,14 +175,28 @@ function pathsOf({ tip, x_mm: xs, y_mm: ys }) {
 }
 
 function result(s) {
+  const life = [s.stop_reason === "entered_hole" ? "Cycles to the hole" : "Life", element("strong", { class: "large", "data-value": "life_cycles" },
+    s.life_cycles === null ? lifeOf(s) : `${lifeOf(s)} cycles`)];
   return element("section", { class: "result", "aria-labelledby": "result-title", "data-part": "result" },
     element("h2", { id: "result-title", class: "visually-hidden" }, "Result"),
+    s.refused && element("p", { class: "notice bad", "data-value": "refused" }, element("strong", null, "No life: "), s.refused),
     terms([
-      [s.stop_reason === "entered_hole" ? "Cycles to the hole" : "Life", element("strong", { class: "large", "data-value": "life_cycles" }, s.life_cycles === null ? lifeOf(s) : `${lifeOf(s)} cycles`)],
+      ...(s.refused ? [] : [life]),
       ["Crack length", `${fixed(s.crack_length_initial_mm, 2)} to ${fixed(s.crack_length_final_mm, 2)} mm`],
       ["Stopped because", sentence(s.stop_meaning ?? words(s.stop_reason))],
       ["Computed", `${whole(s.points)} points in ${duration(s.wall_s)}`],
     ], "result"));
+}
+
+/** What the life rests on: the verdict, and every condition that does not hold or could not be checked, with its remedy. */
+function checksOf({ verdict, checks }) {
+  if (!verdict) return null;
+  const open = (checks ?? []).filter((check) => check.verdict !== "holds");
+  return element("section", { class: "checks", "aria-labelledby": "checks-title", "data-part": "checks" },
+    element("h2", { id: "checks-title" }, "Verdict"),
+    element("p", { "data-value": "verdict" }, sentence(verdict)),
+    open.length > 0 && element("ul", null, open.map((check) => element("li", { "data-check": check.name, "data-verdict": check.verdict },
+      check.words, check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)))));
 }
 
 /** The curve as it was computed, or at equally spaced cycles. */

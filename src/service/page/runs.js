@@ -101,7 +101,7 @@ export function createRunsView() {
     return element("tr", { "data-job": job.id, "data-job-state": job.state },
       predictions && element("td", { class: "tick" }, tick(job)),
       element("th", { scope: "row" }, element("a", { href: hrefOf(job), "data-focus": `open-${job.id}` }, nameOf(job))),
-      element("td", null, stateBadge(job.state), job.state === "running" && job.progress ? ` ${percent(job.progress.share, 0)}` : null),
+      element("td", null, stateBadge(job), job.state === "running" && job.progress ? ` ${percent(job.progress.share, 0)}` : null),
       figures,
       element("td", { class: "nowrap" }, moment(job.created)), number(Number.isFinite(took) ? duration(took) : ""),
       element("td", null, isFinal(job) ? action(job, "Delete", remove) : action(job, "Cancel", cancel)));
