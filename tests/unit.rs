@@ -8,6 +8,7 @@ mod case;
 #[cfg(feature = "tables")]
 mod cells;
 mod chart_parts;
+mod checks;
 mod circles;
 mod collinear;
 mod commands;

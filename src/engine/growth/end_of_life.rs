@@ -103,11 +103,18 @@ pub(super) fn reason_to_stop(
     states: &[TipState],
     grows: bool,
 ) -> Option<StopReason> {
+    let [(by_toughness, _), (by_section, _)] = excess(case, last).map(|(excess, breaks)| (excess.filter(|e| *e >= 0.0), breaks));
+    // What breaks first on the way to the load: load over limit load is 1/(1 - e).
+    let breaks = match (by_toughness, by_section) {
+        (Some(k), Some(e)) if k + 1.0 < 1.0 / (1.0 - e) => Some(StopReason::NetSectionYield),
+        (Some(_), _) => Some(StopReason::Toughness),
+        (None, by_section) => by_section.map(|_| StopReason::NetSectionYield),
+    };
+    if let Some(breaks) = breaks {
+        return Some(strength_reason(case, breaks));
+    }
     if let Some(end) = end.filter(|end| last.crack_length >= end.crack_length * (1.0 - ROUND_OFF)) {
         return Some(end.reason);
-    }
-    if let Some((_, breaks)) = excess(case, last).into_iter().find(|(excess, _)| excess.is_some_and(|excess| excess >= 0.0)) {
-        return Some(strength_reason(case, breaks));
     }
     if !states.contains(&TipState::Active) {
         return Some(gone(states));

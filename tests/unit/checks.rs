@@ -1,0 +1,113 @@
+//! What a life rests on: verdicts, effects, sides.
+
+use perilife::case::Case;
+use perilife::predict::{Prediction, StopReason};
+use perilife::report::checks::{Check, Side, Verdict, is_bound_below, lines, of_case, of_run, verdict};
+use perilife::report::run::{refusal, refuse_beforehand};
+
+use crate::support::hand_cases::{PANEL, hand_case, hand_run};
+use crate::support::{made_up_case, made_up_run};
+
+const STRENGTHS: [&str; 2] = ["material.toughness_mpa_sqrt_m=60", "material.yield_strength_mpa=345"];
+
+fn find<'c>(checks: &'c [Check], name: &str) -> &'c Check {
+    checks.iter().find(|check| check.name == name).unwrap_or_else(|| panic!("{name} in {checks:?}"))
+}
+
+fn named(case: &Case, run: &Prediction, name: &str) -> Check {
+    find(&of_run(case, run), name).clone()
+}
+
+#[test]
+fn strengths_that_are_not_given_are_not_checked() {
+    let (case, run) = (hand_case(PANEL, &[]), hand_run(PANEL, &[]));
+    let checks = of_run(&case, &run);
+    for (name, words) in [("toughness", "no toughness given"), ("ligament", "no yield strength given")] {
+        let check = find(&checks, name);
+        assert_eq!((check.verdict, check.side), (Verdict::NotChecked, Some(Side::Unsafe)));
+        assert!(check.words.contains(words) && check.remedy.as_deref().is_some_and(|remedy| remedy.starts_with("give material")));
+    }
+    assert!(verdict(&checks).starts_with("stands on conditions: of "), "{}", verdict(&checks));
+    let told = lines(&checks);
+    assert!(told.len() <= 5 && told.iter().all(|line| line.chars().count() <= 71), "{told:?}");
+    // Given, they hold: the life ends where one is reached.
+    let (case, run) = (hand_case(PANEL, &STRENGTHS), hand_run(PANEL, &STRENGTHS));
+    assert_eq!(named(&case, &run, "toughness").words, "fracture: K_max is 100.0 % of the toughness at the most");
+    assert_eq!(named(&case, &run, "ligament").verdict, Verdict::Holds);
+    // Turned off, they are not checked either.
+    let off = [STRENGTHS[0], STRENGTHS[1], "stop.toughness=false", "stop.net_section=false"];
+    let (case, run) = (hand_case(PANEL, &off), hand_run(PANEL, &off));
+    assert_eq!(run.stop, StopReason::Severed);
+    for name in ["toughness", "ligament"] {
+        let check = named(&case, &run, name);
+        assert!(check.verdict == Verdict::NotChecked && check.words.contains("turned off by stop."), "{check:?}");
+    }
+}
+
+#[test]
+fn extrapolation_has_two_sides() {
+    let (mut case, mut run) = (made_up_case::case(), made_up_run::prediction(0.0));
+    run.curve.truncate(2);
+    for (point, (cycles, delta_k)) in run.curve.iter_mut().zip([(0.0, 10e6), (100.0, 20e6)]) {
+        (point.cycles, point.delta_k) = (cycles, delta_k);
+    }
+    // ΔK rises from 10 to 20 MPa√m: 20 % of the life below, 30 % above.
+    case.law = made_up_case::fitted(12.0, 17.0);
+    let [below, above] = ["extrapolation_below", "extrapolation_above"].map(|name| named(&case, &run, name));
+    assert_eq!((below.verdict, below.side), (Verdict::Doubtful, Some(Side::Safe)));
+    assert_eq!((above.verdict, above.side), (Verdict::Fails, Some(Side::Unsafe)));
+    assert!((below.effect_percent.unwrap() - 20.0).abs() < 0.1 && (above.effect_percent.unwrap() - 30.0).abs() < 0.1);
+    assert!(verdict(&of_run(&case, &run)).starts_with("not to be used: "));
+    assert_eq!(of_run(&case, &run)[0].name, "extrapolation_above", "what fails comes first");
+    assert_eq!(refusal(&case, &run).unwrap().exit_code(), 2);
+    // All of it on the safe side counts, with a word.
+    case.law = made_up_case::fitted(21.0, 30.0);
+    assert_eq!(named(&case, &run, "extrapolation_below").verdict, Verdict::Doubtful);
+    assert!(refusal(&case, &run).is_none());
+}
+
+#[test]
+fn what_the_first_range_of_k_shows_is_refused_before_a_run() {
+    // ΔK of the panel is 8.19 MPa√m at the start.
+    let mut case = hand_case(PANEL, &[]);
+    case.law = made_up_case::fitted(3.0, 8.0);
+    let error = refuse_beforehand(&case).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("ΔK 8.19 MPa√m at the start") && error.to_string().contains("3.00 to 8.00"), "{error}");
+    assert_eq!(find(&of_case(&case), "extrapolation_above").verdict, Verdict::Fails);
+    case.allow_extrapolation = true;
+    refuse_beforehand(&case).unwrap();
+    case.law = made_up_case::fitted(9.0, 20.0);
+    let before = of_case(&case);
+    let check = find(&before, "extrapolation_below");
+    assert!(check.verdict == Verdict::Doubtful && check.words.contains("(safe)"), "{check:?}");
+}
+
+#[test]
+fn a_bound_is_one_where_all_that_could_end_the_life_holds() {
+    let mut run = hand_run(PANEL, &["material.yield_strength_mpa=345", "material.toughness_mpa_sqrt_m=60", "stop.crack_length_mm=20"]);
+    run.stop = StopReason::EnteredHole;
+    assert!(is_bound_below(&hand_case(PANEL, &STRENGTHS), &run));
+    for one in STRENGTHS {
+        assert!(!is_bound_below(&hand_case(PANEL, &[one]), &run), "{one}");
+    }
+    // At a quarter of the strength small-scale yielding does not hold.
+    let weak = hand_case(PANEL, &[STRENGTHS[0], "material.yield_strength_mpa=85"]);
+    assert!(!is_bound_below(&weak, &run));
+    // A run that was cut off has lived so long.
+    run.stop = StopReason::RunOut;
+    assert!(is_bound_below(&hand_case(PANEL, &[]), &run));
+}
+
+#[test]
+fn thickness_and_ratio_are_held_against_those_of_the_law() {
+    let mut case = hand_case(PANEL, &[]);
+    case.law = made_up_case::fitted(3.0, 80.0);
+    let perilife::case::LawSource::Fitted(record) = &mut case.law else { unreachable!() };
+    (record.thickness_mm, record.stress_ratio, record.lack_of_fit_percent) = (1.0, 0.2, Some(12.0));
+    let checks = of_case(&case);
+    assert!(find(&checks, "thickness").words.contains("2.54 mm, law of specimens of 1.00 mm"));
+    assert_eq!((find(&checks, "thickness").verdict, find(&checks, "stress_ratio").verdict), (Verdict::Doubtful, Verdict::Holds));
+    let fit = find(&checks, "lack_of_fit");
+    assert_eq!((fit.verdict, fit.side, fit.effect_percent), (Verdict::Doubtful, Some(Side::Unsafe), Some(12.0)));
+}
