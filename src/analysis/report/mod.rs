@@ -6,6 +6,7 @@ pub mod catalogue;
 pub mod chart;
 pub mod csv;
 pub mod damage;
+pub mod factors;
 pub mod fit;
 pub mod fit_use;
 pub mod fracture;
