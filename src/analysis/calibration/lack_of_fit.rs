@@ -95,18 +95,16 @@ pub fn misfit_at_ends(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &d
 impl MisfitAtEnds {
     /// Both ends in one line.
     pub fn words(&self) -> String {
-        let delta_k = |k: f64| if k < 9.995 { format!("{k:.2}") } else { format!("{k:.1}") };
+        let figure =
+            |value: f64, whole: f64, digits: usize| format!("{value:.*}", if value < whole { digits } else { digits - 1 });
         let end = |end: Misfit| {
-            let percent = end.rate_over_law_percent;
-            format!(
-                "{:.1} % {} at ΔK {} to {}",
-                percent.abs(),
-                if percent < 0.0 { "slower" } else { "faster" },
-                delta_k(end.delta_k_from_mpa_sqrt_m),
-                delta_k(end.delta_k_to_mpa_sqrt_m)
-            )
+            let size = figure(end.rate_over_law_percent.abs(), 99.95, 1);
+            let sense = if end.rate_over_law_percent < 0.0 { "slower" } else { "faster" };
+            let [from, to] = [end.delta_k_from_mpa_sqrt_m, end.delta_k_to_mpa_sqrt_m].map(|k| figure(k, 9.995, 2));
+            format!("{size} % {sense} at {from} to {to}")
         };
-        [self.low, self.high].into_iter().flatten().map(end).collect::<Vec<_>>().join(", ")
+        let ends: Vec<String> = [self.low, self.high].into_iter().flatten().map(end).collect();
+        ends.join(", ").replacen("at", "at ΔK", 1)
     }
 }
 
