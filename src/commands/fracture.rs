@@ -1,4 +1,4 @@
-//! `perilife fracture`: a scene without cycles to its histories, crack paths, pictures and ParaView files.
+//! `perilife fracture`: a scene without cycles to its histories, crack paths and pictures.
 
 use std::path::PathBuf;
 
@@ -28,6 +28,9 @@ pub struct Args {
     /// Override a key of the scene (repeatable), e.g. --set model.spacing_mm=0.5
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
+    /// Also write the fields of some moments for ParaView (paraview/run.pvd), as [output] paraview = true does
+    #[arg(long, help_heading = "Output")]
+    pub paraview: bool,
     /// Keeping the run for later.
     #[command(flatten)]
     pub keeping: checkpoint::Args,
@@ -40,7 +43,7 @@ pub struct Args {
 /// Errors: wrong input; files that cannot be read or written; [`Error::Mechanics`] where the scene ended without convergence or
 /// blew up, whose histories are written all the same.
 pub fn run(args: &Args) -> Result<()> {
-    let document = Document::read(&args.case, &args.set)?;
+    let document = Document::read(&args.case, &super::with_paraview(&args.set, args.paraview))?;
     let task = Task::read(Kind::Scene, &document, &[])?;
     let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
     args.console.object(&summary.result)?;

@@ -46,6 +46,12 @@ fn case_without_law(path: &Path, overrides: &[String]) -> Result<Case> {
     Ok(case)
 }
 
+/// The overrides with what `--paraview` stands for.
+fn with_paraview(set: &[String], paraview: bool) -> Vec<String> {
+    let key = paraview.then(|| "output.paraview=true".to_owned());
+    set.iter().cloned().chain(key).collect()
+}
+
 /// Refuses a task that this machine has no memory for, before anything is laid out.
 fn within_machine(task: &Task, document: &Document) -> Result<()> {
     task.budgets(1)?.iter().try_for_each(|budget| budget.within_machine()).map_err(|error| document.locate(error))

@@ -1,4 +1,4 @@
-//! `perilife predict`: a case to its a-N curve, tables, pictures and ParaView files.
+//! `perilife predict`: a case to its a-N curve, tables and pictures.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,8 @@ use crate::runner::{Kind, Task};
 /// Arguments of `perilife predict`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_long_help = "DIR holds the curve (a_n.csv), the path of every tip (crack_path.csv), result.json, charts, pictures and paraview/run.pvd.\n\
+    after_long_help = "DIR holds the curve (a_n.csv), the path of every tip (crack_path.csv), K and β of every tip (factors.csv; beta.txt for AFGROW),\n\
+                       result.json, charts and pictures.\n\
                        A run that was killed goes on from its checkpoint to the same curve, bit for bit on the same kind of processor."
 )]
 pub struct Args {
@@ -28,6 +29,9 @@ pub struct Args {
     /// Also write the load that would end the plate at once over crack length (residual_strength.csv and .svg)
     #[arg(long, help_heading = "Output")]
     pub residual_strength: bool,
+    /// Also write the fields of some moments for ParaView (paraview/run.pvd), as [output] paraview = true does
+    #[arg(long, help_heading = "Output")]
+    pub paraview: bool,
     /// Keeping the run for later.
     #[command(flatten)]
     pub keeping: checkpoint::Args,
@@ -38,7 +42,7 @@ pub struct Args {
 
 /// Runs `perilife predict`.
 pub fn run(args: &Args) -> Result<()> {
-    let document = Document::read(&args.case, &args.set)?;
+    let document = Document::read(&args.case, &super::with_paraview(&args.set, args.paraview))?;
     let mut task = Task::read(Kind::Prediction, &document, &[])?;
     if let Task::Prediction { with_strength, .. } = &mut task {
         *with_strength = args.residual_strength;

@@ -1,6 +1,5 @@
 //! `perilife rates`: da/dN against ΔK from measured a-N curves.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
@@ -9,9 +8,8 @@ use super::case_without_law;
 use super::console::Console;
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt_of;
-use crate::calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
+use crate::calibration::rates::{HEADER, RateMethod, RatePoint, add_delta_k, paris_line, rates, table};
 use crate::case::Case;
-use crate::cells::field;
 use crate::error::{Result, input};
 use crate::input::{Opened, STREAM};
 use crate::measured::{
@@ -63,9 +61,6 @@ pub struct Args {
     pub console: Console,
 }
 
-/// First line of the table.
-const HEADER: &str = "specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio\n";
-
 /// Rates of one specimen.
 struct SpecimenRates {
     name: String,
@@ -105,7 +100,7 @@ pub fn run(args: &Args) -> Result<()> {
     for warning in measured.warnings.iter().chain(&of_specimens) {
         args.console.warn(warning);
     }
-    let table = table(&specimens);
+    let table = table(specimens.iter().flat_map(|one| one.points.iter().map(|point| (&*one.name, point))));
     match &args.out {
         Some(path) => {
             let mut read = opened.so_far();
@@ -159,29 +154,6 @@ fn outside_formula(points: &[RatePoint], formula: &HandbookFormula) -> Option<St
             formula.range
         )
     })
-}
-
-/// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio`; ΔK and R are empty where they are not known.
-fn table(specimens: &[SpecimenRates]) -> String {
-    let mut text = HEADER.to_owned();
-    for specimen in specimens {
-        for point in &specimen.points {
-            let [delta_k, ratio] = [point.delta_k / MPA_SQRT_M, point.ratio];
-            let delta_k = if delta_k.is_finite() { format!("{delta_k:.10}") } else { String::new() };
-            let ratio = if ratio.is_finite() { ratio.to_string() } else { String::new() };
-            // Writing to a String cannot fail.
-            let _ = writeln!(
-                text,
-                "{},{},{:.10},{delta_k},{:.10e},{},{ratio}",
-                field(&specimen.name),
-                point.cycles,
-                point.crack_length / MM,
-                point.rate / MM_PER_CYCLE,
-                point.flags.words()
-            );
-        }
-    }
-    text
 }
 
 fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {

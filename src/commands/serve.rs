@@ -37,7 +37,7 @@ pub struct Args {
     /// Largest body of a request, MiB
     #[arg(long, value_name = "MIB", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "Limits")]
     pub body_mib: u32,
-    /// Most points of a plate; its ParaView archive has some 140 bytes for each
+    /// Most points of a plate; an archive for ParaView, where one is asked for, has up to some 3000 bytes for each
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, help_heading = "Limits")]
     pub points: u32,
     /// Most jobs of one owner that wait

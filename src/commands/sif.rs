@@ -13,7 +13,7 @@ use crate::runner::{self, Kind, Task};
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "On nodes (--method element_free_galerkin) a plate needs no crack: printed are the largest and least stress along every rim, where they\n\
-                       are, and the stress concentration over the gross stress. DIR gets result.json, von_mises.png, nodes.svg and paraview/run.pvd."
+                       are, and the stress concentration over the gross stress. DIR gets result.json, von_mises.png and nodes.svg."
 )]
 pub struct Args {
     /// Case file (a calibration file does as well); its fatigue law is not needed
@@ -25,6 +25,9 @@ pub struct Args {
     /// Folder for stress and displacement of the plate on nodes (with --method element_free_galerkin); replaced if an earlier run made it
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
+    /// Also write the displacement and stress for ParaView (paraview/run.pvd), as [output] paraview = true does
+    #[arg(long, requires = "out", help_heading = "Output")]
+    pub paraview: bool,
     /// Override a key of the case (repeatable), e.g. --set specimen.crack_length_mm=20
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
@@ -36,7 +39,7 @@ pub struct Args {
 /// Runs `perilife sif`.
 pub fn run(args: &Args) -> Result<()> {
     let console = &args.console;
-    let document = Document::read(&args.case, &args.set)?;
+    let document = Document::read(&args.case, &super::with_paraview(&args.set, args.paraview))?;
     let task = Task::read(Kind::Sif, &document, &args.method)?;
     super::within_machine(&task, &document)?;
     let work = |folder: Option<&Path>| runner::run(&task, None, folder, console).map_err(|error| document.locate(error));

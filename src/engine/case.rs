@@ -26,7 +26,7 @@ use crate::error::Result;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{Ageing, FatigueLaw, FatigueSettings};
-use crate::input::Provenance;
+use crate::input::{Output, Provenance};
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::{SolverKind, Symmetry};
@@ -169,6 +169,8 @@ pub struct Case {
     pub law: LawSource,
     /// Stop conditions.
     pub stop: Stop,
+    /// What is written beside tables and pictures.
+    pub output: Output,
     /// What the program chose for the case and what the user should know.
     pub warnings: Vec<String>,
     /// The input as given, overrides applied; echoed in `result.json`.

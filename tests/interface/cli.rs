@@ -121,16 +121,25 @@ fn a_prediction_writes_what_it_promises() {
     let written: serde_json::Value = serde_json::from_str(&fs::read_to_string(run.join("result.json")).unwrap()).unwrap();
     assert_eq!(printed, written);
     assert_eq!(written["stop_reason"], "crack_length_reached");
-    for file in ["a_n.csv", "crack_path.csv", "a_n.svg", "da_dn.svg", "damage.png", "paraview/run.pvd"] {
+    for file in ["a_n.csv", "crack_path.csv", "a_n.svg", "da_dn.svg", "damage.png", "factors.csv", "beta.txt"] {
         assert!(run.join(file).is_file(), "{file}");
     }
+    assert!(!run.join("paraview").exists(), "nobody asked for it");
     let table = fs::read_to_string(run.join("a_n.csv")).unwrap();
     assert_eq!(table.lines().count() as u64, 2 + written["blocks"].as_u64().unwrap(), "header, N = 0, one row a block");
     // Its own folder is replaced; the words go to stdout this time.
     let (stdout, _) = texts(&perilife(dir.path(), &["predict", "small.toml", "--out", "out/run"]));
     assert!(stdout.contains("life") && stdout.contains("crack_length_reached") && stdout.contains("out/run"), "{stdout}");
-    let (stdout, _) = texts(&perilife(dir.path(), &["predict", "small.toml", "--out", "out/run", "--quiet"]));
+    let (stdout, _) = texts(&perilife(dir.path(), &["predict", "small.toml", "--out", "out/run", "--quiet", "--paraview"]));
     assert!(stdout.is_empty(), "{stdout}");
+    let again = fs::read_to_string(run.join("case.toml")).unwrap();
+    assert!(run.join("paraview/run.pvd").is_file() && again.contains("[output]\nparaview = true"), "{again}");
+    for (key, words) in [
+        ("output.vtk=true", "output.vtk = true: is not a known key; known here: paraview"),
+        ("output.paraview=1", "output.paraview = 1: is not true or false"),
+    ] {
+        assert_refused(&perilife(dir.path(), &["check", "small.toml", "--set", key]), 2, &[words]);
+    }
 }
 
 #[test]

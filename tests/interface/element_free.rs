@@ -19,7 +19,7 @@ const CASE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 60\nlength_mm = 100
 fn a_run_on_nodes_has_its_files() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("case.toml"), CASE.replace("crack_length_mm = 30", "crack_length_mm = 20")).unwrap();
-    let output = perilife(dir.path(), &["predict", "case.toml", "--out", "run"]);
+    let output = perilife(dir.path(), &["predict", "case.toml", "--out", "run", "--paraview"]);
     let (stdout, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(0), "{stdout}{stderr}");
     assert!(stdout.contains("nodes"), "{stdout}");
@@ -166,7 +166,7 @@ fn a_plate_without_cracks_has_the_stress_of_its_holes() {
     assert_eq!(output.status.code(), Some(2), "{stdout}{stderr}");
     assert!(stderr.contains("--out") && stderr.contains("--method element_free_galerkin"), "{stderr}");
     let by_nodes = ["sif", "hole.toml", "--method", "element_free_galerkin", "--out", "run"];
-    let output = perilife(dir.path(), &[&by_nodes[..], &["--json"]].concat());
+    let output = perilife(dir.path(), &[&by_nodes[..], &["--json", "--paraview"]].concat());
     let (stdout, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(0), "{stdout}{stderr}");
     let found: Value = serde_json::from_str(&stdout).unwrap();

@@ -46,7 +46,7 @@ fn json(path: &Path) -> Value {
 #[test]
 fn a_scene_writes_what_it_promises() {
     let dir = folder();
-    let output = perilife(dir.path(), &["fracture", "torn.toml", "--out", "out/run", "--json"]);
+    let output = perilife(dir.path(), &["fracture", "torn.toml", "--out", "out/run", "--json", "--paraview"]);
     let (stdout, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     let printed: Value = serde_json::from_str(&stdout).expect("one JSON object and nothing else");

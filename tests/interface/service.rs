@@ -23,6 +23,9 @@ pub const QUICK: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nl
     crack_length_mm = 9\n[material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 60\nstress_ratio = 0.1\n\
     [model]\nspacing_mm = 1.5\n[fatigue]\na = 6450.0\np = 2.86\nhorizon_mm = 3.015\n[stop]\ncrack_length_mm = 20\n";
 
+/// Section of a document that asks for ParaView files.
+pub const FOR_PARAVIEW: &str = "[output]\nparaview = true\n";
+
 /// A slant crack that takes seconds and can be taken up at several places.
 pub const SLOW: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 70.0\nlength_mm = 100.0\nthickness_mm = 2.0\n\
     cracks = [{ from_mm = [-9.0, -5.0], to_mm = [9.0, 5.0] }]\n[material]\nyoungs_modulus_gpa = 72.0\npoisson_ratio = 0.3\n\

@@ -153,7 +153,8 @@ fn a_killed_sweep_goes_on() {
     done(here, &["predict", "small.toml", "--out", "single", "--set", "specimen.crack_length_mm=12"]);
     let single = fs::read_to_string(here.join("single/a_n.csv")).unwrap();
     assert_eq!(single.lines().last().unwrap().split(',').next(), Some(rows[3][2].as_str()));
-    assert!(here.join("out/cases/0003/paraview/run.pvd").is_file());
+    let of_case = here.join("out/cases/0003");
+    assert!(of_case.join("factors.csv").is_file() && !of_case.join("paraview").exists(), "nobody asked for it");
 }
 
 /// Far outside the fitted range of ΔK a run does not count.
@@ -278,6 +279,7 @@ fn a_service_hands_over_all_files() {
     let here = dir.path();
     let failing = design(&panel.display().to_string(), "loading.stress_range_mpa", "[48.28, 20.0]");
     fs::write(here.join("failing.toml"), failing).unwrap();
+    fs::write(here.join("small.toml"), format!("{SMALL_CASE}[output]\nparaview = true\n")).unwrap();
     let place = in_folder(&here.join("service"));
     // The database is made by a service.
     drop(Server::start(&[&place[0], &place[1]], &["--jobs", "0"]));

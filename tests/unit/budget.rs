@@ -82,6 +82,20 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
     assert!(levels.within_points(1e6).unwrap_err().to_string().contains("more than the 1.000e6 allowed"));
 }
 
+/// Fields for ParaView, which are most of what a run leaves, are counted where they are asked for.
+#[test]
+fn files_are_counted_as_they_are_asked_for() {
+    let asked = "[output]\nparaview = true\n";
+    for model in ["spacing_mm = 0.5", "method = \"element_free_galerkin\", nodes = 2000"] {
+        let [without, with] = ["", asked].map(|more| Budget::of(&case(SQUARE, &format!("model = {{ {model} }}\n{more}"))));
+        let of_point = (with.disk_bytes - without.disk_bytes) / with.points;
+        println!("{model}: {:.0} and {:.0} bytes", without.disk_bytes, with.disk_bytes);
+        assert!(of_point > 1000.0 && without.disk_bytes < 2e6, "{model}: {of_point}");
+    }
+    let [without, with] = ["", asked].map(|more| scene("spacing_mm = 0.5", more).budget().disk_bytes);
+    assert!(with > 5.0 * without, "{with} {without}");
+}
+
 #[test]
 fn scenes_are_counted_too() {
     let error = scene("spacing_mm = 0.05, horizon_ratio = 9.0", "").budget().within(4e9).unwrap_err().to_string();

@@ -1,6 +1,7 @@
-//! Mechanics that fail in mid-run keep the curve so far.
+//! Rows of a run: mechanics that fail in mid-run keep those so far, and none tells a K that was not read for it.
 
 use perilife::error::{Error, Result};
+use perilife::fatigue::crack_tip::TipState;
 use perilife::growth::record::{CurvePoint, StopReason, TipRecord};
 use perilife::growth::{CrackGrowth, GrowthStatus, State};
 use perilife::predict::record::Record;
@@ -22,13 +23,7 @@ impl Steady {
             work: f64::NAN,
             limit_load: f64::NAN,
             broken_bonds: 0,
-            tips: vec![TipRecord {
-                state: perilife::fatigue::crack_tip::TipState::Active,
-                position: [growth, 0.0],
-                growth,
-                factors: None,
-                t_stress: None,
-            }],
+            tips: vec![TipRecord { state: TipState::Active, position: [growth, 0.0], growth, factors: None, t_stress: None }],
         });
     }
 }
@@ -82,4 +77,22 @@ fn an_error_of_mechanics_ends_the_run_with_the_rows_that_stand() {
 fn other_errors_are_the_callers() {
     let wrong = failing(|| perilife::error::input("fatigue.growth_table", 1.0, "ends too early", "give a longer one"));
     assert!(matches!(wrong, Err(Error::Input(_))));
+}
+
+#[test]
+fn a_row_tells_no_k_that_was_not_read_for_it() {
+    let case = hand_case(PANEL, &[]);
+    let tip = |state| TipRecord { state, position: [0.0; 2], growth: 1e-3, factors: Some([1e7, 1e6]), t_stress: Some(1e6) };
+    let states = [TipState::Active, TipState::Closed, TipState::EnteredHole, TipState::LeftPlate, TipState::LinkedUp];
+    let row = |work| CurvePoint::of_tips(&case, [1e3, work], 5, states.map(tip).to_vec(), Some((2e7, 1e-7)));
+    let settled = row(1.0);
+    assert!(settled.delta_k > 0.0 && settled.growth_rate == 1e-7);
+    let known = |row: &CurvePoint| row.tips.iter().map(|tip| tip.factors.is_some() && tip.t_stress.is_some()).collect::<Vec<_>>();
+    assert_eq!(known(&settled), [true, true, false, false, false]);
+    // Without an equilibrium there is none of any tip, nor between such a row and the one before.
+    let severed = row(f64::NAN);
+    for row in [severed.clone().between(&settled, 0.5), severed] {
+        assert!(row.delta_k.is_nan() && row.growth_rate.is_nan() && known(&row) == [false; 5], "{row:?}");
+        assert!(row.crack_length == settled.crack_length && row.cycles == 1e3);
+    }
 }

@@ -1,6 +1,6 @@
 //! Tables and `result.json`.
 
-use perilife::report::{csv, json};
+use perilife::report::{csv, factors, json};
 use proptest::prelude::*;
 
 use crate::support::{made_up_case, made_up_run};
@@ -49,6 +49,48 @@ fn the_curve_table_reads_back() {
     assert!(header.starts_with(
         "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,broken_bonds,load_work_j,tip0_x_mm,tip0_y_mm,tip0_growth_mm,tip1_x_mm"
     ));
+}
+
+/// K_I of every tip is that of a straight crack of the length that both share; one stands still, and K of the last row was not read.
+#[test]
+fn factors_of_every_tip_stand_in_long_form() {
+    let mut case = made_up_case::case();
+    let mut run = made_up_run::prediction(0.0);
+    let rows = run.curve.len();
+    for (number, point) in run.curve.iter_mut().enumerate() {
+        point.tips[1].growth *= 0.5;
+        let length = 0.5 * (10e-3 + point.tips[0].growth + point.tips[1].growth);
+        let k_i = 70e6 * (std::f64::consts::PI * length).sqrt();
+        point.tips.iter_mut().for_each(|tip| tip.factors = (number + 1 < rows).then_some([k_i, 0.0]));
+    }
+    let table = factors::factors(&case, &run).unwrap();
+    let mut lines = table.lines();
+    assert_eq!(lines.next().unwrap(), factors::FACTOR_COLUMNS.join(","));
+    let of = |line: &str| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect::<Vec<f64>>();
+    let table: Vec<Vec<f64>> = lines.map(of).collect();
+    assert_eq!(table.len(), 2 * rows, "a row for every tip and row of the curve");
+    for (number, row) in table.iter().enumerate() {
+        let point = &run.curve[number % rows];
+        assert!(
+            row[0] == (number / rows) as f64
+                && row[1] == point.cycles
+                && (row[2] / (1e3 * point.crack_length) - 1.0).abs() < 1e-12
+        );
+        if number % rows == rows - 1 {
+            assert!(row[4..8].iter().chain(&row[9..]).all(|cell| cell.is_nan()), "{row:?}");
+        } else {
+            assert!((row[9] - 1.0).abs() < 1e-9 && (row[7] / (0.9 * row[4]) - 1.0).abs() < 1e-12 && row[6] == row[4], "{row:?}");
+            assert!((row[10] / 1e-11).is_finite() && row[10] > 0.0);
+        }
+    }
+    // The first tip grows farther.
+    let beta = factors::beta(&case, &run).unwrap();
+    let pairs: Vec<Vec<f64>> = beta.lines().map(|line| line.split(' ').map(|cell| cell.parse().unwrap()).collect()).collect();
+    assert!(pairs.len() == rows - 1 && (pairs[0][0] - 5.0).abs() < 1e-6, "{:?}", pairs[0]);
+    assert!(pairs.windows(2).all(|pair| pair[1][0] > pair[0][0]) && pairs.iter().all(|pair| (pair[1] - 1.0).abs() < 1e-9));
+    // A force has no stress to compare with.
+    case.specimen.load_measure = perilife::specimen::LoadMeasure::Force;
+    assert_eq!(factors::beta(&case, &run), None);
 }
 
 #[test]

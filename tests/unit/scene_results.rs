@@ -13,7 +13,7 @@ use serde_json::Value;
 
 const TEXT: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 20\nlength_mm = 20\nthickness_mm = 1\n[material]\nyoungs_modulus_gpa = 65\n\
     poisson_ratio = 0.2\ndensity_kg_m3 = 2235\n[model]\nspacing_mm = 2\n[loading]\nkind = \"velocity\"\nvelocity_mm_s = 1\nedges = [\"top\", \"bottom\"]\n\
-    duration_s = 5e-6\n";
+    duration_s = 5e-6\n[output]\nparaview = true\n";
 
 #[test]
 fn histories_of_a_bad_end_are_kept() {

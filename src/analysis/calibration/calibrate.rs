@@ -48,6 +48,11 @@ pub enum Fitted<'c> {
 impl Calibration {
     /// Reads the file and all that it names.
     pub fn from_document(document: &Document) -> Result<Self> {
+        if document.table.contains_key("output") {
+            let error =
+                input_missing("output", "belongs to a case or scene: a calibration has no plate to show", "remove the section");
+            return Err(document.locate(error));
+        }
         if is_law_fit(&document.table) {
             return LawCase::from_document(document).map(|case| Calibration::Rates(Box::new(case)));
         }

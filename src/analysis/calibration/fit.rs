@@ -7,7 +7,7 @@ use super::case::CalibrationCase;
 use super::confidence::{Confidence, check_identified, confidence, end_of_range};
 use super::criterion::Criterion;
 use super::exponent::DELTA_K_RATIO_MIN;
-use super::lack_of_fit::{LackOfFit, lack_of_fit};
+use super::lack_of_fit::{LackOfFit, MisfitAtEnds, lack_of_fit, misfit_at_ends};
 use super::outliers::{RobustLine, Run, StepRate, doubts, readings_apart, robust_line_of_all, runs, step_rates, without};
 use super::paris::{self, Paris};
 use super::population::intervals::Specimen;
@@ -58,7 +58,9 @@ pub struct Fit {
     pub estimate: Estimate,
     /// C and m by the repeated median of the rates of the record's curve, where p was fitted.
     pub robust: Option<RobustLine>,
-    /// By how much the law misses measured rates at the ends of its range.
+    /// By how much the law misses the curve that it was fitted to at its first and last readings.
+    pub misfit_at_ends: MisfitAtEnds,
+    /// Ends of its range at which the law misses measured rates by more than they scatter.
     pub lack_of_fit: Option<LackOfFit>,
     /// The bonds that A and p of the record are of; without them they are C (m/cycle, MPa√m) and m.
     pub bonds: Option<Bonds>,
@@ -166,8 +168,22 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let fitted: Vec<MeasuredCurve> =
         task.curves.iter().map(|curve| as_fitted(curve, record.constants, law)).collect::<Result<_>>()?;
     let lack_of_fit = lack_of_fit(task.curves, &fitted, task.delta_k);
+    let misfit_at_ends = misfit_at_ends(&picture, &as_fitted(&picture, record.constants, law)?, task.delta_k);
     let (bonds, own_path) = (None, None);
-    Ok(Fit { record, specimens, confidence, paris, estimate, robust, lack_of_fit, bonds, own_path, population, warnings })
+    Ok(Fit {
+        record,
+        specimens,
+        confidence,
+        paris,
+        estimate,
+        robust,
+        misfit_at_ends,
+        lack_of_fit,
+        bonds,
+        own_path,
+        population,
+        warnings,
+    })
 }
 
 /// Scatter of the specimens about a common law; `None`, with a warning, where their readings do not tell it.

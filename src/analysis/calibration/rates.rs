@@ -7,11 +7,13 @@
 //!
 //! ΔK of every rate, and the validity that depends on the specimen, follow from the case ([`add_delta_k`]).
 
+use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::case::Case;
+use crate::cells::field;
 use crate::line::{Line, line};
 use crate::measured::{MeasuredCurve, side_difference_max};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
@@ -21,6 +23,9 @@ pub const STEP_MIN: f64 = 0.25 * MM;
 
 /// Readings on each side of the middle one of a parabola.
 const HALF_SPAN: usize = 3;
+
+/// First line of a table of rates.
+pub const HEADER: &str = "specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio\n";
 
 crate::kinds! {
     /// How rates are taken from readings.
@@ -49,6 +54,14 @@ pub struct RatePoint {
     pub side_difference: f64,
     /// What speaks against the point.
     pub flags: Flags,
+}
+
+impl RatePoint {
+    /// A rate of which nothing else is known: ΔK, Pa√m, da/dN, m/cycle, and R.
+    pub fn of_rate(delta_k: f64, rate: f64, ratio: f64) -> Self {
+        let (cycles, crack_length) = (f64::NAN, f64::NAN);
+        RatePoint { cycles, crack_length, rate, delta_k, load_factor: 1.0, ratio, side_difference: 0.0, flags: Flags::default() }
+    }
 }
 
 /// What speaks against a rate.
@@ -209,4 +222,20 @@ pub fn add_delta_k(points: &mut [RatePoint], case: &Case, delta_k: &dyn Fn(f64) 
         point.flags.yielding = !case.material.yield_strength.is_none_or(holds);
         point.flags.uneven_front = point.side_difference > uneven;
     }
+}
+
+/// A table of rates, each with its specimen, that [`crate::measured::RateFile`] reads back:
+/// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio`; cells are empty where nothing is known.
+pub fn table<'a>(rows: impl Iterator<Item = (&'a str, &'a RatePoint)>) -> String {
+    let known = |value: f64, text: String| if value.is_finite() { text } else { String::new() };
+    let mut text = HEADER.to_owned();
+    for (specimen, point) in rows {
+        let [length, delta_k] =
+            [point.crack_length / MM, point.delta_k / MPA_SQRT_M].map(|value| known(value, format!("{value:.10}")));
+        let [cycles, ratio] = [point.cycles, point.ratio].map(|value| known(value, value.to_string()));
+        let (rate, flags) = (point.rate / MM_PER_CYCLE, point.flags.words());
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{},{cycles},{length},{delta_k},{rate:.10e},{flags},{ratio}", field(specimen));
+    }
+    text
 }

@@ -1,5 +1,5 @@
-//! Results of a calibration as they are written: `fit.json`, `fitted.toml`, `fit_curves.csv` of lives and `fit_rates.csv` of rates, and in
-//! words.
+//! Results of a calibration as they are written: `fit.json`, `fitted.toml`, `fit_curves.csv` of lives, `fit_rates.csv` of rates,
+//! `rates.csv` of both, and in words.
 
 use std::fmt::Write as _;
 
@@ -10,9 +10,11 @@ use super::fit::{Bonds, Fit};
 use super::laws::case::LawCase;
 use super::laws::fit::LawFit;
 use super::laws::{FitLaw, LawFits};
+use super::rates::{self, Flags, RateMethod, RatePoint, add_delta_k, rates};
 use super::search::FittedCurve;
 use crate::case::record::{Estimate, FittedRecord, LawRecord};
 use crate::cells::field;
+use crate::measured::MeasuredCurve;
 use crate::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// `fit.json` of a fit that took `wall_s` seconds; units as in the names, cycles else, null for what is not known.
@@ -57,6 +59,7 @@ pub fn report(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Value {
         "estimate": fit.estimate,
         "robust_paris_m": fit.robust.map(|line| line.m),
         "robust_paris_c_mm_per_cycle": fit.robust.map(|line| line.c()),
+        "misfit_at_ends": fit.misfit_at_ends,
         "lack_of_fit": fit.lack_of_fit,
         "population": fit.population,
         "left_out": law.left_out,
@@ -163,7 +166,7 @@ pub fn summary(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Vec<Str
     if fit.estimate == Estimate::Robust {
         lines.push("  estimate       robust: repeated median of the rates".to_owned());
     }
-    lines.extend(fit.lack_of_fit.map(|lack| format!("  lack of fit    {}", lack.words())));
+    lines.push(format!("  misfit at ends {}", fit.misfit_at_ends.words()));
     lines.extend(law.left_out.iter().map(|window| {
         let specimen = window.specimen.as_ref().map_or_else(String::new, |name| format!("specimen {name}, "));
         format!("  left out       {specimen}{} to {} cycles: {}", window.from_cycles, window.to_cycles, window.reason)
@@ -183,6 +186,27 @@ pub fn fit_curves_csv(fit: &Fit) -> String {
         }
     }
     text
+}
+
+/// `rates.csv` of a fit to readings: growth over every interval that it took in and ΔK in its middle, as a table of rates that a law over K
+/// can be fitted to. None of them is left out for a short step, which the fit did not do either.
+pub fn fitted_rates_csv(calibration: &CalibrationCase, fit: &Fit) -> String {
+    let specimen = |curve: &MeasuredCurve| {
+        let mut points = rates(curve, RateMethod::Secant);
+        add_delta_k(&mut points, &calibration.case, &|length| fit.delta_k(calibration, length));
+        for point in &mut points {
+            point.flags = Flags { not_growing: point.flags.not_growing, ..Flags::default() };
+        }
+        (curve.specimen.clone(), points)
+    };
+    let specimens: Vec<(String, Vec<RatePoint>)> = calibration.curves.iter().map(specimen).collect();
+    rates::table(specimens.iter().flat_map(|(name, points)| points.iter().map(move |point| (&**name, point))))
+}
+
+/// `rates.csv` of a fit to rates.
+pub fn rates_taken_csv(case: &LawCase) -> String {
+    let points: Vec<RatePoint> = case.rows.iter().map(|row| RatePoint::of_rate(row.delta_k, row.rate, row.ratio)).collect();
+    rates::table(case.rows.iter().map(|row| &*row.series).zip(&points))
 }
 
 /// The curves of `fit_curves`: the specimens, then the record's median where it is not one of them.

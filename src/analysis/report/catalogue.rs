@@ -100,6 +100,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         ("material.name".to_owned(), name, meaning)
     }));
     all.extend(of_the_model.into_iter().flatten().map(words));
+    all.push(("output.paraview".to_owned(), "true".to_owned(), "also the fields of some moments, for ParaView".to_owned()));
     all.extend(of_calibration.into_iter().flatten().map(words));
     all.extend(of_sweeps.into_iter().flatten().map(words));
     all.extend(of_the_tips.into_iter().map(words));

@@ -13,10 +13,13 @@ use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::Fit;
 use crate::calibration::laws::LawFits;
 use crate::calibration::laws::case::LawCase;
-use crate::calibration::results::{fit_curves_csv, rates_csv};
+use crate::calibration::results::{fit_curves_csv, fitted_rates_csv, rates_csv, rates_taken_csv};
 use crate::error::{Error, Result};
 use crate::measured::RateRow;
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+
+/// Table of the rates that a law was fitted to.
+const RATES_FILE: &str = "rates.csv";
 
 /// Writes all files of a fit into `folder`; `report` is the content of `fit.json`.
 pub fn write(folder: &Path, fitted: &Fitted<'_>, report: &Value) -> Result<()> {
@@ -28,9 +31,9 @@ pub fn write(folder: &Path, fitted: &Fitted<'_>, report: &Value) -> Result<()> {
     let mut json = report.clone();
     match fitted {
         Fitted::Lives(calibration, fit) => {
-            let (curves, band) = (fit_curves_csv(fit), band(calibration, fit));
+            let (curves, band, rates) = (fit_curves_csv(fit), band(calibration, fit), fitted_rates_csv(calibration, fit));
             let provenance = &calibration.case.provenance;
-            let tables = [("fitted.toml", &*law), ("fit_curves.csv", &*curves), ("fit_band.csv", &*band)];
+            let tables = [("fitted.toml", &*law), ("fit_curves.csv", &*curves), ("fit_band.csv", &*band), (RATES_FILE, &*rates)];
             provenance::add(&mut json, provenance, &tables);
             tables.iter().try_for_each(|(name, text)| put(name, text))?;
             provenance::write(folder, "calibrate", calibration.input.clone(), provenance)?;
@@ -40,6 +43,7 @@ pub fn write(folder: &Path, fitted: &Fitted<'_>, report: &Value) -> Result<()> {
         Fitted::Rates(case, fits) => {
             put("fitted.toml", &law)?;
             put("fit_rates.csv", &rates_csv(case, fits))?;
+            put(RATES_FILE, &rates_taken_csv(case))?;
             let title = format!("{}: {}", case.name, fits.law().kind);
             chart::growth_rate(&folder.join("fit_rates.svg"), &title, &series(case, fits))?;
         }

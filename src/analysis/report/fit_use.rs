@@ -89,13 +89,14 @@ fn life_share_outside(prediction: &Prediction, low: f64, high: f64) -> Option<f6
     let (low, high) = (low * MPA_SQRT_M, high * MPA_SQRT_M);
     let (mut outside, mut known) = (0.0, 0.0);
     for pair in prediction.curve.windows(2) {
-        let (from, to) = (pair[0].delta_k, pair[1].delta_k);
         let cycles = pair[1].cycles - pair[0].cycles;
-        if from.is_nan() || to.is_nan() {
+        // Up to a row whose K nobody read, that of the other end counts.
+        let (from, to) = (pair[0].delta_k.min(pair[1].delta_k), pair[0].delta_k.max(pair[1].delta_k));
+        if from.is_nan() {
             continue;
         }
         known += cycles;
-        outside += cycles * share_outside(from.min(to), from.max(to), low, high);
+        outside += cycles * share_outside(from, to, low, high);
     }
     (known > 0.0).then(|| outside / known)
 }

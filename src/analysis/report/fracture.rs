@@ -11,7 +11,7 @@ use super::damage::{DamagePicture, PointField};
 use super::model_words::{self, clean};
 use super::output::{Room, write_file};
 use super::{provenance, vtk};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fracture::outcome::{HistoryRow, PathPoint};
 use crate::fracture::scene::{Action, Procedure, SceneLaw};
 use crate::fracture::{Fracture, Scene, SceneEnd};
@@ -83,12 +83,7 @@ pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &Value) 
     let finite = |snapshot: &&Snapshot| snapshot.displacement.iter().flatten().all(|u| u.is_finite());
     let snapshots: Vec<Snapshot> = fracture.snapshots.iter().filter(finite).cloned().collect();
     draw_plate(folder, scene, fracture, &snapshots)?;
-    if snapshots.is_empty() {
-        return Ok(());
-    }
-    let paraview = folder.join("paraview");
-    std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
-    vtk::write_series(&paraview, &fracture.grid, &snapshots)
+    vtk::write_wanted(folder, scene.output, &fracture.grid, &snapshots)
 }
 
 /// Load and broken bonds over displacement; in time also load, broken bonds and energies over time.

@@ -7,6 +7,7 @@ pub mod chart;
 pub mod checks;
 pub mod csv;
 pub mod damage;
+pub mod factors;
 pub mod fit;
 pub mod fit_use;
 pub mod fracture;

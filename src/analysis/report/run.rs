@@ -12,7 +12,7 @@ use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_u
 pub use super::json::result;
 use super::output::{Room, write_file};
 use super::specimen_picture::{nodes_svg, tip_svg};
-use super::{checks, fit_use, json, provenance, vtk};
+use super::{checks, factors, fit_use, json, provenance, vtk};
 use crate::case::budget::Budget;
 use crate::case::{Case, Method, RECORD, first_load};
 use crate::error::{Error, Result, input};
@@ -29,8 +29,6 @@ use crate::units::{KN, MM, MPA, MPA_SQRT_M};
 const ZONE_HORIZONS: f64 = 4.0;
 /// Table of the ways of the tips.
 const CRACK_PATH_FILE: &str = "crack_path.csv";
-/// Folder of the ParaView files in that of a run.
-pub const PARAVIEW: &str = "paraview";
 
 /// Whether a run counts as a result; what the user should know about it beyond what the run itself says.
 /// Errors: [`Error::Mechanics`] if the run ended before the crack grew.
@@ -155,6 +153,12 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
     // Tables and figures first: what a full disk cuts off are pictures.
     write_file(&folder.join(csv::A_N_FILE), a_n.as_bytes())?;
     write_file(&folder.join(CRACK_PATH_FILE), path.as_bytes())?;
+    if factors::are_known(prediction) {
+        write_file(&folder.join(factors::FACTORS_FILE), factors::factors(case, prediction)?.as_bytes())?;
+        if let Some(beta) = factors::beta(case, prediction) {
+            write_file(&folder.join(factors::BETA_FILE), beta.as_bytes())?;
+        }
+    }
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
     provenance::write(folder, "predict", input_of(case), &case.provenance)?;
     draw_curves(folder, case, prediction)?;
@@ -177,11 +181,7 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
         }
     }
     draw_remaining_life(&folder.join("remaining_life.png"), prediction, &paths)?;
-    if !prediction.snapshots.is_empty() {
-        let paraview = folder.join(PARAVIEW);
-        std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
-        vtk::write_series(&paraview, &prediction.grid, &prediction.snapshots)?;
-    }
+    vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)?;
     Ok(result)
 }
 

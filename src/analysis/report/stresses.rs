@@ -7,12 +7,11 @@ use serde_json::{Value, json};
 
 use super::damage::{DamagePicture, PointField};
 use super::output::{Room, write_file};
-use super::run::PARAVIEW;
 use super::specimen_picture::nodes_svg;
 use super::{json::RESULT_FILE, provenance, vtk};
 use crate::case::Case;
 use crate::element_free::rim_stress::{Rim, StressAt};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::predict::Snapshot;
 use crate::stress_concentration::{SETTLED, Stressed};
 use crate::units::{MM, MPA};
@@ -103,7 +102,8 @@ pub fn warnings(stressed: &Stressed) -> Vec<String> {
 pub fn room(case: &Case) -> Room {
     const OF_POINT: f64 = 60.0;
     let points = 100.0 * case.specimen.area() / case.model.element_free.resolution.far.powi(2);
-    Room { tables: 64_000, all: 500_000 + (OF_POINT * points) as u64 }
+    let of_fields = if case.output.paraview { (OF_POINT * points) as u64 } else { 0 };
+    Room { tables: 64_000, all: 500_000 + of_fields }
 }
 
 /// Writes all files into `folder`; `result` is the content of `result.json` but for what made it.
@@ -135,7 +135,5 @@ pub fn write(folder: &Path, case: &Case, stressed: &Stressed, result: &Value) ->
     let mut of_nodes = case.clone();
     of_nodes.model.element_free.resolution = stressed.resolution;
     write_file(&folder.join("nodes.svg"), nodes_svg(&of_nodes, &[])?.as_bytes())?;
-    let paraview = folder.join(PARAVIEW);
-    std::fs::create_dir(&paraview).map_err(|e| Error::file(&paraview, "cannot create the folder", e))?;
-    vtk::write_series(&paraview, &stressed.grid, &[snapshot])
+    vtk::write_wanted(folder, case.output, &stressed.grid, &[snapshot])
 }

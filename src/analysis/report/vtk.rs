@@ -9,9 +9,23 @@ use std::path::Path;
 
 use super::damage::position_of;
 use super::output::write_file;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::input::Output;
 use crate::predict::{PointGrid, Snapshot};
 use crate::units::{MM, MPA};
+
+/// Folder of the ParaView files in that of a run.
+pub const PARAVIEW: &str = "paraview";
+
+/// Writes all snapshots into the folder of a run where `[output]` asks for them.
+pub fn write_wanted(folder: &Path, output: Output, grid: &PointGrid, snapshots: &[Snapshot]) -> Result<()> {
+    if !output.paraview || snapshots.is_empty() {
+        return Ok(());
+    }
+    let paraview = folder.join(PARAVIEW);
+    std::fs::create_dir(&paraview).map_err(|error| Error::file(&paraview, "cannot create the folder", error))?;
+    write_series(&paraview, grid, snapshots)
+}
 
 /// Writes all snapshots into `folder` (which must exist), with `run.pvd` as the file to open.
 pub fn write_series(folder: &Path, grid: &PointGrid, snapshots: &[Snapshot]) -> Result<()> {

@@ -19,6 +19,7 @@ use super::model::round_mm;
 use super::{Case, HORIZON_RATIO, Method};
 use crate::bond_law::SurfaceCorrection;
 use crate::error::{Result, input};
+use crate::input::Output;
 use crate::levels::{RefinedRegion, Refinement};
 use crate::solver::SolverKind;
 use crate::specimen::Specimen;
@@ -36,7 +37,7 @@ pub struct Budget {
     pub bonds: f64,
     /// Memory at the peak of a run, bytes.
     pub bytes: f64,
-    /// Pictures, tables and ParaView files, bytes.
+    /// Pictures, tables and, where they are asked for, ParaView files, bytes.
     pub disk_bytes: f64,
     /// Bytes that go with the square of 1/Δ.
     of_area: f64,
@@ -81,11 +82,13 @@ const RIM_BALANCED: &Curve = &[(3.015, 94e3), (6.0, 545e3), (9.0, 2.55e6), (12.0
 const FACTOR: &Curve = &[(3.015, 2.7e3), (5.0, 4.9e3)];
 /// Bytes of a node of the element-free method: 247 MB with `nodes = 5000`.
 const NODE: f64 = 44e3;
-/// Bytes on disk: a dozen moments of 140 bytes a point, beside charts and tables.
+/// Bytes on disk for ParaView: a dozen moments of 140 bytes a point.
 const DISK_POINT: f64 = 12.0 * 140.0;
 /// The same of a node, with the raster of its fields: 20 MB with `nodes = 5000`.
 const DISK_NODE: f64 = 4e3;
-/// See [`DISK_POINT`].
+/// Bytes on disk of the pictures of a point or node.
+const PICTURE_POINT: f64 = 20.0;
+/// Bytes on disk of charts and tables.
 const DISK_BASE: f64 = 5e5;
 
 /// Bytes by horizon ratio.
@@ -171,8 +174,8 @@ impl PointPlate<'_> {
             None if self.horizon_ratio > HORIZON_RATIO => ", or a smaller model.horizon_ratio",
             None => "",
         };
-        let disk_bytes = DISK_BASE + DISK_POINT * points;
-        let (bytes, bonds, spacing) = (BASE + of_area + of_rim, bonds * points, self.spacing);
+        let (bytes, disk_bytes) = (BASE + of_area + of_rim, DISK_BASE);
+        let (bonds, spacing) = (bonds * points, self.spacing);
         Budget { points, places, bonds, bytes, disk_bytes, of_area, of_rim, spacing, other_keys }
     }
 
@@ -213,13 +216,21 @@ impl Budget {
     /// What a case takes up.
     pub fn of(case: &Case) -> Budget {
         let model = &case.model;
-        match model.method {
+        let budget = match model.method {
             Method::Handbook => Budget { bytes: BASE, disk_bytes: DISK_BASE, ..Budget::none() },
             Method::ElementFreeGalerkin => of_nodes(case),
             Method::Peridynamics => {
                 plate_of(case).budget(model.bond_law.surface_correction, 0.0, model.solver == SolverKind::Direct)
             }
-        }
+        };
+        budget.with_files(case.output)
+    }
+
+    /// The same with the files that are asked for.
+    pub fn with_files(self, output: Output) -> Budget {
+        let of_point = if self.places == 0.0 { DISK_NODE } else { DISK_POINT };
+        let fields = if output.paraview { of_point * self.points } else { 0.0 };
+        Budget { disk_bytes: self.disk_bytes + PICTURE_POINT * self.points + fields, ..self }
     }
 
     fn none() -> Budget {
@@ -308,6 +319,6 @@ fn plate_of(case: &Case) -> PointPlate<'_> {
 fn of_nodes(case: &Case) -> Budget {
     let far = case.model.element_free.resolution.far;
     let nodes = case.specimen.area() / (far * far);
-    let (of_area, disk_bytes) = (NODE * nodes, DISK_BASE + DISK_NODE * nodes);
-    Budget { points: nodes, bytes: BASE + of_area, disk_bytes, of_area, spacing: far, ..Budget::none() }
+    let of_area = NODE * nodes;
+    Budget { points: nodes, bytes: BASE + of_area, disk_bytes: DISK_BASE, of_area, spacing: far, ..Budget::none() }
 }

@@ -10,7 +10,9 @@ use crate::error::{Result, input};
 use crate::fatigue::GrowthRate;
 use crate::fatigue::growth_law::{Bounded, GrowthLawKind, Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
-use crate::input::{Document, Folder, ForeignSections, LEVELS_OF_SCENES, OF_SCENES, OpenedFile, Provenance, Sections, value_at};
+use crate::input::{
+    Document, Folder, ForeignSections, LEVELS_OF_SCENES, OF_SCENES, OpenedFile, Output, Provenance, Sections, value_at,
+};
 use crate::loading::LoadingKind;
 use crate::units::{MM, MM_PER_CYCLE, MPA};
 use crate::{loading, material, specimen};
@@ -18,7 +20,7 @@ use crate::{loading, material, specimen};
 /// What a record is called that came with no file.
 pub const RECORD: &str = "fitted.toml";
 /// Sections of a case file.
-pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "fatigue", "stop"];
+pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "fatigue", "stop", "output"];
 
 /// Sections of other files.
 const STRANGERS: &[ForeignSections] = &[
@@ -118,6 +120,7 @@ impl Case {
             fatigue: fatigue.settings,
             law: LawSource::Missing(PathBuf::new()),
             stop,
+            output: Output::from_value(sections.optional("output"))?,
             warnings,
             echo,
             provenance: Provenance::default(),

@@ -26,6 +26,6 @@ impl Scene {
             SceneLaw::Correspondence { .. } => (SurfaceCorrection::None, CORRESPONDENCE_BOND),
         };
         // Static scenes: 241 MB at 1e4 points, m = 3.015; 145 MB at 2500 and m = 6.
-        plate.budget(correction, of_bond, model.solver == SceneSolver::Secant)
+        plate.budget(correction, of_bond, model.solver == SceneSolver::Secant).with_files(self.output)
     }
 }

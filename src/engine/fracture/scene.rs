@@ -2,7 +2,7 @@
 
 use crate::bond_law::BondLaw;
 use crate::case::HORIZON_RATIO;
-use crate::input::Provenance;
+use crate::input::{Output, Provenance};
 pub use crate::levels::{Discretisation, RefinedRegion, Refinement};
 use crate::material::Material;
 use crate::specimen::{Edge, Point, Specimen};
@@ -259,6 +259,8 @@ pub struct Scene {
     pub procedure: Procedure,
     /// Refinement, for arrangements of several levels.
     pub refinement: Option<Refinement>,
+    /// What is written beside tables and pictures.
+    pub output: Output,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// The input as given; echoed in `result.json`.
@@ -293,6 +295,7 @@ impl Scene {
             damage: Damage::NONE,
             procedure: Procedure::Static,
             refinement: None,
+            output: Output::default(),
             warnings: Vec::new(),
             echo: serde_json::Value::Null,
             provenance: Provenance::default(),

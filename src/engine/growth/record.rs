@@ -48,9 +48,9 @@ pub struct TipRecord {
     pub position: Point,
     /// Growth since N = 0, m.
     pub growth: f64,
-    /// K_I and K_II at maximum load, Pa√m; `None` where nobody reads them.
+    /// K_I and K_II at maximum load, Pa√m; `None` where nobody reads them, as of a tip that has ended.
     pub factors: Option<[f64; 2]>,
-    /// Stress along the crack T at maximum load, Pa; `None` where nobody reads it.
+    /// Stress along the crack T at maximum load, Pa; `None` where `factors` is.
     pub t_stress: Option<f64>,
 }
 
@@ -79,13 +79,19 @@ pub struct CurvePoint {
 
 impl CurvePoint {
     /// The row of tips that are driven by their K; `lead` is K_eq, Pa√m, and da/dN, m/cycle, of the fastest, and `cracks` what the tips end.
+    ///
+    /// What the tips carry of K was read in the last equilibrium. Without one for this row (`work` is NaN), and of a tip that has ended
+    /// with it, that is K of the row before, and not told again.
     pub fn of_tips(
         case: &Case,
         [cycles, work]: [f64; 2],
         broken_bonds: usize,
-        (tips, cracks): (Vec<TipRecord>, &[CrackLine]),
+        (mut tips, cracks): (Vec<TipRecord>, &[CrackLine]),
         lead: Option<(f64, f64)>,
     ) -> CurvePoint {
+        let is_read = |tip: &TipRecord| !work.is_nan() && matches!(tip.state, TipState::Active | TipState::Closed);
+        tips.iter_mut().filter(|tip| !is_read(tip)).for_each(|tip| (tip.factors, tip.t_stress) = (None, None));
+        let lead = lead.filter(|_| !work.is_nan());
         let growths: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
         let (k_max, growth_rate) = lead.unwrap_or((f64::NAN, f64::NAN));
         let crack_length = case.specimen.crack_length_after(&growths);

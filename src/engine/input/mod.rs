@@ -6,11 +6,13 @@
 
 mod document;
 mod folder;
+mod output;
 mod quantity;
 mod slice;
 
 pub use document::{Document, ForeignSections, Sections};
 pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256};
+pub use output::Output;
 pub use quantity::*;
 pub use slice::shorten;
 pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, refuse_given, slice, table_of, value_at};

@@ -130,7 +130,20 @@ function constants(s) {
       ["Life measured", `${cycles(s.life_measured)} cycles`],
       ["Life fitted", `${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
       ["rms life error", `${percent(s.rms_life_error, 2)} over all readings`],
+      ...misfit(s.misfit_at_ends),
     ], "fit"));
+}
+
+/** What the law misses at the first and last readings, and what a life that is spent there is off by. */
+function misfit({ low = null, high = null } = {}) {
+  const end = (name, at) => {
+    const share = at.rate_over_law_percent / 100;
+    const [faster, longer] = share < 0 ? ["slower", "short"] : ["faster", "long"];
+    const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 3)} to ${significant(at.delta_k_to_mpa_sqrt_m, 3)}`;
+    const size = percent(Math.abs(share), 1);
+    return [name, `grows ${size} ${faster} than the law at ${range}: a life spent there is computed ${size} too ${longer}`];
+  };
+  return [["First readings", low], ["Last readings", high]].filter(([, at]) => at).map(([name, at]) => end(name, at));
 }
 
 function specimens({ specimens: list = [] }) {

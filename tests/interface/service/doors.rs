@@ -10,7 +10,7 @@ use assert_cmd::cargo::{cargo_bin, cargo_bin_cmd};
 use serde_json::json;
 use tempfile::tempdir;
 
-use super::{QUICK, of};
+use super::{FOR_PARAVIEW, QUICK, of};
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::server::{PATIENCE, Server, in_folder};
 
@@ -63,7 +63,8 @@ fn files_have_tags_and_ranges() {
     let dir = tempdir().unwrap();
     let place = in_folder(dir.path());
     let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
-    let job = service.submit("predictions", &of("large", &QUICK.replace("spacing_mm = 1.5", "spacing_mm = 0.5")));
+    let job =
+        service.submit("predictions", &of("large", &(QUICK.replace("spacing_mm = 1.5", "spacing_mm = 0.5") + FOR_PARAVIEW)));
     service.succeeded(&job);
     for file in ["a_n.csv", "paraview.zip"] {
         let path = format!("{job}/files/{file}");

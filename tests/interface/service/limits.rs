@@ -11,7 +11,7 @@ use tempfile::tempdir;
 use super::crashes::SmallDisk;
 use super::jobs::{with_each_store, with_store};
 use super::queue::{on_store, token};
-use super::{QUICK, SLOW, of};
+use super::{FOR_PARAVIEW, QUICK, SLOW, of};
 use crate::interface::cli::perilife;
 use crate::support::server::{PATIENCE, Server, in_folder};
 
@@ -97,7 +97,7 @@ fn a_full_temporary_disk_is_counted() {
             Server::start_with(&[&place[0], &place[1]], &["--jobs", "1", "--attempts", attempts], &[("TMPDIR", folder)])
         };
         let service = start("3");
-        let large = service.submit("predictions", &of("large", &spaced(0.7)));
+        let large = service.submit("predictions", &of("large", &(spaced(0.7) + FOR_PARAVIEW)));
         let small = service.submit("predictions", &of("small", QUICK));
         if folder == &full {
             service.succeeded(&small);
@@ -340,7 +340,7 @@ fn every_kind_of_job_runs() {
     let sweep =
         "case = \"case.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nvalues = [50, 60]\n";
     for (collection, body, files) in [
-        ("scenes", of("scene", SCENE), vec!["result.json", "history.csv", "paraview.zip"]),
+        ("scenes", of("scene", &(SCENE.to_owned() + FOR_PARAVIEW)), vec!["result.json", "history.csv", "paraview.zip"]),
         (
             "sweeps",
             json!({ "name": "sweep", "input": sweep, "files": { "case.toml": QUICK } }),

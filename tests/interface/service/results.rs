@@ -7,7 +7,7 @@ use perilife::monotone::Monotone;
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
-use super::{QUICK, SLOW, of};
+use super::{FOR_PARAVIEW, QUICK, SLOW, of};
 use crate::interface::cli::{perilife, texts};
 use crate::support::server::{Server, in_folder};
 
@@ -35,7 +35,7 @@ fn a_prediction_has_the_files_of_the_command() {
     let dir = tempdir().unwrap();
     let folder = dir.path();
     let service = server(folder);
-    for (name, text) in [("quick", QUICK), ("slow", SLOW)] {
+    for (name, text) in [("quick", &*(QUICK.to_owned() + FOR_PARAVIEW)), ("slow", SLOW)] {
         let job = service.submit("predictions", &of(name, text));
         fs::write(folder.join(format!("{name}.toml")), text).unwrap();
         run(folder, &["predict", &format!("{name}.toml"), "--out", name]);

@@ -33,6 +33,8 @@
 //! seed = 1
 //! count = 60
 //! regions = [{ from_mm = [-20.0, -10.0], to_mm = [20.0, -5.0] }]
+//! [output]                    # optional
+//! paraview = true             # also the fields of some moments, for ParaView
 //! ```
 
 mod checks;
@@ -53,12 +55,13 @@ use toml::{Table, Value};
 
 use super::scene::{Scene, SceneLaw};
 use crate::error::Result;
-use crate::input::{Document, Folder, ForeignSections, Provenance, Sections};
+use crate::input::{Document, Folder, ForeignSections, Output, Provenance, Sections};
 use crate::levels::refinement;
 use crate::{material, specimen};
 
 /// Sections of a scene file.
-pub const SECTIONS: &[&str] = &["specimen", "material", "model", "loading", "supports", "damage", "refinement", "micro_cracks"];
+pub const SECTIONS: &[&str] =
+    &["specimen", "material", "model", "loading", "supports", "damage", "refinement", "micro_cracks", "output"];
 
 /// Sections that only a scene file has.
 pub const SCENE_SECTIONS: &[&str] = &["damage", "micro_cracks"];
@@ -133,6 +136,7 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
         damage,
         procedure: loading.procedure,
         refinement,
+        output: Output::from_value(sections.optional("output"))?,
         warnings,
         echo,
         provenance: Provenance::default(),
