@@ -23,7 +23,7 @@ pub const BETWEEN_LOTS: f64 = 0.25;
 /// Smallest standard deviation of the slope outside the calibrated range.
 const SLOPE_DEVIATION_MIN: f64 = 0.5;
 /// Factor of ΔK beyond the calibrated range up to which the chord is continued.
-const BEYOND_MAX: f64 = 2.0;
+pub(super) const BEYOND_MAX: f64 = 2.0;
 /// Confidence of a basis value.
 const BASIS_CONFIDENCE: f64 = 0.95;
 /// Fewest specimens of a basis value.
