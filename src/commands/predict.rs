@@ -6,7 +6,7 @@ use super::checkpoint;
 use super::console::Console;
 use crate::error::Result;
 use crate::input::Document;
-use crate::report::band::{FACTOR, From};
+use crate::report::band::{FACTOR, InspectFrom};
 use crate::report::output::OutputFile;
 use crate::runner::{Kind, Task};
 
@@ -56,7 +56,7 @@ pub fn run(args: &Args) -> Result<()> {
     if let Task::Prediction { wanted, .. } = &mut task {
         wanted.strength = args.residual_strength;
         let names = ["--inspect-from", "--factor"];
-        wanted.inspection = args.inspect_from.map(|crack_length_mm| From { crack_length_mm, factor: args.factor, names });
+        wanted.inspection = args.inspect_from.map(|crack_length_mm| InspectFrom { crack_length_mm, factor: args.factor, names });
     }
     let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
     let summary = summary.counted()?;

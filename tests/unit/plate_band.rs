@@ -5,7 +5,7 @@ use perilife::calibration::population::intervals::{INTERVALS_MAX, Reading, Speci
 use perilife::calibration::population::plate::Plate;
 use perilife::case::{Case, LawSource, Lot};
 use perilife::predict::{Prediction, Silent, predict};
-use perilife::report::band::{COLUMNS, From, Inspection, Lives, band_words, left_of_table};
+use perilife::report::band::{COLUMNS, InspectFrom, Inspection, Lives, band_words, left_of_table};
 use perilife::report::csv::{self, Row};
 use perilife::units::{MM, MPA_SQRT_M};
 use toml::Table;
@@ -148,7 +148,7 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     let case = panel(5, &[]);
     let (run, mut lives) = lives(&case);
     let rows: Vec<Row> = run.curve.iter().map(Row::of).collect();
-    let from = From { crack_length_mm: 20.0, factor: 4.0, names: ["--inspect-from", "--factor"] };
+    let from = InspectFrom { crack_length_mm: 20.0, factor: 4.0, names: ["--inspect-from", "--factor"] };
     let point = Inspection::of(&rows, None, from, false).unwrap();
     assert!(!point.has_band && (4.0 * point.inspection_interval_cycles - point.remaining_cycles).abs() < 1e-6);
     // What a service reads from the table is what the run itself says.
@@ -161,7 +161,7 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     assert!((4.0 * with_band.inspection_interval_cycles - with_band.remaining_cycles_p05.unwrap()).abs() < 1e-6);
     assert_eq!(left_of_table(&csv::a_n(&run, None)), None);
     for (crack_length_mm, factor, words) in [(8.0, 3.0, "--inspect-from"), (50.0, 3.0, "9 to 49.8"), (20.0, 0.5, "--factor")] {
-        let error = lives.inspect(From { crack_length_mm, factor, ..from }).unwrap_err().to_string();
+        let error = lives.inspect(InspectFrom { crack_length_mm, factor, ..from }).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
     }
     lives.inspect(from).unwrap();

@@ -17,6 +17,10 @@ use crate::units::MM;
 /// many do not live on from there to the end of the run.
 pub const COLUMNS: [&str; 6] =
     ["cycles_p05", "cycles_p50", "cycles_p95", "remaining_cycles_p05", "remaining_cycles_p50", "remaining_cycles_p95"];
+/// Whose the band is, in words: of any specimen of the lot, of the plate that was read.
+const OF_SPECIMENS: &str = "90 % of specimens";
+/// See [`OF_SPECIMENS`].
+const OF_PLATE: &str = "90 % band";
 /// Factor of the inspection interval: three looks before the end.
 pub const FACTOR: f64 = 3.0;
 /// Half widths of a band above which a life has so many significant digits, and those below.
@@ -76,7 +80,7 @@ pub struct Inspection {
 
 /// From which crack length on a plate is inspected.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct From {
+pub struct InspectFrom {
     /// Crack length, mm.
     pub crack_length_mm: f64,
     /// What the remaining life is divided by.
@@ -85,7 +89,7 @@ pub struct From {
     pub names: [&'static str; 2],
 }
 
-impl From {
+impl InspectFrom {
     /// Refuses a factor below 1.
     pub fn check(&self) -> Result<()> {
         if self.factor.is_finite() && self.factor >= 1.0 {
@@ -98,7 +102,7 @@ impl From {
 impl Inspection {
     /// Of a curve with at least one row; `left` are the columns of [`COLUMNS`] that say what is left.
     /// Errors: a length that is not on the curve, a factor below 1.
-    pub fn of(rows: &[Row], left: Option<&[Quantiles]>, from: From, is_lower_bound: bool) -> Result<Self> {
+    pub fn of(rows: &[Row], left: Option<&[Quantiles]>, from: InspectFrom, is_lower_bound: bool) -> Result<Self> {
         from.check()?;
         let (length, end) = (from.crack_length_mm, rows[rows.len() - 1]);
         let (shortest, longest) = (rows[0].crack_length_mm, end.crack_length_mm);
@@ -141,13 +145,13 @@ impl Inspection {
         Some([self.remaining_cycles_p05?, self.remaining_cycles_p50?, self.remaining_cycles_p95?])
     }
 
-    fn words(&self) -> Vec<String> {
+    fn words(&self, whose: &str) -> Vec<String> {
         let (length, factor) = (self.crack_length_mm, self.factor);
         let [left, every] = match self.quantiles() {
             Some(quantiles) => {
                 let digits = digits(&quantiles);
                 [
-                    band_words(&quantiles),
+                    words_of(&quantiles, whose),
                     format!(
                         "{} cycles: the 5 % remaining life over {factor}",
                         rounded_down(self.inspection_interval_cycles, digits)
@@ -221,7 +225,7 @@ impl Lives {
 
     /// Looks at what is left from a length on.
     /// Errors: as [`Inspection::of`]; a length shorter than the last reading of the plate.
-    pub fn inspect(&mut self, from: From) -> Result<()> {
+    pub fn inspect(&mut self, from: InspectFrom) -> Result<()> {
         let left = self.band.as_ref().ok().map(|(_, band)| &*band.left);
         let mut inspection = Inspection::of(&self.rows, left, from, self.is_lower_bound)?;
         if let (Ok((plate, _)), Some(own)) = (&self.band, &self.own) {
@@ -308,14 +312,15 @@ impl Lives {
         }
         if let Some(own) = &self.own {
             lines.push(format!(
-                "  this plate     read to {:.3} mm at {:.0} cycles, left {} (by the lot alone {})",
+                "  this plate     read to {:.3} mm at {:.0} cycles, left {}; by the lot alone {}",
                 own.left.crack_length / MM,
                 own.cycles,
-                band_words(&own.left.quantiles),
-                band_words(&own.of_lot.quantiles)
+                words_of(&own.left.quantiles, OF_PLATE),
+                words_of(&own.of_lot.quantiles, OF_SPECIMENS)
             ));
         }
-        lines.extend(self.inspection.iter().flat_map(Inspection::words));
+        let whose = if self.own.is_some() { OF_PLATE } else { OF_SPECIMENS };
+        lines.extend(self.inspection.iter().flat_map(|inspection| inspection.words(whose)));
         lines
     }
 }
@@ -370,7 +375,11 @@ fn grouped(whole: f64) -> String {
 
 /// `254 000 cycles (median; 90 % of specimens 228 000 to 283 000)`, with the digits that the band deserves.
 pub fn band_words(quantiles: &Quantiles) -> String {
+    words_of(quantiles, OF_SPECIMENS)
+}
+
+fn words_of(quantiles: &Quantiles, whose: &str) -> String {
     let digits = digits(quantiles);
     let [low, middle, high] = quantiles.map(|cycles| rounded(cycles, digits));
-    format!("{middle} cycles (median; 90 % of specimens {low} to {high})")
+    format!("{middle} cycles (median; {whose} {low} to {high})")
 }

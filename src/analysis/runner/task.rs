@@ -17,7 +17,7 @@ use crate::fracture::read::is_scene;
 use crate::input::Document;
 use crate::measured::{self, Import, MeasuredCurve};
 use crate::predict::tip_factors::StressIntensityMethod;
-use crate::report::band::{From, no_band_to_narrow};
+use crate::report::band::{InspectFrom, no_band_to_narrow};
 use crate::report::output::{Room, RunKind};
 use crate::report::{fracture, run, stresses};
 use crate::sweep::design::{CASES_MAX, is_sweep};
@@ -104,7 +104,7 @@ pub struct Wanted {
     /// Readings of the plate itself, set against its case, that narrow the band of what it has left.
     pub readings: Option<MeasuredCurve>,
     /// What is left from a crack length on, and how often to look.
-    pub inspection: Option<From>,
+    pub inspection: Option<InspectFrom>,
 }
 
 /// A document read as what it asks for.

@@ -186,7 +186,7 @@ pub async fn remaining(
 ) -> Answer<Json<Inspection>> {
     let Query(from) = from.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
     let names = ["crack_length_mm", "factor"];
-    let from = band::From { crack_length_mm: from.crack_length_mm, factor: from.factor.unwrap_or(band::FACTOR), names };
+    let from = band::InspectFrom { crack_length_mm: from.crack_length_mm, factor: from.factor.unwrap_or(band::FACTOR), names };
     from.check()?;
     let Some((text, _room)) = curve(&app, &id).await? else {
         must_have_result(&job_of(&app, "predictions", &id).await?)?;

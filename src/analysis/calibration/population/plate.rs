@@ -10,7 +10,7 @@
 
 use super::Population;
 use super::forecast::{BEYOND_MAX, CELLS, Forecast, Life, Lot};
-use super::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, cells};
+use super::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, Zones};
 use super::student::t_quantile;
 use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource};
@@ -54,6 +54,9 @@ pub struct Plate {
     lengths: Vec<f64>,
     /// ΔK over that way.
     factors: TipFactors,
+    zones: Zones,
+    /// t of [`SHARES`].
+    t: [f64; 3],
     /// First and last row between which ΔK is known and in range.
     known: [usize; 2],
     /// Share of the life behind the last of them whose ΔK is too high.
@@ -176,12 +179,17 @@ impl Plate {
         if rising.len() < 2 || rows[last].cycles <= rows[first].cycles {
             return Err("no crack grew".to_owned());
         }
+        let factors = TipFactors::new(rising.iter().copied());
+        let zones = Zones::new(way[first], way[last], &|way| factors.at(way)).map_err(words)?;
+        let t = t_quantile(SHARES[2], lot.freedom);
         Ok(Plate {
             of: case.lot,
             cycles: rows.iter().map(|row| row.cycles).collect(),
             lengths: rows.iter().map(|row| row.crack_length).collect(),
             way,
-            factors: TipFactors::new(rising.into_iter()),
+            factors,
+            zones,
+            t: [-t, 0.0, t],
             known: [first, last],
             beyond: too_high.map_or(0.0, |_| (life - rows[last].cycles) / life),
             lot,
@@ -226,11 +234,10 @@ impl Plate {
     fn along(&self, run: &[f64], piece: &dyn Fn(usize) -> Result<Forecast>) -> std::result::Result<Vec<Quantiles>, NoBand> {
         let mut places = self.places(run);
         places.sort_by(|a, b| run[*a].total_cmp(&run[*b]));
-        let t = self.t();
         let mut logarithms: Vec<[f64; 4]> = Vec::with_capacity(places.len());
         for place in places {
             let Life { median, deviation, .. } = piece(place).map_err(words)?.life();
-            let mut y = t.map(|t| median.ln() + t * deviation);
+            let mut y = self.t.map(|t| median.ln() + t * deviation);
             if let Some(before) = logarithms.last() {
                 y = [0, 1, 2].map(|k| y[k].max(before[k + 1]));
             }
@@ -330,7 +337,7 @@ impl Plate {
         let life = self.forecast(way, self.way[last], own)?.life();
         let at = Monotone::new(self.lengths.iter().zip(&self.cycles).map(|(a, n)| [*a, *n])).at(length);
         let (run, whole) = (self.cycles[last] - at, self.cycles[self.cycles.len() - 1] - at);
-        let quantiles = self.t().map(|t| life.median * (t * life.deviation).exp());
+        let quantiles = self.t.map(|t| life.median * (t * life.deviation).exp());
         Ok(Left { crack_length: length, cycles: whole, quantiles: scaled(quantiles, whole, run) })
     }
 
@@ -342,19 +349,13 @@ impl Plate {
     /// Life over a piece of the way of the fastest tip, m.
     fn forecast(&self, from: f64, to: f64, own: Option<&Specimen>) -> Result<Forecast> {
         let delta_k = |way: f64| self.factors.at(way);
-        let mut path = cells(from, to, CELLS_OF_PIECE, &delta_k)?;
+        let mut path = self.zones.cells(from, to, CELLS_OF_PIECE, &delta_k)?;
         // The noise goes on where the readings end, and a piece without readings lies between.
         if let Some(read) = own.and_then(|own| own.intervals.last()).filter(|read| from > read.to * (1.0 + SAME_LENGTH)) {
-            let gap = cells(read.to, from, 1, &delta_k)?[0].zone[1];
+            let gap = self.zones.cells(read.to, from, 1, &delta_k)?[0].zone[1];
             path.iter_mut().for_each(|Interval { zone, .. }| *zone = zone.map(|zone| zone + gap));
         }
         self.lot.forecast(&path, own, self.of)
-    }
-
-    /// t of [`SHARES`].
-    fn t(&self) -> [f64; 3] {
-        let t = t_quantile(SHARES[2], self.lot.freedom);
-        [-t, 0.0, t]
     }
 
     fn pairs(&self) -> impl Iterator<Item = [f64; 2]> {
