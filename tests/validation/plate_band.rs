@@ -68,7 +68,7 @@ fn the_band_of_another_plate_is_that_of_draws() {
         println!("to {:.2} mm: deviation {found:.4}, trial {trial}", run.curve[row].crack_length / MM);
         assert!((found / trial - 1.0).abs() < 0.1, "{found}");
     }
-    assert_eq!(band.share_outside, 0.0);
+    assert!(band.share_outside < 0.005, "ΔK ends at 26.8 MPa√m: {}", band.share_outside);
     assert!(plate.lot.specimens.len() == 34 && !plate.lot.assumed_scatter);
 }
 
