@@ -6,6 +6,7 @@ use perilife::calibration::population::plate::{Plate, PlateBand};
 use perilife::calibration::population::student::t_quantile;
 use perilife::calibration::population::{Population, fit};
 use perilife::case::{Case, LawSource};
+use perilife::measured::MeasuredCurve;
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::specimen::handbook::handbook;
 use perilife::units::MM;
@@ -108,19 +109,18 @@ fn readings_of_a_panel_narrow_what_it_has_left() {
     let Some(panels) = panels() else { return };
     let all = specimens(&panels, 50);
     let (mut covered, mut narrower) = (0, 0.0);
-    let own_of = |i: usize, to: f64| {
-        let panel = &panels[i];
+    let own_of = |panel: &MeasuredCurve, to: f64| {
         let readings: Vec<usize> = (0..panel.cycles.len()).filter(|&k| panel.crack_length[k] <= to + 1e-9).collect();
         panel.of_readings(&readings)
     };
-    for i in 0..34 {
+    for (i, panel) in panels.iter().enumerate() {
         let others: Vec<Specimen> = all.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, one)| one.clone()).collect();
         let case = with(&lot_of(&others), hand_case(PANEL, &["stop.crack_length_mm=49.8"]));
         let plate = band(&case).1;
-        let own = plate.own(&own_of(i, 30.0 * MM)).unwrap();
+        let own = plate.own(&own_of(panel, 30.0 * MM)).unwrap();
         let [with_own, without] = [Some(&own), None].map(|own| plate.left(30.0 * MM, own).unwrap().quantiles);
         narrower += (with_own[2] / with_own[0]).ln() / (without[2] / without[0]).ln() / 34.0;
-        let left = panels[i].cycles.last().unwrap() - own_of(i, 30.0 * MM).cycles.last().unwrap();
+        let left = panel.cycles.last().unwrap() - own_of(panel, 30.0 * MM).cycles.last().unwrap();
         covered += usize::from((with_own[0]..=with_own[2]).contains(&left));
     }
     println!("width with own readings over that without {narrower:.3}, {covered} of 34 in their band");
