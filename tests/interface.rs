@@ -4,6 +4,7 @@ mod bad_csv;
 mod bad_scenes;
 mod bad_sweeps;
 mod bad_toml;
+mod band;
 mod calibrate;
 mod chart;
 mod check;

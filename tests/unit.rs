@@ -37,6 +37,7 @@ mod obstacles;
 mod output;
 mod pairs;
 mod pictures;
+mod plate_band;
 mod population;
 mod practice;
 mod quadrature;

@@ -9,6 +9,7 @@ mod fuzz_cases;
 mod kept_back;
 mod median_virkler;
 mod notched_plates;
+mod plate_band;
 mod population;
 mod rates_virkler;
 mod rivals;

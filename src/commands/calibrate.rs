@@ -16,7 +16,7 @@ use crate::input::Document;
 use crate::predict::Prediction;
 use crate::report::output::{Finished, OutputFolder, Room, RunKind};
 use crate::report::{fit, run};
-use crate::runner::of_prediction;
+use crate::runner::{Wanted, of_prediction};
 
 /// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
@@ -124,7 +124,7 @@ fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &Finish
         }
         place.adopt(&case.name)?;
         let prediction = run?;
-        let files = |path: &Path| of_prediction(case, &prediction, false, Some(path), console);
+        let files = |path: &Path| of_prediction(case, &prediction, &Wanted::default(), Some(path), console);
         let kept = console.keep(folder, &[], files)?.counted()?;
         predictions.insert(case.name.clone(), kept.result);
     }

@@ -6,6 +6,7 @@ use super::checkpoint;
 use super::console::Console;
 use crate::error::Result;
 use crate::input::Document;
+use crate::report::band::{FACTOR, InspectFrom};
 use crate::report::output::OutputFile;
 use crate::runner::{Kind, Task};
 
@@ -32,6 +33,15 @@ pub struct Args {
     /// Also write the fields of some moments for ParaView (paraview/run.pvd), as [output] paraview = true does
     #[arg(long, help_heading = "Output")]
     pub paraview: bool,
+    /// Readings of this very plate (cycles, crack length), which narrow the band of what it has left
+    #[arg(long, value_name = "READINGS.csv", help_heading = "Input")]
+    pub measured: Option<PathBuf>,
+    /// Also say what is left from this crack length on, and how often to look: the 5 % remaining life over the factor
+    #[arg(long, value_name = "MM", help_heading = "Output")]
+    pub inspect_from: Option<f64>,
+    /// Factor of the inspection interval
+    #[arg(long, value_name = "F", default_value_t = FACTOR, requires = "inspect_from", help_heading = "Output")]
+    pub factor: f64,
     /// Keeping the run for later.
     #[command(flatten)]
     pub keeping: checkpoint::Args,
@@ -44,8 +54,13 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let document = Document::read(&args.case, &super::with_paraview(&args.set, args.paraview))?;
     let mut task = Task::read(Kind::Prediction, &document, &[])?;
-    if let Task::Prediction { with_strength, .. } = &mut task {
-        *with_strength = args.residual_strength;
+    if let Some(file) = &args.measured {
+        task.read_plate(&document, file).map_err(|error| document.locate(error))?;
+    }
+    if let Task::Prediction { wanted, .. } = &mut task {
+        wanted.strength = args.residual_strength;
+        let names = ["--inspect-from", "--factor"];
+        wanted.inspection = args.inspect_from.map(|crack_length_mm| InspectFrom { crack_length_mm, factor: args.factor, names });
     }
     let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
     let summary = summary.counted()?;

@@ -13,7 +13,7 @@ mod read;
 pub mod record;
 
 pub use boundaries::first_load;
-pub use fatigue_keys::{TableEnds, law_keys, remove_law};
+pub use fatigue_keys::{Lot, TableEnds, law_keys, remove_law};
 pub use law_source::fitted_record;
 pub use read::{RECORD, SECTIONS};
 
@@ -179,6 +179,8 @@ pub struct Case {
     pub provenance: Provenance,
     /// Whether growth far outside the calibrated range of ΔK is accepted.
     pub allow_extrapolation: bool,
+    /// Lot that its plate is of, for the band of its life.
+    pub lot: Lot,
     /// What the file chose explicitly; a fitted record must agree with it.
     pub choices: Choices,
     /// The record that its law over K comes from.

@@ -10,7 +10,7 @@ use perilife::error::InputError;
 use perilife::predict::{Prediction, StopReason};
 use perilife::report::catalogue::lines;
 use perilife::report::output::{OutputFolder, RunKind};
-use perilife::runner::of_prediction;
+use perilife::runner::{Wanted, of_prediction};
 use tempfile::tempdir;
 
 use crate::support::{made_up_case, made_up_run};
@@ -20,7 +20,7 @@ const QUIET: Console = Console { json: false, quiet: true };
 
 fn keep(case: &Case, run: Prediction, out: &Path) -> Result<(), perilife::Error> {
     let folder = OutputFolder::create(out, RunKind::Predict)?;
-    QUIET.keep(folder, &[], |path| of_prediction(case, &run, false, Some(path), &QUIET))?.counted().map(drop)
+    QUIET.keep(folder, &[], |path| of_prediction(case, &run, &Wanted::default(), Some(path), &QUIET))?.counted().map(drop)
 }
 
 #[test]

@@ -25,7 +25,7 @@ const LAST_GROWTH: f64 = 5.0 * MM;
 /// Quantiles of a score.
 const LEVELS: usize = 100;
 
-fn panels() -> Option<Vec<MeasuredCurve>> {
+pub fn panels() -> Option<Vec<MeasuredCurve>> {
     Some(read(&[shared("virkler/virkler.csv")?], &Import::default()).unwrap().curves)
 }
 
@@ -35,7 +35,7 @@ fn readings(panel: &MeasuredCurve, to: f64) -> Vec<Reading> {
     before.map(|(&length, &cycles)| Reading { length, cycles, counts: true }).collect()
 }
 
-fn specimens(panels: &[MeasuredCurve], intervals_max: usize) -> Vec<Specimen> {
+pub fn specimens(panels: &[MeasuredCurve], intervals_max: usize) -> Vec<Specimen> {
     panels.iter().map(|panel| Specimen::new(&panel.specimen, &readings(panel, 1.0), &delta_k, intervals_max).unwrap()).collect()
 }
 

@@ -7,9 +7,8 @@ use crate::calibration::criterion::Criterion;
 use crate::calibration::exponent::Parameter;
 use crate::calibration::laws::FitLaw;
 use crate::calibration::rates::RateMethod;
-use crate::case::TableEnds;
 use crate::case::record::Estimate;
-use crate::case::{Failure, Method};
+use crate::case::{Failure, Lot, Method, TableEnds};
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
@@ -69,6 +68,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         GrowthRate::lines(),
         Precrack::lines(),
         Failure::lines(),
+        Lot::lines(),
     ];
     let of_calibration = [
         Parameter::lines(),

@@ -2,6 +2,7 @@
 //!
 //! A run writes into an [`output::OutputFolder`], which appears under its name only once it is whole.
 
+pub mod band;
 pub mod catalogue;
 pub mod chart;
 pub mod checks;

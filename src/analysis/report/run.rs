@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 use toml::Table;
 
+use super::band::Lives;
 use super::chart::{self, Mark, Series};
 use super::csv::{self, Row};
 use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
@@ -122,8 +123,11 @@ fn extrapolates(case: &Case, what: &str, more: &str) -> Error {
 }
 
 /// Keys of `result.json` that a listing of runs shows.
-pub const FIGURES: [&str; 16] = [
+pub const FIGURES: [&str; 20] = [
     "life_cycles",
+    "band",
+    "no_band",
+    "inspection",
     "life_is_lower_bound",
     "stop_reason",
     "stop_meaning",
@@ -133,6 +137,7 @@ pub const FIGURES: [&str; 16] = [
     "refused",
     "verdict",
     "checks",
+    "critical",
     "points",
     "points_solved",
     "blocks",
@@ -142,9 +147,10 @@ pub const FIGURES: [&str; 16] = [
 ];
 
 /// Writes all files of a run into `folder`; returns the content of `result.json`.
-pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Value> {
+pub fn write(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives) -> Result<Value> {
     let mut result = json::result(case, prediction);
-    let a_n = csv::a_n(prediction, case.loading.displacement());
+    lives.add_to(&mut result);
+    let a_n = lives.beside(csv::a_n(prediction, case.loading.displacement()));
     let path = csv::crack_path(prediction, &case.specimen.cracks);
     provenance::add(&mut result, &case.provenance, &[(csv::A_N_FILE, &a_n), (CRACK_PATH_FILE, &path)]);
     if let (Some(refusal), Some(object)) = (refusal(case, prediction), result.as_object_mut()) {
@@ -161,7 +167,7 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction) -> Result<Valu
     }
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
     provenance::write(folder, "predict", input_of(case), &case.provenance)?;
-    draw_curves(folder, case, prediction)?;
+    draw_curves(folder, case, prediction, lives)?;
     let paths: Vec<Vec<Point>> = csv::paths(prediction, &case.specimen.cracks)
         .into_iter()
         .map(|path| path.into_iter().map(|(_, position)| position).collect())
@@ -226,7 +232,7 @@ fn draw_remaining_life(path: &Path, prediction: &Prediction, paths: &[Vec<Point>
 }
 
 /// `a_n.svg`, and `da_dn.svg` where ΔK and da/dN are known.
-fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction) -> Result<()> {
+fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives) -> Result<()> {
     let rows: Vec<Row> = prediction.curve.iter().map(Row::of).collect();
     let series = |name: &str, mark, pick: fn(&Row) -> (f64, f64)| Series {
         name: name.to_owned(),
@@ -234,9 +240,17 @@ fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction) -> Result<()
         points: rows.iter().map(pick).collect(),
     };
     let curve = series("predicted", Mark::Line, |row| (row.cycles, row.crack_length_mm));
+    let mut curves = vec![curve];
+    if let Ok((_, band)) = &lives.band {
+        let of = |share: usize, name: &str| {
+            let points = band.reached.iter().zip(&rows).map(|(cycles, row)| (cycles[share], row.crack_length_mm)).collect();
+            Series { name: name.to_owned(), mark: Mark::Dashes, points }
+        };
+        curves.extend([of(0, "reached by 5 % of specimens"), of(2, "reached by 95 %")]);
+    }
     let rates =
         series("predicted, one point per cycle block", Mark::Dots, |row| (row.delta_k_mpa_sqrt_m, row.da_dn_mm_per_cycle));
-    chart::crack_length(&folder.join("a_n.svg"), &format!("{}: crack length over life", case.name), &[curve])?;
+    chart::crack_length(&folder.join("a_n.svg"), &format!("{}: crack length over life", case.name), &curves)?;
     if rates.points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
         chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;
     }
@@ -244,20 +258,22 @@ fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction) -> Result<()
 }
 
 /// What came of a run, in words.
-pub fn words(case: &Case, prediction: &Prediction) -> Vec<String> {
+pub fn words(case: &Case, prediction: &Prediction, lives: &Lives) -> Vec<String> {
     let checks = checks::of_run(case, prediction);
+    let cycles = prediction.life().map(|life| lives.life_words().unwrap_or_else(|| format!("{life:.1} cycles")));
     let mut lines = vec![
-        match prediction.life() {
-            Some(life) if prediction.stop == StopReason::EnteredHole => format!("{}: {life:.1} cycles to the hole", case.name),
-            Some(life) if checks::is_bound_below(case, prediction) => format!("{}: life at least {life:.1} cycles", case.name),
-            Some(life) if prediction.stop.is_lower_bound() => format!("{}: {life:.1} cycles to the end of the run", case.name),
-            Some(life) => format!("{}: life {life:.1} cycles", case.name),
+        match cycles {
+            Some(life) if prediction.stop == StopReason::EnteredHole => format!("{}: {life} to the hole", case.name),
+            Some(life) if checks::is_bound_below(case, prediction) => format!("{}: life at least {life}", case.name),
+            Some(life) if prediction.stop.is_lower_bound() => format!("{}: {life} to the end of the run", case.name),
+            Some(life) => format!("{}: life {life}", case.name),
             None => format!("{}: life unlimited", case.name),
         },
         format!("  crack length   {}", length_words(case, prediction)),
         format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
         format!("  verdict        {}", checks::verdict(&checks)),
     ];
+    lines.extend(lives.words());
     lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
     lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
     lines.push(format!("  computed       {}", computed(case, prediction)));

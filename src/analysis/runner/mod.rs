@@ -6,7 +6,7 @@ pub mod sweep;
 pub mod sweep_folder;
 mod task;
 
-pub use task::{Kind, Task};
+pub use task::{Kind, Task, Wanted};
 
 use std::path::Path;
 use std::time::Instant;
@@ -15,6 +15,7 @@ use serde_json::{Map, Value, json};
 
 use crate::calibration::calibrate::{Calibration, Fitted};
 use crate::calibration::case::CalibrationCase;
+use crate::calibration::population::plate::lot_of;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::fracture::checkpoint::SceneCheckpoint;
@@ -23,6 +24,7 @@ use crate::predict::checkpoint::Checkpoint;
 use crate::predict::residual_strength::{check_strength, residual_strength};
 use crate::predict::{Observer, Prediction, Silent, predict, resume};
 use crate::report;
+use crate::report::band::Lives;
 use crate::report::output::Share;
 use crate::report::sweep::Plan;
 use crate::units::MM;
@@ -96,8 +98,11 @@ impl TaskCheckpoint {
 /// Errors: mechanics without a result, wrong input that shows only now, files that cannot be written.
 pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
     match task {
-        Task::Prediction { case, with_strength } => {
-            if *with_strength {
+        Task::Prediction { case, wanted } => {
+            // A record that is damaged, and a factor that is none, should not cost a run either.
+            let _ = lot_of(case)?;
+            wanted.inspection.map_or(Ok(()), |from| from.check())?;
+            if wanted.strength {
                 // A plate without known strength should not cost a run; K of its curve comes later.
                 check_strength(case)?;
             }
@@ -106,7 +111,7 @@ pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, wat
                 Some(TaskCheckpoint::Cycles(checkpoint)) => resume(case, *checkpoint, watcher)?,
                 _ => predict(case, watcher)?,
             };
-            of_prediction(case, &prediction, *with_strength, folder, watcher)
+            of_prediction(case, &prediction, wanted, folder, watcher)
         }
         Task::Scene(scene) => {
             let fracture = match from {
@@ -130,11 +135,11 @@ pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, wat
 }
 
 /// Judges a run of cycles and writes its files.
-/// Errors: as [`report::run::judge`]; files that cannot be written.
+/// Errors: as [`report::run::judge`]; a damaged record; files that cannot be written.
 pub fn of_prediction(
     case: &Case,
     prediction: &Prediction,
-    with_strength: bool,
+    wanted: &Wanted,
     folder: Option<&Path>,
     watcher: &dyn Watcher,
 ) -> Result<Summary> {
@@ -146,10 +151,17 @@ pub fn of_prediction(
     warnings.for_each(|warning| watcher.warn(warning));
     report::checks::lines(&report::checks::of_run(case, prediction)).iter().for_each(|line| watcher.warn(line));
     // If that fails, the run itself is written all the same.
-    let strengths = with_strength.then(|| residual_strength(case, &prediction.curve)).transpose();
+    let strengths = wanted.strength.then(|| residual_strength(case, &prediction.curve)).transpose();
+    let mut lives = Lives::of(case, prediction)?;
+    let asked = wanted.readings.as_ref().map_or(Ok(()), |curve| lives.narrow(curve));
+    let asked = asked.and_then(|()| wanted.inspection.map_or(Ok(()), |from| lives.inspect(from)));
     let result = match folder {
-        Some(folder) => run::write(folder, case, prediction)?,
-        None => run::result(case, prediction),
+        Some(folder) => run::write(folder, case, prediction, &lives)?,
+        None => {
+            let mut result = run::result(case, prediction);
+            lives.add_to(&mut result);
+            result
+        }
     };
     if let (Some(folder), Ok(Some(strengths))) = (folder, &strengths) {
         run::write_strength(folder, case, strengths)?;
@@ -162,8 +174,8 @@ pub fn of_prediction(
     let figures = run::FIGURES.iter().filter_map(|key| Some(((*key).to_owned(), result.get(*key)?.clone())));
     let mut figures: Map<String, Value> = figures.collect();
     figures.insert("warnings".to_owned(), json!(warnings));
-    let lines = run::words(case, prediction);
-    let refusal = refusal.or(strengths.err());
+    let lines = run::words(case, prediction, &lives);
+    let refusal = refusal.or(strengths.err()).or(asked.err());
     Ok(Summary { result, figures: figures.into(), lines, refusal, ..Summary::default() })
 }
 

@@ -51,7 +51,7 @@ pub fn run(cases: &[&DrawnCase], folder: &SweepFolder, threads: usize, with_file
 fn outcome(case: &DrawnCase, files: Option<&Path>) -> Result<Outcome> {
     let begun = Instant::now();
     let run = || -> Result<Outcome> {
-        let task = Task::Prediction { case: Box::new(case.read()?), with_strength: false };
+        let task = Task::Prediction { case: Box::new(case.read()?), wanted: Box::default() };
         let summary = super::run(&task, None, files, &Silent)?.counted()?;
         let (result, text) = (&summary.result, |value: &Value| value.as_str().map(str::to_owned));
         let warnings = summary.figures["warnings"].as_array().into_iter().flatten();

@@ -1,19 +1,23 @@
 //! What a document asks for, read and found right.
 
 use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use crate::calibration::calibrate::Calibration;
+use crate::calibration::population::plate::lot_of;
 use crate::case::budget::Budget;
 use crate::case::{Case, Method};
 use crate::error::{Result, input};
 use crate::fracture::Scene;
 use crate::fracture::read::is_scene;
 use crate::input::Document;
+use crate::measured::{self, Import, MeasuredCurve};
 use crate::predict::tip_factors::StressIntensityMethod;
+use crate::report::band::{InspectFrom, no_band_to_narrow};
 use crate::report::output::{Room, RunKind};
 use crate::report::{fracture, run, stresses};
 use crate::sweep::design::{CASES_MAX, is_sweep};
@@ -92,6 +96,17 @@ impl fmt::Display for Kind {
     }
 }
 
+/// What is wanted beside a run of cycles.
+#[derive(Debug, Clone, Default)]
+pub struct Wanted {
+    /// Residual strength over crack length.
+    pub strength: bool,
+    /// Readings of the plate itself, set against its case, that narrow the band of what it has left.
+    pub readings: Option<MeasuredCurve>,
+    /// What is left from a crack length on, and how often to look.
+    pub inspection: Option<InspectFrom>,
+}
+
 /// A document read as what it asks for.
 #[derive(Debug, Clone)]
 pub enum Task {
@@ -99,8 +114,8 @@ pub enum Task {
     Prediction {
         /// The case.
         case: Box<Case>,
-        /// Whether the residual strength over crack length is wanted as well.
-        with_strength: bool,
+        /// What is wanted beside the run.
+        wanted: Box<Wanted>,
     },
     /// A fracture scene.
     Scene(Box<Scene>),
@@ -128,7 +143,7 @@ impl Task {
     /// Reads a document as input of a kind of run; `methods` are names of [`StressIntensityMethod`] where that asks for them.
     pub fn read(kind: Kind, document: &Document, methods: &[String]) -> Result<Task> {
         Ok(match kind {
-            Kind::Prediction => Task::Prediction { case: Box::new(Case::from_document(document)?), with_strength: false },
+            Kind::Prediction => Task::Prediction { case: Box::new(Case::from_document(document)?), wanted: Box::default() },
             Kind::Scene => Task::Scene(Box::new(Scene::from_document(document)?)),
             Kind::Calibration => Task::Fit(Calibration::from_document(document)?),
             Kind::Sif => {
@@ -147,6 +162,26 @@ impl Task {
             }
             Kind::Sweep => Task::sweep(document.clone(), &[], CASES_MAX)?,
         })
+    }
+
+    /// Adds readings of the plate of a case, of any table that [`crate::measured`] reads.
+    /// Errors: a file of no readings or of several specimens, readings that are not of this plate, a case whose life has no band.
+    pub fn read_plate(&mut self, document: &Document, file: &Path) -> Result<()> {
+        let Task::Prediction { case, wanted } = self else {
+            return Err(input("--measured", file.display(), "is for cases with cycles", "leave it out"));
+        };
+        let mut measured = measured::read_into(document.folder.opened(), &[file.to_path_buf()], &Import::default())?;
+        measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        case.warnings.append(&mut measured.warnings);
+        case.provenance = document.folder.opened().so_far();
+        let [curve] = measured.curves.as_slice() else {
+            let names: Vec<&str> = measured.curves.iter().map(|curve| &*curve.specimen).take(5).collect();
+            let problem = format!("holds {} specimens ({}), and a plate is one", measured.curves.len(), names.join(", "));
+            return Err(input("--measured", file.display(), problem, "give a table of the readings of this plate alone"));
+        };
+        lot_of(case)?.map_err(|why| no_band_to_narrow(curve, &why))?;
+        wanted.readings = Some(curve.clone());
+        Ok(())
     }
 
     /// Reads a sweep of at most so many cases, with overrides of design and case.

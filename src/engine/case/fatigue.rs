@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::fatigue_keys::FatigueKeys;
+use super::fatigue_keys::{FatigueKeys, Lot};
 use super::growth_law::Setting;
 use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
@@ -24,6 +24,7 @@ pub(super) struct Fatigue {
     /// `None` where the file gives no law, as in a calibration.
     pub law: Option<LawSource>,
     pub allow_extrapolation: bool,
+    pub lot: Lot,
 }
 
 /// Reads `[fatigue]` with the law that `method` needs; a fitted record is looked for from `folder`. Explicit choices go into
@@ -59,7 +60,7 @@ pub(super) fn from_value(
     };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
     let law = law_source::read((&input, value), (method, settings), Setting { material, ratio: loading.ratio, folder })?;
-    Ok(Fatigue { settings, law, allow_extrapolation })
+    Ok(Fatigue { settings, law, allow_extrapolation, lot: input.lot.unwrap_or(Lot::Same) })
 }
 
 /// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of

@@ -16,6 +16,14 @@ crate::kinds! {
     }
 }
 
+crate::kinds! {
+    /// Lot of material that the plate of a case is of, beside that of the calibration.
+    pub enum Lot for "fatigue.lot" {
+        Same = "same": "that of the tested specimens: the band of lives is their scatter",
+        Other = "other": "another one of the same material: the band holds the scatter between lots too",
+    }
+}
+
 /// Keys of `[fatigue]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -51,6 +59,7 @@ pub(super) struct FatigueKeys {
     pub delta_k_threshold_mpa_sqrt_m: Option<f64>,
     pub growth_rate: Option<GrowthRate>,
     pub allow_extrapolation: Option<bool>,
+    pub lot: Option<Lot>,
     #[serde(rename = "failure")]
     _failure: Option<Failure>,
 }

@@ -125,6 +125,7 @@ impl Case {
             echo,
             provenance: Provenance::default(),
             allow_extrapolation: fatigue.allow_extrapolation,
+            lot: fatigue.lot,
             choices,
             law_record,
         };

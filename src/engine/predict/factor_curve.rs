@@ -30,9 +30,10 @@ pub struct FactorCurve {
     pub warnings: Vec<String>,
 }
 
-/// K_eq of a tip while it grows.
+/// K of a tip while it grows, between the rows of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
-struct TipFactors {
+pub struct TipFactors {
+    /// Rising, m.
     lengths: Vec<f64>,
     /// ln of K_eq, K in Pa√m.
     logarithms: Vec<f64>,
@@ -67,8 +68,7 @@ impl FactorCurve {
         let tips = match case.specimen.convention {
             LengthConvention::MeanOfTips => {
                 let share = case.loading.range_share();
-                let (lengths, logarithms) = done.curve.iter().map(|row| (row.crack_length, (row.delta_k / share).ln())).unzip();
-                vec![TipFactors { lengths, logarithms }]
+                vec![TipFactors::new(done.curve.iter().map(|row| (row.crack_length, row.delta_k / share)))]
             }
             LengthConvention::SumOfTips => of_every_tip(&done.curve),
         };
@@ -105,23 +105,28 @@ fn of_every_tip(curve: &[CurvePoint]) -> Vec<TipFactors> {
         let factor = |row: &CurvePoint| {
             let record = &row.tips[tip];
             let factor = equivalent_factor(record.factors.filter(|_| record.state == TipState::Active)?);
-            (factor > 0.0).then_some((row.crack_length, factor.ln()))
+            (factor > 0.0).then_some((row.crack_length, factor))
         };
-        let (lengths, logarithms) = curve.iter().filter_map(factor).unzip();
-        TipFactors { lengths, logarithms }
+        TipFactors::new(curve.iter().filter_map(factor))
     };
     (0..count).map(of_tip).filter(|tip| tip.lengths.len() > 1).collect()
 }
 
 impl TipFactors {
+    /// Of its rows, at least two: lengths that rise, m, and K, Pa√m.
+    pub fn new(rows: impl Iterator<Item = (f64, f64)>) -> Self {
+        let (lengths, logarithms) = rows.map(|(length, k)| (length, k.ln())).unzip();
+        TipFactors { lengths, logarithms }
+    }
+
     fn grows_at(&self, length: f64) -> bool {
         let [first, last] = [self.lengths[0], self.lengths[self.lengths.len() - 1]];
         (first * (1.0 - 1e-9)..=last * (1.0 + 1e-9)).contains(&length)
     }
 
-    /// The logarithm on the parabolas through the two rows around it and the one before or behind, the nearer row's taken the more, so
+    /// K at a length, its logarithm on the parabolas through the two rows around it and the one before or behind, the nearer row's taken the more, so
     /// that value and slope are continuous.
-    fn at(&self, length: f64) -> f64 {
+    pub fn at(&self, length: f64) -> f64 {
         let last = self.lengths.len() - 1; // a run has its start and its end
         let before = self.lengths.partition_point(|&a| a < length).clamp(1, last) - 1;
         let share = (length - self.lengths[before]) / (self.lengths[before + 1] - self.lengths[before]);

@@ -7,9 +7,9 @@ use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State as Shared};
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use tokio::sync::OwnedSemaphorePermit;
-use utoipa::{IntoParams, ToSchema};
+use utoipa::IntoParams;
 
 use super::App;
 use super::collections::job_of;
@@ -17,8 +17,9 @@ use super::sending::Stored;
 use crate::error::input;
 use crate::job::{Job, State, is_id};
 use crate::problem::{Answer, Problem};
-use crate::report::csv::{self, A_N_FILE, Row};
-use crate::report::resample::{Sampling, cycles_over_length};
+use crate::report::band::{self, Inspection};
+use crate::report::csv::{self, A_N_FILE};
+use crate::report::resample::Sampling;
 use crate::store::{Origin, media_type};
 
 /// Rows of a resampled curve: as many as a table can show.
@@ -95,7 +96,8 @@ async fn resampled(app: &App, id: &str, sampling: Sampling) -> Answer<Option<Str
         let problem = format!("is not {} to {}", POINTS.start(), POINTS.end());
         return Err(input("points", points, problem, "give for example 400").into());
     }
-    let Some((rows, room)) = rows(app, id).await? else { return Ok(None) };
+    let Some((text, room)) = curve(app, id).await? else { return Ok(None) };
+    let rows = csv::parse_a_n(&text, FilePath::new(A_N_FILE))?;
     if let Sampling::EveryCycles(step) = sampling {
         let count = (rows[rows.len() - 1].cycles - rows[0].cycles) / step;
         if count > *POINTS.end() as f64 {
@@ -110,8 +112,8 @@ async fn resampled(app: &App, id: &str, sampling: Sampling) -> Answer<Option<Str
     tokio::task::spawn_blocking(work).await.map_err(|_| Problem::internal())?
 }
 
-/// Rows of a stored curve, at least one, with their room among those that may be in memory; `None` if there is no curve.
-async fn rows(app: &App, id: &str) -> Answer<Option<(Vec<Row>, OwnedSemaphorePermit)>> {
+/// The table of a stored curve, with its room among those that may be in memory; `None` if there is no curve.
+async fn curve(app: &App, id: &str) -> Answer<Option<(String, OwnedSemaphorePermit)>> {
     if !is_id(id) {
         return Ok(None);
     }
@@ -119,7 +121,7 @@ async fn rows(app: &App, id: &str) -> Answer<Option<(Vec<Row>, OwnedSemaphorePer
     let room = app.curves.clone().acquire_owned().await.map_err(|_| Problem::internal())?;
     let Some(table) = app.store.whole_file(id, Origin::Result, A_N_FILE).await? else { return Ok(None) };
     let text = String::from_utf8(table).map_err(|_| Problem::internal())?;
-    Ok(Some((csv::parse_a_n(&text, FilePath::new(A_N_FILE))?, room)))
+    Ok(Some((text, room)))
 }
 
 fn must_have_result(job: &Job) -> Answer<()> {
@@ -168,49 +170,29 @@ pub async fn picture(Shared(app): Shared<App>, Path((collection, id)): Path<(Str
 pub struct From {
     /// Crack length today.
     crack_length_mm: f64,
-    /// What the remaining life is divided by for the inspection interval; 2 if left out.
+    /// What the remaining life is divided by for the inspection interval; 3 if left out.
     factor: Option<f64>,
 }
-
-/// What is left of a life.
-#[derive(Serialize, ToSchema)]
-pub struct Remaining {
-    crack_length_mm: f64,
-    /// Cycles at which the curve reaches that length.
-    cycles_at: f64,
-    /// Cycles at its end.
-    life_cycles: f64,
-    /// From there to the end.
-    remaining_cycles: f64,
-    factor: f64,
-    /// Remaining cycles over the factor.
-    inspection_interval_cycles: f64,
-    /// Whether the plate lives on where its curve ends: at a hole, where cracks have joined, or at stop.cycles_max.
-    life_is_lower_bound: bool,
-}
-
-/// Factor of the inspection interval: two looks before the end.
-const FACTOR: f64 = 2.0;
 
 /// Remaining life from a crack length on, and an inspection interval.
 #[utoipa::path(get, path = "/v1/predictions/{id}/remaining", tag = "results",
     params(("id" = String, Path), From),
-    responses((status = 200, body = Remaining), (status = 400, body = Problem), (status = 404, body = Problem),
+    responses((status = 200, body = Inspection), (status = 400, body = Problem), (status = 404, body = Problem),
         (status = 409, body = Problem), (status = 422, body = Problem)))]
 pub async fn remaining(
     Shared(app): Shared<App>,
     Path(id): Path<String>,
     from: Result<Query<From>, QueryRejection>,
-) -> Answer<Json<Remaining>> {
+) -> Answer<Json<Inspection>> {
     let Query(from) = from.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
-    let factor = from.factor.unwrap_or(FACTOR);
-    if !(factor.is_finite() && factor >= 1.0) {
-        return Err(input("factor", factor, "is not 1 or more", "give for example 2").into());
-    }
-    let Some((rows, _room)) = rows(&app, &id).await? else {
+    let names = ["crack_length_mm", "factor"];
+    let from = band::InspectFrom { crack_length_mm: from.crack_length_mm, factor: from.factor.unwrap_or(band::FACTOR), names };
+    from.check()?;
+    let Some((text, _room)) = curve(&app, &id).await? else {
         must_have_result(&job_of(&app, "predictions", &id).await?)?;
         return Err(Problem::not_found("curve"));
     };
+    let (rows, left) = (csv::parse_a_n(&text, FilePath::new(A_N_FILE))?, band::left_of_table(&text));
     let summary = job_of(&app, "predictions", &id).await?.summary;
     if summary.as_ref().is_some_and(|summary| summary["life_cycles"].is_null()) {
         return Err(Problem::conflict("the cracks stand still under these loads: the life is unlimited"));
@@ -218,25 +200,6 @@ pub async fn remaining(
     if let Some(refused) = summary.as_ref().and_then(|summary| summary["refused"].as_str()) {
         return Err(Problem::conflict(format!("the run has no life: {refused}")));
     }
-    let (cycles_at, life_cycles) = (cycles_at(&rows, from.crack_length_mm)?, rows[rows.len() - 1].cycles);
-    let remaining_cycles = life_cycles - cycles_at;
-    Ok(Json(Remaining {
-        crack_length_mm: from.crack_length_mm,
-        cycles_at,
-        life_cycles,
-        remaining_cycles,
-        factor,
-        inspection_interval_cycles: remaining_cycles / factor,
-        life_is_lower_bound: summary.is_some_and(|summary| summary["life_is_lower_bound"] == true),
-    }))
-}
-
-/// Cycles at which a curve reaches a length, by a monotone cubic between rows; where it stays at one for a while, their end.
-fn cycles_at(rows: &[Row], length: f64) -> Answer<f64> {
-    let (first, last) = (rows[0].crack_length_mm, rows[rows.len() - 1].crack_length_mm);
-    if !(first..=last).contains(&length) {
-        let problem = format!("is not on the curve, which goes from {first} to {last} mm");
-        return Err(input("crack_length_mm", length, problem, "give a length between them").into());
-    }
-    Ok(cycles_over_length(rows).at(length))
+    let is_lower_bound = summary.is_some_and(|summary| summary["life_is_lower_bound"] == true);
+    Ok(Json(Inspection::of(&rows, left.as_deref(), from, is_lower_bound)?))
 }

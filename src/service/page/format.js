@@ -67,6 +67,19 @@ export function cycles(value) {
   return Math.abs(value) >= 100 || Number.isInteger(value) ? whole(value) : significant(value, 3);
 }
 
+/** Cycles with the digits that their band deserves: two where its half width is above 10 %, three above 1 %, else four. */
+export function deserved(value, [low, middle, high], toWhole = Math.round) {
+  const half = (high - low) / 2 / middle;
+  const digits = half > 0.1 ? 2 : half > 0.01 ? 3 : 4;
+  const unit = 10 ** (Math.floor(Math.log10(value)) + 1 - digits);
+  return value > 0 ? cycles(Number((toWhole(value / unit) * unit).toPrecision(12))) : "0";
+}
+
+/** The ends of a band in words. */
+export function bandOf(band) {
+  return `90 % of specimens ${deserved(band[0], band)} to ${deserved(band[2], band)}`;
+}
+
 /** Crack length, mm. */
 export function millimetres(value, decimals = 2) {
   return Number.isFinite(value) ? `${fixed(value, decimals)} mm` : NONE;

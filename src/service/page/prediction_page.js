@@ -5,7 +5,7 @@ import { createChart } from "./chart.js";
 import { warningList } from "./check.js";
 import { button, element, readCsv, section, show, showPage, terms } from "./dom.js";
 import { follow } from "./events.js";
-import { cycles, duration, fixed, lifeOf, scientific, sentence, significant, whole, words } from "./format.js";
+import { bandOf, count, cycles, deserved, duration, fixed, lifeOf, scientific, sentence, significant, whole, words } from "./format.js";
 import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
@@ -175,13 +175,15 @@ function pathsOf({ tip, x_mm: xs, y_mm: ys }) {
 }
 
 function result(s) {
-  const life = [s.stop_reason === "entered_hole" ? "Cycles to the hole" : "Life", element("strong", { class: "large", "data-value": "life_cycles" },
-    s.life_cycles === null ? lifeOf(s) : `${lifeOf(s)} cycles`)];
+  const life = [
+    [s.stop_reason === "entered_hole" ? "Cycles to the hole" : "Life", element("strong", { class: "large", "data-value": "life_cycles" }, lifeWords(s))],
+    [s.band ? "Band" : "No band", bandWords(s)],
+  ];
   return element("section", { class: "result", "aria-labelledby": "result-title", "data-part": "result" },
     element("h2", { id: "result-title", class: "visually-hidden" }, "Result"),
     s.refused && element("p", { class: "notice bad", "data-value": "refused" }, element("strong", null, "No life: "), s.refused),
     terms([
-      ...(s.refused ? [] : [life]),
+      ...(s.refused ? [] : life),
       ["Crack length", `${fixed(s.crack_length_initial_mm, 2)} to ${fixed(s.crack_length_final_mm, 2)} mm`],
       ["Stopped because", sentence(s.stop_meaning ?? words(s.stop_reason))],
       ["Computed", `${whole(s.points)} points in ${duration(s.wall_s)}`],
@@ -197,6 +199,24 @@ function checksOf({ verdict, checks }) {
     element("p", { "data-value": "verdict" }, sentence(verdict)),
     open.length > 0 && element("ul", null, open.map((check) => element("li", { "data-check": check.name, "data-verdict": check.verdict },
       check.words, check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)))));
+}
+
+/** The life: the median of its band where there is one, with the digits that it deserves. */
+function lifeWords(s) {
+  if (s.life_cycles === null) return lifeOf(s);
+  const band = quantiles(s);
+  return band ? `${s.life_is_lower_bound ? "≥ " : ""}${deserved(band[1], band)} cycles` : `${lifeOf(s)} cycles`;
+}
+
+function bandWords(s) {
+  const band = quantiles(s);
+  if (!band) return s.no_band ?? "an earlier version of the program wrote this result";
+  const { specimens, assumed_scatter: assumed, lot } = s.band;
+  return `${bandOf(band)} cycles: ${count(specimens, "specimen")}, ${lot === "same" ? "their lot" : "another lot"}${assumed ? ", assumed scatter" : ""}`;
+}
+
+function quantiles({ band }) {
+  return band ? [band.cycles_p05, band.cycles_p50, band.cycles_p95] : null;
 }
 
 /** The curve as it was computed, or at equally spaced cycles. */

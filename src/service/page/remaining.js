@@ -2,7 +2,7 @@
 
 import { getJson } from "./api.js";
 import { debounce, element, show, terms } from "./dom.js";
-import { cycles, fixed, parseNumber } from "./format.js";
+import { bandOf, cycles, deserved, fixed, parseNumber } from "./format.js";
 import { pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
 
@@ -18,7 +18,7 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
   const decimal = { type: "text", inputmode: "decimal", autocomplete: "off" };
   const length = element("input", { ...decimal, id: "today-length", value: rounded(shortest).toFixed(2), "aria-describedby": "today-hint" });
   const slider = element("input", { type: "range", id: "today-slider", min: "0", max: String(SLIDER_STEPS), value: "0" });
-  const factor = element("input", { ...decimal, id: "inspection-factor", value: "2" });
+  const factor = element("input", { ...decimal, id: "inspection-factor", value: "3" });
   const answer = element("div", { "aria-live": "polite", class: "remaining-answer" });
   const field = (label, unit, input, hint) => element("div", { class: input.type === "range" ? "field wide" : "field" },
     element("label", { for: input.id }, label, unit && element("span", { class: "visually-hidden" }, `, ${unit}`)),
@@ -46,11 +46,14 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
       // Not while the slider is being dragged: it would jump under the hand.
       if (document.activeElement !== slider) slider.value = String(Math.round((got.cycles_at / life) * SLIDER_STEPS));
       slider.setAttribute("aria-valuetext", `crack length ${fixed(got.crack_length_mm, 2)} mm`);
-      const large = (key, value) => element("strong", { class: "large", "data-value": key }, `${cycles(value)} cycles`);
+      const large = (key, text) => element("strong", { class: "large", "data-value": key }, `${text} cycles`);
+      const band = got.has_band ? [got.remaining_cycles_p05, got.remaining_cycles_p50, got.remaining_cycles_p95] : null;
       show(answer, terms([
-        [got.life_is_lower_bound ? "Remaining life, at least" : "Remaining life", large("remaining_cycles", Math.round(got.remaining_cycles))],
+        [got.life_is_lower_bound ? "Remaining life, at least" : "Remaining life", large("remaining_cycles", band ? deserved(band[1], band) : cycles(Math.round(got.remaining_cycles)))],
+        ["Band", band ? `median; ${bandOf(band)}` : "no band"],
         // Rounded down: an interval is a promise.
-        ["Inspection interval", large("inspection_interval_cycles", Math.floor(got.inspection_interval_cycles))],
+        ["Inspection interval", large("inspection_interval_cycles",
+          band ? deserved(got.inspection_interval_cycles, band, Math.floor) : cycles(Math.floor(got.inspection_interval_cycles)))],
         ["Used so far", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],
       ], "remaining"));
     } catch (error) {
@@ -75,6 +78,6 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
       field("Crack length today", "mm", length,
         element("p", { class: "hint", id: "today-hint" }, `${fixed(shortest, 2)} to ${fixed(longest, 2)} mm on this curve`)),
       field("Position along the life", "", slider),
-      field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = remaining life / factor"))),
+      field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = 5 % remaining life / factor; without a band remaining life / factor"))),
     answer);
 }

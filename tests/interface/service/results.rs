@@ -184,6 +184,16 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         run(folder, &["predict", "case.toml", "--out", "case"]);
         assert_eq!(service.succeeded(&prediction)["calibration"], done["id"]);
         assert!(service.file(&prediction, "a_n.csv") == fs::read(folder.join("case/a_n.csv")).unwrap(), "{name}: with the fit");
+
+        // What is left has the band of the table, and the interval comes from its low end, as on the command line.
+        let words = run(folder, &["predict", "case.toml", "--out", "case", "--inspect-from", "14", "--json"]);
+        let asked = serde_json::from_str::<Value>(&words).unwrap()["inspection"].clone();
+        let left = service.get(&format!("{prediction}/remaining?crack_length_mm=14")).expect(200).json();
+        assert_eq!(left["has_band"], true, "{left}");
+        for key in ["remaining_cycles_p05", "remaining_cycles_p95", "inspection_interval_cycles", "factor"] {
+            let [ours, theirs] = [&left, &asked].map(|answer| answer[key].as_f64().unwrap());
+            assert!((ours / theirs - 1.0).abs() < 1e-12, "{key}: {left} {asked}");
+        }
     }
 }
 

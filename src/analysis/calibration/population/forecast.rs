@@ -12,6 +12,7 @@ use super::intervals::{Interval, Specimen};
 use super::law::{EFFECTS, Row};
 use super::noise::{cholesky, whiten};
 use super::student::{noncentral_t_quantile, t_quantile};
+pub use crate::case::Lot;
 use crate::error::{Error, Result, input};
 use crate::units::MPA_SQRT_M;
 
@@ -22,20 +23,11 @@ pub const BETWEEN_LOTS: f64 = 0.25;
 /// Smallest standard deviation of the slope outside the calibrated range.
 const SLOPE_DEVIATION_MIN: f64 = 0.5;
 /// Factor of ΔK beyond the calibrated range up to which the chord is continued.
-const BEYOND_MAX: f64 = 2.0;
+pub(super) const BEYOND_MAX: f64 = 2.0;
 /// Confidence of a basis value.
 const BASIS_CONFIDENCE: f64 = 0.95;
 /// Fewest specimens of a basis value.
 const BASIS_SPECIMENS_MIN: usize = 3;
-
-/// Lot of the specimen that a life is asked of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lot {
-    /// That of the specimens.
-    Same,
-    /// Another one of the same material.
-    Other,
-}
 
 /// Lower bound of lives with a confidence of 95 %.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -117,27 +117,75 @@ impl Specimen {
 /// Cells of a path from one crack length to another (m), equal in the zone coordinate.
 /// Errors: a ΔK that is not above 0; an end that is not longer.
 pub fn cells(from: f64, to: f64, count: usize, delta_k: RangeOfK<'_>) -> Result<Vec<Interval>> {
-    if !(from > 0.0 && to > from) {
-        return Err(input("stop.crack_length_mm", to / MM, format!("is not beyond {} mm", from / MM), "ask for a longer crack"));
+    Zones::new(from, to, delta_k)?.cells(from, to, count, delta_k)
+}
+
+/// Zone coordinate along a path, by which it and its parts are divided into cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Zones {
+    from: f64,
+    to: f64,
+    /// At the ends of equal pieces, from 0.
+    zone: Vec<f64>,
+}
+
+impl Zones {
+    /// From one crack length to another (m).
+    /// Errors: as [`cells`].
+    pub fn new(from: f64, to: f64, delta_k: RangeOfK<'_>) -> Result<Self> {
+        check_longer(from, to)?;
+        let mut zones = Zones { from, to, zone: vec![0.0] };
+        for i in 0..PATH_PIECES {
+            let piece = integrate(&[zones.length(i), zones.length(i + 1)], zones.zone[i], delta_k)?;
+            zones.zone.push(piece.zone[1]);
+        }
+        Ok(zones)
     }
-    let length = |i: usize| from + (to - from) * i as f64 / PATH_PIECES as f64;
-    let mut zone = vec![0.0];
-    for i in 0..PATH_PIECES {
-        let piece = integrate(&[length(i), length(i + 1)], zone[i], delta_k)?;
-        zone.push(piece.zone[1]);
+
+    /// Cells of a part of the path.
+    /// Errors: as [`cells`].
+    pub fn cells(&self, from: f64, to: f64, count: usize, delta_k: RangeOfK<'_>) -> Result<Vec<Interval>> {
+        check_longer(from, to)?;
+        let [start, end] = [from, to].map(|length| self.zone_at(length));
+        let inner = |i: usize| self.length_at(start + (end - start) * i as f64 / count as f64).clamp(from, to);
+        let ends: Vec<f64> = (0..=count)
+            .map(|i| match i {
+                0 => from,
+                i if i == count => to,
+                i => inner(i),
+            })
+            .collect();
+        let mut cells: Vec<Interval> = Vec::with_capacity(count);
+        for pair in ends.windows(2) {
+            let start = cells.last().map_or(0.0, |cell| cell.zone[1]);
+            cells.push(integrate(pair, start, delta_k)?);
+        }
+        Ok(cells)
     }
-    let at = |share: f64| {
-        let wanted = share * zone[PATH_PIECES];
-        let next = zone.partition_point(|&u| u < wanted).clamp(1, PATH_PIECES);
-        length(next - 1) + (wanted - zone[next - 1]) / (zone[next] - zone[next - 1]) * (length(next) - length(next - 1))
-    };
-    let ends: Vec<f64> = (0..=count).map(|i| if i == count { to } else { at(i as f64 / count as f64).max(from) }).collect();
-    let mut cells: Vec<Interval> = Vec::with_capacity(count);
-    for pair in ends.windows(2) {
-        let start = cells.last().map_or(0.0, |cell| cell.zone[1]);
-        cells.push(integrate(pair, start, delta_k)?);
+
+    /// End of so many pieces.
+    fn length(&self, pieces: usize) -> f64 {
+        self.from + (self.to - self.from) * pieces as f64 / PATH_PIECES as f64
     }
-    Ok(cells)
+
+    fn zone_at(&self, length: f64) -> f64 {
+        let place = (length - self.from) / (self.to - self.from) * PATH_PIECES as f64;
+        let piece = (place.max(0.0) as usize).min(PATH_PIECES - 1);
+        self.zone[piece] + (place - piece as f64) * (self.zone[piece + 1] - self.zone[piece])
+    }
+
+    fn length_at(&self, zone: f64) -> f64 {
+        let next = self.zone.partition_point(|&u| u < zone).clamp(1, PATH_PIECES);
+        let [before, after] = [self.zone[next - 1], self.zone[next]];
+        self.length(next - 1) + (zone - before) / (after - before) * (self.length(next) - self.length(next - 1))
+    }
+}
+
+fn check_longer(from: f64, to: f64) -> Result<()> {
+    if from > 0.0 && to > from {
+        return Ok(());
+    }
+    Err(input("stop.crack_length_mm", to / MM, format!("is not beyond {} mm", from / MM), "ask for a longer crack"))
 }
 
 /// Quadrature over a chain of lengths, loads being steady or linear between two of them.

@@ -10,6 +10,7 @@ pub mod forecast;
 pub mod intervals;
 pub mod law;
 pub mod noise;
+pub mod plate;
 mod reml;
 pub mod student;
 

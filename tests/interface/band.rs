@@ -1,0 +1,141 @@
+//! A life with its band: `predict` with a record of one specimen, readings of the plate itself, inspections.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use tempfile::{TempDir, tempdir};
+
+use crate::interface::cli::{assert_refused, perilife, texts};
+
+const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300.0\nthickness_mm = 2.54\ncrack_length_mm = 9.0\n\
+    [material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n[model]\nmethod = \"handbook\"\n";
+const REST: &str = "[fatigue]\nfitted = \"fit/fitted.toml\"\n[stop]\ncrack_length_mm = 45.0\n";
+
+/// A folder with the committed readings, a record of them by hand calculation, and a case.
+fn folder() -> TempDir {
+    let dir = tempdir().unwrap();
+    let readings = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3/measured/virkler_median.csv");
+    fs::copy(readings, dir.path().join("median.csv")).unwrap();
+    fs::write(dir.path().join("fit.toml"), format!("[measured]\nfiles = [\"median.csv\"]\n{PANEL}")).unwrap();
+    fs::write(dir.path().join("case.toml"), format!("{PANEL}{REST}")).unwrap();
+    done(dir.path(), &["calibrate", "fit.toml", "--out", "fit"]);
+    dir
+}
+
+fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = perilife(folder, arguments);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    stdout
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// The first readings of the median, as a table of their own.
+fn write_readings(folder: &Path, name: &str, to_mm: f64, factor: f64) {
+    let table = fs::read_to_string(folder.join("median.csv")).unwrap();
+    let rows = table.lines().skip(1).filter_map(|line| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let (cycles, length): (f64, f64) = (fields[1].parse().ok()?, fields[2].parse().ok()?);
+        (length <= to_mm).then(|| format!("{},{length}\n", cycles * factor))
+    });
+    fs::write(folder.join(name), "cycles,crack_length_mm\n".to_owned() + &rows.collect::<String>()).unwrap();
+}
+
+#[test]
+fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
+    let dir = folder();
+    let stdout = done(dir.path(), &["predict", "case.toml", "--out", "run", "--inspect-from", "20"]);
+    println!("{stdout}");
+    for words in [
+        "cycles (median; 90 % of specimens ",
+        "of 1 specimen, their lot, assumed scatter",
+        "  remaining  ",
+        "5 % remaining life over 3",
+    ] {
+        assert!(stdout.contains(words), "{words} in {stdout}");
+    }
+    let result = json(&dir.path().join("run/result.json"));
+    let band = &result["band"];
+    assert_eq!((&band["specimens"], &band["assumed_scatter"], &band["lot"]), (&1.into(), &true.into(), &"same".into()));
+    let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| band[key].as_f64().unwrap());
+    assert!(low < 0.85 * middle && high > 1.15 * middle, "{band}");
+    assert!(result["no_band"].is_null());
+    let inspection = &result["inspection"];
+    let [left, every] = ["remaining_cycles_p05", "inspection_interval_cycles"].map(|key| inspection[key].as_f64().unwrap());
+    assert!((left / every - 3.0).abs() < 1e-9 && inspection["has_band"] == true, "{inspection}");
+
+    let table = fs::read_to_string(dir.path().join("run/a_n.csv")).unwrap();
+    let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    assert_eq!(head[..4], ["cycles", "crack_length_mm", "delta_k_mpa_sqrt_m", "da_dn_mm_per_cycle"]);
+    let place = head.iter().position(|name| *name == "cycles_p05").unwrap();
+    assert_eq!(head[place..place + 3], ["cycles_p05", "cycles_p50", "cycles_p95"]);
+    let last: Vec<f64> = table.lines().last().unwrap().split(',').map(|field| field.parse().unwrap_or(f64::NAN)).collect();
+    assert!((last[place] / low - 1.0).abs() < 1e-12 && (last[place + 2] / high - 1.0).abs() < 1e-12);
+    // The table is read again as it was.
+    done(dir.path(), &["export", "run", "--points", "20", "--out", "export.csv"]);
+
+    let without = "fatigue.fitted=\"bare.toml\"";
+    let record = fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap();
+    fs::write(dir.path().join("bare.toml"), record.split("[population]").next().unwrap()).unwrap();
+    let stdout =
+        done(dir.path(), &["predict", "case.toml", "--out", "bare", "--set", without, "--inspect-from", "20", "--factor", "2"]);
+    assert!(stdout.contains("band           none: the fitted record has no [population]"), "{stdout}");
+    assert!(stdout.contains("the remaining life over 2, no band"), "{stdout}");
+    let result = json(&dir.path().join("bare/result.json"));
+    assert!(result["band"].is_null() && result["inspection"]["has_band"] == false);
+    assert!(!fs::read_to_string(dir.path().join("bare/a_n.csv")).unwrap().contains("cycles_p05"));
+    fs::write(dir.path().join("bare.toml"), record.replacen("pivot = ", "pivot = -", 1)).unwrap();
+    assert_refused(
+        &perilife(dir.path(), &["predict", "case.toml", "--out", "no", "--set", without]),
+        2,
+        &["case.toml", "fatigue.fitted", "law.pivot = -", "calibrate again"],
+    );
+}
+
+#[test]
+fn readings_of_the_plate_narrow_what_it_has_left() {
+    let dir = folder();
+    write_readings(dir.path(), "own.csv", 25.0, 0.9);
+    let stdout = done(dir.path(), &["predict", "case.toml", "--out", "run", "--measured", "own.csv", "--inspect-from", "30"]);
+    println!("{stdout}");
+    assert!(stdout.contains("  this plate     read to 25.000 mm at "), "{stdout}");
+    let result = json(&dir.path().join("run/result.json"));
+    let (own, lot) = (&result["measured"], &result["measured"]["of_lot"]);
+    let keys = ["remaining_cycles_p05", "remaining_cycles_p50", "remaining_cycles_p95"];
+    let [own, lot] = [own, lot].map(|object| keys.map(|key| object[key].as_f64().unwrap()));
+    assert!(own[2] / own[0] < 0.8 * lot[2] / lot[0], "{own:?} {lot:?}");
+    // It went faster than the specimen, and what is left is shorter.
+    assert!(own[1] < 0.97 * lot[1], "{own:?} {lot:?}");
+    assert!(result["inspection"]["remaining_cycles_p50"].as_f64().unwrap() < own[1]);
+    let named: Vec<&str> = result["inputs"].as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
+    assert!(named.contains(&"own.csv") && dir.path().join("run/inputs/own.csv").is_file(), "{named:?}");
+
+    // Every mistake names what is wrong.
+    let predict = |more: &[&str]| perilife(dir.path(), &[&["predict", "case.toml", "--out", "no"][..], more].concat());
+    let no_law = "fatigue.fitted=\"bare.toml\"";
+    let record = fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap();
+    fs::write(dir.path().join("bare.toml"), record.split("[population]").next().unwrap()).unwrap();
+    assert_refused(&predict(&["--measured", "own.csv", "--set", no_law]), 2, &["--measured", "own.csv", "no [population]"]);
+    assert_refused(&predict(&["--measured", "gone.csv"]), 4, &["gone.csv"]);
+    let two = "specimen,cycles,crack_length_mm\n".to_owned()
+        + &["a", "b"].map(|name| (0..6).map(|i| format!("{name},{},{}\n", 9000 * i, 9 + i)).collect::<String>()).concat();
+    fs::write(dir.path().join("two.csv"), two).unwrap();
+    assert_refused(&predict(&["--measured", "two.csv"]), 2, &["two.csv", "holds 2 specimens (a, b)"]);
+    assert_refused(&predict(&["--inspect-from", "20", "--factor", "0.5"]), 2, &["--factor", "0.5", "is not 1 or more"]);
+    // What shows after the run spares its files.
+    write_readings(dir.path(), "long.csv", 47.0, 1.0);
+    for (more, words) in [
+        (["--measured", "long.csv"], ["long.csv:", "crack_length_mm", "is not on the predicted curve"]),
+        (["--inspect-from", "60"], ["--inspect-from", "60", "is not on the curve, which goes from 9 to 45"]),
+    ] {
+        let output = predict(&more);
+        let (_, stderr) = texts(&output);
+        assert_eq!(output.status.code(), Some(2), "{stderr}");
+        assert!(words.iter().all(|word| stderr.contains(word)), "{stderr}");
+        assert!(dir.path().join("no/a_n.csv").is_file());
+    }
+}
