@@ -42,6 +42,9 @@ pub struct Args {
     /// Factor of the inspection interval
     #[arg(long, value_name = "F", default_value_t = FACTOR, requires = "inspect_from", help_heading = "Output")]
     pub factor: f64,
+    /// Tip of a plate whose crack has that length; the one that ends the life where it is left out
+    #[arg(long, value_name = "NUMBER", requires = "inspect_from", help_heading = "Output")]
+    pub tip: Option<usize>,
     /// Keeping the run for later.
     #[command(flatten)]
     pub keeping: checkpoint::Args,
@@ -59,8 +62,8 @@ pub fn run(args: &Args) -> Result<()> {
     }
     if let Task::Prediction { wanted, .. } = &mut task {
         wanted.strength = args.residual_strength;
-        let names = ["--inspect-from", "--factor"];
-        wanted.inspection = args.inspect_from.map(|crack_length_mm| InspectFrom { crack_length_mm, factor: args.factor, names });
+        let names = ["--inspect-from", "--factor", "--tip"];
+        wanted.inspection = args.inspect_from.map(|crack_length_mm| InspectFrom { crack_length_mm, tip: args.tip, factor: args.factor, names });
     }
     let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
     let summary = summary.counted()?;

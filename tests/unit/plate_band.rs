@@ -148,13 +148,13 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     let case = panel(5, &[]);
     let (run, mut lives) = lives(&case);
     let rows: Vec<Row> = run.curve.iter().map(Row::of).collect();
-    let from = InspectFrom { crack_length_mm: 20.0, factor: 4.0, names: ["--inspect-from", "--factor"] };
-    let point = Inspection::of(&rows, None, from, false).unwrap();
+    let from = InspectFrom { crack_length_mm: 20.0, tip: None, factor: 4.0, names: ["--inspect-from", "--factor", "--tip"] };
+    let point = Inspection::of(&rows, None, None, from, false).unwrap();
     assert!(!point.has_band && (4.0 * point.inspection_interval_cycles - point.remaining_cycles).abs() < 1e-6);
     // What a service reads from the table is what the run itself says.
     let table = lives.beside(csv::a_n(&run, None));
     assert!(table.lines().next().unwrap().ends_with(&COLUMNS.join(",")));
-    let with_band = Inspection::of(&rows, left_of_table(&table).as_deref(), from, false).unwrap();
+    let with_band = Inspection::of(&rows, None, left_of_table(&table).as_deref(), from, false).unwrap();
     let plate = &lives.band.as_ref().unwrap().0;
     let exact = plate.left(20.0 * MM, None).unwrap();
     assert!((with_band.remaining_cycles_p05.unwrap() / exact.quantiles[0] - 1.0).abs() < 2e-3, "{with_band:?} {exact:?}");

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::checks;
 use super::csv::{self, Row};
 use super::resample::cycles_over_length;
 use crate::calibration::population::intervals::Specimen;
@@ -36,6 +37,7 @@ pub struct Lives {
     /// Whether the law of the case comes from a fitted record, so that a band may be expected.
     is_fitted: bool,
     is_lower_bound: bool,
+    tips: Option<TipLengths>,
     rows: Vec<Row>,
     own: Option<Own>,
     inspection: Option<Inspection>,
@@ -54,8 +56,12 @@ struct Own {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "service", derive(utoipa::ToSchema), schema(as = Remaining))]
 pub struct Inspection {
-    /// Crack length today.
+    /// Crack length today: of a plate that of the crack of `tip`.
     pub crack_length_mm: f64,
+    /// The tip of a plate whose crack that is.
+    pub tip: Option<usize>,
+    /// Crack length of the curve then: in a plate of all cracks together.
+    pub crack_length_of_all_mm: f64,
     /// Cycles at which the curve reaches that length.
     pub cycles_at: f64,
     /// Cycles at its end.
@@ -81,12 +87,14 @@ pub struct Inspection {
 /// From which crack length on a plate is inspected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InspectFrom {
-    /// Crack length, mm.
+    /// Crack length, mm: in the convention of a standard specimen, in a plate the length of the crack of a tip.
     pub crack_length_mm: f64,
+    /// The tip of a plate; the one that ends its life where it is left out.
+    pub tip: Option<usize>,
     /// What the remaining life is divided by.
     pub factor: f64,
-    /// What the user calls them.
-    pub names: [&'static str; 2],
+    /// What the user calls length, factor and tip.
+    pub names: [&'static str; 3],
 }
 
 impl InspectFrom {
@@ -99,12 +107,83 @@ impl InspectFrom {
     }
 }
 
+/// Lengths of the crack of every tip of a plate over the rows of its curve, mm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TipLengths {
+    /// By tip; empty of the end of a slot.
+    lengths: Vec<Vec<f64>>,
+    /// The tip that ends the life.
+    leads: usize,
+}
+
+impl TipLengths {
+    /// Of a run; `None` of a standard specimen, whose crack length is that of its convention.
+    pub fn of_run(case: &Case, prediction: &Prediction) -> Option<Self> {
+        let (leads, _) = prediction.leading_tip(&case.specimen)?;
+        let of_tip = |tip: usize| {
+            let lengths = prediction.curve.iter().map(|row| row.crack_length_of(&case.specimen, tip).map(|length| length / MM));
+            lengths.collect::<Option<Vec<f64>>>().unwrap_or_default()
+        };
+        Some(TipLengths { lengths: (0..case.specimen.tips.len()).map(of_tip).collect(), leads })
+    }
+
+    /// Of the table of a run and `tips` of its `result.json`.
+    pub fn of_table(text: &str, tips: &Value) -> Option<Self> {
+        let tips = tips.as_array()?;
+        let leads = tips.iter().position(|tip| tip["leads"] == true && !tip["crack"].is_null())?;
+        let mut lines = text.lines();
+        let head: Vec<&str> = lines.next()?.split(',').collect();
+        let growth = |tip: usize| head.iter().position(|column| *column == format!("tip{tip}_growth_mm"));
+        let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+        let of_tip = |tip: &Value| {
+            let same = (0..tips.len()).filter(|other| tips[*other]["crack"] == tip["crack"]);
+            let columns: Option<Vec<usize>> = same.map(growth).collect();
+            let (Some(start), Some(columns)) = (tip["crack_length_initial_mm"].as_f64(), columns) else { return Vec::new() };
+            let grown = |row: &Vec<&str>, column: usize| row.get(column).and_then(|field| field.parse::<f64>().ok()).unwrap_or(0.0);
+            rows.iter().map(|row| start + columns.iter().map(|&column| grown(row, column)).sum::<f64>()).collect()
+        };
+        Some(TipLengths { lengths: tips.iter().map(of_tip).collect(), leads })
+    }
+
+    /// The tip that is meant, and the length of all cracks when its crack has the length that was asked for, linear between rows.
+    /// Errors: no such tip, a length that its crack does not come to.
+    fn of_all(&self, rows: &[Row], from: InspectFrom) -> Result<(usize, f64)> {
+        let tip = from.tip.unwrap_or(self.leads);
+        let Some(lengths) = self.lengths.get(tip).filter(|lengths| !lengths.is_empty()) else {
+            let problem = format!("is no crack tip of this plate, which has {}", self.lengths.len());
+            return Err(input(from.names[2], tip, problem, "count tips from 0, as in a_n.csv"));
+        };
+        let (shortest, longest) = (lengths[0], lengths[lengths.len() - 1]);
+        let length = from.crack_length_mm;
+        if !(shortest..=longest).contains(&length) {
+            let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest} to {longest} mm");
+            return Err(input(from.names[0], length, problem, "give a length between them, or another tip"));
+        }
+        let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);
+        let (a, b) = (lengths[after - 1], lengths[after]);
+        let share = if b > a { (length - a) / (b - a) } else { 1.0 };
+        let all = rows[after - 1].crack_length_mm + share * (rows[after].crack_length_mm - rows[after - 1].crack_length_mm);
+        Ok((tip, all))
+    }
+}
+
 impl Inspection {
     /// Of a curve with at least one row; `left` are the columns of [`COLUMNS`] that say what is left.
-    /// Errors: a length that is not on the curve, a factor below 1.
-    pub fn of(rows: &[Row], left: Option<&[Quantiles]>, from: InspectFrom, is_lower_bound: bool) -> Result<Self> {
+    /// Errors: a length that is not on the curve, a factor below 1, a tip that is none.
+    pub fn of(
+        rows: &[Row],
+        tips: Option<&TipLengths>,
+        left: Option<&[Quantiles]>,
+        from: InspectFrom,
+        is_lower_bound: bool,
+    ) -> Result<Self> {
         from.check()?;
-        let (length, end) = (from.crack_length_mm, rows[rows.len() - 1]);
+        let of_tip = tips.map(|tips| tips.of_all(rows, from)).transpose()?;
+        if let (None, Some(tip)) = (of_tip, from.tip) {
+            let problem = "belongs to plates with cracks of their own: this specimen has the crack length of its standard";
+            return Err(input(from.names[2], tip, problem, "leave it out"));
+        }
+        let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, all)| all), rows[rows.len() - 1]);
         let (shortest, longest) = (rows[0].crack_length_mm, end.crack_length_mm);
         if !(shortest..=longest).contains(&length) {
             let problem = format!("is not on the curve, which goes from {shortest} to {longest} mm");
@@ -113,7 +192,9 @@ impl Inspection {
         let cycles_at = cycles_over_length(rows).at(length);
         let remaining = end.cycles - cycles_at;
         Ok(Inspection {
-            crack_length_mm: length,
+            crack_length_mm: from.crack_length_mm,
+            tip: of_tip.map(|(tip, _)| tip),
+            crack_length_of_all_mm: length,
             cycles_at,
             life_cycles: end.cycles,
             remaining_cycles: remaining,
@@ -164,7 +245,8 @@ impl Inspection {
             ],
         };
         let least = if self.life_is_lower_bound { "at least " } else { "" };
-        vec![format!("  remaining      {least}{left} from {length} mm"), format!("  inspection     every {every}")]
+        let of_tip = self.tip.map_or_else(String::new, |tip| format!(" of the crack of tip {tip}"));
+        vec![format!("  remaining      {least}{left} from {length} mm{of_tip}"), format!("  inspection     every {every}")]
     }
 }
 
@@ -203,7 +285,8 @@ impl Lives {
         Ok(Lives {
             band: plate.and_then(|plate| plate.band().map(|band| (plate, band))),
             is_fitted: matches!(case.law, crate::case::LawSource::Fitted(_)),
-            is_lower_bound: prediction.stop.is_lower_bound(),
+            is_lower_bound: checks::is_bound_below(case, prediction),
+            tips: TipLengths::of_run(case, prediction),
             rows: prediction.curve.iter().map(Row::of).collect(),
             own: None,
             inspection: None,
@@ -227,9 +310,9 @@ impl Lives {
     /// Errors: as [`Inspection::of`]; a length shorter than the last reading of the plate.
     pub fn inspect(&mut self, from: InspectFrom) -> Result<()> {
         let left = self.band.as_ref().ok().map(|(_, band)| &*band.left);
-        let mut inspection = Inspection::of(&self.rows, left, from, self.is_lower_bound)?;
+        let mut inspection = Inspection::of(&self.rows, self.tips.as_ref(), left, from, self.is_lower_bound)?;
         if let (Ok((plate, _)), Some(own)) = (&self.band, &self.own) {
-            let left = plate.left(from.crack_length_mm * MM, Some(&own.specimen))?;
+            let left = plate.left(inspection.crack_length_of_all_mm * MM, Some(&own.specimen))?;
             inspection = inspection.with(Some(left.quantiles));
         }
         self.inspection = Some(inspection);

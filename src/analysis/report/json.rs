@@ -71,15 +71,16 @@ fn critical(case: &Case, prediction: &Prediction) -> Value {
     })
 }
 
-/// Every tip at the start and at the end: state, place, growth.
+/// Every tip at the start and at the end: state, place, growth; of a plate also its crack, and which of them ends the life.
 fn tips(case: &Case, prediction: &Prediction) -> Vec<Value> {
     let [Some(first), Some(last)] = [prediction.curve.first(), prediction.curve.last()] else { return Vec::new() };
     let leads = prediction.leading_tip(&case.specimen).map(|(tip, _)| tip);
     let of_tip = |(tip, (start, end)): (usize, (&TipRecord, &TipRecord))| {
         json!({
+            "crack": case.specimen.line_end(tip).filter(|_| leads.is_some()).map(|end| end.line),
             "leads": leads.is_none_or(|leads| leads == tip),
-            "crack_length_initial_mm": first.crack_length_of(&case.specimen, tip).map(|length| clean(length / MM)),
-            "crack_length_final_mm": last.crack_length_of(&case.specimen, tip).map(|length| clean(length / MM)),
+            "crack_length_initial_mm": first.crack_length_of(&case.specimen, tip).filter(|_| leads.is_some()).map(|length| clean(length / MM)),
+            "crack_length_final_mm": last.crack_length_of(&case.specimen, tip).filter(|_| leads.is_some()).map(|length| clean(length / MM)),
             "state_initial": start.state.name(),
             "state": end.state.name(),
             "x_mm": clean(end.position[0] / MM),

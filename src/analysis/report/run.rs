@@ -123,7 +123,7 @@ fn extrapolates(case: &Case, what: &str, more: &str) -> Error {
 }
 
 /// Keys of `result.json` that a listing of runs shows.
-pub const FIGURES: [&str; 20] = [
+pub const FIGURES: [&str; 21] = [
     "life_cycles",
     "band",
     "no_band",
@@ -138,6 +138,7 @@ pub const FIGURES: [&str; 20] = [
     "verdict",
     "checks",
     "critical",
+    "tips",
     "points",
     "points_solved",
     "blocks",

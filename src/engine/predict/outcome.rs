@@ -111,7 +111,7 @@ impl Prediction {
     /// The tip that ends the life of a plate, which grew fastest at the end, and the length of its crack at the start and there, m; `None` of
     /// standard specimens, whose crack length is that of their standard, and of ends of slots.
     pub fn leading_tip(&self, specimen: &Specimen) -> Option<(usize, [f64; 2])> {
-        let [first, .., before, last] = &self.curve[..] else { return None };
+        let (first, [.., before, last]) = (self.curve.first()?, &self.curve[..]) else { return None };
         let grown = |tip: &usize| last.tips[*tip].growth - before.tips[*tip].growth;
         let tip = (0..last.tips.len()).max_by(|a, b| grown(a).total_cmp(&grown(b)))?;
         let lengths = [first, last].map(|row| row.crack_length_of(specimen, tip));

@@ -172,6 +172,8 @@ pub struct From {
     crack_length_mm: f64,
     /// What the remaining life is divided by for the inspection interval; 3 if left out.
     factor: Option<f64>,
+    /// Tip of a plate whose crack has that length; the one that ends the life if left out.
+    tip: Option<usize>,
 }
 
 /// Remaining life from a crack length on, and an inspection interval.
@@ -185,8 +187,9 @@ pub async fn remaining(
     from: Result<Query<From>, QueryRejection>,
 ) -> Answer<Json<Inspection>> {
     let Query(from) = from.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
-    let names = ["crack_length_mm", "factor"];
-    let from = band::InspectFrom { crack_length_mm: from.crack_length_mm, factor: from.factor.unwrap_or(band::FACTOR), names };
+    let names = ["crack_length_mm", "factor", "tip"];
+    let factor = from.factor.unwrap_or(band::FACTOR);
+    let from = band::InspectFrom { crack_length_mm: from.crack_length_mm, tip: from.tip, factor, names };
     from.check()?;
     let Some((text, _room)) = curve(&app, &id).await? else {
         must_have_result(&job_of(&app, "predictions", &id).await?)?;
@@ -200,6 +203,7 @@ pub async fn remaining(
     if let Some(refused) = summary.as_ref().and_then(|summary| summary["refused"].as_str()) {
         return Err(Problem::conflict(format!("the run has no life: {refused}")));
     }
+    let tips = summary.as_ref().and_then(|summary| band::TipLengths::of_table(&text, &summary["tips"]));
     let is_lower_bound = summary.is_some_and(|summary| summary["life_is_lower_bound"] == true);
-    Ok(Json(Inspection::of(&rows, left.as_deref(), from, is_lower_bound)?))
+    Ok(Json(Inspection::of(&rows, tips.as_ref(), left.as_deref(), from, is_lower_bound)?))
 }

@@ -184,10 +184,20 @@ function result(s) {
     s.refused && element("p", { class: "notice bad", "data-value": "refused" }, element("strong", null, "No life: "), s.refused),
     terms([
       ...(s.refused ? [] : life),
-      ["Crack length", `${fixed(s.crack_length_initial_mm, 2)} to ${fixed(s.crack_length_final_mm, 2)} mm`],
+      ["Crack length", lengthWords(s)],
+      s.critical && ["Critical crack length", `${fixed(s.critical.crack_length_mm, 2)} mm: ${words(s.critical.criterion)}`],
       ["Stopped because", sentence(s.stop_meaning ?? words(s.stop_reason))],
       ["Computed", `${whole(s.points)} points in ${duration(s.wall_s)}`],
-    ], "result"));
+    ].filter(Boolean), "result"));
+}
+
+/** In a plate the length of the crack whose tip ends the life comes first, then what all cracks sum to. */
+function lengthWords(s) {
+  const all = `${fixed(s.crack_length_initial_mm, 2)} to ${fixed(s.crack_length_final_mm, 2)} mm`;
+  const tip = (s.tips ?? []).findIndex((one) => one.leads && one.crack !== null && one.crack !== undefined);
+  if (tip < 0) return all;
+  const { crack_length_initial_mm: from, crack_length_final_mm: to } = s.tips[tip];
+  return `${fixed(from, 2)} to ${fixed(to, 2)} mm, the crack of tip ${tip}${new Set(s.tips.map((one) => one.crack)).size > 1 ? `; all cracks ${all}` : ""}`;
 }
 
 /** What the life rests on: the verdict, and every condition that does not hold or could not be checked, with its remedy. */

@@ -10,9 +10,25 @@ const SLIDER_STEPS = 1000;
 const WAIT_MS = 200;
 
 /** `mark(cycles, length)` shows today on the curve; null takes it away. */
-export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }, mark, signal) {
-  const [shortest, life] = [lengths[0], steps.at(-1)];
-  const longest = lengths.reduce((most, value) => Math.max(most, value), shortest);
+export function createRemaining(job, columns, mark, signal) {
+  const steps = columns.cycles;
+  const life = steps.at(-1);
+  // In a plate the length of the crack of one tip is asked for, first that which ends the life; the sum of all is no length anyone measures.
+  const tips = (job.summary.tips ?? []).map((tip, index) => ({ ...tip, index })).filter((tip) => tip.crack !== null && tip.crack !== undefined);
+  const leads = tips.find((tip) => tip.leads);
+  const choice = leads && tips.length > 1 ? element("select", { id: "today-tip" },
+    tips.map((tip) => element("option", { value: String(tip.index), selected: tip === leads }, `Tip ${tip.index}${tip === leads ? ", ends the life" : ""}`))) : null;
+  let lengths;
+  let [shortest, longest] = [0, 0];
+  function follow(tip) {
+    const same = tip ? tips.filter((other) => other.crack === tip.crack) : [];
+    lengths = tip
+      ? steps.map((_, row) => same.reduce((sum, other) => sum + columns[`tip${other.index}_growth_mm`][row], tip.crack_length_initial_mm))
+      : columns.crack_length_mm;
+    shortest = lengths[0];
+    longest = lengths.reduce((most, value) => Math.max(most, value), shortest);
+  }
+  follow(leads);
   // Rounded inwards: a length outside the curve has no answer.
   const rounded = (value) => Math.min(Math.max(Math.round(value * 100), Math.ceil(shortest * 100)), Math.floor(longest * 100)) / 100;
   const decimal = { type: "text", inputmode: "decimal", autocomplete: "off" };
@@ -41,8 +57,8 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
       return;
     }
     try {
-      const got = await getJson(`${pathOf(job)}/remaining?crack_length_mm=${a}&factor=${f}`, signal);
-      mark(got.cycles_at, got.crack_length_mm);
+      const got = await getJson(`${pathOf(job)}/remaining?crack_length_mm=${a}&factor=${f}${choice ? `&tip=${choice.value}` : ""}`, signal);
+      mark(got.cycles_at, got.crack_length_of_all_mm);
       // Not while the slider is being dragged: it would jump under the hand.
       if (document.activeElement !== slider) slider.value = String(Math.round((got.cycles_at / life) * SLIDER_STEPS));
       slider.setAttribute("aria-valuetext", `crack length ${fixed(got.crack_length_mm, 2)} mm`);
@@ -70,13 +86,22 @@ export function createRemaining(job, { cycles: steps, crack_length_mm: lengths }
     length.value = rounded(lengthAt((Number(slider.value) / SLIDER_STEPS) * life)).toFixed(2);
     soon();
   });
+  const hint = element("p", { class: "hint", id: "today-hint" });
+  const tell = () => { hint.textContent = `${fixed(shortest, 2)} to ${fixed(longest, 2)} mm on this curve`; };
+  choice?.addEventListener("change", () => {
+    follow(tips.find((tip) => String(tip.index) === choice.value));
+    length.value = rounded(shortest).toFixed(2);
+    tell();
+    ask();
+  });
+  tell();
   ask();
 
   return element("section", { class: "remaining", "aria-labelledby": "remaining-title", "data-part": "remaining" },
     element("h2", { id: "remaining-title" }, "Remaining life"),
     element("div", { class: "fields" },
-      field("Crack length today", "mm", length,
-        element("p", { class: "hint", id: "today-hint" }, `${fixed(shortest, 2)} to ${fixed(longest, 2)} mm on this curve`)),
+      choice && field("Crack tip", "", choice),
+      field(leads ? "Length of its crack today" : "Crack length today", "mm", length, hint),
       field("Position along the life", "", slider),
       field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = 5 % remaining life / factor; without a band remaining life / factor"))),
     answer);
