@@ -84,7 +84,7 @@ fn a_row_tells_no_k_that_was_not_read_for_it() {
     let case = hand_case(PANEL, &[]);
     let tip = |state| TipRecord { state, position: [0.0; 2], growth: 1e-3, factors: Some([1e7, 1e6]), t_stress: Some(1e6) };
     let states = [TipState::Active, TipState::Closed, TipState::EnteredHole, TipState::LeftPlate, TipState::LinkedUp];
-    let row = |work| CurvePoint::of_tips(&case, [1e3, work], 5, states.map(tip).to_vec(), Some((2e7, 1e-7)));
+    let row = |work| CurvePoint::of_tips(&case, [1e3, work], 5, (states.map(tip).to_vec(), &[]), Some((2e7, 1e-7)));
     let settled = row(1.0);
     assert!(settled.delta_k > 0.0 && settled.growth_rate == 1e-7);
     let known = |row: &CurvePoint| row.tips.iter().map(|tip| tip.factors.is_some() && tip.t_stress.is_some()).collect::<Vec<_>>();

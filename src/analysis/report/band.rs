@@ -34,8 +34,6 @@ const DIGITS_MOST: usize = 4;
 pub struct Lives {
     /// The plate with its band, or why there is none.
     pub band: std::result::Result<(Plate, PlateBand), NoBand>,
-    /// Whether the law of the case comes from a fitted record, so that a band may be expected.
-    is_fitted: bool,
     is_lower_bound: bool,
     tips: Option<TipLengths>,
     rows: Vec<Row>,
@@ -284,7 +282,6 @@ impl Lives {
         let plate = Plate::of(case, prediction)?;
         Ok(Lives {
             band: plate.and_then(|plate| plate.band().map(|band| (plate, band))),
-            is_fitted: matches!(case.law, crate::case::LawSource::Fitted(_)),
             is_lower_bound: checks::is_bound_below(case, prediction),
             tips: TipLengths::of_run(case, prediction),
             rows: prediction.curve.iter().map(Row::of).collect(),
@@ -390,8 +387,7 @@ impl Lives {
                     "  band           of {specimens}, {lot}{assumed}{outside}; the fitted constants alone give {run:.1}"
                 ));
             }
-            Err(why) if self.is_fitted => lines.push(format!("  band           none: {why}")),
-            Err(_) => {}
+            Err(why) => lines.push(format!("  band           none: {why}")),
         }
         if let Some(own) = &self.own {
             lines.push(format!(

@@ -188,7 +188,8 @@ fn toughness(case: &Case, prediction: &Prediction) -> Check {
         Some(_) if most.is_nan() => Check::not_checked("toughness", "fracture: not checked, K of the tips is not known", ""),
         Some(toughness) => {
             let words = format!("fracture: K_max is {:.1} % of the toughness at the most", 100.0 * most / toughness);
-            Check { words, ..given }
+            let required = case.stop.required.unwrap_or(1.0);
+            Check { words, verdict: of_first_load(prediction, required * most / toughness), ..given }
         }
         None => Check {
             words: given.words.clone() + &if most.is_nan() { String::new() } else { format!("; K_max to {:.0} MPa√m", most / MPA_SQRT_M) },
@@ -209,7 +210,14 @@ fn ligament(case: &Case, prediction: &Prediction) -> Check {
         let words = "yielding: not checked, supports on both sides of every section";
         return Check::not_checked(NAME, words, "give the loads of both ends instead of a support");
     }
-    Check { words: format!("section: the load is {:.1} % of its limit load at the most", 100.0 * most), ..given }
+    let required = case.stop.required.unwrap_or(1.0);
+    let words = format!("section: the load is {:.1} % of its limit load at the most", 100.0 * most);
+    Check { words, verdict: of_first_load(prediction, required * most), ..given }
+}
+
+/// A strength holds while a plate lives; one that the first load exceeds leaves no life.
+fn of_first_load(prediction: &Prediction, used: f64) -> Verdict {
+    if prediction.stop.is_strength() && prediction.curve.len() == 1 && used >= 1.0 { Verdict::Fails } else { Verdict::Holds }
 }
 
 fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {

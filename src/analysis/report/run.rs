@@ -264,6 +264,7 @@ pub fn words(case: &Case, prediction: &Prediction, lives: &Lives) -> Vec<String>
     let cycles = prediction.life().map(|life| lives.life_words().unwrap_or_else(|| format!("{life:.1} cycles")));
     let mut lines = vec![
         match cycles {
+            _ if breaks_at_once(case, prediction).is_some() => format!("{}: no life, the first load breaks the plate", case.name),
             Some(life) if prediction.stop == StopReason::EnteredHole => format!("{}: {life} to the hole", case.name),
             Some(life) if checks::is_bound_below(case, prediction) => format!("{}: life at least {life}", case.name),
             Some(life) if prediction.stop.is_lower_bound() => format!("{}: {life} to the end of the run", case.name),

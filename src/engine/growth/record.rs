@@ -14,13 +14,13 @@ crate::kinds! {
         NetSectionYield = "net_section_yield": "the remaining section yields throughout: its limit load at the yield strength is reached",
         Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
         LeftPlate = "left_plate": "every crack tip has left the plate",
-        EnteredHole = "entered_hole": "the last crack tip ran into a hole: the life is a lower bound, cycles to the hole",
-        CracksJoined = "cracks_joined": "the last crack tips have met, and no other grows: the life is a lower bound",
-        LigamentUnresolved = "ligament_unresolved": "a crack tip passes a rim within a spacing: points do not resolve what is between them; the life is a lower bound",
+        EnteredHole = "entered_hole": "the last crack tip ran into a hole: what the crack does behind it is not computed",
+        CracksJoined = "cracks_joined": "the last crack tips have met, and no other grows: what the joined crack does is not computed",
+        LigamentUnresolved = "ligament_unresolved": "a crack tip passes a rim within a spacing: points do not resolve what is between them",
         NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
         NoGrowth = "no_growth": "bonds went on breaking, but no crack tip grew",
         RequiredStrength = "required_strength": "the plate no longer bears the load that it has to (stop.required_strength_mpa or limit_load_factor)",
-        RunOut = "run_out": "stop.cycles_max was reached: the life is a lower bound",
+        RunOut = "run_out": "stop.cycles_max was reached, and the plate lives on",
         NoConvergence = "no_convergence": "the equilibrium solver did not converge",
     }
 }
