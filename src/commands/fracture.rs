@@ -28,7 +28,7 @@ pub struct Args {
     /// Override a key of the scene (repeatable), e.g. --set model.spacing_mm=0.5
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
-    /// Also write the fields of some moments for ParaView (paraview/run.pvd), as [output] paraview = true does
+    /// Also write the fields of some moments for ParaView (paraview/run.pvd), as the key output.paraview does
     #[arg(long, help_heading = "Output")]
     pub paraview: bool,
     /// Keeping the run for later.

@@ -30,7 +30,7 @@ pub struct Args {
     /// Also write the load that would end the plate at once over crack length (residual_strength.csv and .svg)
     #[arg(long, help_heading = "Output")]
     pub residual_strength: bool,
-    /// Also write the fields of some moments for ParaView (paraview/run.pvd), as [output] paraview = true does
+    /// Also write the fields of some moments for ParaView (paraview/run.pvd), as the key output.paraview does
     #[arg(long, help_heading = "Output")]
     pub paraview: bool,
     /// Readings of this very plate (cycles, crack length), which narrow the band of what it has left

@@ -25,7 +25,7 @@ pub struct Args {
     /// Folder for stress and displacement of the plate on nodes (with --method element_free_galerkin); replaced if an earlier run made it
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// Also write the displacement and stress for ParaView (paraview/run.pvd), as [output] paraview = true does
+    /// Also write displacement and stress for ParaView (paraview/run.pvd), as the key output.paraview does
     #[arg(long, requires = "out", help_heading = "Output")]
     pub paraview: bool,
     /// Override a key of the case (repeatable), e.g. --set specimen.crack_length_mm=20

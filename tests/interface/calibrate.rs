@@ -92,6 +92,27 @@ fn a_calibration_with_a_prediction_and_its_export() {
     assert!(rows.windows(2).all(|w| w[0].cycles < w[1].cycles && w[0].crack_length_mm <= w[1].crack_length_mm));
     assert!((rows[0].crack_length_mm - 20.0).abs() < 1e-9 && (rows[199].crack_length_mm - 40.0).abs() < 1e-9);
 
+    // The rates that were fitted are a table of rates: a law of Paris through them is the one of the fit.
+    let rates = fs::read_to_string(fit.join("rates.csv")).unwrap();
+    let intervals = fs::read_to_string(fit.join("fit_curves.csv")).unwrap().lines().count() - 2;
+    assert_eq!(rates.lines().count() - 1, intervals, "{rates}");
+    let of_rates = "[measured]\nrates = [\"out/fit/rates.csv\"]\n[fit]\nlaw = \"paris\"\n";
+    fs::write(dir.path().join("of_rates.toml"), of_rates).unwrap();
+    let output = perilife(dir.path(), &["calibrate", "of_rates.toml", "--out", "out/rates", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+    let [by_rates, by_lives] = ["out/rates", "out/fit"].map(|folder| json(&dir.path().join(folder).join("fit.json")));
+    let of = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert!((of(&by_rates["constants"]["paris_m"]) / of(&by_lives["paris_m"]) - 1.0).abs() < 0.1, "{by_rates}");
+    assert!(dir.path().join("out/rates/rates.csv").is_file());
+    // The misfit at both ends, as the reader of the summary sees it.
+    for end in ["low", "high"] {
+        assert!(by_lives["misfit_at_ends"][end]["rate_over_law_percent"].is_number(), "{by_lives}");
+    }
+    assert!(stdout.lines().any(|line| line.starts_with("  misfit at ends ") && line.chars().count() <= 80), "{stdout}");
+    // Fields for ParaView are those of cases and scenes.
+    let asked = ["calibrate", "case.toml", "--out", "no", "--set", "output.paraview=true"];
+    assert_refused(&perilife(dir.path(), &asked), 2, &["output", "belongs to a case or scene"]);
+
     // A file inside the folder of the fit is not an export's to replace; the fit itself is no run.
     assert_refused(&perilife(dir.path(), &["export", "out/fit", "--out", "b.csv"]), 2, &["this is a calibration"]);
 }

@@ -168,7 +168,7 @@ fn owners_have_so_much_space() {
     let dir = tempdir().unwrap();
     let place = in_folder(dir.path());
     let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1", "--quota-mib", "1", "--keep-days", "1e-4"]);
-    let job = service.submit("predictions", &of("large", &spaced(0.5)));
+    let job = service.submit("predictions", &of("large", &(spaced(0.5) + FOR_PARAVIEW)));
     service.succeeded(&job);
     let refused = service.post("/v1/predictions", &of("quick", QUICK)).expect(507);
     assert!(refused.text().contains("delete jobs"), "{}", refused.text());
