@@ -117,3 +117,75 @@ fn check_says_that_the_first_load_breaks_the_plate() {
     let (stdout, stderr) = texts(&perilife(dir.path(), &["check", "case.toml"]));
     assert!((stdout + &stderr).contains("K_max 33.44 MPa√m is beyond the toughness 30.00 MPa√m"));
 }
+
+const MATERIAL: &str = "[material]\nyoungs_modulus_gpa = 71\npoisson_ratio = 0.33\nplane = \"stress\"\nyield_strength_mpa = 345\n";
+const LAW: &str = "[fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
+
+/// Exit code, `result.json` and what is said of a case with these lines.
+fn predicted(text: &str, more: &[&str]) -> (Option<i32>, Value, String) {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("case.toml"), text).unwrap();
+    let output = perilife(dir.path(), &[&["predict", "case.toml", "--out", "run"], more].concat());
+    let (stdout, stderr) = texts(&output);
+    let result = fs::read_to_string(dir.path().join("run/result.json")).unwrap_or_else(|_| panic!("{stderr}"));
+    (output.status.code(), serde_json::from_str(&result).unwrap(), stdout + &stderr)
+}
+
+/// The same edge crack as a standard specimen and drawn, with a hole and without: the ligament of any plate has a limit load.
+#[test]
+fn the_section_of_a_drawn_plate_ends_its_life() {
+    let specimens = [
+        ("kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 40\nlength_mm = 60\nthickness_mm = 2\ncrack_length_mm = 8\n", "215.49"),
+        (SHEET.strip_prefix("[specimen]\n").unwrap(), "215.49"),
+        // The hole takes 10 of 32 mm.
+        (HOLE.strip_prefix("[specimen]\n").unwrap(), "1"),
+    ];
+    for (specimen, limit) in specimens {
+        let text = |stress: f64| {
+            format!("[specimen]\n{specimen}{MATERIAL}[loading]\nstress_ratio = 0.1\nstress_max_mpa = {stress}\n[model]\nspacing_mm = 1\n{LAW}")
+        };
+        let (code, result, said) = predicted(&text(240.0), &[]);
+        assert_eq!((code, &result["stop_reason"], &result["life_cycles"]), (Some(3), &"net_section_yield".into(), &0.0.into()), "{said}");
+        assert!(said.contains(&format!("limit load of what the cracks leave, {limit}")), "{said}");
+        assert!(said.contains("no life, the first load breaks the plate") && said.contains("not to be used"), "{said}");
+        let (code, result, said) = predicted(&text(100.0), &[]);
+        assert_eq!((code, &result["stop_reason"]), (Some(0), &"net_section_yield".into()), "{said}");
+        assert_eq!(result["critical"]["criterion"], "net_section_yield", "{said}");
+        let off = predicted(&text(100.0), &["--set", "stop.net_section=false"]).1;
+        assert!(off["life_cycles"].as_f64() > result["life_cycles"].as_f64(), "{off}");
+    }
+}
+
+#[test]
+fn a_hole_is_a_bound_only_where_the_plate_was_shown_to_bear_its_load() {
+    for (strengths, is_bound) in [("", false), ("toughness_mpa_sqrt_m = 60\n", true)] {
+        let text = format!(
+            "{HOLE}{MATERIAL}{strengths}[loading]\nstress_ratio = 0.1\nstress_max_mpa = 5\n[model]\nspacing_mm = 1\n{LAW}"
+        );
+        let (code, result, said) = predicted(&text, &[]);
+        assert_eq!((code, &result["stop_reason"]), (Some(0), &"entered_hole".into()), "{said}");
+        assert_eq!((result["life_is_lower_bound"] == true, said.contains("fracture: not checked")), (is_bound, !is_bound), "{said}");
+        let lines: Vec<&str> = said.lines().filter(|line| line.starts_with("warning: ")).collect();
+        assert!(lines.iter().all(|line| line.chars().count() <= 80), "{lines:?}");
+    }
+}
+
+/// In a plate with several cracks the length of the crack of a tip is asked for, not that of all.
+#[test]
+fn inspections_are_of_the_crack_of_a_tip() {
+    let two = "[specimen]\nkind = \"plate\"\nwidth_mm = 80\nlength_mm = 120\nthickness_mm = 2\n\
+               cracks = [{ from_mm = [-40, 25], to_mm = [-32, 25] }, { from_mm = [40, -25], to_mm = [35, -25] }]\n";
+    let text = format!("{two}{MATERIAL}[loading]\nstress_ratio = 0.1\nstress_max_mpa = 60\n[model]\nspacing_mm = 1.25\n{LAW}");
+    let inspect = |more: &[&str]| predicted(&text, &[&["--inspect-from", "9"], more].concat());
+    let (code, result, said) = inspect(&[]);
+    assert_eq!(code, Some(0), "{said}");
+    let leading = &result["inspection"];
+    assert_eq!((&leading["tip"], &leading["crack_length_mm"]), (&0.into(), &9.0.into()), "{leading}");
+    assert!(leading["crack_length_of_all_mm"].as_f64().is_some_and(|all| all > 14.0 && all < 15.0), "{leading}");
+    assert!(said.contains("crack length   tip 0: its crack 8.000 mm to ") && said.contains("; all cracks 13.000 mm to "), "{said}");
+    // The shorter crack has not come so far when the longer one breaks the plate.
+    let (code, _, said) = inspect(&["--tip", "1"]);
+    assert!(code == Some(2) && said.contains("--inspect-from") && said.contains("the crack of tip 1 goes from 5 to "), "{said}");
+    let (code, _, said) = inspect(&["--tip", "7"]);
+    assert!(code == Some(2) && said.contains("is no crack tip of this plate"), "{said}");
+}
