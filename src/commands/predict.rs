@@ -63,7 +63,8 @@ pub fn run(args: &Args) -> Result<()> {
     if let Task::Prediction { wanted, .. } = &mut task {
         wanted.strength = args.residual_strength;
         let names = ["--inspect-from", "--factor", "--tip"];
-        wanted.inspection = args.inspect_from.map(|crack_length_mm| InspectFrom { crack_length_mm, tip: args.tip, factor: args.factor, names });
+        wanted.inspection =
+            args.inspect_from.map(|crack_length_mm| InspectFrom { crack_length_mm, tip: args.tip, factor: args.factor, names });
     }
     let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
     let summary = summary.counted()?;

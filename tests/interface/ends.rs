@@ -118,7 +118,8 @@ fn check_says_that_the_first_load_breaks_the_plate() {
     assert!((stdout + &stderr).contains("K_max 33.44 MPa√m is beyond the toughness 30.00 MPa√m"));
 }
 
-const MATERIAL: &str = "[material]\nyoungs_modulus_gpa = 71\npoisson_ratio = 0.33\nplane = \"stress\"\nyield_strength_mpa = 345\n";
+const MATERIAL: &str =
+    "[material]\nyoungs_modulus_gpa = 71\npoisson_ratio = 0.33\nplane = \"stress\"\nyield_strength_mpa = 345\n";
 const LAW: &str = "[fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
 
 /// Exit code, `result.json` and what is said of a case with these lines.
@@ -135,17 +136,26 @@ fn predicted(text: &str, more: &[&str]) -> (Option<i32>, Value, String) {
 #[test]
 fn the_section_of_a_drawn_plate_ends_its_life() {
     let specimens = [
-        ("kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 40\nlength_mm = 60\nthickness_mm = 2\ncrack_length_mm = 8\n", "215.49"),
+        (
+            "kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 40\nlength_mm = 60\nthickness_mm = 2\ncrack_length_mm = 8\n",
+            "215.49",
+        ),
         (SHEET.strip_prefix("[specimen]\n").unwrap(), "215.49"),
         // The hole takes 10 of 32 mm.
         (HOLE.strip_prefix("[specimen]\n").unwrap(), "1"),
     ];
     for (specimen, limit) in specimens {
         let text = |stress: f64| {
-            format!("[specimen]\n{specimen}{MATERIAL}[loading]\nstress_ratio = 0.1\nstress_max_mpa = {stress}\n[model]\nspacing_mm = 1\n{LAW}")
+            format!(
+                "[specimen]\n{specimen}{MATERIAL}[loading]\nstress_ratio = 0.1\nstress_max_mpa = {stress}\n[model]\nspacing_mm = 1\n{LAW}"
+            )
         };
         let (code, result, said) = predicted(&text(240.0), &[]);
-        assert_eq!((code, &result["stop_reason"], &result["life_cycles"]), (Some(3), &"net_section_yield".into(), &0.0.into()), "{said}");
+        assert_eq!(
+            (code, &result["stop_reason"], &result["life_cycles"]),
+            (Some(3), &"net_section_yield".into(), &0.0.into()),
+            "{said}"
+        );
         assert!(said.contains(&format!("limit load of what the cracks leave, {limit}")), "{said}");
         assert!(said.contains("no life, the first load breaks the plate") && said.contains("not to be used"), "{said}");
         let (code, result, said) = predicted(&text(100.0), &[]);
@@ -164,7 +174,11 @@ fn a_hole_is_a_bound_only_where_the_plate_was_shown_to_bear_its_load() {
         );
         let (code, result, said) = predicted(&text, &[]);
         assert_eq!((code, &result["stop_reason"]), (Some(0), &"entered_hole".into()), "{said}");
-        assert_eq!((result["life_is_lower_bound"] == true, said.contains("fracture: not checked")), (is_bound, !is_bound), "{said}");
+        assert_eq!(
+            (result["life_is_lower_bound"] == true, said.contains("fracture: not checked")),
+            (is_bound, !is_bound),
+            "{said}"
+        );
         let lines: Vec<&str> = said.lines().filter(|line| line.starts_with("warning: ")).collect();
         assert!(lines.iter().all(|line| line.chars().count() <= 80), "{lines:?}");
     }
@@ -182,10 +196,16 @@ fn inspections_are_of_the_crack_of_a_tip() {
     let leading = &result["inspection"];
     assert_eq!((&leading["tip"], &leading["crack_length_mm"]), (&0.into(), &9.0.into()), "{leading}");
     assert!(leading["crack_length_of_all_mm"].as_f64().is_some_and(|all| all > 14.0 && all < 15.0), "{leading}");
-    assert!(said.contains("crack length   tip 0: its crack 8.000 mm to ") && said.contains("; all cracks 13.000 mm to "), "{said}");
+    assert!(
+        said.contains("crack length   tip 0: its crack 8.000 mm to ") && said.contains("; all cracks 13.000 mm to "),
+        "{said}"
+    );
     // The shorter crack has not come so far when the longer one breaks the plate.
     let (code, _, said) = inspect(&["--tip", "1"]);
-    assert!(code == Some(2) && said.contains("--inspect-from") && said.contains("the crack of tip 1 goes from 5 to "), "{said}");
+    assert!(
+        code == Some(2) && said.contains("--inspect-from") && said.contains("the crack of tip 1 goes from 5.0000 to "),
+        "{said}"
+    );
     let (code, _, said) = inspect(&["--tip", "7"]);
     assert!(code == Some(2) && said.contains("is no crack tip of this plate"), "{said}");
 }

@@ -70,7 +70,7 @@ fn curve() -> Vec<CurvePoint> {
             delta_k,
             growth_rate,
             work: 1.0 + crack_length,
-            limit_load: f64::NAN,
+            limit_load: None,
             broken_bonds: 9 * step,
             tips: vec![tip(-1.0), tip(1.0)],
         });

@@ -32,8 +32,8 @@ fn strengths_that_are_not_given_are_not_checked() {
     assert!(told.len() <= 5 && told.iter().all(|line| line.chars().count() <= 71), "{told:?}");
     // Given, they hold: the life ends where one is reached.
     let (case, run) = (hand_case(PANEL, &STRENGTHS), hand_run(PANEL, &STRENGTHS));
-    assert_eq!(named(&case, &run, "toughness").words, "fracture: K_max is 100.0 % of the toughness at the most");
-    assert_eq!(named(&case, &run, "ligament").verdict, Verdict::Holds);
+    assert_eq!(named(&case, &run, "ligament").words, "section: the load is 100.0 % of its limit load at the most");
+    assert_eq!(named(&case, &run, "toughness").verdict, Verdict::Holds);
     // Turned off, they are not checked either.
     let off = [STRENGTHS[0], STRENGTHS[1], "stop.toughness=false", "stop.net_section=false"];
     let (case, run) = (hand_case(PANEL, &off), hand_run(PANEL, &off));
@@ -85,7 +85,8 @@ fn what_the_first_range_of_k_shows_is_refused_before_a_run() {
 
 #[test]
 fn a_bound_is_one_where_all_that_could_end_the_life_holds() {
-    let mut run = hand_run(PANEL, &["material.yield_strength_mpa=345", "material.toughness_mpa_sqrt_m=60", "stop.crack_length_mm=20"]);
+    let mut run =
+        hand_run(PANEL, &["material.yield_strength_mpa=345", "material.toughness_mpa_sqrt_m=60", "stop.crack_length_mm=20"]);
     run.stop = StopReason::EnteredHole;
     assert!(is_bound_below(&hand_case(PANEL, &STRENGTHS), &run));
     for one in STRENGTHS {

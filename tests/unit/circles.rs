@@ -161,34 +161,34 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("fracture", 6766),
-    ("report", 6293),
-    ("service", 5657),
-    ("calibration", 5546),
-    ("growth", 5340),
+    ("fracture", 6773),
+    ("report", 7408),
+    ("service", 5627),
+    ("calibration", 6135),
+    ("growth", 5418),
     ("solver", 5120),
     ("verify", 4803),
     ("measured", 3722),
     ("element_free", 3270),
-    ("commands", 2705),
-    ("case", 2479),
+    ("commands", 2713),
+    ("case", 2544),
     ("body", 2464),
-    ("specimen", 1736),
+    ("specimen", 2287),
     ("levels", 1728),
-    ("predict", 1514),
+    ("predict", 1536),
     ("fatigue", 1339),
     ("sweep", 1074),
-    ("runner", 859),
+    ("runner", 912),
     ("loading", 718),
-    ("input", 699),
+    ("input", 723),
     ("stress_intensity", 681),
-    ("check", 546),
+    ("check", 557),
     ("bond_law", 394),
     ("tables", 342),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 67447;
+const LINES_OF_ALL: usize = 69940;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -21,7 +21,7 @@ impl Steady {
             delta_k: 1e7,
             growth_rate: 1e-6,
             work: f64::NAN,
-            limit_load: f64::NAN,
+            limit_load: None,
             broken_bonds: 0,
             tips: vec![TipRecord { state: TipState::Active, position: [growth, 0.0], growth, factors: None, t_stress: None }],
         });

@@ -26,11 +26,12 @@ fn folder() -> PathBuf {
 /// first steps or first cycles are tested with every check and whose lives by the long test.
 const BY_HAND: [&str; 4] = ["compact_tension", "double_edge", "single_edge", "virkler_panel"];
 const OWN: [(&str, f64, StopReason); 4] = [
-    ("crack_beside_hole", 72_150.6, StopReason::EnteredHole),
+    // What is left beside hole and crack no longer bears the load a little before the tip enters the hole.
+    ("crack_beside_hole", 72_120.8, StopReason::NetSectionYield),
     // 1.4 % over that of virkler_panel, whose points are fine everywhere.
     ("hand_calculation", 247_247.1, StopReason::CrackLengthReached),
-    ("plate_with_hole", 33_452.2, StopReason::Severed),
-    ("two_cracks_plate", 39_028.7, StopReason::CracksJoined),
+    ("plate_with_hole", 32_924.4, StopReason::NetSectionYield),
+    ("two_cracks_plate", 39_031.3, StopReason::NetSectionYield),
 ];
 const OWN_LONG: [(&str, f64, StopReason); 4] = [
     ("notched_plate", 54_525.6, StopReason::Severed),

@@ -189,7 +189,12 @@ fn lives_end_by_limit_loads(plates: usize, shares: &[f64]) {
             let cracks = grown(&case, &run);
             for tip in &run.curve[run.curve.len() - 1].tips {
                 let strips = by_strips(&case.specimen, &cracks, tip.position);
-                assert!(strips > case.loading.maximum * 0.995, "seed {seed}, {share}: {} of {strips}, {}", case.loading.maximum, run.stop);
+                assert!(
+                    strips > case.loading.maximum * 0.995,
+                    "seed {seed}, {share}: {} of {strips}, {}",
+                    case.loading.maximum,
+                    run.stop
+                );
             }
         }
         done += 1;
@@ -224,7 +229,8 @@ fn a_turned_plate_has_the_same_limit_load() {
     let mut lying = lying.specimen;
     // Pulled at its left and right side.
     let [low, high] = [-50.0 * MM, 50.0 * MM];
-    let side = |x: f64, sign: f64| perilife::specimen::Load::Edge { from: [x, -30.0 * MM], to: [x, 30.0 * MM], traction: [sign, 0.0] };
+    let side =
+        |x: f64, sign: f64| perilife::specimen::Load::Edge { from: [x, -30.0 * MM], to: [x, 30.0 * MM], traction: [sign, 0.0] };
     lying.loads = vec![side(low, -1.0), side(high, 1.0)];
     assert!((limit(&upright.specimen) / limit(&lying) - 1.0).abs() < 1e-6);
 }

@@ -22,8 +22,8 @@ use crate::fracture::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSuppo
 use crate::input::{Document, Provenance};
 use crate::report::checks;
 use crate::report::model_words::{self, mm, short};
-use crate::report::specimen_picture::{scene_svg, specimen_svg};
 use crate::report::run::refuse_beforehand;
+use crate::report::specimen_picture::{scene_svg, specimen_svg};
 use crate::runner::{Kind, Task};
 use crate::sweep::design::{self, CASES_MAX};
 use crate::sweep::{DrawnCase, Sweep};
@@ -87,7 +87,7 @@ pub fn check(document: &Document, task: &Task) -> Result<Checked> {
             // What a life will rest on, as far as that is known before it.
             let checks = checks::of_case(case);
             checked.lines.push(line("verdict", checks::verdict(&checks)));
-            checked.warnings.extend(checks::lines(&checks));
+            checked.lines.extend(checks::lines(&checks).into_iter().map(|words| line("rests on", words)));
             Ok(checked)
         }
         Task::Factors { case, .. } => checked_case(document, "case", case, &case.warnings),

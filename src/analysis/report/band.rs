@@ -137,7 +137,8 @@ impl TipLengths {
             let same = (0..tips.len()).filter(|other| tips[*other]["crack"] == tip["crack"]);
             let columns: Option<Vec<usize>> = same.map(growth).collect();
             let (Some(start), Some(columns)) = (tip["crack_length_initial_mm"].as_f64(), columns) else { return Vec::new() };
-            let grown = |row: &Vec<&str>, column: usize| row.get(column).and_then(|field| field.parse::<f64>().ok()).unwrap_or(0.0);
+            let grown =
+                |row: &Vec<&str>, column: usize| row.get(column).and_then(|field| field.parse::<f64>().ok()).unwrap_or(0.0);
             rows.iter().map(|row| start + columns.iter().map(|&column| grown(row, column)).sum::<f64>()).collect()
         };
         Some(TipLengths { lengths: tips.iter().map(of_tip).collect(), leads })
@@ -154,7 +155,7 @@ impl TipLengths {
         let (shortest, longest) = (lengths[0], lengths[lengths.len() - 1]);
         let length = from.crack_length_mm;
         if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest} to {longest} mm");
+            let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest:.4} to {longest:.4} mm");
             return Err(input(from.names[0], length, problem, "give a length between them, or another tip"));
         }
         let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);

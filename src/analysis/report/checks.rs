@@ -8,7 +8,7 @@ use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource};
 use crate::loading::LoadControl;
 use crate::predict::plastic_zone::plastic_zone;
-use crate::predict::{Prediction, StopReason};
+use crate::predict::{CurvePoint, Prediction, StopReason};
 use crate::specimen::SpecimenKind;
 use crate::specimen::handbook::handbook;
 use crate::units::{MM, MPA_SQRT_M};
@@ -75,7 +75,11 @@ impl Check {
     }
 
     fn not_checked(name: &'static str, words: &str, remedy: &str) -> Self {
-        Check { side: Some(Side::Unsafe), remedy: Some(remedy.to_owned()), ..Check::new(name, Verdict::NotChecked, words.to_owned()) }
+        Check {
+            side: Some(Side::Unsafe),
+            remedy: Some(remedy.to_owned()),
+            ..Check::new(name, Verdict::NotChecked, words.to_owned())
+        }
     }
 
     /// A condition that holds but for an effect, percent, on one side.
@@ -131,11 +135,8 @@ pub fn is_bound_below(case: &Case, prediction: &Prediction) -> bool {
 /// One line that says how the life stands.
 pub fn verdict(checks: &[Check]) -> String {
     let count = |verdict: Verdict| checks.iter().filter(|check| check.verdict == verdict).count();
-    let some = [
-        (count(Verdict::Fails), "failed"),
-        (count(Verdict::Doubtful), "doubtful"),
-        (count(Verdict::NotChecked), "not checked"),
-    ];
+    let some =
+        [(count(Verdict::Fails), "failed"), (count(Verdict::Doubtful), "doubtful"), (count(Verdict::NotChecked), "not checked")];
     let open: Vec<String> = some.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
     match (some[0].0, open.len()) {
         (0, 0) => format!("stands: all {} checks hold", checks.len()),
@@ -192,7 +193,8 @@ fn toughness(case: &Case, prediction: &Prediction) -> Check {
             Check { words, verdict: of_first_load(prediction, required * most / toughness), ..given }
         }
         None => Check {
-            words: given.words.clone() + &if most.is_nan() { String::new() } else { format!("; K_max to {:.0} MPa√m", most / MPA_SQRT_M) },
+            words: given.words.clone()
+                + &if most.is_nan() { String::new() } else { format!("; K_max to {:.0} MPa√m", most / MPA_SQRT_M) },
             ..given
         },
     }
@@ -204,8 +206,8 @@ fn ligament(case: &Case, prediction: &Prediction) -> Check {
     if case.yield_strength_at_end().is_none() {
         return given;
     }
-    let load = |row: &crate::predict::CurvePoint| case.loading.maximum * case.loading.share(row.work) / row.limit_load;
-    let most = prediction.curve.iter().map(load).filter(|used| used.is_finite()).fold(f64::NAN, f64::max);
+    let load = |row: &CurvePoint| Some(case.loading.maximum * case.loading.share(row.work) / row.limit_load?);
+    let most = prediction.curve.iter().filter_map(load).filter(|used| used.is_finite()).fold(f64::NAN, f64::max);
     if most.is_nan() {
         let words = "yielding: not checked, supports on both sides of every section";
         return Check::not_checked(NAME, words, "give the loads of both ends instead of a support");
@@ -282,7 +284,14 @@ fn first_extrapolation(case: &Case) -> Option<Check> {
     let first = first_delta_k(case)? / MPA_SQRT_M;
     if first > high * (1.0 + 1e-6) {
         let words = format!("law: ΔK {first:.2} at the start is above the highest fitted, {high:.2}");
-        let check = Check::sized("extrapolation_above", 100.0, true, Side::Unsafe, words, "lower the load, or calibrate on longer cracks");
+        let check = Check::sized(
+            "extrapolation_above",
+            100.0,
+            true,
+            Side::Unsafe,
+            words,
+            "lower the load, or calibrate on longer cracks",
+        );
         return Some(if case.allow_extrapolation { check } else { Check { verdict: Verdict::Fails, ..check } });
     }
     (first < low * (1.0 - 1e-6)).then(|| {
@@ -369,12 +378,15 @@ fn size(case: &Case) -> Option<Check> {
             Some(format!("thickness {:.2} mm is not W/20 to W/4", thickness / MM))
         }
         SpecimenKind::CompactTension if crack < 0.2 * width => Some(format!("crack {:.2} mm is below 0.2 W", crack / MM)),
-        SpecimenKind::MiddleTension if thickness > width / 8.0 => Some(format!("thickness {:.2} mm is above W/8", thickness / MM)),
+        SpecimenKind::MiddleTension if thickness > width / 8.0 => {
+            Some(format!("thickness {:.2} mm is above W/8", thickness / MM))
+        }
         SpecimenKind::CompactTension | SpecimenKind::MiddleTension => None,
         _ => return None,
     };
     let verdict = if wrong.is_some() { Verdict::Doubtful } else { Verdict::Holds };
-    let words = wrong.map_or_else(|| "E647: sizes of the specimen are within its limits".to_owned(), |wrong| format!("E647: {wrong}"));
+    let words =
+        wrong.map_or_else(|| "E647: sizes of the specimen are within its limits".to_owned(), |wrong| format!("E647: {wrong}"));
     Some(Check { side: Some(Side::Either), ..Check::new(NAME, verdict, words) })
 }
 

@@ -99,8 +99,9 @@ pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
         return Some(Error::Mechanics(format!("{}: {problem}", case.name)));
     }
     let [_, above] = fit_use::life_shares_outside(case, prediction)?;
-    (above > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation)
-        .then(|| extrapolates(case, &format!("{:.1} % of the life lies above", 100.0 * above), "; the results are marked as refused"))
+    (above > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation).then(|| {
+        extrapolates(case, &format!("{:.1} % of the life lies above", 100.0 * above), "; the results are marked as refused")
+    })
 }
 
 /// Why a case is refused before it is run: its first ΔK lies above the fitted range, and K only rises from there.
@@ -294,7 +295,11 @@ fn length_words(case: &Case, prediction: &Prediction) -> String {
     let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
     match prediction.leading_tip(&case.specimen) {
         Some((tip, [first, last])) => {
-            let all = if case.specimen.crack_lines().len() > 1 { format!("; all cracks {from:.3} mm to {to:.3} mm") } else { String::new() };
+            let all = if case.specimen.crack_lines().len() > 1 {
+                format!("; all cracks {from:.3} mm to {to:.3} mm")
+            } else {
+                String::new()
+            };
             format!("tip {tip}: its crack {:.3} mm to {:.3} mm{all}", first / MM, last / MM)
         }
         None => format!("{from:.3} mm to {to:.3} mm"),

@@ -144,11 +144,12 @@ pub fn of_prediction(
     watcher: &dyn Watcher,
 ) -> Result<Summary> {
     use report::run;
-    let judged = run::judge(case, prediction)?;
     // What a check says in a line stands in the file at length.
     let told = run::told_by_checks(case, prediction);
-    let warnings = prediction.warnings.iter().chain(&judged).filter(|warning| !told.contains(warning));
-    warnings.for_each(|warning| watcher.warn(warning));
+    let warn = |warnings: &[String]| warnings.iter().filter(|line| !told.contains(line)).for_each(|line| watcher.warn(line));
+    warn(&prediction.warnings);
+    let judged = run::judge(case, prediction)?;
+    warn(&judged);
     report::checks::lines(&report::checks::of_run(case, prediction)).iter().for_each(|line| watcher.warn(line));
     // If that fails, the run itself is written all the same.
     let strengths = wanted.strength.then(|| residual_strength(case, &prediction.curve)).transpose();

@@ -202,7 +202,12 @@ fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loa
     let ends = [(stop.toughness, material.toughness), (stop.net_section, material.yield_strength)];
     if !ends.iter().any(|(asked, strength)| asked.unwrap_or(true) && strength.is_some()) {
         let remedy = "give material.toughness_mpa_sqrt_m, yield_strength_mpa or both";
-        return Err(input(key, given, "cannot be compared: the material has neither toughness nor yield strength that ends the life", remedy));
+        return Err(input(
+            key,
+            given,
+            "cannot be compared: the material has neither toughness nor yield strength that ends the life",
+            remedy,
+        ));
     }
     Ok(Some(factor))
 }

@@ -4,13 +4,13 @@ use std::path::Path;
 use std::str::FromStr;
 
 use super::{Case, LawSource, Method};
-use crate::specimen::CrackLine;
 use crate::case::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{Driver, FatigueLaw, GrowthRate};
 use crate::input::{LENGTH, MODULUS, number};
 use crate::material::{Material, Plane};
+use crate::specimen::CrackLine;
 use crate::units::{GPA, MM, MM_PER_CYCLE};
 
 /// Numbers and names of a record make sense.

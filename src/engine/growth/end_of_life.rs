@@ -86,7 +86,10 @@ fn excess(case: &Case, row: &CurvePoint) -> [(Option<f64>, StopReason); 2] {
     let known = |excess: f64| Some(excess).filter(|excess| excess.is_finite());
     [
         (case.toughness_at_end().and_then(|toughness| known(required * k_max / toughness - 1.0)), StopReason::Toughness),
-        (case.yield_strength_at_end().and_then(|_| known(1.0 - row.limit_load / (required * load))), StopReason::NetSectionYield),
+        (
+            row.limit_load.filter(|_| case.stop.by_net_section).and_then(|limit| known(1.0 - limit / (required * load))),
+            StopReason::NetSectionYield,
+        ),
     ]
 }
 
@@ -131,8 +134,8 @@ pub(super) fn row_after(
     end: Option<StopReason>,
 ) -> (CurvePoint, Option<StopReason>) {
     let cycles_max = case.stop.cycles_max;
-    let run_out = (next.cycles > cycles_max)
-        .then(|| ((cycles_max - last.cycles) / (next.cycles - last.cycles), StopReason::RunOut));
+    let run_out =
+        (next.cycles > cycles_max).then(|| ((cycles_max - last.cycles) / (next.cycles - last.cycles), StopReason::RunOut));
     let broken = excess(case, last).into_iter().zip(excess(case, &next)).filter_map(|((before, breaks), (now, _))| {
         let (before, now) = (before?, now?);
         (before < 0.0 && now > 0.0).then(|| (before / (before - now), strength_reason(case, breaks)))

@@ -68,9 +68,9 @@ pub struct CurvePoint {
     /// Work of the loads over the displacement at maximum load, f·u, J: twice the strain energy, the load squared times the
     /// compliance; NaN where the plate is severed and in hand calculation.
     pub work: f64,
-    /// Nominal load at which the weakest section is fully plastic, Pa or N; NaN without yield strength, or where no section is determined
-    /// by the loads.
-    pub limit_load: f64,
+    /// Nominal load at which the weakest section is fully plastic, Pa or N; `None` without yield strength, or where the loads determine what
+    /// no section bears.
+    pub limit_load: Option<f64>,
     /// Bonds broken since the start, initial cracks not counted.
     pub broken_bonds: usize,
     /// Tips, in the order of `Specimen::tips`.
@@ -98,7 +98,7 @@ impl CurvePoint {
         CurvePoint {
             cycles,
             crack_length,
-            limit_load: case.limit_load(crack_length, cracks).unwrap_or(f64::NAN),
+            limit_load: case.limit_load(crack_length, cracks),
             delta_k: case.loading.range_share() * k_max,
             growth_rate,
             work,
@@ -131,7 +131,7 @@ impl CurvePoint {
             delta_k: mix(before.delta_k, self.delta_k),
             growth_rate: mix(before.growth_rate, self.growth_rate),
             work: mix(before.work, self.work),
-            limit_load: mix(before.limit_load, self.limit_load),
+            limit_load: before.limit_load.zip(self.limit_load).map(|(before, now)| mix(before, now)),
             broken_bonds: self.broken_bonds,
             tips: before.tips.iter().zip(&self.tips).map(tip).collect(),
         }

@@ -55,7 +55,9 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     let missing = |zone: &Zone| 1.0 - zone.ligament / asked(case, zone, strength);
     let outgrown = known.iter().position(|(_, zone)| missing(zone) > 0.0).map(|row| {
         let (point, zone) = &known[row];
-        let Some((before, smaller)) = row.checked_sub(1).map(|row| &known[row]) else { return (point.crack_length, point.cycles) };
+        let Some((before, smaller)) = row.checked_sub(1).map(|row| &known[row]) else {
+            return (point.crack_length, point.cycles);
+        };
         let share = missing(smaller) / (missing(smaller) - missing(zone));
         let at = |from: f64, to: f64| from + share * (to - from);
         (at(before.crack_length, point.crack_length), at(before.cycles, point.cycles))

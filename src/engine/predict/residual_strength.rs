@@ -58,8 +58,7 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
         }
         None => {
             let known = |point: &CurvePoint| Some(point.delta_k / case.loading.range_share()).filter(|k| *k > 0.0);
-            let limit = |point: &CurvePoint| Some(point.limit_load).filter(|load| !load.is_nan());
-            curve.iter().map(|point| strength(point.crack_length, known(point), limit(point))).collect()
+            curve.iter().map(|point| strength(point.crack_length, known(point), point.limit_load)).collect()
         }
     };
     Ok(all.into_iter().filter(|strength| strength.load().is_finite()).collect())

@@ -219,7 +219,8 @@ impl Piece {
         let piece = |[a, b]: &[Point; 2]| {
             let (s, t) = (place(*a), place(*b));
             let cosine = (t - s).abs() / distance(*a, *b);
-            let strength = (cosine * (0.75 * cosine * cosine + 3.0 * (1.0 - cosine * cosine)).sqrt()).max(cosine * cosine).recip();
+            let strength =
+                (cosine * (0.75 * cosine * cosine + 3.0 * (1.0 - cosine * cosine)).sqrt()).max(cosine * cosine).recip();
             Piece { from: s.min(t), to: s.max(t), strength }
         };
         cut.ligaments.iter().map(piece).filter(|piece| piece.to > piece.from).collect()
@@ -247,7 +248,8 @@ fn plastic_load(pieces: &[Piece], normal: Point, force: Point, moment: Option<f6
     let plastic = plastic(pieces, dot(force, normal), moment)?;
     let ligament: f64 = pieces.iter().map(Piece::length).sum();
     let shear = dot(force, [normal[1], -normal[0]]);
-    let by_shear = if shear == 0.0 { f64::INFINITY } else { (0.75 / plastic.powi(2) + 3.0 * (shear / ligament).powi(2)).sqrt().recip() };
+    let by_shear =
+        if shear == 0.0 { f64::INFINITY } else { (0.75 / plastic.powi(2) + 3.0 * (shear / ligament).powi(2)).sqrt().recip() };
     Some(plastic.min(by_shear))
 }
 
@@ -257,7 +259,8 @@ fn plastic(pieces: &[Piece], normal: f64, moment: Option<f64>) -> Option<f64> {
     let all = |axis: f64| {
         pieces.iter().map(|piece| piece.resultants(axis)).fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]])
     };
-    let (low, high) = pieces.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), piece| (a.min(piece.from), b.max(piece.to)));
+    let (low, high) =
+        pieces.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), piece| (a.min(piece.from), b.max(piece.to)));
     if !(high > low) {
         // Nothing is left.
         return (normal != 0.0 || moment.is_some_and(|moment| moment != 0.0)).then_some(0.0);

@@ -235,7 +235,8 @@ fn mounted_and_full_places() {
     unmount();
     // Too small for the pictures: said before, and the tables stay. Too small for the tables: nothing is computed.
     assert!(mount("size=200k"));
-    let output = perilife(here, &["predict", "small.toml", "--out", "out/x", "-q", "--set", "model.spacing_mm=0.5"]);
+    let output =
+        perilife(here, &["predict", "small.toml", "--out", "out/x", "-q", "--paraview", "--set", "model.spacing_mm=0.5"]);
     let (code, stderr) = (output.status.code(), texts(&output).1);
     assert_eq!(code, Some(4), "{stderr}");
     assert!(stderr.contains("warning: out/x: ") && stderr.contains("its tables come first"), "{stderr}");

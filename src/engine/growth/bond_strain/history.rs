@@ -278,7 +278,7 @@ impl GrowthHistory {
                     cracks[end.line].grow(end.at_last, record.position);
                 }
             }
-            case.limit_load(crack_length, &cracks).unwrap_or(f64::NAN)
+            case.limit_load(crack_length, &cracks)
         };
         let point = |i: usize, cycles: f64, crack_length: f64| CurvePoint {
             limit_load: limit_load(&rows[i].tips, crack_length),

@@ -75,10 +75,14 @@ pub(super) fn of_plate(plate: &Plate<'_>) -> Vec<Cut> {
         let at = [0, 1].map(|k| corner[k] + sign * 20.0 * plate.same * (inwards[0][k] + inwards[1][k]));
         lines.extend(axes.map(|axis| (at, axis)));
     }
-    lines.into_iter().filter(|(at, _)| point_in_polygon(*at, outline)).filter_map(|(at, ahead)| {
-        let back = ahead.map(|x| -x);
-        Some(ray(plate, at, back)?.reversed().joined(&ray(plate, at, ahead)?))
-    }).collect()
+    lines
+        .into_iter()
+        .filter(|(at, _)| point_in_polygon(*at, outline))
+        .filter_map(|(at, ahead)| {
+            let back = ahead.map(|x| -x);
+            Some(ray(plate, at, back)?.reversed().joined(&ray(plate, at, ahead)?))
+        })
+        .collect()
 }
 
 /// Sections along a crack, each end of which is chosen in turn for the least of what `load` says of the whole.
@@ -127,18 +131,23 @@ fn exits(plate: &Plate<'_>, line: usize, at_last: bool, visited: &mut Vec<usize>
     }
     let near = |corners: &[Point; 4]| distance_to_polygon(at, corners) <= plate.same;
     if let Some(slot) = specimen.slots.iter().find(|slot| slot.contains(at) || near(&slot.corners())) {
-        return [slot.from, slot.to].into_iter().flat_map(|end| {
-            let is_out = !point_in_polygon(end, &specimen.outline);
-            let other = if end == slot.from { slot.to } else { slot.from };
-            let way = |end: Point| here.clone().joined(&Cut { points: vec![at, end], ..Cut::default() });
-            if is_out || distance_to_polygon(end, &specimen.outline) <= plate.same {
-                let met = edges(&specimen.outline).filter_map(|(a, b)| {
-                    segments_touch(other, end, a, b).then(|| meeting_share(other, end, a, b))?.map(|share| along(other, end, share))
-                });
-                return met.take(1).map(way).collect::<Vec<_>>();
-            }
-            straight(plate, end, direction(other, end)).iter().map(|on| way(end).joined(on)).collect()
-        }).collect();
+        return [slot.from, slot.to]
+            .into_iter()
+            .flat_map(|end| {
+                let is_out = !point_in_polygon(end, &specimen.outline);
+                let other = if end == slot.from { slot.to } else { slot.from };
+                let way = |end: Point| here.clone().joined(&Cut { points: vec![at, end], ..Cut::default() });
+                if is_out || distance_to_polygon(end, &specimen.outline) <= plate.same {
+                    let met = edges(&specimen.outline).filter_map(|(a, b)| {
+                        segments_touch(other, end, a, b)
+                            .then(|| meeting_share(other, end, a, b))?
+                            .map(|share| along(other, end, share))
+                    });
+                    return met.take(1).map(way).collect::<Vec<_>>();
+                }
+                straight(plate, end, direction(other, end)).iter().map(|on| way(end).joined(on)).collect()
+            })
+            .collect();
     }
     if let Some(&other) = others.iter().find(|other| touched(&plate.cracks[**other])) {
         return through(plate, at, other, visited, &here);
