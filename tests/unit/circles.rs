@@ -162,7 +162,7 @@ fn imports_are_taken_apart() {
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
     ("fracture", 6773),
-    ("report", 7408),
+    ("report", 7409),
     ("service", 5627),
     ("calibration", 6135),
     ("growth", 5418),
@@ -188,7 +188,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 69940;
+const LINES_OF_ALL: usize = 69941;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -393,7 +393,8 @@ fn size(case: &Case) -> Option<Check> {
 /// What the law misses at the ends of its range.
 fn lack_of_fit(case: &Case) -> Option<Check> {
     let percent = fitted(case)?.lack_of_fit_percent?;
-    let words = format!("law: cracks grow {percent:+.0} % off it at an end of its range");
+    let sense = if percent > 0.0 { "faster" } else { "slower" };
+    let words = format!("law: cracks grow {:.0} % {sense} than it at an end of its range", percent.abs());
     let side = if percent > 0.0 { Side::Unsafe } else { Side::Safe };
     let remedy = "calibrate with another fatigue.growth_law, or a table";
     Some(Check::sized("lack_of_fit", percent, percent.abs() > OUTSIDE_DOUBTFUL * 100.0, side, words, remedy))

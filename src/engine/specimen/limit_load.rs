@@ -261,7 +261,7 @@ fn plastic(pieces: &[Piece], normal: f64, moment: Option<f64>) -> Option<f64> {
     };
     let (low, high) =
         pieces.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), piece| (a.min(piece.from), b.max(piece.to)));
-    if !(high > low) {
+    if pieces.is_empty() {
         // Nothing is left.
         return (normal != 0.0 || moment.is_some_and(|moment| moment != 0.0)).then_some(0.0);
     }
