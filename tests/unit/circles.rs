@@ -162,9 +162,9 @@ fn imports_are_taken_apart() {
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
     ("fracture", 6773),
-    ("report", 7409),
+    ("report", 7412),
     ("service", 5627),
-    ("calibration", 6135),
+    ("calibration", 6133),
     ("growth", 5418),
     ("solver", 5120),
     ("verify", 4803),
@@ -188,7 +188,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 69941;
+const LINES_OF_ALL: usize = 69942;
 
 #[test]
 fn rooms_do_not_grow() {

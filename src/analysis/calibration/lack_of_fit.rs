@@ -41,14 +41,6 @@ pub struct LackOfFit {
     pub high: Option<EndMiss>,
 }
 
-impl LackOfFit {
-    /// The larger miss of both ends, percent.
-    pub fn largest(&self) -> f64 {
-        let misses = [self.low, self.high].into_iter().flatten().map(|end| end.rate_over_law_percent);
-        misses.fold(0.0, |most: f64, miss| if miss.abs() > most.abs() { miss } else { most })
-    }
-}
-
 /// Growth through an end of the readings that were fitted, against the law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Misfit {
@@ -101,6 +93,12 @@ pub fn misfit_at_ends(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &d
 }
 
 impl MisfitAtEnds {
+    /// The larger of both, percent.
+    pub fn largest(&self) -> Option<f64> {
+        let misfits = [self.low, self.high].into_iter().flatten().map(|end| end.rate_over_law_percent);
+        misfits.max_by(|a, b| a.abs().total_cmp(&b.abs()))
+    }
+
     /// Both ends in one line.
     pub fn words(&self) -> String {
         let figure =

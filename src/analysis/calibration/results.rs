@@ -105,7 +105,7 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         p_error: fit.p_error().max(calibration.exponent.error),
         delta_k_min_mpa_sqrt_m: fit.paris.delta_k_min,
         delta_k_max_mpa_sqrt_m: fit.paris.delta_k_max,
-        lack_of_fit_percent: fit.lack_of_fit.as_ref().map(|lack| lack.largest()),
+        lack_of_fit_percent: fit.misfit_at_ends.largest(),
         stress_ratio: case.loading.ratio,
         bond_law: case.model.bond_law.kind.name().to_owned(),
         kernel: case.model.bond_law.kernel.name().to_owned(),

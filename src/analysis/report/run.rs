@@ -266,6 +266,9 @@ pub fn words(case: &Case, prediction: &Prediction, lives: &Lives) -> Vec<String>
     let mut lines = vec![
         match cycles {
             _ if breaks_at_once(case, prediction).is_some() => format!("{}: no life, the first load breaks the plate", case.name),
+            Some(life) if refusal(case, prediction).is_some() => {
+                format!("{}: no life that counts, {life} were computed", case.name)
+            }
             Some(life) if prediction.stop == StopReason::EnteredHole => format!("{}: {life} to the hole", case.name),
             Some(life) if checks::is_bound_below(case, prediction) => format!("{}: life at least {life}", case.name),
             Some(life) if prediction.stop.is_lower_bound() => format!("{}: {life} to the end of the run", case.name),

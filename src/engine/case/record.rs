@@ -55,7 +55,7 @@ pub struct FittedRecord {
     pub delta_k_min_mpa_sqrt_m: f64,
     /// Largest ΔK of the fit window.
     pub delta_k_max_mpa_sqrt_m: f64,
-    /// Measured rate over that of the law at an end of its range, less one, in percent, whichever end misses more; absent where none does.
+    /// Measured rate over that of the law at an end of its range, less one, in percent, whichever end misses more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lack_of_fit_percent: Option<f64>,
     /// Stress ratio of the tests.
