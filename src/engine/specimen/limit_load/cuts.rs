@@ -13,6 +13,8 @@ const CORNERS_MOST: usize = 24;
 const BACK: f64 = -0.3;
 /// Cracks in one section beyond the first.
 const CHAIN_MOST: usize = 3;
+/// Holes and cracks beside one that a section goes on to: the nearest.
+const NEIGHBOURS: usize = 3;
 /// Rounds in which both ends of a section are chosen in turn.
 const ROUNDS_MOST: usize = 4;
 
@@ -59,8 +61,7 @@ pub(super) fn of_plate(plate: &Plate<'_>) -> Vec<Cut> {
     for hole in &specimen.holes {
         lines.extend(axes.map(|axis| (hole.centre, axis)));
         lines.push((hole.centre, direction(hole.centre, nearest_of_outline(plate, hole.centre))));
-        let others = specimen.holes.iter().filter(|other| other.centre != hole.centre);
-        lines.extend(others.map(|other| (hole.centre, direction(hole.centre, other.centre))));
+        lines.extend(nearest_holes(plate, hole.centre).into_iter().map(|other| (hole.centre, direction(hole.centre, other))));
     }
     let outline = &specimen.outline;
     let n = outline.len();
@@ -162,7 +163,7 @@ fn straight(plate: &Plate<'_>, at: Point, ahead: Point) -> Vec<Cut> {
     let mut ways = vec![ahead];
     let axes = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
     let nearest = direction(at, nearest_of_outline(plate, at));
-    let holes = plate.specimen.holes.iter().map(|hole| direction(at, hole.centre));
+    let holes = nearest_holes(plate, at).into_iter().map(|hole| direction(at, hole));
     let is_on = |way: &Point| way[0] * ahead[0] + way[1] * ahead[1] > BACK;
     ways.extend(axes.into_iter().chain([nearest]).chain(holes).filter(is_on));
     ways.into_iter().filter_map(|way| ray(plate, at, way)).collect()
@@ -173,11 +174,14 @@ fn chained(plate: &Plate<'_>, at: Point, others: &[usize], visited: &mut Vec<usi
     if visited.len() > CHAIN_MOST {
         return Vec::new();
     }
+    let near_end = |other: &usize| {
+        let ends = [false, true].map(|at_last| plate.cracks[*other].end(at_last));
+        if distance(ends[1], at) < distance(ends[0], at) { ends[1] } else { ends[0] }
+    };
+    let mut nearest: Vec<(usize, Point)> = others.iter().map(|other| (*other, near_end(other))).collect();
+    nearest.sort_by(|a, b| distance(a.1, at).total_cmp(&distance(b.1, at)));
     let mut ways = Vec::new();
-    for &other in others {
-        let crack = &plate.cracks[other];
-        let at_last = distance(crack.end(true), at) < distance(crack.end(false), at);
-        let near = crack.end(at_last);
+    for (other, near) in nearest.into_iter().take(NEIGHBOURS) {
         if point_in_polygon(near, &plate.specimen.outline) {
             let bridge = Cut { points: vec![at, near], ligaments: left(plate, at, near), cracked: Vec::new() };
             ways.extend(through(plate, near, other, visited, &bridge));
@@ -209,6 +213,14 @@ fn through(plate: &Plate<'_>, at: Point, other: usize, visited: &mut Vec<usize>,
     }
     visited.pop();
     ways
+}
+
+/// Middles of the holes nearest to a place, that in which it lies left out.
+fn nearest_holes(plate: &Plate<'_>, at: Point) -> Vec<Point> {
+    let mut middles: Vec<Point> = plate.specimen.holes.iter().map(|hole| hole.centre).filter(|middle| *middle != at).collect();
+    middles.sort_by(|a, b| distance(*a, at).total_cmp(&distance(*b, at)));
+    middles.truncate(NEIGHBOURS);
+    middles
 }
 
 fn nearest_of_outline(plate: &Plate<'_>, at: Point) -> Point {
