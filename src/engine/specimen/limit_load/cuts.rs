@@ -12,7 +12,7 @@ const CORNERS_MOST: usize = 24;
 /// Cosine to the direction of a crack from which on a section does not turn back on it.
 const BACK: f64 = -0.3;
 /// Cracks in one section beyond the first.
-const CHAIN_MOST: usize = 3;
+const CHAIN_MOST: usize = 2;
 /// Holes and cracks beside one that a section goes on to: the nearest.
 const NEIGHBOURS: usize = 3;
 /// Rounds in which both ends of a section are chosen in turn.
