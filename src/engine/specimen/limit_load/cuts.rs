@@ -15,8 +15,6 @@ const BACK: f64 = -0.3;
 const CHAIN_MOST: usize = 2;
 /// Holes and cracks beside one that a section goes on to: the nearest.
 const NEIGHBOURS: usize = 3;
-/// Ways on from an end of a crack that are tried: those with the least of the material on them.
-const WAYS_MOST: usize = 12;
 /// Rounds in which both ends of a section are chosen in turn.
 const ROUNDS_MOST: usize = 4;
 
@@ -91,15 +89,7 @@ pub(super) fn of_plate(plate: &Plate<'_>) -> Vec<Cut> {
 /// Sections along a crack, each end of which is chosen in turn for the least of what `load` says of the whole.
 pub(super) fn of_crack(plate: &Plate<'_>, line: usize, load: &mut dyn FnMut(&Cut) -> f64) {
     let crack = &plate.cracks[line];
-    let [before, behind] = [false, true].map(|at_last| {
-        let mut ways = exits(plate, line, at_last, &mut vec![line]);
-        let left = |way: &Cut| way.ligaments.iter().map(|[a, b]| distance(*a, *b)).sum::<f64>();
-        if ways.len() > WAYS_MOST {
-            ways.sort_by(|a, b| left(a).total_cmp(&left(b)));
-            ways.truncate(WAYS_MOST);
-        }
-        ways
-    });
+    let [before, behind] = [false, true].map(|at_last| exits(plate, line, at_last, &mut vec![line]));
     if before.is_empty() || behind.is_empty() {
         return;
     }
