@@ -17,6 +17,7 @@ mod hard_plates;
 mod joined_cracks;
 mod limit_load;
 mod loads;
+mod mechanics_field;
 mod mirror_images;
 mod near_tip_fields;
 mod pressed_cracks;

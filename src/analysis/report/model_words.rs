@@ -143,7 +143,7 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
 
 /// The nodes of a case.
 fn of_nodes(case: &Case) -> Vec<Choice> {
-    let ElementFreeSettings { resolution, step_share } = case.model.element_free;
+    let ElementFreeSettings { resolution, step_share, .. } = case.model.element_free;
     let why = |key: &str| Some(if given(&case.echo, key) { "given in the case" } else { "chosen by the program" }.to_owned());
     let choice = |key, value: Value, why| Choice { key, value, why };
     vec![

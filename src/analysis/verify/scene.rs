@@ -209,7 +209,7 @@ impl Scene {
 /// K and T of the initial tips by the method of a case, as a prediction reads them.
 pub fn tips(case: &Case) -> Result<Vec<TipRecord>> {
     match case.model.method {
-        Method::ElementFreeGalerkin => element_free::initial_tips(case),
+        Method::ElementFreeGalerkin => element_free::initial_tips(case).map(|(tips, _)| tips),
         Method::Peridynamics | Method::Handbook => Ok(tip_field::initial_tips(case)?.tips),
     }
 }

@@ -1,7 +1,7 @@
 //! Keys of `[model]`, and what those of the element-free Galerkin method say.
 
 use serde::Deserialize;
-use toml::Value;
+use toml::{Table, Value};
 
 use super::Method;
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
@@ -19,6 +19,8 @@ use crate::specimen::geometry::bounding_box;
 const RUNGS: [(f64, f64, f64); 3] = [(1.0, 28.0, 0.15), (2.0, 20.0, 0.25), (f64::INFINITY, 14.0, 0.35)];
 /// Error that is asked for where the case does not say.
 const TOLERANCE_PERCENT: f64 = 2.0;
+/// Share of the error of a life that K may have: its cube or fourth power makes the life.
+const FACTOR_SHARE: f64 = 0.3;
 /// Nodes far from cracks beyond which a spacing was hardly meant for nodes.
 const NODES_USUAL: f64 = 5e3;
 /// Spacings in the room of a tip.
@@ -52,6 +54,17 @@ pub(super) const OF_NODES: &[&str] = &["nodes", "tolerance_percent", "basis", "e
 /// Keys that belong to points and bonds.
 pub(super) const OF_POINTS: &[&str] =
     &["symmetry", "bond_law", "kernel", "rotation", "surface_correction", "horizon_ratio", "lattice_angle_deg", "solver"];
+
+/// Makes `[model]` one of nodes: what it says of points goes, but for keys that were `asked` for beside the file.
+pub(super) fn on_nodes(table: &mut Table, asked: impl Fn(&str) -> bool) {
+    let model = table.entry("model").or_insert_with(|| Value::Table(Table::new()));
+    let (Some(model), name) = (model.as_table_mut(), Method::ElementFreeGalerkin.name()) else { return };
+    if model.get("method").and_then(Value::as_str) == Some(name) {
+        return;
+    }
+    model.retain(|key, _| key != "spacing_mm" && !OF_POINTS.contains(&key) || asked(&format!("model.{key}")));
+    model.insert("method".to_owned(), Value::String(name.to_owned()));
+}
 
 /// Refuses a key of `[model]` that does not go with the method.
 pub(super) fn refuse(model: &Value, keys: &[&str], problem: &str, remedy: &str) -> Result<()> {
@@ -109,11 +122,14 @@ impl ModelKeys {
                 far,
                 hold: HOLD,
                 in_radius: IN_RADIUS,
+                fineness: 1.0,
                 support: influence.unwrap_or(INFLUENCE[usize::from(basis == BasisKind::Quadratic)]),
                 basis,
                 enrichment: self.enrichment.unwrap_or(Enrichment::Tip),
             },
             step_share,
+            tolerance: tolerance / 100.0 * FACTOR_SHARE,
+            is_given: spacing_mm.is_some() || self.nodes.is_some(),
         })
     }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
+use super::model_keys::on_nodes;
 use super::{Case, Choices, LawSource, Method, boundaries, fatigue, law, law_keys, law_source, model, remove_law};
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
@@ -91,6 +92,13 @@ impl Case {
         Case::without_growth(table, &document.name, &document.folder).map_err(|error| document.locate(error))
     }
 
+    /// The same on nodes, whatever method the file has; its keys of points are left out.
+    pub fn plate_on_nodes(document: &Document) -> Result<Self> {
+        let mut nodes = document.clone();
+        on_nodes(&mut nodes.table, |key| document.is_overridden(key));
+        Self::plate_of(&nodes)
+    }
+
     /// As [`Case::from_table`], of a plate in which nothing need be able to grow: for its stress alone.
     pub fn without_growth(table: Table, name: &str, folder: &Folder) -> Result<Self> {
         refuse_scene(&table)?;
@@ -98,7 +106,7 @@ impl Case {
         let echo = sections.echo()?;
         let mut warnings = Vec::new();
         let mut choices = Choices::default();
-        let mut specimen = specimen::from_value(sections.required("specimen")?)?;
+        let mut specimen = specimen::from_value(sections.required("specimen")?, &mut warnings)?;
         let material = material::from_value(sections.required("material")?, folder, &mut warnings)?;
         let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
         let model = model::from_value(sections.optional("model"), &specimen, &material, &mut choices, &mut warnings)?;

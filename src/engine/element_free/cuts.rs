@@ -4,9 +4,12 @@
 //! place of the distance, `s = |x_i - x_tip| + |x_tip - x|` (diffraction: Organ, Fleming, Terry and Belytschko 1996, Comput. Mech.
 //! 18:225, with exponent 1), which leaves shape functions continuous ahead of the tip. An even number leaves both on one side of a
 //! crack that bends. A crack that starts at a hole is cut on to the middle of it, one at an edge on beyond it: supports would reach
-//! round its mouth through what is no material. A slot is parted along its middle line like a crack.
+//! round its mouth through what is no material. The walls of slots part like those of an outline, and the way
+//! leads round their corners.
 
-use crate::specimen::geometry::{along, bounding_box, direction, distance, distance_to_segment, edges, segments_touch, turn};
+use crate::specimen::geometry::{
+    along, bounding_box, direction, distance, distance_to_segment, edges, point_in_polygon, segments_touch, turn,
+};
 use crate::specimen::{Hole, Point, Specimen};
 
 /// Distance of a segment from the middle of a hole, in radii, within which the hole parts its ends.
@@ -29,9 +32,9 @@ pub struct Obstacles {
     /// Cracks and slots.
     pub cuts: Vec<Cut>,
     holes: Vec<Hole>,
-    /// Sides of an outline that is not convex.
+    /// Sides of slots, and of an outline that is not convex.
     edges: Vec<[Point; 2]>,
-    /// Its re-entrant corners.
+    /// Their re-entrant corners.
     corners: Vec<Point>,
 }
 
@@ -73,9 +76,13 @@ impl Obstacles {
         let n = outline.len();
         let before = |i: usize| outline[(i + n - 1) % n];
         let is_reentrant = |i: &usize| turn(before(*i), outline[*i], outline[(i + 1) % n]) < 0.0;
-        let corners: Vec<Point> = (0..n).filter(is_reentrant).map(|i| outline[i]).collect();
-        let edges = if corners.is_empty() { Vec::new() } else { edges(outline).map(|(a, b)| [a, b]).collect() };
-        Obstacles { cuts, holes: specimen.holes.clone(), edges, corners }
+        let mut corners: Vec<Point> = (0..n).filter(is_reentrant).map(|i| outline[i]).collect();
+        let mut walls = if corners.is_empty() { Vec::new() } else { edges(outline).map(|(a, b)| [a, b]).collect() };
+        for slot in &specimen.slots {
+            corners.extend(slot.corners().into_iter().filter(|corner| point_in_polygon(*corner, outline)));
+            walls.extend(edges(&slot.corners()).map(|(a, b)| [a, b]));
+        }
+        Obstacles { cuts, holes: specimen.holes.clone(), edges: walls, corners }
     }
 
     /// Those within `reach`, m, of a point.

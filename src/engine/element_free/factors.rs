@@ -8,8 +8,8 @@ use super::cells::EIGHT;
 use super::crack::TipAxes;
 use super::field::{Discretisation, Local};
 use crate::error::{Error, Result};
-use crate::specimen::Point;
 use crate::specimen::geometry::{along, circle_shares, direction, distance};
+use crate::specimen::{Point, Specimen};
 use crate::units::place_mm;
 use crate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
 
@@ -46,13 +46,46 @@ pub fn read(plate: &Discretisation, u: &[f64], tip: usize, room: f64, pressure: 
     let axes = &plate.axes[tip];
     let mut local = Local::default();
     let field = |at: Point| {
-        plate
-            .displacement(u, at, &mut local)
-            .map(|(_, gradient)| axes.gradient_to_axes(gradient))
-            .ok_or_else(|| Error::Mechanics(format!("no displacement is known at {}: too few nodes are in reach", place_mm(at))))
+        plate.displacement(u, at, &mut local).map(|(_, gradient)| axes.gradient_to_axes(gradient)).ok_or_else(|| unknown(at))
     };
     let radius = room.min(RADIUS_SPACINGS * axes.spacing);
     integral(axes, plate.elasticity(), radius, pressure, field)
+}
+
+/// Places per spacing at which flanks are looked at.
+const LOOKS: f64 = 2.0;
+
+/// Where flanks of the cracks `lines` overlap most, and by what share of the largest displacement between flanks; `None` where none do.
+/// Errors: [`Error::Mechanics`] where nodes in reach do not span the basis.
+pub fn overlap(specimen: &Specimen, plate: &Discretisation, lines: usize, u: &[f64]) -> Result<Option<(Point, f64)>> {
+    let mut local = Local::default();
+    let (mut largest, mut least) = (0.0_f64, None);
+    for piece in plate.obstacles.cuts.iter().take(lines).flat_map(|cut| cut.points.windows(2)) {
+        let ([x, y], length) = (direction(piece[0], piece[1]), distance(piece[0], piece[1]));
+        let spacing = |at: Point| plate.grid.spacing(plate.grid.leaf(at));
+        let count = (LOOKS * length / spacing(piece[0]).min(spacing(piece[1]))).ceil().clamp(2.0, 1e3) as usize;
+        for k in 0..count {
+            let at = along(piece[0], piece[1], (k as f64 + 0.5) / count as f64);
+            let step = BESIDE * spacing(at);
+            let sides = [[at[0] - step * y, at[1] + step * x], [at[0] + step * y, at[1] - step * x]];
+            if !sides.iter().all(|side| specimen.contains(*side)) {
+                continue;
+            }
+            let [left, right] = sides.map(|side| plate.displacement(u, side, &mut local).map(|(u, _)| u));
+            let (Some(left), Some(right)) = (left, right) else { return Err(unknown(at)) };
+            let between = [left[0] - right[0], left[1] - right[1]];
+            let opening = between[1] * x - between[0] * y;
+            largest = largest.max(between[0].hypot(between[1]));
+            if least.is_none_or(|(_, least)| opening < least) {
+                least = Some((at, opening));
+            }
+        }
+    }
+    Ok(least.filter(|(_, opening)| *opening < 0.0).map(|(at, opening)| (at, -opening / largest)))
+}
+
+fn unknown(at: Point) -> Error {
+    Error::Mechanics(format!("no displacement is known at {}: too few nodes are in reach", place_mm(at)))
 }
 
 /// The integral over a ring of this outer radius, m, around a tip, of a displacement with the gradient `field` at a point.

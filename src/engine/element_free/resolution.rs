@@ -1,15 +1,18 @@
 //! How fine the nodes are, and where.
 //!
 //! The spacing is `far` but for halvings: at a tip down to the `hold`-th part of its room, the least of its distance from rims and other
-//! cracks, the length of its crack (half of it with two tips) and its growth since a kink; around holes and concave arcs of the
-//! outline to R/2.4; across every ligament to a third of it.
+//! cracks, the length of its crack (half of it with two tips), its growth since a kink and the way over which it is straight; around holes and concave arcs of the
+//! outline to R/2.4; across every ligament to a third of it, between sides of the plate that face each other to a sixth; at sharp re-entrant
+//! corners to an eighth of the shorter side, or of the way to a tip.
 
 use super::basis::{BasisKind, Enrichment};
 use super::crack::Tip;
 use super::grid::{Grid, Source};
-use super::rims::stretches;
+use super::rims::{Stretch, stretches};
 use crate::error::{Error, Result};
-use crate::specimen::geometry::{along, bounding_box, circle_shares, direction, distance, edges, meeting_share, segments_touch};
+use crate::specimen::geometry::{
+    along, bounding_box, circle_shares, direction, distance, edges, meeting_share, point_in_polygon, segments_touch,
+};
 use crate::specimen::{CrackLine, Point, Specimen};
 use crate::units::{MM, place_mm};
 
@@ -24,8 +27,16 @@ pub const IN_RADIUS: f64 = 2.4;
 pub const ARC_TURN: f64 = 0.45;
 /// Reach of rims and ligaments, in spacings of the coarser level.
 const RIM_REACH: f64 = 1.5;
+/// Reach of a sharp corner, in spacings of the coarser level: neighbours differ by one level.
+const CORNER_REACH: f64 = 2.5;
 /// Spacings across a ligament.
 const ACROSS_LIGAMENT: f64 = 3.0;
+/// Spacings across a member, which may be bent: between sides of the plate that face each other.
+const ACROSS_MEMBER: f64 = 6.0;
+/// Cosine between the ways into the material from two sides up to which they face each other.
+const FACING: f64 = -0.8;
+/// Spacings at a sharp re-entrant corner in the way to the nearest tip, and in the shorter of its sides.
+const AT_CORNER: f64 = 8.0;
 /// Gap over the way along a crack to its mouth below which it is the wedge between the crack and the rim that it starts from: no load
 /// goes there.
 const WEDGE: f64 = 0.7;
@@ -45,6 +56,8 @@ pub struct Resolution {
     pub hold: f64,
     /// Spacings in the radius of a hole or fillet.
     pub in_radius: f64,
+    /// Spacings across ligaments, members and at corners over those that are usual.
+    pub fineness: f64,
     /// Radius of influence of a node, in its spacings.
     pub support: f64,
     /// Polynomials.
@@ -54,6 +67,12 @@ pub struct Resolution {
 }
 
 impl Resolution {
+    /// Everything finer by a factor.
+    pub fn finer(&self, by: f64) -> Self {
+        let Resolution { far, hold, in_radius, fineness, .. } = *self;
+        Resolution { far: far / by, hold: by * hold, in_radius: by * in_radius, fineness: by * fineness, ..*self }
+    }
+
     /// Cells of a plate with these cracks, and the spacing asked for at every tip, m.
     /// Errors: [`Error::Mechanics`] where the plate would have too many cells.
     pub fn grid(&self, specimen: &Specimen, lines: &[CrackLine], tips: &[Tip]) -> Result<(Grid, Vec<f64>)> {
@@ -70,6 +89,7 @@ impl Resolution {
             sources.push(Source::point(at, spacing, TIP_REACH));
         }
         sources.extend(self.of_rims(specimen));
+        sources.extend(self.of_corners(specimen, lines, tips));
         sources.extend(self.of_cracks(specimen, lines, tips));
         let grid = Grid::new(bounds, self.far, &sources, CELLS_MOST);
         let finest = sources.iter().min_by(|a, b| a.spacing.total_cmp(&b.spacing));
@@ -90,7 +110,8 @@ impl Resolution {
         let mut sources: Vec<Source> = holes.collect();
         sources.extend(self.of_arcs(&specimen.outline));
         let rims = stretches(specimen);
-        let reach = ACROSS_LIGAMENT * self.far;
+        let [across_ligament, across_member] = [ACROSS_LIGAMENT, ACROSS_MEMBER].map(|across| self.fineness * across);
+        let reach = across_member * self.far;
         let walls: Vec<[Point; 2]> = edges(&specimen.outline)
             .chain(specimen.slots.iter().flat_map(|slot| edges(&slot.corners()).collect::<Vec<_>>()))
             .map(|(a, b)| [a, b])
@@ -105,18 +126,44 @@ impl Resolution {
                 if !specimen.contains(start) {
                     continue;
                 }
-                let straight = walls.iter().filter(|[a, b]| segments_touch(start, to, *a, *b));
-                let straight = straight.filter_map(|[a, b]| meeting_share(start, to, *a, *b));
+                let straight = walls.iter().filter(|[a, b]| segments_touch(start, to, *a, *b)).filter_map(|[a, b]| {
+                    let [u, v] = direction(*a, *b);
+                    let is_member = matches!(stretch, Stretch::Straight(_)) && (x * v - y * u).abs() > -FACING;
+                    Some((meeting_share(start, to, *a, *b)?, if is_member { across_member } else { across_ligament }))
+                });
                 let round = specimen.holes.iter().filter_map(|hole| Some(circle_shares(start, to, hole.centre, hole.radius)?[0]));
-                let nearest = straight.chain(round).filter(|share| *share > 0.0).fold(2.0, f64::min);
-                if nearest <= 1.0 {
-                    let width = nearest * reach;
+                let met = straight.chain(round.map(|share| (share, across_ligament)));
+                let nearest = met.filter(|(share, _)| *share > 0.0).min_by(|a, b| a.0.total_cmp(&b.0));
+                if let Some((share, across)) = nearest {
+                    let width = share * reach;
                     let at = [from[0] + 0.5 * width * x, from[1] + 0.5 * width * y];
-                    sources.push(Source::point(at, width / ACROSS_LIGAMENT, RIM_REACH));
+                    sources.push(Source::point(at, width / across, RIM_REACH));
                 }
             }
         }
         sources
+    }
+
+    /// Sharp re-entrant corners of the outline, of slots and of cracks with bends, where stress grows without bound.
+    fn of_corners(&self, specimen: &Specimen, lines: &[CrackLine], tips: &[Tip]) -> Vec<Source> {
+        let outline = &specimen.outline;
+        let n = outline.len();
+        let of_outline = (0..n).filter_map(|k| {
+            let [before, at, after] = [outline[(k + n - 1) % n], outline[k], outline[(k + 1) % n]];
+            (turn_at(before, at, after) < -ARC_TURN).then(|| (at, distance(before, at).min(distance(at, after))))
+        });
+        let of_slots = specimen.slots.iter().flat_map(|slot| slot.corners().map(|at| (at, slot.width)));
+        let of_cracks = lines.iter().flat_map(|line| line.points.windows(3)).filter_map(|corner| {
+            let [before, at, after] = [corner[0], corner[1], corner[2]];
+            (turn_at(before, at, after).abs() > ARC_TURN).then(|| (at, distance(before, at).min(distance(at, after))))
+        });
+        let inside = of_outline.chain(of_slots.filter(|(at, _)| point_in_polygon(*at, outline))).chain(of_cracks);
+        let at_corner = |(at, side): (Point, f64)| {
+            let to_tip = |tip: &Tip| distance(at, lines[tip.end.line].end(tip.end.at_last));
+            let size = tips.iter().map(to_tip).fold(side, f64::min);
+            Source::point(at, size / (self.fineness * AT_CORNER), CORNER_REACH)
+        };
+        inside.map(at_corner).collect()
     }
 
     /// Concave arcs of the outline by their radius: the length of the shorter side at a corner over its turn.
@@ -144,7 +191,8 @@ impl Resolution {
     fn of_cracks(&self, specimen: &Specimen, lines: &[CrackLine], tips: &[Tip]) -> Vec<Source> {
         let mut sources = Vec::new();
         let rims = stretches(specimen);
-        let reach = ACROSS_LIGAMENT * self.far;
+        let across = self.fineness * ACROSS_LIGAMENT;
+        let reach = across * self.far;
         for (own, line) in lines.iter().enumerate() {
             let is_tip = |at_last: bool| tips.iter().any(|tip| tip.end.line == own && tip.end.at_last == at_last);
             let mouths: Vec<(bool, Point)> =
@@ -173,7 +221,7 @@ impl Resolution {
                     if narrow >= reach {
                         continue;
                     }
-                    sources.push(Source::point(along(a, b, middle), narrow / ACROSS_LIGAMENT, RIM_REACH));
+                    sources.push(Source::point(along(a, b, middle), narrow / across, RIM_REACH));
                     let stretch = (to - from) * length;
                     // Beside a line that crosses, the gap goes to nothing: what is fine there helps nobody.
                     let is_alongside = || gap(from).min(gap(to)) > ALONGSIDE * narrow;
@@ -209,7 +257,8 @@ pub fn turn_at(before: Point, at: Point, after: Point) -> f64 {
 pub fn room(specimen: &Specimen, lines: &[CrackLine], tip: &Tip) -> f64 {
     let at = lines[tip.end.line].end(tip.end.at_last);
     let others = lines.iter().enumerate().filter(|(other, _)| *other != tip.end.line).map(|(_, line)| line.distance(at));
-    others.fold(specimen.rim_distance(at), f64::min).min(tip.length)
+    let straight = lines[tip.end.line].straight_way(tip.end.at_last);
+    others.fold(specimen.rim_distance(at), f64::min).min(tip.length).min(straight)
 }
 
 /// How fine nodes are and how long steps of cracks are, of a case.
@@ -217,6 +266,10 @@ pub fn room(specimen: &Specimen, lines: &[CrackLine], tip: &Tip) -> f64 {
 pub struct ElementFreeSettings {
     /// Nodes.
     pub resolution: Resolution,
+    /// Change of K of the initial tips up to which they need not be finer.
+    pub tolerance: f64,
+    /// Whether the case says how fine they are.
+    pub is_given: bool,
     /// Growth of a tip in an increment at the most, over the length of its crack and the room ahead of it.
     pub step_share: f64,
 }

@@ -8,6 +8,8 @@ use crate::specimen::{Hole, Point, Specimen};
 const SIDES_IN_SPACING: f64 = 4.0;
 /// Sides of a hole at the least.
 const SIDES_LEAST: usize = 32;
+/// Places at which a stretch is asked for its largest spacing.
+const LOOKS: usize = 32;
 
 /// A stretch of rim that nodes are spread on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,11 +67,10 @@ impl Stretch {
         let mut shares = vec![0.0];
         let whole = self.length();
         let mut first = pieces_least.max(1);
-        let largest = |first: usize| {
-            let of_piece = |k: usize| self.spacing(grid, k as f64 / first as f64);
-            (0..=first).map(of_piece).fold(0.0, f64::max)
-        };
-        first = first.max((whole / (share_of_spacing * largest(first)) - 1e-6).ceil() as usize);
+        // Both ends may lie where the grid is finest.
+        let looks = first.max(LOOKS);
+        let largest = (0..=looks).map(|k| self.spacing(grid, k as f64 / looks as f64)).fold(0.0, f64::max);
+        first = first.max((whole / (share_of_spacing * largest) - 1e-6).ceil() as usize);
         for k in 0..first {
             self.divide(grid, [k, k + 1].map(|k| k as f64 / first as f64), share_of_spacing, &mut shares);
         }

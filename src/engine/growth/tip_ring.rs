@@ -57,7 +57,9 @@ impl TipRings<'_> {
 
     /// Outer radius that the surroundings leave, m.
     fn radius(&self, lines: &[CrackLine], end: LineEnd) -> f64 {
-        self.geometry.radius(self.body, lines, end, self.active, RING_HORIZONS * self.body.horizon())
+        let straight = lines[end.line].straight_way(end.at_last);
+        let wanted = (RING_HORIZONS * self.body.horizon()).min(straight.max(RING_HORIZONS_MIN * self.body.horizon()));
+        self.geometry.radius(self.body, lines, end, self.active, wanted)
     }
 }
 

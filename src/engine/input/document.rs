@@ -66,6 +66,11 @@ impl Document {
         Ok(document)
     }
 
+    /// Whether a key has its value from an override.
+    pub fn is_overridden(&self, key: &str) -> bool {
+        self.overridden.iter().any(|set| key.starts_with(set.as_str()))
+    }
+
     /// Names file and line in an error about a key of this document.
     pub fn locate(&self, error: Error) -> Error {
         let Error::Input(mut trouble) = error else { return error };
@@ -75,7 +80,7 @@ impl Document {
         }
         trouble.file.clone_from(&self.file);
         if let Some(key) = &trouble.key {
-            if self.overridden.iter().any(|set| key.starts_with(set.as_str())) {
+            if self.is_overridden(key) {
                 trouble.remedy.push_str(" (value given by --set)");
             } else if trouble.line.is_none() {
                 trouble.line = line_of_key(&self.text, key);

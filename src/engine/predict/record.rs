@@ -5,9 +5,10 @@ use std::time::Instant;
 
 use super::checkpoint::{self, Checkpoint};
 use super::snapshot::Snapshots;
-use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone};
-use crate::case::Case;
+use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone, tip_factors};
+use crate::case::{Case, Method};
 use crate::error::{Error, Result};
+use crate::fatigue::Driver;
 use crate::growth::{CrackGrowth, GrowthStatus, plate};
 use crate::levels::PointGrid;
 use crate::units::{MPA, MPA_SQRT_M};
@@ -173,6 +174,8 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve
     warnings.extend(growth.law().and_then(|law| laws::beyond_warning(case, law, curve)));
     warnings.extend(plastic_zone::warnings(case, curve));
     warnings.extend(unstable_path(curve));
+    let is_on_points = case.model.method == Method::Peridynamics && case.fatigue.driver == Driver::TipField;
+    warnings.extend(curve.first().filter(|_| is_on_points).and_then(|row| tip_factors::beside_nodes(case, &row.tips)));
     warnings
 }
 

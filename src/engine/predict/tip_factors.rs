@@ -15,11 +15,13 @@ use std::time::Instant;
 use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::crack_tip::TipState;
+use crate::growth::cross_check::largest_difference;
 use crate::growth::element_free;
 use crate::growth::record::TipRecord;
 use crate::growth::tip_field::{InitialTips, initial_tips};
 use crate::specimen::TipSeed;
 use crate::specimen::handbook::handbook;
+use crate::units::MPA_SQRT_M;
 
 crate::kinds! {
     /// Ways to the stress intensity factors.
@@ -53,41 +55,54 @@ fn sharp(case: &Case) -> Case {
     sharp
 }
 
-/// K of every sharp tip off its ring, with T: those of the first row of a prediction driven by K.
-fn by_ring(case: &Case) -> Result<Vec<MethodResult>> {
+/// K of every sharp tip off its ring, with T: those of the first row of a prediction driven by K; `alone` where nodes are not asked, too.
+fn by_ring(case: &Case, alone: bool) -> Result<Vec<MethodResult>> {
     let started = Instant::now();
-    let InitialTips { tips, warnings, .. } = initial_tips(&sharp(case))?;
-    // What is to be said of several tips is said once.
-    let mut warnings = Some(warnings.join("; ")).filter(|warnings| !warnings.is_empty());
-    Ok(of_tips(StressIntensityMethod::Ring, started, &tips, |_| warnings.take()))
+    let InitialTips { tips, mut warnings, .. } = initial_tips(&sharp(case))?;
+    if alone {
+        warnings.extend(beside_nodes(case, &tips));
+    }
+    Ok(of_tips(StressIntensityMethod::Ring, started, &tips, warnings))
+}
+
+/// Difference from K on nodes, over K, from which points are not fine enough.
+const BESIDE_NODES: f64 = 0.02;
+
+/// What nodes say of K of the initial tips of a plate on points, where that is something else. Nothing where nodes cannot say it, such as
+/// of flanks in contact.
+pub(super) fn beside_nodes(case: &Case, own: &[TipRecord]) -> Option<String> {
+    let factors = |tips: &[TipRecord]| tips.iter().map(|tip| tip.factors).collect::<Option<Vec<_>>>();
+    let (tips, _) = element_free::initial_tips(&sharp(case)).ok()?;
+    let (own, nodes) = (factors(own)?, factors(&tips)?);
+    let (tip, share) = largest_difference(&own, &nodes);
+    (share > BESIDE_NODES).then(|| {
+        let [[k_i, k_ii], [of_nodes_i, of_nodes_ii]] = [own[tip], nodes[tip]].map(|factors| factors.map(|k| k / MPA_SQRT_M));
+        format!(
+            "K of tip {tip} is {:.1} % off that on nodes ({k_i:.3} and {k_ii:.3} for {of_nodes_i:.3} and {of_nodes_ii:.3} MPa√m): give a \
+             smaller model.spacing_mm, or use model.method = \"element_free_galerkin\"",
+            100.0 * share
+        )
+    })
 }
 
 /// K of every sharp tip and T on a plate of nodes.
 fn by_nodes(case: &Case) -> Result<Vec<MethodResult>> {
     let started = Instant::now();
-    let tips = element_free::initial_tips(&sharp(case))?;
-    let note = |is_closed: bool| is_closed.then(|| "faces overlap: nodes know no contact".to_owned());
-    Ok(of_tips(StressIntensityMethod::ElementFreeGalerkin, started, &tips, note))
+    let (tips, warnings) = element_free::initial_tips(&sharp(case))?;
+    Ok(of_tips(StressIntensityMethod::ElementFreeGalerkin, started, &tips, warnings))
 }
 
-/// What the tips of a first row say, with a note on every one that depends on whether it is closed.
-fn of_tips(
-    method: StressIntensityMethod,
-    started: Instant,
-    tips: &[TipRecord],
-    mut note: impl FnMut(bool) -> Option<String>,
-) -> Vec<MethodResult> {
+/// What the tips of a first row say. What is to be said of several tips is said once.
+fn of_tips(method: StressIntensityMethod, started: Instant, tips: &[TipRecord], warnings: Vec<String>) -> Vec<MethodResult> {
+    let mut note = Some(warnings.join("; ")).filter(|warnings| !warnings.is_empty());
     let wall_s = started.elapsed().as_secs_f64() / tips.len().max(1) as f64;
-    let result = |tip: &TipRecord| {
-        let is_closed = tip.state == TipState::Closed;
-        MethodResult {
-            method,
-            intensity: tip.factors.map(Intensity::both).unwrap_or_default(),
-            t_stress: tip.t_stress,
-            note: note(is_closed),
-            is_closed,
-            wall_s,
-        }
+    let result = |tip: &TipRecord| MethodResult {
+        method,
+        intensity: tip.factors.map(Intensity::both).unwrap_or_default(),
+        t_stress: tip.t_stress,
+        note: note.take(),
+        is_closed: tip.state == TipState::Closed,
+        wall_s,
     };
     tips.iter().map(result).collect()
 }
@@ -163,7 +178,7 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
         .collect();
     for &method in methods {
         let columns = match method {
-            StressIntensityMethod::Ring => by_ring(case)?,
+            StressIntensityMethod::Ring => by_ring(case, !methods.contains(&StressIntensityMethod::ElementFreeGalerkin))?,
             // Other looks at K: what they cannot tell does not hide the first.
             StressIntensityMethod::ElementFreeGalerkin => by_nodes(case).or_else(|error| match methods {
                 [StressIntensityMethod::ElementFreeGalerkin] => Err(error),

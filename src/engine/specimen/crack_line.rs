@@ -6,6 +6,9 @@ use super::geometry::{direction, distance, distance_to_segment, segments_touch};
 /// Share of the last piece that is kept where an end is drawn back over it.
 const STUB: f64 = 0.1;
 
+/// Turn of a crack, rad, up to which it is straight for what is read around its tip: a fifth of the radius of an arc.
+pub const STRAIGHT_TURN: f64 = 0.2;
+
 /// A crack from one end to the other, m; either end may be a tip.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct CrackLine {
@@ -49,6 +52,24 @@ impl CrackLine {
     pub fn direction(&self, at_last: bool) -> Point {
         let n = self.points.len();
         if at_last { direction(self.points[n - 2], self.points[n - 1]) } else { direction(self.points[1], self.points[0]) }
+    }
+
+    /// Way back from one of its ends along it as far as its direction stays within [`STRAIGHT_TURN`] of that at the end, m; infinite where
+    /// all of it does.
+    pub fn straight_way(&self, at_last: bool) -> f64 {
+        let [x, y] = self.direction(at_last);
+        let pieces: Vec<[Point; 2]> = self.pieces().collect();
+        let back: Vec<[Point; 2]> =
+            if at_last { pieces.into_iter().rev().collect() } else { pieces.into_iter().map(|[a, b]| [b, a]).collect() };
+        let mut way = 0.0;
+        for [a, b] in back {
+            let [u, v] = direction(a, b);
+            if (x * v - y * u).atan2(x * u + y * v).abs() > STRAIGHT_TURN {
+                return way;
+            }
+            way += distance(a, b);
+        }
+        f64::INFINITY
     }
 
     /// The line without its corners nearer than `least` to one of its ends, m: a piece that short shows no direction.

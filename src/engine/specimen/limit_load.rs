@@ -259,27 +259,38 @@ fn plastic(pieces: &[Piece], normal: f64, moment: Option<f64>) -> Option<f64> {
     let all = |axis: f64| {
         pieces.iter().map(|piece| piece.resultants(axis)).fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]])
     };
-    let (low, high) =
-        pieces.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), piece| (a.min(piece.from), b.max(piece.to)));
+    let low = pieces.iter().fold(f64::INFINITY, |least, piece| least.min(piece.from));
     if pieces.is_empty() {
         // Nothing is left.
         return (normal != 0.0 || moment.is_some_and(|moment| moment != 0.0)).then_some(0.0);
     }
     let Some(moment) = moment else { return Some(all(low)[0] / normal.abs()) };
-    let (mut low, mut high) = (low, high);
     let off = |axis: f64| {
         let [force, turn] = all(axis);
         force * moment - turn * normal
     };
+    let mut ends: Vec<f64> = pieces.iter().flat_map(|piece| [piece.from, piece.to]).collect();
+    ends.sort_by(f64::total_cmp);
     let at_low = off(low);
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if (off(middle) > 0.0) == (at_low > 0.0) { low = middle } else { high = middle }
-    }
-    let [force, turn] = all(if at_low == 0.0 { low } else { 0.5 * (low + high) });
+    let beyond = ends.iter().position(|end| (off(*end) > 0.0) != (at_low > 0.0)).unwrap_or(ends.len() - 1);
+    let axis = if at_low == 0.0 {
+        low
+    } else {
+        // From the end of a piece on, `off` is of second degree in the way t: G N t² + 2 G (N s - M) t + off(s), G = Σ g of the pieces there.
+        let (start, length) = (ends[beyond.max(1) - 1], ends[beyond] - ends[beyond.max(1) - 1]);
+        let middle = start + 0.5 * length;
+        let strength: f64 = pieces.iter().filter(|p| p.from < middle && middle < p.to).map(|piece| piece.strength).sum();
+        let (a, b, c) = (strength * normal, strength * (normal * start - moment), off(start));
+        let root = (b * b - a * c).max(0.0).sqrt();
+        let q = if b > 0.0 { -b - root } else { -b + root };
+        let ways = [q / a, c / q].into_iter().filter(|t| t.is_finite());
+        start
+            + ways
+                .min_by(|s, t| (s - s.clamp(0.0, length)).abs().total_cmp(&(t - t.clamp(0.0, length)).abs()))
+                .unwrap_or(0.0)
+                .clamp(0.0, length)
+    };
+    let [force, turn] = all(axis);
     // Whichever of both is large: a length turns force into moment.
     let reach = pieces.iter().map(|piece| piece.to.abs().max(piece.from.abs())).fold(0.0, f64::max);
     let size = |force: f64, turn: f64| (force * reach).hypot(turn);

@@ -277,6 +277,13 @@ impl Specimen {
         (0..self.tips.len()).filter_map(gap).fold(f64::INFINITY, f64::min)
     }
 
+    /// Least way from the tip of a crack over which that is straight, m ([`CrackLine::straight_way`]).
+    pub fn least_straight_way(&self) -> f64 {
+        let lines = self.crack_lines();
+        let ends = (0..self.tips.len()).filter_map(|tip| self.line_end(tip));
+        ends.map(|end| lines[end.line].straight_way(end.at_last)).fold(f64::INFINITY, f64::min)
+    }
+
     /// Area of the material, m²: outline less holes and slots.
     pub fn area(&self) -> f64 {
         let holes: f64 = self.holes.iter().map(|hole| std::f64::consts::PI * hole.radius * hole.radius).sum();

@@ -1,8 +1,8 @@
 //! Whether holes, slots and cracks of a plate fit into it and beside each other, and where cracks can grow.
 
 use super::geometry::{
-    along, circle_shares, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share, point_in_polygon,
-    segments_touch,
+    along, circle_shares, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share,
+    nearest_of_segment, point_in_polygon, segments_touch,
 };
 use super::{Crack, CrackLine, Hole, Point, Slot, Specimen, TipSeed};
 use crate::error::{Result, input_missing};
@@ -10,6 +10,11 @@ use crate::units::MM;
 
 /// What lies closer than this counts as touching, m: far below any spacing, far above round-off.
 const TOUCH: f64 = 1e-7;
+/// Distance of an end of a crack from a rim, over the length of the crack, up to which it is its mouth: what is left there breaks within
+/// a few cycles.
+const MOUTH: f64 = 0.01;
+/// Way ahead, over the distance from a rim, within which a crack goes on to it straight.
+const AHEAD: f64 = 3.0;
 
 /// A point in words, mm.
 fn words(p: Point) -> String {
@@ -89,15 +94,21 @@ pub(super) fn place_slots(specimen: &mut Specimen, slots: Vec<Slot>) -> Result<V
 }
 
 /// Puts the cracks in, lines with all their corners, cut off where they leave the material, and then all tips: cracks first, slots after
-/// them. An end that lies on another crack is no tip.
-pub(super) fn place_cracks(specimen: &mut Specimen, paths: Vec<Vec<Point>>, mut slot_seeds: Vec<TipSeed>) -> Result<()> {
+/// them. An end that lies on another crack is no tip. What was done to an end, and what passes a hole closely, goes into `notes`.
+pub(super) fn place_cracks(
+    specimen: &mut Specimen,
+    paths: Vec<Vec<Point>>,
+    mut slot_seeds: Vec<TipSeed>,
+    notes: &mut Vec<String>,
+) -> Result<()> {
     let mut ends: Vec<TipSeed> = Vec::new();
     for (i, path) in with_shared_ends_joined(paths) {
         let key = format!("specimen.cracks[{i}]");
         let [Some(&asked_from), Some(&asked_to)] = [path.first(), path.last()] else { continue };
         let (second, last_but_one) = (path[1], path[path.len() - 2]);
-        let (from, from_open) = trimmed_end(specimen, asked_from, second, &key)?;
-        let (to, to_open) = trimmed_end(specimen, asked_to, last_but_one, &key)?;
+        let length = path.windows(2).map(|piece| distance(piece[0], piece[1])).sum();
+        let (from, from_open) = trimmed_end(specimen, [asked_from, second], length, &key, notes)?;
+        let (to, to_open) = trimmed_end(specimen, [asked_to, last_but_one], length, &key, notes)?;
         let mut corners = path.clone();
         corners[0] = from;
         if let Some(last) = corners.last_mut() {
@@ -145,7 +156,8 @@ pub(super) fn place_cracks(specimen: &mut Specimen, paths: Vec<Vec<Point>>, mut 
     for (i, line) in lines.iter().enumerate() {
         let is_joined =
             || lines.iter().enumerate().any(|(other, crack)| other != i && line.pieces().any(|[a, b]| crack.meets(a, b, TOUCH)));
-        if specimen.tips_of(line) == 0 && !is_joined() {
+        // A cut from rim to rim, such as cracks leave that have linked two holes, does not grow; other tips do.
+        if specimen.tips_of(line) == 0 && specimen.tips.is_empty() && !is_joined() {
             let remedy = "end it inside the plate";
             return Err(input_missing(
                 &format!("specimen.cracks[{i}]"),
@@ -154,7 +166,30 @@ pub(super) fn place_cracks(specimen: &mut Specimen, paths: Vec<Vec<Point>>, mut 
             ));
         }
     }
+    notes.extend(closely_passed(specimen, &lines));
     Ok(())
+}
+
+/// Holes that a crack passes, not with its ends, nearer than a hundredth of its length.
+fn closely_passed(specimen: &Specimen, lines: &[CrackLine]) -> Vec<String> {
+    let passed = |(i, line): (usize, &CrackLine)| {
+        let near = |(j, hole): (usize, &Hole)| {
+            let gap = line.distance(hole.centre) - hole.radius;
+            let end = [false, true]
+                .iter()
+                .map(|&at_last| distance(line.end(at_last), hole.centre) - hole.radius)
+                .fold(f64::INFINITY, f64::min);
+            (gap <= MOUTH * line.length() && end > MOUTH * line.length()).then(|| {
+                format!(
+                    "specimen.cracks[{i}] passes holes[{j}] at {} mm: what is left between them is finer than nodes or points resolve, and \
+                     K may err by a large share; end the crack in the hole, and begin another beyond it",
+                    round(gap.max(0.0))
+                )
+            })
+        };
+        specimen.holes.iter().enumerate().filter_map(near).collect::<Vec<_>>()
+    };
+    lines.iter().enumerate().flat_map(passed).collect()
 }
 
 /// Paths with their numbers; two that share an end, where no third comes, are one crack with a bend there.
@@ -198,8 +233,14 @@ fn is_overlap(a: Crack, b: Crack) -> bool {
     off_s.abs() < TOUCH && off_t.abs() < TOUCH && s.min(t).max(0.0) + TOUCH < s.max(t).min(distance(a.from, a.to))
 }
 
-/// Where a crack really ends, and whether that end is open (on an edge, in a hole or in a slot) and so not a tip.
-fn trimmed_end(specimen: &Specimen, end: Point, other: Point, key: &str) -> Result<(Point, bool)> {
+/// Where a crack of this length, m, really ends, and whether that end is open (on an edge, in a hole or in a slot) and so not a tip.
+fn trimmed_end(
+    specimen: &Specimen,
+    [end, other]: [Point; 2],
+    length: f64,
+    key: &str,
+    notes: &mut Vec<String>,
+) -> Result<(Point, bool)> {
     if let Some(hole) = specimen.holes.iter().find(|hole| distance(end, hole.centre) <= hole.radius + TOUCH) {
         return Ok((leave_hole(hole, end, other), true));
     }
@@ -212,10 +253,45 @@ fn trimmed_end(specimen: &Specimen, end: Point, other: Point, key: &str) -> Resu
         return Ok((end, true));
     }
     if !point_in_polygon(end, &specimen.outline) {
-        let remedy = "end it inside the plate or exactly on its edge";
-        return Err(input_missing(key, format!("ends outside the plate at {}", words(end)), remedy));
+        let shares = edges(&specimen.outline).filter_map(|(a, b)| share_of_meeting(end, other, a, b));
+        let Some(share) = shares.min_by(f64::total_cmp) else {
+            let remedy = "end it inside the plate or on its edge";
+            return Err(input_missing(key, format!("ends outside the plate at {}", words(end)), remedy));
+        };
+        let edge = along(end, other, share);
+        notes.push(format!("{key} ends outside the plate at {}: cut off at the edge, at {}", words(end), words(edge)));
+        return Ok((edge, true));
     }
-    Ok((end, false))
+    let Some((gap, mouth)) = mouth(specimen, end, other).filter(|(gap, _)| *gap <= MOUTH * length) else {
+        return Ok((end, false));
+    };
+    notes.push(format!(
+        "{key} ends {} mm from a rim, less than a hundredth of its length ({} mm): it was taken to start there, at {}",
+        round(gap),
+        round(length),
+        words(mouth)
+    ));
+    Ok((mouth, true))
+}
+
+/// Distance of an end of a crack, coming from `other`, from the nearest rim, m, and where it meets that: straight ahead, or at the nearest place.
+fn mouth(specimen: &Specimen, end: Point, other: Point) -> Option<(f64, Point)> {
+    let slots: Vec<[Point; 4]> = specimen.slots.iter().map(Slot::corners).collect();
+    let walls: Vec<(Point, Point)> = edges(&specimen.outline).chain(slots.iter().flat_map(|corners| edges(corners))).collect();
+    let of_walls = walls.iter().map(|(a, b)| nearest_of_segment(end, *a, *b));
+    let of_holes = specimen.holes.iter().map(|hole| along(hole.centre, end, hole.radius / distance(hole.centre, end)));
+    let nearest = of_walls.chain(of_holes).min_by(|a, b| distance(end, *a).total_cmp(&distance(end, *b)))?;
+    let gap = distance(end, nearest);
+    let ahead = along(end, other, -AHEAD * gap / distance(end, other));
+    let of_walls = walls.iter().filter_map(|(a, b)| share_of_meeting(end, ahead, *a, *b));
+    let of_holes = specimen.holes.iter().filter_map(|hole| Some(circle_shares(end, ahead, hole.centre, hole.radius)?[0]));
+    let share = of_walls.chain(of_holes).filter(|share| (0.0..=1.0).contains(share)).min_by(f64::total_cmp);
+    Some((gap, share.map_or(nearest, |share| along(end, ahead, share))))
+}
+
+/// Share of the way from `from` to `to` at which it meets the segment ab.
+fn share_of_meeting(from: Point, to: Point, a: Point, b: Point) -> Option<f64> {
+    segments_touch(from, to, a, b).then(|| meeting_share(from, to, a, b))?
 }
 
 /// Point where the way from `end`, in the hole, to `other` leaves the circle.
@@ -226,10 +302,7 @@ fn leave_hole(hole: &Hole, end: Point, other: Point) -> Point {
 
 /// Point where the way from `end`, in the slot, to `other` leaves the slot.
 fn leave_slot(slot: &Slot, end: Point, other: Point) -> Point {
-    let share = edges(&slot.corners())
-        .filter(|(a, b)| segments_touch(end, other, *a, *b))
-        .filter_map(|(a, b)| meeting_share(end, other, a, b))
-        .fold(0.0, f64::max);
+    let share = edges(&slot.corners()).filter_map(|(a, b)| share_of_meeting(end, other, a, b)).fold(0.0, f64::max);
     along(end, other, share.min(1.0))
 }
 

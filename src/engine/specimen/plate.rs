@@ -11,7 +11,7 @@
 //! notches = [{ from_mm = [-50.0, 20.0], to_mm = [-40.0, 20.0], width_mm = 2.0 }]
 //! ```
 //! Cracks that share a point or cross are joined; an end that lies on another crack is no tip. A crack may start on an edge, in a hole or in a slot: what lies outside the material is cut off and only the inner end
-//! is a tip. The tip seed of a slot is the middle of each end face that lies in the material. Crack length is the sum of
+//! is a tip; an end nearer to one of them than a hundredth of the crack starts there, too. The tip seed of a slot is the middle of each end face that lies in the material. Crack length is the sum of
 //! all cracks and slots inside the plate plus all growth. The load is chosen in `[loading]`.
 
 use serde::Deserialize;
@@ -70,7 +70,7 @@ struct NotchInput {
     width_mm: f64,
 }
 
-pub(super) fn from_value(value: &Value) -> Result<Specimen> {
+pub(super) fn from_value(value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
     let input: Input = slice(value, "specimen")?;
     let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
     let outline = outline(&input)?;
@@ -95,7 +95,7 @@ pub(super) fn from_value(value: &Value) -> Result<Specimen> {
     };
     check_holes(&specimen)?;
     let slot_tips = place_slots(&mut specimen, slots)?;
-    place_cracks(&mut specimen, cracks, slot_tips)?;
+    place_cracks(&mut specimen, cracks, slot_tips, notes)?;
     [specimen.crack_plane_x, specimen.crack_plane_y] = [0, 1].map(|axis| common_line(&specimen.cracks, axis));
     Ok(specimen)
 }

@@ -50,8 +50,8 @@ impl Specimen {
 }
 
 /// Reads `[specimen]`, which may be a plate without cracks or notches. The standard kinds come with their loads; a `plate` is loaded by
-/// `[loading]`.
-pub fn from_value(value: &Value) -> Result<Specimen> {
+/// `[loading]`. What was done to ends of cracks goes into `notes`.
+pub fn from_value(value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
     let table = table_of(value, "specimen")?;
     let kind = match table.get("kind") {
         None => {
@@ -72,6 +72,6 @@ pub fn from_value(value: &Value) -> Result<Specimen> {
         kind @ (SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension) => standard::from_value(kind, value),
         SpecimenKind::SingleEdgeTension => standard::single_edge_from_value(value),
         SpecimenKind::CompactTension => standard::compact_from_value(value),
-        SpecimenKind::Plate => plate::from_value(value),
+        SpecimenKind::Plate => plate::from_value(value, notes),
     }
 }

@@ -113,7 +113,7 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
     let sections = Sections::of(table, SECTIONS, STRANGERS)?;
     let echo = sections.echo()?;
     let mut warnings = Vec::new();
-    let mut specimen = specimen::from_value(sections.required("specimen")?)?;
+    let mut specimen = specimen::from_value(sections.required("specimen")?, &mut warnings)?;
     // The standard kinds serve as geometry: their loads and grips belong to fatigue tests.
     specimen.loads.clear();
     specimen.supports.clear();

@@ -4,18 +4,28 @@ use super::ElementFree;
 use super::front::{Front, kinked};
 use super::step::Move;
 use crate::element_free::crack::Tip;
-use crate::element_free::factors;
+use crate::element_free::factors::{self, overlap};
 use crate::element_free::field::Discretisation;
-use crate::element_free::resolution::room;
+use crate::element_free::resolution::{Resolution, room};
 use crate::element_free::solve::solve;
 use crate::error::Error;
 use crate::fatigue::crack_tip::TipState;
-use crate::growth::cross_check::ReleasedEnergy;
+use crate::growth::cross_check::{ReleasedEnergy, largest_difference};
 use crate::growth::end_of_life::gone;
 use crate::growth::record::StopReason;
 use crate::growth::tip_field::step::cycles;
 use crate::growth::{TipGrowth, end_of_life};
 use crate::specimen::geometry::distance;
+use crate::units::place_mm;
+
+/// Overlap of flanks over the largest displacement between them up to which it is what the nodes err by.
+const OVERLAP: f64 = 0.005;
+/// Factor by which nodes get finer where K asks for it.
+const FINER: f64 = 1.5;
+/// Times that they do at the most.
+const REFINEMENTS_MOST: i32 = 2;
+/// Nodes beyond which they do not.
+const NODES_MOST: f64 = 2e4;
 
 /// Compliance over that at the start from which a plate is as good as severed.
 const MECHANISM: f64 = 20.0;
@@ -44,15 +54,65 @@ impl ElementFree<'_> {
         let specimen = &self.case.specimen;
         let active = || self.state.fronts.iter().filter(|front| front.state == TipState::Active);
         let tips: Vec<Tip> = active().map(|front| Tip { end: front.end, length: front.own_length() }).collect();
-        let resolution = &self.settings.resolution;
-        let plate = Discretisation::new(specimen, self.elasticity, &self.state.lines, &tips, resolution)?;
+        let resolution = self.resolution();
+        let plate = Discretisation::new(specimen, self.elasticity, &self.state.lines, &tips, &resolution)?;
         let load = self.case.loading.maximum;
         let solution = solve(specimen, &plate, resolution.far, load)?;
         self.solves += 1;
         self.nodes = self.nodes.max(plate.nodes.at.len());
         self.work = solution.work;
+        let overlap = overlap(specimen, &plate, self.state.lines.len(), &solution.u)?;
         self.plate = Some((plate, solution));
+        match overlap.filter(|(_, share)| *share > OVERLAP) {
+            None => Ok(()),
+            Some((at, share)) => Err(Error::Mechanics(format!(
+                "{}: the load presses flanks of a crack together at {}, by {:.1} % of the largest opening or sliding, and nodes know no contact: \
+                 use model.method = \"peridynamics\"",
+                self.case.name,
+                place_mm(at),
+                100.0 * share
+            ))),
+        }
+    }
+
+    /// How fine the nodes are.
+    pub(super) fn resolution(&self) -> Resolution {
+        self.settings.resolution.finer(self.state.fineness)
+    }
+
+    /// Makes the nodes as fine as K of the initial tips asks for: until it changes by no more than the tolerance when they get finer by
+    /// [`FINER`]. What is then still open is said in a warning.
+    pub(super) fn choose_fineness(&mut self) -> crate::error::Result<()> {
+        let tolerance = self.settings.tolerance;
+        self.state.fineness = 1.0 / FINER;
+        // Where they are too coarse to tell anything, the next ones say so.
+        let mut before = self.read_factors_of_plate().unwrap_or_else(|_| vec![[f64::NAN; 2]; self.state.fronts.len()]);
+        for _ in 0..=REFINEMENTS_MOST {
+            self.state.fineness *= FINER;
+            let now = self.read_factors_of_plate()?;
+            let (tip, change) = largest_difference(&before, &now);
+            if change <= tolerance || change.is_nan() && self.settings.is_given {
+                return Ok(());
+            }
+            let is_last = self.nodes as f64 * FINER * FINER > NODES_MOST || self.settings.is_given;
+            if is_last || self.state.fineness > FINER.powi(REFINEMENTS_MOST) * 0.99 {
+                self.warnings.push(format!(
+                    "K of tip {tip} changes by {:.1} % when nodes get {FINER} times finer, to {} nodes: it may err by as much; \
+                     model.method = \"peridynamics\" is another look at it",
+                    100.0 * change,
+                    self.nodes
+                ));
+                return Ok(());
+            }
+            before = now;
+        }
         Ok(())
+    }
+
+    fn read_factors_of_plate(&mut self) -> crate::error::Result<Vec<[f64; 2]>> {
+        self.settle()?;
+        self.read()?;
+        Ok(self.state.fronts.iter().map(|front| front.factors).collect())
     }
 
     /// Reads every active tip.
@@ -81,7 +141,6 @@ impl ElementFree<'_> {
             // K_II is that of the axes in which it was read: the crack without corners that nodes do not see.
             let [x, y] = axes.ahead;
             front.aim_at(y.atan2(x));
-            self.was_closed |= front.factors[0] < 0.0;
         }
     }
 
@@ -252,6 +311,6 @@ impl ElementFree<'_> {
         let growths: Vec<f64> = step.moves.iter().map(|step| step.0).collect();
         let grown: Vec<f64> = self.state.fronts.iter().map(|front| front.growth).collect();
         let (block, length) = ReleasedEnergy::of_block(self.case, [before, &now], &growths, &grown, [*work, work_now], cycles);
-        self.state.balance.take(block, length, 0.2 * self.settings.resolution.far);
+        self.state.balance.take(block, length, 0.2 * self.resolution().far);
     }
 }

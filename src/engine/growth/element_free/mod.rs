@@ -43,7 +43,6 @@ pub struct ElementFree<'a> {
     curve: Vec<CurvePoint>,
     solves: usize,
     nodes: usize,
-    was_closed: bool,
     /// Rows at the last place where the run could be taken up.
     rows_at_checkpoint: usize,
     warnings: Vec<String>,
@@ -79,14 +78,13 @@ impl<'a> ElementFree<'a> {
             settings: case.model.element_free,
             elasticity: Elasticity::of(&case.material),
             end: first_end(case),
-            state: Fronts { lines, fronts, step: 0.0, balance: EnergyBalance::default() },
+            state: Fronts { lines, fronts, step: 0.0, balance: EnergyBalance::default(), fineness: 1.0 },
             past: None,
             plate: None,
             work: 0.0,
             curve: Vec::new(),
             solves: 0,
             nodes: 0,
-            was_closed: false,
             rows_at_checkpoint: 0,
             warnings: Vec::new(),
         })
@@ -129,10 +127,11 @@ pub fn initial_plate(case: &Case) -> Result<Discretisation> {
     Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &case.model.element_free.resolution)
 }
 
-/// K and T of the initial tips of a case at maximum load, in the order of `Specimen::tips`.
-pub fn initial_tips(case: &Case) -> Result<Vec<TipRecord>> {
+/// K and T of the initial tips of a case at maximum load, in the order of `Specimen::tips`, and what the user should know of them.
+/// Errors: as [`ElementFree::start`]; flanks that are pressed together.
+pub fn initial_tips(case: &Case) -> Result<(Vec<TipRecord>, Vec<String>)> {
     let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
     let mut growth = ElementFree::start(case, Box::new(law))?;
     growth.open()?;
-    Ok(growth.now().tips.to_vec())
+    Ok((growth.now().tips.to_vec(), growth.warnings))
 }

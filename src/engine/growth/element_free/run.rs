@@ -29,6 +29,8 @@ pub struct Fronts {
     pub step: f64,
     /// K against the energy that the plate releases.
     pub balance: EnergyBalance,
+    /// How much finer nodes are than usual, as K of the initial tips asks.
+    pub fineness: f64,
 }
 
 /// State of a run.
@@ -39,7 +41,6 @@ pub struct FrontsState {
     work: f64,
     curve: Vec<CurvePoint>,
     figures: [usize; 2],
-    was_closed: bool,
 }
 
 impl ElementFree<'_> {
@@ -62,11 +63,10 @@ impl ElementFree<'_> {
 
 impl CrackGrowth for ElementFree<'_> {
     fn open(&mut self) -> Result<()> {
-        self.settle().map_err(|error| match error {
+        self.choose_fineness().map_err(|error| match error {
             Error::LossOfStiffness => Error::Mechanics(format!("{}: the initial cracks cut the plate in two", self.case.name)),
             other => other,
         })?;
-        self.read()?;
         self.aim();
         self.rate();
         self.state.step = self.first_step();
@@ -91,24 +91,23 @@ impl CrackGrowth for ElementFree<'_> {
             work: self.work,
             curve: self.curve.clone(),
             figures: [self.solves, self.nodes],
-            was_closed: self.was_closed,
         })
     }
 
     fn restore(&mut self, state: State) -> Result<bool> {
-        let State::Nodes(FrontsState { state, past, work, curve, figures, was_closed }) = state else { return Ok(false) };
+        let State::Nodes(FrontsState { state, past, work, curve, figures }) = state else { return Ok(false) };
         let ends = |fronts: &[Front]| fronts.iter().map(|front| front.end).collect::<Vec<_>>();
         if curve.is_empty() || ends(&state.fronts) != ends(&self.state.fronts) || state.lines.len() != self.state.lines.len() {
             return Ok(false);
         }
-        (self.state, self.past, self.work, self.curve, self.was_closed) = (state, past, work, curve, was_closed);
+        (self.state, self.past, self.work, self.curve) = (state, past, work, curve);
         [self.solves, self.nodes] = figures;
         self.rows_at_checkpoint = self.curve.len();
         Ok(true)
     }
 
     fn grid(&self) -> Option<PointGrid> {
-        Some(raster(&self.case.specimen, self.settings.resolution.far))
+        Some(raster(&self.case.specimen, self.resolution().far))
     }
 
     fn fields(&mut self) -> Result<Option<Fields>> {
@@ -120,7 +119,7 @@ impl CrackGrowth for ElementFree<'_> {
         }
         let Some((plate, solution)) = &self.plate else { return Ok(None) };
         let share = self.case.loading.share(self.work);
-        let (specimen, far) = (&self.case.specimen, self.settings.resolution.far);
+        let (specimen, far) = (&self.case.specimen, self.resolution().far);
         let (displacement, stress) = raster_fields(specimen, plate, &solution.u, far, self.case.material.plane, share);
         Ok(Some(Fields { damage: vec![0.0; displacement.len()], remaining_life: Vec::new(), displacement, stress }))
     }
@@ -148,12 +147,6 @@ impl CrackGrowth for ElementFree<'_> {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let closed = self.was_closed.then(|| {
-            "the load presses a crack shut: its tip does not grow there, but its faces overlap instead of touching, so that K of the open tip \
-             of a crack that is shut at the other may be too low (by 8 % for a centre crack in pure bending) and the life too long; \
-             model.method = \"peridynamics\" has faces in contact"
-                .to_owned()
-        });
-        self.warnings.iter().cloned().chain(closed).collect()
+        self.warnings.clone()
     }
 }

@@ -46,6 +46,15 @@ impl Cut {
         self
     }
 
+    /// Whether it meets itself, so that it parts off no free body.
+    fn meets_itself(&self, same: f64) -> bool {
+        let mut points = self.points.clone();
+        points.dedup_by(|a, b| distance(*a, *b) <= same);
+        let pieces: Vec<[Point; 2]> = points.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        let later = |i: usize| pieces.iter().skip(i + 2);
+        (0..pieces.len()).any(|i| later(i).any(|[a, b]| segments_touch(pieces[i][0], pieces[i][1], *a, *b)))
+    }
+
     /// Along a crack.
     fn along_crack(points: Vec<Point>) -> Cut {
         let cracked = points.windows(2).map(|piece| [piece[0], piece[1]]).collect();
@@ -103,7 +112,8 @@ pub(super) fn of_crack(plate: &Plate<'_>, line: usize, load: &mut dyn FnMut(&Cut
         let mut is_better = false;
         for option in 0..count {
             let pair = if end == 0 { [chosen[0], option] } else { [option, chosen[1]] };
-            let value = load(&whole(pair[0], pair[1]));
+            let cut = whole(pair[0], pair[1]);
+            let value = if cut.meets_itself(plate.same) { f64::INFINITY } else { load(&cut) };
             if value < least {
                 (least, chosen, is_better) = (value, pair, true);
             }

@@ -1,0 +1,98 @@
+//! Problems of mechanics as users brought them, on points and on nodes: the right K, or the cause by name (shared data, `mechanics4`).
+//! Right values: finite elements and closed forms of the README beside the data; contact and slots of nodes are refused by name.
+
+use perilife::case::Case;
+use perilife::growth::{element_free, tip_field};
+use perilife::input::Document;
+use perilife::units::MPA_SQRT_M;
+
+use crate::support::shared::shared;
+
+/// K_I and K_II of a tip, MPa√m.
+type Factors = [f64; 2];
+
+/// A file, the right K of its first tips, and the share of |K| that points and nodes may err by; points that err more say so.
+type Row = (&'static str, &'static [Factors], [f64; 2]);
+
+const ROWS: &[Row] = &[
+    ("mouth_off_by_microns/exact17", &[[39.39, 0.0]], [0.01, 0.005]),
+    ("mouth_off_by_microns/round17", &[[39.39, 0.0]], [0.01, 0.005]),
+    ("mouth_off_by_microns/round17_outside", &[[39.39, 0.0]], [0.01, 0.005]),
+    ("arc_crack/arc80", &[[13.83, 11.51], [13.83, -11.51]], [0.015, 0.005]),
+    ("arc_crack/arc80_pressure", &[[13.83, 11.51], [13.83, -11.51]], [0.02, 0.005]),
+    ("default_resolution/four_point_shear_0", &[[0.0, -4.049]], [0.02, 0.02]),
+    ("default_resolution/four_point_shear_10", &[[13.549, -4.127]], [0.02, 0.01]),
+    ("default_resolution/disc15", &[[1.382, -3.332], [1.382, -3.332]], [0.02, 0.01]),
+    ("default_resolution/fillet_flex", &[[130.88, -27.21]], [0.02, 0.01]),
+    ("guards/lug3", &[[28.755, -1.063]], [0.01, 0.005]),
+    ("guards/periodic", &[[23.464, 0.0]], [0.01, 0.005]),
+    ("guards/scb40", &[[3.396, 2.764]], [0.02, 0.005]),
+];
+
+/// Of nodes alone: points need millions, or say how far off they are.
+const ON_NODES: &[(&str, Factors)] = &[
+    ("tiny_crack/tiny", [2.8025, 0.0]),
+    ("short_crack_at_slot/edge_slot_0.5", [21.371, 0.0]),
+    ("short_crack_at_slot/edge_slot_0.5_outline", [21.371, 0.0]),
+    ("default_resolution/edge_95", [38.29, 0.0]),
+];
+
+/// Flanks that are pressed together somewhere.
+const PRESSED: &[&str] = &[
+    "faces_overlap_on_nodes/wing",
+    "faces_overlap_on_nodes/star3u",
+    "faces_overlap_on_nodes/cross_u",
+    "unlimited_on_nodes/disc45",
+];
+
+fn document(name: &str) -> Option<Document> {
+    let path = shared(&format!("field/mechanics4/{name}.toml"))?;
+    Some(Document::read(&path, &[]).unwrap())
+}
+
+/// Difference of a reading over the size of what is right.
+fn off(read: Option<Factors>, [k_i, k_ii]: Factors) -> f64 {
+    let [a, b] = read.unwrap().map(|k| k / MPA_SQRT_M);
+    (a - k_i).hypot(b - k_ii) / k_i.hypot(k_ii)
+}
+
+#[test]
+fn nodes_read_the_right_factors() {
+    let one = ON_NODES.iter().map(|(name, right)| (*name, std::slice::from_ref(right), 0.01));
+    for (name, right, most) in ROWS.iter().map(|(name, right, most)| (*name, *right, most[1])).chain(one) {
+        let Some(document) = document(name) else { return };
+        let (tips, _) = element_free::initial_tips(&Case::plate_on_nodes(&document).unwrap()).unwrap();
+        assert_eq!(tips.len(), right.len(), "{name}");
+        for (tip, right) in tips.iter().zip(right) {
+            let off = off(tip.factors, *right);
+            assert!(off < most, "{name}: {off} of {right:?}");
+        }
+    }
+}
+
+#[test]
+fn points_read_the_right_factors() {
+    for (name, right, [most, _]) in ROWS {
+        let Some(document) = document(name) else { return };
+        let case = Case::plate_of(&document).unwrap();
+        let tips = tip_field::initial_tips(&case).unwrap().tips;
+        assert_eq!(tips.len(), right.len(), "{name}");
+        for (tip, right) in tips.iter().zip(*right) {
+            let off = off(tip.factors, *right);
+            assert!(off < *most, "{name}: {off} of {right:?} with {} points", case.specimen.area() / case.model.spacing.powi(2));
+        }
+    }
+}
+
+#[test]
+fn nodes_refuse_flanks_that_are_pressed_together() {
+    for name in PRESSED {
+        let Some(document) = document(name) else { return };
+        let error = element_free::initial_tips(&Case::plate_on_nodes(&document).unwrap()).unwrap_err().to_string();
+        assert!(error.contains("presses flanks of a crack together") && error.contains("peridynamics"), "{name}: {error}");
+    }
+    // Open stars are not.
+    let Some(document) = document("guards/star3") else { return };
+    let (tips, warnings) = element_free::initial_tips(&Case::plate_on_nodes(&document).unwrap()).unwrap();
+    assert!(off(tips[0].factors, [24.23, 0.0]) < 0.005 && warnings.is_empty(), "{:?} {warnings:?}", tips[0].factors);
+}
