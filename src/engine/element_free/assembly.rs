@@ -50,8 +50,9 @@ impl Scratch {
         self.values.clear();
         self.ends.clear();
         self.fields.clear();
+        plate.load(leaf, &mut self.local);
         for point in points {
-            if !plate.at(leaf, point.at, &mut self.local) {
+            if !plate.at_loaded(leaf, point.at, &mut self.local) {
                 left_out += point.area;
                 if left_out > LEFT_OUT * size * size {
                     return Err(singular(point.at, plate.reach(leaf)));

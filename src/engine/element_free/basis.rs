@@ -35,7 +35,7 @@ crate::kinds! {
 const RAMP_SPACINGS: [f64; 2] = [2.0, 4.0];
 
 /// Least pivot of A over its diagonal: below it nodes in reach do not span the basis.
-const PIVOT_LEAST: f64 = 1e-10;
+pub(super) const PIVOT_LEAST: f64 = 1e-10;
 
 /// A node as a point sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -278,6 +278,11 @@ impl AnyBasis {
     /// Of a plate with these tips.
     pub fn new(kind: BasisKind, enrichment: Enrichment, axes: &[TipAxes]) -> Self {
         AnyBasis { kind, tips: if enrichment == Enrichment::Intrinsic { axes.to_vec() } else { Vec::new() } }
+    }
+
+    /// Whether it is 1, x, y everywhere.
+    pub fn is_linear(&self) -> bool {
+        self.kind == BasisKind::Linear && self.tips.is_empty()
     }
 
     /// Shape functions at a point (`shape_functions`). Around a tip with an enriched basis they are `R Φ^e + (1 - R) Φ`, R falling

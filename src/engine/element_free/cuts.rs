@@ -120,6 +120,27 @@ fn round(node: Point, place: Point, at: Point) -> Way {
 }
 
 impl Near {
+    /// Whether the straight way from a node to any point of a box is free for sure.
+    pub fn is_clear(&self, node: Point, [low, high]: [Point; 2]) -> bool {
+        let (from, to) = ([0, 1].map(|i| node[i].min(low[i])), [0, 1].map(|i| node[i].max(high[i])));
+        let corners = [low, [high[0], low[1]], high, [low[0], high[1]], node];
+        let is_beside = |[a, b]: &[Point; 2]| {
+            if (0..2).any(|i| a[i].max(b[i]) < from[i] || a[i].min(b[i]) > to[i]) {
+                return true;
+            }
+            let sides = corners.map(|corner| turn(*a, *b, corner));
+            let slack = 1e-9 * distance(*a, *b) * (to[0] - from[0] + to[1] - from[1]);
+            sides.iter().all(|side| *side > slack) || sides.iter().all(|side| *side < -slack)
+        };
+        let misses = |hole: &Hole| {
+            let outside = [0, 1].map(|i| (from[i] - hole.centre[i]).max(hole.centre[i] - to[i]).max(0.0));
+            outside[0].hypot(outside[1]) >= HOLE_SHARE * hole.radius
+        };
+        self.cuts.iter().all(|cut| cut.pieces.iter().all(is_beside))
+            && self.edges.iter().all(is_beside)
+            && self.holes.iter().all(misses)
+    }
+
     /// Whether nothing is near.
     pub fn is_empty(&self) -> bool {
         self.cuts.is_empty() && self.holes.is_empty() && self.edges.is_empty()

@@ -13,6 +13,8 @@ use crate::specimen::Point;
 
 /// Matrices of a part that is not divided, at the most.
 const UNDIVIDED: usize = 40;
+/// Distance of a cut from the middle at the most, in shares of the members: around a tip the middle would pass right through fine nodes.
+const OFF_MIDDLE: f64 = 0.4;
 
 /// A matrix to be summed: where it acts, and the nodes whose unknowns it may couple, ascending.
 #[derive(Debug, Clone)]
@@ -136,28 +138,50 @@ impl Bisection<'_> {
         Plan { members: range, own: Vec::new(), halves: Some(Box::new([left, right])) }
     }
 
-    /// Divides a part across x or y into halves of as many members, so that they have the fewest unknowns in common.
+    /// Divides a part across x or y where its two parts have the fewest unknowns in common, times 1 and how far that is from the middle.
     fn halves<'a>(&self, members: &'a mut [u32]) -> (&'a mut [u32], &'a mut [u32]) {
-        let middle = members.len() / 2;
+        let half = members.len() / 2;
         let sort = |members: &mut [u32], axis: usize| {
             let place = |member: u32| self.members[member as usize].at[axis];
             members.sort_unstable_by(|a, b| place(*a).total_cmp(&place(*b)).then(a.cmp(b)));
         };
-        let mut common = [0; 2];
-        for (axis, common) in common.iter_mut().enumerate() {
+        let mut best = [(f64::INFINITY, half); 2];
+        let mut spans = vec![[u32::MAX, 0]; self.first.len() - 1];
+        for (axis, best) in best.iter_mut().enumerate() {
             sort(members, axis);
-            let mut sides = vec![0_u8; self.first.len() - 1];
-            for (k, &member) in members.iter().enumerate() {
-                let side = if k < middle { 1 } else { 2 };
-                self.members[member as usize].nodes.iter().for_each(|&node| sides[node as usize] |= side);
+            for (k, &member) in (0..).zip(&*members) {
+                for &node in &self.members[member as usize].nodes {
+                    let span = &mut spans[node as usize];
+                    *span = [span[0].min(k), k];
+                }
             }
-            let unknowns = self.first.windows(2).map(|pair| pair[1] - pair[0]);
-            *common = unknowns.zip(sides).filter(|(_, sides)| *sides == 3).map(|(unknowns, _)| unknowns).sum::<u32>();
+            // Unknowns that a cut before a place divides: of nodes that begin before it and end there or later.
+            let mut change = vec![0_i64; members.len() + 1];
+            for &member in &*members {
+                for &node in &self.members[member as usize].nodes {
+                    let [from, to] = std::mem::replace(&mut spans[node as usize], [u32::MAX, 0]);
+                    if from < to {
+                        let unknowns = i64::from(self.first[node as usize + 1] - self.first[node as usize]);
+                        change[from as usize + 1] += unknowns;
+                        change[to as usize + 1] -= unknowns;
+                    }
+                }
+            }
+            let mut common = 0;
+            for (place, change) in change.iter().enumerate() {
+                common += change;
+                let off = (place as f64 / members.len() as f64 - 0.5).abs();
+                let cost = common as f64 * (1.0 + off);
+                if off <= OFF_MIDDLE && cost < best.0 {
+                    *best = (cost, place);
+                }
+            }
         }
-        if common[0] <= common[1] {
+        let axis = usize::from(best[1].0 < best[0].0);
+        if axis == 0 {
             sort(members, 0);
         }
-        members.split_at_mut(middle)
+        members.split_at_mut(best[axis].1)
     }
 }
 

@@ -8,6 +8,7 @@ use super::basis::{AnyBasis, Enrichment, Value};
 use super::crack::{Tip, TipAxes, cracks};
 use super::cuts::{Near, Obstacles};
 use super::grid::Grid;
+use super::linear;
 use super::nodes::Nodes;
 use super::resolution::Resolution;
 use super::rims::sides;
@@ -25,6 +26,8 @@ pub const ENRICHED_SPACINGS: f64 = 3.0;
 struct Neighbourhood {
     nodes: Vec<u32>,
     near: Near,
+    /// Of every node whether nothing lies between it and any point of the leaf; none where that is so of all.
+    clear: Vec<bool>,
 }
 
 /// A plate of nodes.
@@ -61,6 +64,7 @@ pub struct Local {
     pub values: Vec<Value>,
     /// Q_I and Q_II of every tip that a node in reach carries, with gradients; by tip.
     pub fields: Vec<Option<TipFields>>,
+    room: linear::Room,
 }
 
 impl Discretisation {
@@ -115,7 +119,7 @@ impl Discretisation {
             grid.visit(low, high, &mut |leaf| {
                 let [from, to] = grid.bounds(leaf);
                 let outside = [0, 1].map(|i| (from[i] - at[i]).max(at[i] - to[i]).max(0.0));
-                if outside[0].hypot(outside[1]) < support {
+                if outside[0] * outside[0] + outside[1] * outside[1] < support * support {
                     leaves[leaf].nodes.push(node as u32);
                 }
             });
@@ -124,7 +128,16 @@ impl Discretisation {
             let reach = self.reach(leaf);
             if reach > 0.0 {
                 let [low, high] = self.grid.bounds(leaf);
-                self.leaves[leaf].near = self.obstacles.near(self.grid.middle(leaf), reach + distance(low, high));
+                let near = self.obstacles.near(self.grid.middle(leaf), reach + distance(low, high));
+                let (leaf, at) = (&mut self.leaves[leaf], &self.nodes.at);
+                if !near.is_empty() {
+                    leaf.clear = leaf.nodes.iter().map(|&node| near.is_clear(at[node as usize], [low, high])).collect();
+                    if leaf.clear.iter().all(|clear| *clear) {
+                        leaf.clear.clear();
+                    } else {
+                        leaf.near = near;
+                    }
+                }
             }
         }
     }
@@ -154,13 +167,31 @@ impl Discretisation {
         self.leaves[leaf].nodes.iter().copied().filter(reaches).collect()
     }
 
+    /// Takes up the nodes of a leaf, for [`Discretisation::at_loaded`].
+    pub fn load(&self, leaf: usize, local: &mut Local) {
+        if self.basis.is_linear() {
+            local.room.load(&self.leaves[leaf].nodes, &self.nodes.at, &self.supports);
+        }
+    }
+
     /// Shape functions and near-tip fields at a point of a leaf; whether the nodes in reach span the basis.
     pub fn at(&self, leaf: usize, at: Point, local: &mut Local) -> bool {
-        let Neighbourhood { nodes, near } = &self.leaves[leaf];
+        self.load(leaf, local);
+        self.at_loaded(leaf, at, local)
+    }
+
+    /// The same at a point of the leaf that was loaded last.
+    pub fn at_loaded(&self, leaf: usize, at: Point, local: &mut Local) -> bool {
+        let Neighbourhood { nodes, near, clear } = &self.leaves[leaf];
         let scale = self.grid.spacing(leaf);
         local.fields.clear();
         local.fields.resize(self.axes.len(), None);
-        if !self.basis.shape_functions(at, (nodes, &self.nodes.at, &self.supports), near, scale, &mut local.values) {
+        let spans = if self.basis.is_linear() {
+            linear::shape_functions(at, nodes, (near, clear), scale, &mut local.room, &mut local.values)
+        } else {
+            self.basis.shape_functions(at, (nodes, &self.nodes.at, &self.supports), near, scale, &mut local.values)
+        };
+        if !spans {
             return false;
         }
         for value in &local.values {

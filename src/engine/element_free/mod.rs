@@ -15,6 +15,7 @@ pub mod factors;
 pub mod field;
 mod front;
 pub mod grid;
+mod linear;
 pub mod nodes;
 pub mod resolution;
 pub mod rim_stress;
