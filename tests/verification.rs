@@ -29,6 +29,7 @@ mod rigid_turn;
 mod round_trip;
 mod scene_checkpoint;
 mod scene_default_law;
+mod scene_strength;
 mod solvers;
 mod stability;
 mod stress_intensity;

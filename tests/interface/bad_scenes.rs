@@ -121,6 +121,7 @@ const KEYS: &[&str] = &[
     "pin",
     "law",
     "enters",
+    "calibration",
     "critical_stretch",
     "elastic_stretch",
     "final_ratio",

@@ -7,6 +7,7 @@ use perilife::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use perilife::case::Case;
 use perilife::fracture::Scene;
 use perilife::fracture::assembly::preview;
+use perilife::fracture::failure::Failure;
 use perilife::fracture::read::is_scene;
 use perilife::fracture::scene::{
     Action, DamageEntry, DamageLaw, Discretisation, LoadRamp, Procedure, RefinedRegion, Region, SceneLaw, SceneSolver,
@@ -43,6 +44,37 @@ fn what_is_left_out_is_chosen() {
     assert_eq!(scene.procedure, Procedure::QuasiStatic { steps: 50, iterations: None });
     assert!(scene.holds.is_empty() && scene.refinement.is_none() && scene.warnings.is_empty());
     assert_eq!(scene.echo["loading"]["steps"], 50);
+}
+
+/// With `growth` the energy of a bond is divided by the trapping of law, kernel and horizon ratio; a stretch that is given stays.
+#[test]
+fn the_calibration_sets_the_critical_stretch() {
+    let of = |overrides: &[&str]| {
+        let text = format!("{PLATE}{STEPS}[damage]\nlaw = \"critical_energy\"\n[model]\nspacing_mm = 1\n");
+        let scene = read(&text, overrides).unwrap();
+        let (net, _) = perilife::fracture::build(&scene).unwrap();
+        let Failure::Energy(limits) = Failure::of(&scene, &net).unwrap() else { panic!("{scene:?}") };
+        limits[0]
+    };
+    let table = [
+        (&[][..], 1.48),
+        (&["model.kernel=constant"], 1.45),
+        (&["model.horizon_ratio=4"], 1.33),
+        (&["model.horizon_ratio=4.5"], 1.22),
+        (&["model.horizon_ratio=5"], 1.10),
+        (&["model.horizon_ratio=6"], 1.0),
+        (&["model.horizon_ratio=2.5"], 1.48),
+        (&["model.bond_law=bond_based", "material.poisson_ratio=0.25", "material.plane=strain"], 1.41),
+        (&["model.bond_law=one_bond_two_parameter"], 1.37),
+        (&["model.bond_law=one_bond_two_parameter", "model.rotation=resisted"], 1.0),
+    ];
+    for (set, trapping) in table {
+        let published = of(&[set, &["damage.calibration=bond_energy"]].concat());
+        for grown in [of(set), of(&[set, &["damage.calibration=growth"]].concat())] {
+            assert!(((published / grown).powi(2) / trapping - 1.0).abs() < 5e-3, "{set:?}: {grown} and {published}");
+        }
+    }
+    assert_eq!(of(&["damage.critical_stretch=0.01"]), 0.01);
 }
 
 #[test]

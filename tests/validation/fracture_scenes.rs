@@ -33,10 +33,7 @@ fn spread(run: &Fracture, x: f64) -> f64 {
 
 /// Heights of the points in the column x that are cracked at the end, mm, from below.
 fn cracked_rows(run: &Fracture, x: f64) -> Vec<f64> {
-    let (grid, last) = (&run.grid, run.snapshots.last().unwrap());
-    let column = ((1e-3 * x - grid.origin[0]) / grid.spacing).round() as usize;
-    let is_cracked = |row: &usize| grid.point_at[row * grid.columns + column].is_some_and(|p| last.damage[p as usize] >= CRACKED);
-    (0..grid.rows).filter(is_cracked).map(|row| 1e3 * (grid.origin[1] + row as f64 * grid.spacing)).collect()
+    perilife::verify::scene_strength::cracked_rows(run, 1e-3 * x).into_iter().map(|y| 1e3 * y).collect()
 }
 
 /// Two cracks at a distance in mm, which end farther apart than they began.

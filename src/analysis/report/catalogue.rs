@@ -16,7 +16,7 @@ use crate::fatigue::growth_law::RangeKind;
 use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind, Transverse};
-use crate::fracture::scene::{DamageEntry, DamageLaw, Discretisation, PointLaw, SceneSolver, ZeroEnergyControl};
+use crate::fracture::scene::{Calibration, DamageEntry, DamageLaw, Discretisation, PointLaw, SceneSolver, ZeroEnergyControl};
 use crate::input::Folder;
 use crate::kinds::KindLine;
 use crate::loading::LoadingKind;
@@ -60,6 +60,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         SolverKind::lines(),
         beside(&SolverKind::lines(), SceneSolver::lines()),
         DamageLaw::lines(),
+        Calibration::lines(),
         DamageEntry::lines(),
         Driver::lines(),
         GrowthLawKind::lines(),

@@ -291,6 +291,8 @@ fn damage(scene: &Scene) -> Value {
         "law": damage.law.name(),
         "enters": by_points.then(|| damage.enters.name()),
         "critical_stretch": damage.stretch,
+        "calibration": scene.takes_fracture_energy().then(|| damage.calibration.name()),
+        "trapping": scene.takes_fracture_energy().then(|| scene.trapping()),
         "elastic_stretch": damage.nonlinear.map(|law| law.elastic),
         "peak_stretch": damage.nonlinear.map(|law| law.peak),
         "final_stretch": damage.nonlinear.map(|law| law.last),

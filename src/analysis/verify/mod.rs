@@ -23,6 +23,7 @@ mod paths;
 pub mod references;
 mod rims;
 pub mod scene;
+pub mod scene_strength;
 pub mod stability;
 pub mod standard;
 mod static_scenes;
@@ -85,6 +86,12 @@ pub const TOPICS: &[Topic] = &[
         "points of several levels in scenes: momentum, uniform strain across a change of level, counts",
         1,
         dual_horizon::rows,
+    ),
+    topic(
+        "scene_strength",
+        "scenes that break: load at which a crack grows against Griffith's by law and lattice angle, branches of a crack in motion",
+        0,
+        scene_strength::rows,
     ),
     topic(
         "bond_strain",

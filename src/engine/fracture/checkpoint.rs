@@ -144,6 +144,9 @@ impl<'a> Course<'a> {
     /// Tells how far the run is.
     pub fn step_done(&mut self, share: f64) -> Result<()> {
         self.share = self.share.max(share);
+        if let Some(row) = self.log.last() {
+            self.observer.row(row);
+        }
         if self.observer.step_done(&SceneProgress { share: self.share }) {
             return Ok(());
         }

@@ -52,7 +52,7 @@ impl Failure {
         let SceneLaw::Bonds(law) = scene.model.law else { return Ok(Failure::Never) };
         let limits = || match (scene.damage.stretch, scene.material.fracture_energy) {
             (Some(stretch), _) => Ok(vec![stretch; net.len()]),
-            (None, Some(energy)) => critical_stretches(scene, &law, net, energy),
+            (None, Some(energy)) => critical_stretches(scene, &law, net, energy / scene.trapping()),
             (None, None) => {
                 let problem = "is missing: the critical stretch follows from it";
                 Err(input_missing("material.fracture_energy_j_m2", problem, "give it, or damage.critical_stretch"))

@@ -90,6 +90,11 @@ impl<'a> Log<'a> {
         }
     }
 
+    /// The last row.
+    pub fn last(&self) -> Option<&HistoryRow> {
+        self.taken.history.last()
+    }
+
     /// Bonds broken so far.
     pub fn broken(&self) -> usize {
         self.taken.broken

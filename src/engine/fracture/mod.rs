@@ -24,6 +24,7 @@ pub mod quasi_static;
 pub mod read;
 pub mod scene;
 pub mod springs;
+pub mod trapping;
 
 use std::sync::Arc;
 
@@ -38,7 +39,7 @@ use crate::watch::{self, Stage, Watch};
 use assembly::Assembly;
 use checkpoint::{Clock, Course, SceneCheckpoint};
 use log::Log;
-use outcome::SceneFigures;
+use outcome::{HistoryRow, SceneFigures};
 use scene::Procedure;
 
 /// What a scene reports while it goes on.
@@ -52,6 +53,9 @@ pub struct SceneProgress {
 pub trait SceneObserver: Sync {
     /// Called after every recorded step.
     fn step_done(&self, progress: &SceneProgress) -> bool;
+
+    /// Called with every row of the history as it is taken down, before [`SceneObserver::step_done`]; by default not looked at.
+    fn row(&self, _row: &HistoryRow) {}
 
     /// Where the run marks what it does before it has a first step to show, and where it looks whether it may go on; by default nowhere.
     fn watch(&self) -> Option<Arc<Watch>> {

@@ -51,6 +51,14 @@ crate::kinds! {
     }
 }
 
+crate::kinds! {
+    /// How the critical stretch follows from the fracture energy.
+    pub enum Calibration for "damage.calibration" {
+        Growth = "growth": "a crack grows at the load at which the body gives the fracture energy (Griffith 1921); the lattice's hold on the tip is taken out",
+        BondEnergy = "bond_energy": "the bonds that a crack cuts store the fracture energy, as published (Silling and Askari 2005): a crack needs up to 1.5 times as much to grow",
+    }
+}
+
 /// Law between displacement and force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SceneLaw {
@@ -213,6 +221,8 @@ pub struct Damage {
     pub enters: DamageEntry,
     /// Critical stretch if it is given instead of the fracture energy.
     pub stretch: Option<f64>,
+    /// How it follows from the fracture energy.
+    pub calibration: Calibration,
     /// Constants of the nonlinear law.
     pub nonlinear: Option<Softening>,
     /// Tensile strength f_t, Pa.
@@ -221,8 +231,14 @@ pub struct Damage {
 
 impl Damage {
     /// Bonds stay whole.
-    pub const NONE: Damage =
-        Damage { law: DamageLaw::None, enters: DamageEntry::Influence, stretch: None, nonlinear: None, tensile_strength: None };
+    pub const NONE: Damage = Damage {
+        law: DamageLaw::None,
+        enters: DamageEntry::Influence,
+        stretch: None,
+        calibration: Calibration::Growth,
+        nonlinear: None,
+        tensile_strength: None,
+    };
 }
 
 /// Constants of the nonlinear law, stretches.

@@ -96,6 +96,24 @@ pub const DAMAGE: &[Bad] = &[
         "law = \"critical_stretch\"\ncritical_stretch = -0.1",
         &["damage.critical_stretch", "above zero"],
     ),
+    (
+        THROWN,
+        "law = \"critical_energy\"",
+        "law = \"critical_energy\"\ncalibration = \"griffith\"",
+        &["damage.calibration", "griffith", "growth, bond_energy"],
+    ),
+    (
+        THROWN,
+        "law = \"critical_energy\"",
+        "law = \"critical_stretch\"\ncritical_stretch = 0.1\ncalibration = \"growth\"",
+        &["damage.calibration", "growth", "damage.critical_stretch", "leave one of them out"],
+    ),
+    (
+        PULLED,
+        "law = \"nonlinear_two_parameter\"",
+        "law = \"nonlinear_two_parameter\"\ncalibration = \"growth\"",
+        &["damage.calibration", "critical_energy", "leave it out"],
+    ),
     (PRESSED, "tensile_strength_mpa = 3\n", "", &["material.tensile_strength_mpa", "missing", "principal_stress"]),
     (PRESSED, "bond_law = \"correspondence\"", "bond_law = \"two_parameter\"", &["material.poisson_ratio", "correspondence"]),
     (

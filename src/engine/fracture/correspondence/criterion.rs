@@ -49,8 +49,8 @@ impl Criterion {
             }
             DamageLaw::CriticalStretch => {
                 let horizon = net.horizons.first().copied().unwrap_or(f64::INFINITY);
-                let from_energy =
-                    || scene.material.fracture_energy.map(|energy| critical_stretch(&scene.material, energy, horizon));
+                let of_energy = |energy| critical_stretch(&scene.material, energy / scene.trapping(), horizon);
+                let from_energy = || scene.material.fracture_energy.map(of_energy);
                 Limit::Stretch(scene.damage.stretch.or_else(from_energy).ok_or_else(|| {
                     let problem = "is missing: the critical stretch follows from it";
                     input_missing("material.fracture_energy_j_m2", problem, "give it, or damage.critical_stretch")
@@ -58,7 +58,7 @@ impl Criterion {
             }
             law @ (DamageLaw::NonlinearTwoParameter | DamageLaw::CriticalEnergy) => {
                 let problem = "acts on the springs of a bond, and bond_law is \"correspondence\"";
-                let remedy = "use \"principal_stress\", \"critical_stretch\" or \"none\"";
+                let remedy = "use \"critical_stretch\", which takes the fracture energy too, \"principal_stress\" or \"none\"";
                 return Err(input("damage.law", format!("\"{law}\""), problem, remedy));
             }
         };

@@ -60,7 +60,7 @@ fn check_damage(scene: &Scene) -> Result<()> {
         ),
         (SceneLaw::Correspondence { .. }, DamageLaw::CriticalEnergy | DamageLaw::NonlinearTwoParameter) => refuse(
             "is a law of springs in bonds, which bond_law = \"correspondence\" has not",
-            "use principal_stress or critical_stretch",
+            "use critical_stretch, which takes material.fracture_energy_j_m2 too, or principal_stress",
         ),
         _ => Ok(()),
     }
@@ -191,6 +191,7 @@ pub fn lines(scene: &Scene) -> Vec<String> {
             "damage.law = \"critical_energy\" on bond_based counts normal stretch alone, as critical_stretch does (nu {nu})"
         ));
     }
+    lines.extend(scene.trapping_lines());
     lines.extend(zero_energy_line(scene));
     lines
 }

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Value;
 
 use crate::error::{Result, input, input_missing};
-use crate::fracture::scene::{Damage, DamageEntry, DamageLaw, Softening};
+use crate::fracture::scene::{Calibration, Damage, DamageEntry, DamageLaw, Softening};
 use crate::input::{number, slice};
 use crate::material::Material;
 
@@ -19,6 +19,7 @@ const FINAL_RATIO: f64 = 5.0;
 struct Input {
     law: Option<DamageLaw>,
     enters: Option<DamageEntry>,
+    calibration: Option<Calibration>,
     critical_stretch: Option<f64>,
     elastic_stretch: Option<f64>,
     peak_stretch: Option<f64>,
@@ -29,11 +30,15 @@ struct Input {
 
 /// Reads `[damage]`; bonds stay whole where it is left out.
 pub fn from_value(value: &Value, material: &Material) -> Result<Damage> {
-    let input: Input = slice(value, "damage")?;
-    let law = input.law.unwrap_or(DamageLaw::None);
-    check_keys(&input, law)?;
-    let stretch = stretch_of("damage.critical_stretch", input.critical_stretch)?;
+    let given: Input = slice(value, "damage")?;
+    let law = given.law.unwrap_or(DamageLaw::None);
+    check_keys(&given, law)?;
+    let stretch = stretch_of("damage.critical_stretch", given.critical_stretch)?;
     let critical = matches!(law, DamageLaw::CriticalStretch | DamageLaw::CriticalEnergy);
+    if let (Some(calibration), Some(_)) = (given.calibration, stretch) {
+        let problem = "says how the critical stretch follows from the fracture energy, and damage.critical_stretch gives it";
+        return Err(input("damage.calibration", format!("\"{calibration}\""), problem, "leave one of them out"));
+    }
     if critical && stretch.is_none() && material.fracture_energy.is_none() {
         let problem = format!("is missing: damage.law = \"{law}\" takes the critical stretch from it");
         return Err(input_missing("material.fracture_energy_j_m2", problem, "give it, or damage.critical_stretch"));
@@ -42,11 +47,12 @@ pub fn from_value(value: &Value, material: &Material) -> Result<Damage> {
         let problem = "is missing: damage.law = \"principal_stress\" compares with it";
         return Err(input_missing("material.tensile_strength_mpa", problem, "give it"));
     }
-    let nonlinear = (law == DamageLaw::NonlinearTwoParameter).then(|| softening(&input, material)).transpose()?;
+    let nonlinear = (law == DamageLaw::NonlinearTwoParameter).then(|| softening(&given, material)).transpose()?;
     Ok(Damage {
         law,
-        enters: input.enters.unwrap_or(DamageEntry::Influence),
+        enters: given.enters.unwrap_or(DamageEntry::Influence),
         stretch,
+        calibration: given.calibration.unwrap_or(Calibration::Growth),
         nonlinear,
         tensile_strength: material.tensile_strength,
     })
@@ -69,12 +75,12 @@ fn check_keys(given: &Input, law: DamageLaw) -> Result<()> {
         ("final_ratio", given.final_ratio),
         ("printed_law", given.printed_law.map(|printed| f64::from(u8::from(printed)))),
     ];
-    let critical = [("critical_stretch", given.critical_stretch)];
+    let critical = [("critical_stretch", given.critical_stretch), ("calibration", given.calibration.map(|_| 0.0))];
     let (unused, belongs): (&[_], &str) = match law {
         DamageLaw::NonlinearTwoParameter => (&critical, "critical_stretch or critical_energy"),
         DamageLaw::CriticalStretch | DamageLaw::CriticalEnergy => (&softening, "nonlinear_two_parameter"),
         DamageLaw::None | DamageLaw::PrincipalStress => {
-            if given.critical_stretch.is_some() {
+            if critical.iter().any(|(_, value)| value.is_some()) {
                 (&critical, "critical_stretch or critical_energy")
             } else {
                 (&softening, "nonlinear_two_parameter")

@@ -29,6 +29,7 @@
 //! left = { range_mm = [-1.0, 1.0], fix = ["x"] }
 //! [damage]                    # optional; default law "none"
 //! law = "critical_energy"
+//! calibration = "growth"      # or "bond_energy": how the critical stretch follows from fracture_energy_j_m2
 //! [micro_cracks]              # optional
 //! seed = 1
 //! count = 60
