@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::boundary;
+use super::{boundary, grips};
 use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
 use crate::error::{self, Result, input, input_missing};
 use crate::input::{FORCE, FORCE_KN, Quantity, STRESS, number, refuse_given, shorten, slice, table_of};
@@ -49,6 +49,7 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
     }
     refuse_by_name(loading)?;
     let input: Input = slice(loading, "loading")?;
+    grips::refuse(&input)?;
     let ratio = read_ratio(input.stress_ratio)?;
     if input.is_of_cracks_alone() {
         return pressure_alone(&input, supports, specimen, ratio);
@@ -81,7 +82,10 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
                 }
             }
             let (unit, section) = match measure {
-                LoadMeasure::Stress => (UNIT_STRESS, area),
+                LoadMeasure::Stress => {
+                    grips::apply(&input, specimen)?;
+                    (UNIT_STRESS, specimen.moved_section().unwrap_or(area))
+                }
                 LoadMeasure::Force => (UNIT_FORCE, 1.0),
             };
             (unit, LoadControl::Displacement { maximum: largest, section })
