@@ -12,6 +12,7 @@ mod elasticity;
 mod element_free;
 mod fatigue;
 mod fracture_relaxation;
+mod grips;
 mod hand_calculation;
 mod hard_plates;
 mod joined_cracks;

@@ -116,11 +116,11 @@ fn pure_shear() {
     }
 }
 
-/// Middle tension under a kept displacement: `P = δ/C(a)` with the compliance that K says, `C = L/(E W t) + 4t/(E P²) ∫ K² da`.
+/// Middle tension under a kept mean displacement of its ends, which bear a uniform stress: `P = δ/C(a)` with the compliance that K says, `C = L/(E W t) + 4t/(E P²) ∫ K² da`.
 #[test]
 fn cycles_of_a_displacement() {
     let panel = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 200\ncrack_length_mm = 8";
-    let kept = "kind = \"displacement\"\ndisplacement_max_mm = 0.2";
+    let kept = "kind = \"displacement\"\ngrip = \"mean\"\ndisplacement_max_mm = 0.2";
     let [kept, loaded] = [kept, "force_max_n = 13719.7"].map(|loading| run(&case(panel, loading, &["stop.crack_length_mm=40"])));
     let (width, length, thickness, modulus, displacement) = (0.1, 0.2, 2e-3, 70e9, 0.2e-3);
     let factor = |a: f64| (PI * a / (PI * a / width).cos()).sqrt();

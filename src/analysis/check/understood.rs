@@ -115,6 +115,7 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     let chosen = model_words::of_case(case, None);
     let held = match specimen.supports.first() {
         None => "nothing held, loads in equilibrium",
+        Some(Support::Moved { .. }) => "nothing else held",
         Some(Support::Fixed { .. }) => "held as [supports] says",
         Some(Support::Elsewhere) => "held outside the plate",
         Some(Support::ClampedEnds) => "rigid ends that cannot rotate",

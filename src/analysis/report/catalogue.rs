@@ -15,11 +15,11 @@ use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::growth_law::RangeKind;
 use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
 use crate::fracture::SceneEnd;
-use crate::fracture::read::{Kinematics, LoadKind, Transverse};
+use crate::fracture::read::{Kinematics, LoadKind};
 use crate::fracture::scene::{Calibration, DamageEntry, DamageLaw, Discretisation, PointLaw, SceneSolver, ZeroEnergyControl};
 use crate::input::Folder;
 use crate::kinds::KindLine;
-use crate::loading::LoadingKind;
+use crate::loading::{Grip, LoadingKind, Transverse};
 use crate::material::{Plane, library};
 use crate::measured::{CycleUnit, Decimal, IntensityUnit, LengthUnit, LoadUnit, RateUnit};
 use crate::predict::StopReason;
@@ -40,6 +40,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         Plane::lines(),
         LoadingKind::lines(),
         LoadKind::lines(),
+        Grip::lines(),
         Edge::lines(),
         Transverse::lines(),
         Component::lines(),

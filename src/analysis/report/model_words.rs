@@ -8,8 +8,8 @@ use crate::element_free::resolution::ElementFreeSettings;
 use crate::fracture::scene::{Discretisation, Scene, SceneLaw};
 use crate::predict::RunFigures;
 use crate::solver::SolverUsed;
-use crate::specimen::LoadMeasure;
 use crate::specimen::handbook::handbook;
+use crate::specimen::{LoadMeasure, Specimen, Support};
 use crate::units::{KN, MM, MPA};
 
 /// Keys that say how bonds resist.
@@ -204,7 +204,10 @@ pub fn loading(case: &Case) -> String {
     let range = |unit: f64, most: f64| format!("{} to {}", short(loading.ratio * most / unit), short(most / unit));
     let loads = range(unit, loading.maximum);
     let cycles = match (loading.displacement(), specimen.crack_pressure) {
-        (Some(most), _) => format!("displacement of the loaded places {} mm; the load falls as cracks grow", range(MM, most)),
+        (Some(most), _) => {
+            let (moved, range) = (moved(specimen), range(MM, most));
+            format!("displacement of the {moved} {range} mm; the load falls as cracks grow")
+        }
         (None, pressure) if pressure > 0.0 && specimen.loads.is_empty() => format!("pressure on the cracks {loads} {symbol}"),
         (None, pressure) if pressure > 0.0 => {
             let most = short(pressure * loading.maximum / MPA);
@@ -215,6 +218,22 @@ pub fn loading(case: &Case) -> String {
     let sides =
         if loading.parallel_ratio == 0.0 { String::new() } else { format!(", {} of it on the sides", loading.parallel_ratio) };
     format!("{cycles}{sides}, R = {}", loading.ratio)
+}
+
+/// What cycles of a displacement move, in words.
+fn moved(specimen: &Specimen) -> &'static str {
+    let is_gripped = specimen.supports.iter().any(|support| matches!(support, Support::ClampedEnds | Support::RigidEnds));
+    let of_edge = |support: &Support| match *support {
+        Support::Moved { held: true, .. } => Some("edge, held straight and at rest across its motion:"),
+        Support::Moved { from, to, direction: [x, y], .. } => {
+            let is_normal = ((to[0] - from[0]) * x + (to[1] - from[1]) * y).abs() < 1e-9;
+            Some(if is_normal { "edge, held straight, free along it:" } else { "edge, held straight, free across its motion:" })
+        }
+        _ => None,
+    };
+    let by_mean = !is_gripped && specimen.load_measure == LoadMeasure::Stress;
+    let otherwise = if by_mean { "edge under uniform stress, by its mean:" } else { "loaded places" };
+    specimen.supports.iter().find_map(of_edge).unwrap_or(otherwise)
 }
 
 /// A number with at most four decimals.

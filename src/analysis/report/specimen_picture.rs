@@ -160,6 +160,12 @@ fn draw_supports(sketch: &mut Sketch, specimen: &Specimen) {
                 let [px, py] = sketch.place(*right);
                 sketch.text([px + 12.0, py + 14.0], held, "start", 12, HELD);
             }
+            Support::Moved { from, to, .. } => {
+                hold(sketch, *from, *to, 0.0, middle_of(specimen));
+                let right = if from[0] > to[0] { from } else { to };
+                let [px, py] = sketch.place(*right);
+                sketch.text([px + 12.0, py + 14.0], "moved straight", "start", 12, HELD);
+            }
             Support::Elsewhere => {}
             Support::ClampedEnds | Support::RigidEnds => {
                 let words =

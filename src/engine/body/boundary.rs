@@ -1,6 +1,6 @@
 //! Loads and supports of a specimen as forces on points, points held, and grips.
 
-use super::facets::{Facet, arc, behind, straight, turned_over};
+use super::facets::{Facet, PER_SPACING, arc, behind, straight, turned_over};
 use super::lattice::Lattice;
 use super::sharing::Sharing;
 use crate::bond_law::stencil::Stencil;
@@ -11,6 +11,15 @@ use crate::specimen::{Hole, Load, Point, Specimen, Support};
 /// Stiffness of rigid grips over that of the plate.
 const GRIP_STIFFNESS: f32 = 1000.0;
 
+/// A sum of displacements `Σ w·u`, such as that of a piece of an edge, that is held.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tie {
+    /// Places with their weights on both displacements (lattice axes).
+    pub weights: Vec<(u32, Point)>,
+    /// Where it is held, over the displacement of the load.
+    pub way: f64,
+}
+
 /// Forces on points at unit nominal load, held components and grips.
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
@@ -20,10 +29,13 @@ pub struct Boundary {
     pub couples: Vec<(u32, f64)>,
     /// Places nearest to where the loads act.
     loaded: Vec<u32>,
-    /// Places at the corners of a plate on whose cracks alone a load acts, ascending: cracks that part two of them part the plate.
+    /// Places at the corners of a plate on whose cracks alone a load acts, and at tied supports, ascending: cracks that part two of
+    /// them part the plate.
     pub corners: Vec<u32>,
-    /// Force that the plate carries from end to end along y at unit nominal load, N.
+    /// Force of the grips at unit nominal load, N.
     through: f64,
+    /// Pieces of edges that are moved straight, or held beside such an edge.
+    pub ties: Vec<Tie>,
     /// Held places with what is held: the components in lattice axes, and the rotation.
     pub fixed: Vec<(u32, [bool; 3])>,
     /// Clamped grips: places of the end blocks with the displacement along y, in units of half the relative displacement.
@@ -44,8 +56,22 @@ impl Boundary {
         points: &[u32],
     ) -> Result<Boundary> {
         let mut boundary = Boundary { floating: true, ..Boundary::default() };
+        let moved = specimen.moved_section();
         for support in &specimen.supports {
             match *support {
+                Support::Moved { from, to, direction: [x, y], way, held } => {
+                    boundary.floating = false;
+                    boundary.tie(specimen, lattice, sharing, [from, to], ([x, y], way));
+                    if held {
+                        boundary.tie(specimen, lattice, sharing, [from, to], ([-y, x], 0.0));
+                    }
+                }
+                // The way from it to an edge that is moved counts: it is held where it is, not half a spacing inside.
+                Support::Fixed { from, to, depth: 0.0, x, y } if moved.is_some() => {
+                    for (axis, _) in [([1.0, 0.0], x), ([0.0, 1.0], y)].iter().filter(|(_, is_held)| *is_held) {
+                        boundary.tie(specimen, lattice, sharing, [from, to], (*axis, 0.0));
+                    }
+                }
                 Support::Fixed { from, to, depth, x, y } => {
                     boundary.floating = false;
                     let away = |p: u32| distance_to_segment(lattice.position(p as usize), from, to);
@@ -65,6 +91,10 @@ impl Boundary {
                 }
             }
         }
+        boundary.fixed.extend(points.first().zip(sliding(specimen)).map(|(&p, axis)| {
+            let [x, y] = lattice.to_axes(axis).map(f64::abs);
+            (p, [x >= y, y > x, false])
+        }));
         let mut force = std::collections::BTreeMap::<u32, Point>::new();
         for load in load_pieces(specimen, lattice.spacing) {
             let at = load.facet.at;
@@ -83,15 +113,36 @@ impl Boundary {
                 *sum = [sum[0] + share * whole[0], sum[1] + share * whole[1]];
             }
         }
+        boundary.through = moved.unwrap_or(boundary.through);
         if specimen.loads.is_empty() && specimen.crack_pressure > 0.0 {
             boundary.corners = specimen.outline.iter().filter_map(|&corner| sharing.nearest_point(corner)).collect();
-            boundary.corners.sort_unstable();
-            boundary.corners.dedup();
         }
+        boundary.corners.sort_unstable();
+        boundary.corners.dedup();
         boundary.loaded.sort_unstable();
         boundary.loaded.dedup();
         boundary.forces = force.into_iter().collect();
         Ok(boundary)
+    }
+
+    /// Holds a stretch of an edge in its component along a direction, at a way over the displacement of the load: spacing by spacing the
+    /// mean of the rim there, by the shares that tractions have.
+    fn tie(&mut self, specimen: &Specimen, lattice: &Lattice, sharing: &Sharing, [from, to]: [Point; 2], held: (Point, f64)) {
+        let axis = lattice.to_axes(held.0);
+        let facets: Vec<Facet> =
+            straight(from, to, lattice.spacing).map(|facet| outward(specimen, facet, lattice.spacing)).collect();
+        for piece in facets.chunks(PER_SPACING as usize) {
+            let mut shares = std::collections::BTreeMap::<u32, f64>::new();
+            for (place, share) in piece.iter().flat_map(|facet| sharing.of(facet)) {
+                *shares.entry(place).or_default() += share / piece.len() as f64;
+            }
+            let nearest = piece.iter().filter_map(|facet| sharing.nearest_point(facet.at));
+            let nearest: Vec<u32> = nearest.collect();
+            self.loaded.extend(&nearest);
+            self.corners.extend(&nearest);
+            let weights = shares.into_iter().map(|(place, share)| (place, axis.map(|a| share * a))).collect();
+            self.ties.push(Tie { weights, way: held.1 });
+        }
     }
 
     /// Removes the small resultant that sharing out the loads to points has left on a floating plate: the loaded points
@@ -125,6 +176,7 @@ impl Boundary {
             loaded: self.loaded.iter().filter_map(here).collect(),
             corners: self.corners.iter().filter_map(here).collect(),
             through: self.through,
+            ties: Vec::new(),
             fixed,
             clamped: self.clamped.iter().filter_map(|(p, side)| Some((here(p)?, *side))).collect(),
             rigid: self.rigid.iter().filter_map(here).collect(),
@@ -132,7 +184,7 @@ impl Boundary {
         }
     }
 
-    /// Force that the plate carries from end to end along y at unit nominal load, N.
+    /// Force of clamped ends, or of sides that are moved straight, at unit nominal load, N.
     pub fn force_through(&self) -> f64 {
         self.through
     }
@@ -209,6 +261,21 @@ fn held(lattice: &Lattice, x: bool, y: bool) -> [bool; 3] {
     if lattice.axis[1] == 0.0 { [x, y, false] } else { [x || y, x || y, false] }
 }
 
+/// Direction in which nothing holds a plate whose sides are moved straight: across their motion where they slide in their grips.
+fn sliding(specimen: &Specimen) -> Option<Point> {
+    let mut moved = specimen.supports.iter().filter_map(|support| match *support {
+        Support::Moved { direction: [x, y], held: false, .. } => Some([-y, x]),
+        _ => None,
+    });
+    let [x, y] = moved.next()?;
+    let holds = |support: &Support| match *support {
+        Support::Fixed { x: holds_x, y: holds_y, .. } => (holds_x && x.abs() > 1e-9) || (holds_y && y.abs() > 1e-9),
+        Support::Moved { direction, .. } => (direction[0] * x + direction[1] * y).abs() > 1e-9,
+        _ => false,
+    };
+    (!specimen.supports.iter().any(holds)).then_some([x, y])
+}
+
 /// Points within one horizon of the lower (-1) and upper (+1) end of the specimen.
 fn end_blocks<'a>(
     specimen: &Specimen,
@@ -238,15 +305,19 @@ pub struct LoadPiece {
     pub force: Point,
 }
 
+/// A facet with its normal out of the material.
+fn outward(specimen: &Specimen, facet: Facet, spacing: f64) -> Facet {
+    if specimen.contains(behind(&facet, spacing)) { facet } else { turned_over(facet) }
+}
+
 /// The loads of a specimen in short pieces.
 pub fn load_pieces(specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
-    let outward = |facet: Facet| if specimen.contains(behind(&facet, spacing)) { facet } else { turned_over(facet) };
     let mut pieces = Vec::new();
     for load in &specimen.loads {
         match *load {
             Load::Edge { from, to, traction } => pieces.extend(straight(from, to, spacing).map(|facet| {
                 let area = facet.length * specimen.thickness;
-                LoadPiece { facet: outward(facet), force: [traction[0] * area, traction[1] * area] }
+                LoadPiece { facet: outward(specimen, facet, spacing), force: [traction[0] * area, traction[1] * area] }
             })),
             Load::Pin { hole, direction, force, contact } => {
                 pieces.extend(bearing(&specimen.holes[hole], direction, contact, spacing, force))

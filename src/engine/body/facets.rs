@@ -11,7 +11,7 @@ use crate::specimen::geometry::{
 use crate::specimen::{Hole, Point, Slot, Specimen};
 
 /// Pieces per spacing; even, so that the middle of a piece never falls between two points.
-const PER_SPACING: f64 = 8.0;
+pub(super) const PER_SPACING: f64 = 8.0;
 /// Depth in spacings at which a piece is asked whether it has material behind it.
 const BEHIND: f64 = 1e-3;
 

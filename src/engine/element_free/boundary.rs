@@ -20,10 +20,13 @@ const TOUCH: f64 = 1e-9;
 /// Points of a held stretch in a local spacing.
 const HELD_IN_SPACING: f64 = 3.0;
 
+/// Directions of the components.
+const AXES: [Point; 2] = [[1.0, 0.0], [0.0, 1.0]];
+
 /// Unknowns of a grip: two displacements and a turn.
 pub const UNKNOWNS_OF_GRIP: usize = 3;
 
-/// `factor v vᵀ` of some unknowns: a support.
+/// `factor v vᵀ` of some unknowns: a support, which holds `v·u` at `way` times the displacement of the load.
 #[derive(Debug, Clone, Default)]
 pub struct Square {
     /// Unknowns, ascending.
@@ -32,20 +35,28 @@ pub struct Square {
     pub v: Vec<f64>,
     /// Its factor.
     pub factor: f64,
+    /// Where it is held, over the displacement of the load.
+    pub way: f64,
 }
 
 impl Square {
-    /// A spring on one component of what unknowns move together.
-    fn of(motions: &[(u32, Point)], axis: usize, factor: f64) -> Self {
-        let (unknowns, v) = motions.iter().map(|(unknown, motion)| (*unknown, motion[axis])).unzip();
-        Square { unknowns, v, factor }
+    /// A spring on the component along a direction of what unknowns move together.
+    fn of(motions: &[(u32, Point)], [x, y]: Point, factor: f64) -> Self {
+        let (unknowns, v) = motions.iter().map(|(unknown, motion)| (*unknown, motion[0] * x + motion[1] * y)).unzip();
+        Square { unknowns, v, factor, way: 0.0 }
+    }
+
+    /// `Σ P way` of the force P of the spring, N per m of the displacement of the load, where the unknowns are those of 1 m.
+    pub fn reaction(&self, u: &[f64]) -> f64 {
+        let held: f64 = self.unknowns.iter().zip(&self.v).map(|(&unknown, v)| v * u[unknown as usize]).sum();
+        self.factor * self.way * (self.way - held)
     }
 }
 
 /// Loads and supports.
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
-    /// Forces on the unknowns at unit nominal load, N, those of grips last.
+    /// Forces on the unknowns at unit nominal load, N, those of grips last; where sides are moved, what moves them by 1 m.
     pub forces: Vec<f64>,
     /// Springs of supports and grips.
     pub held: Vec<Square>,
@@ -66,7 +77,9 @@ impl Boundary {
     pub fn new(specimen: &Specimen, plate: &Discretisation, far: f64) -> Result<Self> {
         let mut boundary = Boundary { forces: vec![0.0; plate.unknowns()], ..Boundary::default() };
         let grips = boundary.grips(specimen, plate)?;
-        for piece in load_pieces(specimen, far / PIECES_IN_SPACING) {
+        // What sides that are moved bear is found with their displacement.
+        let is_moved = specimen.moved_section().is_some();
+        for piece in load_pieces(specimen, far / PIECES_IN_SPACING).into_iter().filter(|_| !is_moved) {
             match grips.iter().find(|grip| is_on(grip, specimen, piece.facet.at)) {
                 // A rigid end takes up all that is on it.
                 Some(grip) => {
@@ -80,15 +93,25 @@ impl Boundary {
         }
         boundary.press_cracks(specimen, plate)?;
         for support in &specimen.supports {
-            if let Support::Fixed { from, to, depth, x, y } = *support {
-                for ends in layers(plate, [from, to], depth) {
-                    boundary.hold(specimen, plate, ends, [x, y])?;
+            match *support {
+                Support::Fixed { from, to, depth, x, y } => {
+                    let held: Vec<(Point, f64)> =
+                        AXES.into_iter().zip([x, y]).filter(|(_, held)| *held).map(|(axis, _)| (axis, 0.0)).collect();
+                    for ends in layers(plate, [from, to], depth) {
+                        boundary.hold(specimen, plate, ends, &held)?;
+                    }
                 }
+                Support::Moved { from, to, direction: [x, y], way, held } => {
+                    let held = if held { &[([x, y], way), ([-y, x], 0.0)][..] } else { &[([x, y], way)] };
+                    boundary.hold(specimen, plate, [from, to], held)?;
+                }
+                _ => {}
             }
         }
         let holds = |axis: usize| {
-            specimen.supports.iter().any(|support| match support {
-                Support::Fixed { x, y, .. } => [*x, *y][axis],
+            specimen.supports.iter().any(|support| match *support {
+                Support::Fixed { x, y, .. } => [x, y][axis],
+                Support::Moved { direction, held, .. } => held || direction[axis].abs() > direction[1 - axis].abs(),
                 _ => false,
             })
         };
@@ -129,11 +152,16 @@ impl Boundary {
         Ok(())
     }
 
-    /// Holds components of the displacement on a stretch of the outline.
-    fn hold(&mut self, specimen: &Specimen, plate: &Discretisation, ends: [Point; 2], held: [bool; 2]) -> Result<()> {
+    /// Holds components of the displacement on a stretch of the outline: those along directions, at their ways.
+    fn hold(&mut self, specimen: &Specimen, plate: &Discretisation, ends: [Point; 2], held: &[(Point, f64)]) -> Result<()> {
         for (at, length) in pieces(plate, ends).into_iter().filter(|(at, _)| specimen.has_point_at(*at, TOUCH)) {
             let (motions, factor) = (motions(plate, at)?, penalty(specimen, plate, at) * length);
-            (0..2).filter(|axis| held[*axis]).for_each(|axis| self.held.push(Square::of(&motions, axis, factor)));
+            for &(direction, way) in held {
+                let square = Square { way, ..Square::of(&motions, direction, factor) };
+                let pull = square.unknowns.iter().zip(&square.v).filter(|_| way != 0.0);
+                pull.for_each(|(&unknown, v)| self.forces[unknown as usize] += factor * way * v);
+                self.held.push(square);
+            }
         }
         Ok(())
     }
@@ -155,13 +183,13 @@ impl Boundary {
                 let arm = at[0] - middle[0];
                 let (mut motions, factor) = (motions(plate, at)?, penalty(specimen, plate, at) * length);
                 motions.extend([(first as u32, [-1.0, 0.0]), (first as u32 + 1, [0.0, -1.0]), (first as u32 + 2, [0.0, -arm])]);
-                self.held.extend([0, 1].map(|axis| Square::of(&motions, axis, factor)));
+                self.held.extend(AXES.map(|axis| Square::of(&motions, axis, factor)));
             }
             grips.push(Grip { first, middle, turns: !clamped });
         }
         for grip in grips.iter().filter(|grip| !grip.turns) {
             let [width, size] = [high[0] - low[0], penalty(specimen, plate, grip.middle)];
-            self.held.push(Square::of(&[(grip.first as u32 + 2, [1.0; 2])], 0, size * width.powi(3)));
+            self.held.push(Square::of(&[(grip.first as u32 + 2, [1.0; 2])], AXES[0], size * width.powi(3)));
         }
         Ok(grips)
     }
@@ -179,13 +207,15 @@ impl Boundary {
         // A straight side that is held along its normal cannot turn.
         let turns = |support: &Support| match *support {
             Support::Fixed { from, to, x, y, .. } => [x, y][usize::from((to[1] - from[1]).abs() < (to[0] - from[0]).abs())],
+            // Of itself, or by what holds or moves the other side.
+            Support::Moved { .. } => true,
             _ => false,
         };
         if !clamped && !supports.iter().any(turns) {
             pinned.push(first(b) + across);
         }
         let size = plate.elasticity().plane_modulus;
-        self.held.extend(pinned.into_iter().map(|unknown| Square::of(&[(unknown, [1.0; 2])], 0, size * PIN)));
+        self.held.extend(pinned.into_iter().map(|unknown| Square::of(&[(unknown, [1.0; 2])], AXES[0], size * PIN)));
     }
 }
 

@@ -68,7 +68,7 @@ impl Matrices for Stiffness<'_> {
                 add_cell(self.plate, self.thickness, (*leaf, points), &mut scratch, places, front)?;
                 continue;
             }
-            let Square { unknowns, v, factor } = &self.held[member - self.cells.len()];
+            let Square { unknowns, v, factor, .. } = &self.held[member - self.cells.len()];
             let place = |unknown: u32| {
                 let node = self.node(unknown) as usize;
                 (places[node] + unknown - self.first[node]) as usize
@@ -90,10 +90,20 @@ pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -
     let first: Vec<u32> = plate.first.iter().copied().chain(grips.map(|first| (first + UNKNOWNS_OF_GRIP) as u32)).collect();
     let stiffness = Stiffness { plate, thickness: specimen.thickness, cells: &cells, held: &held, first: &first };
     let factor = Factor::of(&stiffness.members(), &first, &stiffness)?;
-    forces.iter_mut().for_each(|force| *force *= load);
-    let mut u = forces.clone();
-    factor.solve(&mut u);
-    let work = forces.iter().zip(&u).map(|(f, u)| f * u).sum();
+    let (work, u) = match specimen.moved_section() {
+        None => {
+            forces.iter_mut().for_each(|force| *force *= load);
+            let mut u = forces.clone();
+            factor.solve(&mut u);
+            (forces.iter().zip(&u).map(|(f, u)| f * u).sum(), u)
+        }
+        // Moved by 1 m, then scaled to the force of the load.
+        Some(section) => {
+            factor.solve(&mut forces);
+            let scale = load * section / held.iter().map(|square| square.reaction(&forces)).sum::<f64>();
+            (load * section * scale, forces.into_iter().map(|u| scale * u).collect())
+        }
+    };
     let points = cells.iter().map(|(_, points)| points.len()).sum();
     let area = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
     Ok(Solution { u, work, points, area })

@@ -2,6 +2,7 @@
 
 mod boundary;
 mod forces;
+mod grips;
 mod read;
 
 pub use boundary::{Imbalance, imbalance};
@@ -20,6 +21,22 @@ crate::kinds! {
     }
 }
 
+crate::kinds! {
+    /// What cycles of a displacement do with the edges that they move.
+    pub enum Grip for "loading.grip" {
+        Straight = "straight": "every moved edge stays straight and does not turn, as in a stiff grip; what it bears is not uniform",
+        Mean = "mean": "the edges bear a uniform stress, bend and turn: the displacement is the mean of the edge",
+    }
+}
+
+crate::kinds! {
+    /// What is moved does across the direction of its motion.
+    pub enum Transverse for "loading.transverse" {
+        Free = "free": "driven points and straight edges move freely across the direction of a displacement or velocity",
+        Held = "held": "they do not move across the direction of a displacement or velocity",
+    }
+}
+
 /// Keys of `[loading]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -33,6 +50,8 @@ struct Input {
     force_range_kn: Option<f64>,
     displacement_max_mm: Option<f64>,
     displacement_range_mm: Option<f64>,
+    grip: Option<Grip>,
+    transverse: Option<Transverse>,
     crack_pressure_mpa: Option<f64>,
     stress_ratio: Option<f64>,
     stress_parallel_ratio: Option<f64>,
@@ -56,7 +75,7 @@ pub enum LoadControl {
     /// The load.
     Load,
     /// The displacement `δ` that the load does work on: `P δ = Σ f·u` over the loaded places, P being the force of the load. Of two
-    /// loaded ends it is the mean of what they move apart, of a pin that of the places it presses on.
+    /// loaded ends it is what they move apart (its mean where they do not stay straight), of a pin that of the places it presses on.
     Displacement {
         /// Largest displacement of a cycle, m.
         maximum: f64,

@@ -3,8 +3,8 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::boundary;
 use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
+use super::{boundary, grips};
 use crate::error::{self, Result, input, input_missing};
 use crate::input::{FORCE, FORCE_KN, Quantity, STRESS, number, refuse_given, shorten, slice, table_of};
 use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
@@ -49,6 +49,7 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
     }
     refuse_by_name(loading)?;
     let input: Input = slice(loading, "loading")?;
+    grips::refuse(&input)?;
     let ratio = read_ratio(input.stress_ratio)?;
     if input.is_of_cracks_alone() {
         return pressure_alone(&input, supports, specimen, ratio);
@@ -81,7 +82,10 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
                 }
             }
             let (unit, section) = match measure {
-                LoadMeasure::Stress => (UNIT_STRESS, area),
+                LoadMeasure::Stress => {
+                    grips::apply(&input, specimen)?;
+                    (UNIT_STRESS, specimen.moved_section().unwrap_or(area))
+                }
                 LoadMeasure::Force => (UNIT_FORCE, 1.0),
             };
             (unit, LoadControl::Displacement { maximum: largest, section })

@@ -79,6 +79,8 @@ impl<'a, const N: usize> Springs<'a, N> {
     pub fn new(product: &'a Product<N>) -> Self {
         let mut held = vec![false; product.layout().len()];
         product.fixed().iter().for_each(|&index| held[index] = true);
+        // Held sums are none of the components.
+        product.ties().slaves().for_each(|index| held[index] = false);
         Springs { product, held }
     }
 }

@@ -20,6 +20,9 @@ use crate::state::Bonds;
 /// Solves after which it begins anew: it remembers nothing, so that this costs one more solve.
 const SOLVES_MOST: usize = 32;
 
+/// Stiffness of a held sum over the largest of the matrix.
+const TIE: f64 = 1e7;
+
 /// Factorises anew for every solve.
 #[derive(Debug, Clone, Default)]
 pub struct DirectSolver {}
@@ -65,6 +68,9 @@ fn factorise_and_solve<const N: usize, const M: usize>(
     let definite = (0..M).all(|c| assembly.pivot_sign(c) > 0.0);
     let mut entries = entries(body, bonds, assembly, &number);
     add_contact(product.contact(), &number, &mut entries);
+    let largest = entries.iter().map(|entry| entry.val).fold(0.0, f64::max);
+    let tie = |sum: &GapSpring| GapSpring { stiffness: TIE * largest, ..sum.clone() };
+    add_contact(&product.ties().sums().iter().map(tie).collect::<Vec<_>>(), &number, &mut entries);
     if definite {
         entries.retain(|entry| entry.col <= entry.row);
     }

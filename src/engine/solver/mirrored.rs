@@ -49,6 +49,10 @@ struct Copied {
 impl Mirrored {
     /// The part of a plate under `load` times its unit load; `None` where the plate is not symmetric.
     pub(super) fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Option<Self> {
+        if !body.boundary.ties.is_empty() {
+            // A held sum may reach across a line of symmetry.
+            return None;
+        }
         let part = Part::of(body, Mirror::of(body, &bonds.multiplier))?;
         let mut multiplier = part.multiplier(body, &bonds.multiplier);
         let scaled: Vec<Bond> = bonds.scaled(body).into_iter().map(|(bond, _)| bond).collect();

@@ -13,6 +13,7 @@ mod rigid_motion;
 mod sides;
 pub mod spring;
 mod system;
+mod ties;
 pub mod window;
 
 use crate::body::{Body, Bond};

@@ -11,6 +11,7 @@ use super::field::{Ghosts, Layout, Real};
 pub use super::kernel::Into;
 use super::kernel::Kernel;
 use super::spring::{Blocks, End, GapSpring, Spring, Term};
+use super::ties::Ties;
 use crate::body::Body;
 use crate::bond_law::stencil::StencilBond;
 use crate::state::Bonds;
@@ -57,6 +58,8 @@ pub struct Product<const N: usize> {
     ghosts: Ghosts,
     /// Springs between flanks in contact.
     contact: Vec<GapSpring>,
+    /// Held sums of displacements.
+    ties: Ties,
 }
 
 impl<const N: usize> Product<N> {
@@ -79,6 +82,7 @@ impl<const N: usize> Product<N> {
             dilatation,
             ghosts,
             contact: Vec::new(),
+            ties: Ties::default(),
         }
     }
 
@@ -107,27 +111,42 @@ impl<const N: usize> Product<N> {
         self.contact = contact;
     }
 
+    /// Held sums of displacements, whose slaves are among the held components.
+    pub(super) fn ties(&self) -> &Ties {
+        &self.ties
+    }
+
+    /// Puts other held sums.
+    pub(super) fn set_ties(&mut self, ties: Ties) {
+        self.ties = ties;
+    }
+
     /// Puts the mirror images of a field into its padding.
     pub(super) fn mirror<T: Real>(&self, x: &mut [T]) {
         self.ghosts.fill(x);
     }
 
     /// y = K x or y -= K x; held components of y become zero. x must be zero outside the points, but for its mirror images, which
-    /// are put there.
+    /// are put there. Slaves of held sums follow their masters, and give them their forces.
     pub fn apply(&self, bonds: &Bonds, x: &mut [f64], y: &mut [f64], into: Into) {
+        self.ties.spread(x);
+        self.apply_to_field(bonds, x, y, into);
+    }
+
+    /// [`Product::apply`] to a field whose slaves are where they are.
+    pub(super) fn apply_to_field(&self, bonds: &Bonds, x: &mut [f64], y: &mut [f64], into: Into) {
         self.apply_springs(bonds, x, y, into);
         if let Some(dilatation) = &self.dilatation {
             dilatation.apply(bonds, x, y, into);
         }
         let sign = if into == Into::Set { 1.0 } else { -1.0 };
         self.contact.iter().for_each(|spring| spring.add_force(&self.layout, sign, x, y));
-        if self.dilatation.is_some() || !self.contact.is_empty() {
-            self.fixed.iter().for_each(|&index| y[index] = 0.0);
-        }
+        self.ties.fold(y);
+        self.fixed.iter().for_each(|&index| y[index] = 0.0);
     }
 
-    /// [`Product::apply`] of the springs alone.
-    pub fn apply_springs(&self, bonds: &Bonds, x: &mut [f64], y: &mut [f64], into: Into) {
+    /// The springs alone, held components as well.
+    fn apply_springs(&self, bonds: &Bonds, x: &mut [f64], y: &mut [f64], into: Into) {
         self.mirror(x);
         let x = &*x;
         let (row_len, padding) = (self.layout.row_len(), self.layout.padding);
@@ -137,9 +156,6 @@ impl<const N: usize> Product<N> {
         body_rows.par_chunks_mut(row_len * rows_per_task).enumerate().for_each(|(task, out)| {
             arch.dispatch(Rows { kernel: &self.double, row_len, bonds, x, first: task * rows_per_task, out, into });
         });
-        for &index in &self.fixed {
-            y[index] = 0.0;
-        }
     }
 
     /// r -= K x of the springs in single precision on one body row of a field that has its mirror images; held

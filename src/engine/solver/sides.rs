@@ -6,6 +6,7 @@ use super::field::{self, Layout};
 use super::product::{Into, Product};
 use super::spring::GapSpring;
 use super::system::{EquilibriumBackend, Focus, LinearSolver, SolverKind, SolverUsed, System};
+use super::ties::Ties;
 use super::window::WindowSolver;
 use crate::body::{Body, Bond};
 use crate::error::Result;
@@ -27,13 +28,15 @@ struct ConstrainedSystem<const N: usize> {
 }
 
 struct Grips {
-    /// Relative motion of the grips, held components only.
+    /// Relative motion of the grips, held components only: clamped ends by two spacings, or sides that are moved straight by one.
     field: Vec<f64>,
+    /// That motion, m.
+    way: f64,
     /// Force that the grips must transmit, N.
     force: f64,
     /// Force on the free components that this motion brings, -K g.
     drag: Vec<f64>,
-    /// Energy of the field with its free components, plus the work of the drag, J x 2: no break away from the grips changes it.
+    /// Energy of the field with its free components, plus the work of the drag, J x 2: only a break near the grips changes it.
     constant: f64,
     /// What the field is multiplied with for the load.
     scale: f64,
@@ -61,16 +64,21 @@ impl<const N: usize> ConstrainedSystem<N> {
         }
         fixed.sort_unstable();
         fixed.dedup();
+        let ties = Ties::of(body, &layout, &fixed);
+        fixed.extend(ties.slaves());
+        fixed.sort_unstable();
         let mut f = layout.zeros();
-        let grips = (!body.boundary.clamped.is_empty()).then(|| {
-            let mut field = layout.zeros();
+        let is_tied = !body.boundary.ties.is_empty();
+        let grips = (is_tied || !body.boundary.clamped.is_empty()).then(|| {
+            let mut field = ties.held(&layout);
             let up = body.lattice.to_axes([0.0, 1.0]);
             for &(place, side) in &body.boundary.clamped {
                 let at = layout.index(place as usize);
                 field[at] = side * up[0] * body.lattice.spacing;
                 field[at + layout.stride] = side * up[1] * body.lattice.spacing;
             }
-            Grips { field, force: load * body.boundary.force_through(), drag: Vec::new(), constant: f64::NAN, scale: 1.0 }
+            let way = if is_tied { body.lattice.spacing } else { 2.0 * body.lattice.spacing };
+            Grips { field, way, force: load * body.boundary.force_through(), drag: Vec::new(), constant: f64::NAN, scale: 1.0 }
         });
         if grips.is_none() {
             for &(place, force) in &body.boundary.forces {
@@ -87,8 +95,11 @@ impl<const N: usize> ConstrainedSystem<N> {
                 f[index] = 0.0;
             }
         }
-        let product = Product::<N>::new(body, fixed);
+        let mut product = Product::<N>::new(body, fixed);
+        product.set_ties(ties);
         let solver: Box<dyn LinearSolver<N>> = match kind {
+            // A window is condensed bond by bond, and knows no held sums.
+            SolverKind::Window if is_tied => Box::new(MultigridSolver::for_few_solves(body, bonds, &product)),
             SolverKind::Window => Box::new(WindowSolver::new(body, bonds, &product)),
             SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product)),
             SolverKind::Direct => Box::new(DirectSolver::default()),
@@ -107,11 +118,11 @@ impl<const N: usize> ConstrainedSystem<N> {
         (&mut self.solver, System { body, bonds, product: &self.product, f }, &mut self.u)
     }
 
-    /// Free components follow the grips: K u = -K g. The stiffness at the grips never changes, so -K g does not either.
+    /// Free components follow the grips: K u = -K g. The stiffness at clamped ends never changes, so -K g does not either.
     fn drag_grips(&mut self, bonds: &Bonds) {
         let Some(grips) = self.grips.as_mut().filter(|grips| grips.drag.is_empty()) else { return };
         grips.drag = self.product.layout().zeros();
-        self.product.apply(bonds, &mut grips.field, &mut grips.drag, Into::Subtract);
+        self.product.apply_to_field(bonds, &mut grips.field, &mut grips.drag, Into::Subtract);
     }
 
     /// The displacement under the load, from the solver's; the work is that of the whole plate.
@@ -131,6 +142,7 @@ impl<const N: usize> ConstrainedSystem<N> {
             }
             return;
         };
+        self.product.ties().spread(&mut self.u);
         displacement.clone_from(&grips.field);
         displacement.iter_mut().zip(&self.u).for_each(|(d, u)| *d += u);
         // (g + u)ᵀK(g + u) = gᵀKg - f·u with f = -Kg.
@@ -142,8 +154,8 @@ impl<const N: usize> ConstrainedSystem<N> {
             grips.constant = field::dot(self.product.layout(), displacement, &forces) + work;
         }
         let energy = copies * (grips.constant - work);
-        // Energy = force x relative displacement of the grips (2 spacings in this scaling); the field is scaled to the load.
-        let reaction = energy / (2.0 * body.lattice.spacing);
+        // Energy = force x relative displacement of the grips; the field is scaled to the load.
+        let reaction = energy / grips.way;
         let scale = if reaction > 0.0 { grips.force / reaction } else { 0.0 };
         displacement.iter_mut().for_each(|d| *d *= scale);
         grips.scale = scale;
@@ -166,6 +178,11 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
         self.solver.broke(body, bonds, &self.product, broken);
+        // A crack may run up to an edge that is moved straight.
+        if let Some(grips) = self.grips.as_mut().filter(|grips| !body.boundary.ties.is_empty() && !grips.drag.is_empty()) {
+            (grips.drag, grips.constant) = (Vec::new(), f64::NAN);
+            self.drag_grips(bonds);
+        }
     }
 
     fn work(&self) -> f64 {
@@ -212,6 +229,7 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
     fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)> {
         let (solver, system, u) = self.parts(body, bonds);
         let (mut picture, iterations) = solver.picture(system, u)?.unwrap_or_else(|| (u.to_vec(), 0));
+        self.product.ties().spread(&mut picture);
         if let Some(Grips { field, scale, .. }) = &self.grips {
             picture.iter_mut().zip(field).for_each(|(u, g)| *u = scale * (g + *u));
         }

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Specimen, SpecimenKind, Support};
+use super::{Specimen, SpecimenKind};
 
 /// Plates shorter than this many widths are stiffer or softer than the long strip of the formulas by more than their
 /// error (a square plate with a/W = 0.5: 3.00 against 2.83 for a single edge crack).
@@ -51,7 +51,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
             "0.3 % for 2a/W up to 0.7, 2 % low at 0.9; length/width 1.5 or more",
             [0.0, 0.95],
         ),
-        SpecimenKind::SingleEdgeTension if long && !specimen.supports.contains(&Support::ClampedEnds) => (
+        SpecimenKind::SingleEdgeTension if long && !specimen.has_straight_grips() => (
             Form::SingleEdge,
             "Tada single edge",
             "Tada, Paris and Irwin 2000, part II",

@@ -115,7 +115,7 @@ impl<'a> Plate<'a> {
         if both_held && (0..2).any(|i| right.held[i] && left.held[i] && across[i].abs() > ACROSS) {
             return None;
         }
-        let turns = !both_held && !self.specimen.supports.contains(&Support::ClampedEnds);
+        let turns = !both_held && !self.specimen.has_straight_grips();
         let force = body.force.map(|f| -sign * f);
         let moment = -sign * (body.moment - (from[0] * body.force[1] - from[1] * body.force[0]));
         // Where supports hold both sides, they bear what is along the chord.

@@ -138,6 +138,20 @@ pub enum Support {
     },
     /// Both ends move as rigid blocks that do not rotate (clamped grips); the relative displacement along y is what the load asks.
     ClampedEnds,
+    /// The straight stretch `from`-`to` is moved as it is: every place of it by `way` of the displacement of the load along the unit
+    /// vector `direction`, so that it neither bends nor turns.
+    Moved {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// Unit vector of the displacement.
+        direction: Point,
+        /// Displacement of the stretch over that of the load.
+        way: f64,
+        /// Whether the component across the displacement is held at zero; else the stretch slides in its grip.
+        held: bool,
+    },
     /// Both ends move as rigid blocks that may rotate (pinned grips): end rows are made stiff, load is uniform over them.
     RigidEnds,
     /// What the body does not know of takes up the loads, so that they need not balance: supports and driven points of a fracture
@@ -228,6 +242,21 @@ impl Specimen {
             crack_pressure: 0.0,
             supports: Vec::new(),
         }
+    }
+
+    /// Whether its ends are clamped or sides of it moved straight, so that they do not turn.
+    pub fn has_straight_grips(&self) -> bool {
+        self.supports.iter().any(|support| matches!(support, Support::ClampedEnds | Support::Moved { .. }))
+    }
+
+    /// Section over which the nominal stress makes the force `P` of the sides that are moved straight, m²: `P δ = Σ F_i u_i` with
+    /// `u_i = way_i δ`.
+    pub fn moved_section(&self) -> Option<f64> {
+        let area = |support: &Support| match *support {
+            Support::Moved { from, to, way, .. } => Some(way * geometry::distance(from, to) * self.thickness),
+            _ => None,
+        };
+        self.supports.iter().filter_map(area).reduce(|sum, area| sum + area)
     }
 
     /// Size of the plate along y, m.

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Load, LoadMeasure, Specimen, SpecimenKind, Support};
+use super::{Load, LoadMeasure, Specimen, SpecimenKind};
 use crate::error::{Result, input};
 
 impl Specimen {
@@ -39,9 +39,7 @@ impl Specimen {
         // 1/η, written without the difference of two large numbers.
         let weakened_by = |arm: f64| (arm * arm + 1.0).sqrt() + arm;
         let factor = match self.kind {
-            SpecimenKind::SingleEdgeTension if !self.supports.contains(&Support::ClampedEnds) => {
-                weakened_by(crack_length / ligament)
-            }
+            SpecimenKind::SingleEdgeTension if !self.has_straight_grips() => weakened_by(crack_length / ligament),
             SpecimenKind::CompactTension => weakened_by(1.0 + 2.0 * crack_length / ligament),
             // Pulled in line, or held so that they cannot turn.
             SpecimenKind::MiddleTension

@@ -129,7 +129,7 @@ impl RingGeometry {
     pub fn new(body: &Body, specimen: &Specimen, material: &Material) -> Self {
         let spacing = body.lattice.spacing;
         let held = specimen.supports.iter().filter_map(|support| match *support {
-            Support::Fixed { from, to, .. } => Some([from, to]),
+            Support::Fixed { from, to, .. } | Support::Moved { from, to, .. } => Some([from, to]),
             _ => None,
         });
         let loads = load_pieces(specimen, spacing);

@@ -7,6 +7,7 @@ use super::region;
 use crate::error::{Result, input, input_missing};
 use crate::fracture::scene::{Action, LoadRamp, Region, SceneLoad};
 use crate::input::{Quantity, number, refuse_given, slice};
+use crate::loading::Transverse;
 use crate::specimen::geometry::unit;
 use crate::specimen::{Edge, Point, Specimen};
 use crate::units::{MM, MPA};
@@ -18,14 +19,6 @@ crate::kinds! {
         Displacement = "displacement": "displacement_mm of edges or regions, reached in the last of the steps or at the end of ramp_s; fracture scenes",
         Velocity = "velocity": "velocity_mm_s of edges or regions; fracture scenes with duration_s",
         Platens = "platens": "rigid plates without friction that press on edges by displacement_mm; fracture scenes",
-    }
-}
-
-crate::kinds! {
-    /// What driven points do across the direction in which they are driven.
-    pub enum Transverse for "loading.transverse" {
-        Free = "free": "driven points move freely across the direction of a displacement or velocity",
-        Held = "held": "driven points do not move across the direction of a displacement or velocity",
     }
 }
 

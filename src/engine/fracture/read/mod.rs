@@ -46,7 +46,7 @@ pub mod micro_cracks;
 mod model;
 mod region;
 
-pub use load::{LoadKind, Transverse};
+pub use load::LoadKind;
 pub use model::Kinematics;
 pub use region::around;
 
