@@ -63,9 +63,10 @@ pub fn overlap(specimen: &Specimen, plate: &Discretisation, lines: usize, u: &[f
     for piece in plate.obstacles.cuts.iter().take(lines).flat_map(|cut| cut.points.windows(2)) {
         let ([x, y], length) = (direction(piece[0], piece[1]), distance(piece[0], piece[1]));
         let spacing = |at: Point| plate.grid.spacing(plate.grid.leaf(at));
-        let count = (LOOKS * length / spacing(piece[0]).min(spacing(piece[1]))).ceil().clamp(2.0, 1e3) as usize;
-        for k in 0..count {
-            let at = along(piece[0], piece[1], (k as f64 + 0.5) / count as f64);
+        let mut way = 0.5 * spacing(piece[0]) / LOOKS;
+        while way < length {
+            let at = along(piece[0], piece[1], way / length);
+            way += spacing(at) / LOOKS;
             let step = BESIDE * spacing(at);
             let sides = [[at[0] - step * y, at[1] + step * x], [at[0] + step * y, at[1] - step * x]];
             if !sides.iter().all(|side| specimen.contains(*side)) {
