@@ -171,7 +171,11 @@ fn directions_pressures_and_displacements_that_are_refused() {
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ncrack_pressure_mpa = 5"), "does not go with cycles of a displacement"),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ndisplacement_range_mm = 0.1"), "one load is given twice"),
         (PLATE, "stress_ratio = 0\ndisplacement_max_mm = 0.1".into(), "does not go with kind"),
-        (PLATE, "stress_ratio = 0\nstress_max_mpa = 50\ngrip = \"mean\"".into(), "loading.grip: says how a moved edge is gripped"),
+        (
+            PLATE,
+            "stress_ratio = 0\nstress_max_mpa = 50\ngrip = \"mean\"".into(),
+            "loading.grip: says how a moved edge is gripped",
+        ),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ngrip = \"soft\""), "straight, mean"),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ngrip = \"mean\"\ntransverse = \"held\""), "does not go with grip"),
         (
@@ -186,7 +190,9 @@ fn directions_pressures_and_displacements_that_are_refused() {
         ),
         (
             PLATE,
-            format!("{kept}displacement_max_mm = 0.1\nedges = [\"top\"]\ndirection = [1, 1]\n[supports]\nbottom = {{ fix = [\"x\", \"y\"] }}\ntop = {{ fix = [\"x\"] }}"),
+            format!(
+                "{kept}displacement_max_mm = 0.1\nedges = [\"top\"]\ndirection = [1, 1]\n[supports]\nbottom = {{ fix = [\"x\", \"y\"] }}\ntop = {{ fix = [\"x\"] }}"
+            ),
             "moves an edge that [supports] holds along it",
         ),
         (PLATE, "kind = \"displacement\"\ndisplacement_mm = 0.1".into(), "belongs to fracture scenes"),

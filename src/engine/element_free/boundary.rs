@@ -95,7 +95,8 @@ impl Boundary {
         for support in &specimen.supports {
             match *support {
                 Support::Fixed { from, to, depth, x, y } => {
-                    let held: Vec<(Point, f64)> = AXES.into_iter().zip([x, y]).filter(|(_, held)| *held).map(|(axis, _)| (axis, 0.0)).collect();
+                    let held: Vec<(Point, f64)> =
+                        AXES.into_iter().zip([x, y]).filter(|(_, held)| *held).map(|(axis, _)| (axis, 0.0)).collect();
                     for ends in layers(plate, [from, to], depth) {
                         boundary.hold(specimen, plate, ends, &held)?;
                     }

@@ -119,7 +119,9 @@ fn outline(specimen: &Specimen, plate: &Discretisation) -> Vec<Vec<Place>> {
             stretches.push(Vec::new());
         }
         let held = |support: &Support| match *support {
-            Support::Fixed { from, to, .. } | Support::Moved { from, to, .. } => [a, b].iter().all(|at| distance_to_segment(*at, from, to) < 1e-9),
+            Support::Fixed { from, to, .. } | Support::Moved { from, to, .. } => {
+                [a, b].iter().all(|at| distance_to_segment(*at, from, to) < 1e-9)
+            }
             _ => false,
         };
         if specimen.supports.iter().any(held) {

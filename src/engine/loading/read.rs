@@ -3,8 +3,8 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::{boundary, grips};
 use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
+use super::{boundary, grips};
 use crate::error::{self, Result, input, input_missing};
 use crate::input::{FORCE, FORCE_KN, Quantity, STRESS, number, refuse_given, shorten, slice, table_of};
 use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
