@@ -7,7 +7,7 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::{Input, forces};
+use super::{Input, forces, grips};
 use crate::error::{Result, input, input_missing};
 use crate::input::{number, refuse_given, shorten, slice, table_of};
 use crate::specimen::geometry::{bounding_box, distance, unit};
@@ -73,6 +73,9 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
         }
         None => load_edges(input_, &held, specimen, parallel_ratio)?,
     };
+    if by_forces.is_none() && grips::are_balanced(input_, specimen) {
+        return Ok(area);
+    }
     check_balance(specimen, by_forces.map_or("loading.edges", |(key, _)| key))?;
     Ok(area)
 }

@@ -3,7 +3,7 @@
 use super::{Grip, Input, LoadingKind, Transverse};
 use crate::error::{Result, input, input_missing};
 use crate::input::refuse_given;
-use crate::specimen::geometry::unit;
+use crate::specimen::geometry::{self, unit};
 use crate::specimen::{Edge, Load, Point, Specimen, SpecimenKind, Support};
 
 /// Refuses the keys of grips where nothing is gripped.
@@ -39,7 +39,8 @@ pub(super) fn apply(given: &Input, specimen: &mut Specimen) -> Result<()> {
         _ => {}
     }
     let stretches: Vec<(Point, Point, Point)> = specimen.loads.iter().filter_map(stretch).collect();
-    let is_side = |edge: &&Edge| edge.stretches(specimen).iter().any(|(a, b)| stretches.iter().any(|s| (s.0, s.1) == (*a, *b)));
+    let is_moved = |a: &Point, b: &Point| stretches.iter().any(|(from, to, _)| [[a, b], [b, a]].contains(&[from, to]));
+    let is_side = |edge: &&Edge| edge.stretches(specimen).iter().any(|(a, b)| is_moved(a, b));
     let sides: Vec<Edge> = Edge::ALL.iter().filter(is_side).copied().collect();
     let are_opposite = |[a, b]: [Edge; 2]| a.normal() == b.normal().map(|n| -n);
     let way = match sides[..] {
@@ -63,6 +64,18 @@ pub(super) fn apply(given: &Input, specimen: &mut Specimen) -> Result<()> {
         specimen.supports.push(Support::Moved { from, to, direction, way, held: across });
     }
     Ok(())
+}
+
+/// Whether the grips of sides that are moved straight against each other are in equilibrium, whatever those bear: they do not turn where
+/// something holds them in their normal.
+pub(super) fn are_balanced(given: &Input, specimen: &Specimen) -> bool {
+    let is_straight = given.kind == Some(LoadingKind::Displacement) && given.grip != Some(Grip::Mean);
+    let stretches: Vec<(Point, Point, Point)> = specimen.loads.iter().filter_map(stretch).collect();
+    let Some(&(from, to, [x, y])) = stretches.first().filter(|_| is_straight) else { return false };
+    let along = |d: Point, sign: f64| (sign * d[0] - x).hypot(sign * d[1] - y) < ALONG;
+    let oppose = stretches.iter().any(|s| along(s.2, -1.0)) && stretches.iter().all(|s| along(s.2, 1.0) || along(s.2, -1.0));
+    let [tx, ty] = geometry::direction(from, to);
+    oppose && (given.transverse == Some(Transverse::Held) || (x * ty - y * tx).abs() > ALONG)
 }
 
 /// Component of a direction above which a side is moved along it.
