@@ -153,9 +153,9 @@ impl Resolution {
             (turn_at(before, at, after) < -ARC_TURN).then(|| (at, distance(before, at).min(distance(at, after))))
         });
         let of_slots = specimen.slots.iter().flat_map(|slot| slot.corners().map(|at| (at, slot.width)));
+        // Pieces of a crack are steps of its growth: the way to a tip says how fine its corners have to be.
         let of_cracks = lines.iter().flat_map(|line| line.points.windows(3)).filter_map(|corner| {
-            let [before, at, after] = [corner[0], corner[1], corner[2]];
-            (turn_at(before, at, after).abs() > ARC_TURN).then(|| (at, distance(before, at).min(distance(at, after))))
+            (turn_at(corner[0], corner[1], corner[2]).abs() > ARC_TURN).then_some((corner[1], f64::INFINITY))
         });
         let inside = of_outline.chain(of_slots.filter(|(at, _)| point_in_polygon(*at, outline))).chain(of_cracks);
         let at_corner = |(at, side): (Point, f64)| {
