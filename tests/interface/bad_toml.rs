@@ -124,7 +124,11 @@ const BAD: &[Bad] = &[
         &[":3:", "specimen.ends", "loose", "clamped"],
     ),
     panel("kind = \"middle_tension\"", "kind = \"compact_tension\"", &["specimen.length_mm", "not a known key", "width_mm"]),
-    plate("to_mm = [5, 0]", "to_mm = [55, 30]", &[":7:", "specimen.cracks[0]", "outside the plate at (55, 30) mm", "inside"]),
+    plate(
+        "from_mm = [-5, 0], to_mm = [5, 0]",
+        "from_mm = [75, 0], to_mm = [55, 30]",
+        &[":7:", "specimen.cracks[0]", "outside the plate at (75, 0) mm", "inside"],
+    ),
     plate("to_mm = [5, 0]", "to_mm = [35, 0]", &["specimen.cracks[0]", "runs through", "holes[0]"]),
     plate("to_mm = [5, 0]", "to_mm = [-5, 0]", &["specimen.cracks[0]", "no length"]),
     plate("to_mm = [5, 0]", "to_mm = [5]", &["specimen.cracks[0].to_mm", "pair of numbers"]),

@@ -19,12 +19,13 @@ pub fn texts(output: &Output) -> (String, String) {
     (String::from_utf8(output.stdout.clone()).unwrap(), String::from_utf8(output.stderr.clone()).unwrap())
 }
 
-/// The process ended with `code` and one message on stderr that holds all `words`, without a trace of a panic.
+/// The process ended with `code` and, warnings apart, one message on stderr that holds all `words`, without a trace of a panic.
 pub fn assert_refused(output: &Output, code: i32, words: &[&str]) {
     let (stdout, stderr) = texts(output);
     assert_eq!(output.status.code(), Some(code), "{stderr}");
     assert!(stdout.is_empty(), "{stdout}");
-    assert!(stderr.starts_with("error: ") && !stderr.contains("panicked"), "{stderr}");
+    let first = stderr.lines().find(|line| !line.starts_with("warning: "));
+    assert!(first.is_some_and(|line| line.starts_with("error: ")) && !stderr.contains("panicked"), "{stderr}");
     words.iter().for_each(|word| assert!(stderr.contains(word), "{word} in {stderr}"));
 }
 

@@ -80,7 +80,7 @@ fn keys_that_do_not_go_together_are_refused_by_name() {
 fn cracks_that_nodes_do_not_know_are_refused_with_what_does() {
     let cracks = "cracks = [{ from_mm = [-7, -5], to_mm = [7, 5] }]";
     for (instead, command, words) in [
-        ("cracks = [{ from_mm = [-7, -5], to_mm = [70, 5] }]", "predict", ["(70, 5) mm", "inside the plate"]),
+        ("cracks = [{ from_mm = [70, 5], to_mm = [80, 5] }]", "predict", ["(70, 5) mm", "inside the plate"]),
         ("notches = [{ from_mm = [-30, 0], to_mm = [-20, 0], width_mm = 2 }]", "predict", ["end of a slot", "\"peridynamics\""]),
         ("holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 9 }]", "predict", ["specimen.cracks", "perilife sif"]),
         ("holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 9 }]", "check", ["specimen.cracks", "perilife sif"]),
