@@ -53,16 +53,21 @@ fn sheared_square(spacing: f64, path: &[[f64; 2]]) {
     let Some(run) = run("shear_notched_square", &[&format!("model.spacing_mm={spacing}")]) else { return };
     let first = run.history.iter().find(|row| (row.displacement - 1e-6).abs() < 1e-12).expect("a row at 0.001 mm");
     assert_within("sheared square at 0.001 mm, N", first.load, 46.8, 4.0);
-    let way: Vec<[f64; 2]> = run.path.iter().filter(|at| at.tip == 0).map(|at| at.position.map(|x| 1e3 * x)).collect();
+    let fronts: Vec<_> = run.path.iter().filter(|at| at.tip == 0).collect();
+    let way: Vec<[f64; 2]> = fronts.iter().map(|at| at.position.map(|x| 1e3 * x)).collect();
+    let mut last = 0;
     for &[y, x] in path {
         let after = way.iter().position(|at| at[1] <= y).unwrap_or_else(|| panic!("the path ends above {y}: {way:?}"));
         let (a, b) = (way[after - 1], way[after]);
         let found = a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]);
         println!("path at y = {y} mm: {found:.4}, {x}");
+        last = fronts[after].step;
         assert!((found - x).abs() <= 0.03, "path at y = {y} mm: {found} instead of {x}");
     }
-    let fallen = run.history.last().unwrap().load;
-    assert!(fallen < 0.95 * run.peak_load(), "load {fallen} N at the end, {} N at the most", run.peak_load());
+    // Beyond, the plate hangs by its held rows, and the load rises again.
+    let loads = || run.history.iter().filter(|row| row.step <= last).map(|row| row.load);
+    let (peak, fallen) = (loads().fold(0.0, f64::max), loads().last().unwrap());
+    assert!(fallen < 0.95 * peak, "load {fallen} N at the last place, {peak} N at the most");
 }
 
 const PATH: [[f64; 2]; 5] = [[-0.11, 0.035], [-0.19, 0.071], [-0.27, 0.114], [-0.33, 0.152], [-0.39, 0.197]];

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife::fracture::assembly::preview;
 use perilife::fracture::trapping::trapping;
 use perilife::fracture::{self, Scene};
 use perilife::predict::Silent;
@@ -78,7 +79,10 @@ fn a_plate_under_1_mpa_branches() {
 /// The remedy for cracks of few spacings is told, and no more from the length on from which Griffith's load is met.
 #[test]
 fn a_crack_of_few_spacings_is_told() {
-    let lines = |set: &str| Scene::from_toml(SQUARE, "square", Path::new("."), &[set.to_owned()]).unwrap().warnings;
+    let lines = |set: &str| {
+        let scene = Scene::from_toml(SQUARE, "square", Path::new("."), &[set.to_owned()]).unwrap();
+        preview(&scene).unwrap().warnings
+    };
     assert!(lines("model.spacing_mm=0.02").iter().any(|line| line.contains("25 spacings") && line.contains("0.0100")));
     assert!(lines("model.spacing_mm=0.01").is_empty());
     assert!(lines("damage.calibration=bond_energy").is_empty());

@@ -79,7 +79,7 @@ impl<'s> Assembly<'s> {
         Ok(turning_cost(&self.net, finite, energy))
     }
 
-    /// What the user should know of the points, and of a body that resists a turn by its choice of law.
+    /// What the user should know of the points, of a body that resists a turn by its choice of law, and of the load at which cracks grow.
     pub fn warnings(&self) -> Result<Vec<String>> {
         let resists = match self.scene.model.law {
             SceneLaw::Bonds(law) if law.kind.is_two_parameter() && law.rotation == Rotation::Resisted => Some(RESISTED),
@@ -92,7 +92,7 @@ impl<'s> Assembly<'s> {
             Some(words) => turning_warning(self.turning_cost()?, words),
             None => None,
         };
-        Ok(self.net.warnings.iter().cloned().chain(turning).collect())
+        Ok(self.net.warnings.iter().cloned().chain(turning).chain(self.scene.trapping_lines()).collect())
     }
 }
 

@@ -191,7 +191,6 @@ pub fn lines(scene: &Scene) -> Vec<String> {
             "damage.law = \"critical_energy\" on bond_based counts normal stretch alone, as critical_stretch does (nu {nu})"
         ));
     }
-    lines.extend(scene.trapping_lines());
     lines.extend(zero_energy_line(scene));
     lines
 }
