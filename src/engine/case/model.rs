@@ -176,7 +176,7 @@ pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
     check_columns(spacing, specimen)?;
     let tips = specimen.tips.iter().filter(|tip| !tip.from_slot && specimen.kind == SpecimenKind::Plate);
     let gap = tips.map(|tip| specimen.rim_distance(tip.position)).fold(f64::INFINITY, f64::min);
-    if spacing > gap {
+    if spacing > gap * (1.0 + 1e-9) {
         let problem = format!("is larger than the {} mm between a tip and a rim", round_mm(gap));
         let remedy = format!(
             "give {} mm or less, end the crack at the rim, or use model.method = \"element_free_galerkin\"",

@@ -257,7 +257,7 @@ pub fn turn_at(before: Point, at: Point, after: Point) -> f64 {
 pub fn room(specimen: &Specimen, lines: &[CrackLine], tip: &Tip) -> f64 {
     let at = lines[tip.end.line].end(tip.end.at_last);
     let others = lines.iter().enumerate().filter(|(other, _)| *other != tip.end.line).map(|(_, line)| line.distance(at));
-    let straight = lines[tip.end.line].straight_way(tip.end.at_last);
+    let straight = lines[tip.end.line].straight_way(tip.end.at_last, f64::INFINITY);
     others.fold(specimen.rim_distance(at), f64::min).min(tip.length).min(straight)
 }
 

@@ -13,6 +13,8 @@ use crate::stress_intensity::ring::{Balanced, FlankPressure, RingFactors, RingGe
 pub(super) const RING_HORIZONS: f64 = 4.0;
 /// Outer radius below which a ring says nothing, in horizons.
 pub(super) const RING_HORIZONS_MIN: f64 = 1.2;
+/// Turn of a corner, rad, beyond which it is a bend by itself and no part of an arc.
+const BEND: f64 = 0.45;
 /// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate.
 pub(super) const CORE_HORIZONS: f64 = 0.6;
 
@@ -30,6 +32,8 @@ pub(super) struct TipRings<'a> {
     pub lines: &'a [CrackLine],
     /// Tips that have not ended: rings do not reach them.
     pub active: &'a [LineEnd],
+    /// Whether the cracks are as they were drawn.
+    pub is_new: bool,
     /// Flanks in contact.
     pub pressures: &'a [FlankPressure],
 }
@@ -57,7 +61,8 @@ impl TipRings<'_> {
 
     /// Outer radius that the surroundings leave, m.
     fn radius(&self, lines: &[CrackLine], end: LineEnd) -> f64 {
-        let straight = lines[end.line].straight_way(end.at_last);
+        // Faces behind one bend are taken in; along an arc they leave nothing straight.
+        let straight = if self.is_new { lines[end.line].straight_way(end.at_last, BEND) } else { f64::INFINITY };
         let wanted = (RING_HORIZONS * self.body.horizon()).min(straight.max(RING_HORIZONS_MIN * self.body.horizon()));
         self.geometry.radius(self.body, lines, end, self.active, wanted)
     }

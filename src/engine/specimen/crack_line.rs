@@ -55,19 +55,23 @@ impl CrackLine {
     }
 
     /// Way back from one of its ends along it as far as its direction stays within [`STRAIGHT_TURN`] of that at the end, m; infinite where
-    /// all of it does.
-    pub fn straight_way(&self, at_last: bool) -> f64 {
-        let [x, y] = self.direction(at_last);
+    /// all of it does, or up to a corner that turns by more than `sharp`, rad.
+    pub fn straight_way(&self, at_last: bool, sharp: f64) -> f64 {
+        let turn = |[x, y]: Point, [u, v]: Point| (x * v - y * u).atan2(x * u + y * v).abs();
+        let ahead = self.direction(at_last);
         let pieces: Vec<[Point; 2]> = self.pieces().collect();
         let back: Vec<[Point; 2]> =
             if at_last { pieces.into_iter().rev().collect() } else { pieces.into_iter().map(|[a, b]| [b, a]).collect() };
-        let mut way = 0.0;
+        let (mut way, mut last) = (0.0, ahead);
         for [a, b] in back {
-            let [u, v] = direction(a, b);
-            if (x * v - y * u).atan2(x * u + y * v).abs() > STRAIGHT_TURN {
+            let here = direction(a, b);
+            if turn(here, last) > sharp {
+                return f64::INFINITY;
+            }
+            if turn(here, ahead) > STRAIGHT_TURN {
                 return way;
             }
-            way += distance(a, b);
+            (way, last) = (way + distance(a, b), here);
         }
         f64::INFINITY
     }

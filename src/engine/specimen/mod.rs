@@ -310,7 +310,7 @@ impl Specimen {
     pub fn least_straight_way(&self) -> f64 {
         let lines = self.crack_lines();
         let ends = (0..self.tips.len()).filter_map(|tip| self.line_end(tip));
-        ends.map(|end| lines[end.line].straight_way(end.at_last)).fold(f64::INFINITY, f64::min)
+        ends.map(|end| lines[end.line].straight_way(end.at_last, f64::INFINITY)).fold(f64::INFINITY, f64::min)
     }
 
     /// Area of the material, m²: outline less holes and slots.

@@ -207,6 +207,7 @@ impl GrowthRateControl {
             geometry: &self.surroundings,
             lines: &lines,
             active: &active,
+            is_new: false,
             pressures: &[],
         };
         let read = |end: LineEnd| {

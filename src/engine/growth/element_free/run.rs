@@ -41,6 +41,7 @@ pub struct FrontsState {
     work: f64,
     curve: Vec<CurvePoint>,
     figures: [usize; 2],
+    warnings: Vec<String>,
 }
 
 impl ElementFree<'_> {
@@ -91,16 +92,17 @@ impl CrackGrowth for ElementFree<'_> {
             work: self.work,
             curve: self.curve.clone(),
             figures: [self.solves, self.nodes],
+            warnings: self.warnings.clone(),
         })
     }
 
     fn restore(&mut self, state: State) -> Result<bool> {
-        let State::Nodes(FrontsState { state, past, work, curve, figures }) = state else { return Ok(false) };
+        let State::Nodes(FrontsState { state, past, work, curve, figures, warnings }) = state else { return Ok(false) };
         let ends = |fronts: &[Front]| fronts.iter().map(|front| front.end).collect::<Vec<_>>();
         if curve.is_empty() || ends(&state.fronts) != ends(&self.state.fronts) || state.lines.len() != self.state.lines.len() {
             return Ok(false);
         }
-        (self.state, self.past, self.work, self.curve) = (state, past, work, curve);
+        (self.state, self.past, self.work, self.curve, self.warnings) = (state, past, work, curve, warnings);
         [self.solves, self.nodes] = figures;
         self.rows_at_checkpoint = self.curve.len();
         Ok(true)

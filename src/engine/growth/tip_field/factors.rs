@@ -99,6 +99,7 @@ impl TipField<'_> {
             geometry: &self.surroundings,
             lines,
             active: &active,
+            is_new: self.state.tips.iter().all(|tip| tip.growth == 0.0),
             pressures: &pressures,
         };
         let contact = &self.contact;
