@@ -156,8 +156,11 @@ pub(super) fn place_cracks(
     for (i, line) in lines.iter().enumerate() {
         let is_joined =
             || lines.iter().enumerate().any(|(other, crack)| other != i && line.pieces().any(|[a, b]| crack.meets(a, b, TOUCH)));
-        // A cut from rim to rim, such as cracks leave that have linked two holes, does not grow; other tips do.
-        if specimen.tips_of(line) == 0 && specimen.tips.is_empty() && !is_joined() {
+        // A cut between holes, such as cracks leave that have linked them, does not grow; other tips do. One from edge to edge parts the plate.
+        let is_from_edge_to_edge =
+            || [false, true].iter().all(|&at_last| distance_to_polygon(line.end(at_last), &specimen.outline) <= TOUCH);
+        let is_allowed = || !specimen.tips.is_empty() && !is_from_edge_to_edge();
+        if specimen.tips_of(line) == 0 && !is_joined() && !is_allowed() {
             let remedy = "end it inside the plate";
             return Err(input_missing(
                 &format!("specimen.cracks[{i}]"),
