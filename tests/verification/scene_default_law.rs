@@ -66,7 +66,7 @@ fn sheared_square(spacing: f64, path: &[[f64; 2]]) {
     }
     // Beyond, the plate hangs by its held rows, and the load rises again.
     let loads = || run.history.iter().filter(|row| row.step <= last).map(|row| row.load);
-    let (peak, fallen) = (loads().fold(0.0, f64::max), loads().last().unwrap());
+    let (peak, fallen) = (loads().fold(0.0, f64::max), loads().next_back().unwrap());
     assert!(fallen < 0.95 * peak, "load {fallen} N at the last place, {peak} N at the most");
 }
 

@@ -54,7 +54,7 @@ impl CrackLine {
         if at_last { direction(self.points[n - 2], self.points[n - 1]) } else { direction(self.points[1], self.points[0]) }
     }
 
-    /// Way back from one of its ends along it as far as its direction stays within [`STRAIGHT_TURN`] of that at the end, m; infinite where
+    /// Way back from one of its ends along it as far as its direction stays within 0.2 rad of that at the end, m; infinite where
     /// all of it does, or up to a corner that turns by more than `sharp`, rad.
     pub fn straight_way(&self, at_last: bool, sharp: f64) -> f64 {
         let turn = |[x, y]: Point, [u, v]: Point| (x * v - y * u).atan2(x * u + y * v).abs();
