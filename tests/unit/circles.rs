@@ -162,33 +162,33 @@ fn imports_are_taken_apart() {
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
     ("fracture", 6773),
-    ("report", 7412),
+    ("report", 7438),
     ("service", 5627),
     ("calibration", 6133),
     ("growth", 5418),
-    ("solver", 5120),
+    ("solver", 5287),
     ("verify", 4803),
     ("measured", 3722),
-    ("element_free", 3270),
+    ("element_free", 3312),
     ("commands", 2713),
     ("case", 2544),
-    ("body", 2464),
-    ("specimen", 2299),
+    ("body", 2537),
+    ("specimen", 2326),
     ("levels", 1728),
     ("predict", 1536),
     ("fatigue", 1339),
     ("sweep", 1074),
     ("runner", 912),
-    ("loading", 718),
+    ("loading", 834),
     ("input", 723),
     ("stress_intensity", 681),
-    ("check", 557),
+    ("check", 558),
     ("bond_law", 394),
     ("tables", 342),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 69954;
+const LINES_OF_ALL: usize = 70394;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -111,11 +111,11 @@ fn a_life_between_grips() {
     }
 }
 
-/// Slanted cracks between ends that move apart, and sheared sides: points and nodes agree, and every solver and law of points does.
+/// Slanted cracks between ends that move apart, and sheared sides: points and nodes agree, and every solver of points gives the same.
 #[test]
 fn engines_agree_between_grips() {
     let slant = [[-8.0, -5.0], [8.0, 5.0]];
-    let sheared = "edges = [\"top\"]\ndirection = [1, 0]\ntransverse = \"held\"\n[supports]\nbottom = { fix = [\"x\", \"y\"] }";
+    let sheared = "edges = [\"top\"]\ndirection = [-1, 0]\ntransverse = \"held\"\n[supports]\nbottom = { fix = [\"x\", \"y\"] }";
     let plates = [
         ("slides", slant, ""),
         ("held", slant, "transverse = \"held\""),
@@ -130,7 +130,7 @@ fn engines_agree_between_grips() {
         assert!((0..2).all(|i| (points[i] - nodes[i]).abs() < 0.015 * size), "{name}: {points:?}, {nodes:?}");
         for set in ["model.solver=\"direct\"", "model.solver=\"multigrid\""] {
             let other = of(&[set]);
-            assert!((0..2).all(|i| (points[i] - other[i]).abs() < 1e-5 * size), "{name} {set}: {points:?}, {other:?}");
+            assert!((0..2).all(|i| (points[i] - other[i]).abs() < 1e-4 * size), "{name} {set}: {points:?}, {other:?}");
         }
     }
 }
