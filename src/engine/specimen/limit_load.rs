@@ -24,6 +24,8 @@ use super::{CrackLine, Load, Point, Specimen, Support};
 
 /// Share of the size of a plate within which places are the same.
 const SAME: f64 = 1e-7;
+/// Cosine of the angle between a piece of a section and its chord at the least.
+const ASKEW_MOST: f64 = 1e-6;
 /// Component of the normal of a chord along a held direction up to which a reaction in it does not load the section.
 const ACROSS: f64 = 0.3;
 
@@ -218,12 +220,15 @@ impl Piece {
         let place = |p: Point| (p[0] - origin[0]) * along[0] + (p[1] - origin[1]) * along[1];
         let piece = |[a, b]: &[Point; 2]| {
             let (s, t) = (place(*a), place(*b));
-            let cosine = (t - s).abs() / distance(*a, *b);
+            let length = distance(*a, *b);
+            // One along the normal bears by shear alone, L/√3: as one hardly askew.
+            let cosine = ((t - s).abs() / length).max(ASKEW_MOST);
+            let (middle, half) = (0.5 * (s + t), 0.5 * cosine * length);
             let strength =
                 (cosine * (0.75 * cosine * cosine + 3.0 * (1.0 - cosine * cosine)).sqrt()).max(cosine * cosine).recip();
-            Piece { from: s.min(t), to: s.max(t), strength }
+            Piece { from: middle - half, to: middle + half, strength }
         };
-        cut.ligaments.iter().map(piece).filter(|piece| piece.to > piece.from).collect()
+        cut.ligaments.iter().map(piece).collect()
     }
 
     fn length(&self) -> f64 {
