@@ -165,14 +165,14 @@ const LINES: &[(&str, usize)] = &[
     ("report", 7441),
     ("service", 5627),
     ("calibration", 6133),
-    ("growth", 5491),
+    ("growth", 5492),
     ("solver", 5287),
     ("verify", 4924),
     ("measured", 3722),
     ("element_free", 3712),
     ("commands", 2713),
-    ("case", 2608),
-    ("body", 2537),
+    ("case", 2616),
+    ("body", 2534),
     ("specimen", 2460),
     ("levels", 1728),
     ("predict", 1554),
@@ -188,7 +188,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 71367;
+const LINES_OF_ALL: usize = 71373;
 
 #[test]
 fn rooms_do_not_grow() {

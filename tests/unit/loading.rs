@@ -220,5 +220,11 @@ fn loads_of_one_driver() {
         read(&[]).unwrap();
         let error = read(&["fatigue.driver=\"bond_strain\""]).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
+        if loading.contains("displacement") {
+            let plain = ["fatigue.driver=\"tip_field\"", "model.surface_correction=\"none\""];
+            let error = read(&plain).unwrap_err().to_string();
+            assert!(error.contains("does not know where an edge is"), "{error}");
+            read(&[&plain[..], &["loading.grip=\"mean\""]].concat()).unwrap();
+        }
     }
 }

@@ -257,9 +257,9 @@ fn a_section_through_a_row_of_cracks_does_not_meet_itself() {
     let found = share(1, 0.0);
     assert!(found <= strips * 1.001 && found > 0.99 * strips, "{found} {strips}");
     for seed in 1..30 {
-        for (height, least) in [(2.0, 0.95), (5.0, 0.9), (15.0, 0.7)] {
+        for height in [2.0, 5.0, 15.0] {
             let found = share(seed, height);
-            assert!(found > least * strips && found <= 1.0, "{seed} {height}: {found} {strips}");
+            assert!(found > 0.95 * strips && found <= 1.0, "{seed} {height}: {found} {strips}");
         }
     }
 }

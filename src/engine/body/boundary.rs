@@ -47,12 +47,12 @@ pub struct Boundary {
 }
 
 impl Boundary {
-    /// Loads and supports of a specimen on its lattice, with the rules by which loads, and edges that are held, reach the points.
+    /// Loads and supports of a specimen on its lattice.
     pub(super) fn of(
         specimen: &Specimen,
         lattice: &Lattice,
         stencil: &Stencil,
-        [sharing, at_edge]: [&Sharing; 2],
+        sharing: &Sharing,
         points: &[u32],
     ) -> Result<Boundary> {
         let mut boundary = Boundary { floating: true, ..Boundary::default() };
@@ -61,15 +61,15 @@ impl Boundary {
             match *support {
                 Support::Moved { from, to, direction: [x, y], way, held } => {
                     boundary.floating = false;
-                    boundary.tie(specimen, lattice, at_edge, [from, to], ([x, y], way));
+                    boundary.tie(specimen, lattice, sharing, [from, to], ([x, y], way));
                     if held {
-                        boundary.tie(specimen, lattice, at_edge, [from, to], ([-y, x], 0.0));
+                        boundary.tie(specimen, lattice, sharing, [from, to], ([-y, x], 0.0));
                     }
                 }
                 // The way from it to an edge that is moved counts: it is held where it is, not half a spacing inside.
                 Support::Fixed { from, to, depth: 0.0, x, y } if moved.is_some() => {
                     for (axis, _) in [([1.0, 0.0], x), ([0.0, 1.0], y)].iter().filter(|(_, is_held)| *is_held) {
-                        boundary.tie(specimen, lattice, at_edge, [from, to], (*axis, 0.0));
+                        boundary.tie(specimen, lattice, sharing, [from, to], (*axis, 0.0));
                     }
                 }
                 Support::Fixed { from, to, depth, x, y } => {

@@ -105,10 +105,7 @@ impl Body {
             SurfaceCorrection::None | SurfaceCorrection::VolumeAndSurface => Sharing::nearest(&grid, &occupied),
         };
         watch::at(Stage::Loads, 0.0)?;
-        // The place of a grip is known, whatever a law does with loads.
-        let obstacles = Obstacles::of(specimen, lattice.spacing, stencil.horizon);
-        let at_edge = Sharing::consistent(&grid, &occupied, obstacles, balanced::load_rows(&stencil));
-        let boundary = Boundary::of(specimen, &lattice, &stencil, [&sharing, &at_edge], &points)?;
+        let boundary = Boundary::of(specimen, &lattice, &stencil, &sharing, &points)?;
         let no_fail = boundary.no_fail(&lattice, stencil.horizon);
         let mut body = Body {
             lattice,

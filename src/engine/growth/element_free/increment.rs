@@ -23,7 +23,7 @@ const OVERLAP: f64 = 0.005;
 /// Factor by which nodes get finer where K asks for it.
 const FINER: f64 = 1.5;
 /// Times that they do at the most.
-const REFINEMENTS_MOST: i32 = 2;
+const REFINEMENTS_MOST: usize = 2;
 /// Nodes beyond which they do not.
 const NODES_MOST: f64 = 2e4;
 
@@ -87,22 +87,23 @@ impl ElementFree<'_> {
         self.state.fineness = 1.0 / FINER;
         // Where they are too coarse to tell anything, the next ones say so.
         let mut before = self.read_factors_of_plate().unwrap_or_else(|_| vec![[f64::NAN; 2]; self.state.fronts.len()]);
-        for _ in 0..=REFINEMENTS_MOST {
+        for refinement in 0..=REFINEMENTS_MOST {
             self.state.fineness *= FINER;
             let now = self.read_factors_of_plate()?;
             let (tip, change) = largest_difference(&before, &now);
-            if change <= tolerance || change.is_nan() && self.settings.is_given {
-                return Ok(());
+            let is_last =
+                refinement == REFINEMENTS_MOST || self.settings.is_given || self.nodes as f64 * FINER * FINER > NODES_MOST;
+            if change <= tolerance || is_last && change.is_nan() {
+                break;
             }
-            let is_last = self.nodes as f64 * FINER * FINER > NODES_MOST || self.settings.is_given;
-            if is_last || self.state.fineness > FINER.powi(REFINEMENTS_MOST) * 0.99 {
+            if is_last {
                 self.warnings.push(format!(
                     "K of tip {tip} changes by {:.1} % when nodes get {FINER} times finer, to {} nodes: it may err by as much; \
                      model.method = \"peridynamics\" is another look at it",
                     100.0 * change,
                     self.nodes
                 ));
-                return Ok(());
+                break;
             }
             before = now;
         }
