@@ -24,11 +24,11 @@ use crate::case::budget::Budget;
 use crate::case::{Case, Method};
 use crate::error::Result;
 use crate::fatigue::Driver;
-use crate::growth::TipGrowth;
 use crate::growth::bond_strain::BondStrain;
-use crate::growth::element_free::ElementFree;
+use crate::growth::cracks::{CrackedPlate, Cracks};
 use crate::growth::hand_calculation::HandCalculation;
-use crate::growth::tip_field::TipField;
+use crate::growth::nodes::ElementFree;
+use crate::growth::points::TipField;
 use crate::parallel::in_pool;
 use crate::watch;
 use checkpoint::Checkpoint;
@@ -79,7 +79,7 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
 ///
 /// Before the first increment the plate with its initial cracks is in equilibrium and K of its tips is known.
 /// Mechanics that fail end the run with the rows that stand.
-pub fn increment<C: TipGrowth>(cracks: &mut C) -> Option<StopReason> {
+pub fn increment<P: CrackedPlate>(cracks: &mut Cracks<'_, P>) -> Option<StopReason> {
     if let Some(reason) = cracks.reason_to_stop() {
         return Some(reason);
     }
@@ -90,14 +90,18 @@ pub fn increment<C: TipGrowth>(cracks: &mut C) -> Option<StopReason> {
     // μ = 0 for every bond that a new segment crosses, fragments without load go, bonds beside the flanks get those of an edge;
     // or Φ_i(x) = 0 behind a crack, with nodes placed anew where tips are now.
     cracks.part_plate(&mut step);
-    // Σ_j μ f(u_j - u_i) V_j + b_i = 0 at maximum load; or ∫ ε(Φ_i)ᵀ D ε(u) dA = ∫ Φ_i t ds.
-    cracks.solve_equilibrium(&mut step);
+    // Σ_j μ f(u_j - u_i) V_j + b_i = 0 at maximum load; or ∫ ε(Φ_i)ᵀ D ε(u) dA = ∫ Φ_i t ds; flanks carry pressure, g ≥ 0, λ ≥ 0, λ g = 0.
+    if let Err(reason) = cracks.solve_equilibrium(&step) {
+        return cracks.add_row(&step, Some(reason));
+    }
     // K_I, K_II = ½ E' M(u; Williams' field of unit K), T likewise, on a ring around every tip (interaction integral).
-    cracks.read_factors(&step);
+    if let Err(reason) = cracks.read_factors(&mut step) {
+        return Some(reason);
+    }
     // K_I sin θ + K_II (3 cos θ - 1) = 0: largest circumferential stress.
     cracks.turn(&step);
     // r = da/dN of K_eq = cos(θ/2) [K_I cos²(θ/2) - 3/2 K_II sin θ] and R; C ΔK^m = β A δ^(1-p/2) (ΔK/E')^p for a law of bonds.
     cracks.set_rates(&step);
     // N ← N + ∫ da/r; the bonds ahead of every tip lose remaining life, dλ/dN = -r/ℓ.
-    cracks.add_row(step)
+    cracks.add_row(&step, None)
 }

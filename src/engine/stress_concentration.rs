@@ -11,7 +11,7 @@ use crate::element_free::resolution::Resolution;
 use crate::element_free::rim_stress::{RimStress, rim_stresses};
 use crate::element_free::solve::{raster, raster_fields, solve};
 use crate::error::{Error, Result};
-use crate::growth::element_free::initial_cracks;
+use crate::growth::nodes::initial_cracks;
 use crate::levels::PointGrid;
 use crate::specimen::Point;
 use crate::williams::Elasticity;

@@ -8,7 +8,7 @@ use crate::error::{Error, InputError, Result};
 use crate::fatigue::ageing::stuck;
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
-use crate::growth::element_free::initial_plate;
+use crate::growth::nodes::initial_plate;
 use crate::growth::plate;
 use crate::report::model_words::{self, mm};
 use crate::specimen::Specimen;

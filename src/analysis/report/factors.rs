@@ -6,7 +6,7 @@ use super::csv::{exact, number};
 use crate::case::Case;
 use crate::error::Result;
 use crate::fatigue::crack_tip::TipState;
-use crate::growth::tip_field::steering::equivalent_factor;
+use crate::growth::cracks::steering::equivalent_factor;
 use crate::predict::laws::growth_law;
 use crate::predict::{CurvePoint, Prediction};
 use crate::specimen::{LoadMeasure, SpecimenKind};

@@ -6,7 +6,7 @@ use super::references::{REFERENCES, largest};
 use super::table::Table;
 use crate::calibration::median::cycles_of_run;
 use crate::error::Result;
-use crate::growth::tip_field::steering::kink_angle;
+use crate::growth::cracks::steering::kink_angle;
 use crate::predict::{Silent, StopReason, predict};
 use crate::units::{MM, MPA};
 

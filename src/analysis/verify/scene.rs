@@ -10,7 +10,9 @@ use crate::case::{Case, Method};
 use crate::element_free::rim_stress::Rim;
 use crate::error::{Error, Result};
 use crate::growth::record::TipRecord;
-use crate::growth::{element_free, tip_field};
+use crate::growth::cracks::initial_tips;
+use crate::growth::nodes::NodePlate;
+use crate::growth::points::PointPlate;
 use crate::predict::{Observer, Prediction, predict};
 use crate::solver::Equilibrium;
 use crate::solver::field::Layout;
@@ -208,10 +210,11 @@ impl Scene {
 
 /// K and T of the initial tips by the method of a case, as a prediction reads them.
 pub fn tips(case: &Case) -> Result<Vec<TipRecord>> {
-    match case.model.method {
-        Method::ElementFreeGalerkin => element_free::initial_tips(case).map(|(tips, _)| tips),
-        Method::Peridynamics | Method::Handbook => Ok(tip_field::initial_tips(case)?.tips),
-    }
+    let tips = match case.model.method {
+        Method::ElementFreeGalerkin => initial_tips::<NodePlate>(case),
+        Method::Peridynamics | Method::Handbook => initial_tips::<PointPlate>(case),
+    };
+    Ok(tips?.tips)
 }
 
 /// K_I and K_II of one of the initial tips, Pa√m.

@@ -252,7 +252,7 @@ fn pieces(plate: &Discretisation, [from, to]: [Point; 2]) -> Vec<(Point, f64)> {
 }
 
 /// Unknowns that move a point, ascending, with the displacement that a unit of each gives it.
-fn motions(plate: &Discretisation, at: Point) -> Result<Vec<(u32, Point)>> {
+pub(super) fn motions(plate: &Discretisation, at: Point) -> Result<Vec<(u32, Point)>> {
     let (leaf, mut local) = (plate.grid.leaf(at), Local::default());
     if !plate.at(leaf, at, &mut local) {
         return Err(singular(at, plate.reach(leaf)));

@@ -94,7 +94,22 @@ impl Factor {
 
     /// Solves `A x = b` in place of b.
     pub fn solve(&self, b: &mut [f64]) {
+        self.forward(b);
+        self.backward(b);
+    }
+
+    /// `L⁻¹ b` in place of b.
+    pub fn forward(&self, b: &mut [f64]) {
         self.0.solve_forward(b);
+    }
+
+    /// The same of several right sides that each load few unknowns.
+    pub fn forward_together(&self, sides: &mut [Vec<f64>]) {
+        self.0.solve_forward_together(sides);
+    }
+
+    /// `L⁻ᵀ b` in place of b.
+    pub fn backward(&self, b: &mut [f64]) {
         self.0.solve_backward(b);
     }
 }
@@ -189,6 +204,11 @@ impl Part {
     fn solve_forward(&self, b: &mut [f64]) {
         self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.solve_forward(b));
         self.front.solve_forward(&self.unknowns, b);
+    }
+
+    fn solve_forward_together(&self, sides: &mut [Vec<f64>]) {
+        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.solve_forward_together(sides));
+        self.front.solve_forward_together(&self.unknowns, sides);
     }
 
     fn solve_backward(&self, b: &mut [f64]) {

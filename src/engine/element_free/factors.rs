@@ -9,7 +9,7 @@ use super::crack::TipAxes;
 use super::field::{Discretisation, Local};
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{along, circle_shares, direction, distance};
-use crate::specimen::{Point, Specimen};
+use crate::specimen::Point;
 use crate::units::place_mm;
 use crate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
 
@@ -35,14 +35,17 @@ pub struct TipFactors {
     pub t_stress: f64,
     /// Outer radius of the ring, m.
     pub radius: f64,
+    /// What the faces of the crack add to K_I, Pa√m.
+    pub of_faces: f64,
 }
 
 /// Gradient of a displacement in the axes of the tip.
 type Gradient = [[f64; 2]; 2];
 
-/// Reads a tip of a plate with the unknowns `u` in a ring within `room`, m; `pressure` acts on the faces, Pa.
+/// Reads a tip of a plate with the unknowns `u` in a ring within `room`, m; `pressure` acts on the faces at a place of
+/// the crack, Pa.
 /// Errors: [`Error::Mechanics`] where nodes in reach do not span the basis.
-pub fn read(plate: &Discretisation, u: &[f64], tip: usize, room: f64, pressure: f64) -> Result<TipFactors> {
+pub fn read(plate: &Discretisation, u: &[f64], tip: usize, room: f64, pressure: &dyn Fn(Point) -> f64) -> Result<TipFactors> {
     let axes = &plate.axes[tip];
     let mut local = Local::default();
     let field = |at: Point| {
@@ -50,39 +53,6 @@ pub fn read(plate: &Discretisation, u: &[f64], tip: usize, room: f64, pressure: 
     };
     let radius = room.min(RADIUS_SPACINGS * axes.spacing);
     integral(axes, plate.elasticity(), radius, pressure, field)
-}
-
-/// Places per spacing at which flanks are looked at.
-const LOOKS: f64 = 2.0;
-
-/// Where flanks of the cracks `lines` overlap most, and by what share of the largest displacement between flanks; `None` where none do.
-/// Errors: [`Error::Mechanics`] where nodes in reach do not span the basis.
-pub fn overlap(specimen: &Specimen, plate: &Discretisation, lines: usize, u: &[f64]) -> Result<Option<(Point, f64)>> {
-    let mut local = Local::default();
-    let (mut largest, mut least) = (0.0_f64, None);
-    for piece in plate.obstacles.cuts.iter().take(lines).flat_map(|cut| cut.points.windows(2)) {
-        let ([x, y], length) = (direction(piece[0], piece[1]), distance(piece[0], piece[1]));
-        let spacing = |at: Point| plate.grid.spacing(plate.grid.leaf(at));
-        let mut way = 0.5 * spacing(piece[0]) / LOOKS;
-        while way < length {
-            let at = along(piece[0], piece[1], way / length);
-            way += spacing(at) / LOOKS;
-            let step = BESIDE * spacing(at);
-            let sides = [[at[0] - step * y, at[1] + step * x], [at[0] + step * y, at[1] - step * x]];
-            if !sides.iter().all(|side| specimen.contains(*side)) {
-                continue;
-            }
-            let [left, right] = sides.map(|side| plate.displacement(u, side, &mut local).map(|(u, _)| u));
-            let (Some(left), Some(right)) = (left, right) else { return Err(unknown(at)) };
-            let between = [left[0] - right[0], left[1] - right[1]];
-            let opening = between[1] * x - between[0] * y;
-            largest = largest.max(between[0].hypot(between[1]));
-            if least.is_none_or(|(_, least)| opening < least) {
-                least = Some((at, opening));
-            }
-        }
-    }
-    Ok(least.filter(|(_, opening)| *opening < 0.0).map(|(at, opening)| (at, -opening / largest)))
 }
 
 fn unknown(at: Point) -> Error {
@@ -94,7 +64,7 @@ pub fn integral(
     axes: &TipAxes,
     elasticity: Elasticity,
     radius: f64,
-    pressure: f64,
+    pressure: &dyn Fn(Point) -> f64,
     mut field: impl FnMut(Point) -> Result<Gradient>,
 ) -> Result<TipFactors> {
     let [inner, outer] = RING.map(|share| share * radius);
@@ -117,11 +87,15 @@ pub fn integral(
             }
         }
     }
-    for (sum, of_faces) in sums.iter_mut().zip(faces(axes, elasticity, [inner, outer], pressure, &mut field)?) {
-        *sum += of_faces;
-    }
+    let of_faces = faces(axes, elasticity, [inner, outer], pressure, &mut field)?;
+    sums.iter_mut().zip(of_faces).for_each(|(sum, of_faces)| *sum += of_faces);
     let half = 0.5 * elasticity.plane_modulus;
-    Ok(TipFactors { factors: [half * sums[0], half * sums[1]], t_stress: elasticity.plane_modulus * sums[2] - pressure, radius })
+    Ok(TipFactors {
+        factors: [half * sums[0], half * sums[1]],
+        t_stress: elasticity.plane_modulus * sums[2] - pressure(axes.at),
+        radius,
+        of_faces: half * of_faces[0],
+    })
 }
 
 /// Angle of the crack at a distance from its tip, rad, from 0 to 2π.
@@ -151,7 +125,7 @@ fn faces(
     axes: &TipAxes,
     elasticity: Elasticity,
     [inner, outer]: [f64; 2],
-    pressure: f64,
+    pressure: &dyn Fn(Point) -> f64,
     field: &mut impl FnMut(Point) -> Result<Gradient>,
 ) -> Result<[f64; 3]> {
     let mut sums = [0.0; 3];
@@ -160,7 +134,7 @@ fn faces(
         let is_straight = index == 0
             || (y.abs() < STRAIGHT
                 && axes.to_axes([piece[0][0] - axes.at[0], piece[0][1] - axes.at[1]])[1].abs() < STRAIGHT * axes.spacing);
-        if distance(axes.at, piece[0]) >= outer || (is_straight && pressure == 0.0) {
+        if distance(axes.at, piece[0]) >= outer {
             continue;
         }
         let length = distance(piece[0], piece[1]).min(2.0 * outer);
@@ -173,6 +147,10 @@ fn faces(
                     if index == 0 { (length * share * share, 2.0 * length * share) } else { (length * share, length) };
                 let ds = weight * stretch / count as f64;
                 let at = along(piece[0], piece[1], way / distance(piece[0], piece[1]));
+                let pressure = pressure(at);
+                if is_straight && pressure == 0.0 {
+                    continue;
+                }
                 for normal in [[y, -x], [-y, x]] {
                     // The material lies against the outward normal.
                     let inward = axes.from_axes([-normal[0], -normal[1]]);

@@ -43,6 +43,8 @@ pub struct Discretisation {
     pub sides: Vec<[Point; 2]>,
     /// What parts nodes from points.
     pub obstacles: Obstacles,
+    /// How many of the cuts are cracks; they come first.
+    pub cracks: usize,
     /// Axes of the tips.
     pub axes: Vec<TipAxes>,
     /// First unknown of every node, and the number of all.
@@ -103,6 +105,7 @@ impl Discretisation {
             supports,
             sides,
             obstacles,
+            cracks: lines.len(),
             axes,
             first,
             enriched,

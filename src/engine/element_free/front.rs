@@ -112,6 +112,24 @@ impl Front {
         unknowns.iter().zip(local).for_each(|(&unknown, local)| b[unknown as usize] = local);
     }
 
+    /// [`Front::solve_forward`] of several right sides at a time, of those that load unknowns of the front.
+    pub fn solve_forward_together(&self, unknowns: &[u32], sides: &mut [Vec<f64>]) {
+        let size = self.own + self.rest;
+        let is_loaded = |b: &&mut Vec<f64>| unknowns[..self.own].iter().any(|&unknown| b[unknown as usize] != 0.0);
+        let mut loaded: Vec<&mut Vec<f64>> = sides.iter_mut().filter(is_loaded).collect();
+        if loaded.is_empty() {
+            return;
+        }
+        let mut local: Vec<f64> = loaded.iter().flat_map(|b| unknowns.iter().map(|&unknown| b[unknown as usize])).collect();
+        let (corner, below) = MatRef::from_column_major_slice(&self.panel, size, self.own).split_at_row(self.own);
+        let (mut own, rest) = MatMut::from_column_major_slice_mut(&mut local, size, loaded.len()).split_at_row_mut(self.own);
+        solve_lower_triangular_in_place(corner, own.as_mut(), Par::Seq);
+        matmul(rest, Accum::Add, below, own.as_ref(), -1.0, Par::Seq);
+        for (b, local) in loaded.iter_mut().zip(local.chunks_exact(size)) {
+            unknowns.iter().zip(local).for_each(|(&unknown, local)| b[unknown as usize] = *local);
+        }
+    }
+
     /// `x₁ = L₁₁⁻ᵀ (y₁ - L₂₁ᵀ x₂)` in place.
     pub fn solve_backward(&self, unknowns: &[u32], b: &mut [f64]) {
         let size = self.own + self.rest;
@@ -125,7 +143,7 @@ impl Front {
 }
 
 /// Sum of products, eight at a time: a sum in order cannot be computed side by side.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
     let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
     let mut sums = [0.0; 8];

@@ -8,6 +8,7 @@ mod assembly;
 pub mod basis;
 mod boundary;
 mod cells;
+pub mod contact;
 pub mod crack;
 pub mod cuts;
 mod dissection;

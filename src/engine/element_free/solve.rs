@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::assembly::{Scratch, add_cell};
 use super::boundary::{Boundary, Square, UNKNOWNS_OF_GRIP};
 use super::cells::{QuadraturePoint, quadrature};
+use super::contact::{Pressed, press};
 use super::dissection::{Factor, Matrices, Member};
 use super::field::{Discretisation, Local};
 use super::front::Front;
@@ -25,6 +26,20 @@ pub struct Solution {
     pub points: usize,
     /// Area of them, m².
     pub area: f64,
+    /// Flanks of cracks in contact.
+    pub pressed: Vec<Pressed>,
+}
+
+impl Solution {
+    /// Pressure of flanks in contact at a place of a crack, Pa.
+    pub fn pressure_at(&self, at: Point) -> f64 {
+        self.pressed.iter().find(|pressed| pressed.is_on(at)).map_or(0.0, |pressed| pressed.pressure)
+    }
+
+    /// Whether flanks are in contact up to a tip.
+    pub fn is_closed(&self, tip: Point) -> bool {
+        self.pressed.iter().any(|pressed| pressed.ends_at(tip))
+    }
 }
 
 /// The matrices of a plate: those of cells, then those of supports.
@@ -90,23 +105,28 @@ pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -
     let first: Vec<u32> = plate.first.iter().copied().chain(grips.map(|first| (first + UNKNOWNS_OF_GRIP) as u32)).collect();
     let stiffness = Stiffness { plate, thickness: specimen.thickness, cells: &cells, held: &held, first: &first };
     let factor = Factor::of(&stiffness.members(), &first, &stiffness)?;
-    let (work, u) = match specimen.moved_section() {
-        None => {
-            forces.iter_mut().for_each(|force| *force *= load);
-            let mut u = forces.clone();
-            factor.solve(&mut u);
-            (forces.iter().zip(&u).map(|(f, u)| f * u).sum(), u)
-        }
-        // Moved by 1 m, then scaled to the force of the load.
+    let section = specimen.moved_section();
+    if section.is_none() {
+        forces.iter_mut().for_each(|force| *force *= load);
+    }
+    let mut y = forces.clone();
+    factor.forward(&mut y);
+    let mut u = y.clone();
+    factor.backward(&mut u);
+    let mut pressed = press(specimen, plate, &factor, &y, &mut u)?;
+    let work = match section {
+        None => forces.iter().zip(&u).map(|(f, u)| f * u).sum(),
+        // Moved by 1 m, then scaled to the force of the load: contact of flanks changes with it in proportion.
         Some(section) => {
-            factor.solve(&mut forces);
-            let scale = load * section / held.iter().map(|square| square.reaction(&forces)).sum::<f64>();
-            (load * section * scale, forces.into_iter().map(|u| scale * u).collect())
+            let scale = load * section / held.iter().map(|square| square.reaction(&u)).sum::<f64>();
+            u.iter_mut().for_each(|u| *u *= scale);
+            pressed.iter_mut().for_each(|pressed| pressed.pressure *= scale);
+            load * section * scale
         }
     };
     let points = cells.iter().map(|(_, points)| points.len()).sum();
     let area = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
-    Ok(Solution { u, work, points, area })
+    Ok(Solution { u, work, points, area, pressed })
 }
 
 /// Points of the raster in a far spacing: a dozen rasters of a run then have fewer places than its solves have points of integration.

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use super::cross_check::CrossCheck;
 use super::end_of_life::{End, first_end};
 use super::record::{CurvePoint, StopReason};
-use super::tip_field::initial_factor;
+use super::points::initial_factor;
 use super::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State, plate};
 use crate::body::{Body, Bond};
 use crate::case::Case;

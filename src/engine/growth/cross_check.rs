@@ -9,8 +9,6 @@ use serde::{Deserialize, Serialize};
 use crate::case::Case;
 use crate::units::MM;
 
-/// Growth over which energies are compared, in horizons: within it the cut bonds stand for a length that is right to 2 %.
-const INTERVAL_HORIZONS: f64 = 5.0;
 /// Share of the life that a comparison has to be of.
 const SHARE_LEAST: f64 = 0.03;
 /// Difference of K beyond which the user is warned, as share.
@@ -106,15 +104,15 @@ pub struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    /// Takes in a block at whose end the crack has the length `crack_length`, m.
-    pub fn take(&mut self, block: ReleasedEnergy, crack_length: f64, horizon: f64) {
+    /// Takes in a block at whose end the crack has the length `crack_length`, m; energies are compared over growth of `interval`, m.
+    pub fn take(&mut self, block: ReleasedEnergy, crack_length: f64, interval: f64) {
         let open = &mut self.open;
         open.of_tips += block.of_tips;
         open.of_plate += block.of_plate;
         open.growth += block.growth;
         open.lengthening += block.lengthening;
         open.cycles += block.cycles;
-        if open.growth >= INTERVAL_HORIZONS * horizon {
+        if open.growth >= interval {
             let ReleasedEnergy { of_tips, of_plate, lengthening, cycles, .. } = std::mem::take(open);
             let difference = (of_tips / of_plate).sqrt() - 1.0;
             // NaN where the energy falls: no K belongs to that.

@@ -1,18 +1,17 @@
 //! What drives a crack: from the plate as it stands to the plate an increment later.
 //!
-//! [`crate::predict::predict`] advances one [`CrackGrowth`] until there is a reason to stop: K of every tip, on points
-//! and bonds ([`tip_field`]) or on nodes ([`element_free`]), fatigue
-//! bonds that fail by their own strain ([`bond_strain`]), or K of a handbook without any plate ([`hand_calculation`]).
+//! [`crate::predict::predict`] advances one [`CrackGrowth`] until there is a reason to stop: K of every tip ([`cracks`]), on points and bonds
+//! ([`points`]) or on nodes ([`nodes`]), fatigue bonds that fail by their own strain ([`bond_strain`]), or K of a handbook without any plate ([`hand_calculation`]).
 
 pub mod bond_strain;
+pub mod cracks;
 pub mod cross_check;
-pub mod element_free;
 pub mod end_of_life;
 pub mod hand_calculation;
+pub mod nodes;
 pub mod plate;
+pub mod points;
 pub mod record;
-pub mod tip_field;
-mod tip_ring;
 
 use std::sync::Arc;
 
@@ -98,40 +97,6 @@ pub trait CrackGrowth {
     }
 }
 
-/// Cracks that grow by the K of their tips, an increment in eight steps. [`crate::predict::increment`] is their order.
-pub trait TipGrowth {
-    /// An increment in the making.
-    type Increment;
-
-    /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or grows.
-    fn reason_to_stop(&self) -> Option<StopReason>;
-
-    /// Growth of every tip over the same cycles, the fastest by one step. To be asked while a tip grows
-    /// ([`TipGrowth::reason_to_stop`]).
-    fn increments(&self) -> Self::Increment;
-
-    /// Extends the lines of the cracks by a straight segment each, up to a rim or another crack; cracks that meet are joined.
-    fn extend_lines(&mut self, step: &mut Self::Increment);
-
-    /// Parts the plate along the new segments: bonds that cross them are cut, or nodes placed anew.
-    fn part_plate(&mut self, step: &mut Self::Increment);
-
-    /// Finds the displacement in equilibrium with the maximum load.
-    fn solve_equilibrium(&mut self, step: &mut Self::Increment);
-
-    /// Reads K_I, K_II and T of every active tip at the place where its field stands.
-    fn read_factors(&mut self, step: &Self::Increment);
-
-    /// Turns every active tip by what was read.
-    fn turn(&mut self, step: &Self::Increment);
-
-    /// Takes da/dN of the K of every active tip.
-    fn set_rates(&mut self, step: &Self::Increment);
-
-    /// Adds the row after an increment, and says why there is no next one.
-    fn add_row(&mut self, step: Self::Increment) -> Option<StopReason>;
-}
-
 /// Where a run stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GrowthStatus<'a> {
@@ -188,9 +153,9 @@ pub enum State {
     /// Of fatigue bonds.
     Bonds(bond_strain::BondStrainState),
     /// Of tips driven by their K.
-    Tips(tip_field::TipsState),
+    Tips(cracks::CracksRun<points::PointState>),
     /// Of tips on a plate of nodes.
-    Nodes(element_free::FrontsState),
+    Nodes(cracks::CracksRun<nodes::NodeState>),
     /// Of a hand calculation: its rows.
     Rows(Vec<CurvePoint>),
 }

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::fatigue::Driver;
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::paris::ParisLaw;
-use crate::growth::tip_field::steering::equivalent_factor;
+use crate::growth::cracks::steering::equivalent_factor;
 use crate::specimen::LengthConvention;
 use crate::units::MM;
 

@@ -1,6 +1,6 @@
 //! K of the tips of the initial cracks at maximum load, by three methods, for `perilife sif`.
 //!
-//! An integral over a ring around the tip, that of the first row of a prediction ([`crate::growth::tip_field`]); the same on a plate of
+//! An integral over a ring around the tip, that of the first row of a prediction ([`crate::growth::points`]); the same on a plate of
 //! nodes, which shares nothing with points and bonds ([`crate::element_free`]); and the energy that crack growth releases
 //! (`energy_release.rs`), which tells K_I of cracks that open only. A crack cut into bonds reaches up to half a spacing farther or less far
 //! than asked ([`crate::body::severed`]); both methods on points therefore look at other lengths, too: K belongs to the requested one.
@@ -16,9 +16,10 @@ use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::crack_tip::TipState;
 use crate::growth::cross_check::largest_difference;
-use crate::growth::element_free;
+use crate::growth::cracks::{InitialTips, initial_tips};
+use crate::growth::nodes::NodePlate;
+use crate::growth::points::PointPlate;
 use crate::growth::record::TipRecord;
-use crate::growth::tip_field::{InitialTips, initial_tips};
 use crate::specimen::TipSeed;
 use crate::specimen::handbook::handbook;
 use crate::units::MPA_SQRT_M;
@@ -58,7 +59,7 @@ fn sharp(case: &Case) -> Case {
 /// K of every sharp tip off its ring, with T: those of the first row of a prediction driven by K; `alone` where nodes are not asked, too.
 fn by_ring(case: &Case, alone: bool) -> Result<Vec<MethodResult>> {
     let started = Instant::now();
-    let InitialTips { tips, mut warnings, .. } = initial_tips(&sharp(case))?;
+    let InitialTips { tips, mut warnings, .. } = initial_tips::<PointPlate>(&sharp(case))?;
     if alone {
         warnings.extend(beside_nodes(case, &tips));
     }
@@ -68,11 +69,10 @@ fn by_ring(case: &Case, alone: bool) -> Result<Vec<MethodResult>> {
 /// Difference from K on nodes, over K, from which points are not fine enough.
 const BESIDE_NODES: f64 = 0.02;
 
-/// What nodes say of K of the initial tips of a plate on points, where that is something else. Nothing where nodes cannot say it, such as
-/// of flanks in contact.
+/// What nodes say of K of the initial tips of a plate on points, where that is something else. Nothing where nodes cannot say it.
 pub(super) fn beside_nodes(case: &Case, own: &[TipRecord]) -> Option<String> {
     let factors = |tips: &[TipRecord]| tips.iter().map(|tip| tip.factors).collect::<Option<Vec<_>>>();
-    let (tips, _) = element_free::initial_tips(&sharp(case)).ok()?;
+    let tips = initial_tips::<NodePlate>(&sharp(case)).ok()?.tips;
     let (own, nodes) = (factors(own)?, factors(&tips)?);
     let (tip, share) = largest_difference(&own, &nodes);
     (share > BESIDE_NODES).then(|| {
@@ -88,7 +88,7 @@ pub(super) fn beside_nodes(case: &Case, own: &[TipRecord]) -> Option<String> {
 /// K of every sharp tip and T on a plate of nodes.
 fn by_nodes(case: &Case) -> Result<Vec<MethodResult>> {
     let started = Instant::now();
-    let (tips, warnings) = element_free::initial_tips(&sharp(case))?;
+    let InitialTips { tips, warnings, .. } = initial_tips::<NodePlate>(&sharp(case))?;
     Ok(of_tips(StressIntensityMethod::ElementFreeGalerkin, started, &tips, warnings))
 }
 
@@ -113,7 +113,7 @@ fn by_energy(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>> {
         let problem = "energy_release takes constant loads on rims and holes: use ring";
         return Err(Error::Mechanics(format!("{}: {problem}", case.name)));
     }
-    if initial_tips(&sharp(case))?.in_contact {
+    if initial_tips::<PointPlate>(&sharp(case))?.in_contact {
         let problem = "the load presses flanks of cracks together, which the energy released between open cracks does not know";
         return Err(Error::Mechanics(format!("{}: {problem}: use ring", case.name)));
     }

@@ -5,7 +5,7 @@ use super::sketch::{CRACK, Sketch};
 use crate::case::Case;
 use crate::element_free::field::Discretisation;
 use crate::error::Result;
-use crate::growth::element_free::initial_plate;
+use crate::growth::nodes::initial_plate;
 use crate::specimen::Point;
 use crate::units::MM;
 

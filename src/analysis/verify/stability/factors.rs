@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use super::{Run, SWEEP, Sweep};
 use crate::case::{Case, HORIZON_RATIO};
 use crate::error::{Error, Result};
-use crate::growth::tip_field::steering::kink_angle;
+use crate::growth::cracks::steering::kink_angle;
 use crate::units::MM;
 use crate::verify::cases::{NODES, STRESS, case, cracked_plate, cracks, middle_tension, pulled_plate};
 use crate::verify::collinear::Collinear;

@@ -29,10 +29,11 @@ use crate::fatigue::FatigueLaw;
 use crate::fatigue::ageing::FatigueBond;
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::growth_law::GrowthLaw;
+use crate::growth::cracks::ahead::is_near_rim;
+use crate::growth::cracks::steering::equivalent_factor;
+use crate::growth::cracks::tip::pair_twins;
+use crate::growth::points::ring::{CORE_HORIZONS, RING_HORIZONS, TipRings};
 use crate::growth::record::TipRecord;
-use crate::growth::tip_field::ahead::is_near_rim;
-use crate::growth::tip_field::steering::equivalent_factor;
-use crate::growth::tip_ring::{CORE_HORIZONS, RING_HORIZONS, TipRings, pair_twins};
 use crate::line::line;
 use crate::specimen::geometry::{distance, distance_to_segment};
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
@@ -69,8 +70,6 @@ const SHORT_HORIZONS: f64 = 0.25;
 const AHEAD_HORIZONS: f64 = 0.5;
 /// Growth, in horizons, that is none: round-off must not tell mirror twins apart.
 const STILL_HORIZONS: f64 = 1e-6;
-/// Relative difference of K below which tips are mirror twins.
-const TWINS: f64 = 1e-6;
 
 /// Rates of the tips of a run.
 pub(super) struct GrowthRateControl {
@@ -226,10 +225,8 @@ impl GrowthRateControl {
         let mut found: Vec<Option<([f64; 2], f64)>> =
             ends.iter().zip(tips).map(|(end, tip)| end.filter(|_| tip.is_active()).and_then(read)).collect();
         let mut factors: Vec<Option<[f64; 2]>> = found.iter().map(|found| found.map(|(factors, _)| factors)).collect();
-        for (twin, first) in pair_twins(&mut factors, TWINS) {
-            // The offset is the same as well.
-            found[twin] = factors[twin].zip(found[first].map(|(_, offset)| offset));
-        }
+        pair_twins(&mut factors);
+        found.iter_mut().zip(factors).for_each(|(found, factors)| *found = factors.zip(found.map(|(_, offset)| offset)));
         for ((pace, tip), found) in self.tips.iter_mut().zip(tips).zip(found) {
             if !tip.is_active() {
                 continue;

@@ -3,27 +3,14 @@
 //! `K_I sin θ + K_II (3 cos θ - 1) = 0`, and the factor that opens the crack in that direction is
 //! `K_eq = cos(θ/2) [K_I cos²(θ/2) - 3/2 K_II sin θ]`.
 //!
-//! A single reading of K_II scatters with how the bonds around the tip lie. The direction is read at the tip off a straight line
-//! through the aims of the last two horizons of growth: a mean over that length would trail behind a curving crack by half of
-//! it.
+//! The direction is read at the tip off a straight line through the last aims: a mean over them would trail behind a curving crack by half
+//! of their length. On points a single reading of K_II scatters with how the bonds around the tip lie, and the line goes through the aims
+//! of the last two horizons of growth; on nodes it goes through the last two ([`SteeringScales`]).
 
 use serde::{Deserialize, Serialize};
 
+use super::scales::SteeringScales;
 use crate::specimen::Point;
-
-/// Growth, in steps, whose aims show where the crack is heading. Steps are short where it curves; a line through more than that would
-/// trail behind. Like all lengths here no multiple of a step: on a limit round-off would tell mirror twins apart.
-const MEMORY_STEPS: f64 = 5.3;
-/// Bounds of that growth, in horizons: aims scatter within the former with how the points lie.
-const MEMORY_HORIZONS: [f64; 2] = [0.83, 2.1];
-/// Spread of growth, in horizons, below which the slope of the aims says nothing.
-const SLOPE_HORIZONS: f64 = 0.15;
-/// Turn from which a crack has a corner, rad: nothing before it says where it heads after it.
-const CORNER: f64 = 8.0 * std::f64::consts::PI / 180.0;
-/// Growth after a corner, in horizons, over which the direction is held: the core of the tip has to leave the corner first.
-const HELD_HORIZONS: f64 = 1.15;
-/// Growth after that, in horizons, until the aims since then show how the crack curves.
-const FOUND_HORIZONS: f64 = 1.0;
 
 /// Angle θ of the largest circumferential stress, rad, counter-clockwise from straight ahead.
 pub fn kink_angle([k_i, k_ii]: [f64; 2]) -> f64 {
@@ -49,14 +36,16 @@ pub struct Steering {
     aims: Vec<[f64; 2]>,
     /// Growth at the last corner, m, while the direction after it is held.
     corner: Option<f64>,
+    /// The same for ever.
+    last_corner: Option<f64>,
     /// Growth at which the direction after a corner was last held, m.
     held: Option<f64>,
 }
 
 impl Steering {
     /// Takes in the factors of a tip that has grown by `growth` along `ahead`.
-    pub fn read(&mut self, factors: [f64; 2], growth: f64, ahead: Point, horizon: f64) {
-        if self.corner.is_some_and(|corner| growth < corner + HELD_HORIZONS * horizon) {
+    pub fn read(&mut self, factors: [f64; 2], growth: f64, ahead: Point, scales: &SteeringScales) {
+        if self.corner.is_some_and(|corner| growth < corner + scales.held) {
             self.held = Some(growth);
             return;
         }
@@ -66,50 +55,64 @@ impl Steering {
         let last = self.aims.last().map_or(heading, |aim| aim[1]);
         let turns = ((last - heading) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
         let aim = heading + turns + turn;
-        if turn.abs() > CORNER {
+        let is_new = self.aims.is_empty() && self.last_corner.is_none();
+        if turn.abs() > if is_new { scales.corner_at_start } else { scales.corner } {
             (self.aims, self.corner, self.held) = (vec![[growth, aim]], Some(growth), Some(growth));
+            self.last_corner = self.corner;
             return;
         }
         if self.corner.take().is_some() {
             self.aims.clear();
         }
         let step = self.aims.last().map_or(0.0, |last| growth - last[0]);
-        let [least, most] = MEMORY_HORIZONS.map(|horizons| horizons * horizon);
+        let [least, most] = scales.memory;
         self.aims.push([growth, aim]);
-        self.aims.retain(|aim| aim[0] >= growth - (MEMORY_STEPS * step).clamp(least, most));
+        self.aims.retain(|aim| aim[0] >= growth - (scales.memory_steps * step).clamp(least, most));
+        self.aims.drain(..self.aims.len().saturating_sub(scales.aims));
     }
 
     /// Direction for the next `step` of growth, m: the aim at its middle.
-    pub fn direction(&self, growth: f64, step: f64, ahead: Point, horizon: f64) -> Point {
+    pub fn direction(&self, growth: f64, step: f64, ahead: Point, scales: &SteeringScales) -> Point {
         if self.aims.is_empty() {
             return ahead;
         }
-        let ([x, y], slope) = self.line(horizon);
+        let ([x, y], slope) = self.line(scales);
         let at = if self.corner.is_some() { x } else { growth + 0.5 * step };
         let (sin, cos) = (y + slope * (at - x)).sin_cos();
         [cos, sin]
     }
 
     /// Curvature of the crack ahead, rad/m, counter-clockwise.
-    pub fn curvature(&self, horizon: f64) -> f64 {
-        if self.aims.is_empty() { 0.0 } else { self.line(horizon).1 }
+    pub fn curvature(&self, scales: &SteeringScales) -> f64 {
+        if self.aims.is_empty() { 0.0 } else { self.line(scales).1 }
     }
 
     /// Middle and slope of the straight line through the aims.
-    fn line(&self, horizon: f64) -> ([f64; 2], f64) {
+    fn line(&self, scales: &SteeringScales) -> ([f64; 2], f64) {
         let count = self.aims.len() as f64;
         let [x, y] = [0, 1].map(|i| self.aims.iter().map(|aim| aim[i]).sum::<f64>() / count);
         let product = |i: usize| self.aims.iter().map(|aim| (aim[0] - x) * (aim[i] - [x, y][i])).sum::<f64>();
-        ([x, y], product(1) / (product(0) + count * (SLOPE_HORIZONS * horizon).powi(2)))
+        let spread = product(0) + count * scales.slope.powi(2);
+        ([x, y], if spread > 0.0 { product(1) / spread } else { 0.0 })
     }
 
     /// Whether a tip that has grown by `growth` has come round a corner so lately that its aims do not show yet how it curves.
-    pub fn is_turning(&self, growth: f64, horizon: f64) -> bool {
-        self.held.is_some_and(|held| growth < held + FOUND_HORIZONS * horizon)
+    pub fn is_turning(&self, growth: f64, scales: &SteeringScales) -> bool {
+        self.held.is_some_and(|held| growth < held + scales.found)
     }
 
     /// Growth at the last corner, m, while the direction after it is held.
     pub fn corner(&self) -> Option<f64> {
         self.corner
+    }
+
+    /// Growth at the last corner, m.
+    pub fn last_corner(&self) -> Option<f64> {
+        self.last_corner
+    }
+
+    /// Forgets all aims.
+    pub fn forget(&mut self) {
+        *self = Steering { last_corner: self.last_corner, ..Steering::default() };
     }
 }

@@ -10,19 +10,19 @@ use crate::stress_intensity::ring::{Balanced, FlankPressure, RingFactors, RingGe
 
 /// Outer radius of the ring, in horizons, where there is room. On three horizons K is read 0.1 % lower, and first kinks of one crack on
 /// lattices of all directions spread over 0.7° instead of 0.4°.
-pub(super) const RING_HORIZONS: f64 = 4.0;
+pub(in crate::growth) const RING_HORIZONS: f64 = 4.0;
 /// Outer radius below which a ring says nothing, in horizons.
 pub(super) const RING_HORIZONS_MIN: f64 = 1.2;
 /// Turn of a corner, rad, beyond which it is a bend by itself and no part of an arc.
 const BEND: f64 = 0.45;
 /// Distance from a rim ahead, in horizons, within which the core of the tip is not that of a crack in a plate.
-pub(super) const CORE_HORIZONS: f64 = 0.6;
+pub(in crate::growth) const CORE_HORIZONS: f64 = 0.6;
 
 /// Length of crack, in spacings, below which its last piece shows no direction: of a tip that hardly grows it is round-off.
 pub(super) const DIRECTION_SPACINGS: f64 = 0.1;
 
 /// A plate in equilibrium with what rings of its tips need.
-pub(super) struct TipRings<'a> {
+pub(in crate::growth) struct TipRings<'a> {
     pub body: &'a Body,
     pub bonds: &'a Bonds,
     pub displacement: &'a [f64],
@@ -40,12 +40,12 @@ pub(super) struct TipRings<'a> {
 
 impl TipRings<'_> {
     /// Whether there is room for a ring around the end of a crack whose line is longer by `offset`, m.
-    pub(super) fn have_room(&self, end: LineEnd, offset: f64) -> bool {
+    pub(in crate::growth) fn have_room(&self, end: LineEnd, offset: f64) -> bool {
         self.radius(&self.stretched(end, offset), end) >= RING_HORIZONS_MIN * self.body.horizon()
     }
 
     /// The field around the same place; where there is no room for a ring, off the least one.
-    pub(super) fn read(&self, end: LineEnd, offset: f64) -> RingFactors {
+    pub(in crate::growth) fn read(&self, end: LineEnd, offset: f64) -> RingFactors {
         let TipRings { body, bonds, displacement, load, geometry, pressures, .. } = *self;
         let lines = self.stretched(end, offset);
         let radius = self.radius(&lines, end).max(RING_HORIZONS_MIN * body.horizon());
@@ -66,23 +66,4 @@ impl TipRings<'_> {
         let wanted = (RING_HORIZONS * self.body.horizon()).min(straight.max(RING_HORIZONS_MIN * self.body.horizon()));
         self.geometry.radius(self.body, lines, end, self.active, wanted)
     }
-}
-
-/// Pairs of tips, the later first, whose factors agree within a relative `tolerance` but for their signs: mirror twins, which get the
-/// same factors so that they stay twins.
-pub(super) fn pair_twins(factors: &mut [Option<[f64; 2]>], tolerance: f64) -> Vec<(usize, usize)> {
-    let mut pairs = Vec::new();
-    for i in 1..factors.len() {
-        for j in 0..i {
-            let (Some(here), Some(there)) = (factors[i], factors[j]) else { continue };
-            let size = there[0].abs().max(there[1].abs());
-            let is_equal = |mode: usize| (here[mode].abs() - there[mode].abs()).abs() <= tolerance * size;
-            if is_equal(0) && is_equal(1) {
-                factors[i] = Some([0, 1].map(|mode| there[mode].abs().copysign(here[mode])));
-                pairs.push((i, j));
-                break;
-            }
-        }
-    }
-    pairs
 }

@@ -13,8 +13,6 @@
 
 use serde::{Deserialize, Serialize};
 
-/// |K_II| over the |K_I| that the load presses a tip with, below which it is noise of the reading.
-const STANDING: f64 = 0.01;
 /// Growth, in horizons, whose readings show how K changes.
 const MEMORY_HORIZONS: f64 = 2.1;
 /// Slope over that of a long crack far from everything, K ~ √a, at the most: a single odd reading is not followed farther.
@@ -22,23 +20,6 @@ const SLOPE_MOST: f64 = 12.0;
 
 /// Spread of readings, in horizons, whose slope counts as much as that of a crack far from everything.
 const PRIOR_HORIZONS: f64 = 0.1;
-
-/// What the ring of a tip says.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct Reading {
-    /// K_I and K_II, Pa√m.
-    pub(super) factors: [f64; 2],
-    /// T, Pa.
-    pub(super) t_stress: f64,
-    /// How far ahead of the end of its line the crack is that has them, m.
-    pub(super) length_offset: f64,
-    /// Whether flanks are in contact up to the tip.
-    pub(super) is_closed: bool,
-    /// What the pressure between flanks adds to K_I, Pa√m.
-    pub(super) of_pressure: f64,
-    /// Of a tip of both modes.
-    pub(super) sliding: Option<Sliding>,
-}
 
 /// K_II where the field of a tip stands in mode II.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -51,15 +32,29 @@ pub(super) struct Sliding {
     pub(super) at_line: f64,
 }
 
-impl Reading {
-    /// Whether the load presses the tip shut, and its flanks do not slide but for the noise of the reading.
-    pub(super) fn stands(&self) -> bool {
-        let pressed = if self.is_closed { self.of_pressure } else { self.factors[0] };
-        self.factors[0] <= 0.0 && self.factors[1].abs() < STANDING * pressed.abs()
+/// What is kept of the readings of a tip.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct Memory {
+    pub(super) readings: Readings,
+    /// Of K_II, of a tip of both modes before it grows.
+    pub(super) sliding_readings: Readings,
+    pub(super) coalescence: Coalescence,
+    /// Of the last reading, of a tip of both modes.
+    pub(super) sliding: Option<Sliding>,
+}
+
+impl Memory {
+    /// K_II of a tip of both modes that has not grown over what is read where its field stands in mode II, `offset` ahead of its line,
+    /// for a crack of this `length` shorter `by` so much, m. The core of a nonlocal crack reaches a fifth of a horizon farther in mode II
+    /// than in mode I.
+    pub(super) fn sliding_ratio(&self, k_ii: f64, offset: f64, [by, length]: [f64; 2], horizon: f64) -> f64 {
+        let mut readings = self.sliding_readings.clone();
+        readings.take(k_ii.abs(), 0.0, offset, None, horizon);
+        readings.ratio(by, length, horizon)
     }
 }
 
-/// Readings of a tip.
+/// Readings of K of a tip.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Readings {
     /// Growth at which the field stands, and ln K.
@@ -92,7 +87,7 @@ impl Readings {
 
 /// Gap, in horizons, from which on K is not read any more. Against finite elements of three collinear cracks K is read within 1 % at
 /// 1.7 horizons, 3 % high at 1.4 to 1, and 25 % low at 0.7.
-pub(super) const GAP_HORIZONS: f64 = 1.6;
+pub const GAP_HORIZONS: f64 = 1.6;
 /// Gap, in horizons, over whose readings the power is taken.
 const SEEN_HORIZONS: f64 = 4.0;
 /// Bounds of the power, and what is taken where too few readings tell: finite elements of three collinear cracks have 0.25 to 0.32 at

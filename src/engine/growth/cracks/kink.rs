@@ -11,15 +11,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::steering::kink_angle;
+use crate::quadrature::integrate;
 
-/// Growth after a kink, in horizons, over which K is that of a short kink.
-const KINK_HORIZONS: f64 = 0.3;
 /// K of a short kink at the least, over that of none.
 const SHARE_LEAST: f64 = 0.5;
 
 /// A kink of a tip.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct Kink {
+pub struct Kink {
     /// K_I of the infinitesimal kink, Pa√m.
     factor: f64,
     /// G₁ T, Pa.
@@ -30,29 +29,40 @@ pub(super) struct Kink {
 
 impl Kink {
     /// The kink that a tip with these factors (Pa√m), T (Pa) and growth begins; `None` where it would not open.
-    pub(super) fn new(factors: [f64; 2], t_stress: f64, growth: f64) -> Option<Self> {
+    pub fn new(factors: [f64; 2], t_stress: f64, growth: f64) -> Option<Self> {
         let [k_i, k_ii] = [factors[0].max(0.0), factors[1]];
         let [f11, f12, g1] = coefficients(kink_angle([k_i, k_ii]));
         let factor = f11 * k_i + f12 * k_ii;
         (factor > 0.0).then_some(Kink { factor, slope: g1 * t_stress, growth })
     }
 
-    /// K after so much growth of the tip, of a crack that was `length` long at the start, Pa√m; `None` where the kink is not short any
-    /// more.
-    pub(super) fn factor(&self, growth: f64, length: f64, horizon: f64) -> Option<f64> {
+    /// K after so much growth of the tip, of a crack that was `length` long at the start, Pa√m; `None` where the kink is not shorter
+    /// than `short` any more, m.
+    pub fn factor(&self, growth: f64, length: f64, short: f64) -> Option<f64> {
         let way = growth - self.growth;
-        let is_short = way > 0.0 && way < KINK_HORIZONS * horizon;
+        let is_short = way > 0.0 && way < short;
         is_short.then(|| self.opening(way.sqrt()) * (1.0 + way / (length + self.growth)).sqrt())
     }
 
-    /// K that stands for a first step of this length, m: at its start √s has no slope that the cycles of the step could be counted with.
-    pub(super) fn first_factor(&self, step: f64) -> f64 {
-        self.opening(step.sqrt() / 3.0)
-    }
-
-    fn opening(&self, root: f64) -> f64 {
+    /// K of the root of its length, Pa√m.
+    pub fn opening(&self, root: f64) -> f64 {
         (self.factor + self.slope * root).max(SHARE_LEAST * self.factor)
     }
+}
+
+/// Cycles of the first step of a kink, its rate at the start and at the end of it, m/cycle, and K there, Pa√m: K is linear in the root of the
+/// length, and the rate a power p of K,
+/// `∫ ds/r = (2 s/r₀) ∫ x (1 + q x)^-p dx`, x from 0 to 1, q = K₁/K₀ - 1.
+pub fn cycles(grown: f64, [rate, rate_then]: [f64; 2], [factor, factor_then]: [f64; 2]) -> f64 {
+    let (gain, ratio) = ((rate_then / rate).ln(), factor_then / factor);
+    let (q, p) = (ratio - 1.0, gain / ratio.ln());
+    let is_power = ratio.is_finite() && ratio > 0.0 && p.is_finite() && q.abs() > 1e-3;
+    let mean = if is_power {
+        2.0 * integrate(|x| x * (1.0 + q * x).powf(-p), 0.0, 1.0, 1e-10).value
+    } else {
+        1.0 - 2.0 / 3.0 * gain.clamp(-0.75, 0.75)
+    };
+    grown / rate * mean
 }
 
 /// F₁₁, F₁₂ and G₁ of a kink by θ, rad, up to m¹⁰ and m¹¹.

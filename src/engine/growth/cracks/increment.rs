@@ -1,0 +1,242 @@
+//! One increment of all cracks, call by call ([`crate::predict::increment`]).
+
+use super::meeting::Segment;
+use super::tip::{Reading, Tip, pair_twins};
+use super::{CrackedPlate, Cracks, Parted, kink, step};
+use crate::error::Error;
+use crate::fatigue::crack_tip::TipState;
+use crate::growth::cross_check::ReleasedEnergy;
+use crate::growth::end_of_life::{self, gone};
+use crate::growth::record::StopReason;
+use crate::units::MM;
+
+/// Compliance over that at the start from which a plate without equilibrium is as good as severed: what one side of it has let go turns
+/// about what is left of the other.
+const MECHANISM: f64 = 20.0;
+/// Spacings on a ligament that resolve it.
+const LIGAMENT_SPACINGS: f64 = 4.0;
+
+/// An increment in the making.
+pub struct Increment {
+    /// The tip whose cycles count: the fastest.
+    lead: usize,
+    /// Growth that every tip is to make, m.
+    lengths: Vec<f64>,
+    segments: Vec<Option<Segment>>,
+    /// Rate of the lead at the start, m/cycle, and K that drives it, Pa√m.
+    rate: f64,
+    factor: f64,
+    /// Whether the lead begins a kink, else its rate at the start of the increment before and its growth in that, where they are known.
+    is_kink: bool,
+    past: Option<[f64; 2]>,
+    /// Of every tip `K_eq²/E'`, J/m², and the length that its crack stands for beyond that of its line, m; work of the loads, J.
+    before: (Vec<[f64; 2]>, f64),
+    parted: Parted,
+    readings: Vec<Option<Reading>>,
+}
+
+impl Increment {
+    /// Whether a tip has met a rim or another crack.
+    fn has_ended_tips(&self) -> bool {
+        self.segments.iter().flatten().any(|segment| segment.state != TipState::Active)
+    }
+
+    /// Growth of every tip, m.
+    fn growths(&self) -> Vec<f64> {
+        self.segments.iter().map(|segment| segment.as_ref().map_or(0.0, Segment::length)).collect()
+    }
+}
+
+impl<P: CrackedPlate> Cracks<'_, P> {
+    /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or grows.
+    pub(crate) fn reason_to_stop(&self) -> Option<StopReason> {
+        let states: Vec<TipState> = self.state.tips.iter().map(|tip| tip.state).collect();
+        end_of_life::reason_to_stop(self.case, self.end, self.last(), &states, self.fastest().is_some())
+    }
+
+    /// Growth of every tip over the same cycles, the fastest by one step. To be asked while a tip grows ([`Self::reason_to_stop`]).
+    pub(crate) fn increments(&self) -> Increment {
+        let lead = self.fastest().unwrap_or(0);
+        let until = self.end.map_or(f64::INFINITY, |end| end.crack_length);
+        let tip = &self.state.tips[lead];
+        Increment {
+            lead,
+            lengths: self.next_lengths(lead, until),
+            segments: Vec::new(),
+            rate: tip.rate,
+            factor: tip.driving_factor(),
+            is_kink: tip.begins_kink(),
+            past: tip.past(),
+            before: self.energies(),
+            parted: Parted::default(),
+            readings: Vec::new(),
+        }
+    }
+
+    /// Extends the lines of the cracks by a straight segment each, up to a rim or another crack; cracks that meet are joined.
+    pub(crate) fn extend_lines(&mut self, step: &mut Increment) {
+        step.segments = self.segments(&step.lengths);
+        let growths = step.growths();
+        for ((tip, segment), growth) in self.state.tips.iter_mut().zip(&step.segments).zip(&growths) {
+            if let Some(segment) = segment.filter(|_| *growth > 0.0) {
+                self.state.lines[tip.end.line].grow(tip.end.at_last, segment.to);
+            }
+            tip.has_grown(*growth, growths[step.lead], segment.map_or(tip.state, |segment| segment.state));
+        }
+        if step.has_ended_tips() {
+            self.join(&step.segments);
+        }
+    }
+
+    /// Parts the plate along the new segments: bonds that cross them are cut, or nodes placed anew.
+    pub(crate) fn part_plate(&mut self, step: &mut Increment) {
+        step.parted = self.plate.part(self.case, &self.state, &step.segments, step.has_ended_tips());
+    }
+
+    /// Finds the displacement in equilibrium with the maximum load; else why the run ends.
+    pub(crate) fn solve_equilibrium(&mut self, step: &Increment) -> Result<(), StopReason> {
+        if step.parted.is_severed {
+            return Err(StopReason::Severed);
+        }
+        let Err(error) = self.plate.solve(self.case, &self.state) else { return Ok(()) };
+        if matches!(error, Error::LossOfStiffness) {
+            return Err(StopReason::Severed);
+        }
+        let rise = self.compliance_rise();
+        if rise > MECHANISM {
+            self.warnings.push(format!(
+                "the run ends here: the plate is {rise:.0} times as compliant as at the start, and what is left of it moves almost freely \
+                 ({error})"
+            ));
+            return Err(StopReason::Severed);
+        }
+        self.warnings.push(format!("the run ends here: {error}"));
+        Err(StopReason::NoConvergence)
+    }
+
+    /// Reads K_I, K_II and T of every active tip at the place where its field stands.
+    pub(crate) fn read_factors(&mut self, step: &mut Increment) -> Result<(), StopReason> {
+        step.readings = self.read().map_err(|error| {
+            self.warnings.push(format!("the run ends here: {error}"));
+            StopReason::NoConvergence
+        })?;
+        let is_unread = |reading: &Reading| !reading.factors.iter().all(|factor| factor.is_finite());
+        if step.readings.iter().flatten().any(is_unread) { Err(StopReason::NoConvergence) } else { Ok(()) }
+    }
+
+    /// What is read at every active tip, the same of mirror twins, so that they stay twins.
+    pub(super) fn read(&mut self) -> Result<Vec<Option<Reading>>, Error> {
+        let mut readings = self.plate.read(self.case, &self.state)?;
+        let mut factors: Vec<Option<[f64; 2]>> = readings.iter().map(|reading| reading.map(|reading| reading.factors)).collect();
+        pair_twins(&mut factors);
+        let pairs = readings.iter_mut().zip(factors).filter_map(|(reading, factors)| reading.as_mut().zip(factors));
+        pairs.for_each(|(reading, factors)| reading.factors = factors);
+        Ok(readings)
+    }
+
+    /// Turns every active tip by what was read.
+    pub(crate) fn turn(&mut self, step: &Increment) {
+        self.turn_by(&step.readings);
+    }
+
+    pub(super) fn turn_by(&mut self, readings: &[Option<Reading>]) {
+        let tips = self.state.tips.iter_mut().zip(readings);
+        tips.filter_map(|(tip, reading)| Some((tip, reading.as_ref()?))).for_each(|(tip, reading)| {
+            tip.turn(reading, &self.scales.steering);
+        });
+    }
+
+    /// Takes da/dN of the K of every active tip.
+    pub(crate) fn set_rates(&mut self, step: &Increment) {
+        self.set_rates_by(&step.readings);
+    }
+
+    pub(super) fn set_rates_by(&mut self, readings: &[Option<Reading>]) {
+        let gaps: Vec<Option<f64>> = (0..readings.len()).map(|tip| self.faced(tip).map(|(_, gap)| gap)).collect();
+        for (index, reading) in readings.iter().enumerate() {
+            let Some(reading) = reading else { continue };
+            let mut factors = reading.factors;
+            if !self.state.tips[index].is_closed {
+                factors = self.plate.factors_at_line(self.case, &self.state, index, reading, gaps[index]);
+            }
+            let (law, ratio) = (&self.law, self.case.loading.ratio);
+            self.state.tips[index].take(factors, |factor| law.rate(factor, ratio));
+        }
+    }
+
+    /// Adds the row after an increment, and says why there is no next one: `end`, or what the row itself says.
+    pub(crate) fn add_row(&mut self, step: &Increment, mut end: Option<StopReason>) -> Option<StopReason> {
+        let (growths, has_ended, is_over) = (step.growths(), step.has_ended_tips(), end.is_some());
+        let (growth, lead) = (growths[step.lead], &self.state.tips[step.lead]);
+        // Where a tip is gone, K of the others is that of another crack at the end of the step, not of this one grown longer. Of a tip that
+        // turns a corner the rate is that of its new kink, not that with which it has ended its step.
+        let is_smooth = lead.is_growing() && !is_over && !has_ended;
+        let (factor, rate) = if is_smooth { (lead.equivalent(), self.rate(lead.equivalent())) } else { (step.factor, step.rate) };
+        let (cycles, curvature_share) = if step.is_kink {
+            (kink::cycles(growth, [step.rate, rate], [step.factor, factor]), 0.0)
+        } else {
+            step::cycles(step.past, step.rate, rate, growth)
+        };
+        let is_kinking = self.scales.step.first_of_kink.is_finite() && self.state.tips.iter().any(Tip::begins_kink);
+        if has_ended || is_kinking {
+            self.state.step = self.first_step();
+        } else if growth > 0.0 && !is_over {
+            self.state.step = self.next_step(growth, curvature_share);
+        }
+        let is_closing = |(index, _): (usize, &Tip)| self.is_closing(index);
+        if has_ended || is_over || self.state.active().any(is_closing) {
+            self.state.balance.forget();
+        } else {
+            self.compare_energies(step, &growths, cycles);
+        }
+        self.plate.update(&self.state);
+        let work = if is_over { f64::NAN } else { self.work() };
+        // What the last tip has met is known, whatever is left of the plate.
+        if !step.parted.is_severed && self.state.active().next().is_none() {
+            let last: Vec<TipState> = step.segments.iter().flatten().map(|segment| segment.state).collect();
+            end = Some(gone(&last));
+        }
+        if end.is_none()
+            && let Some((tip, ligament)) = self.unresolved_ligament()
+        {
+            self.warnings.push(format!(
+                "tip {tip} passes a rim at {:.3} mm, less than the spacing of {:.3} mm: the run ends there; model.spacing_mm = {:.4} would \
+                 resolve what is between them",
+                ligament / MM,
+                self.scales.meeting.passing / MM,
+                ligament / LIGAMENT_SPACINGS / MM
+            ));
+            end = Some(StopReason::LigamentUnresolved);
+        }
+        if std::env::var_os("DBG").is_some() { eprintln!("DBG {:e} grow {growths:?} step {:e} kink {} tips {:?}", self.last().cycles+cycles, self.state.step, step.is_kink, self.state.tips.iter().map(|t| (t.growth, t.rate, t.factors, t.steering.corner(), t.spacing)).collect::<Vec<_>>()); }
+        let last = self.last();
+        let next = self.row(last.cycles + cycles, work, last.broken_bonds + step.parted.bonds);
+        let (row, reason) = end_of_life::row_after(self.case, last, next, end);
+        if step.parted.bonds > 0 || cycles > 0.0 {
+            self.curve.push(row);
+        }
+        reason
+    }
+
+    /// Compliance of the last equilibrium over that at the start.
+    fn compliance_rise(&self) -> f64 {
+        let rise = self.last().work / self.curve[0].work;
+        // Of a kept displacement the work falls as the compliance rises.
+        if self.case.loading.displacement().is_some() { 1.0 / rise } else { rise }
+    }
+
+    /// Of every tip `K_eq²/E'`, J/m², and the length that its crack stands for beyond that of its line, m; work of the loads, J.
+    fn energies(&self) -> (Vec<[f64; 2]>, f64) {
+        let modulus = self.case.material.plane_modulus();
+        let of_tip = |tip: &Tip| [tip.driving_factor().powi(2) / modulus, tip.length_offset];
+        (self.state.tips.iter().map(of_tip).collect(), self.work())
+    }
+
+    /// Compares the energy that the new segments released by their K with what the plate did.
+    fn compare_energies(&mut self, step: &Increment, growths: &[f64], cycles: f64) {
+        let ((now, work_now), (before, work)) = (self.energies(), &step.before);
+        let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();
+        let (block, length) = ReleasedEnergy::of_block(self.case, [before, &now], growths, &grown, [*work, work_now], cycles);
+        self.state.balance.take(block, length, self.scales.energy_interval);
+    }
+}

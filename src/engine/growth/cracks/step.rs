@@ -1,0 +1,116 @@
+//! How long an increment is: growth of all tips over the same cycles, and the cycles.
+//!
+//! It is as long as the fastest tip takes for a step. With its length as independent variable the other tips follow `da_i/da = r_i/r`, by
+//! the rates of this increment and the last one extrapolated to the middle of the step (Adams and Bashforth 1883), and the cycles are
+//! `∫ da/r` with ln r a parabola through the rates at the ends of this step and at the start of the last one. What the parabola adds to
+//! the straight line tells how long the next step may be. A kink, whose K goes with the root of its length, has cycles of its own
+//! ([`super::kink::cycles`]).
+
+use super::ahead;
+use super::{CrackedPlate, Cracks, Tip};
+
+/// Share of an increment's cycles that the parabola may add: beyond it the rates lie on none.
+const CURVATURE_SHARE_MOST: f64 = 0.02;
+/// Growth of a tip over that of the fastest, at the most, where rates are extrapolated.
+const SHARE_MOST: f64 = 1.5;
+
+impl<P: CrackedPlate> Cracks<'_, P> {
+    /// Growth of every tip in the next increment, m, and until the crack has the length `until` at the latest.
+    pub(super) fn next_lengths(&self, fastest: usize, until: f64) -> Vec<f64> {
+        let lead = &self.state.tips[fastest];
+        let of_lead = |(tip, length): (&Tip, f64)| length * lead.rate / tip.rate;
+        let growing = || self.state.tips.iter().enumerate().filter(|(_, tip)| tip.is_growing());
+        let last = |index: usize| self.last_way(index).map(|way| way.length);
+        let most = |index: usize| last(index).unwrap_or_else(|| self.limit(index));
+        let limits: Vec<(f64, bool)> = growing().map(|(index, tip)| (of_lead((tip, most(index))), last(index).is_some())).collect();
+        let limit = limits.iter().map(|limit| limit.0).fold(f64::INFINITY, f64::min);
+        // What is left of the way of a tip that is at its end is gone at once; else steps are no longer than they have proved to be.
+        let is_last = limits.iter().any(|(most, is_last)| *is_last && *most <= limit * (1.0 + 1e-9));
+        let least = self.scales.step.bounds[0].min(self.scales.step.first);
+        let step = if is_last { limit } else { limit.min(self.state.step.max(least)) };
+        let share = |tip: &Tip| if tip.is_growing() { step * tip.share(lead, step).min(SHARE_MOST) } else { 0.0 };
+        let mut lengths: Vec<f64> = self.state.tips.iter().map(share).collect();
+        let length_after = |lengths: &[f64]| {
+            let growth: Vec<f64> = self.state.tips.iter().zip(lengths).map(|(tip, length)| tip.growth + length).collect();
+            self.case.specimen.crack_length_after(&growth)
+        };
+        let (now, then) = (length_after(&vec![0.0; lengths.len()]), length_after(&lengths));
+        if then > until {
+            let share = ((until - now) / (then - now)).clamp(0.0, 1.0);
+            lengths.iter_mut().for_each(|length| *length *= share);
+        }
+        lengths
+    }
+
+    /// Growth of a tip at the most in its surroundings, m, in an increment that does not take it to the end of its way.
+    fn limit(&self, index: usize) -> f64 {
+        let (tip, scales, steering) = (&self.state.tips[index], &self.scales.step, &self.scales.steering);
+        let mut most = f64::INFINITY;
+        if scales.share.is_finite() {
+            let (gap, faces) = self.gap(index);
+            let share_of_gap = if faces.is_some() { scales.share_to_joint } else { scales.share };
+            most = (scales.share * (tip.length + tip.growth)).min(scales.share * self.room(index)).min(share_of_gap * gap);
+        }
+        let [reach, near] = scales.near;
+        if ahead::is_near_rim(&self.case.specimen, &self.state.lines, tip.end, reach) {
+            most = most.min(near);
+        } else if tip.steering.is_turning(tip.growth, steering) {
+            most = most.min(scales.turning);
+        }
+        if tip.begins_kink() {
+            most = most.min(scales.first_of_kink * tip.spacing);
+        }
+        most.min((scales.turn / tip.steering.curvature(steering).abs()).max(scales.turn_unless))
+    }
+
+    /// Step of the lead in the first increment after a start, a joint or a kink, m.
+    pub(super) fn first_step(&self) -> f64 {
+        let Some(fastest) = self.fastest().map(|lead| self.state.tips[lead].rate) else { return 0.0 };
+        let of_tip = |(index, tip): (usize, &Tip)| {
+            let most = self.limit(index) * fastest / tip.rate;
+            if tip.begins_kink() { most } else { self.scales.step.first_share * most }
+        };
+        let growing = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.is_growing());
+        growing.map(of_tip).fold(self.scales.step.first, f64::min)
+    }
+
+    /// Step of the lead after one of length `grown`, m, in which the parabola added the share `curvature_share` to the cycles.
+    pub(super) fn next_step(&self, grown: f64, curvature_share: f64) -> f64 {
+        let scales = &self.scales.step;
+        let is_kinked = |tip: &Tip| {
+            let corner = tip.steering.last_corner().filter(|_| tip.is_growing());
+            corner.is_some_and(|corner| tip.growth - corner < scales.kink_spacings * tip.spacing)
+        };
+        let [least, most] = scales.change;
+        let most = if self.state.tips.iter().any(is_kinked) { scales.change_after_kink } else { most };
+        let by_error = (scales.error / curvature_share.abs().max(f64::MIN_POSITIVE)).sqrt();
+        (grown * by_error.min(most).max(least)).clamp(scales.bounds[0], scales.bounds[1])
+    }
+}
+
+/// Cycles of a step of the fastest tip: its rates at the start of the step before, where known, with that step's length, at the
+/// start and at the end of this one, m/cycle, whose length is `grown`, m. Gives the share that the parabola adds, too.
+pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f64) -> (f64, f64) {
+    let curvature_share = past.map_or(0.0, |[before, way]| curvature_share([before, rate, rate_then], [way, grown]));
+    let counted = if curvature_share.abs() < CURVATURE_SHARE_MOST { curvature_share } else { 0.0 };
+    (grown * mean_inverse(rate, rate_then) * (1.0 + counted), curvature_share)
+}
+
+/// Mean of 1/r between two rates with ln r linear between them, cycles/m.
+fn mean_inverse(from: f64, to: f64) -> f64 {
+    if to.is_infinite() {
+        return 0.5 / from;
+    }
+    let fall = (from / to).ln();
+    // (1/to - 1/from) / ln(from/to), whose difference loses digits where the rates are nearly equal.
+    if fall.abs() < 1e-4 { (1.0 + 0.5 * fall) / from } else { (fall.exp_m1() / fall) / from }
+}
+
+/// Share by which a parabola of ln r through three rates raises `∫ da/r` over the second of the `ways` between them, m, above that
+/// of the straight line: `c h²/6` with c the second divided difference.
+fn curvature_share([before, from, to]: [f64; 3], [first, second]: [f64; 2]) -> f64 {
+    let slope = |a: f64, b: f64, way: f64| (b / a).ln() / way;
+    let curvature = (slope(from, to, second) - slope(before, from, first)) / (first + second);
+    let share = curvature * second * second / 6.0;
+    if share.is_finite() { share } else { 0.0 }
+}

@@ -1,0 +1,242 @@
+//! What a run carries of its cracks and their tips from increment to increment.
+
+use serde::{Deserialize, Serialize};
+
+use super::kink::Kink;
+use super::steering::{Steering, equivalent_factor};
+use crate::fatigue::crack_tip::TipState;
+use crate::growth::cross_check::EnergyBalance;
+use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
+
+/// |K_II| over the |K_I| that the load presses a tip with, below which it is noise of the reading.
+const STANDING: f64 = 0.01;
+/// Rate over that of the fastest tip below which how a tip's own rate and direction change says nothing.
+const REST: f64 = 0.0025;
+
+/// What an engine reads at a tip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// K_I and K_II at maximum load, Pa√m.
+    pub factors: [f64; 2],
+    /// Stress along the crack T at maximum load, Pa.
+    pub t_stress: f64,
+    /// Unit vector x₁ of the axes in which they were read.
+    pub ahead: Point,
+    /// Spacing of points or nodes at the tip, m.
+    pub spacing: f64,
+    /// How far ahead of the end of its line the crack is that has these factors, m.
+    pub length_offset: f64,
+    /// Whether flanks are in contact up to the tip.
+    pub is_closed: bool,
+    /// What the pressure between flanks adds to K_I, Pa√m.
+    pub of_pressure: f64,
+}
+
+impl Reading {
+    /// Whether the load presses the tip shut, and its flanks do not slide but for the noise of the reading.
+    fn stands(&self) -> bool {
+        let pressed = if self.is_closed { self.of_pressure } else { self.factors[0] };
+        self.factors[0] <= 0.0 && self.factors[1].abs() < STANDING * pressed.abs()
+    }
+}
+
+/// A tip that grows by its own K.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Tip {
+    /// Which crack it ends.
+    pub end: LineEnd,
+    /// What has become of it.
+    pub state: TipState,
+    /// Growth since the start, m.
+    pub growth: f64,
+    /// K_I and K_II at maximum load at the present length, Pa√m.
+    pub factors: [f64; 2],
+    /// Stress along the crack T at maximum load, Pa.
+    pub t_stress: f64,
+    /// da/dN at the present length, m/cycle; of a kink that begins that of none of its length.
+    pub rate: f64,
+    /// Length of crack that belonged to it at the start, m.
+    pub length: f64,
+    /// How far ahead of the end of its line the crack is whose K was read last, m.
+    pub length_offset: f64,
+    /// Spacing of points or nodes at it, m.
+    pub spacing: f64,
+    /// What it has aimed at.
+    pub steering: Steering,
+    /// The kink at its last corner, while K is that of a short kink.
+    pub kink: Option<Kink>,
+    /// Whether its flanks are in contact and do not slide: it does not grow.
+    pub is_closed: bool,
+    /// Whether that was so at any time.
+    pub was_closed: bool,
+    /// Rate before the last increment, and the growth of the fastest tip in that, where ln of the rate is smooth over it.
+    before: Option<[f64; 2]>,
+    /// Rate before the last increment and its own growth in it, where no corner lies between.
+    past: Option<[f64; 2]>,
+}
+
+impl Tip {
+    /// A tip of the initial cracks.
+    pub fn new(specimen: &Specimen, end: LineEnd) -> Self {
+        // All of its crack belongs to it, or half where both ends are tips.
+        let line = &specimen.crack_lines()[end.line];
+        Tip {
+            end,
+            state: TipState::Active,
+            growth: 0.0,
+            factors: [0.0; 2],
+            t_stress: 0.0,
+            rate: 0.0,
+            length: line.length() / specimen.tips_of(line).max(1) as f64,
+            length_offset: 0.0,
+            spacing: 0.0,
+            steering: Steering::default(),
+            kink: None,
+            is_closed: false,
+            was_closed: false,
+            before: None,
+            past: None,
+        }
+    }
+
+    /// Whether it has not ended.
+    pub fn is_active(&self) -> bool {
+        self.state == TipState::Active
+    }
+
+    /// Whether it grows under this load.
+    pub fn is_growing(&self) -> bool {
+        self.is_active() && self.rate > 0.0
+    }
+
+    /// K_eq at maximum load, Pa√m.
+    pub fn equivalent(&self) -> f64 {
+        equivalent_factor(self.factors)
+    }
+
+    /// Whether its next step begins a kink.
+    pub fn begins_kink(&self) -> bool {
+        self.steering.corner() == Some(self.growth)
+    }
+
+    /// K at maximum load that drives it, Pa√m: of a kink that begins that of none of its length.
+    pub fn driving_factor(&self) -> f64 {
+        if self.is_closed {
+            0.0
+        } else if self.begins_kink() {
+            self.kink.map_or(0.0, |kink| kink.opening(0.0))
+        } else {
+            self.equivalent()
+        }
+    }
+
+    /// Length of crack that its field knows of, m: since the last corner, if there is one and growth since it is more than `least`
+    /// spacings.
+    pub fn own_length(&self, least: f64) -> f64 {
+        match self.steering.last_corner() {
+            Some(corner) if self.growth > corner + least * self.spacing => self.growth - corner,
+            _ => self.length + self.growth,
+        }
+    }
+
+    /// Takes in an increment in which it grew by `growth` and the fastest tip by `fastest`, m, and what has become of it.
+    pub(super) fn has_grown(&mut self, growth: f64, fastest: f64, state: TipState) {
+        self.before = (!self.begins_kink()).then_some([self.rate, fastest]);
+        self.past = (growth > 0.0 && self.steering.corner().is_none()).then_some([self.rate, growth]);
+        self.growth += growth;
+        self.state = state;
+        if !self.is_active() {
+            self.rate = 0.0;
+        }
+    }
+
+    /// Rate before the last increment and its own growth in it, m, where ln of the rate is smooth over it.
+    pub(super) fn past(&self) -> Option<[f64; 2]> {
+        self.past
+    }
+
+    /// Rate over that of the tip `lead`, in the middle of a step of that by `step`, m: ln of it is linear in the growth of the lead.
+    pub(super) fn share(&self, lead: &Tip, step: f64) -> f64 {
+        let now = self.rate / lead.rate;
+        let Some(([before, since], [lead_before, _])) = self.before.zip(lead.before) else { return now };
+        let is_known = before > 0.0 && lead_before > 0.0 && since > 0.0 && now > REST;
+        if is_known { now * (now * lead_before / before).powf(0.5 * step / since) } else { now }
+    }
+
+    /// Takes in what was read, as far as it says where the tip turns to.
+    pub(super) fn turn(&mut self, reading: &Reading, scales: &super::scales::SteeringScales) {
+        (self.t_stress, self.length_offset, self.spacing) = (reading.t_stress, reading.length_offset, reading.spacing);
+        self.is_closed = reading.stands();
+        self.was_closed |= self.is_closed;
+        if !self.is_closed {
+            self.steering.read(reading.factors, self.growth, reading.ahead, scales);
+        }
+        if self.begins_kink() || self.steering.corner().is_none() {
+            self.kink = None;
+        }
+    }
+
+    /// Takes the factors at the end of its line, Pa√m. The rate of a tip that has ended or stands is none.
+    pub(super) fn take(&mut self, factors: [f64; 2], rate: impl Fn(f64) -> f64) {
+        self.factors = factors;
+        if !self.is_closed && self.begins_kink() {
+            self.kink = Kink::new(factors, self.t_stress, self.growth);
+        }
+        self.rate = rate(self.driving_factor());
+    }
+
+    /// Forgets how K has changed and where it aimed: the crack that it ends is another one.
+    pub(super) fn forget_history(&mut self) {
+        (self.before, self.past, self.kink) = (None, None, None);
+        self.steering.forget();
+    }
+}
+
+/// Relative difference within which factors are those of mirror twins: far above what solver and tie breaks make of equal ones, far
+/// below what shows in a life.
+const TWINS: f64 = 1e-4;
+
+/// Gives tips whose factors agree but for their signs the same ones.
+pub fn pair_twins(factors: &mut [Option<[f64; 2]>]) {
+    for i in 1..factors.len() {
+        let Some(here) = factors[i] else { continue };
+        let is_twin = |there: &[f64; 2]| {
+            let size = there[0].abs().max(there[1].abs());
+            [0, 1].iter().all(|&mode| (here[mode].abs() - there[mode].abs()).abs() <= TWINS * size)
+        };
+        if let Some(there) = factors[..i].iter().flatten().copied().find(is_twin) {
+            factors[i] = Some([0, 1].map(|mode| there[mode].abs().copysign(here[mode])));
+        }
+    }
+}
+
+/// The cracks of a plate and what drives them, as far as it is the same for all engines.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CracksState {
+    /// Cracks.
+    pub lines: Vec<CrackLine>,
+    /// Their tips, in the order of `Specimen::tips`.
+    pub tips: Vec<Tip>,
+    /// Growth of a tip in the next increment at the most, m.
+    pub step: f64,
+    /// K against the energy that the plate releases.
+    pub balance: EnergyBalance,
+}
+
+impl CracksState {
+    /// Place of a tip, m.
+    pub fn position(&self, tip: &Tip) -> Point {
+        self.lines[tip.end.line].end(tip.end.at_last)
+    }
+
+    /// Tips that have not ended, with their index.
+    pub fn active(&self) -> impl Iterator<Item = (usize, &Tip)> {
+        self.tips.iter().enumerate().filter(|(_, tip)| tip.is_active())
+    }
+
+    /// Whether it may be a later state of the same cracks.
+    pub fn fits(&self, start: &CracksState) -> bool {
+        let ends = |state: &CracksState| state.tips.iter().map(|tip| tip.end).collect::<Vec<_>>();
+        self.lines.len() == start.lines.len() && ends(self) == ends(start)
+    }
+}

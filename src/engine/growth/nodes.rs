@@ -1,0 +1,226 @@
+//! A plate of nodes with cracks ([`crate::element_free`]): nodes are placed anew for every equilibrium, as fine as the room of every tip
+//! asks for, so that a tip is read where it stands, kinks are resolved whatever their length, and nothing is extrapolated.
+
+use serde::{Deserialize, Serialize};
+
+use super::cracks::scales::Scales;
+use super::cracks::tip::{CracksState, Reading};
+use super::cracks::{CrackedPlate, Cracks, CracksRun, Parted, Segment};
+use super::{Fields, SolverStatistics, State};
+use crate::case::Case;
+use crate::element_free::crack::Tip;
+use crate::element_free::factors;
+use crate::element_free::field::Discretisation;
+use crate::element_free::resolution::{ElementFreeSettings, Resolution, room};
+use crate::element_free::solve::{Solution, raster, raster_fields, solve};
+use crate::error::Result;
+use crate::growth::cross_check::largest_difference;
+use crate::levels::PointGrid;
+use crate::solver::SolverUsed;
+use crate::specimen::{CrackLine, Specimen};
+use crate::williams::Elasticity;
+
+/// Factor by which nodes get finer where K asks for it.
+const FINER: f64 = 1.5;
+/// Times that they do at the most.
+const REFINEMENTS_MOST: usize = 2;
+/// Nodes beyond which they do not.
+const NODES_MOST: f64 = 2e4;
+
+/// A plate of nodes.
+pub struct NodePlate {
+    settings: ElementFreeSettings,
+    elasticity: Elasticity,
+    /// The nodes of the last equilibrium, and that.
+    solved: Option<(Discretisation, Solution)>,
+    state: NodeState,
+}
+
+/// What a run carries of its plate of nodes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NodeState {
+    /// How much finer nodes are than usual, as K of the initial tips asks.
+    fineness: f64,
+    /// Work of the loads of the last equilibrium at the nominal load, J.
+    work: f64,
+    solves: usize,
+    /// Nodes at the most.
+    nodes: usize,
+    warnings: Vec<String>,
+}
+
+/// Growth by the field of every tip on nodes.
+pub type ElementFree<'a> = Cracks<'a, NodePlate>;
+
+impl NodePlate {
+    /// How fine the nodes are.
+    fn resolution(&self) -> Resolution {
+        self.settings.resolution.finer(self.state.fineness)
+    }
+
+    /// A tip as nodes see it.
+    fn tip(&self, case: &Case, tip: &super::cracks::tip::Tip) -> Tip {
+        Tip { end: tip.end, length: tip.own_length(self.scales(case).kink_least) }
+    }
+
+    fn factors(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<[f64; 2]>> {
+        self.solve(case, cracks)?;
+        Ok(self.read(case, cracks)?.into_iter().map(|reading| reading.map_or([f64::NAN; 2], |reading| reading.factors)).collect())
+    }
+}
+
+impl CrackedPlate for NodePlate {
+    type Saved = NodeState;
+
+    fn build(case: &Case, _cracks: &CracksState) -> Result<Self> {
+        let state = NodeState { fineness: 1.0, work: 0.0, solves: 0, nodes: 0, warnings: Vec::new() };
+        let settings = case.model.element_free;
+        Ok(NodePlate { settings, elasticity: Elasticity::of(&case.material), solved: None, state })
+    }
+
+    fn scales(&self, case: &Case) -> Scales {
+        Scales::of_nodes(case, self.settings.resolution.far)
+    }
+
+    /// Makes the nodes as fine as K of the initial tips asks for: until it changes by no more than the tolerance when they get finer by
+    /// [`FINER`]. What is then still open is said in a warning.
+    fn open(&mut self, case: &Case, cracks: &CracksState) -> Result<()> {
+        self.state.fineness = 1.0 / FINER;
+        // Where they are too coarse to tell anything, the next ones say so.
+        let mut before = self.factors(case, cracks).unwrap_or_else(|_| vec![[f64::NAN; 2]; cracks.tips.len()]);
+        for refinement in 0..=REFINEMENTS_MOST {
+            self.state.fineness *= FINER;
+            let now = self.factors(case, cracks)?;
+            let (tip, change) = largest_difference(&before, &now);
+            let nodes = self.state.nodes;
+            let is_last = refinement == REFINEMENTS_MOST || self.settings.is_given || nodes as f64 * FINER * FINER > NODES_MOST;
+            if change <= self.settings.tolerance || is_last && change.is_nan() {
+                break;
+            }
+            if is_last {
+                self.state.warnings.push(format!(
+                    "K of tip {tip} changes by {:.1} % when nodes get {FINER} times finer, to {nodes} nodes: it may err by as much; \
+                     model.method = \"peridynamics\" is another look at it",
+                    100.0 * change,
+                ));
+                break;
+            }
+            before = now;
+        }
+        Ok(())
+    }
+
+    fn part(&mut self, _case: &Case, _cracks: &CracksState, _segments: &[Option<Segment>], _has_met: bool) -> Parted {
+        // Nodes are placed by `solve`, which needs the cracks alone.
+        Parted::default()
+    }
+
+    fn solve(&mut self, case: &Case, cracks: &CracksState) -> Result<()> {
+        self.solved = None;
+        let specimen = &case.specimen;
+        let tips: Vec<Tip> = cracks.active().map(|(_, tip)| self.tip(case, tip)).collect();
+        let resolution = self.resolution();
+        let plate = Discretisation::new(specimen, self.elasticity, &cracks.lines, &tips, &resolution)?;
+        let solution = solve(specimen, &plate, resolution.far, case.loading.maximum)?;
+        self.state.solves += 1;
+        self.state.nodes = self.state.nodes.max(plate.nodes.at.len());
+        self.state.work = solution.work;
+        self.solved = Some((plate, solution));
+        Ok(())
+    }
+
+    fn read(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<Option<Reading>>> {
+        let mut readings = vec![None; cracks.tips.len()];
+        let Some((plate, solution)) = &self.solved else { return Ok(readings) };
+        let share = case.loading.share(self.state.work);
+        let pressure = case.specimen.crack_pressure * case.loading.maximum;
+        for (index, (tip, of_tip)) in cracks.active().enumerate() {
+            let axes = &plate.axes[index];
+            let room = room(&case.specimen, &cracks.lines, &self.tip(case, of_tip));
+            let pressure = |at| pressure + solution.pressure_at(at);
+            let read = factors::read(plate, &solution.u, index, room, &pressure)?;
+            let is_closed = solution.is_closed(axes.at);
+            let [k_i, k_ii] = read.factors.map(|factor| share * factor);
+            readings[tip] = Some(Reading {
+                factors: [if is_closed { 0.0 } else { k_i }, k_ii],
+                t_stress: share * read.t_stress,
+                // K_II is that of the axes in which it was read: the crack without corners that nodes do not see.
+                ahead: axes.ahead,
+                spacing: axes.spacing,
+                length_offset: 0.0,
+                is_closed,
+                of_pressure: share * read.of_faces,
+            });
+        }
+        Ok(readings)
+    }
+
+    fn work(&self) -> f64 {
+        self.state.work
+    }
+
+    fn is_in_contact(&self) -> bool {
+        self.solved.as_ref().is_some_and(|(_, solution)| !solution.pressed.is_empty())
+    }
+
+    fn save(&self) -> NodeState {
+        self.state.clone()
+    }
+
+    fn restore(&mut self, _case: &Case, _cracks: &CracksState, saved: NodeState) -> bool {
+        self.state = saved;
+        true
+    }
+
+    fn state(run: CracksRun<NodeState>) -> State {
+        State::Nodes(run)
+    }
+
+    fn of_state(state: State) -> Option<CracksRun<NodeState>> {
+        if let State::Nodes(run) = state { Some(run) } else { None }
+    }
+
+    fn grid(&self, case: &Case) -> PointGrid {
+        raster(&case.specimen, self.resolution().far)
+    }
+
+    fn fields(&mut self, case: &Case, cracks: &CracksState) -> Result<Fields> {
+        if self.solved.is_none() {
+            // Of a resumed run: no solve of its increments.
+            let state = self.state.clone();
+            self.solve(case, cracks)?;
+            self.state = state;
+        }
+        let (share, far) = (case.loading.share(self.state.work), self.resolution().far);
+        let of_plate = |(plate, solution): &(Discretisation, Solution)| {
+            raster_fields(&case.specimen, plate, &solution.u, far, case.material.plane, share)
+        };
+        let (displacement, stress) = self.solved.as_ref().map(of_plate).unwrap_or_default();
+        Ok(Fields { damage: vec![0.0; displacement.len()], remaining_life: Vec::new(), displacement, stress })
+    }
+
+    fn statistics(&self) -> SolverStatistics {
+        let NodeState { solves, nodes, .. } = self.state;
+        SolverStatistics { points_solved: nodes, solves, iterations: 0, solver: Some(SolverUsed::Direct) }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.state.warnings.clone()
+    }
+}
+
+/// The initial cracks of a specimen, and their tips as nodes see them; ends of slots are none.
+pub fn initial_cracks(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
+    let lines = specimen.crack_lines();
+    let ends = (0..specimen.tips.len()).filter_map(|tip| specimen.line_end(tip));
+    let length = |line: &CrackLine| line.length() / specimen.tips_of(line).max(1) as f64;
+    let tips = ends.map(|end| Tip { end, length: length(&lines[end.line]) }).collect();
+    (lines, tips)
+}
+
+/// The nodes of a case with its initial cracks.
+/// Errors: too many cells.
+pub fn initial_plate(case: &Case) -> Result<Discretisation> {
+    let (lines, tips) = initial_cracks(&case.specimen);
+    Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &case.model.element_free.resolution)
+}
