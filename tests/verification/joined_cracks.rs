@@ -4,7 +4,8 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use perilife::case::Case;
-use perilife::growth::tip_field::initial_tips;
+use perilife::growth::cracks::initial_tips;
+use perilife::growth::points::PointPlate;
 use perilife::predict::{Prediction, Silent, predict};
 
 use crate::support::shared::shared;
@@ -32,7 +33,7 @@ fn k_of_joined_cracks() {
         let factors: Vec<[f64; 2]> = match &*DCB_KINKED {
             Some(run) if name == "dcb_kinked" => run.curve[0].tips.iter().map(|tip| tip.factors.unwrap()).collect(),
             _ => {
-                let tips = initial_tips(&case(&path, &["model.spacing_mm=1"])).unwrap().tips;
+                let tips = initial_tips::<PointPlate>(&case(&path, &["model.spacing_mm=1"])).unwrap().tips;
                 tips.iter().map(|tip| tip.factors.unwrap()).collect()
             }
         };
@@ -51,7 +52,7 @@ fn k_of_joined_cracks() {
 fn cracks_that_share_an_end_are_one() {
     let Some(path) = shared("field/mechanics/kinked_start/kinked_45.toml") else { return };
     let one = "specimen.cracks=[{path_mm=[[-10,0],[10,0],[13.535533905932738,3.5355339059327373]]}]";
-    let [two, one] = [&[][..], &[one]].map(|set| initial_tips(&case(&path, set)).unwrap().tips);
+    let [two, one] = [&[][..], &[one]].map(|set| initial_tips::<PointPlate>(&case(&path, set)).unwrap().tips);
     assert_eq!(two, one);
 }
 

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use perilife::case::Case;
-use perilife::growth::tip_field::initial_tips;
+use perilife::growth::cracks::initial_tips;
+use perilife::growth::points::PointPlate;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 
 use crate::support::shared::shared;
@@ -25,7 +26,7 @@ fn plate(cracks: &str, loading: &str, spacing: f64) -> Case {
 
 /// K_I and K_II in MPa√m, T in MPa.
 fn tips(case: &Case) -> Vec<[f64; 3]> {
-    let tips = initial_tips(case).unwrap().tips;
+    let tips = initial_tips::<PointPlate>(case).unwrap().tips;
     tips.iter().map(|tip| [tip.factors.unwrap()[0] / 1e6, tip.factors.unwrap()[1] / 1e6, tip.t_stress.unwrap() / 1e6]).collect()
 }
 

@@ -1,7 +1,8 @@
 //! A plate and its mirror image have the same life, and a plate that is its own has no K_II, wherever its rims lie between points.
 
 use perilife::case::Case;
-use perilife::growth::tip_field::initial_tips;
+use perilife::growth::cracks::initial_tips;
+use perilife::growth::points::PointPlate;
 use perilife::predict::{Silent, predict};
 
 use crate::support::plates::case;
@@ -24,7 +25,7 @@ fn a_level_crack_has_no_sliding_mode() {
     let mut last = None;
     for height in heights() {
         for crack in ["[-20,0],to_mm=[-8,0]", "[20,0],to_mm=[8,0]", "[-9,0],to_mm=[9,0]"] {
-            let tips = initial_tips(&plate(height, &format!("cracks=[{{from_mm={crack}}}]"))).unwrap().tips;
+            let tips = initial_tips::<PointPlate>(&plate(height, &format!("cracks=[{{from_mm={crack}}}]"))).unwrap().tips;
             for tip in tips {
                 let [k_i, k_ii] = tip.factors.unwrap();
                 assert!((k_ii / k_i).abs() < 1e-6, "{height}, {crack}: K_II {:e} of K_I", k_ii / k_i);
@@ -48,7 +49,7 @@ fn an_upright_crack_in_bending_has_no_sliding_mode() {
             b = x + 0.5 * width
         );
         let case = case(&text, &["fatigue.driver=tip_field", "model.spacing_mm=1"]);
-        let tips = initial_tips(&case).unwrap().tips;
+        let tips = initial_tips::<PointPlate>(&case).unwrap().tips;
         let [k_i, k_ii] = tips[0].factors.unwrap();
         assert!((k_ii / k_i).abs() < 1e-6, "width {width}, x {x}: K_II {:e} of K_I", k_ii / k_i);
     }

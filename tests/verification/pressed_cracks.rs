@@ -7,7 +7,8 @@ use std::path::Path;
 use perilife::case::Case;
 use perilife::fatigue::crack_tip::TipState;
 use perilife::growth::record::CurvePoint;
-use perilife::growth::tip_field::initial_tips;
+use perilife::growth::cracks::initial_tips;
+use perilife::growth::points::PointPlate;
 use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::solver::{SolverKind, Symmetry};
@@ -107,7 +108,7 @@ fn sif_reads_what_predict_reads() {
 #[test]
 fn t_along_a_pressed_crack() {
     let Some(case) = pressed("closed_tilted") else { return };
-    for tip in initial_tips(&case).unwrap().tips {
+    for tip in initial_tips::<PointPlate>(&case).unwrap().tips {
         let (factors, t_stress) = (tip.factors.unwrap(), tip.t_stress.unwrap());
         println!("K {factors:?}, T {t_stress:.4e}");
         assert!(factors[0] == 0.0 && (t_stress / 50e6 - 1.0).abs() < 0.01, "{factors:?}, {t_stress}");

@@ -4,16 +4,15 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use std::sync::Arc;
 
 use perilife::body::pre_crack::bonds_across;
 use perilife::body::{Body, Bond};
 use perilife::case::{Case, RESIDUAL};
 use perilife::fatigue::growth_law::Walker;
 use perilife::growth::CrackGrowth;
-use perilife::growth::tip_field::TipField;
-use perilife::growth::tip_field::kink::coefficients;
-use perilife::growth::tip_field::steering::{equivalent_factor, kink_angle};
+use perilife::growth::cracks::kink::coefficients;
+use perilife::growth::cracks::steering::{equivalent_factor, kink_angle};
+use perilife::growth::points::TipField;
 use perilife::predict::{Prediction, Silent, StopReason, increment, predict};
 use perilife::solver::field::Layout;
 use perilife::specimen::{CrackLine, LineEnd, Point};
@@ -182,9 +181,9 @@ fn no_bond_is_left_across_the_crack() {
             "kind = \"plate\"\nwidth_mm = 40\nlength_mm = 60\nthickness_mm = 2\nholes = [{{ x_mm = 6, y_mm = 7, diameter_mm = 8 }}]\ncracks = [{{ from_mm = [-20, {y}], to_mm = [-8, {y}] }}]"
         );
         let case = case(&specimen, PULL, &["model.spacing_mm=1", &format!("model.lattice_angle_deg={lattice}")]);
-        let body = Arc::new(case.model.body(&case.specimen, &case.material).unwrap());
         let law = Walker { paris: case.paris_law().unwrap(), gamma: 1.0, threshold: 0.0 };
-        let mut growth = TipField::start_on(&case, body.clone(), Box::new(law)).unwrap();
+        let mut growth = TipField::start(&case, Box::new(law)).unwrap();
+        let body = growth.body().unwrap();
         growth.open().unwrap();
         let mut turned = 0.0_f64;
         let mut goes_on = true;
@@ -192,7 +191,7 @@ fn no_bond_is_left_across_the_crack() {
             goes_on = increment(&mut growth).is_none();
             let line = &growth.state.lines[0];
             let across: Vec<Bond> = line.pieces().flat_map(|[a, b]| bonds_across(&body, a, b)).collect();
-            assert!(!across.is_empty() && across.iter().all(|&bond| !growth.bonds.is_intact(bond)), "{line:?}");
+            assert!(!across.is_empty() && across.iter().all(|&bond| !growth.plate.bonds.is_intact(bond)), "{line:?}");
             turned = turned.max(line.direction(true)[1].abs());
         }
         assert!(turned > 0.1, "the hole turns the crack: {turned}");
