@@ -2,13 +2,15 @@
 //!
 //! [`crate::predict::predict`] advances one [`CrackGrowth`] until there is a reason to stop: K of every tip, on points
 //! and bonds ([`tip_field`]) or on nodes ([`element_free`]), fatigue
-//! bonds that fail by their own strain ([`bond_strain`]), or K of a handbook without any plate ([`hand_calculation`]).
+//! bonds that fail by their own strain ([`bond_strain`]), first these and then K for cracks from slots ([`hand_over`]), or K of a handbook
+//! without any plate ([`hand_calculation`]).
 
 pub mod bond_strain;
 pub mod cross_check;
 pub mod element_free;
 pub mod end_of_life;
 pub mod hand_calculation;
+pub mod hand_over;
 pub mod plate;
 pub mod record;
 pub mod tip_field;
@@ -189,6 +191,8 @@ pub enum State {
     Bonds(bond_strain::BondStrainState),
     /// Of tips driven by their K.
     Tips(tip_field::TipsState),
+    /// Of tips that fatigue bonds have handed over to their K.
+    HandedOver(hand_over::HandedOver),
     /// Of tips on a plate of nodes.
     Nodes(element_free::FrontsState),
     /// Of a hand calculation: its rows.

@@ -165,8 +165,7 @@ pub struct Effort {
 }
 
 /// Sweeps and their methods that take more than half of the time of all: a quick look at all sweeps goes without them.
-pub const SLOW: [(&str, &str); 3] = [
-    ("horizon_ratio", "bond_strain at the rate of K"),
+pub const SLOW: [(&str, &str); 2] = [
     ("horizon_ratio", "bond_strain by its own strain"),
     ("ageing", "bond_strain, ageing everywhere"),
 ];
