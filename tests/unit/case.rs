@@ -45,7 +45,6 @@ fn record() -> FittedRecord {
         surface_correction: "none".into(),
         ageing: "crack_tip".into(),
         zone_radius_horizons: 0.6,
-        precrack: "steady_profile".into(),
         youngs_modulus_gpa: 73.1,
         poisson_ratio: 0.33,
         plane: "stress".into(),
@@ -70,7 +69,7 @@ fn defaults_are_those_of_the_contract() {
     let law = case.model.bond_law;
     assert_eq!((law.kind, law.kernel, law.rotation), (BondLawKind::TwoParameter, Kernel::Conical, Rotation::Free));
     assert_eq!((case.model.horizon_ratio, case.fatigue.zone_radius_horizons, case.stop.cycles_max), (3.015, 0.5, 1e9));
-    assert_eq!((case.fatigue.precrack.name(), case.fatigue.ageing.name()), ("steady_profile", "crack_tip"));
+    assert_eq!(case.fatigue.ageing.name(), "crack_tip");
     assert_eq!(case.fatigue.step_error_percent, 0.2);
     assert!(
         case.stop.crack_length.is_infinite()

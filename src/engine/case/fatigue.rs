@@ -7,9 +7,7 @@ use super::fatigue_keys::{FatigueKeys, Lot};
 use super::growth_law::Setting;
 use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
-use crate::fatigue::{
-    Ageing, Driver, FatigueSettings, OVERLOAD_STRETCH, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS,
-};
+use crate::fatigue::{Ageing, Driver, FatigueSettings, OVERLOAD_STRETCH, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS};
 use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
 use crate::loading::Loading;
 use crate::material::Material;
@@ -67,7 +65,8 @@ pub(super) fn from_value(
 
 /// Refuses keys of earlier versions, by what stands in their place.
 fn refuse_gone(input: &FatigueKeys) -> Result<()> {
-    const RATE: &str = "a crack whose bonds age grows by dλ/dN = -A ε^p, and from a slot by the K of its tip once it is 1.5 horizons long";
+    const RATE: &str =
+        "a crack whose bonds age grows by dλ/dN = -A ε^p, and from a slot by the K of its tip once it is 1.5 horizons long";
     const START: &str = "bonds have their whole lives at N = 0";
     let gone = [("growth_rate", &input.growth_rate, RATE), ("precrack", &input.precrack, START)];
     let Some((key, value, words)) = gone.into_iter().find_map(|(key, value, words)| Some((key, value.as_ref()?, words))) else {

@@ -74,8 +74,12 @@ pub(super) fn read(
     let law = keys.bond_law()?.map(LawSource::Inline).or(keys.paris_law()?.map(LawSource::Paris));
     // What a driver cannot use as it is has to be translated.
     match &law {
-        Some(LawSource::Inline(law)) if by_bonds != Some(false) && !STEADY_EXPONENTS.contains(&law.p) => Err(unsteady("fatigue.p", law.p)),
-        Some(LawSource::Paris(law)) if by_bonds.is_some() && !STEADY_EXPONENTS.contains(&law.m) => Err(unsteady("fatigue.paris_m", law.m)),
+        Some(LawSource::Inline(law)) if by_bonds != Some(false) && !STEADY_EXPONENTS.contains(&law.p) => {
+            Err(unsteady("fatigue.p", law.p))
+        }
+        Some(LawSource::Paris(law)) if by_bonds.is_some() && !STEADY_EXPONENTS.contains(&law.m) => {
+            Err(unsteady("fatigue.paris_m", law.m))
+        }
         _ => Ok(law),
     }
 }

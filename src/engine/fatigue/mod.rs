@@ -45,7 +45,12 @@ pub const STEADY_EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=8.0;
 pub fn unsteady(key: &str, p: f64) -> Error {
     let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
     let problem = format!("is outside {low} to {high}, where it is known how fast a crack grows whose bonds age with it");
-    input(key, p, problem, "give paris_c_mm_per_cycle and paris_m, or driver = \"bond_strain\" (from slots with ageing = \"everywhere\")")
+    input(
+        key,
+        p,
+        problem,
+        "give paris_c_mm_per_cycle and paris_m, or driver = \"bond_strain\" (from slots with ageing = \"everywhere\")",
+    )
 }
 
 /// Constants of the law and the horizon they belong to.

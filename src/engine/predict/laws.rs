@@ -3,10 +3,10 @@
 use super::CurvePoint;
 use crate::case::{Case, LawSource};
 use crate::error::{Result, input_missing};
+use crate::fatigue::FatigueLaw;
 use crate::fatigue::growth_law::{Bounded, GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::rate_constant::rate_constant;
-use crate::fatigue::FatigueLaw;
 use crate::growth::CrackGrowth;
 use crate::units::MM;
 

@@ -147,7 +147,7 @@ impl GrowthHistory {
     pub(super) fn warnings(&self, case: &Case, body: &Body) -> Vec<String> {
         let mut warnings = Vec::new();
         let flaw = case.specimen.smallest_flaw();
-        if flaw < SHORT_CRACK_HORIZONS * body.horizon() {
+        if !case.hands_over() && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
             warnings.push(format!(
                 "the initial crack is only {:.1} horizons long: its bonds are strained more than those of a long crack at equal K, and it \
                  grows too fast at first (not a short-crack effect; fatigue.driver = \"tip_field\" is free of it)",
@@ -185,7 +185,8 @@ impl GrowthHistory {
         let lengths: Vec<f64> = self.past.rows.iter().map(|row| row.crack_length).collect();
         // A spacing of growth at every tip.
         let growth = vec![spacing; self.past.rows[0].tips.len()];
-        let average = LengthAverage::new(&cycles, &lengths, self.specimen.crack_length_after(&growth) - self.specimen.crack_length);
+        let average =
+            LengthAverage::new(&cycles, &lengths, self.specimen.crack_length_after(&growth) - self.specimen.crack_length);
         let mut rows = self.past.rows.clone();
         let work: Vec<f64> = self.past.rows.iter().map(|row| row.work).collect();
         rows.iter_mut().zip(average.of(&work)).for_each(|(row, work)| row.work = work);
