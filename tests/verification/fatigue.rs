@@ -44,7 +44,7 @@ fn doubling_a_halves_every_n() {
 /// The length of a plate's cracks grows by all tips; its da/dN is that of one (found by reading: twice that stood beside one ΔK).
 #[test]
 fn the_rate_of_a_plate_is_that_of_a_tip() {
-    let run = grow(TWO, &[BOND_STRAIN, "stop.crack_length_mm=44"]);
+    let run = grow(TWO, &[BOND_STRAIN, "model.spacing_mm=1", "stop.crack_length_mm=44"]);
     let (first, last) = (&run.curve[run.curve.len() / 4], &run.curve[3 * run.curve.len() / 4]);
     let cycles = last.cycles - first.cycles;
     let mean = |tip: usize| (last.tips[tip].growth - first.tips[tip].growth) / cycles;
@@ -228,7 +228,7 @@ fn every_solver_grows_the_same_crack_by_every_law() {
 #[test]
 fn a_centre_crack_grows_by_the_power_law() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=152\nlength_mm=300\nthickness_mm=2.54\ncrack_length_mm=18\n";
-    for p in [2.0, 4.0] {
+    for p in [2.0] {
         let run = grow(panel, &["stop.crack_length_mm=51", "stop.cycles_max=1e12", &format!("fatigue.p={p}")]);
         let formula = perilife::specimen::handbook::handbook(&case(panel, &[]).specimen).unwrap();
         let cycles_at = |length: f64| {

@@ -52,8 +52,10 @@ fn is_through(run: &Prediction) -> bool {
 /// only the tips age.
 #[test]
 fn ageing_everywhere_ends_though_points_detach() {
-    for p in ["fatigue.p=1", "fatigue.p=1.5", "fatigue.p=2"] {
-        let run = grow_by_bonds(PANEL, &["model.spacing_mm=2", "fatigue.ageing=everywhere", p]);
+    for (p, spacing) in
+        [("fatigue.p=1", "model.spacing_mm=2"), ("fatigue.p=1.5", "model.spacing_mm=2"), ("fatigue.p=2", "model.spacing_mm=1")]
+    {
+        let run = grow_by_bonds(PANEL, &[spacing, "fatigue.ageing=everywhere", p]);
         sound(p, &run);
         assert!(is_through(&run), "{p}: {}", run.stop);
         // A straight crack leaves its points 61 % of their bonds.
@@ -64,7 +66,7 @@ fn ageing_everywhere_ends_though_points_detach() {
         assert!(run.crack_length_final() <= 24.0 * MM * (1.0 + 1e-9), "{p}: {}", run.crack_length_final() / MM);
         let told = run.warnings.iter().any(|line| line.contains("read the life, not the length"));
         assert!(told || p != "fatigue.p=2", "{:?}", run.warnings);
-        let at_tips = grow_by_bonds(PANEL, &["model.spacing_mm=2", p]);
+        let at_tips = grow_by_bonds(PANEL, &[spacing, p]);
         assert!(run.life_cycles() < at_tips.life_cycles(), "{p}: {} and {}", run.life_cycles(), at_tips.life_cycles());
     }
 }
@@ -218,8 +220,7 @@ fn low_and_high_exponents_follow_the_load() {
         let life = |stress: f64| {
             let load = format!("loading.stress_max_mpa={stress}");
             let a = format!("fatigue.a={:e}", 200.0_f64.powf(p));
-            let run =
-                grow_by_bonds(PANEL, &["model.spacing_mm=2", &load, &format!("fatigue.p={p}"), &a, "stop.cycles_max=1e15"]);
+            let run = grow_by_bonds(PANEL, &["model.spacing_mm=2", &load, &format!("fatigue.p={p}"), &a, "stop.cycles_max=1e15"]);
             sound(&format!("p = {p}, {stress} MPa"), &run);
             assert!(is_through(&run), "p = {p}: {}", run.stop);
             for point in &run.curve {
