@@ -2,7 +2,8 @@
 //!
 //! A plate of points and bonds is in equilibrium under the maximum load. Every crack is a line whose tips grow by their own stress
 //! intensity; [`increment`] is that theory, one equation a call. Two other drivers are advanced by the same record of the run: bonds
-//! that fail by their own strain (`fatigue.driver = "bond_strain"`) and K of a handbook (`model.method = "handbook"`). Command, service
+//! that fail by their own strain (`fatigue.driver = "bond_strain"`), which hand a crack from a slot over to the K of its tip, and K of a
+//! handbook (`model.method = "handbook"`). Command, service
 //! and calibration all come through here. The theory in the order of the rooms stands in `src/README.md`.
 
 pub mod checkpoint;
@@ -20,6 +21,8 @@ pub use record::{Observer, Silent};
 
 pub use crate::levels::PointGrid;
 
+use std::cell::OnceCell;
+
 use crate::case::budget::Budget;
 use crate::case::{Case, Method};
 use crate::error::Result;
@@ -27,6 +30,7 @@ use crate::fatigue::Driver;
 use crate::growth::bond_strain::BondStrain;
 use crate::growth::cracks::{CrackedPlate, Cracks};
 use crate::growth::hand_calculation::HandCalculation;
+use crate::growth::hand_over::HandOver;
 use crate::growth::nodes::ElementFree;
 use crate::growth::points::TipField;
 use crate::parallel::in_pool;
@@ -68,9 +72,14 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
         (Method::ElementFreeGalerkin, _) => {
             record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks)))
         }
+        (Method::Peridynamics, Driver::BondStrain) if case.hands_over() => {
+            let later = OnceCell::new();
+            let law = |horizon| laws::bond_law(case, horizon);
+            record.follow(&mut HandOver::start(case, &later, law, laws::growth_law(case)?)?, |run| run.advance(increment))
+        }
         (Method::Peridynamics, Driver::BondStrain) => {
-            let rates = |horizon| laws::bond_rates(case, horizon);
-            record.follow(&mut BondStrain::start(case, rates)?, |bonds| bonds.next_break())
+            let law = |horizon| laws::bond_law(case, horizon);
+            record.follow(&mut BondStrain::start(case, law)?, |bonds| bonds.next_break())
         }
     }
 }

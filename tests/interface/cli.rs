@@ -78,7 +78,7 @@ fn missing_files_end_with_four_and_leave_nothing() {
 #[test]
 fn list_names_every_key() {
     let (stdout, _) = texts(&perilife(Path::new("."), &["list"]));
-    for word in ["specimen.kind", "middle_tension", "model.bond_law", "two_parameter", "fatigue.precrack"] {
+    for word in ["specimen.kind", "middle_tension", "model.bond_law", "two_parameter", "fatigue.ageing"] {
         assert!(stdout.contains(word), "{word}");
     }
 }

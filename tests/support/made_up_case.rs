@@ -69,7 +69,6 @@ pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
         surface_correction: "volume_and_surface".to_owned(),
         ageing: "crack_tip".to_owned(),
         zone_radius_horizons: 0.5,
-        precrack: "steady_profile".to_owned(),
         youngs_modulus_gpa: 72.0,
         poisson_ratio: 0.3,
         plane: "stress".to_owned(),

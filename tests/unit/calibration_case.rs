@@ -161,14 +161,14 @@ fn broken_calibration_files_say_what_would_be_right() {
         ),
         (
             "rate of bonds by their strain",
-            format!("{GOOD}[fatigue]\ngrowth_rate = \"bond_strain\"\n"),
-            "fatigue.growth_rate = \"bond_strain\": cannot be given to a calibration: A and p are constants of the growth rate over K; \
-             use growth_rate = \"stress_intensity\"",
+            format!("{GOOD}[fatigue]\ndriver = \"bond_strain\"\n"),
+            "fatigue.driver = \"bond_strain\": cannot be given to a calibration: A and p are constants of the growth rate over K; \
+             use driver = \"tip_field\"",
         ),
         (
             "fatigue bonds where no tip is",
             format!("{GOOD}[fatigue]\nageing = \"everywhere\"\n"),
-            "fatigue.ageing = \"everywhere\": cannot be given to a calibration",
+            "fatigue.driver = \"bond_strain\": cannot be given to a calibration",
         ),
         (
             "short panel by hand calculation",

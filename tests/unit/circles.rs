@@ -162,33 +162,33 @@ fn imports_are_taken_apart() {
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
     ("fracture", 6916),
-    ("report", 7441),
+    ("report", 7437),
     ("service", 5627),
-    ("calibration", 6133),
-    ("growth", 5492),
+    ("calibration", 6128),
+    ("growth", 5095),
     ("solver", 5287),
-    ("verify", 4924),
+    ("verify", 4855),
     ("measured", 3722),
     ("element_free", 3712),
     ("commands", 2713),
-    ("case", 2616),
+    ("case", 2604),
     ("body", 2534),
     ("specimen", 2460),
     ("levels", 1728),
-    ("predict", 1554),
-    ("fatigue", 1339),
+    ("predict", 1556),
+    ("fatigue", 1294),
     ("sweep", 1074),
     ("runner", 912),
     ("loading", 834),
     ("input", 728),
     ("stress_intensity", 681),
-    ("check", 558),
+    ("check", 556),
     ("bond_law", 394),
     ("tables", 342),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 71373;
+const LINES_OF_ALL: usize = 70841;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -34,7 +34,7 @@ const OWN: [(&str, f64, StopReason); 4] = [
     ("two_cracks_plate", 39_031.3, StopReason::NetSectionYield),
 ];
 const OWN_LONG: [(&str, f64, StopReason); 4] = [
-    ("notched_plate", 54_525.6, StopReason::Severed),
+    ("notched_plate", 49_982.7, StopReason::NetSectionYield),
     ("slant_crack_nodes", 86_753.6, StopReason::Severed),
     ("ti_slant_30", 17_122.7, StopReason::CrackLengthReached),
     ("ti_slant_43", 23_001.9, StopReason::CrackLengthReached),
@@ -130,13 +130,13 @@ fn slant_examples_start_as_in_an_infinite_plate() {
     }
 }
 
-/// The notched plate on points of twice the spacing: from the middle of the slot's end straight across until it is in two.
+/// The notched plate on points of twice the spacing: from the middle of the slot's end straight across, by bonds and by K.
 #[test]
-fn a_coarse_notched_plate_is_severed_straight_ahead() {
+fn a_coarse_notched_plate_grows_straight_ahead() {
     let (_, run) = example("notched_plate", &["model.spacing_mm=1.5"]);
-    assert_eq!(run.stop, StopReason::Severed);
+    assert_eq!(run.stop, StopReason::NetSectionYield);
     assert!(run.curve.iter().flat_map(|row| &row.tips).all(|tip| tip.position[1].abs() < 0.1 * MM));
-    assert!(run.crack_length_final() > 40.0 * MM, "{} mm", run.crack_length_final() / MM);
+    assert!(run.crack_length_final() > 35.0 * MM, "{} mm", run.crack_length_final() / MM);
 }
 
 /// Li, Lü, Huang and Yang 2024, section 4.4: the crack turns across the load at once.
@@ -161,7 +161,7 @@ fn the_slant_crack_turns_across_the_load() {
 #[test]
 #[ignore = "long: ten seconds"]
 fn the_slant_crack_lives_as_long_as_in_trials() {
-    let as_tried = ["fatigue.precrack=none", "fatigue.growth_rate=bond_strain"];
+    let as_tried = ["fatigue.driver=bond_strain"];
     let file = folder().join(format!("{SLANT}.toml"));
     let case = Case::from_file(&file, &as_tried.map(str::to_owned)).unwrap();
     let clean_cut = predict(&case, &Silent).unwrap();

@@ -44,7 +44,7 @@ fn doubling_a_halves_every_n() {
 /// The length of a plate's cracks grows by all tips; its da/dN is that of one (found by reading: twice that stood beside one ΔK).
 #[test]
 fn the_rate_of_a_plate_is_that_of_a_tip() {
-    let run = grow(TWO, &[BOND_STRAIN, "stop.crack_length_mm=44"]);
+    let run = grow(TWO, &[BOND_STRAIN, "model.spacing_mm=1", "stop.crack_length_mm=44"]);
     let (first, last) = (&run.curve[run.curve.len() / 4], &run.curve[3 * run.curve.len() / 4]);
     let cycles = last.cycles - first.cycles;
     let mean = |tip: usize| (last.tips[tip].growth - first.tips[tip].growth) / cycles;
@@ -160,8 +160,7 @@ fn two_cracks_and_ageing_everywhere_end_without_trouble() {
 fn assert_same_growth(name: &str, specimen: &str, set: &[&str]) {
     let grown_by = |solver: &SolverKind| {
         let chosen = format!("model.solver={solver}");
-        // Where K sets the rate, two breaks that change places by round-off change the length at which it is read.
-        let set = [set, &[&*chosen, BOND_STRAIN, "fatigue.growth_rate=bond_strain"]].concat();
+        let set = [set, &[&*chosen, BOND_STRAIN]].concat();
         let run = grow(specimen, &set);
         let last = run.curve.last().unwrap();
         (*solver, run.life_cycles(), last.broken_bonds, last.crack_length, run.stop)
@@ -181,7 +180,7 @@ fn assert_same_growth(name: &str, specimen: &str, set: &[&str]) {
 /// under the default driver: `tip_field_solvers.rs`.
 #[test]
 fn every_solver_grows_the_same_crack() {
-    let set = ["stop.crack_length_mm=22", "model.spacing_mm=3", "fatigue.precrack=none"];
+    let set = ["stop.crack_length_mm=22", "model.spacing_mm=3"];
     assert_same_growth("slant", SLANT, &set);
 }
 
@@ -193,7 +192,8 @@ fn every_solver_grows_the_same_crack_on_every_plate() {
     for (name, specimen, set) in [
         ("slant", SLANT, vec!["stop.crack_length_mm=22"]),
         ("clamped", &clamped, vec!["stop.crack_length_mm=18"]),
-        ("slot", SLOT, vec!["stop.crack_length_mm=24"]),
+        // Until K of the tip takes over.
+        ("slot", SLOT, vec!["stop.crack_length_mm=18"]),
         ("state-based", SLANT, vec!["model.bond_law=state_based", "material.poisson_ratio=0.4", "stop.crack_length_mm=22"]),
     ] {
         assert_same_growth(name, specimen, &set);
@@ -217,35 +217,19 @@ fn every_solver_grows_the_same_crack_by_every_law() {
             ("hole", HOLE, "stop.crack_length_mm=18"),
             ("two cracks", TWO, "stop.crack_length_mm=36"),
         ] {
-            // Coarse, so that the direct solver takes milliseconds; no growth before N = 0, so that all of it counts.
-            let set = [&*law, ratio, stop, "model.spacing_mm=3", "fatigue.precrack=none"];
+            // Coarse, so that the direct solver takes milliseconds.
+            let set = [&*law, ratio, stop, "model.spacing_mm=3"];
             assert_same_growth(&format!("{name}, {kind}"), specimen, &set);
         }
     }
-}
-
-/// A machined notch has to form its crack first; a crack that was grown to a0 and one with the steady profile have theirs.
-#[test]
-fn the_start_decides_only_the_first_cycles() {
-    let panel = "kind=\"middle_tension\"\nwidth_mm=90\nlength_mm=120\nthickness_mm=2\ncrack_length_mm=20\n";
-    let life = |precrack: &str| {
-        let set = [BOND_STRAIN, "stop.crack_length_mm=26", "model.spacing_mm=1", &format!("fatigue.precrack={precrack}")];
-        grow(panel, &set).life_cycles()
-    };
-    let (profile, grown, none) = (life("steady_profile"), life("grown"), life("none"));
-    println!("life from a0 over that with the steady profile: grown {:.4}, none {:.4}", grown / profile, none / profile);
-    assert!((grown / profile - 1.0).abs() < 0.01, "{}", grown / profile);
-    // From a clean cut the strains of bonds set the rate until a tip has grown by three quarters of a horizon, and K from there on.
-    let off = (none / profile - 1.0).abs();
-    assert!(off > 0.01 && off < 0.1, "{}", none / profile);
 }
 
 /// Cyclic growth follows handbook ΔK with the exponent p: rate over ΔK^p per interval of a, 4 spacings each.
 #[test]
 fn a_centre_crack_grows_by_the_power_law() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=152\nlength_mm=300\nthickness_mm=2.54\ncrack_length_mm=18\n";
-    for (driver, p) in [(TIP_FIELD, 2.0), (BOND_STRAIN, 4.0)] {
-        let run = grow(panel, &[driver, "stop.crack_length_mm=51", "stop.cycles_max=1e12", &format!("fatigue.p={p}")]);
+    for p in [2.0] {
+        let run = grow(panel, &["stop.crack_length_mm=51", "stop.cycles_max=1e12", &format!("fatigue.p={p}")]);
         let formula = perilife::specimen::handbook::handbook(&case(panel, &[]).specimen).unwrap();
         let cycles_at = |length: f64| {
             let pair = run.curve.windows(2).find(|pair| pair[1].crack_length >= length).unwrap();
@@ -262,26 +246,7 @@ fn a_centre_crack_grows_by_the_power_law() {
             .collect();
         let mean = constants.iter().sum::<f64>() / 4.0;
         let relative: Vec<f64> = constants.iter().map(|c| c / mean).collect();
-        println!("{driver}, p {p}: rate over the power law {relative:.3?}");
-        // Reached: 2.1 % at p = 4, from three horizons on.
+        println!("p {p}: rate over the power law {relative:.3?}");
         assert!(relative.iter().all(|r| (r - 1.0).abs() < 0.03), "p {p}: {relative:?}");
-    }
-}
-
-/// A crack below the threshold beside one that grows gets to its initial length all the same and stands there, while the other goes on;
-/// it kept the run from N = 0 before, and the life came out unlimited.
-#[test]
-fn a_crack_below_the_threshold_waits() {
-    let specimen = "kind=\"plate\"\nwidth_mm=80\nlength_mm=160\nthickness_mm=2\n\
-                    cracks=[{from_mm=[-40,40],to_mm=[-26,40]},{from_mm=[-40,-40],to_mm=[-36,-40]}]\n";
-    for rate in ["stress_intensity", "bond_strain"] {
-        let rate = format!("fatigue.growth_rate={rate}");
-        let set =
-            [BOND_STRAIN, "model.spacing_mm=1", "fatigue.delta_k_threshold_mpa_sqrt_m=11", "stop.crack_length_mm=26", &*rate];
-        let run = grow(specimen, &set);
-        assert_eq!(run.stop, StopReason::CrackLengthReached, "{rate}");
-        let [long, short] = [0, 1].map(|tip: usize| run.curve.last().unwrap().tips[tip].growth);
-        // Its first bonds broke before N = 0, so that the mean length over a spacing of growth still moves a little.
-        assert!(short < 1e-4 && long > 7e-3 && run.life_cycles() > 0.0, "{rate}: {long} {short}");
     }
 }

@@ -10,10 +10,13 @@ use perilife::fatigue::rate_constant::{OFF_THE_ROWS, rate_constant};
 use perilife::predict::factor_curve::FactorCurve;
 use perilife::predict::{Silent, StopReason, predict};
 use perilife::quadrature::integrate;
+use perilife::units::MM;
 
 /// Size of the reference plate, crack length (half) before and after, in horizons.
 const WIDTH: f64 = 60.0;
 const CRACK: [f64; 2] = [14.0, 16.0];
+/// Growth of the crack before that, from a clean cut, in horizons: its front has the steady shape after one.
+const LEAD: f64 = 1.5;
 /// Exponents at which the crack is computed, and terms of the series that are kept of so many.
 const NODES: usize = 96;
 const TERMS: usize = 10;
@@ -26,13 +29,13 @@ const ROUNDING: f64 = 5e-4;
 /// A middle-tension plate of spacing 1 mm in plane stress, ν = 0.3, whose bonds have A = 1 at its horizon.
 fn reference(kernel: Kernel, p: f64) -> Case {
     let horizon = HORIZON_RATIO;
-    let [width, from, to] = [WIDTH, CRACK[0], CRACK[1]].map(|horizons| horizons * horizon);
+    let [width, from, to] = [WIDTH, CRACK[0] - LEAD, CRACK[1]].map(|horizons| horizons * horizon);
     let text = format!(
         "[specimen]\nkind = \"middle_tension\"\nwidth_mm = {width}\nlength_mm = {width}\nthickness_mm = 1\ncrack_length_mm = {from}\n\
          [material]\nyoungs_modulus_gpa = 100\npoisson_ratio = 0.3\nplane = \"stress\"\n\
          [loading]\nkind = \"constant_amplitude\"\nstress_max_mpa = 100\nstress_ratio = 0\n\
          [model]\nspacing_mm = 1\nhorizon_ratio = {horizon}\nkernel = \"{kernel}\"\n\
-         [fatigue]\ndriver = \"bond_strain\"\ngrowth_rate = \"bond_strain\"\na = 1\np = {p}\nhorizon_mm = {horizon}\n[stop]\ncrack_length_mm = {to}\n"
+         [fatigue]\ndriver = \"bond_strain\"\na = 1\np = {p}\nhorizon_mm = {horizon}\n[stop]\ncrack_length_mm = {to}\n"
     );
     let mut case = Case::from_toml(&text, "reference plate", Path::new(""), &[]).unwrap();
     case.stop.cycles_max = f64::INFINITY;
@@ -50,11 +53,14 @@ fn computed(kernel: Kernel, factors: &FactorCurve, p: f64) -> f64 {
     let grown = predict(&case, &Silent).unwrap();
     assert_eq!(grown.stop, StopReason::CrackLengthReached, "{kernel}, p = {p}");
     let (modulus, horizon) = (case.material.plane_modulus(), factors.figures.horizon);
-    let slowness =
-        integrate(|a| (factors.at(a) / modulus).powf(-p), case.specimen.crack_length, case.stop.crack_length, 1e-6).value;
+    let [from, to] = [CRACK[0] * HORIZON_RATIO * MM, case.stop.crack_length];
+    let slowness = integrate(|a| (factors.at(a) / modulus).powf(-p), from, to, 1e-6).value;
+    let rows = grown.curve.windows(2).find(|rows| rows[1].crack_length >= from).unwrap();
+    let start = rows[1].clone().between(&rows[0], (from - rows[0].crack_length) / (rows[1].crack_length - rows[0].crack_length));
+    let cycles = grown.life_cycles() - start.cycles;
     // A = 1 belongs to the horizon 3.015 mm of the case.
     let a = (horizon / (HORIZON_RATIO * 1e-3)).powf((p - 2.0) / 2.0);
-    (OFF_THE_ROWS.powf(p) * slowness / (a * grown.life_cycles() * horizon.powf(1.0 - 0.5 * p))).ln()
+    (OFF_THE_ROWS.powf(p) * slowness / (a * cycles * horizon.powf(1.0 - 0.5 * p))).ln()
 }
 
 fn compare(kernels: &[Kernel], exponents: &[f64]) {

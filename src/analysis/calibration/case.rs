@@ -10,7 +10,6 @@ use crate::calibration::exponent::{Exponent, FitSlice, delta_k_ratio, exponent};
 use crate::case::record::SourceFile;
 use crate::case::{Case, LawSource};
 use crate::error::{input, input_missing};
-use crate::fatigue::{Ageing, GrowthRate};
 use crate::input::{Document, Folder, LENGTH, sha256, slice};
 use crate::measured::{
     ColumnNames, CycleUnit, Decimal, Import, LeaveOut, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse,
@@ -164,14 +163,11 @@ fn check_walker(case: &Case) -> crate::Result<()> {
 /// A and p stand for C and m of the rate over K; bonds left to their own strains grow a crack at another one, which depends on lattice
 /// and horizon.
 fn check_growth_rate(case: &Case) -> crate::Result<()> {
-    if !case.spends_bond_life() || case.fatigue.growth_rate == GrowthRate::StressIntensity {
+    if !case.spends_bond_life() {
         return Ok(());
     }
     let problem = "cannot be given to a calibration: A and p are constants of the growth rate over K";
-    Err(match case.fatigue.ageing {
-        Ageing::Everywhere => input("fatigue.ageing", "\"everywhere\"", problem, "use ageing = \"crack_tip\""),
-        Ageing::CrackTip => input("fatigue.growth_rate", "\"bond_strain\"", problem, "use growth_rate = \"stress_intensity\""),
-    })
+    Err(input("fatigue.driver", "\"bond_strain\"", problem, "use driver = \"tip_field\", and leave out keys of fatigue bonds"))
 }
 
 /// A threshold shapes no fit, since cracks grew in all of it, and stands in no record.

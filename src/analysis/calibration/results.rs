@@ -113,7 +113,6 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         surface_correction: case.model.bond_law.surface_correction.name().to_owned(),
         ageing: case.fatigue.ageing.name().to_owned(),
         zone_radius_horizons: case.fatigue.zone_radius_horizons,
-        precrack: case.fatigue.precrack.name().to_owned(),
         youngs_modulus_gpa: tidy(case.material.youngs_modulus / GPA),
         poisson_ratio: case.material.poisson_ratio,
         plane: case.material.plane.name().to_owned(),

@@ -141,10 +141,8 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     lines.extend(by_points.then(|| line("driver", model_words::words(&chosen, &["driver"]))));
     if case.spends_bond_life() {
         let radius = fatigue.zone_radius_horizons;
-        let words = format!(
-            "{}, zone radius {radius} horizons, precrack {}, a solve after every break",
-            fatigue.ageing, fatigue.precrack
-        );
+        let then = if case.hands_over() { "; K of the tips once cracks from slots are 1.5 horizons long" } else { "" };
+        let words = format!("{}, zone radius {radius} horizons, a solve after every break{then}", fatigue.ageing);
         lines.push(line("ageing", words));
     }
     lines.push(line("handbook K", formula));

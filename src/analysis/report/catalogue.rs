@@ -13,7 +13,7 @@ use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::growth_law::RangeKind;
-use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
+use crate::fatigue::{Ageing, Driver};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind};
 use crate::fracture::scene::{Calibration, DamageEntry, DamageLaw, Discretisation, PointLaw, SceneSolver, ZeroEnergyControl};
@@ -67,8 +67,6 @@ pub fn lines() -> Vec<(String, String, String)> {
         GrowthLawKind::lines(),
         TableEnds::lines(),
         Ageing::lines(),
-        GrowthRate::lines(),
-        Precrack::lines(),
         Failure::lines(),
         Lot::lines(),
     ];

@@ -9,7 +9,6 @@
 //! of a known miss and stays within the second bound that comes with it. How many rows of a topic miss is pinned, so that neither a
 //! new miss nor the end of an old one goes unseen.
 
-mod bond_strain;
 pub mod cases;
 pub mod chart;
 pub mod collinear;
@@ -17,6 +16,7 @@ pub mod disc;
 pub mod dual_horizon;
 mod factors;
 mod golden;
+mod hand_over;
 mod lives;
 mod measured;
 mod paths;
@@ -93,12 +93,7 @@ pub const TOPICS: &[Topic] = &[
         0,
         scene_strength::rows,
     ),
-    topic(
-        "bond_strain",
-        "fatigue bonds: lives at the rate of K, broken bonds over those that a clean cut severs",
-        0,
-        bond_strain::rows,
-    ),
+    topic("hand_over", "cracks that bonds began at a slot: life left where K of the tip takes over", 0, hand_over::rows),
 ];
 
 /// The topics of these names, all where no name is given.

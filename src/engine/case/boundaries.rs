@@ -6,7 +6,7 @@ use super::{Case, Method};
 use crate::bond_law::BondLawKind;
 use crate::case::LawSource;
 use crate::element_free::basis::BasisKind;
-use crate::fatigue::{Ageing, Driver, GrowthRate};
+use crate::fatigue::{Ageing, Driver};
 use crate::limits;
 use crate::material::Plane;
 use crate::specimen::LoadMeasure;
@@ -33,15 +33,13 @@ pub(super) fn lines(case: &Case) -> Vec<String> {
         }
         (Method::Peridynamics, Driver::BondStrain) => {
             // What bonds by their own strain do over the horizon ratio is told with its size elsewhere.
-            match (case.fatigue.ageing, case.fatigue.growth_rate) {
-                (Ageing::Everywhere, _) => lines.extend(exponent_line(case, "ageing", "bond_strain, ageing everywhere")),
-                (_, GrowthRate::StressIntensity) => {
-                    lines.extend(ratio_line(case, "bond_strain at the rate of K"));
-                    lines.extend(exponent_line(case, "exponent", "bond_strain at the rate of K"));
+            match case.fatigue.ageing {
+                Ageing::Everywhere => lines.extend(exponent_line(case, "ageing", "bond_strain, ageing everywhere")),
+                Ageing::CrackTip if case.hands_over() => {
+                    lines.extend(ratio_line(case, "tip_field"));
+                    lines.extend(exponent_line(case, "exponent", "tip_field"));
                 }
-                (_, GrowthRate::BondStrain) => {
-                    lines.extend(exponent_line(case, "exponent", "bond_strain by its own strain"));
-                }
+                Ageing::CrackTip => lines.extend(exponent_line(case, "exponent", "bond_strain by its own strain")),
             }
         }
     }

@@ -7,9 +7,7 @@ use super::fatigue_keys::{FatigueKeys, Lot};
 use super::growth_law::Setting;
 use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
-use crate::fatigue::{
-    Ageing, Driver, FatigueSettings, GrowthRate, OVERLOAD_STRETCH, Precrack, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS,
-};
+use crate::fatigue::{Ageing, Driver, FatigueSettings, OVERLOAD_STRETCH, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS};
 use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
 use crate::loading::Loading;
 use crate::material::Material;
@@ -37,6 +35,7 @@ pub(super) fn from_value(
     choices: &mut Choices,
 ) -> Result<Fatigue> {
     let input: FatigueKeys = slice(value, "fatigue")?;
+    refuse_gone(&input)?;
     choices.ageing = input.ageing;
     choices.zone_radius_horizons =
         number("a radius in horizons", 0.05, 10.0).read_optional("fatigue.zone_radius_horizons", input.zone_radius_horizons)?;
@@ -51,16 +50,30 @@ pub(super) fn from_value(
         driver,
         ageing: choices.ageing.unwrap_or(Ageing::CrackTip),
         zone_radius_horizons: choices.zone_radius_horizons.unwrap_or(ZONE_RADIUS_HORIZONS),
-        precrack: input.precrack.unwrap_or(Precrack::SteadyProfile),
         step_error_percent: read_step_error(&input, driver)?,
         critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
-        growth_rate: read_growth_rate(&input)?,
     };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
-    let law = law_source::read((&input, value), (method, settings), Setting { material, ratio: loading.ratio, folder })?;
+    // What is driven by bonds to the end needs no rate over K.
+    let by_bonds = method == Method::Peridynamics && driver == Driver::BondStrain;
+    let growth = by_bonds.then(|| settings.hands_over(specimen));
+    let law = law_source::read((&input, value), growth, Setting { material, ratio: loading.ratio, folder })?;
     Ok(Fatigue { settings, law, allow_extrapolation, lot: input.lot.unwrap_or(Lot::Same) })
+}
+
+/// Refuses keys of earlier versions, by what stands in their place.
+fn refuse_gone(input: &FatigueKeys) -> Result<()> {
+    const RATE: &str =
+        "a crack whose bonds age grows by dλ/dN = -A ε^p, and from a slot by the K of its tip once it is 1.5 horizons long";
+    const START: &str = "bonds have their whole lives at N = 0";
+    let gone = [("growth_rate", &input.growth_rate, RATE), ("precrack", &input.precrack, START)];
+    let Some((key, value, words)) = gone.into_iter().find_map(|(key, value, words)| Some((key, value.as_ref()?, words))) else {
+        return Ok(());
+    };
+    let remedy = "leave it out; driver = \"tip_field\" grows sharp cracks by K from N = 0 on";
+    Err(crate::error::input(&format!("fatigue.{key}"), value, format!("is no key any more: {words}"), remedy))
 }
 
 /// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of
@@ -69,9 +82,7 @@ fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Resu
     let of_bonds = [
         ("ageing", input.ageing.is_some()),
         ("zone_radius_horizons", input.zone_radius_horizons.is_some()),
-        ("precrack", input.precrack.is_some()),
         ("critical_stretch", input.critical_stretch.is_some()),
-        ("growth_rate", input.growth_rate.is_some()),
     ];
     let of_bonds = of_bonds.iter().find(|(_, given)| *given);
     if method == Method::ElementFreeGalerkin {
@@ -96,20 +107,6 @@ fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Resu
         (Some(driver), _) => Ok(driver),
         (None, None) if specimen.has_sharp_tips() => Ok(Driver::TipField),
         (None, _) => Ok(Driver::BondStrain),
-    }
-}
-
-/// What sets the rate of fatigue bonds: K of their tip, unless they age where no tip is.
-fn read_growth_rate(slice: &FatigueKeys) -> Result<GrowthRate> {
-    let everywhere = slice.ageing == Some(Ageing::Everywhere);
-    match slice.growth_rate {
-        Some(GrowthRate::StressIntensity) if everywhere => {
-            let problem = "is the rate of a tip, and ageing = \"everywhere\" knows none";
-            Err(input("fatigue.growth_rate", "\"stress_intensity\"", problem, "use ageing = \"crack_tip\", or leave the key out"))
-        }
-        Some(rate) => Ok(rate),
-        None if everywhere => Ok(GrowthRate::BondStrain),
-        None => Ok(GrowthRate::StressIntensity),
     }
 }
 

@@ -5,7 +5,7 @@ use toml::{Table, Value};
 
 use super::Failure;
 use crate::fatigue::growth_law::GrowthLawKind::{self, BondLaw, Forman, Nasgro, Paris, Walker};
-use crate::fatigue::{Ageing, Driver, GrowthRate, Precrack};
+use crate::fatigue::{Ageing, Driver};
 use crate::measured::RateFile;
 
 crate::kinds! {
@@ -52,12 +52,14 @@ pub(super) struct FatigueKeys {
     pub growth_table_ends: Option<TableEnds>,
     pub ageing: Option<Ageing>,
     pub zone_radius_horizons: Option<f64>,
-    pub precrack: Option<Precrack>,
+    /// Of earlier versions, to be refused by name.
+    pub precrack: Option<Value>,
     pub step_error_percent: Option<f64>,
     pub critical_stretch: Option<f64>,
     pub walker_gamma: Option<f64>,
     pub delta_k_threshold_mpa_sqrt_m: Option<f64>,
-    pub growth_rate: Option<GrowthRate>,
+    /// As `precrack`.
+    pub growth_rate: Option<Value>,
     pub allow_extrapolation: Option<bool>,
     pub lot: Option<Lot>,
     #[serde(rename = "failure")]

@@ -7,10 +7,10 @@ use super::{Case, LawSource, Method};
 use crate::case::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::paris::ParisLaw;
-use crate::fatigue::{Driver, FatigueLaw, GrowthRate};
+use crate::fatigue::{Driver, FatigueLaw};
 use crate::input::{LENGTH, MODULUS, number};
 use crate::material::{Material, Plane};
-use crate::specimen::CrackLine;
+use crate::specimen::{CrackLine, Specimen};
 use crate::units::{GPA, MM, MM_PER_CYCLE};
 
 /// Numbers and names of a record make sense.
@@ -178,9 +178,19 @@ impl Case {
         self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::BondStrain
     }
 
-    /// Whether its crack grows at the rate of the K of its tips, on a plate of points.
-    pub fn is_driven_by_factors(&self) -> bool {
-        self.is_driven_by_tips() || self.spends_bond_life() && self.fatigue.growth_rate == GrowthRate::StressIntensity
+    /// Whether its cracks begin at slots by the lives of bonds and go on by the K of their tips.
+    pub fn hands_over(&self) -> bool {
+        self.spends_bond_life() && self.fatigue.hands_over(&self.specimen)
+    }
+
+    /// The same case with the cracks that its bonds have made, driven by the K of their tips.
+    pub fn driven_by_tips(&self, specimen: Specimen) -> Case {
+        let mut case = Case { specimen, ..self.clone() };
+        case.fatigue.driver = Driver::TipField;
+        if self.choices.surface_correction.is_none() && !matches!(self.law, LawSource::Fitted(_)) {
+            case.model.take_most_accurate_rim();
+        }
+        case
     }
 
     /// Whether its crack grows by the K of its tips, on points or nodes.

@@ -8,12 +8,12 @@ use toml::Value;
 
 use super::fatigue_keys::{FatigueKeys, LAWS, law_keys};
 use super::growth_law::Setting;
-use super::{LawSource, Method, law};
+use super::{LawSource, law};
 use crate::case::record::{FittedRecord, LawRecord};
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::paris::ParisLaw;
-use crate::fatigue::{Driver, FatigueLaw, FatigueSettings, GrowthRate, STEADY_EXPONENTS, unsteady};
+use crate::fatigue::{FatigueLaw, STEADY_EXPONENTS, unsteady};
 use crate::input::{Document, Folder, LENGTH, number, slice, value_at};
 use crate::units::MM_PER_CYCLE;
 
@@ -40,16 +40,14 @@ impl GivenLaw {
 /// Errors: two laws, constants of another kind than `growth_law` or than the driver can have.
 pub(super) fn read(
     (keys, fatigue): (&FatigueKeys, &Value),
-    (method, settings): (Method, FatigueSettings),
+    by_bonds: Option<bool>,
     setting: Setting<'_>,
 ) -> Result<Option<LawSource>> {
     const KEY: &str = "fatigue.growth_law";
-    let by_bonds = method == Method::Peridynamics && settings.driver == Driver::BondStrain;
-    let by_strain = by_bonds && settings.growth_rate == GrowthRate::BondStrain;
     let given = only_law(keys.growth_law, fatigue)?;
     let kind = keys.growth_law.or(given.as_ref().and_then(|law| if let [only] = law.kinds { Some(*only) } else { None }));
     if let Some(kind @ (GrowthLawKind::Forman | GrowthLawKind::Nasgro | GrowthLawKind::Table)) = kind {
-        if by_bonds {
+        if by_bonds.is_some() {
             let problem = "is no law of bonds, whose rate is a power of their strain";
             let remedy = "use fatigue.driver = \"tip_field\", or model.method = \"handbook\"";
             return Err(input(KEY, format!("\"{kind}\""), problem, remedy));
@@ -76,8 +74,12 @@ pub(super) fn read(
     let law = keys.bond_law()?.map(LawSource::Inline).or(keys.paris_law()?.map(LawSource::Paris));
     // What a driver cannot use as it is has to be translated.
     match &law {
-        Some(LawSource::Inline(law)) if !by_strain && !STEADY_EXPONENTS.contains(&law.p) => Err(unsteady("fatigue.p", law.p)),
-        Some(LawSource::Paris(law)) if by_bonds && !STEADY_EXPONENTS.contains(&law.m) => Err(unsteady("fatigue.paris_m", law.m)),
+        Some(LawSource::Inline(law)) if by_bonds != Some(false) && !STEADY_EXPONENTS.contains(&law.p) => {
+            Err(unsteady("fatigue.p", law.p))
+        }
+        Some(LawSource::Paris(law)) if by_bonds.is_some() && !STEADY_EXPONENTS.contains(&law.m) => {
+            Err(unsteady("fatigue.paris_m", law.m))
+        }
         _ => Ok(law),
     }
 }

@@ -9,7 +9,6 @@ use super::{Case, Choices, LawSource, Method, boundaries, fatigue, law, law_keys
 use crate::bond_law::SurfaceCorrection;
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
-use crate::fatigue::GrowthRate;
 use crate::fatigue::growth_law::{Bounded, GrowthLawKind, Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{
@@ -138,7 +137,7 @@ impl Case {
             choices,
             law_record,
         };
-        if case.is_driven_by_factors() && case.model.method == Method::Peridynamics && case.choices.surface_correction.is_none() {
+        if case.is_driven_by_tips() && case.model.method == Method::Peridynamics && case.choices.surface_correction.is_none() {
             case.model.take_most_accurate_rim();
         }
         match fatigue.law {
@@ -249,9 +248,6 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
     lines.extend(compression_line(case));
     lines.extend(boundaries::lines(case));
     if case.spends_bond_life() {
-        lines.extend(horizon_line(case));
-    }
-    if case.spends_bond_life() && case.fatigue.growth_rate == GrowthRate::BondStrain {
         lines.extend(coarse_line(case));
     }
     Ok(lines)
@@ -291,21 +287,6 @@ fn inline_line(case: &Case) -> Option<String> {
     let list = other.join(", ");
     (!other.is_empty()).then(|| {
         format!("the inline fatigue law a, p belongs to the default bond law, kernel and zone; here it is used with {list}")
-    })
-}
-
-/// A horizon beyond a third of the crack: before N = 0 the crack can be grown by half of itself only, and its first breaks are those of
-/// a cut. Measured at the rate of K (middle and single edge tension, a 9 to 20 mm, spacing 2, 3 and 4 mm): life over that of a fine
-/// lattice -3 to +7 % at 1.7 to 1 horizons of crack, -16 to +14 % at 0.65 to 0.9.
-fn horizon_line(case: &Case) -> Option<String> {
-    let (horizon, flaw) = (case.model.horizon_ratio * case.model.spacing, case.specimen.smallest_flaw());
-    // The default spacing, a ninth of the crack, gives 1.005 thirds: that is meant to pass.
-    (horizon > 1.01 * flaw / 3.0).then(|| {
-        let (horizon, flaw) = (model::round_mm(horizon), model::round_mm(flaw));
-        format!(
-            "the horizon is {horizon} mm, more than a third of the crack ({flaw} mm): the life until it has doubled is some 7 % wrong, 20 % \
-             where the horizon is longer than the crack; a smaller spacing_mm helps"
-        )
     })
 }
 

@@ -74,8 +74,6 @@ pub struct FittedRecord {
     pub ageing: String,
     /// `fatigue.zone_radius_horizons`.
     pub zone_radius_horizons: f64,
-    /// `fatigue.precrack`.
-    pub precrack: String,
     /// Young's modulus of the calibration.
     pub youngs_modulus_gpa: f64,
     /// Poisson's ratio of the calibration.

@@ -173,14 +173,6 @@ impl BondLife {
         (cycles, spent.collect())
     }
 
-    /// Largest share of a whole life that a bond spends until the next break; none where nothing ages.
-    pub fn share_to_next_break(&self, law: &FatigueLaw, ageing: &[FatigueBond]) -> f64 {
-        let rates = || ageing.iter().map(|b| law.a * b.strain.powf(law.p));
-        let cycles = ageing.iter().zip(rates()).map(|(b, rate)| self.of(b.bond).max(0.0) / rate).fold(f64::INFINITY, f64::min);
-        // Before a first reading of K nothing may age yet.
-        if ageing.is_empty() { f64::INFINITY } else { cycles * rates().fold(0.0, f64::max) }
-    }
-
     /// Takes the block's spending off every fatigue bond.
     pub fn spend(&mut self, law: &FatigueLaw, cycles: f64, ageing: &[FatigueBond]) {
         for bond in ageing {

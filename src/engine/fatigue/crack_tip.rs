@@ -63,8 +63,6 @@ pub struct CrackTip {
     pub direction: Point,
     /// Growth since the start, m; never falls.
     pub growth: f64,
-    /// Length of its crack at the start, m: half the length of one with two tips. Infinite where nobody says.
-    pub crack: f64,
     /// Whether it still grows.
     pub state: TipState,
     /// Where the tip has been last, oldest first, the present place last.
@@ -76,8 +74,6 @@ pub struct CrackTip {
     /// Way of the front's centre along the crack, m.
     way: f64,
     centre: Point,
-    /// Where a tip that keeps to the line of its crack started.
-    fixed_line: Option<Point>,
 }
 
 impl CrackTip {
@@ -94,30 +90,13 @@ impl CrackTip {
             position: seed.position,
             direction: seed.direction,
             growth: 0.0,
-            crack: f64::INFINITY,
             state: TipState::Active,
             wake: vec![seed.position],
             bridges: Vec::new(),
             marks: (0..SEED_MARKS).map(mark).collect(),
             way: 0.0,
             centre: behind(0.5 * front(body)),
-            fixed_line: None,
         }
-    }
-
-    /// Tells the tip the length of its crack at the start, m.
-    pub fn of_crack(self, length: f64) -> Self {
-        CrackTip { crack: length, ..self }
-    }
-
-    /// Lets the tip move along its direction, whatever breaks.
-    pub fn on_fixed_line(self) -> Self {
-        CrackTip { fixed_line: Some(self.position), ..self }
-    }
-
-    /// Lets the tip go where its bonds break.
-    pub fn leave_fixed_line(&mut self) {
-        self.fixed_line = None;
     }
 
     /// Whether bonds around it can age.
@@ -148,17 +127,14 @@ impl CrackTip {
         let length_of_front = front(body);
         self.forget(length_of_front + TRAIL_HORIZONS * horizon);
         let (trail, front) = self.centres(length_of_front);
-        if self.fixed_line.is_none() && distance(trail, front) > 0.05 * horizon {
+        if distance(trail, front) > 0.05 * horizon {
             self.direction = direction(trail, front);
         }
         self.way += self.direction[0] * (front[0] - self.centre[0]) + self.direction[1] * (front[1] - self.centre[1]);
         self.growth = self.growth.max(self.way);
         self.centre = front;
         let ahead = 0.5 * length_of_front;
-        let position = match self.fixed_line {
-            Some(start) => [0, 1].map(|i| start[i] + self.growth * self.direction[i]),
-            None => [0, 1].map(|i| front[i] + ahead * self.direction[i]),
-        };
+        let position = [0, 1].map(|i| front[i] + ahead * self.direction[i]);
         if specimen.contains(position) {
             self.position = position;
         }

@@ -9,6 +9,7 @@ pub mod pieces;
 pub mod rate_constant;
 
 use crate::error::{Error, input};
+use crate::specimen::Specimen;
 
 /// Critical stretch s_t where a case gives none: 5 %, which no plate bears within linear elasticity. It lets the last
 /// ligament of a plate break by overload instead of hanging on bonds that no tip spends.
@@ -25,7 +26,7 @@ crate::kinds! {
     /// What drives a crack of method `peridynamics`.
     pub enum Driver for "fatigue.driver" {
         TipField = "tip_field": "K_I and K_II of every tip, from the field around it, steer and pace it; bonds that its line crosses are cut",
-        BondStrain = "bond_strain": "every bond loses remaining life by its own strain, and the crack goes where bonds break",
+        BondStrain = "bond_strain": "every bond loses remaining life by its own strain, and the crack goes where bonds break; from a slot until K of its tip takes over",
     }
 }
 
@@ -34,23 +35,6 @@ crate::kinds! {
     pub enum Ageing for "fatigue.ageing" {
         CrackTip = "crack_tip": "bonds whose middle lies within zone_radius_horizons x horizon of a tracked crack tip",
         Everywhere = "everywhere": "all bonds",
-    }
-}
-
-crate::kinds! {
-    /// What happened before N = 0.
-    pub enum Precrack for "fatigue.precrack" {
-        Grown = "grown": "the crack is cut two horizons shorter and grows freely to the given length, where N = 0",
-        SteadyProfile = "steady_profile": "bonds around the tip start with the lives that steady growth along the line of the crack leaves them",
-        None = "none": "every bond starts with its whole life, as at a machined notch",
-    }
-}
-
-crate::kinds! {
-    /// What sets how fast a crack grows whose bonds age.
-    pub enum GrowthRate for "fatigue.growth_rate" {
-        StressIntensity = "stress_intensity": "K of the tip, by the interaction integral: its bonds lose life by F ε², with the one F that makes it grow at that rate",
-        BondStrain = "bond_strain": "dλ/dN = -A ε^p by the strains of its bonds as computed, which depend on lattice, horizon and Poisson's ratio",
     }
 }
 
@@ -65,7 +49,7 @@ pub fn unsteady(key: &str, p: f64) -> Error {
         key,
         p,
         problem,
-        "give paris_c_mm_per_cycle and paris_m, or driver = \"bond_strain\" with growth_rate = \"bond_strain\"",
+        "give paris_c_mm_per_cycle and paris_m, or driver = \"bond_strain\" (from slots with ageing = \"everywhere\")",
     )
 }
 
@@ -97,8 +81,6 @@ pub struct FatigueSettings {
     pub ageing: Ageing,
     /// Radius of the `crack_tip` zone in horizons.
     pub zone_radius_horizons: f64,
-    /// What happened before N = 0.
-    pub precrack: Precrack,
     /// Error of the cycles of a block that growth by K of the tips keeps to, percent.
     pub step_error_percent: f64,
     /// Bond stretch s_t above which a bond breaks at once.
@@ -107,6 +89,11 @@ pub struct FatigueSettings {
     pub walker_gamma: f64,
     /// Threshold of ΔK, Pa√m; 0 = none.
     pub threshold: f64,
-    /// What sets how fast a crack grows whose bonds age.
-    pub growth_rate: GrowthRate,
+}
+
+impl FatigueSettings {
+    /// Whether bonds that age hand the cracks of a specimen over to the K of their tips: some begin at a slot, and tips are followed.
+    pub fn hands_over(&self, specimen: &Specimen) -> bool {
+        self.driver == Driver::BondStrain && self.ageing == Ageing::CrackTip && specimen.tips.iter().any(|tip| tip.from_slot)
+    }
 }

@@ -7,7 +7,7 @@
 //!
 //! with a number β that depends on p and on the kernel alone: neither on the plate, its size and its load nor on E'. ln β is stored as a
 //! Chebyshev series in p for every kernel (`data/rate_constants.toml`). It was computed on a long straight crack between the rows of a
-//! plate, grown by two horizons once by the strains of its bonds (`growth_rate = "bond_strain"`, A = 1) and once by the K of its tips; the
+//! plate, grown by two horizons once by the strains of its bonds (`driver = "bond_strain"`, A = 1) and once by the K of its tips; the
 //! ratio of the cycles gives β. `tests/verification/rate_constant.rs` computes it again. So both drivers give one life, and A and p follow
 //! from C and m and the other way round. A belongs to lattices of three spacings a horizon (`model.horizon_ratio` 3.015) and to cracks
 //! that do not run along their rows, and stands for the same rate on all others, on which bonds left to themselves would make another

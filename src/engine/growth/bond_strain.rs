@@ -1,11 +1,10 @@
-//! Cracks that go where bonds break, each bond spending its life by its own strain.
+//! Cracks that go where bonds break, each bond spending its life by its own strain: dλ/dN = -A ε^p.
 //!
 //! Per cycle block: take the cyclic strain of the fatigue bonds, spend their lives until the next one breaks, break it, find the new
-//! equilibrium, follow the tips. Cracks are first grown to their initial lengths (`precrack`); N = 0 is there.
+//! equilibrium, follow the tips. At N = 0 cracks and slots are clean cuts, and all bonds have their whole lives. A crack that began at a
+//! slot goes on by the K of its tips ([`super::hand_over`]).
 
 mod overload;
-mod growth_rate_control;
-mod precrack;
 mod stop;
 mod history;
 
@@ -15,45 +14,34 @@ use serde::{Deserialize, Serialize};
 
 use super::cross_check::CrossCheck;
 use super::end_of_life::{End, first_end};
-use super::record::{CurvePoint, StopReason};
 use super::points::initial_factor;
+use super::record::{CurvePoint, StopReason, TipRecord};
 use super::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State, plate};
 use crate::body::{Body, Bond};
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::fatigue::ageing::{FatigueBond, candidates, fatigue_bonds, strain_share, threshold_strain};
+use crate::fatigue::ageing::{candidates, fatigue_bonds, strain_share, threshold_strain};
 use crate::fatigue::crack_tip::{CrackTip, share_out};
-use crate::fatigue::growth_law::GrowthLaw;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::fatigue::{FatigueLaw, FatigueSettings};
 use crate::solver::{Equilibrium, Focus, SolverUsed};
-use growth_rate_control::{GrowthRateControl, TipRateControl};
 use history::{History, RunState};
 use overload::{overstretched, stretched};
-use precrack::Precrack;
 use stop::{break_through, retire_tips};
 
 /// Growth of the load's work by overload within one block, at constant load, from which the plate counts as severed: it has
 /// lost half of its stiffness without a cycle, and what is left only gets softer.
 const LOST_STIFFNESS: f64 = 2.0;
-/// Share of a bond's whole life within which the next break is one of those before it.
-const AT_ONCE: f64 = 1e-6;
-
-/// What bonds are spent by.
-pub struct BondRates {
-    /// Their law.
-    pub bonds: FatigueLaw,
-    /// The rate of their tip over its K, where that sets how fast they are spent.
-    pub over_k: Option<Box<dyn GrowthLaw>>,
-}
+/// Lead of the broken bonds of a steady front over the sharp cut of the same compliance, in spacings: bonds still bridging
+/// behind the tip hold the crack closed more than broken ones ahead open it. The length of a crack is the one its compliance
+/// shows (`tests/verification/crack_length.rs`: 0.18 to 0.23 for p from 2 to 4).
+const FRONT_OFFSET_SPACINGS: f64 = 0.2;
 
 /// [`CrackGrowth`] by fatigue bonds.
 pub struct BondStrain<'a> {
     case: &'a Case,
     body: Arc<Body>,
     law: FatigueLaw,
-    pace: Option<GrowthRateControl>,
-    start: Precrack,
     end: Option<End>,
     /// Strain of a cycle over that at maximum load, and the range of strain below which nothing ages.
     range: (f64, f64),
@@ -81,7 +69,6 @@ pub struct BondStrainState {
     life: Vec<(Bond, f64)>,
     tips: Vec<CrackTip>,
     near_limit: Vec<Bond>,
-    pace: Option<Vec<TipRateControl>>,
     past: History,
     broken_bonds: usize,
     statistics: SolverStatistics,
@@ -96,29 +83,20 @@ impl BondStrainState {
 
 impl<'a> BondStrain<'a> {
     /// The plate with its cracks as they are cut, before its first equilibrium; the fatigue law is given the body's horizon, m.
-    /// Errors: as [`Body::build`]; a crack too short to be grown, cracks that cut the plate in two, no fatigue law.
-    pub fn start(case: &'a Case, rates: impl FnOnce(f64) -> Result<BondRates>) -> Result<Self> {
-        let start = Precrack::of(case)?;
-        let body = case.model.body(&start.specimen, &case.material)?;
-        let BondRates { bonds: law, over_k } = rates(body.horizon())?;
+    /// Errors: as [`Body::build`]; cracks that cut the plate in two, no fatigue law.
+    pub fn start(case: &'a Case, law: impl FnOnce(f64) -> Result<FatigueLaw>) -> Result<Self> {
+        let body = case.model.body(&case.specimen, &case.material)?;
+        let law = law(body.horizon())?;
         let share = strain_share(&case.loading, &case.fatigue);
-        // A rate over K has its threshold in K.
-        let threshold = match over_k {
-            Some(_) => 0.0,
-            None => share * threshold_strain(&case.fatigue, &case.material, body.horizon()) / case.loading.range_share(),
-        };
-        let pace = over_k.map(|over_k| GrowthRateControl::new(case, &start, &body, over_k));
-        let mut run = RunState::start(case, &body, start.tips(&body));
-        if precrack::cuts_in_two(&body, &run.bonds, case)
-            || remove_fragments(&body, &mut run.bonds, &body.pre_cut) == Connectivity::Severed
-        {
+        let threshold = share * threshold_strain(&case.fatigue, &case.material, body.horizon()) / case.loading.range_share();
+        let tips = case.specimen.tips.iter().map(|seed| CrackTip::at(seed, &body)).collect();
+        let mut run = RunState::start(case, &body, tips);
+        if remove_fragments(&body, &mut run.bonds, &body.pre_cut) == Connectivity::Severed {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
         Ok(BondStrain {
             case,
             law,
-            pace,
-            start,
             end: first_end(case),
             range: (share, threshold),
             equilibrium: solver(case, &body, &run),
@@ -140,35 +118,24 @@ impl<'a> BondStrain<'a> {
         Ok(())
     }
 
-    /// Lets cycles count where every crack has its initial length, and finds which bonds may age next and which others are watched.
+    /// Finds which bonds may age next and which others are watched.
     fn look_around(&mut self) {
-        let (case, run) = (self.case, &mut self.run);
-        let body = &self.body;
-        let counting = self.start.is_over(&run.tips);
-        if counting && run.track.begin() {
-            run.tips.iter_mut().for_each(CrackTip::leave_fixed_line);
-            self.pace.iter_mut().for_each(GrowthRateControl::begin);
-        }
-        self.near = if counting {
-            candidates(body, &run.bonds, &run.tips, &case.fatigue)
-        } else {
-            candidates(body, &run.bonds, &self.start.on_the_way(&run.tips), &case.fatigue)
-        };
+        let run = &mut self.run;
+        self.near = candidates(&self.body, &run.bonds, &run.tips, &self.case.fatigue);
         run.near_limit.retain(|&bond| run.bonds.is_intact(bond));
         self.watched = self.near.iter().chain(&run.near_limit).copied().collect();
     }
 
-    /// The fatigue bonds, by the strains of the displacement at hand.
-    fn ageing(&mut self) -> Vec<FatigueBond> {
-        let (body, run) = (&self.body, &self.run);
-        // Growth to the initial lengths is none of the load's: no threshold holds it up.
-        let (share, threshold) = self.range;
-        let threshold = if run.track.is_counting() { threshold } else { 0.0 };
-        let mut ageing = fatigue_bonds(body, &self.near, &self.displacement, (share, threshold));
-        if let Some(pace) = &mut self.pace {
-            pace.set(body, &run.tips, &self.law, &mut ageing);
-        }
-        ageing
+    /// Every tip with its growth, at the end of the sharp crack of the same compliance. From a clean cut the lead of the broken bonds
+    /// builds up over the first horizon.
+    fn records(&self) -> Vec<TipRecord> {
+        let lead = FRONT_OFFSET_SPACINGS * self.body.lattice.spacing;
+        let record = |tip: &CrackTip| {
+            let lead = lead * (tip.growth / self.body.horizon()).min(1.0);
+            let position = [0, 1].map(|i| tip.position[i] - lead * tip.direction[i]);
+            TipRecord { state: tip.state, position, growth: tip.growth - lead, factors: None, t_stress: None }
+        };
+        self.run.tips.iter().map(record).collect()
     }
 
     /// Breaks bonds, and finds the new equilibrium, until no bond is stretched beyond the critical stretch; all that broke, and
@@ -215,29 +182,14 @@ impl<'a> BondStrain<'a> {
     pub fn next_break(&mut self) -> Result<Option<StopReason>> {
         let body = &self.body.clone();
         let (case, settings) = (self.case, &self.case.fatigue);
-        let counting = self.start.is_over(&self.run.tips);
 
         // By how much strain a cycle bonds age.
         let run = &mut self.run;
-        if counting {
-            retire_tips(&mut run.tips, body, &case.specimen, &self.near, settings.zone_radius_horizons);
-        }
+        retire_tips(&mut run.tips, body, &case.specimen, &self.near, settings.zone_radius_horizons);
         let focus = focus(&run.tips, body, settings);
         run.iterations += self.equilibrium.reach(body, &run.bonds, &self.watched, &focus, &mut self.displacement)?;
         run.had_window |= self.equilibrium.used() == SolverUsed::Window;
-        let mut ageing = self.ageing();
-        // Not while bonds break that would break together but for round-off: mirror twins would be seen at unequal lengths.
-        let is_due = self.pace.as_ref().is_some_and(|pace| pace.is_due(body, &self.run.tips));
-        if is_due && self.run.life.share_to_next_break(&self.law, &ageing) > AT_ONCE {
-            let run = &mut self.run;
-            run.iterations += self.equilibrium.complete(body, &run.bonds, &mut self.displacement)?;
-            let records = self.start.records(&run.tips);
-            if let Some(pace) = &mut self.pace {
-                pace.read(body, &run.bonds, &self.displacement, &run.tips, &records);
-            }
-            ageing = self.ageing();
-        }
-        let run = &mut self.run;
+        let ageing = fatigue_bonds(body, &self.near, &self.displacement, self.range);
         if let Some(reason) = stop::before_block(case, self.end, &run.track, &run.tips, &ageing) {
             return Ok(Some(reason));
         }
@@ -246,15 +198,12 @@ impl<'a> BondStrain<'a> {
         // A tip within a spacing of an edge or hole breaks through at once: the lattice cannot resolve what is left.
         let through = break_through(&mut run.tips, body, &run.bonds, &case.specimen);
         let (cycles, first) = if through.is_empty() { run.life.until_next_break(&self.law, &ageing) } else { (0.0, through) };
-        if run.track.cycles_since_start() + cycles > case.stop.cycles_max {
+        if run.track.cycles() + cycles > case.stop.cycles_max {
             run.track.run_out(case.stop.cycles_max);
             return Ok(Some(StopReason::RunOut));
         }
         run.life.spend(&self.law, cycles, &ageing);
         run.track.spend(cycles);
-        if let Some(pace) = &mut self.pace {
-            pace.spend(body, &run.tips, &self.law, cycles, &ageing);
-        }
         let (spent, reason) = self.break_bonds(first);
 
         // Follow the tips and record.
@@ -264,10 +213,8 @@ impl<'a> BondStrain<'a> {
         let tips = run.tips.iter_mut().zip(&shares);
         tips.for_each(|(tip, broken)| tip.advance(body, &run.bonds, &case.specimen, broken));
         let work = if reason.is_none() { self.equilibrium.work() } else { f64::NAN };
-        let records = self.start.records(&run.tips);
-        if let Some(pace) = &mut self.pace {
-            pace.follow(body, &run.tips, &records);
-        }
+        let records = self.records();
+        let run = &mut self.run;
         run.track.record(records, run.broken_bonds, work);
         let reason = reason.or_else(|| stop::after_block(case, self.end, &run.track));
         if reason.is_none() {
@@ -280,7 +227,8 @@ impl<'a> BondStrain<'a> {
 impl CrackGrowth for BondStrain<'_> {
     fn open(&mut self) -> Result<()> {
         self.settle_first()?;
-        self.run.track.open(self.start.records(&self.run.tips), self.equilibrium.work());
+        let records = self.records();
+        self.run.track.record(records, 0, self.equilibrium.work());
         self.look_around();
         Ok(())
     }
@@ -288,14 +236,9 @@ impl CrackGrowth for BondStrain<'_> {
     fn now(&self) -> GrowthStatus<'_> {
         let track = &self.run.track;
         let row = track.last();
-        GrowthStatus {
-            cycles: track.cycles_since_start(),
-            cycles_of_run: row.cycles,
-            crack_length: row.crack_length,
-            delta_k: f64::NAN,
-            tips: row.tips(),
-            is_counting: track.is_counting(),
-        }
+        let cycles = track.cycles();
+        let (crack_length, tips) = (row.crack_length, row.tips());
+        GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k: f64::NAN, tips, is_counting: true }
     }
 
     fn body(&self) -> Option<Arc<Body>> {
@@ -340,7 +283,6 @@ impl CrackGrowth for BondStrain<'_> {
             life: run.life.begun(),
             tips: run.tips.clone(),
             near_limit: run.near_limit.clone(),
-            pace: self.pace.as_ref().map(GrowthRateControl::state),
             past: run.track.past().clone(),
             broken_bonds: run.broken_bonds,
             statistics: self.statistics(),
@@ -356,15 +298,6 @@ impl CrackGrowth for BondStrain<'_> {
         let tips = run.tips.len();
         if !(known && state.law == constants(&self.law) && state.tips.len() == tips && state.past.fits(tips)) {
             return Ok(false);
-        }
-        match (&mut self.pace, state.pace) {
-            (None, None) => {}
-            (Some(pace), Some(before)) => {
-                if !pace.restore(before, state.past.is_counting()) {
-                    return Ok(false);
-                }
-            }
-            _ => return Ok(false),
         }
         state.broken.iter().for_each(|&bond| run.bonds.cut(&body, bond));
         state.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));
@@ -382,7 +315,7 @@ impl CrackGrowth for BondStrain<'_> {
     fn close(&mut self, stop: StopReason) -> Result<StopReason> {
         let (body, run) = (&self.body, &mut self.run);
         // Of a plate its sections are known afterwards, with its curve.
-        let at_section = stop::at_section(self.case, &run.track.curve(self.case, body, self.end).0);
+        let at_section = stop::at_section(self.case, &run.track.curve(self.case, body, self.end));
         self.end = [self.end, at_section].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length));
         let stop = stop::settled(self.end, &run.track, stop);
         if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
@@ -394,10 +327,10 @@ impl CrackGrowth for BondStrain<'_> {
     }
 
     fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
-        let (curve, zero) = self.run.track.curve(self.case, &self.body, self.end);
+        let curve = self.run.track.curve(self.case, &self.body, self.end);
         let range_share = self.case.loading.range_share();
         self.first = curve.first().map(|row| (row.delta_k / range_share, row.crack_length));
-        (curve, zero)
+        (curve, 0.0)
     }
 
     fn cross_check(&self, _cycles: f64) -> Option<CrossCheck> {

@@ -1,13 +1,15 @@
 //! What drives a crack: from the plate as it stands to the plate an increment later.
 //!
 //! [`crate::predict::predict`] advances one [`CrackGrowth`] until there is a reason to stop: K of every tip ([`cracks`]), on points and bonds
-//! ([`points`]) or on nodes ([`nodes`]), fatigue bonds that fail by their own strain ([`bond_strain`]), or K of a handbook without any plate ([`hand_calculation`]).
+//! ([`points`]) or on nodes ([`nodes`]), fatigue bonds that fail by their own strain ([`bond_strain`]), first these and then K for cracks
+//! from slots ([`hand_over`]), or K of a handbook without any plate ([`hand_calculation`]).
 
 pub mod bond_strain;
 pub mod cracks;
 pub mod cross_check;
 pub mod end_of_life;
 pub mod hand_calculation;
+pub mod hand_over;
 pub mod nodes;
 pub mod plate;
 pub mod points;
@@ -154,6 +156,8 @@ pub enum State {
     Bonds(bond_strain::BondStrainState),
     /// Of tips driven by their K.
     Tips(cracks::CracksRun<points::PointState>),
+    /// Of tips that fatigue bonds have handed over to their K.
+    HandedOver(hand_over::HandedOver),
     /// Of tips on a plate of nodes.
     Nodes(cracks::CracksRun<nodes::NodeState>),
     /// Of a hand calculation: its rows.

@@ -3,12 +3,11 @@
 use super::CurvePoint;
 use crate::case::{Case, LawSource};
 use crate::error::{Result, input_missing};
+use crate::fatigue::FatigueLaw;
 use crate::fatigue::growth_law::{Bounded, GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::rate_constant::rate_constant;
-use crate::fatigue::{FatigueLaw, GrowthRate};
 use crate::growth::CrackGrowth;
-use crate::growth::bond_strain::BondRates;
 use crate::units::MM;
 
 /// The law over K of a case, for driver `tip_field` and method `handbook`.
@@ -19,12 +18,6 @@ pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
         LawSource::Factor(law) => Box::new(Bounded { law: law.clone(), threshold }),
         _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold }),
     })
-}
-
-/// What the bonds of a case are spent by, at the body's actual horizon, m.
-pub fn bond_rates(case: &Case, horizon: f64) -> Result<BondRates> {
-    let over_k = (case.fatigue.growth_rate == GrowthRate::StressIntensity).then(|| growth_law(case)).transpose()?;
-    Ok(BondRates { bonds: bond_law(case, horizon)?, over_k })
 }
 
 /// Refuses growth from a K that lies beyond what the law says, where the law wants that.

@@ -78,8 +78,7 @@ fn colour(family: Family) -> RGBColor {
         Family::TipField | Family::Solver => COLOURS[0],
         Family::ElementFree => COLOURS[1],
         Family::Handbook => INK,
-        Family::BondStrain => RGBColor(138, 109, 0),
-        Family::Published => COLOURS[3],
+        Family::BondStrain => COLOURS[3],
         Family::BondLaw => COLOURS[5],
     }
 }
@@ -194,7 +193,7 @@ fn left_out(root: &Area<'_>, points: &[&Point], frame: Box2) -> Drawn {
 
 /// Names of the points on the front, of the default and of the published law.
 fn names(root: &Area<'_>, drawn: &[(&Point, [f64; 2])], frame: Box2) -> Drawn {
-    let is_named = |point: &Point| point.is_on_front || point.choice.is_default() || point.choice.family == Family::Published;
+    let is_named = |point: &Point| point.is_on_front || point.choice.is_default() || point.choice.family == Family::BondStrain;
     let named: Vec<usize> = (0..drawn.len()).filter(|&i| is_named(drawn[i].0)).collect();
     let places: Vec<[f64; 2]> = drawn.iter().map(|(_, at)| *at).collect();
     let texts: Vec<String> = named.iter().map(|&i| short_name(drawn[i].0)).collect();
@@ -216,8 +215,7 @@ fn short_name(point: &Point) -> String {
         Family::TipField => "tips",
         Family::ElementFree => "nodes",
         Family::Handbook => "handbook",
-        Family::BondStrain => "bond strain",
-        Family::Published => "published law",
+        Family::BondStrain => "published law",
         Family::BondLaw | Family::Solver => "",
     };
     match (family, point.choice.words.as_str()) {

@@ -24,8 +24,7 @@ crate::kinds! {
         TipField = "tip_field": "points and bonds, cracks driven by the K of their tips: the default",
         ElementFree = "element_free_galerkin": "nodes without elements, cracks driven by the K of their tips",
         Handbook = "handbook": "quadrature of the growth law with K of a handbook",
-        BondStrain = "bond_strain": "bonds that fail by their strain, at the rate of K",
-        Published = "bond_strain_as_computed": "bonds that fail by their strain as computed: the published law",
+        BondStrain = "bond_strain": "bonds that fail by their own strain: the published law",
         BondLaw = "bond_law": "another bond law, kernel or correction than the default",
         Solver = "solver": "another solver than the default",
     }
@@ -46,7 +45,7 @@ const LAWS: [(&str, &str); 4] = [
 
 /// The choices of a scene, the default first.
 pub fn choices(panel: &Panel) -> Result<Vec<Choice>> {
-    use Family::{BondLaw, BondStrain, ElementFree, Handbook, Published, Solver, TipField};
+    use Family::{BondLaw, BondStrain, ElementFree, Handbook, Solver, TipField};
     let mut all = Vec::new();
     let mut add = |family: Family, words: String, keys: &str, is_quick: bool| {
         all.push(Choice { family, words, set: overrides(keys), is_quick });
@@ -92,11 +91,9 @@ pub fn choices(panel: &Panel) -> Result<Vec<Choice>> {
         add(Handbook, String::new(), "model.method=handbook", true);
     }
     if is_among(&STUDIED) {
-        for (family, rate) in [(BondStrain, "stress_intensity"), (Published, "bond_strain")] {
-            let keys = format!("fatigue.driver=bond_strain fatigue.growth_rate={rate}");
-            add(family, String::new(), &keys, false);
-            add(family, "spacing × 2".to_owned(), &format!("{keys} {}", spaced(2.0)), false);
-        }
+        const KEYS: &str = "fatigue.driver=bond_strain";
+        add(BondStrain, String::new(), KEYS, false);
+        add(BondStrain, "spacing × 2".to_owned(), &format!("{KEYS} {}", spaced(2.0)), false);
     }
     Ok(all)
 }

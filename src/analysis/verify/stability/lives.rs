@@ -12,9 +12,8 @@ fn life(range: [f64; 2], keys: &str, run: &Run) -> Result<f64> {
     Scene::Life(MIDDLE_TENSION.from_to(range)).error(&format!("model.spacing_mm=1 {keys}"), run)
 }
 
-/// Keys of bonds at the rate of K, and by their own strain.
-const AT_RATE_OF_K: &str = "fatigue.driver=bond_strain";
-const BY_STRAIN: &str = "fatigue.driver=bond_strain fatigue.growth_rate=bond_strain";
+/// Keys of bonds by their own strain.
+const BY_STRAIN: &str = "fatigue.driver=bond_strain";
 
 /// Poisson's ratio in plane stress.
 pub const PLANE_STRESS: Sweep = Sweep {
@@ -60,13 +59,12 @@ fn on_nodes(nu: f64, run: &Run, plane: &str) -> Result<f64> {
 /// Horizon over spacing.
 pub const HORIZON_RATIO: Sweep = Sweep {
     name: "horizon_ratio",
-    about: "life of a middle tension panel, m 3, a/W 0.25 to 0.32, against quadrature; bonds at the rate of K and by their own strain",
+    about: "life of a middle tension panel, m 3, a/W 0.25 to 0.32, against quadrature; bonds by their own strain",
     parameter: "horizon over spacing",
     values: &[1.2, 1.5, 1.75, 2.015, 2.5, 3.015, 3.5, 4.015, 5.015, 6.015, 7.015, 8.015],
     usual: 3.015,
     methods: &[
         ("tip_field", |ratio, run| by_horizon(ratio, run, "")),
-        ("bond_strain at the rate of K", |ratio, run| by_horizon(ratio, run, AT_RATE_OF_K)),
         ("bond_strain by its own strain", |ratio, run| by_horizon(ratio, run, BY_STRAIN)),
     ],
     ..SWEEP
@@ -120,7 +118,6 @@ pub const EXPONENT: Sweep = Sweep {
     usual: 3.0,
     methods: &[
         ("tip_field", |m, run| by_exponent(m, run, "")),
-        ("bond_strain at the rate of K", |m, run| by_exponent(m, run, AT_RATE_OF_K)),
         ("bond_strain by its own strain", |m, run| by_exponent(m, run, BY_STRAIN)),
     ],
     ..SWEEP

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::{Body, Bond};
 use crate::case::Case;
-use crate::fatigue::GrowthRate;
 use crate::fatigue::ageing::BondLife;
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::growth_rate::{LengthAverage, Rate, Sample, rates, release_rate_at_end};
@@ -28,7 +27,7 @@ const SHORT_CRACK_HORIZONS: f64 = 5.0;
 /// The plate after a block.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Cycles since the start of the run (before N = 0 for a crack that is first grown).
+    /// Cycles.
     pub cycles: f64,
     /// Crack length, m.
     pub crack_length: f64,
@@ -53,10 +52,8 @@ impl Row {
 pub struct GrowthHistory {
     past: History,
     formula: Option<HandbookFormula>,
-    /// Crack length at which N = 0.
-    origin: f64,
     specimen: Specimen,
-    /// Cycles since N = 0 at which the run was ended without a break.
+    /// Cycles at which the run was ended without a break.
     run_out: Option<f64>,
     /// Largest crack length the plate has room for, m.
     limit: f64,
@@ -67,23 +64,14 @@ pub struct GrowthHistory {
 pub(super) struct History {
     rows: Vec<Row>,
     cycles: f64,
-    /// Row at which cycles began to count.
-    zero: Option<usize>,
     /// Longest crack so far as the ways of its tips have it, m.
     longest: f64,
 }
 
 impl History {
-    /// Whether cycles count.
-    pub(super) fn is_counting(&self) -> bool {
-        self.zero.is_some()
-    }
-
     /// Whether it can be that of a run with `tips` tips.
     pub(super) fn fits(&self, tips: usize) -> bool {
-        !self.rows.is_empty()
-            && self.rows.iter().all(|row| row.tips.len() == tips)
-            && self.zero.is_none_or(|zero| zero < self.rows.len())
+        !self.rows.is_empty() && self.rows.iter().all(|row| row.tips.len() == tips)
     }
 }
 
@@ -93,7 +81,6 @@ impl GrowthHistory {
         GrowthHistory {
             past: History::default(),
             formula: handbook(&case.specimen),
-            origin: case.specimen.crack_length,
             specimen: case.specimen.clone(),
             run_out: None,
             limit: match case.specimen.convention {
@@ -113,28 +100,10 @@ impl GrowthHistory {
         &self.past
     }
 
-    /// Takes down the plate as it was cut, if nothing is yet.
-    pub(super) fn open(&mut self, tips: Vec<TipRecord>, work: f64) {
-        if self.past.rows.is_empty() {
-            self.record(tips, 0, work);
-        }
-    }
-
     /// The latest row.
     pub(super) fn last(&self) -> &Row {
-        // `open` records the first row, before the first block.
+        // The first row is recorded before the first block.
         &self.past.rows[self.past.rows.len() - 1]
-    }
-
-    /// Lets cycles count from the latest row on; whether they did not before.
-    pub(super) fn begin(&mut self) -> bool {
-        let now = self.past.rows.len() - 1;
-        self.past.zero.replace(self.past.zero.unwrap_or(now)).is_none()
-    }
-
-    /// Whether cycles count.
-    pub(super) fn is_counting(&self) -> bool {
-        self.past.is_counting()
     }
 
     /// Lets cycles pass.
@@ -142,12 +111,12 @@ impl GrowthHistory {
         self.past.cycles += cycles;
     }
 
-    /// Cycles since N = 0; none before.
-    pub(super) fn cycles_since_start(&self) -> f64 {
-        self.past.zero.map_or(0.0, |zero| self.past.cycles - self.past.rows[zero].cycles)
+    /// Cycles so far.
+    pub(super) fn cycles(&self) -> f64 {
+        self.past.cycles
     }
 
-    /// Records the plate after a block. Growth of the tips counts from their initial lengths.
+    /// Records the plate at its start or after a block.
     ///
     /// Where bonds break all around, the way of a tip goes to and fro: a crack is never recorded longer than its plate.
     pub(super) fn record(&mut self, tips: Vec<TipRecord>, broken_bonds: usize, work: f64) {
@@ -163,11 +132,10 @@ impl GrowthHistory {
         self.run_out = Some(cycles_max);
     }
 
-    /// Largest K of the cycle at the last row, Pa√m, from the energy release rate there; `None` before N = 0, where a handbook
-    /// knows it, or before the crack has grown by two horizons since it was cut.
+    /// Largest K of the cycle at the last row, Pa√m, from the energy release rate there; `None` where a handbook
+    /// knows it, or before the crack has grown by two horizons.
     pub(super) fn k_max_released(&self, case: &Case, horizon: f64) -> Option<f64> {
-        let grown = self.last().growth() - self.past.rows[0].growth();
-        if !self.is_counting() || self.formula.is_some() || grown < RELEASE_KNOWN_HORIZONS * horizon {
+        if self.formula.is_some() || self.last().growth() < RELEASE_KNOWN_HORIZONS * horizon {
             return None;
         }
         let span = RELEASE_SPAN_HORIZONS * horizon;
@@ -179,10 +147,10 @@ impl GrowthHistory {
     pub(super) fn warnings(&self, case: &Case, body: &Body) -> Vec<String> {
         let mut warnings = Vec::new();
         let flaw = case.specimen.smallest_flaw();
-        if case.fatigue.growth_rate == GrowthRate::BondStrain && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
+        if !case.hands_over() && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
             warnings.push(format!(
                 "the initial crack is only {:.1} horizons long: its bonds are strained more than those of a long crack at equal K, and it \
-                 grows too fast at first (not a short-crack effect; fatigue.growth_rate = \"stress_intensity\" is free of it)",
+                 grows too fast at first (not a short-crack effect; fatigue.driver = \"tip_field\" is free of it)",
                 flaw / body.horizon()
             ));
         }
@@ -217,7 +185,8 @@ impl GrowthHistory {
         let lengths: Vec<f64> = self.past.rows.iter().map(|row| row.crack_length).collect();
         // A spacing of growth at every tip.
         let growth = vec![spacing; self.past.rows[0].tips.len()];
-        let average = LengthAverage::new(&cycles, &lengths, self.specimen.crack_length_after(&growth) - self.origin);
+        let average =
+            LengthAverage::new(&cycles, &lengths, self.specimen.crack_length_after(&growth) - self.specimen.crack_length);
         let mut rows = self.past.rows.clone();
         let work: Vec<f64> = self.past.rows.iter().map(|row| row.work).collect();
         rows.iter_mut().zip(average.of(&work)).for_each(|(row, work)| row.work = work);
@@ -229,28 +198,12 @@ impl GrowthHistory {
         rows
     }
 
-    /// Cycles of the run at which the averaged crack has its initial length, between two rows.
-    fn zero_of(&self, rows: &[Row]) -> f64 {
-        match rows.iter().position(|row| row.crack_length >= self.origin * (1.0 - 1e-12)) {
-            Some(at) if at > 0 => {
-                let (before, after) = (&rows[at - 1], &rows[at]);
-                let share = (self.origin - before.crack_length) / (after.crack_length - before.crack_length);
-                before.cycles + share.clamp(0.0, 1.0) * (after.cycles - before.cycles)
-            }
-            _ => rows[0].cycles,
-        }
-    }
-
-    /// The curve from N = 0 to a known end, and the cycles of the run at N = 0.
-    pub(super) fn curve(&self, case: &Case, body: &Body, end: Option<End>) -> (Vec<CurvePoint>, f64) {
+    /// The curve to a known end.
+    pub(super) fn curve(&self, case: &Case, body: &Body, end: Option<End>) -> Vec<CurvePoint> {
         let mut rows = self.averaged(body.lattice.spacing);
-        let zero = self.zero_of(&rows);
         if let Some(cycles_max) = self.run_out {
-            // The averaged crack may have its initial length long before that of the bonds: what lies beyond the end is none of the run.
-            let within = rows.partition_point(|row| row.cycles <= zero + cycles_max).max(1);
-            rows.truncate(within);
             // The crack stands where it is until then.
-            rows.extend(rows.last().cloned().map(|row| Row { cycles: zero + cycles_max, ..row }));
+            rows.extend(rows.last().cloned().map(|row| Row { cycles: cycles_max, ..row }));
         }
         if let Some(end) = end {
             end_at(&mut rows, end.crack_length);
@@ -267,9 +220,6 @@ impl GrowthHistory {
         let of_tips: Vec<Vec<Rate>> = (0..tips).map(of_tip).collect();
         let fastest = |i: usize| of_tips.iter().map(|tip| tip[i].growth_rate).reduce(f64::max).unwrap_or(rate[i].growth_rate);
         let share = case.loading.range_share();
-        // The first row is the plate at N = 0 exactly, with what the row there or just after it says.
-        let start = rows.partition_point(|row| row.cycles < zero).min(rows.len() - 1);
-        let broken_before = self.past.rows[start].broken_bonds;
         let cracks = case.specimen.crack_lines();
         let limit_load = |tips: &[TipRecord], crack_length: f64| {
             let mut cracks = cracks.clone();
@@ -280,31 +230,21 @@ impl GrowthHistory {
             }
             case.limit_load(crack_length, &cracks)
         };
-        let point = |i: usize, cycles: f64, crack_length: f64| CurvePoint {
-            limit_load: limit_load(&rows[i].tips, crack_length),
-            cycles,
-            crack_length,
+        let point = |(i, row): (usize, &Row)| CurvePoint {
+            limit_load: limit_load(&row.tips, row.crack_length),
+            cycles: row.cycles,
+            crack_length: row.crack_length,
             delta_k: match &self.formula {
-                Some(_) if crack_length >= self.limit * (1.0 - 1e-9) => f64::NAN,
-                Some(formula) => formula.delta_k(crack_length, case.loading.maximum, share),
+                Some(_) if row.crack_length >= self.limit * (1.0 - 1e-9) => f64::NAN,
+                Some(formula) => formula.delta_k(row.crack_length, case.loading.maximum, share),
                 None => share * (rate[i].energy_release_rate * case.material.plane_modulus()).sqrt(),
             },
             growth_rate: fastest(i),
-            work: rows[i].work,
-            broken_bonds: rows[i].broken_bonds - broken_before,
-            tips: rows[i].tips.clone(),
+            work: row.work,
+            broken_bonds: row.broken_bonds,
+            tips: row.tips.clone(),
         };
-        let mut first = point(start, 0.0, self.origin);
-        first.tips.iter_mut().for_each(|tip| tip.growth = 0.0);
-        let mut curve = vec![first];
-        for (i, row) in rows.iter().enumerate().skip(start) {
-            if row.cycles > zero || row.crack_length > self.origin * (1.0 + 1e-12) {
-                let mut next = point(i, (row.cycles - zero).max(0.0), row.crack_length.max(self.origin));
-                next.tips.iter_mut().for_each(|tip| tip.growth = tip.growth.max(0.0));
-                curve.push(next);
-            }
-        }
-        (curve, zero)
+        rows.iter().enumerate().map(point).collect()
     }
 }
 

@@ -20,7 +20,7 @@ pub(super) fn before_block(
     tips: &[CrackTip],
     ageing: &[FatigueBond],
 ) -> Option<StopReason> {
-    if let Some(end) = end.filter(|end| end.crack_length <= case.specimen.crack_length && track.is_counting()) {
+    if let Some(end) = end.filter(|end| end.crack_length <= case.specimen.crack_length) {
         return Some(end.reason);
     }
     // Where no handbook knows K, the energy released so far does.

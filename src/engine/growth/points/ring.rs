@@ -39,11 +39,6 @@ pub(in crate::growth) struct TipRings<'a> {
 }
 
 impl TipRings<'_> {
-    /// Whether there is room for a ring around the end of a crack whose line is longer by `offset`, m.
-    pub(in crate::growth) fn have_room(&self, end: LineEnd, offset: f64) -> bool {
-        self.radius(&self.stretched(end, offset), end) >= RING_HORIZONS_MIN * self.body.horizon()
-    }
-
     /// The field around the same place; where there is no room for a ring, off the least one.
     pub(in crate::growth) fn read(&self, end: LineEnd, offset: f64) -> RingFactors {
         let TipRings { body, bonds, displacement, load, geometry, pressures, .. } = *self;
