@@ -4,13 +4,13 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::fatigue_keys::{FatigueKeys, Lot};
-use super::growth_law::Setting;
 use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
+use crate::fatigue::growth_law::description::{Given, law_keys};
 use crate::fatigue::{
     Ageing, Driver, FatigueSettings, GrowthRate, OVERLOAD_STRETCH, Precrack, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS,
 };
-use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
+use crate::input::{Folder, INTENSITY, LENGTH, number, slice, slice_beside};
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
@@ -36,7 +36,7 @@ pub(super) fn from_value(
     folder: &Folder,
     choices: &mut Choices,
 ) -> Result<Fatigue> {
-    let input: FatigueKeys = slice(value, "fatigue")?;
+    let input: FatigueKeys = slice_beside(value, "fatigue", &law_keys().collect::<Vec<_>>())?;
     choices.ageing = input.ageing;
     choices.zone_radius_horizons =
         number("a radius in horizons", 0.05, 10.0).read_optional("fatigue.zone_radius_horizons", input.zone_radius_horizons)?;
@@ -59,7 +59,7 @@ pub(super) fn from_value(
         growth_rate: read_growth_rate(&input)?,
     };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
-    let law = law_source::read((&input, value), (method, settings), Setting { material, ratio: loading.ratio, folder })?;
+    let law = law_source::read((method, settings), &Given { section: value, material, ratio: loading.ratio, folder })?;
     Ok(Fatigue { settings, law, allow_extrapolation, lot: input.lot.unwrap_or(Lot::Same) })
 }
 
