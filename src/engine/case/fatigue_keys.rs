@@ -37,8 +37,6 @@ pub(super) struct FatigueKeys {
 /// Takes the law out of the sections of a case that is to get another one, or needs none.
 pub fn remove_law(sections: &mut Table) {
     if let Some(fatigue) = sections.get_mut("fatigue").and_then(Value::as_table_mut) {
-        for key in law_keys() {
-            fatigue.remove(key);
-        }
+        law_keys().for_each(|key| drop(fatigue.remove(key)));
     }
 }

@@ -22,7 +22,6 @@ const RATIO_SLACK: f64 = 0.02;
 /// as in a calibration.
 /// Errors: two laws, constants of another kind than `growth_law` or than the driver can have.
 pub(super) fn read((method, settings): (Method, FatigueSettings), given: &Given<'_>) -> Result<Option<LawSource>> {
-    const KEY: &str = "fatigue.growth_law";
     let by_bonds = method == Method::Peridynamics && settings.driver == Driver::BondStrain;
     let by_strain = by_bonds && settings.growth_rate == GrowthRate::BondStrain;
     let asked = given.get("growth_law")?;
@@ -33,7 +32,7 @@ pub(super) fn read((method, settings): (Method, FatigueSettings), given: &Given<
         if by_bonds {
             let problem = "is no law of bonds, whose rate is a power of their strain";
             let remedy = "use fatigue.driver = \"tip_field\", or model.method = \"handbook\"";
-            return Err(input(KEY, format!("\"{kind}\""), problem, remedy));
+            return Err(input(GrowthLawKind::KEY, format!("\"{kind}\""), problem, remedy));
         }
         kind.0.refuse_foreign(&is_given)?;
         if let Some((what, least)) = kind.0.compression.filter(|(_, least)| given.ratio < *least) {
@@ -159,13 +158,12 @@ pub(super) fn ratio_line(record: &LawRecord, ratio: f64) -> Result<Option<String
     if (low - RATIO_SLACK..=high + RATIO_SLACK).contains(&ratio) {
         return Ok(None);
     }
-    let (others, alone): (Vec<_>, Vec<_>) =
-        GrowthLawKind::all().filter(|kind| kind.0.fit.is_some()).map(|kind| kind.0).partition(|law| law.takes_ratio);
-    if alone.iter().any(|law| law.name == record.kind()) {
+    let fits = || GrowthLawKind::all().map(|kind| kind.0).filter(|law| law.fit.is_some());
+    if fits().any(|law| law.name == record.kind() && !law.takes_ratio) {
         let problem = format!(
             "is outside the stress ratios that the law was fitted to, {low} to {high}, and ΔK alone says nothing about R"
         );
-        let others: Vec<&str> = others.iter().map(|law| law.name).collect();
+        let others: Vec<&str> = fits().filter(|law| law.takes_ratio).map(|law| law.name).collect();
         let (last, before) = others.split_last().map_or(("", String::new()), |(last, before)| (last, before.join(", ")));
         let remedy = format!("fit {before} or {last} to rates at several ratios");
         return Err(input("loading.stress_ratio", ratio, problem, remedy));

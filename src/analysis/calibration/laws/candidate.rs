@@ -18,12 +18,8 @@ const SAME_RATIO: f64 = 0.02;
 
 /// Refuses constants that no law has, or beyond what it can have.
 pub(super) fn check_given(given: &Given) -> Result<()> {
-    let mut known: Vec<&Constant> = Vec::new();
-    for constant in kinds().flat_map(|kind| &kind.0.constants[1..]) {
-        if known.iter().all(|other| other.key != constant.key) {
-            known.push(constant);
-        }
-    }
+    // Walker has those of Paris, too.
+    let known: Vec<&Constant> = kinds().skip(1).flat_map(|kind| &kind.0.constants[1..]).collect();
     for (key, &value) in given {
         let path = format!("fit.given.{key}");
         let Some(constant) = known.iter().find(|constant| constant.key == key) else {

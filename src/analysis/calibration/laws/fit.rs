@@ -93,8 +93,7 @@ pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFi
     let scatter = best.sum() / (rows.len() - free.len() - 1) as f64;
     let trouble = at_end(&free, &best).or_else(|| trade(&free, &best.slopes));
     let errors = errors(&candidate, &best, scatter);
-    let c_key = kind.0.constants[0].key;
-    let c = Constant { key: c_key, value: best.level.exp(), error: Some(best.level.exp() * errors[0]) };
+    let c = Constant { key: kind.0.constants[0].key, value: best.level.exp(), error: Some(best.level.exp() * errors[0]) };
     let is_free = |key: &str| free.iter().any(|parameter| parameter.key == key);
     let others = candidate.constants(&best.at).into_iter().enumerate();
     let others = others.map(|(i, (key, value))| Constant { key, value, error: is_free(key).then(|| errors[i + 1]) });
@@ -160,14 +159,13 @@ fn trade(free: &[Parameter], slopes: &DMatrix<f64>) -> Option<String> {
 /// Standard errors of ln C and of all constants behind it, from `s² (JᵀJ)⁻¹`, taken from the variables to the constants by their slopes.
 fn errors(candidate: &Candidate<'_>, best: &Minimum, scatter: f64) -> Vec<f64> {
     let projected = without_level(&best.slopes);
-    let count = candidate.constants(&best.at).len();
+    let own = candidate.constants(&best.at);
     let Some(covariance) = (projected.transpose() * &projected).try_inverse().map(|inverse| inverse * scatter) else {
-        return vec![f64::INFINITY; count + 1];
+        return vec![f64::INFINITY; own.len() + 1];
     };
     let means = best.slopes.row_mean();
     let level = scatter / best.residuals.len() as f64 + (&means * &covariance * means.transpose())[(0, 0)];
-    let own = candidate.constants(&best.at);
-    let mut turn = DMatrix::zeros(count, best.at.len());
+    let mut turn = DMatrix::zeros(own.len(), best.at.len());
     for variable in 0..best.at.len() {
         let size = 1e-6 * best.at[variable].abs().max(1.0);
         let mut moved = best.at.clone();

@@ -38,7 +38,7 @@ pub struct Description {
 }
 
 /// What a law is where its file says nothing: a formula of its constants.
-pub const UNSAID: Description = Description {
+pub(super) const UNSAID: Description = Description {
     name: "",
     meaning: "",
     constants: &[],
@@ -90,17 +90,14 @@ pub struct Constant {
     pub error_max: f64,
 }
 
-/// Told by rates near fracture.
-pub const NEAR_FRACTURE: &str = "rates near fracture tell it";
-/// Told by rates near the threshold.
-pub const NEAR_THRESHOLD: &str = "rates near the threshold tell it";
-/// Told by rates at several stress ratios.
-pub const RATIOS: &str = "rates at several stress ratios tell it";
+pub(super) const NEAR_FRACTURE: &str = "rates near fracture tell it";
+pub(super) const NEAR_THRESHOLD: &str = "rates near the threshold tell it";
+pub(super) const RATIOS: &str = "rates at several stress ratios tell it";
 const POWER: &str = "rates over a wide range of ΔK tell it";
 
 const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
 /// Level C of a law.
-pub const RATE: Quantity = Quantity { si: MM_PER_CYCLE, ..number("a rate in mm/cycle", 1e-60, 1e3) };
+pub(super) const RATE: Quantity = Quantity { si: MM_PER_CYCLE, ..number("a rate in mm/cycle", 1e-60, 1e3) };
 /// K_c, which several laws have.
 pub const K_C: Constant = Constant {
     role: Role::Toughness,
