@@ -173,7 +173,7 @@ const LINES: &[(&str, usize)] = &[
     ("commands", 2713),
     ("case", 2324),
     ("body", 2534),
-    ("specimen", 2452),
+    ("specimen", 2455),
     ("levels", 1728),
     ("predict", 1552),
     ("fatigue", 1726),
@@ -188,7 +188,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 71370;
+const LINES_OF_ALL: usize = 71373;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -15,7 +15,7 @@ pub const SHORTEST_LENGTH_OVER_WIDTH: f64 = 1.5;
 const RANGE_SLACK: f64 = 1e-9;
 
 /// A formula for K of one specimen.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct HandbookFormula {
     /// Name of the formula.
     pub name: &'static str,
@@ -25,13 +25,17 @@ pub struct HandbookFormula {
     pub range: &'static str,
     /// Smallest and largest relative crack length it holds for: 2a/W with two tips or two cracks, a/W with one.
     pub bounds: [f64; 2],
-    /// F (tension) or f (C(T)) over the relative length.
     of: fn(f64) -> f64,
-    /// Relative over absolute length, times the width.
     cracks: f64,
     is_of_pins: bool,
     width: f64,
     thickness: f64,
+}
+
+impl PartialEq for HandbookFormula {
+    fn eq(&self, other: &Self) -> bool {
+        (self.name, self.width, self.thickness) == (other.name, other.width, other.thickness)
+    }
 }
 
 /// The formula used for this specimen, `None` where no handbook covers it: `plate`, clamped ends, and plates shorter than
@@ -68,10 +72,9 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
         }
         _ => return None,
     };
-    let (cracks, _) = specimen.kind.sharing()?;
     let is_of_pins = specimen.kind == SpecimenKind::CompactTension;
     let (width, thickness) = (specimen.width, specimen.thickness);
-    Some(HandbookFormula { name, source, range, bounds, of, cracks, is_of_pins, width, thickness })
+    Some(HandbookFormula { name, source, range, bounds, of, cracks: specimen.kind.sharing()?.0, is_of_pins, width, thickness })
 }
 
 fn half(x: f64) -> f64 {
