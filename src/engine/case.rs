@@ -4,7 +4,6 @@ mod boundaries;
 pub mod budget;
 mod fatigue;
 mod fatigue_keys;
-mod growth_law;
 mod law;
 mod law_source;
 pub mod model;
@@ -13,7 +12,7 @@ mod read;
 pub mod record;
 
 pub use boundaries::first_load;
-pub use fatigue_keys::{Lot, TableEnds, law_keys, remove_law};
+pub use fatigue_keys::{Lot, remove_law};
 pub use law_source::fitted_record;
 pub use read::{RECORD, SECTIONS};
 

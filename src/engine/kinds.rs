@@ -1,9 +1,9 @@
 //! One macro for the choices an input file can make: a list of kinds gives the enum, its input names,
 //! the messages for unknown names and the lines of `perilife list`.
 //!
-//! To add a kind (a specimen, bond law, solver, growth law): a new file `src/<room>/<name>.rs`, its `mod`, and its name and meaning in the
-//! list of kinds, after which the compiler names every `match` that must know it. Input check, `perilife list` and the tests that
-//! loop over kinds find it by themselves.
+//! To add a kind (a bond law, a solver): a new file `src/<room>/<name>.rs`, its `mod`, and its name and meaning in the
+//! list of kinds, after which the compiler names every `match` that must know it. Kinds that describe themselves (growth laws) are a file,
+//! its `mod` and its place in their list. Input check, `perilife list` and the tests that loop over kinds find it by themselves.
 
 /// One line of `perilife list`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,7 +16,8 @@ pub struct KindLine {
     pub meaning: &'static str,
 }
 
-/// Declares an enum of named choices for one input key.
+/// Declares an enum of named choices for one input key, or, of things that have a `name` and a `meaning` and stand in a list, which of them
+/// it is.
 ///
 /// Gives `ALL`, `KEY`, `name()`, `meaning()`, `lines()`, `Display`, `FromStr` and serde by name; an unknown name
 /// is answered with the known ones.
@@ -36,9 +37,37 @@ macro_rules! kinds {
             pub fn name(self) -> &'static str { match self { $($Kind::$Variant => $name),+ } }
             /// Meaning in one line.
             pub fn meaning(self) -> &'static str { match self { $($Kind::$Variant => $meaning),+ } }
+            /// Every kind.
+            pub fn all() -> impl Iterator<Item = Self> { Self::ALL.iter().copied() }
+        }
+
+        $crate::kinds!(names of $Kind);
+    };
+    ($(#[$outer:meta])* pub struct $Kind:ident of $Description:ident in $all:ident for $key:literal) => {
+        $(#[$outer])*
+        #[derive(Clone, Copy)]
+        pub struct $Kind(pub &'static $Description);
+
+        impl $Kind {
+            /// Key of the input file that takes these names.
+            pub const KEY: &'static str = $key;
+            /// Every kind.
+            pub fn all() -> impl Iterator<Item = Self> { $all.iter().map(|own| $Kind(own)) }
+            /// Name in input and result files.
+            pub fn name(self) -> &'static str { self.0.name }
+            /// Meaning in one line.
+            pub fn meaning(self) -> &'static str { self.0.meaning }
+        }
+
+        impl PartialEq for $Kind { fn eq(&self, other: &Self) -> bool { self.name() == other.name() } }
+        impl std::fmt::Debug for $Kind { fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result { f.write_str(self.name()) } }
+        $crate::kinds!(names of $Kind);
+    };
+    (names of $Kind:ident) => {
+        impl $Kind {
             /// Lines of `perilife list`.
             pub fn lines() -> Vec<$crate::kinds::KindLine> {
-                Self::ALL.iter().map(|k| $crate::kinds::KindLine { key: Self::KEY, name: k.name(), meaning: k.meaning() }).collect()
+                Self::all().map(|k| $crate::kinds::KindLine { key: Self::KEY, name: k.name(), meaning: k.meaning() }).collect()
             }
         }
 
@@ -49,8 +78,8 @@ macro_rules! kinds {
         impl std::str::FromStr for $Kind {
             type Err = $crate::error::Error;
             fn from_str(text: &str) -> std::result::Result<Self, Self::Err> {
-                Self::ALL.iter().copied().find(|k| k.name() == text).ok_or_else(|| {
-                    let known: Vec<&str> = Self::ALL.iter().map(|k| k.name()).collect();
+                Self::all().find(|k| k.name() == text).ok_or_else(|| {
+                    let known: Vec<&str> = Self::all().map(|k| k.name()).collect();
                     $crate::error::input(Self::KEY, format!("\"{text}\""), "is not a known kind", format!("use one of {}", known.join(", ")))
                 })
             }

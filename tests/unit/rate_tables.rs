@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use perilife::fatigue::growth_law::RangeKind;
 use perilife::measured::rates::read;
-use perilife::measured::{RateFileKeys, RateTable};
+use perilife::measured::{RangeKind, RateFileKeys, RateTable};
 use perilife::units::{MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Names of ΔK and da/dN with MPa√m and mm/cycle in a unit of theirs. Inch 25.4 mm, ksi 6.894757293168 MPa, kgf 9.80665 N.

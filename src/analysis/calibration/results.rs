@@ -306,8 +306,8 @@ pub fn law_summary(case: &LawCase, fits: &LawFits) -> Vec<String> {
     let ratios = case.ratios().iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
     let mut lines = vec![format!("fit of laws to {} rates at R = {ratios}, ΔK {low:.3} to {high:.3} MPa√m", case.rows.len())];
     let asked = match (case.law, fits.margin) {
-        (FitLaw::Best, Some((_, margin))) if margin < 0.0 => "best by its residuals, less than half of the others",
-        (FitLaw::Best, _) => "best by AICc",
+        (FitLaw(None), Some((_, margin))) if margin < 0.0 => "best by its residuals, less than half of the others",
+        (FitLaw(None), _) => "best by AICc",
         _ => "as asked for",
     };
     let margin = match fits.margin {

@@ -164,7 +164,7 @@ fn law_words(case: &Case) -> String {
     match &case.law {
         LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
         LawSource::Paris(law) => format!("da/dN = {:e} ΔK^{} (mm/cycle, MPa√m)", law.c / MM_PER_CYCLE, law.m),
-        LawSource::Factor(law) => format!("{}: {}", law.kind(), law.in_words()),
+        LawSource::Factor(law) => format!("{}: {}", law.kind, law.in_words()),
         LawSource::Fitted(record) => {
             let law = fit_use::law_line(case).unwrap_or_default();
             let of_bonds = match case.model.method {

@@ -138,7 +138,7 @@ fn law(case: &Case, prediction: &Prediction) -> Value {
             "rate_at_pivot_relative_error": record.rate_at_pivot_relative_error,
             "delta_k_min_mpa_sqrt_m": record.delta_k_min_mpa_sqrt_m, "delta_k_max_mpa_sqrt_m": record.delta_k_max_mpa_sqrt_m,
         }),
-        LawSource::Factor(law) => json!({ "source": source, "constants_si": law }),
+        LawSource::Factor(law) => json!({ "source": source, "constants_si": law.constants_si() }),
         LawSource::Missing(path) => json!({ "source": "missing", "file": path }),
     };
     if let (Some(record), Some(object)) = (&case.law_record, law.as_object_mut()) {

@@ -4,8 +4,9 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::distribution::Distribution;
-use crate::case::{SECTIONS, law_keys};
+use crate::case::SECTIONS;
 use crate::error::{Result, input, input_missing};
+use crate::fatigue::growth_law::description::law_keys;
 use crate::input::slice;
 
 crate::kinds! {

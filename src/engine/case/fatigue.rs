@@ -4,11 +4,11 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::fatigue_keys::{FatigueKeys, Lot};
-use super::growth_law::Setting;
 use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
+use crate::fatigue::growth_law::description::{Given, law_keys};
 use crate::fatigue::{Ageing, Driver, FatigueSettings, OVERLOAD_STRETCH, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS};
-use crate::input::{Folder, INTENSITY, LENGTH, number, slice};
+use crate::input::{Folder, INTENSITY, LENGTH, number, slice, slice_beside};
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
@@ -34,7 +34,7 @@ pub(super) fn from_value(
     folder: &Folder,
     choices: &mut Choices,
 ) -> Result<Fatigue> {
-    let input: FatigueKeys = slice(value, "fatigue")?;
+    let input: FatigueKeys = slice_beside(value, "fatigue", &law_keys().collect::<Vec<_>>())?;
     refuse_gone(&input)?;
     choices.ageing = input.ageing;
     choices.zone_radius_horizons =
@@ -58,8 +58,9 @@ pub(super) fn from_value(
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
     // What is driven by bonds to the end needs no rate over K.
     let by_bonds = method == Method::Peridynamics && driver == Driver::BondStrain;
-    let growth = by_bonds.then(|| settings.hands_over(specimen));
-    let law = law_source::read((&input, value), growth, Setting { material, ratio: loading.ratio, folder })?;
+    let hands_over = by_bonds.then(|| settings.hands_over(specimen));
+    let given = Given { section: value, material, ratio: loading.ratio, folder };
+    let law = law_source::read(settings.threshold, hands_over, &given)?;
     Ok(Fatigue { settings, law, allow_extrapolation, lot: input.lot.unwrap_or(Lot::Same) })
 }
 

@@ -6,100 +6,82 @@
 
 use toml::Value;
 
-use super::fatigue_keys::{FatigueKeys, LAWS, law_keys};
-use super::growth_law::Setting;
 use super::{LawSource, law};
 use crate::case::record::{FittedRecord, LawRecord};
 use crate::error::{Error, Result, input, input_missing};
-use crate::fatigue::growth_law::GrowthLawKind;
+use crate::fatigue::growth_law::description::{Constant, GAMMA, Given, K_C, keys_of_laws, law_keys};
+use crate::fatigue::growth_law::{FactorLaw, GrowthLawKind, bonds, paris};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, STEADY_EXPONENTS, unsteady};
-use crate::input::{Document, Folder, LENGTH, number, slice, value_at};
-use crate::units::MM_PER_CYCLE;
+use crate::input::{Document, Folder, slice, value_at};
 
 /// Slack of a stress ratio against those of the rates.
 const RATIO_SLACK: f64 = 0.02;
 
-/// A law that the file gives.
-pub(super) struct GivenLaw {
-    /// Kinds of `fatigue.growth_law` that it can be.
-    kinds: &'static [GrowthLawKind],
-    /// The first of its keys that is given, with its value.
-    key: &'static str,
-    value: String,
-}
-
-impl GivenLaw {
-    fn refused(&self, problem: String, remedy: &str) -> Error {
-        input(&format!("fatigue.{}", self.key), &self.value, problem, remedy)
-    }
-}
-
 /// The law of the case, of the kind that is asked for or else whose constants are given; `None` where the file gives none at all,
-/// as in a calibration.
+/// as in a calibration. `hands_over` says of bonds whether they hand their crack over to its K.
 /// Errors: two laws, constants of another kind than `growth_law` or than the driver can have.
-pub(super) fn read(
-    (keys, fatigue): (&FatigueKeys, &Value),
-    by_bonds: Option<bool>,
-    setting: Setting<'_>,
-) -> Result<Option<LawSource>> {
-    const KEY: &str = "fatigue.growth_law";
-    let given = only_law(keys.growth_law, fatigue)?;
-    let kind = keys.growth_law.or(given.as_ref().and_then(|law| if let [only] = law.kinds { Some(*only) } else { None }));
-    if let Some(kind @ (GrowthLawKind::Forman | GrowthLawKind::Nasgro | GrowthLawKind::Table)) = kind {
-        if by_bonds.is_some() {
+pub(super) fn read(threshold: f64, hands_over: Option<bool>, given: &Given<'_>) -> Result<Option<LawSource>> {
+    let asked = given.get("growth_law")?;
+    let own = only_law(asked, given.section)?;
+    let kind = asked.or(own.as_ref().and_then(|kinds| if let [only] = kinds[..] { Some(only) } else { None }));
+    let is_given = |key: &str| value_at(given.section, key).is_some();
+    if let Some((kind, read)) = kind.and_then(|kind| Some((kind, kind.0.read?))) {
+        if hands_over.is_some() {
             let problem = "is no law of bonds, whose rate is a power of their strain";
             let remedy = "use fatigue.driver = \"tip_field\", or model.method = \"handbook\"";
-            return Err(input(KEY, format!("\"{kind}\""), problem, remedy));
+            return Err(input(GrowthLawKind::KEY, format!("\"{kind}\""), problem, remedy));
         }
-        return keys.factor_law(kind, &setting).map(|law| Some(LawSource::Factor(law)));
+        kind.0.refuse_foreign(&is_given)?;
+        if let Some((what, least)) = kind.0.compression.filter(|(_, least)| given.ratio < *least) {
+            let problem = format!("lies below {least}, to which the {what} of growth_law \"{kind}\" is known");
+            return Err(input("loading.stress_ratio", given.ratio, problem, "use another growth_law"));
+        }
+        return read(given, kind.0).map(|law| Some(LawSource::Factor(FactorLaw { threshold, ..law })));
     }
-    if keys.k_c_mpa_sqrt_m.is_some() {
+    if is_given(K_C.key) {
         let remedy = "leave it out, or choose its law by fatigue.growth_law";
         return Err(input_missing("fatigue.k_c_mpa_sqrt_m", "is no constant of this growth law", remedy));
     }
-    let lacks = match kind {
-        Some(GrowthLawKind::Paris | GrowthLawKind::Walker) if given.is_none() => Some("paris_c_mm_per_cycle"),
-        Some(GrowthLawKind::Walker) if keys.walker_gamma.is_none() => Some("walker_gamma"),
-        Some(GrowthLawKind::BondLaw) if given.is_none() => Some("a"),
-        _ => None,
-    };
-    if let (Some(key), Some(kind)) = (lacks, kind) {
+    let is_there = |key: &Constant| if key.is_shared() { is_given(key.key) } else { own.is_some() };
+    if let Some((kind, lacks)) = kind.and_then(|kind| Some((kind, kind.0.constants.iter().find(|key| !is_there(key))?))) {
         let problem = format!("is missing, and growth_law is \"{kind}\"");
-        return Err(input_missing(&format!("fatigue.{key}"), problem, "give all constants of the law"));
+        return Err(input_missing(&format!("fatigue.{}", lacks.key), problem, "give all constants of the law"));
     }
-    if let Some(fitted) = &keys.fitted {
-        return read_record(fitted, setting.folder).map(Some);
+    if let Some(fitted) = given.get::<String>("fitted")? {
+        return read_record(&fitted, given.folder).map(Some);
     }
-    let law = keys.bond_law()?.map(LawSource::Inline).or(keys.paris_law()?.map(LawSource::Paris));
+    let bonds = given.all_or_none(&bonds::LAW)?.map(|law| FatigueLaw { a: law[0], p: law[1], horizon: law[2] });
+    let paris = given.all_or_none(&paris::LAW)?.map(|law| ParisLaw { c: law[0], m: law[1] });
+    let law = bonds.map(LawSource::Inline).or(paris.map(LawSource::Paris));
     // What a driver cannot use as it is has to be translated.
     match &law {
-        Some(LawSource::Inline(law)) if by_bonds != Some(false) && !STEADY_EXPONENTS.contains(&law.p) => {
+        Some(LawSource::Inline(law)) if hands_over != Some(false) && !STEADY_EXPONENTS.contains(&law.p) => {
             Err(unsteady("fatigue.p", law.p))
         }
-        Some(LawSource::Paris(law)) if by_bonds.is_some() && !STEADY_EXPONENTS.contains(&law.m) => {
+        Some(LawSource::Paris(law)) if hands_over.is_some() && !STEADY_EXPONENTS.contains(&law.m) => {
             Err(unsteady("fatigue.paris_m", law.m))
         }
         _ => Ok(law),
     }
 }
 
-/// The law that is given, if any: one, and of the kind asked for.
-fn only_law(kind: Option<GrowthLawKind>, fatigue: &Value) -> Result<Option<GivenLaw>> {
-    let mut laws = LAWS.iter().filter_map(|&(kinds, keys)| {
+/// Kinds of `growth_law` that the law can be that is given, if any: one, and of the kind asked for.
+fn only_law(asked: Option<GrowthLawKind>, fatigue: &Value) -> Result<Option<Vec<GrowthLawKind>>> {
+    let mut laws = keys_of_laws().into_iter().filter_map(|(keys, kinds)| {
         let (key, value) = keys.iter().find_map(|&key| Some((key, value_at(fatigue, key)?)))?;
-        Some(GivenLaw { kinds, key, value: shown(value) })
+        Some((kinds, format!("fatigue.{key}"), shown(value)))
     });
-    let Some(law) = laws.next() else { return Ok(None) };
-    if let Some(second) = laws.next() {
-        let problem = format!("stands beside fatigue.{}: the law is given twice", law.key);
-        return Err(second.refused(problem, "give one law: fitted, or the constants of one kind"));
+    let Some((kinds, key, value)) = laws.next() else { return Ok(None) };
+    if let Some((_, second, value)) = laws.next() {
+        let problem = format!("stands beside {key}: the law is given twice");
+        return Err(input(&second, value, problem, "give one law: fitted, or the constants of one kind"));
     }
-    if let Some(kind) = kind.filter(|kind| !law.kinds.contains(kind)) {
+    if let Some(kind) = asked.filter(|kind| !kinds.contains(kind)) {
         let problem = format!("is no constant of fatigue.growth_law = \"{kind}\"");
-        return Err(law.refused(problem, "give the constants of that law, or leave growth_law out"));
+        return Err(input(&key, value, problem, "give the constants of that law, or leave growth_law out"));
     }
-    Ok(Some(law))
+    Ok(Some(kinds))
 }
 
 /// A value as the messages show it.
@@ -109,42 +91,6 @@ fn shown(value: &Value) -> String {
         Value::Float(number) => number.to_string(),
         other => other.to_string(),
     }
-}
-
-impl FatigueKeys {
-    fn bond_law(&self) -> Result<Option<FatigueLaw>> {
-        let keys = [("a", self.a), ("p", self.p), ("horizon_mm", self.horizon_mm)];
-        let Some([a, p, horizon]) = together(keys, "give a, p and horizon_mm together, or fitted")? else {
-            return Ok(None);
-        };
-        Ok(Some(FatigueLaw {
-            a: number("a constant in 1/cycle", 1e-60, 1e100).read("fatigue.a", a)?,
-            p: number("an exponent", 0.5, 20.0).read("fatigue.p", p)?,
-            horizon: LENGTH.read("fatigue.horizon_mm", horizon)?,
-        }))
-    }
-
-    fn paris_law(&self) -> Result<Option<ParisLaw>> {
-        let keys = [("paris_c_mm_per_cycle", self.paris_c_mm_per_cycle), ("paris_m", self.paris_m)];
-        let Some([c, m]) = together(keys, "give paris_c_mm_per_cycle and paris_m together, or fitted")? else {
-            return Ok(None);
-        };
-        let c = number("a rate in mm/cycle at ΔK = 1 MPa√m", 1e-60, 1e3).read("fatigue.paris_c_mm_per_cycle", c)?;
-        Ok(Some(ParisLaw { c: c * MM_PER_CYCLE, m: number("an exponent", 0.5, 20.0).read("fatigue.paris_m", m)? }))
-    }
-}
-
-/// All of the keys or none of them.
-fn together<const N: usize>(keys: [(&str, Option<f64>); N], remedy: &str) -> Result<Option<[f64; N]>> {
-    if keys.iter().all(|(_, value)| value.is_none()) {
-        return Ok(None);
-    }
-    let mut values = [f64::NAN; N];
-    for (slot, (key, value)) in values.iter_mut().zip(&keys) {
-        let why = if *key == "horizon_mm" { ": A is meaningless without the horizon it belongs to" } else { "" };
-        *slot = value.ok_or_else(|| input_missing(&format!("fatigue.{key}"), format!("is missing{why}"), remedy))?;
-    }
-    Ok(Some(values))
 }
 
 /// Reads a `fitted.toml`; one that does not exist (yet) is [`LawSource::Missing`].
@@ -199,7 +145,7 @@ pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value
     }
     table.remove("fitted");
     table.remove("growth_law");
-    let beside = law_keys().chain(["walker_gamma"]).find(|key| table.contains_key(*key));
+    let beside = law_keys().chain([GAMMA.key]).find(|key| table.contains_key(*key));
     if let Some(key) = beside {
         let problem = "stands beside fatigue.fitted, which holds a law: it is given twice";
         return Err(input_missing(&format!("fatigue.{key}"), problem, "give the record, or all constants in the case"));
@@ -214,11 +160,15 @@ pub(super) fn ratio_line(record: &LawRecord, ratio: f64) -> Result<Option<String
     if (low - RATIO_SLACK..=high + RATIO_SLACK).contains(&ratio) {
         return Ok(None);
     }
-    if record.kind() == GrowthLawKind::Paris.name() {
+    let fits = || GrowthLawKind::all().map(|kind| kind.0).filter(|law| law.fit.is_some());
+    if fits().any(|law| law.name == record.kind() && !law.takes_ratio) {
         let problem = format!(
             "is outside the stress ratios that the law was fitted to, {low} to {high}, and ΔK alone says nothing about R"
         );
-        return Err(input("loading.stress_ratio", ratio, problem, "fit walker, forman or nasgro to rates at several ratios"));
+        let others: Vec<&str> = fits().filter(|law| law.takes_ratio).map(|law| law.name).collect();
+        let (last, before) = others.split_last().map_or(("", String::new()), |(last, before)| (last, before.join(", ")));
+        let remedy = format!("fit {before} or {last} to rates at several ratios");
+        return Err(input("loading.stress_ratio", ratio, problem, remedy));
     }
     Ok(Some(format!("the law {} was fitted to stress ratios from {low} to {high} and is used at {ratio}", record.kind())))
 }

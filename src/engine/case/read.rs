@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::model_keys::on_nodes;
-use super::{Case, Choices, LawSource, Method, boundaries, fatigue, law, law_keys, law_source, model, remove_law};
+use super::{Case, Choices, LawSource, Method, boundaries, fatigue, law, law_source, model, remove_law};
 use crate::bond_law::SurfaceCorrection;
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
-use crate::fatigue::growth_law::{Bounded, GrowthLawKind, Walker, doubt};
+use crate::fatigue::growth_law::description::law_keys;
+use crate::fatigue::growth_law::{FactorLaw, GrowthLawKind, Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
 use crate::input::{
     Document, Folder, ForeignSections, LEVELS_OF_SCENES, OF_SCENES, OpenedFile, Output, Provenance, Sections, value_at,
@@ -232,8 +233,8 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
         LawSource::Inline(_) => lines.extend(inline_line(case)),
         LawSource::Paris(law) => lines.extend(doubt(&steady(*law), case.loading.ratio)),
         LawSource::Factor(law) => {
-            lines.extend(doubt(&Bounded { law: law.clone(), threshold: 0.0 }, case.loading.ratio));
-            lines.extend(law.unnamed_ratio_line(case.loading.ratio));
+            lines.extend(doubt(&FactorLaw { threshold: 0.0, ..law.clone() }, case.loading.ratio));
+            lines.extend(law.table.as_ref().and_then(|table| table.line(case.loading.ratio)));
         }
         LawSource::Fitted(record) => {
             let law = ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m };
@@ -260,11 +261,12 @@ fn steady(paris: ParisLaw) -> Walker {
 
 /// Compression in a cycle counts as nothing, whatever Walker's exponent.
 fn compression_line(case: &Case) -> Option<String> {
-    let counts = matches!(&case.law, LawSource::Factor(law) if law.kind() == GrowthLawKind::Nasgro);
+    let counts = matches!(&case.law, LawSource::Factor(law) if law.kind.0.compression.is_some());
+    let law = GrowthLawKind::all().find(|kind| kind.0.compression.is_some())?;
     let ratio = case.loading.ratio;
     (ratio < 0.0 && !counts).then(|| {
         format!(
-            "stress ratio {ratio}: the compression in a cycle counts as nothing, as if the ratio were 0; growth_law = \"nasgro\" takes \
+            "stress ratio {ratio}: the compression in a cycle counts as nothing, as if the ratio were 0; growth_law = \"{law}\" takes \
              it into account"
         )
     })

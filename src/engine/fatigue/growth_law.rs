@@ -1,34 +1,27 @@
 //! Growth laws over K: da/dN of a cycle between R K_max and K_max.
 
+pub mod bonds;
+pub mod description;
+pub mod forman;
 pub mod nasgro;
+pub mod paris;
 pub mod table;
+pub mod walker;
 
-use serde::Serialize;
+use serde_json::Value;
 
-use super::paris::ParisLaw;
 use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
-use nasgro::Nasgro;
+use description::{Description, Role};
 use table::Table;
+pub use walker::Walker;
+
+/// Every law, in the order of `perilife list`; those that rates are fitted by stand in the order of their number of constants. A new one is
+/// a line here and its file.
+const LAWS: &[&Description] = &[&bonds::LAW, &paris::LAW, &walker::LAW, &forman::LAW, &nasgro::LAW, &table::LAW];
 
 crate::kinds! {
     /// Which law of growth a case has.
-    pub enum GrowthLawKind for "fatigue.growth_law" {
-        BondLaw = "bond_law": "A and p of bonds, dλ/dN = -A ε^p: inline, or fitted",
-        Paris = "paris": "da/dN = C ΔK^m (Paris and Erdogan 1963)",
-        Walker = "walker": "da/dN = C (K_max (1-R)^γ)^m (Walker 1970)",
-        Forman = "forman": "da/dN = C ΔK^m / ((1-R) K_c - ΔK) (Forman, Kearney and Engle 1967)",
-        Nasgro = "nasgro": "crack closure, threshold and instability in one equation (Forman and Mettu 1992)",
-        Table = "table": "da/dN over ΔK, and over R, as rows of a CSV file",
-    }
-}
-
-crate::kinds! {
-    /// What of a cycle from R K_max to K_max is ΔK in a table of rates where R is negative; at R >= 0 both are (1-R) K_max. Laws take its
-    /// tensile part.
-    pub enum RangeKind for "measured.delta_k" {
-        Tensile = "tensile": "K_max: compression does not count (ASTM E647)",
-        Full = "full": "(1-R) K_max, as many laboratories and NASGRO have it",
-    }
+    pub struct GrowthLawKind of Description in LAWS for "fatigue.growth_law"
 }
 
 /// ΔK at which metals are compared, Pa√m, and the rates that they have there, mm/cycle, with room on both sides.
@@ -74,127 +67,66 @@ pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
     }
 }
 
-/// Laws that are no power of ΔK.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(tag = "growth_law", rename_all = "snake_case")]
-pub enum FactorLaw {
-    /// [`Forman`].
-    Forman(Forman),
-    /// [`Nasgro`].
-    Nasgro(Nasgro),
-    /// [`Table`].
-    Table(Table),
+/// A law with its constants, or rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FactorLaw {
+    /// Which one it is.
+    pub kind: GrowthLawKind,
+    /// Its constants, SI, in the order of their description.
+    pub constants: Vec<f64>,
+    /// Its rows, where it is no formula.
+    pub table: Option<Table>,
+    /// ΔK below which nothing grows whatever the law says, Pa√m.
+    pub threshold: f64,
 }
 
 impl FactorLaw {
-    /// Which one it is.
-    pub fn kind(&self) -> GrowthLawKind {
-        match self {
-            FactorLaw::Forman(_) => GrowthLawKind::Forman,
-            FactorLaw::Nasgro(_) => GrowthLawKind::Nasgro,
-            FactorLaw::Table(_) => GrowthLawKind::Table,
-        }
+    /// The law of these constants, SI.
+    pub fn new(of: &'static Description, constants: Vec<f64>) -> Self {
+        FactorLaw { kind: GrowthLawKind(of), constants, table: None, threshold: 0.0 }
     }
 
-    /// K_max at which the law lets a crack grow without limit, Pa√m.
+    /// K_max at which it lets a crack grow without limit, Pa√m.
     pub fn toughness(&self) -> Option<f64> {
-        match self {
-            FactorLaw::Forman(law) => Some(law.k_c),
-            FactorLaw::Nasgro(law) => Some(law.k_c),
-            FactorLaw::Table(_) => None,
-        }
+        self.kind.0.place(Role::Toughness).map(|place| self.constants[place])
     }
 
     /// In words, with its constants.
     pub fn in_words(&self) -> String {
-        match self {
-            FactorLaw::Forman(law) => format!("m = {}, K_c = {:.4} MPa√m", law.m, law.k_c / MPA_SQRT_M),
-            FactorLaw::Nasgro(law) => format!("n = {}, K_c = {:.4} MPa√m", law.n, law.k_c / MPA_SQRT_M),
-            FactorLaw::Table(table) => {
-                let rows: usize = table.curves.iter().map(|curve| curve.rows.len()).sum();
-                format!("{rows} rows at {} stress ratios", table.curves.len())
-            }
-        }
+        let k_c = self.toughness().map(|k_c| format!(", K_c = {:.4} MPa√m", k_c / MPA_SQRT_M)).unwrap_or_default();
+        let of_formula = || format!("{} = {}{k_c}", self.kind.0.constants[1].name, self.constants[1]);
+        self.table.as_ref().map_or_else(of_formula, Table::in_words)
     }
 
-    /// What is to be said of a table that names no stress ratio.
-    pub fn unnamed_ratio_line(&self, ratio: f64) -> Option<String> {
-        matches!(self, FactorLaw::Table(table) if !table.says_ratio).then(|| {
-            format!(
-                "the table of rates names no stress ratio: its rates are used at R = {ratio} as they are; name it in a column stress_ratio or \
-                 by growth_table = {{ file = \"...\", stress_ratio = ... }}"
-            )
-        })
-    }
-
-    fn law(&self) -> &dyn GrowthLaw {
-        match self {
-            FactorLaw::Forman(law) => law,
-            FactorLaw::Nasgro(law) => law,
-            FactorLaw::Table(law) => law,
+    /// `growth_law` and the constants as a result has them, SI.
+    pub fn constants_si(&self) -> Value {
+        let mut all = serde_json::json!({ "growth_law": self.kind });
+        for (constant, &value) in self.kind.0.constants.iter().zip(&self.constants) {
+            let before = all[constant.name].take();
+            all[constant.name] = if before.is_null() { value.into() } else { serde_json::json!([value, before]) };
         }
+        if let (Some(all), Ok(Value::Object(table))) = (all.as_object_mut(), serde_json::to_value(&self.table)) {
+            all.extend(table);
+        }
+        all
     }
 }
 
-/// A law that is no power of ΔK, above a threshold of ΔK.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Bounded {
-    /// The law.
-    pub law: FactorLaw,
-    /// ΔK below which nothing grows, Pa√m.
-    pub threshold: f64,
-}
-
-impl GrowthLaw for Bounded {
+impl GrowthLaw for FactorLaw {
     fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        if k_max * (1.0 - ratio.max(0.0)) <= self.threshold { 0.0 } else { self.law.law().rate(k_max, ratio) }
+        match &self.table {
+            _ if k_max * (1.0 - ratio.max(0.0)) <= self.threshold => 0.0,
+            Some(table) => table.rate(k_max, ratio),
+            None => (self.kind.0.rate)(&self.constants, k_max, ratio),
+        }
     }
 
     fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
         let grows = k_max * (1.0 - ratio.max(0.0)) > self.threshold;
-        self.law.law().beyond(k_max, ratio).filter(|_| grows)
+        self.table.as_ref().filter(|_| grows).and_then(|table| table.beyond(k_max, ratio))
     }
 
     fn is_refused_beyond(&self) -> bool {
-        self.law.law().is_refused_beyond()
-    }
-}
-
-/// `da/dN = C (K_max (1-R)^γ)^m` above a threshold of ΔK (Walker 1970, ASTM STP 462; γ = 1: Paris and Erdogan 1963); compression
-/// does not count.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Walker {
-    /// C and m at R = 0.
-    pub paris: ParisLaw,
-    /// γ.
-    pub gamma: f64,
-    /// ΔK below which nothing grows, Pa√m.
-    pub threshold: f64,
-}
-
-impl GrowthLaw for Walker {
-    fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        let range = 1.0 - ratio.max(0.0);
-        if k_max * range <= self.threshold { 0.0 } else { self.paris.rate(k_max * range.powf(self.gamma)) }
-    }
-}
-
-/// `da/dN = C ΔK^m / ((1-R) K_c - ΔK)`: Paris growth that becomes unstable at K_max = K_c (Forman, Kearney and Engle 1967, J. Basic
-/// Eng. 89:459). Compression does not count.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Forman {
-    /// C, m/cycle (MPa√m)^(1-m).
-    pub c: f64,
-    /// Exponent m.
-    pub m: f64,
-    /// K_c, Pa√m.
-    pub k_c: f64,
-}
-
-impl GrowthLaw for Forman {
-    fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        let range = 1.0 - ratio.max(0.0);
-        let left = range * (self.k_c - k_max) / MPA_SQRT_M;
-        if left <= 0.0 { f64::INFINITY } else { self.c * (range * k_max / MPA_SQRT_M).powf(self.m) / left }
+        self.table.as_ref().is_some_and(|table| !table.holds_ends)
     }
 }

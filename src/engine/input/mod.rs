@@ -15,4 +15,4 @@ pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256}
 pub use output::Output;
 pub use quantity::*;
 pub use slice::shorten;
-pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, refuse_given, slice, table_of, value_at};
+pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, refuse_given, slice, slice_beside, table_of, value_at};

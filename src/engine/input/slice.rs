@@ -42,8 +42,14 @@ const ONE_BREAK: &str = "leave it out: driver \"bond_strain\" solves after every
 /// assert_eq!(error.to_string(), "stop.cycles_maks = 5: is not a known key; known here: cycles_max");
 /// ```
 pub fn slice<T: DeserializeOwned>(value: &Value, path: &str) -> Result<T> {
-    table_of(value, path)?;
-    value.clone().try_into().map_err(|error| explain(&error, value, path))
+    slice_beside(value, path, &[])
+}
+
+/// The same of a table that has keys `beside`, which others read.
+pub fn slice_beside<T: DeserializeOwned>(value: &Value, path: &str, beside: &[&str]) -> Result<T> {
+    let mut own = table_of(value, path)?.clone();
+    own.retain(|key, _| !beside.contains(&key));
+    own.try_into().map_err(|error| explain(&error, value, path, beside))
 }
 
 /// Refuses the first key of a section that is given, though it has no use there.
@@ -82,7 +88,7 @@ pub fn shorten(value: &Value) -> String {
 }
 
 /// serde's message to key, value, problem and remedy.
-fn explain(error: &toml::de::Error, value: &Value, path: &str) -> Error {
+fn explain(error: &toml::de::Error, value: &Value, path: &str, beside: &[&str]) -> Error {
     let message = error.message();
     let whole = error.to_string();
     // toml prints the key below the message as "in `holes.x_mm`".
@@ -98,6 +104,7 @@ fn explain(error: &toml::de::Error, value: &Value, path: &str) -> Error {
         if let Some((_, remedy)) = REMOVED.iter().find(|(removed, _)| *removed == key) {
             return input(&key, given(&key).unwrap_or_default(), "is no key any more", *remedy);
         }
+        let known = [&beside.join(", "), &*known].into_iter().filter(|list| !list.is_empty()).collect::<Vec<_>>().join(", ");
         let (value, known) = (given(&key).unwrap_or_default(), if known.is_empty() { "none".to_owned() } else { known });
         return input(&key, value, "is not a known key", format!("known here: {known}"));
     }

@@ -64,11 +64,8 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
         (LoadMeasure::Stress, Of::Stress) | (LoadMeasure::Force, Of::Force) => (largest, LoadControl::Load),
         (LoadMeasure::Stress, Of::Force) => (largest / area, LoadControl::Load),
         (LoadMeasure::Force, Of::Stress) => {
-            let who = if specimen.kind == SpecimenKind::CompactTension {
-                "compact_tension"
-            } else {
-                "a plate loaded by pins or rollers"
-            };
+            let is_plate = specimen.kind == SpecimenKind::Plate;
+            let who = if is_plate { "a plate loaded by pins or rollers" } else { specimen.kind.name() };
             let problem = format!("is a stress, but {who} takes a force");
             return Err(input_error(&magnitude, problem, "give force_max_n or force_range_n (or _kn)"));
         }

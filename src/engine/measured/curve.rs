@@ -260,10 +260,7 @@ pub fn first_of(mut warnings: Vec<String>) -> Vec<String> {
 /// Largest difference between the crack lengths on the sides of a specimen that E647 accepts, m: 0.025 W of a central crack or two
 /// edge cracks, 0.25 B of one edge crack.
 pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f64 {
-    let limit = match kind {
-        SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => 0.025 * width,
-        _ => 0.25 * thickness,
-    };
+    let limit = if kind.sharing().is_some_and(|(cracks, _)| cracks == 2.0) { 0.025 * width } else { 0.25 * thickness };
     // Lengths of 12.8 and 11.2 mm differ by 1.6 mm and a rounding.
     limit * (1.0 + 1e-9)
 }

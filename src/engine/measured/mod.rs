@@ -29,7 +29,7 @@ pub use import::{ColumnNames, CycleUnit, Decimal, Import, IntensityUnit, LengthU
 pub use leave_out::LeaveOut;
 pub use loads::{LoadHistory, SAME_LOAD};
 pub use names::{Column, Named, Role};
-pub use rates::{RateFile, RateFileKeys, RateRow, RateTable};
+pub use rates::{RangeKind, RateFile, RateFileKeys, RateRow, RateTable};
 
 use crate::error::{Error, InputError, Result};
 use crate::input::Opened;

@@ -15,9 +15,17 @@ use super::names::{Column, Named, Role};
 use super::readings::value;
 use super::table::{self, Fault, Table, whole_file};
 use crate::error::{Result, input_missing};
-use crate::fatigue::growth_law::RangeKind;
 use crate::input::{Folder, number};
 use crate::units::MM_PER_CYCLE;
+
+crate::kinds! {
+    /// What of a cycle from R K_max to K_max is ΔK in a table of rates where R is negative; at R >= 0 both are (1-R) K_max. Laws take its
+    /// tensile part.
+    pub enum RangeKind for "measured.delta_k" {
+        Tensile = "tensile": "K_max: compression does not count (ASTM E647)",
+        Full = "full": "(1-R) K_max, as many laboratories and NASGRO have it",
+    }
+}
 
 /// A flag of `perilife rates` that speaks against nothing.
 const HARMLESS: &str = "load_changes";

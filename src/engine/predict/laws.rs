@@ -4,7 +4,7 @@ use super::CurvePoint;
 use crate::case::{Case, LawSource};
 use crate::error::{Result, input_missing};
 use crate::fatigue::FatigueLaw;
-use crate::fatigue::growth_law::{Bounded, GrowthLaw, Walker};
+use crate::fatigue::growth_law::{GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::rate_constant::rate_constant;
 use crate::growth::CrackGrowth;
@@ -13,10 +13,9 @@ use crate::units::MM;
 /// The law over K of a case, for driver `tip_field` and method `handbook`.
 /// Errors: a case without law; as [`rate_constant`] where it is one of bonds.
 pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
-    let threshold = case.fatigue.threshold;
     Ok(match &case.law {
-        LawSource::Factor(law) => Box::new(Bounded { law: law.clone(), threshold }),
-        _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold }),
+        LawSource::Factor(law) => Box::new(law.clone()),
+        _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold }),
     })
 }
 

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use super::{CurvePoint, Prediction};
 use crate::case::Case;
 use crate::material::Plane;
+use crate::specimen::Specimen;
 use crate::specimen::geometry::{distance, distance_to_polygon};
 use crate::specimen::net_section::ligament_needed;
-use crate::specimen::{Specimen, SpecimenKind};
 use crate::units::MM;
 
 /// Plastic zone at one crack length.
@@ -90,12 +90,11 @@ fn way_to_edge(specimen: &Specimen, tip: [f64; 2]) -> f64 {
 
 /// Ligament that small-scale yielding asks for, m.
 fn asked(case: &Case, zone: &Zone, strength: f64) -> f64 {
-    match case.specimen.kind {
-        // ASTM's condition asks for the load, which cycles of a displacement do not keep.
-        _ if case.loading.displacement().is_some() => ligament_needed(zone.k_max, strength),
-        SpecimenKind::Plate => ligament_needed(zone.k_max, strength),
-        _ => case.specimen.ligament_asked(case.loading.maximum, zone.k_max, strength),
+    // ASTM's condition for M(T) asks for the load, which cycles of a displacement do not keep.
+    if case.loading.displacement().is_some() {
+        return ligament_needed(zone.k_max, strength);
     }
+    case.specimen.ligament_asked(case.loading.maximum, zone.k_max, strength)
 }
 
 /// What the user should know: yielding that K does not cover, and a plane state that the thickness contradicts.

@@ -15,7 +15,7 @@ pub const SHORTEST_LENGTH_OVER_WIDTH: f64 = 1.5;
 const RANGE_SLACK: f64 = 1e-9;
 
 /// A formula for K of one specimen.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct HandbookFormula {
     /// Name of the formula.
     pub name: &'static str,
@@ -25,63 +25,76 @@ pub struct HandbookFormula {
     pub range: &'static str,
     /// Smallest and largest relative crack length it holds for: 2a/W with two tips or two cracks, a/W with one.
     pub bounds: [f64; 2],
-    form: Form,
+    of: fn(f64) -> f64,
+    cracks: f64,
+    is_of_pins: bool,
     width: f64,
     thickness: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Form {
-    Feddersen,
-    MiddleTada,
-    SingleEdge,
-    DoubleEdge,
-    Compact,
+impl PartialEq for HandbookFormula {
+    fn eq(&self, other: &Self) -> bool {
+        (self.name, self.width, self.thickness) == (other.name, other.width, other.thickness)
+    }
 }
 
 /// The formula used for this specimen, `None` where no handbook covers it: `plate`, clamped ends, and plates shorter than
 /// 1.5 widths.
 pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
     let long = specimen.length() >= SHORTEST_LENGTH_OVER_WIDTH * specimen.width;
-    let (form, name, source, range, bounds) = match specimen.kind {
+    let (name, source, range, bounds, of): (_, _, _, _, fn(f64) -> f64) = match specimen.kind {
         SpecimenKind::MiddleTension if long => (
-            Form::Feddersen,
             "Feddersen secant",
             "Feddersen 1966, ASTM STP 410; ASTM E647 annex A2",
             "0.3 % for 2a/W up to 0.7, 2 % low at 0.9; length/width 1.5 or more",
             [0.0, 0.95],
+            |x| (1.0 / half(x).cos()).sqrt(),
         ),
         SpecimenKind::SingleEdgeTension if long && !specimen.has_straight_grips() => (
-            Form::SingleEdge,
             "Tada single edge",
             "Tada, Paris and Irwin 2000, part II",
             "0.5 % for any a/W; ends free to rotate, length/width 2 or more",
             [0.0, 1.0],
+            |x| tangent(x) * (0.752 + 2.02 * x + 0.37 * (1.0 - half(x).sin()).powi(3)) / half(x).cos(),
         ),
         SpecimenKind::DoubleEdgeTension if long => (
-            Form::DoubleEdge,
             "Tada double edge",
             "Tada, Paris and Irwin 2000, part II",
             "1 % for any 2a/W; length/width 1.5 or more",
             [0.0, 1.0],
+            |x| (1.0 + 0.122 * half(x).cos().powi(4)) * tangent(x),
         ),
         SpecimenKind::CompactTension => {
-            (Form::Compact, "ASTM E647 compact", "ASTM E647 annex A1", "0.5 % for a/W 0.2 or more", [0.2, 1.0])
+            ("ASTM E647 compact", "ASTM E647 annex A1", "0.5 % for a/W 0.2 or more", [0.2, 1.0], |x| {
+                let polynomial = 0.886 + x * (4.64 + x * (-13.32 + x * (14.72 - 5.6 * x)));
+                (2.0 + x) / (1.0 - x).powf(1.5) * polynomial
+            })
         }
         _ => return None,
     };
-    Some(HandbookFormula { name, source, range, bounds, form, width: specimen.width, thickness: specimen.thickness })
+    let is_of_pins = specimen.kind == SpecimenKind::CompactTension;
+    let (width, thickness) = (specimen.width, specimen.thickness);
+    Some(HandbookFormula { name, source, range, bounds, of, cracks: specimen.kind.sharing()?.0, is_of_pins, width, thickness })
+}
+
+fn half(x: f64) -> f64 {
+    PI * x / 2.0
+}
+
+/// `√(tan(half)/half)`, which tends to 1 for short cracks.
+fn tangent(x: f64) -> f64 {
+    if half(x) > 0.0 { (half(x).tan() / half(x)).sqrt() } else { 1.0 }
 }
 
 /// The other formula for a central crack, 0.1 % for any 2a/W (Tada): for judging the first one.
 pub fn handbook_tada(specimen: &Specimen) -> Option<HandbookFormula> {
     let first = handbook(specimen)?;
-    (first.form == Form::Feddersen).then_some(HandbookFormula {
+    (specimen.kind == SpecimenKind::MiddleTension).then_some(HandbookFormula {
         name: "Tada central crack",
         source: "Tada, Paris and Irwin 2000, part II",
         range: "0.1 % for any 2a/W; length/width 1.5 or more",
         bounds: [0.0, 1.0],
-        form: Form::MiddleTada,
+        of: |x| (1.0 - 0.025 * x.powi(2) + 0.06 * x.powi(4)) * (1.0 / half(x).cos()).sqrt(),
         ..first
     })
 }
@@ -94,10 +107,10 @@ impl HandbookFormula {
         if !(0.0..1.0).contains(&x) {
             return f64::NAN;
         }
-        match self.form {
-            Form::Compact => load_max / (self.thickness * self.width.sqrt()) * self.factor(crack_length),
-            _ => self.factor(crack_length) * load_max * (PI * crack_length).sqrt(),
+        if self.is_of_pins {
+            return load_max / (self.thickness * self.width.sqrt()) * self.factor(crack_length);
         }
+        self.factor(crack_length) * load_max * (PI * crack_length).sqrt()
     }
 
     /// ΔK of a cycle whose largest load is `load_max` and whose counting range is `range_share` times that, Pa√m.
@@ -107,20 +120,7 @@ impl HandbookFormula {
 
     /// F (tension) or f (C(T)) of the formula, dimensionless.
     pub fn factor(&self, crack_length: f64) -> f64 {
-        let x = self.relative_length(crack_length);
-        let half = PI * x / 2.0;
-        // √(tan(half)/half) tends to 1 for short cracks.
-        let tangent = if half > 0.0 { (half.tan() / half).sqrt() } else { 1.0 };
-        match self.form {
-            Form::Feddersen => (1.0 / half.cos()).sqrt(),
-            Form::MiddleTada => (1.0 - 0.025 * x.powi(2) + 0.06 * x.powi(4)) * (1.0 / half.cos()).sqrt(),
-            Form::SingleEdge => tangent * (0.752 + 2.02 * x + 0.37 * (1.0 - half.sin()).powi(3)) / half.cos(),
-            Form::DoubleEdge => (1.0 + 0.122 * half.cos().powi(4)) * tangent,
-            Form::Compact => {
-                let polynomial = 0.886 + x * (4.64 + x * (-13.32 + x * (14.72 - 5.6 * x)));
-                (2.0 + x) / (1.0 - x).powf(1.5) * polynomial
-            }
-        }
+        (self.of)(self.relative_length(crack_length))
     }
 
     /// Whether the formula holds at this crack length.
@@ -130,10 +130,7 @@ impl HandbookFormula {
 
     /// Relative crack length of the formula: 2a/W or a/W.
     fn relative_length(&self, crack_length: f64) -> f64 {
-        match self.form {
-            Form::Feddersen | Form::MiddleTada | Form::DoubleEdge => 2.0 * crack_length / self.width,
-            Form::SingleEdge | Form::Compact => crack_length / self.width,
-        }
+        self.cracks * crack_length / self.width
     }
 }
 

@@ -6,21 +6,29 @@ use std::f64::consts::PI;
 use super::{Load, LoadMeasure, Specimen, SpecimenKind};
 use crate::error::{Result, input};
 
+impl SpecimenKind {
+    /// How many cracks, or halves of one, share the width of a standard kind, and the name of what each of them has; `None` for a `plate`.
+    pub fn sharing(self) -> Option<(f64, &'static str)> {
+        match self {
+            SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => Some((2.0, "half width")),
+            SpecimenKind::SingleEdgeTension => Some((1.0, "width")),
+            SpecimenKind::CompactTension => Some((1.0, "width from the load line")),
+            SpecimenKind::Plate => None,
+        }
+    }
+}
+
 impl Specimen {
     /// Largest crack length the specimen has room for, m, and its name.
     pub fn length_limit(&self) -> (f64, &'static str) {
-        match self.kind {
-            SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => (0.5 * self.width, "half width"),
-            SpecimenKind::SingleEdgeTension => (self.width, "width"),
-            SpecimenKind::CompactTension => (self.width, "width from the load line"),
-            SpecimenKind::Plate => (self.gross_width.max(self.length()), "size"),
-        }
+        let size = (self.gross_width.max(self.length()), "size");
+        self.kind.sharing().map_or(size, |(cracks, name)| (self.width / cracks, name))
     }
 
     /// Width of the remaining section at crack length `crack_length` (m, the specimen's convention), all ligaments together;
     /// `None` for a `plate`.
     pub fn ligament(&self, crack_length: f64) -> Option<f64> {
-        (self.kind != SpecimenKind::Plate).then(|| ligament(self.kind, self.width, crack_length))
+        self.kind.sharing().map(|(cracks, _)| self.width - cracks * crack_length)
     }
 
     /// Stress on the remaining section, Pa, when it yields throughout under `load` (gross stress, Pa, or pin force, N): the
@@ -42,10 +50,7 @@ impl Specimen {
             SpecimenKind::SingleEdgeTension if !self.has_straight_grips() => weakened_by(crack_length / ligament),
             SpecimenKind::CompactTension => weakened_by(1.0 + 2.0 * crack_length / ligament),
             // Pulled in line, or held so that they cannot turn.
-            SpecimenKind::MiddleTension
-            | SpecimenKind::DoubleEdgeTension
-            | SpecimenKind::SingleEdgeTension
-            | SpecimenKind::Plate => 1.0,
+            _ => 1.0,
         };
         Some(factor * self.force_per_thickness(load) / ligament)
     }
@@ -58,7 +63,7 @@ impl Specimen {
 
     /// Whether the ligament of a standard kind is large enough for K to describe the crack ([`Specimen::ligament_asked`]).
     pub fn small_scale_yielding(&self, crack_length: f64, load_max: f64, k_max: f64, yield_strength: f64) -> bool {
-        ligament(self.kind, self.width, crack_length) >= self.ligament_asked(load_max, k_max, yield_strength)
+        self.ligament(crack_length).unwrap_or(self.width - crack_length) >= self.ligament_asked(load_max, k_max, yield_strength)
     }
 
     /// Ligament that is large enough for its plastic zone (ASTM E647, 7.2), m: of M(T) `W - 2a ≥ 1.25 P_max / (B σ_Y)`, that is 80 % of
@@ -82,13 +87,6 @@ impl Specimen {
 /// `(4/π) (K_max/σ_Y)²`, the ligament ASTM E647 asks for, m: four times the plastic zone of plane stress.
 pub fn ligament_needed(k_max: f64, yield_strength: f64) -> f64 {
     4.0 / PI * (k_max / yield_strength).powi(2)
-}
-
-fn ligament(kind: SpecimenKind, width: f64, crack_length: f64) -> f64 {
-    match kind {
-        SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => width - 2.0 * crack_length,
-        SpecimenKind::SingleEdgeTension | SpecimenKind::CompactTension | SpecimenKind::Plate => width - crack_length,
-    }
 }
 
 /// Refuses a crack that would leave no ligament: `crack_length` against the length at which the plate is in two.

@@ -9,10 +9,10 @@ use crate::calibration::case::{CalibrationCase, source};
 use crate::calibration::outliers::{StepRate, step_rates};
 use crate::case::record::SourceFile;
 use crate::error::{Result, input, input_missing};
-use crate::fatigue::growth_law::RangeKind;
+use crate::fatigue::growth_law::{GrowthLawKind, paris};
 use crate::input::{Document, INTENSITY, slice, value_at};
 use crate::measured::rates::lacks_ratio;
-use crate::measured::{IntensityUnit, MeasuredCurve, RateFile, RateFileKeys, RateRow, RateUnit};
+use crate::measured::{IntensityUnit, MeasuredCurve, RangeKind, RateFile, RateFileKeys, RateRow, RateUnit};
 use crate::units::MPA_SQRT_M;
 
 /// Keys of `[measured]` that only tables of rates have.
@@ -70,7 +70,7 @@ struct LawSlice {
 pub fn is_law_fit(table: &Table) -> bool {
     let value = |section: &str, key: &str| table.get(section).and_then(|section| value_at(section, key));
     let law = value("fit", "law").and_then(Value::as_str);
-    value("measured", "rates").is_some() || value("fit", "given").is_some() || law.is_some_and(|law| law != FitLaw::Paris.name())
+    value("measured", "rates").is_some() || value("fit", "given").is_some() || law.is_some_and(|law| law != paris::LAW.name)
 }
 
 impl LawCase {
@@ -87,7 +87,7 @@ impl LawCase {
         let mut case = LawCase {
             name: document.name.clone(),
             rows: Vec::new(),
-            law: laws.law.unwrap_or(FitLaw::Paris),
+            law: laws.law.unwrap_or(FitLaw(Some(GrowthLawKind(&paris::LAW)))),
             given: laws.given,
             material: String::new(),
             sources: Vec::new(),

@@ -3,9 +3,10 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::candidate::{Candidate, Given, K_C, Parameter, THRESHOLD, parameters};
+use super::candidate::{Candidate, Given};
 use super::least_squares::{Minimum, minimise, without_level};
 use crate::fatigue::growth_law::GrowthLawKind;
+use crate::fatigue::growth_law::description::{Constant as Parameter, Role};
 use crate::measured::RateRow;
 
 /// Share of the range of a variable within which an optimum lies at its end.
@@ -58,15 +59,11 @@ impl LawFit {
 
     /// A constant that is fitted and whose error is larger than it may be.
     pub(super) fn judge_errors(&mut self) {
-        let own = parameters(self.kind).1;
         let unknown = self.constants.iter().find_map(|constant| {
-            let parameter = own.iter().find(|parameter| parameter.key == constant.key)?;
-            let size = if parameter.key.contains("alpha") || parameter.key.contains("c_th") { 1.0 } else { constant.value.abs() };
+            let parameter = self.kind.0.constants[1..].iter().find(|parameter| parameter.key == constant.key)?;
+            let size = if parameter.is_told_by_ratios() { 1.0 } else { constant.value.abs() };
             let error = constant.error.filter(|error| *error > parameter.error_max * size)?;
-            Some(format!(
-                "{} not identified: {:.3e} ± {error:.1e}; {}, or give it by fit.given",
-                constant.key, constant.value, parameter.told_by
-            ))
+            Some(unidentified(parameter, &format!("{:.3e} ± {error:.1e}", constant.value)))
         });
         self.left_out = self.left_out.take().or(unknown);
     }
@@ -96,8 +93,7 @@ pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFi
     let scatter = best.sum() / (rows.len() - free.len() - 1) as f64;
     let trouble = at_end(&free, &best).or_else(|| trade(&free, &best.slopes));
     let errors = errors(&candidate, &best, scatter);
-    let c_key = parameters(kind).0;
-    let c = Constant { key: c_key, value: best.level.exp(), error: Some(best.level.exp() * errors[0]) };
+    let c = Constant { key: kind.0.constants[0].key, value: best.level.exp(), error: Some(best.level.exp() * errors[0]) };
     let is_free = |key: &str| free.iter().any(|parameter| parameter.key == key);
     let others = candidate.constants(&best.at).into_iter().enumerate();
     let others = others.map(|(i, (key, value))| Constant { key, value, error: is_free(key).then(|| errors[i + 1]) });
@@ -127,17 +123,18 @@ fn at_end(free: &[Parameter], best: &Minimum) -> Option<String> {
         let near = AT_END * (high - low);
         (value - low < near || high - value < near).then_some((parameter, value - low < near))
     })?;
-    let end = match (parameter.key, low) {
-        (K_C, true) => "the largest K_max of the rates".to_owned(),
-        (K_C, false) => "19 times the largest K_max of the rates".to_owned(),
-        (THRESHOLD, true) => "a twentieth of the smallest ΔK of the rates".to_owned(),
-        (THRESHOLD, false) => "the smallest ΔK of the rates".to_owned(),
-        (_, low) => format!("{}", parameter.bounds[usize::from(!low)]),
+    let end = match (parameter.role, low) {
+        (Role::Toughness, true) => "the largest K_max of the rates".to_owned(),
+        (Role::Toughness, false) => "19 times the largest K_max of the rates".to_owned(),
+        (Role::Threshold, true) => "a twentieth of the smallest ΔK of the rates".to_owned(),
+        (Role::Threshold, false) => "the smallest ΔK of the rates".to_owned(),
+        (Role::Plain, low) => format!("{}", parameter.bounds[usize::from(!low)]),
     };
-    Some(format!(
-        "{} not identified: the optimum lies at an end of its range, {end}; {}, or give it by fit.given",
-        parameter.key, parameter.told_by
-    ))
+    Some(unidentified(parameter, &format!("the optimum lies at an end of its range, {end}")))
+}
+
+fn unidentified(parameter: &Parameter, why: &str) -> String {
+    format!("{} not identified: {why}; {}, or give it by fit.given", parameter.key, parameter.told_by)
 }
 
 /// A constant that others can make up for.
@@ -146,10 +143,7 @@ fn trade(free: &[Parameter], slopes: &DMatrix<f64>) -> Option<String> {
     for (i, parameter) in free.iter().enumerate() {
         let size = scaled.column(i).norm();
         if size <= f64::EPSILON {
-            return Some(format!(
-                "{} not identified: no rate depends on it; {}, or give it by fit.given",
-                parameter.key, parameter.told_by
-            ));
+            return Some(unidentified(parameter, "no rate depends on it"));
         }
         scaled.column_mut(i).scale_mut(1.0 / size);
     }
@@ -158,26 +152,20 @@ fn trade(free: &[Parameter], slopes: &DMatrix<f64>) -> Option<String> {
     }
     let eigen = (scaled.transpose() * scaled).symmetric_eigen();
     let (least, most) = (eigen.eigenvalues.imin(), eigen.eigenvalues.max());
-    (eigen.eigenvalues[least] < SINGULAR * most).then(|| {
-        let parameter = &free[eigen.eigenvectors.column(least).icamax()];
-        format!(
-            "{} not identified: other constants make up for it; {}, or give it by fit.given",
-            parameter.key, parameter.told_by
-        )
-    })
+    let parameter = &free[eigen.eigenvectors.column(least).icamax()];
+    (eigen.eigenvalues[least] < SINGULAR * most).then(|| unidentified(parameter, "other constants make up for it"))
 }
 
 /// Standard errors of ln C and of all constants behind it, from `s² (JᵀJ)⁻¹`, taken from the variables to the constants by their slopes.
 fn errors(candidate: &Candidate<'_>, best: &Minimum, scatter: f64) -> Vec<f64> {
     let projected = without_level(&best.slopes);
-    let count = candidate.constants(&best.at).len();
+    let own = candidate.constants(&best.at);
     let Some(covariance) = (projected.transpose() * &projected).try_inverse().map(|inverse| inverse * scatter) else {
-        return vec![f64::INFINITY; count + 1];
+        return vec![f64::INFINITY; own.len() + 1];
     };
     let means = best.slopes.row_mean();
     let level = scatter / best.residuals.len() as f64 + (&means * &covariance * means.transpose())[(0, 0)];
-    let own = candidate.constants(&best.at);
-    let mut turn = DMatrix::zeros(count, best.at.len());
+    let mut turn = DMatrix::zeros(own.len(), best.at.len());
     for variable in 0..best.at.len() {
         let size = 1e-6 * best.at[variable].abs().max(1.0);
         let mut moved = best.at.clone();

@@ -20,32 +20,41 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::calibration::paris::doubt_of_exponent;
 use crate::error::{Error, Result, input_missing};
-use crate::fatigue::growth_law::nasgro::Nasgro;
-use crate::fatigue::growth_law::{Bounded, FactorLaw, Forman, GrowthLawKind, Walker, doubt};
-use crate::fatigue::paris::ParisLaw;
+use crate::fatigue::growth_law::{GrowthLawKind, doubt};
 use crate::measured::RateRow;
-use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
 pub use candidate::Given;
 use fit::{LawFit, fit};
 
-crate::kinds! {
-    /// Laws that rates are fitted by.
-    pub enum FitLaw for "fit.law" {
-        Paris = "paris": "da/dN = C ΔK^m; of a-N readings A and p of bonds as well",
-        Walker = "walker": "da/dN = C (K_max (1-R)^γ)^m",
-        Forman = "forman": "da/dN = C ΔK^m / ((1-R) K_c - ΔK)",
-        Nasgro = "nasgro": "the NASGRO equation",
-        Best = "best": "the one of them that the rates are for, by Akaike's criterion",
+/// Laws that rates are fitted by: one of them, or the best.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FitLaw(pub Option<GrowthLawKind>);
+
+impl FitLaw {
+    /// Key of the input file that takes these names.
+    pub const KEY: &'static str = "fit.law";
+
+    /// Every law, the best last.
+    pub fn all() -> impl Iterator<Item = Self> {
+        kinds().map(|kind| FitLaw(Some(kind))).chain([FitLaw(None)])
+    }
+
+    /// Name in input and result files.
+    pub fn name(self) -> &'static str {
+        self.0.map_or("best", GrowthLawKind::name)
+    }
+
+    /// Meaning in one line.
+    pub fn meaning(self) -> &'static str {
+        self.0.and_then(|kind| kind.0.fit).unwrap_or("the one of them that the rates are for, by Akaike's criterion")
     }
 }
 
-/// Laws in the order of their number of constants.
-const LAWS: [(FitLaw, GrowthLawKind); 4] = [
-    (FitLaw::Paris, GrowthLawKind::Paris),
-    (FitLaw::Walker, GrowthLawKind::Walker),
-    (FitLaw::Forman, GrowthLawKind::Forman),
-    (FitLaw::Nasgro, GrowthLawKind::Nasgro),
-];
+crate::kinds!(names of FitLaw);
+
+/// Laws that rates are fitted by, in the order of their number of constants.
+fn kinds() -> impl Iterator<Item = GrowthLawKind> {
+    GrowthLawKind::all().filter(|kind| kind.0.fit.is_some())
+}
 
 /// Variance of ln da/dN that is round-off: tables carry ten digits.
 const ROUND_OFF: f64 = 1e-20;
@@ -94,7 +103,7 @@ impl LawFits {
 /// Errors: [`Error::Mechanics`] where the rates do not tell the law asked for, or none; constants that no law has, or no metal.
 pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFits> {
     candidate::check_given(given)?;
-    let mut candidates: Vec<LawFit> = LAWS.iter().map(|(_, kind)| fit(*kind, given, rows)).collect();
+    let mut candidates: Vec<LawFit> = kinds().map(|kind| fit(kind, given, rows)).collect();
     let smooth = Smooth::through(rows);
     let effective = smooth.effective_rates(rows);
     for candidate in &mut candidates {
@@ -115,8 +124,8 @@ pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFi
 
 /// The place of the law asked for, or of the best.
 fn choose(candidates: &[LawFit], wanted: FitLaw) -> Result<usize> {
-    if wanted != FitLaw::Best {
-        let place = LAWS.iter().position(|(law, _)| *law == wanted).unwrap_or(0);
+    if let Some(kind) = wanted.0 {
+        let place = candidates.iter().position(|candidate| candidate.kind == kind).unwrap_or(0);
         let no_law = |why: &String| Error::Mechanics(format!("the rates do not tell the law {wanted}: {why}"));
         return candidates[place].left_out.as_ref().map_or(Ok(place), |why| Err(no_law(why)));
     }
@@ -246,26 +255,11 @@ fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
 
 /// Refuses a law that no metal has: a unit that slipped shows here.
 fn check_metal(law: &LawFit, rows: &[RateRow]) -> Result<()> {
-    let at = |key: &str| law.constants.iter().find(|constant| constant.key == key).map_or(f64::NAN, |constant| constant.value);
     // The middle of the ratios: a law has no rates at ratios that it was not fitted to.
     let ratio = rows[rows.len() / 2].ratio;
-    let problem = match law.kind {
-        GrowthLawKind::Forman => {
-            let forman =
-                Forman { c: at("forman_c_mm_per_cycle") * MM_PER_CYCLE, m: at("forman_m"), k_c: at(candidate::K_C) * MPA_SQRT_M };
-            doubt(&Bounded { law: FactorLaw::Forman(forman), threshold: 0.0 }, ratio)
-        }
-        GrowthLawKind::Nasgro => {
-            let law = Nasgro { c: at("nasgro_c_mm_per_cycle") * MM_PER_CYCLE, ..candidate::nasgro(&at) };
-            doubt(&Bounded { law: FactorLaw::Nasgro(law), threshold: 0.0 }, ratio)
-        }
-        kind => {
-            let gamma = if kind == GrowthLawKind::Walker { at(candidate::GAMMA) } else { 1.0 };
-            let paris = ParisLaw { c: at("paris_c_mm_per_cycle") * MM_PER_CYCLE, m: at("paris_m") };
-            doubt_of_exponent(paris.m).or_else(|| doubt(&Walker { paris, gamma, threshold: 0.0 }, ratio))
-        }
-    };
-    match problem {
+    let of_power = law.kind.0.read.is_none().then(|| doubt_of_exponent(law.constants[1].value)).flatten();
+    let fitted = law.kind.0.of(law.constants.iter().map(|constant| constant.value));
+    match of_power.or_else(|| doubt(&fitted, ratio)) {
         None => Ok(()),
         Some(doubt) => Err(input_missing("measured.rates", format!("give a law that no metal has: {doubt}"), "")),
     }

@@ -2,8 +2,29 @@
 
 use serde::Serialize;
 
-use super::GrowthLaw;
-use crate::units::MPA_SQRT_M;
+use super::FactorLaw;
+use super::description::{Description, GAMMA, Given, UNSAID};
+use crate::error::{Error, InputError, Result, input, input_missing};
+use crate::measured::{RateFile, RateRow, RateTable, round_off};
+use crate::units::{MM_PER_CYCLE, MPA_SQRT_M};
+
+/// What it says of itself.
+pub static LAW: Description = Description {
+    name: "table",
+    meaning: "da/dN over ΔK, and over R, as rows of a CSV file",
+    constants: &[GAMMA],
+    others: &["growth_table", "growth_table_ends"],
+    read: Some(|given, law| Ok(FactorLaw { table: Some(read(given)?), ..FactorLaw::new(law, Vec::new()) })),
+    ..UNSAID
+};
+
+crate::kinds! {
+    /// What K beyond the rows of a table of rates does.
+    pub enum TableEnds for "fatigue.growth_table_ends" {
+        Refused = "refused": "the run ends in an error",
+        Held = "held": "the crack grows at the rate of the last row; how much of the life that is stands in a warning",
+    }
+}
 
 /// Stress ratios that differ by less are one.
 const SAME_RATIO: f64 = 0.02;
@@ -79,10 +100,9 @@ impl Table {
             None => k_max * own,
         }
     }
-}
 
-impl GrowthLaw for Table {
-    fn rate(&self, k_max: f64, ratio: f64) -> f64 {
+    /// da/dN, m/cycle, at K_max, Pa√m; beyond the ends that of the end.
+    pub fn rate(&self, k_max: f64, ratio: f64) -> f64 {
         let delta_k = self.delta_k(k_max, ratio);
         if delta_k <= 0.0 {
             return 0.0;
@@ -92,7 +112,8 @@ impl GrowthLaw for Table {
         (from + share * (to - from)).exp()
     }
 
-    fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
+    /// In words, that K lies beyond the rows.
+    pub fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
         let delta_k = self.delta_k(k_max, ratio);
         let [low, high] = self.range(ratio);
         let [at, low_mpa, high_mpa] = [delta_k, low, high].map(|k| k / MPA_SQRT_M);
@@ -101,7 +122,96 @@ impl GrowthLaw for Table {
         is_beyond.then(|| format!("ΔK = {at:.4} MPa√m lies beyond the table of rates, {low_mpa:.4} to {high_mpa:.4} MPa√m"))
     }
 
-    fn is_refused_beyond(&self) -> bool {
-        !self.holds_ends
+    /// In words.
+    pub fn in_words(&self) -> String {
+        let rows: usize = self.curves.iter().map(|curve| curve.rows.len()).sum();
+        format!("{rows} rows at {} stress ratios", self.curves.len())
+    }
+
+    /// What is to be said of one that names no stress ratio.
+    pub fn line(&self, ratio: f64) -> Option<String> {
+        (!self.says_ratio).then(|| {
+            format!(
+                "the table of rates names no stress ratio: its rates are used at R = {ratio} as they are; name it in a column stress_ratio or \
+                 by growth_table = {{ file = \"...\", stress_ratio = ... }}"
+            )
+        })
+    }
+}
+
+/// The table of a case.
+fn read(given: &Given<'_>) -> Result<Table> {
+    const KEY: &str = "fatigue.growth_table";
+    let Some(file) = given.get::<RateFile>("growth_table")?.map(|file| file.keys()) else {
+        let remedy =
+            "name a CSV file with the columns delta_k_mpa_sqrt_m, da_dn_mm_per_cycle and, for several ratios, stress_ratio";
+        return Err(input_missing(KEY, "is missing", remedy));
+    };
+    let (rates, _) = file.read(given.folder, KEY)?;
+    let table = Table {
+        curves: curves(&rates).map_err(|error| error.in_file(&given.folder.path(&file.file)))?,
+        holds_ends: given.get("growth_table_ends")? == Some(TableEnds::Held),
+        walker_gamma: GAMMA.quantity.read_optional("fatigue.walker_gamma", given.get(GAMMA.key)?)?,
+        says_ratio: rates.says_ratio,
+    };
+    let [first, last] = [&table.curves[0], &table.curves[table.curves.len() - 1]].map(|curve| curve.ratio);
+    if let Some(gamma) = table.walker_gamma.filter(|_| !table.says_ratio || table.curves.len() > 1) {
+        let problem = match table.says_ratio {
+            true => format!("does not go with a table of several stress ratios, {first} to {last}"),
+            false => "does not go with a table that names no stress ratio".to_owned(),
+        };
+        let remedy = "leave it out, or give a table of one stress ratio that it names, or { file = \"...\", stress_ratio = ... }";
+        return Err(input("fatigue.walker_gamma", gamma, problem, remedy));
+    }
+    if !table.knows(given.ratio) {
+        let (name, add) = (&file.file, "add rates at this ratio to the table");
+        let by_gamma = format!("give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or {add}");
+        let (problem, remedy) = match table.curves.len() {
+            1 => (format!("is another stress ratio than that of {name}, {first}"), &*by_gamma),
+            _ => (format!("lies beyond the ratios of {name}, {first} to {last}"), add),
+        };
+        return Err(input("loading.stress_ratio", given.ratio, problem, remedy));
+    }
+    Ok(table)
+}
+
+/// The curves of a table by rising ratio, each with at least two rows, ΔK and rate rising.
+fn curves(rates: &RateTable) -> Result<Vec<Curve>> {
+    let wrong = |row: Option<&RateRow>, key: &str, value: f64, problem: String| {
+        Error::Input(Box::new(InputError {
+            line: row.map(|row| row.line),
+            key: Some(key.to_owned()),
+            value: Some(round_off(value).to_string()),
+            problem,
+            remedy: "give rows of rising ΔK with rising rates, both above zero, one stress ratio after the other".to_owned(),
+            ..InputError::default()
+        }))
+    };
+    let mut curves: Vec<Curve> = Vec::new();
+    for row in &rates.rows {
+        let pair = [row.delta_k, row.rate];
+        match curves.last_mut() {
+            Some(curve) if curve.ratio == row.ratio => {
+                let last = curve.rows[curve.rows.len() - 1];
+                if let Some(i) = (0..2).find(|&i| pair[i] <= last[i]) {
+                    let si = [MPA_SQRT_M, MM_PER_CYCLE][i];
+                    let problem = format!("does not rise against {}, that of the row before", round_off(last[i] / si));
+                    return Err(wrong(Some(row), &rates.columns[i], pair[i] / si, problem));
+                }
+                curve.rows.push(pair);
+            }
+            Some(last) if last.ratio > row.ratio => {
+                let problem = format!("falls below {}, that of the rows before", last.ratio);
+                return Err(wrong(Some(row), "stress_ratio", row.ratio, problem));
+            }
+            _ => curves.push(Curve { ratio: row.ratio, rows: vec![pair] }),
+        }
+    }
+    match curves.iter().find(|curve| curve.rows.len() < 2) {
+        None if curves.is_empty() => Err(wrong(None, "rows", 0.0, "are too few".to_owned())),
+        None => Ok(curves),
+        Some(curve) => {
+            Err(wrong(None, "stress_ratio", curve.ratio, "has a single row: a rate between rows needs two".to_owned()))
+        }
     }
 }

@@ -208,7 +208,6 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             ));
             end = Some(StopReason::LigamentUnresolved);
         }
-        if std::env::var_os("DBG").is_some() { eprintln!("DBG {:e} grow {growths:?} step {:e} kink {} tips {:?}", self.last().cycles+cycles, self.state.step, step.is_kink, self.state.tips.iter().map(|t| (t.growth, t.rate, t.factors, t.steering.corner(), t.spacing)).collect::<Vec<_>>()); }
         let last = self.last();
         let next = self.row(last.cycles + cycles, work, last.broken_bonds + step.parted.bonds);
         let (row, reason) = end_of_life::row_after(self.case, last, next, end);

@@ -178,9 +178,10 @@ impl Tip {
 
     /// Takes the factors at the end of its line, Pa√m. The rate of a tip that has ended or stands is none.
     pub(super) fn take(&mut self, factors: [f64; 2], rate: impl Fn(f64) -> f64) {
-        self.factors = factors;
+        // Flanks do not overlap: what is read below zero is where places of contact are too few at a tip.
+        self.factors = [factors[0].max(0.0), factors[1]];
         if !self.is_closed && self.begins_kink() {
-            self.kink = Kink::new(factors, self.t_stress, self.growth);
+            self.kink = Kink::new(self.factors, self.t_stress, self.growth);
         }
         self.rate = rate(self.driving_factor());
     }
