@@ -161,23 +161,23 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("fracture", 6916),
     ("report", 7437),
+    ("fracture", 6916),
+    ("calibration", 6001),
     ("service", 5627),
-    ("calibration", 6128),
-    ("growth", 5095),
     ("solver", 5287),
-    ("verify", 4855),
-    ("measured", 3722),
-    ("element_free", 3712),
+    ("growth", 4890),
+    ("verify", 4858),
+    ("element_free", 3991),
+    ("measured", 3727),
     ("commands", 2713),
-    ("case", 2604),
     ("body", 2534),
     ("specimen", 2455),
+    ("case", 2313),
     ("levels", 1728),
-    ("predict", 1556),
-    ("fatigue", 1294),
-    ("sweep", 1074),
+    ("fatigue", 1681),
+    ("predict", 1558),
+    ("sweep", 1075),
     ("runner", 912),
     ("loading", 831),
     ("input", 735),
@@ -188,7 +188,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 70841;
+const LINES_OF_ALL: usize = 70923;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -9,7 +9,7 @@ fn balance(blocks: &[[f64; 3]]) -> EnergyBalance {
     let mut balance = EnergyBalance::default();
     for (i, &[of_tips, of_plate, cycles]) in blocks.iter().enumerate() {
         let block = ReleasedEnergy { of_tips, of_plate, growth: HORIZON, lengthening: HORIZON, cycles };
-        balance.take(block, (i + 1) as f64 * HORIZON, HORIZON);
+        balance.take(block, (i + 1) as f64 * HORIZON, 5.0 * HORIZON);
     }
     balance
 }

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use perilife::case::Case;
 use perilife::fatigue::crack_tip::TipState;
-use perilife::growth::record::CurvePoint;
 use perilife::growth::cracks::initial_tips;
 use perilife::growth::points::PointPlate;
+use perilife::growth::record::CurvePoint;
 use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::solver::{SolverKind, Symmetry};

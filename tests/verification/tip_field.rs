@@ -4,7 +4,6 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-
 use perilife::body::pre_crack::bonds_across;
 use perilife::body::{Body, Bond};
 use perilife::case::{Case, RESIDUAL};

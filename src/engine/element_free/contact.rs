@@ -153,7 +153,9 @@ pub fn press(specimen: &Specimen, plate: &Discretisation, factor: &Factor, y: &[
             }
         }
     }
-    Err(Error::Mechanics(format!("contact of crack flanks is not found in {TURNS} turns; model.tolerance_percent moves the nodes")))
+    Err(Error::Mechanics(format!(
+        "contact of crack flanks is not found in {TURNS} turns; model.tolerance_percent moves the nodes"
+    )))
 }
 
 /// `C = G K⁻¹ Gᵀ + D` of the segments that have come into contact.
@@ -209,7 +211,8 @@ fn segments(specimen: &Specimen, plate: &Discretisation) -> Vec<Segment> {
         for piece in cut.points.windows(2) {
             let (a, b) = (piece[0], piece[1]);
             // Parted where another crack meets it.
-            let others = cuts.iter().enumerate().filter(|(other, _)| *other != own).flat_map(|(_, other)| other.points.windows(2));
+            let others =
+                cuts.iter().enumerate().filter(|(other, _)| *other != own).flat_map(|(_, other)| other.points.windows(2));
             let meets = others.filter(|other| segments_touch(a, b, other[0], other[1]));
             let mut shares: Vec<f64> = meets.filter_map(|other| meeting_share(a, b, other[0], other[1])).collect();
             shares.retain(|share| (0.0..1.0).contains(share));

@@ -8,8 +8,8 @@ use super::cells::EIGHT;
 use super::crack::TipAxes;
 use super::field::{Discretisation, Local};
 use crate::error::{Error, Result};
-use crate::specimen::geometry::{along, circle_shares, direction, distance};
 use crate::specimen::Point;
+use crate::specimen::geometry::{along, circle_shares, direction, distance};
 use crate::units::place_mm;
 use crate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor, force_gradient};
 

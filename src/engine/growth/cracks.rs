@@ -67,7 +67,14 @@ pub trait CrackedPlate: Sized {
 
     /// K_I and K_II, Pa√m, at the end of the line of a tip from what was read of it, after it has turned; `gap` is that to a tip which it
     /// faces, m.
-    fn factors_at_line(&mut self, _case: &Case, _cracks: &CracksState, _tip: usize, reading: &Reading, _gap: Option<f64>) -> [f64; 2] {
+    fn factors_at_line(
+        &mut self,
+        _case: &Case,
+        _cracks: &CracksState,
+        _tip: usize,
+        reading: &Reading,
+        _gap: Option<f64>,
+    ) -> [f64; 2] {
         reading.factors
     }
 
@@ -159,7 +166,12 @@ impl<'a, P: CrackedPlate> Cracks<'a, P> {
         let tip = |tip: usize| {
             let end = specimen.line_end(tip).ok_or_else(|| {
                 let problem = "of this case need sharp cracks: the end of a slot has no stress intensity factor";
-                input("specimen.cracks", "the tips", problem, "start a crack in the slot, or use fatigue.driver = \"bond_strain\"")
+                input(
+                    "specimen.cracks",
+                    "the tips",
+                    problem,
+                    "start a crack in the slot, or use model.method = \"peridynamics\" with fatigue.driver = \"bond_strain\"",
+                )
             })?;
             Ok(Tip::new(specimen, end))
         };

@@ -27,6 +27,10 @@ const REFINEMENTS_MOST: usize = 2;
 /// Nodes beyond which they do not.
 const NODES_MOST: f64 = 2e4;
 
+/// Way along a crack from its tip, over the room of the tip, within which corners and kinks are not seen: of a tip that hardly grows they
+/// would ask for ever finer nodes.
+const UNSEEN: f64 = 1e-3;
+
 /// A plate of nodes.
 pub struct NodePlate {
     settings: ElementFreeSettings,
@@ -58,9 +62,16 @@ impl NodePlate {
         self.settings.resolution.finer(self.state.fineness)
     }
 
-    /// A tip as nodes see it.
-    fn tip(&self, case: &Case, tip: &super::cracks::tip::Tip) -> Tip {
-        Tip { end: tip.end, length: tip.own_length(self.scales(case).kink_least) }
+    /// The cracks and their active tips as nodes see them: without corners that are next to a tip.
+    fn cracks(case: &Case, cracks: &CracksState) -> (Vec<CrackLine>, Vec<Tip>) {
+        let mut lines = cracks.lines.clone();
+        let of_tip = |(_, tip): (usize, &super::cracks::tip::Tip)| {
+            let least = UNSEEN * cracks.room(&case.specimen, tip).min(tip.length + tip.growth);
+            lines[tip.end.line] = lines[tip.end.line].blunted(tip.end.at_last, least);
+            Tip { end: tip.end, length: tip.own_length(least) }
+        };
+        let tips = cracks.active().map(of_tip).collect();
+        (lines, tips)
     }
 
     fn factors(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<[f64; 2]>> {
@@ -118,9 +129,9 @@ impl CrackedPlate for NodePlate {
     fn solve(&mut self, case: &Case, cracks: &CracksState) -> Result<()> {
         self.solved = None;
         let specimen = &case.specimen;
-        let tips: Vec<Tip> = cracks.active().map(|(_, tip)| self.tip(case, tip)).collect();
+        let (lines, tips) = NodePlate::cracks(case, cracks);
         let resolution = self.resolution();
-        let plate = Discretisation::new(specimen, self.elasticity, &cracks.lines, &tips, &resolution)?;
+        let plate = Discretisation::new(specimen, self.elasticity, &lines, &tips, &resolution)?;
         let solution = solve(specimen, &plate, resolution.far, case.loading.maximum)?;
         self.state.solves += 1;
         self.state.nodes = self.state.nodes.max(plate.nodes.at.len());
@@ -134,9 +145,10 @@ impl CrackedPlate for NodePlate {
         let Some((plate, solution)) = &self.solved else { return Ok(readings) };
         let share = case.loading.share(self.state.work);
         let pressure = case.specimen.crack_pressure * case.loading.maximum;
-        for (index, (tip, of_tip)) in cracks.active().enumerate() {
+        let (lines, tips) = NodePlate::cracks(case, cracks);
+        for (index, (tip, _)) in cracks.active().enumerate() {
             let axes = &plate.axes[index];
-            let room = room(&case.specimen, &cracks.lines, &self.tip(case, of_tip));
+            let room = room(&case.specimen, &lines, &tips[index]);
             let pressure = |at| pressure + solution.pressure_at(at);
             let read = factors::read(plate, &solution.u, index, room, &pressure)?;
             let is_closed = solution.is_closed(axes.at);

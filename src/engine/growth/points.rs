@@ -238,7 +238,14 @@ impl CrackedPlate for PointPlate {
         Ok(readings)
     }
 
-    fn factors_at_line(&mut self, case: &Case, cracks: &CracksState, tip: usize, reading: &Reading, gap: Option<f64>) -> [f64; 2] {
+    fn factors_at_line(
+        &mut self,
+        case: &Case,
+        cracks: &CracksState,
+        tip: usize,
+        reading: &Reading,
+        gap: Option<f64>,
+    ) -> [f64; 2] {
         self.at_line(case, cracks, tip, reading, gap)
     }
 
@@ -351,8 +358,7 @@ impl PointPlate {
             };
             bonds_across(body, from, to).into_iter().filter_map(life).collect::<Vec<_>>()
         };
-        let mut lives: Vec<(Bond, f64)> =
-            self.remaining_life.iter().copied().chain(cracks.active().flat_map(ahead)).collect();
+        let mut lives: Vec<(Bond, f64)> = self.remaining_life.iter().copied().chain(cracks.active().flat_map(ahead)).collect();
         lives.retain(|&(bond, _)| self.bonds.is_intact(bond));
         // Of equal bonds the least life comes first and stays.
         lives.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));

@@ -177,7 +177,9 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         } else {
             step::cycles(step.past, step.rate, rate, growth)
         };
-        let is_kinking = self.scales.step.first_of_kink.is_finite() && self.state.tips.iter().any(Tip::begins_kink);
+        let fastest = self.fastest().map_or(0.0, |tip| self.state.tips[tip].rate);
+        let kinks = |tip: &Tip| tip.begins_kink() && !tip.is_at_rest(fastest);
+        let is_kinking = self.scales.step.first_of_kink.is_finite() && self.state.tips.iter().any(kinks);
         if has_ended || is_kinking {
             self.state.step = self.first_step();
         } else if growth > 0.0 && !is_over {

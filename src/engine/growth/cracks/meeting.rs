@@ -75,10 +75,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
 
     /// Distance of a tip from rims and other cracks, m.
     pub(super) fn room(&self, index: usize) -> f64 {
-        let own = &self.state.tips[index];
-        let at = self.state.position(own);
-        let others = self.state.lines.iter().enumerate().filter(|(other, _)| *other != own.end.line);
-        others.map(|(_, line)| line.distance(at)).fold(self.case.specimen.rim_distance(at), f64::min)
+        self.state.room(&self.case.specimen, &self.state.tips[index])
     }
 
     /// Way of a tip straight ahead to a rim or another crack, m, infinite where that is farther than it matters, or to a tip that it

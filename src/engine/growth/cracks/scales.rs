@@ -23,8 +23,6 @@ pub struct Scales {
     pub meeting: MeetingScales,
     /// Growth after a kink over which the field does not show it, so that K is that of a short kink.
     pub kink_unresolved: f64,
-    /// Growth since a kink, in spacings at the tip, below which it is none yet.
-    pub kink_least: f64,
     /// Growth over which energies are compared.
     pub energy_interval: f64,
     /// Increments after which a run can be resumed, the solver being built anew.
@@ -159,7 +157,6 @@ impl Scales {
                 passing: 1.0 * spacing,
             },
             kink_unresolved: 0.3 * horizon,
-            kink_least: 0.0,
             // Within it the cut bonds stand for a length that is right to 2 %.
             energy_interval: 5.0 * horizon,
             // Building the solver anew takes as long as three to four increments.
@@ -212,8 +209,6 @@ impl Scales {
                 passing: 0.0,
             },
             kink_unresolved: 0.0,
-            // Of a tip that hardly grows it would ask for ever finer nodes.
-            kink_least: 0.01,
             energy_interval: far,
             // Nothing is built anew.
             rows_per_checkpoint: 8,

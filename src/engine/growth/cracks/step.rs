@@ -22,7 +22,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let growing = || self.state.tips.iter().enumerate().filter(|(_, tip)| tip.is_growing());
         let last = |index: usize| self.last_way(index).map(|way| way.length);
         let most = |index: usize| last(index).unwrap_or_else(|| self.limit(index));
-        let limits: Vec<(f64, bool)> = growing().map(|(index, tip)| (of_lead((tip, most(index))), last(index).is_some())).collect();
+        let limits: Vec<(f64, bool)> =
+            growing().map(|(index, tip)| (of_lead((tip, most(index))), last(index).is_some())).collect();
         let limit = limits.iter().map(|limit| limit.0).fold(f64::INFINITY, f64::min);
         // What is left of the way of a tip that is at its end is gone at once; else steps are no longer than they have proved to be.
         let is_last = limits.iter().any(|(most, is_last)| *is_last && *most <= limit * (1.0 + 1e-9));
@@ -77,8 +78,9 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     /// Step of the lead after one of length `grown`, m, in which the parabola added the share `curvature_share` to the cycles.
     pub(super) fn next_step(&self, grown: f64, curvature_share: f64) -> f64 {
         let scales = &self.scales.step;
+        let fastest = self.fastest().map_or(0.0, |tip| self.state.tips[tip].rate);
         let is_kinked = |tip: &Tip| {
-            let corner = tip.steering.last_corner().filter(|_| tip.is_growing());
+            let corner = tip.steering.last_corner().filter(|_| tip.is_growing() && !tip.is_at_rest(fastest));
             corner.is_some_and(|corner| tip.growth - corner < scales.kink_spacings * tip.spacing)
         };
         let [least, most] = scales.change;

@@ -130,11 +130,10 @@ impl Tip {
         }
     }
 
-    /// Length of crack that its field knows of, m: since the last corner, if there is one and growth since it is more than `least`
-    /// spacings.
+    /// Length of crack that its field knows of, m: since the last corner, if there is one and growth since it is more than `least`, m.
     pub fn own_length(&self, least: f64) -> f64 {
         match self.steering.last_corner() {
-            Some(corner) if self.growth > corner + least * self.spacing => self.growth - corner,
+            Some(corner) if self.growth > corner + least => self.growth - corner,
             _ => self.length + self.growth,
         }
     }
@@ -155,11 +154,16 @@ impl Tip {
         self.past
     }
 
+    /// Whether it grows so slowly beside the fastest tip, of this rate, that how its own rate and direction change says nothing.
+    pub(super) fn is_at_rest(&self, fastest: f64) -> bool {
+        self.rate <= REST * fastest
+    }
+
     /// Rate over that of the tip `lead`, in the middle of a step of that by `step`, m: ln of it is linear in the growth of the lead.
     pub(super) fn share(&self, lead: &Tip, step: f64) -> f64 {
         let now = self.rate / lead.rate;
         let Some(([before, since], [lead_before, _])) = self.before.zip(lead.before) else { return now };
-        let is_known = before > 0.0 && lead_before > 0.0 && since > 0.0 && now > REST;
+        let is_known = before > 0.0 && lead_before > 0.0 && since > 0.0 && !self.is_at_rest(lead.rate);
         if is_known { now * (now * lead_before / before).powf(0.5 * step / since) } else { now }
     }
 
@@ -228,6 +232,13 @@ impl CracksState {
     /// Place of a tip, m.
     pub fn position(&self, tip: &Tip) -> Point {
         self.lines[tip.end.line].end(tip.end.at_last)
+    }
+
+    /// Distance of a tip from rims and from cracks that it does not end, m.
+    pub fn room(&self, specimen: &Specimen, tip: &Tip) -> f64 {
+        let at = self.position(tip);
+        let others = self.lines.iter().enumerate().filter(|(other, _)| *other != tip.end.line);
+        others.map(|(_, line)| line.distance(at)).fold(specimen.rim_distance(at), f64::min)
     }
 
     /// Tips that have not ended, with their index.

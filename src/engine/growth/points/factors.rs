@@ -151,7 +151,14 @@ impl PointPlate {
     }
 
     /// K_I and K_II, Pa√m, at the end of the line of a tip from what its ring says, `gap` being that to a tip which it faces, m.
-    pub(super) fn at_line(&mut self, case: &Case, cracks: &CracksState, index: usize, reading: &Reading, gap: Option<f64>) -> [f64; 2] {
+    pub(super) fn at_line(
+        &mut self,
+        case: &Case,
+        cracks: &CracksState,
+        index: usize,
+        reading: &Reading,
+        gap: Option<f64>,
+    ) -> [f64; 2] {
         let (horizon, kink_unresolved) = (self.body.horizon(), self.scales(case).kink_unresolved);
         let (tip, memory) = (&cracks.tips[index], &mut self.memory[index]);
         let (read, of_read) = (reading.factors, equivalent_factor(reading.factors));
