@@ -26,7 +26,7 @@ plane = "stress"
 stress_max_mpa = 70.0
 stress_ratio = 0.1
 [model]
-spacing_mm = 1.0
+spacing_mm = 0.6
 [fatigue]
 a = 6450.0
 p = 2.86

@@ -1,12 +1,14 @@
 //! Problems of mechanics as users brought them, on points and on nodes: the right K, or the cause by name (shared data, `mechanics4`).
-//! Right values: finite elements and closed forms of the README beside the data; contact and slots of nodes are refused by name.
+//! Right values: finite elements and closed forms of the README beside the data; slots of nodes are refused by name.
 
 use perilife::case::Case;
 use perilife::growth::cracks::initial_tips;
 use perilife::growth::nodes::NodePlate;
 use perilife::growth::points::PointPlate;
+use perilife::growth::record::CurvePoint;
 use perilife::input::Document;
-use perilife::units::MPA_SQRT_M;
+use perilife::predict::{Silent, predict};
+use perilife::units::{MM, MPA_SQRT_M};
 
 use crate::support::shared::shared;
 
@@ -107,4 +109,38 @@ fn flanks_in_contact_have_the_right_factors() {
     let Some(document) = document("guards/star3") else { return };
     let star = initial_tips::<NodePlate>(&Case::plate_on_nodes(&document).unwrap()).unwrap();
     assert!(off(star.tips[0].factors, [24.23, 0.0]) < 0.005 && star.warnings.is_empty() && !star.in_contact, "{star:?}");
+}
+
+/// Cycles at which the first tip is so far from an axis, mm, by finite elements with contact, on nodes.
+type Life = (&'static str, usize, [(f64, f64); 2]);
+
+const STAR: Life = ("faces_overlap_on_nodes/star3u", 0, [(30.0, 48_490.0), (45.0, 70_670.0)]);
+const DISC: Life = ("unlimited_on_nodes/disc0", 1, [(30.0, 23.01e6), (38.0, 26.06e6)]);
+const SLIDING: Life = ("unlimited_on_nodes/disc45", 1, [(22.0, 4.85e6), (32.0, 6.65e6)]);
+
+fn lives(plates: &[Life]) {
+    for (name, axis, places) in plates {
+        let Some(document) = document(name) else { return };
+        let run = predict(&Case::plate_on_nodes(&document).unwrap(), &Silent).unwrap();
+        // The tips that go out on one side: in the plates there are twins.
+        let way = |row: &CurvePoint| row.tips.iter().map(|tip| tip.position[*axis].abs() / MM).fold(0.0, f64::max);
+        for (at, right) in places {
+            let pair = run.curve.windows(2).find(|pair| way(&pair[0]) < *at && way(&pair[1]) >= *at).unwrap();
+            let share = (at - way(&pair[0])) / (way(&pair[1]) - way(&pair[0]));
+            let cycles = pair[0].cycles + share * (pair[1].cycles - pair[0].cycles);
+            println!("{name}: {cycles:.4e} for {right:.4e} at {at} mm");
+            assert!((cycles / right - 1.0).abs() < 0.01, "{name}: {cycles} for {right} at {at} mm");
+        }
+    }
+}
+
+#[test]
+fn flanks_in_contact_have_the_right_lives() {
+    lives(&[STAR, DISC]);
+}
+
+#[test]
+#[ignore = "long: half a minute"]
+fn shut_tips_that_slide_have_the_right_lives() {
+    lives(&[SLIDING]);
 }

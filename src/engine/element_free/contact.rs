@@ -33,7 +33,7 @@ const LENGTH_MOST: f64 = 1.5;
 /// Length over the local spacing below which a piece of crack is none.
 const LENGTH_LEAST: f64 = 1e-3;
 /// Gauss points of a segment.
-const GAUSS: [f64; 2] = [0.211_324_865_405_187_12, 0.788_675_134_594_812_9];
+const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Stiffness that D stands for, over that of a spacing of material: K of 100 and of 10⁸ differ by less than 0.1 %.
 const STIFFNESS: f64 = 1000.0;
 /// Step off the crack at which a flank is read, in local spacings.
