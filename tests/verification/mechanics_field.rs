@@ -120,8 +120,9 @@ const SLIDING: Life = ("unlimited_on_nodes/disc45", 1, [(22.0, 4.85e6), (32.0, 6
 
 fn lives(plates: &[Life]) {
     for (name, axis, places) in plates {
-        let Some(document) = document(name) else { return };
-        let run = predict(&Case::plate_on_nodes(&document).unwrap(), &Silent).unwrap();
+        let Some(path) = shared(&format!("field/mechanics4/{name}.toml")) else { return };
+        let nodes = ["model.method=element_free_galerkin".to_owned()];
+        let run = predict(&Case::from_file(&path, &nodes).unwrap(), &Silent).unwrap();
         // The tips that go out on one side: in the plates there are twins.
         let way = |row: &CurvePoint| row.tips.iter().map(|tip| tip.position[*axis].abs() / MM).fold(0.0, f64::max);
         for (at, right) in places {

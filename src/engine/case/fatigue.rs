@@ -46,11 +46,11 @@ pub(super) fn from_value(
         input.delta_k_threshold_mpa_sqrt_m.filter(|value| *value != 0.0),
     )?;
     let driver = read_driver(&input, method, specimen)?;
-    let settings = FatigueSettings {
+    let mut settings = FatigueSettings {
         driver,
         ageing: choices.ageing.unwrap_or(Ageing::CrackTip),
         zone_radius_horizons: choices.zone_radius_horizons.unwrap_or(ZONE_RADIUS_HORIZONS),
-        step_error_percent: read_step_error(&input, driver)?,
+        step_error_percent: STEP_ERROR_PERCENT,
         critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
@@ -59,6 +59,7 @@ pub(super) fn from_value(
     // What is driven by bonds to the end needs no rate over K.
     let by_bonds = method == Method::Peridynamics && driver == Driver::BondStrain;
     let hands_over = by_bonds.then(|| settings.hands_over(specimen));
+    settings.step_error_percent = read_step_error(&input, driver == Driver::TipField || hands_over == Some(true))?;
     let given = Given { section: value, material, ratio: loading.ratio, folder };
     let law = law_source::read(settings.threshold, hands_over, &given)?;
     Ok(Fatigue { settings, law, allow_extrapolation, lot: input.lot.unwrap_or(Lot::Same) })
@@ -112,10 +113,10 @@ fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Resu
 }
 
 /// Reads the error of a block of growth by K; bonds that break one by one are solved for after every break, without such an error.
-fn read_step_error(slice: &FatigueKeys, driver: Driver) -> Result<f64> {
+fn read_step_error(slice: &FatigueKeys, has_tips: bool) -> Result<f64> {
     const KEY: &str = "fatigue.step_error_percent";
     let error = number("an error in percent", 0.001, 10.0).read_optional(KEY, slice.step_error_percent)?;
-    if let (Some(error), Driver::BondStrain) = (error, driver) {
+    if let Some(error) = error.filter(|_| !has_tips) {
         let problem = "belongs to growth by K of the tips, and the driver is \"bond_strain\", which solves after every break";
         return Err(input(KEY, error, problem, "leave it out, or use driver = \"tip_field\""));
     }
