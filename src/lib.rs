@@ -7,7 +7,7 @@
 //!
 //! Fatigue of a bond is `dλ/dN = -A ε^p`: its remaining life λ decreases from 1, and at 0 it breaks. Integrated through the zone of a
 //! steady tip this is `da/dN = β A δ^(1-p/2) (K/E')^p`, a Paris law with m = p ([`fatigue::rate_constant`]). So A and p drive a tip by its K
-//! ([`growth::tip_field`], the default), or every bond by its own strain ([`growth::bond_strain`]). Limits: linear elasticity, small-scale
+//! ([`growth::cracks`], the default), or every bond by its own strain ([`growth::bond_strain`]). Limits: linear elasticity, small-scale
 //! yielding, through cracks in plane stress or plane strain. `src/README.md` has the theory room by room, with symbols, limits and sources.
 //!
 //! As a library, from readings of a test to the life of another plate; lengths are metres inside, and names of what is not SI say so:

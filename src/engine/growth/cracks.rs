@@ -1,12 +1,12 @@
 //! Cracks driven by the stress intensity of their own tips, on any plate that can be parted, solved and read ([`CrackedPlate`]).
 //!
 //! Per cycle block one equilibrium; K_I and K_II of every tip by an interaction integral on a ring around it; direction by the largest
-//! circumferential stress ([`steering`]); growth of every tip by its own rate `da/dN` over the same cycles ([`step`]); the plate is
+//! circumferential stress ([`steering`]); growth of every tip by its own rate `da/dN` over the same cycles (`step.rs`); the plate is
 //! parted along every new piece of crack. A tip is a point of a continuous line, so that neither path nor rate know where points or
 //! nodes are.
 //!
 //! A tip that meets another crack joins both: it is no tip any more, nor is the tip that it meets head-on, and the tips that are left
-//! begin anew with the K that the joined crack gives them ([`meeting`]).
+//! begin anew with the K that the joined crack gives them (`meeting.rs`).
 
 pub mod ahead;
 mod increment;

@@ -94,7 +94,7 @@ impl CrackedPlate for NodePlate {
     }
 
     /// Makes the nodes as fine as K of the initial tips asks for: until it changes by no more than the tolerance when they get finer by
-    /// [`FINER`]. What is then still open is said in a warning.
+    /// half of themselves. What is then still open is said in a warning.
     fn open(&mut self, case: &Case, cracks: &CracksState) -> Result<()> {
         self.state.fineness = 1.0 / FINER;
         // Where they are too coarse to tell anything, the next ones say so.
