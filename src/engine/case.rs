@@ -49,6 +49,21 @@ crate::kinds! {
     }
 }
 
+/// What computes the growth of a case: method and driver in one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Engine {
+    /// K(a) of a handbook.
+    Handbook,
+    /// Nodes without elements, and the K of their tips.
+    Nodes,
+    /// Points and bonds, and the K of their tips.
+    Points,
+    /// Points and bonds that spend their lives to the end.
+    Bonds,
+    /// Bonds that begin a crack at a slot, and hand it over to the K of its tips.
+    BondsThenPoints,
+}
+
 crate::kinds! {
     /// What spends the life of a bond.
     pub enum Failure for "fatigue.failure" {

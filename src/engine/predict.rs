@@ -24,9 +24,8 @@ pub use crate::levels::PointGrid;
 use std::cell::OnceCell;
 
 use crate::case::budget::Budget;
-use crate::case::{Case, Method};
+use crate::case::{Case, Engine};
 use crate::error::Result;
-use crate::fatigue::Driver;
 use crate::growth::bond_strain::BondStrain;
 use crate::growth::cracks::{CrackedPlate, Cracks};
 use crate::growth::hand_calculation::HandCalculation;
@@ -62,22 +61,18 @@ fn watched(case: &Case, observer: &dyn Observer, run: impl FnOnce() -> Result<Pr
 /// A run by what its case asks to be driven by.
 fn follow(record: Record<'_>) -> Result<Prediction> {
     let case = &record.case().clone();
-    match (case.model.method, case.fatigue.driver) {
-        (Method::Handbook, _) => {
+    match case.engine() {
+        Engine::Handbook => {
             record.follow(&mut HandCalculation::start(case, laws::growth_law(case)?)?, |hand| hand.next_interval())
         }
-        (Method::Peridynamics, Driver::TipField) => {
-            record.follow(&mut TipField::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks)))
-        }
-        (Method::ElementFreeGalerkin, _) => {
-            record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks)))
-        }
-        (Method::Peridynamics, Driver::BondStrain) if case.hands_over() => {
+        Engine::Points => record.follow(&mut TipField::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),
+        Engine::Nodes => record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),
+        Engine::BondsThenPoints => {
             let later = OnceCell::new();
             let law = |horizon| laws::bond_law(case, horizon);
             record.follow(&mut HandOver::start(case, &later, law, laws::growth_law(case)?)?, |run| run.advance(increment))
         }
-        (Method::Peridynamics, Driver::BondStrain) => {
+        Engine::Bonds => {
             let law = |horizon| laws::bond_law(case, horizon);
             record.follow(&mut BondStrain::start(case, law)?, |bonds| bonds.next_break())
         }

@@ -166,29 +166,29 @@ const LINES: &[(&str, usize)] = &[
     ("calibration", 6001),
     ("service", 5627),
     ("solver", 5287),
-    ("growth", 4915),
+    ("growth", 4911),
     ("verify", 4858),
     ("element_free", 3994),
     ("measured", 3727),
     ("commands", 2713),
     ("body", 2534),
     ("specimen", 2455),
-    ("case", 2314),
+    ("case", 2329),
     ("levels", 1728),
     ("fatigue", 1681),
-    ("predict", 1558),
+    ("predict", 1550),
     ("sweep", 1075),
     ("runner", 912),
     ("loading", 831),
     ("input", 735),
     ("stress_intensity", 681),
-    ("check", 556),
+    ("check", 560),
     ("bond_law", 394),
     ("tables", 342),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 70952;
+const LINES_OF_ALL: usize = 70959;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -36,11 +36,11 @@ impl CrackGrowth for Steady {
 
     fn now(&self) -> GrowthStatus<'_> {
         let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = *self.0.last().unwrap();
-        GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true }
+        GrowthStatus { cycles, crack_length, delta_k, tips }
     }
 
-    fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
-        (std::mem::take(&mut self.0), 0.0)
+    fn curve(&mut self) -> Vec<CurvePoint> {
+        std::mem::take(&mut self.0)
     }
 
     fn state(&self) -> State {

@@ -3,7 +3,7 @@
 use toml::Value;
 
 use crate::calibration::laws::case::LawCase;
-use crate::case::{Case, LawSource, Method};
+use crate::case::{Case, Engine, LawSource, Method};
 use crate::material::Material;
 use crate::measured::MeasuredCurve;
 use crate::report::fit_use;
@@ -141,7 +141,11 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     lines.extend(by_points.then(|| line("driver", model_words::words(&chosen, &["driver"]))));
     if case.spends_bond_life() {
         let radius = fatigue.zone_radius_horizons;
-        let then = if case.hands_over() { "; K of the tips once cracks from slots are 1.5 horizons long" } else { "" };
+        let then = if case.engine() == Engine::BondsThenPoints {
+            "; K of the tips once cracks from slots are 1.5 horizons long"
+        } else {
+            ""
+        };
         let words = format!("{}, zone radius {radius} horizons, a solve after every break{then}", fatigue.ageing);
         lines.push(line("ageing", words));
     }

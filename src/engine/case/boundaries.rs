@@ -2,11 +2,11 @@
 //! breaks the plate.
 
 use super::model::round_mm;
-use super::{Case, Method};
+use super::{Case, Engine, Method};
 use crate::bond_law::BondLawKind;
 use crate::case::LawSource;
 use crate::element_free::basis::BasisKind;
-use crate::fatigue::{Ageing, Driver};
+use crate::fatigue::Ageing;
 use crate::limits;
 use crate::material::Plane;
 use crate::specimen::LoadMeasure;
@@ -18,30 +18,28 @@ use crate::units::{KN, MPA, MPA_SQRT_M};
 /// A line for every safe range that the case lies beyond.
 pub(super) fn lines(case: &Case) -> Vec<String> {
     let mut lines = Vec::new();
-    match (case.model.method, case.fatigue.driver) {
-        (Method::Handbook, _) => {}
-        (Method::ElementFreeGalerkin, _) => {
+    match case.engine() {
+        Engine::Handbook => {}
+        Engine::Nodes => {
             lines.extend(influence_line(case));
             lines.extend(poisson_line(case, Some("element_free_galerkin")));
         }
-        (Method::Peridynamics, Driver::TipField) => {
+        Engine::Points => {
             lines.extend(horizon_lines(case));
             lines.extend(ratio_line(case, "tip_field"));
             lines.extend(poisson_line(case, law_name(case)));
             lines.extend(step_line(case));
             lines.extend(exponent_line(case, "exponent", "tip_field"));
         }
-        (Method::Peridynamics, Driver::BondStrain) => {
-            // What bonds by their own strain do over the horizon ratio is told with its size elsewhere.
-            match case.fatigue.ageing {
-                Ageing::Everywhere => lines.extend(exponent_line(case, "ageing", "bond_strain, ageing everywhere")),
-                Ageing::CrackTip if case.hands_over() => {
-                    lines.extend(ratio_line(case, "tip_field"));
-                    lines.extend(exponent_line(case, "exponent", "tip_field"));
-                }
-                Ageing::CrackTip => lines.extend(exponent_line(case, "exponent", "bond_strain by its own strain")),
-            }
+        Engine::BondsThenPoints => {
+            lines.extend(ratio_line(case, "tip_field"));
+            lines.extend(exponent_line(case, "exponent", "tip_field"));
         }
+        // What bonds by their own strain do over the horizon ratio is told with its size elsewhere.
+        Engine::Bonds => lines.extend(match case.fatigue.ageing {
+            Ageing::Everywhere => exponent_line(case, "ageing", "bond_strain, ageing everywhere"),
+            Ageing::CrackTip => exponent_line(case, "exponent", "bond_strain by its own strain"),
+        }),
     }
     lines
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use super::{Case, LawSource, Method};
+use super::{Case, Engine, LawSource, Method};
 use crate::case::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::paris::ParisLaw;
@@ -173,14 +173,20 @@ impl Case {
         self.specimen.limit_load(crack_length, cracks, self.material.yield_strength?)
     }
 
-    /// Whether its crack grows as bonds lose remaining life, not by the K of its tips.
-    pub fn spends_bond_life(&self) -> bool {
-        self.model.method == Method::Peridynamics && self.fatigue.driver == Driver::BondStrain
+    /// What computes its growth.
+    pub fn engine(&self) -> Engine {
+        match (self.model.method, self.fatigue.driver) {
+            (Method::Handbook, _) => Engine::Handbook,
+            (Method::ElementFreeGalerkin, _) => Engine::Nodes,
+            (Method::Peridynamics, Driver::TipField) => Engine::Points,
+            (Method::Peridynamics, Driver::BondStrain) if self.fatigue.hands_over(&self.specimen) => Engine::BondsThenPoints,
+            (Method::Peridynamics, Driver::BondStrain) => Engine::Bonds,
+        }
     }
 
-    /// Whether its cracks begin at slots by the lives of bonds and go on by the K of their tips.
-    pub fn hands_over(&self) -> bool {
-        self.spends_bond_life() && self.fatigue.hands_over(&self.specimen)
+    /// Whether its crack grows, at first at least, as bonds lose remaining life, not by the K of its tips.
+    pub fn spends_bond_life(&self) -> bool {
+        matches!(self.engine(), Engine::Bonds | Engine::BondsThenPoints)
     }
 
     /// The same case with the cracks that its bonds have made, driven by the K of their tips.
@@ -195,11 +201,7 @@ impl Case {
 
     /// Whether its crack grows by the K of its tips, on points or nodes.
     pub fn is_driven_by_tips(&self) -> bool {
-        match self.model.method {
-            Method::Peridynamics => self.fatigue.driver == Driver::TipField,
-            Method::ElementFreeGalerkin => true,
-            Method::Handbook => false,
-        }
+        matches!(self.engine(), Engine::Points | Engine::Nodes)
     }
 
     /// A and p at the body's actual horizon (m).

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::model_keys::on_nodes;
-use super::{Case, Choices, LawSource, Method, boundaries, fatigue, law, law_source, model, remove_law};
+use super::{Case, Choices, Engine, LawSource, Method, boundaries, fatigue, law, law_source, model, remove_law};
 use crate::bond_law::SurfaceCorrection;
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
@@ -138,7 +138,7 @@ impl Case {
             choices,
             law_record,
         };
-        if case.is_driven_by_tips() && case.model.method == Method::Peridynamics && case.choices.surface_correction.is_none() {
+        if case.engine() == Engine::Points && case.choices.surface_correction.is_none() {
             case.model.take_most_accurate_rim();
         }
         match fatigue.law {

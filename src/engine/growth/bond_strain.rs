@@ -238,7 +238,7 @@ impl CrackGrowth for BondStrain<'_> {
         let row = track.last();
         let cycles = track.cycles();
         let (crack_length, tips) = (row.crack_length, row.tips());
-        GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k: f64::NAN, tips, is_counting: true }
+        GrowthStatus { cycles, crack_length, delta_k: f64::NAN, tips }
     }
 
     fn body(&self) -> Option<Arc<Body>> {
@@ -326,11 +326,11 @@ impl CrackGrowth for BondStrain<'_> {
         Ok(stop)
     }
 
-    fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
+    fn curve(&mut self) -> Vec<CurvePoint> {
         let curve = self.run.track.curve(self.case, &self.body, self.end);
         let range_share = self.case.loading.range_share();
         self.first = curve.first().map(|row| (row.delta_k / range_share, row.crack_length));
-        (curve, 0.0)
+        curve
     }
 
     fn cross_check(&self, _cycles: f64) -> Option<CrossCheck> {

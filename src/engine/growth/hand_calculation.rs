@@ -137,7 +137,7 @@ impl CrackGrowth for HandCalculation<'_> {
 
     fn now(&self) -> GrowthStatus<'_> {
         let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = *self.last();
-        GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true }
+        GrowthStatus { cycles, crack_length, delta_k, tips }
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {
@@ -155,8 +155,8 @@ impl CrackGrowth for HandCalculation<'_> {
         Ok(fits)
     }
 
-    fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
-        (std::mem::take(&mut self.curve), 0.0)
+    fn curve(&mut self) -> Vec<CurvePoint> {
+        std::mem::take(&mut self.curve)
     }
 
     /// How much of the life the formula is not made for.

@@ -84,7 +84,7 @@ impl<'a> HandOver<'a> {
         }
         let reason = self.bonds.next_break()?;
         if reason.is_none() && self.is_due() {
-            let (before, took) = (self.bonds.curve().0, self.bonds.statistics());
+            let (before, took) = (self.bonds.curve(), self.bonds.statistics());
             if let Some(mut tips) = self.tips_after(before, took)? {
                 tips.growth.open()?;
                 tips.look();
@@ -181,22 +181,22 @@ impl CrackGrowth for HandOver<'_> {
         let Some(tips) = &self.tips else { return self.bonds.now() };
         let now = tips.growth.now();
         let cycles = tips.start().cycles + now.cycles;
-        GrowthStatus { cycles, cycles_of_run: cycles, tips: &tips.now, ..now }
+        GrowthStatus { cycles, tips: &tips.now, ..now }
     }
 
-    fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
+    fn curve(&mut self) -> Vec<CurvePoint> {
         let Some(tips) = &mut self.tips else { return self.bonds.curve() };
         let mut curve = std::mem::take(&mut tips.before);
         // The row at the hand-over is that which knows K.
         if let Some(start) = curve.pop() {
-            curve.extend(tips.growth.curve().0.into_iter().map(|row| CurvePoint {
+            curve.extend(tips.growth.curve().into_iter().map(|row| CurvePoint {
                 cycles: start.cycles + row.cycles,
                 broken_bonds: start.broken_bonds + row.broken_bonds,
                 tips: since_start(&row.tips, &start),
                 ..row
             }));
         }
-        (curve, 0.0)
+        curve
     }
 
     fn state(&self) -> State {

@@ -37,8 +37,8 @@ pub trait CrackGrowth {
     /// The last row.
     fn now(&self) -> GrowthStatus<'_>;
 
-    /// The rows from N = 0 on, and the cycles of the run at which that was.
-    fn curve(&mut self) -> (Vec<CurvePoint>, f64);
+    /// The rows; handed over once.
+    fn curve(&mut self) -> Vec<CurvePoint>;
 
     /// All that the next increments depend on where the solver is built anew.
     fn state(&self) -> State;
@@ -102,18 +102,14 @@ pub trait CrackGrowth {
 /// Where a run stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GrowthStatus<'a> {
-    /// Cycles since N = 0; none before.
+    /// Cycles since N = 0.
     pub cycles: f64,
-    /// The same since the start of the run, which is before N = 0 where cracks are first grown to their initial lengths.
-    pub cycles_of_run: f64,
     /// Crack length in the specimen's convention, m.
     pub crack_length: f64,
     /// Range of the stress intensity factor, Pa√m; NaN where it is known at the end only.
     pub delta_k: f64,
     /// Tips, in the order of `Specimen::tips`.
     pub tips: &'a [TipRecord],
-    /// Whether cycles count: all cracks have their initial lengths.
-    pub is_counting: bool,
 }
 
 impl GrowthStatus<'_> {

@@ -6,9 +6,8 @@ use std::time::Instant;
 use super::checkpoint::{self, Checkpoint};
 use super::snapshot::Snapshots;
 use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone, tip_factors};
-use crate::case::{Case, Method};
+use crate::case::{Case, Engine};
 use crate::error::{Error, Result};
-use crate::fatigue::Driver;
 use crate::growth::{CrackGrowth, GrowthStatus, plate};
 use crate::levels::PointGrid;
 use crate::units::{MPA, MPA_SQRT_M};
@@ -115,13 +114,11 @@ impl<'a> Record<'a> {
                     break StopReason::NoConvergence;
                 }
             }
-            let before = growth.now().cycles_of_run;
+            let before = growth.now().cycles;
             let reason = increment(growth).or_else(|error| end_of_mechanics(error, &mut failure))?;
             let now = growth.now();
             let reason = reason.or(guard.check(before, &now)?);
-            if now.is_counting {
-                observer.grown(now.tips);
-            }
+            observer.grown(now.tips);
             let goes_on = observer.block_done(&Progress::of(case, &now));
             if let Some(reason) = reason {
                 break reason;
@@ -134,8 +131,8 @@ impl<'a> Record<'a> {
         snapshots.finish(growth);
         // The curve is handed over once; what growth knows of it is asked before.
         let of_growth = growth.warnings();
-        let (curve, zero) = growth.curve();
-        snapshots.count_from(zero, &curve);
+        let curve = growth.curve();
+        snapshots.keep_within(&curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
         let cross_check = growth.cross_check(last);
@@ -174,7 +171,7 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve
     warnings.extend(growth.law().and_then(|law| laws::beyond_warning(case, law, curve)));
     warnings.extend(plastic_zone::warnings(case, curve));
     warnings.extend(unstable_path(curve));
-    let is_on_points = case.model.method == Method::Peridynamics && case.fatigue.driver == Driver::TipField;
+    let is_on_points = case.engine() == Engine::Points;
     warnings.extend(curve.first().filter(|_| is_on_points).and_then(|row| tip_factors::beside_nodes(case, &row.tips)));
     warnings
 }
@@ -225,8 +222,8 @@ impl Guard {
                 return Err(Error::Mechanics(format!("{problem}; give a smaller model.spacing_mm, and report this case")));
             }
         }
-        if now.cycles_of_run < before {
-            let problem = format!("cycles fell from {before} to {}", now.cycles_of_run);
+        if now.cycles < before {
+            let problem = format!("cycles fell from {before} to {}", now.cycles);
             return Err(Error::Mechanics(format!("{problem}; report this case")));
         }
         let grown = now.growth();

@@ -24,7 +24,7 @@ impl Snapshots {
     pub fn follow(&mut self, growth: &mut dyn CrackGrowth) -> Option<(&Snapshot, PointGrid)> {
         let now = growth.now();
         let is_first = self.taken.is_empty();
-        if !now.is_counting || !is_first && now.growth() < self.next {
+        if !is_first && now.growth() < self.next {
             return None;
         }
         let grid = growth.grid()?;
@@ -37,8 +37,8 @@ impl Snapshots {
 
     /// Takes the last snapshot, where something has changed since the one before.
     pub fn finish(&mut self, growth: &mut dyn CrackGrowth) {
-        let GrowthStatus { cycles_of_run, crack_length, .. } = growth.now();
-        if self.taken.last().is_none_or(|last| last.crack_length < crack_length || last.cycles < cycles_of_run) {
+        let GrowthStatus { cycles, crack_length, .. } = growth.now();
+        if self.taken.last().is_none_or(|last| last.crack_length < crack_length || last.cycles < cycles) {
             self.take(growth);
         }
     }
@@ -50,16 +50,16 @@ impl Snapshots {
             None
         });
         let Fields { displacement, damage, remaining_life, stress } = fields?;
-        let GrowthStatus { cycles_of_run: cycles, crack_length, .. } = growth.now();
+        let GrowthStatus { cycles, crack_length, .. } = growth.now();
         self.taken.push(Snapshot { cycles, crack_length, displacement, damage, remaining_life, stress });
         self.taken.last()
     }
 
-    /// Counts cycles from N = 0, `zero` cycles after the start of the run, and keeps to the ends of the curve.
-    pub fn count_from(&mut self, zero: f64, curve: &[CurvePoint]) {
+    /// Keeps to the ends of the curve.
+    pub fn keep_within(&mut self, curve: &[CurvePoint]) {
         let (Some(first), Some(last)) = (curve.first(), curve.last()) else { return };
         for snapshot in &mut self.taken {
-            snapshot.cycles = (snapshot.cycles - zero).clamp(first.cycles, last.cycles);
+            snapshot.cycles = snapshot.cycles.clamp(first.cycles, last.cycles);
             snapshot.crack_length = snapshot.crack_length.clamp(first.crack_length, last.crack_length);
         }
     }

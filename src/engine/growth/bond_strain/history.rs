@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::body::{Body, Bond};
-use crate::case::Case;
+use crate::case::{Case, Engine};
 use crate::fatigue::ageing::BondLife;
 use crate::fatigue::crack_tip::CrackTip;
 use crate::fatigue::growth_rate::{LengthAverage, Rate, Sample, rates, release_rate_at_end};
@@ -147,7 +147,7 @@ impl GrowthHistory {
     pub(super) fn warnings(&self, case: &Case, body: &Body) -> Vec<String> {
         let mut warnings = Vec::new();
         let flaw = case.specimen.smallest_flaw();
-        if !case.hands_over() && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
+        if case.engine() == Engine::Bonds && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
             warnings.push(format!(
                 "the initial crack is only {:.1} horizons long: its bonds are strained more than those of a long crack at equal K, and it \
                  grows too fast at first (not a short-crack effect; fatigue.driver = \"tip_field\" is free of it)",

@@ -83,7 +83,7 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
 
     fn now(&self) -> GrowthStatus<'_> {
         let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = *self.last();
-        GrowthStatus { cycles, cycles_of_run: cycles, crack_length, delta_k, tips, is_counting: true }
+        GrowthStatus { cycles, crack_length, delta_k, tips }
     }
 
     fn body(&self) -> Option<Arc<Body>> {
@@ -129,8 +129,8 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
         Ok(self.rebuild_solver().is_ok())
     }
 
-    fn curve(&mut self) -> (Vec<CurvePoint>, f64) {
-        (std::mem::take(&mut self.curve), 0.0)
+    fn curve(&mut self) -> Vec<CurvePoint> {
+        std::mem::take(&mut self.curve)
     }
 
     fn statistics(&self) -> SolverStatistics {
