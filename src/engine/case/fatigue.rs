@@ -68,7 +68,7 @@ pub(super) fn from_value(
 /// Refuses keys of earlier versions, by what stands in their place.
 fn refuse_gone(input: &FatigueKeys) -> Result<()> {
     const RATE: &str =
-        "a crack whose bonds age grows by dλ/dN = -A ε^p, and from a slot by the K of its tip once it is 1.5 horizons long";
+        "a crack grows by its bonds, dλ/dN = -A ε^p, and from a slot by the K of its tip once it is 1.5 horizons long";
     const START: &str = "bonds have their whole lives at N = 0";
     let gone = [("growth_rate", &input.growth_rate, RATE), ("precrack", &input.precrack, START)];
     let Some((key, value, words)) = gone.into_iter().find_map(|(key, value, words)| Some((key, value.as_ref()?, words))) else {
