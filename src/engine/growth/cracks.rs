@@ -99,7 +99,7 @@ pub trait CrackedPlate: Sized {
     fn save(&self) -> Self::Saved;
 
     /// Goes on from what was saved, in place of [`CrackedPlate::open`]; whether it is of this plate.
-    fn restore(&mut self, case: &Case, cracks: &CracksState, saved: Self::Saved) -> bool;
+    fn restore(&mut self, saved: Self::Saved) -> bool;
 
     /// Builds the solver anew.
     fn rebuild(&mut self, _case: &Case, _cracks: &CracksState) -> Result<()> {

@@ -179,7 +179,7 @@ impl CrackedPlate for NodePlate {
         self.state.clone()
     }
 
-    fn restore(&mut self, _case: &Case, _cracks: &CracksState, saved: NodeState) -> bool {
+    fn restore(&mut self, saved: NodeState) -> bool {
         self.state = saved;
         true
     }

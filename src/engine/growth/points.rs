@@ -281,10 +281,10 @@ impl CrackedPlate for PointPlate {
         }
     }
 
-    fn restore(&mut self, _case: &Case, _cracks: &CracksState, saved: PointState) -> bool {
+    fn restore(&mut self, saved: PointState) -> bool {
         let PointState { broken, scaled, closed, displacement, memory, remaining_life, statistics } = saved;
-        let bonds = || broken.iter().copied().chain(scaled.iter().chain(&[]).map(|(bond, _)| *bond));
-        let mut all = bonds().chain(remaining_life.iter().map(|(bond, _)| *bond));
+        let beside_flanks = scaled.iter().map(|(bond, _)| bond);
+        let mut all = broken.iter().chain(beside_flanks).chain(remaining_life.iter().map(|(bond, _)| bond)).copied();
         if memory.len() != self.memory.len() || !all.all(|bond| (bond as usize) < self.body.multiplier.len()) {
             return false;
         }

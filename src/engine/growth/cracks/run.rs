@@ -122,7 +122,7 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
 
     fn restore(&mut self, state: State) -> Result<bool> {
         let Some(CracksRun { cracks, plate, curve, warnings }) = P::of_state(state) else { return Ok(false) };
-        if curve.is_empty() || !cracks.fits(&self.state) || !self.plate.restore(self.case, &cracks, plate) {
+        if curve.is_empty() || !cracks.fits(&self.state) || !self.plate.restore(plate) {
             return Ok(false);
         }
         (self.state, self.curve, self.warnings) = (cracks, curve, warnings);

@@ -153,6 +153,8 @@ impl Scales {
                 beside: 0.5 * spacing,
                 joined: 1.0 * horizon,
                 facing: 0.94,
+                // Against finite elements of three collinear cracks K is read within 1 % at 1.7 horizons, 3 % high at 1.4 to 1, and 25 %
+                // low at 0.7.
                 unread: 1.6 * horizon,
                 passing: 1.0 * spacing,
             },

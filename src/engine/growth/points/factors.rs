@@ -159,7 +159,7 @@ impl PointPlate {
         reading: &Reading,
         gap: Option<f64>,
     ) -> [f64; 2] {
-        let (horizon, kink_unresolved) = (self.body.horizon(), self.scales(case).kink_unresolved);
+        let (horizon, scales) = (self.body.horizon(), self.scales(case));
         let (tip, memory) = (&cracks.tips[index], &mut self.memory[index]);
         let (read, of_read) = (reading.factors, equivalent_factor(reading.factors));
         let corner = tip.steering.corner();
@@ -167,7 +167,7 @@ impl PointPlate {
         // Both modes alike: what the tip's field lacks or has too much is length.
         let mut ratio = memory.readings.ratio(reading.length_offset, tip.length + tip.growth, horizon);
         // Until the bonds show a kink, less is read.
-        if let Some(factor) = tip.kink.and_then(|kink| kink.factor(tip.growth, tip.length, kink_unresolved)) {
+        if let Some(factor) = tip.kink.and_then(|kink| kink.factor(tip.growth, tip.length, scales.kink_unresolved)) {
             ratio = factor / of_read;
         } else if corner.is_some_and(|corner| tip.growth < corner + KINK_HORIZONS * horizon && tip.growth > corner) {
             ratio = ratio.max(tip.equivalent() / of_read);
@@ -177,7 +177,7 @@ impl PointPlate {
             factors[1] = sliding.at_line;
         }
         if let Some(gap) = gap {
-            factors = memory.coalescence.factors(factors, gap, horizon);
+            factors = memory.coalescence.factors(factors, gap, [scales.meeting.unread, horizon]);
         }
         // Beside a rim a ring that overlaps it may say anything.
         let is_read = tip.growth == 0.0

@@ -85,9 +85,6 @@ impl Readings {
     }
 }
 
-/// Gap, in horizons, from which on K is not read any more. Against finite elements of three collinear cracks K is read within 1 % at
-/// 1.7 horizons, 3 % high at 1.4 to 1, and 25 % low at 0.7.
-pub const GAP_HORIZONS: f64 = 1.6;
 /// Gap, in horizons, over whose readings the power is taken.
 const SEEN_HORIZONS: f64 = 4.0;
 /// Bounds of the power, and what is taken where too few readings tell: finite elements of three collinear cracks have 0.25 to 0.32 at
@@ -105,9 +102,10 @@ pub struct Coalescence {
 }
 
 impl Coalescence {
-    /// Takes in the factors read at a gap to the tip ahead, m; gives those that the tip has.
-    pub fn factors(&mut self, read: [f64; 2], gap: f64, horizon: f64) -> [f64; 2] {
-        if gap > GAP_HORIZONS * horizon {
+    /// Takes in the factors read at a gap to the tip ahead, m; gives those that the tip has. From the gap `unread` on, m, they are not
+    /// those that were read.
+    pub fn factors(&mut self, read: [f64; 2], gap: f64, [unread, horizon]: [f64; 2]) -> [f64; 2] {
+        if gap > unread {
             if gap < SEEN_HORIZONS * horizon {
                 self.seen.push([gap.ln(), read[0], read[1]]);
             }
