@@ -79,9 +79,7 @@ fn body(law: &str) -> Body {
         width / 5.0
     );
     let case = Case::from_toml(&text, "bench", std::path::Path::new("."), &[]).expect("a case as its documentation says");
-    let model = &case.model;
-    Body::build(&case.specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)
-        .expect("a plain plate")
+    case.points().body(&case.specimen, &case.material).expect("a plain plate")
 }
 
 fn two() -> &'static Scene<2> {

@@ -5,7 +5,6 @@
 
 use std::fs;
 
-use perilife::body::Body;
 use perilife::case::Case;
 use perilife::solver::{Equilibrium, SolverKind, Symmetry};
 use perilife::state::Bonds;
@@ -24,16 +23,7 @@ fn main() {
         for &points in &sizes {
             let case = case(law, points);
             let start = Reading::now();
-            let model = &case.model;
-            let body = Body::build(
-                &case.specimen,
-                &case.material,
-                &model.bond_law,
-                model.spacing,
-                model.horizon_ratio,
-                model.lattice_angle,
-            )
-            .expect("a plain plate");
+            let body = case.points().body(&case.specimen, &case.material).expect("a plain plate");
             let bonds = Bonds::new(&body);
             let built = Reading::now();
             let mut equilibrium = Equilibrium::new(SolverKind::Multigrid, Symmetry::Off, &body, &bonds, case.loading.maximum);

@@ -14,6 +14,7 @@ pub mod record;
 pub use boundaries::first_load;
 pub use fatigue_keys::{Lot, remove_law};
 pub use law_source::fitted_record;
+pub use model_keys::finer_nodes;
 pub use read::{RECORD, SECTIONS};
 
 use crate::body::Body;
@@ -92,11 +93,20 @@ pub struct Choices {
     pub walker_gamma: Option<f64>,
 }
 
-/// Model of a case: the method and, for peridynamics, points and bonds.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Model {
-    /// How growth is computed.
-    pub method: Method,
+/// What computes the mechanics of a case, with its settings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Model {
+    /// K(a) of a handbook; with the points by which `perilife sif` compares it.
+    Handbook(PointSettings),
+    /// Nodes without elements.
+    Nodes(ElementFreeSettings),
+    /// Points and bonds.
+    Points(PointSettings),
+}
+
+/// Points and bonds of a plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointSettings {
     /// Bonds.
     pub bond_law: BondLaw,
     /// Spacing asked for, m; the body takes the nearest one that fits.
@@ -109,28 +119,70 @@ pub struct Model {
     pub solver: SolverKind,
     /// Use of mirror symmetry.
     pub symmetry: Symmetry,
-    /// Nodes of the element-free Galerkin method.
-    pub element_free: ElementFreeSettings,
     /// Residual over load at which an equilibrium ends whose K drives a crack ([`RESIDUAL`]); no key of a case.
     pub residual: f64,
 }
 
 impl Model {
+    /// The key of a case that names it.
+    pub fn method(&self) -> Method {
+        match self {
+            Model::Handbook(_) => Method::Handbook,
+            Model::Nodes(_) => Method::ElementFreeGalerkin,
+            Model::Points(_) => Method::Peridynamics,
+        }
+    }
+
+    /// Its points, to be changed; `None` of nodes.
+    pub fn points_mut(&mut self) -> Option<&mut PointSettings> {
+        match self {
+            Model::Handbook(points) | Model::Points(points) => Some(points),
+            Model::Nodes(_) => None,
+        }
+    }
+
     /// The surface correction that gives K of a tip best where the case leaves it open: what a rim at an angle to the rows does to
     /// the plate is 1 % of K with `volume_and_surface` and 0.3 % with `balanced`, which knows one lattice. What of a dilatation is uniform is then in equilibrium, too
     /// ([`crate::solver::dilatation`]).
     fn take_most_accurate_rim(&mut self) {
-        self.bond_law.surface_correction = SurfaceCorrection::Balanced;
+        if let Some(points) = self.points_mut() {
+            points.bond_law.surface_correction = SurfaceCorrection::Balanced;
+        }
     }
+}
 
+impl PointSettings {
     /// The spacing that the body will have, m: the nearest one that divides the gross width.
     pub fn fitting_spacing(&self, specimen: &Specimen) -> f64 {
         fitting_spacing(specimen, self.spacing, self.lattice_angle)
     }
 
+    /// Spacing asked for times horizon ratio, m.
+    pub fn horizon(&self) -> f64 {
+        self.horizon_ratio * self.spacing
+    }
+
     /// The plate as points and bonds.
     pub fn body(&self, specimen: &Specimen, material: &Material) -> Result<Body> {
         Body::build(specimen, material, &self.bond_law, self.spacing, self.horizon_ratio, self.lattice_angle)
+    }
+}
+
+impl Case {
+    /// Its points and bonds; of nodes those that the program would take for the plate.
+    pub fn points(&self) -> PointSettings {
+        match self.model {
+            Model::Handbook(points) | Model::Points(points) => points,
+            Model::Nodes(_) => model::usual_points(&self.specimen, &self.material).0,
+        }
+    }
+
+    /// Its nodes; of another model those that the program would take for the plate.
+    pub fn nodes(&self) -> ElementFreeSettings {
+        match self.model {
+            Model::Nodes(nodes) => nodes,
+            Model::Handbook(_) | Model::Points(_) => model_keys::usual_nodes(&self.specimen),
+        }
     }
 }
 
@@ -175,7 +227,7 @@ pub struct Case {
     pub material: Material,
     /// Cycles.
     pub loading: Loading,
-    /// Peridynamic model.
+    /// What computes its mechanics.
     pub model: Model,
     /// Fatigue settings.
     pub fatigue: FatigueSettings,

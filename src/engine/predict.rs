@@ -7,6 +7,7 @@
 //! and calibration all come through here. The theory in the order of the rooms stands in `src/README.md`.
 
 pub mod checkpoint;
+pub mod error_estimate;
 pub mod factor_curve;
 pub mod laws;
 mod outcome;

@@ -72,7 +72,7 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
     let specimen = &case.specimen;
     let (lines, tips) = initial_cracks(specimen);
     let elasticity = Elasticity::of(&case.material);
-    let mut resolution = case.model.element_free.resolution;
+    let mut resolution = case.nodes().resolution;
     let far = resolution.far;
     resolution.in_radius = IN_RADIUS_FIRST;
     let (mut rims, mut solves): (Vec<RimStress>, usize) = (Vec::new(), 0);

@@ -39,8 +39,8 @@ pub fn material(kind: BondLawKind, plane: Plane) -> Material {
 
 /// The body of a case.
 pub fn body(case: &Case) -> Body {
-    let model = &case.model;
-    Body::build(&case.specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle).unwrap()
+    let model = case.points();
+    model.body(&case.specimen, &case.material).unwrap()
 }
 
 /// A plate in equilibrium.
@@ -59,7 +59,7 @@ pub struct Loaded {
 pub fn loaded(case: &Case, solver: SolverKind) -> Result<Loaded> {
     let body = body(case);
     let bonds = Bonds::new(&body);
-    loaded_by(body, bonds, case.loading.maximum, solver, case.model.symmetry)
+    loaded_by(body, bonds, case.loading.maximum, solver, case.points().symmetry)
 }
 
 /// A plate with these bonds under a load, solved as a whole.

@@ -18,7 +18,7 @@ fn body(height: f64, correction: &str) -> Body {
 
 fn built(text: &str) -> Body {
     let case = Case::from_toml(text, "plate", Path::new(""), &[]).unwrap();
-    let model = &case.model;
+    let model = case.points();
     Body::build(&case.specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, 0.0).unwrap()
 }
 

@@ -33,12 +33,12 @@ fn points_and_bonds_are_those_of_the_plate() {
     for model in models {
         let case = case(SQUARE, model);
         let budget = Budget::of(&case);
-        let body = case.model.body(&case.specimen, &case.material).unwrap();
+        let body = case.points().body(&case.specimen, &case.material).unwrap();
         let ratio = budget.points / body.points.len() as f64;
         println!("{:.0} points against {} of {}", budget.points, body.points.len(), model.trim());
         assert!((0.98..=1.02).contains(&ratio), "{ratio} of {model}");
         assert!(budget.places >= body.places() as f64 * 0.9, "{} places against {}", budget.places, body.places());
-        let stencil = Stencil::new(&case.model.bond_law, &case.material, 0.5e-3, case.model.horizon_ratio, 2e-3).unwrap();
+        let stencil = Stencil::new(&case.points().bond_law, &case.material, 0.5e-3, case.points().horizon_ratio, 2e-3).unwrap();
         assert!((budget.bonds / budget.points - stencil.bonds.len() as f64).abs() < 1e-9);
     }
     for (regions, most) in [(fine, 1.4), (flaws, 1.9)] {

@@ -61,14 +61,14 @@ fn record() -> FittedRecord {
 #[test]
 fn defaults_are_those_of_the_contract() {
     let case = read(INLINE, &[]).unwrap();
-    assert!((case.model.spacing - 9e-3 / 9.0).abs() < 1e-12, "a0/9 is below W/100 here");
+    assert!((case.points().spacing - 9e-3 / 9.0).abs() < 1e-12, "a0/9 is below W/100 here");
     assert!(
-        (read(INLINE, &["specimen.crack_length_mm=30"]).unwrap().model.spacing - 1.524e-3).abs() < 1e-12,
+        (read(INLINE, &["specimen.crack_length_mm=30"]).unwrap().points().spacing - 1.524e-3).abs() < 1e-12,
         "W/100 is below a0/9 here"
     );
-    let law = case.model.bond_law;
+    let law = case.points().bond_law;
     assert_eq!((law.kind, law.kernel, law.rotation), (BondLawKind::TwoParameter, Kernel::Conical, Rotation::Free));
-    assert_eq!((case.model.horizon_ratio, case.fatigue.zone_radius_horizons, case.stop.cycles_max), (3.015, 0.5, 1e9));
+    assert_eq!((case.points().horizon_ratio, case.fatigue.zone_radius_horizons, case.stop.cycles_max), (3.015, 0.5, 1e9));
     assert_eq!(case.fatigue.ageing.name(), "crack_tip");
     assert_eq!(case.fatigue.step_error_percent, 0.2);
     assert!(
@@ -88,7 +88,7 @@ fn overrides_replace_add_and_are_echoed() {
     )
     .unwrap();
     assert_eq!(case.specimen.crack_length, 0.012);
-    assert_eq!(case.model.bond_law.kernel, Kernel::Constant);
+    assert_eq!(case.points().bond_law.kernel, Kernel::Constant);
     assert_eq!(case.stop.crack_length, 0.0405);
     assert_eq!(case.echo["stop"]["crack_length_mm"], 40.5);
     assert_eq!(case.echo["specimen"]["crack_length_mm"], 12);
@@ -105,14 +105,14 @@ fn inline_law_moves_over_the_horizon() {
 #[test]
 fn a_silent_case_takes_the_models_of_the_record() {
     let case = read(INLINE, &[]).unwrap().with_law(record()).unwrap();
-    assert_eq!(case.model.bond_law.kernel, Kernel::Constant);
+    assert_eq!(case.points().bond_law.kernel, Kernel::Constant);
     assert_eq!(case.fatigue.zone_radius_horizons, 0.6);
     assert!(case.echo["fatigue"].get("a").is_none() && case.echo["fatigue"]["fitted"]["p"] == 3.0);
     let law = case.fatigue_law(3e-3).unwrap();
     assert!((law.a / 5000.0 - 1.0).abs() < 1e-12 && law.p == 3.0);
     let tips = read(INLINE, &["fatigue.driver=tip_field"]).unwrap().with_law(record()).unwrap();
-    assert_eq!(tips.model.bond_law.kernel, Kernel::Constant);
-    assert_eq!(tips.model.bond_law.surface_correction, SurfaceCorrection::None);
+    assert_eq!(tips.points().bond_law.kernel, Kernel::Constant);
+    assert_eq!(tips.points().bond_law.surface_correction, SurfaceCorrection::None);
 }
 
 #[test]
@@ -207,7 +207,7 @@ fn the_bond_law_left_open_is_one_that_the_material_can_have() {
         (vec!["material.plane=strain"], BondLawKind::StateBased),
     ] {
         let case = read(INLINE, &set).unwrap();
-        assert_eq!(case.model.bond_law.kind, law, "{set:?}");
+        assert_eq!(case.points().bond_law.kind, law, "{set:?}");
         // A of an inline law belongs to the two-parameter law.
         assert_eq!(case.warnings.iter().any(|line| line.contains("bond_law state_based")), law == BondLawKind::StateBased);
     }

@@ -11,7 +11,7 @@ use crate::support::made_up_case::fitted;
 #[test]
 fn the_method_is_a_kind_and_peridynamics_the_default() {
     let case = hand_case(PANEL, &[]);
-    assert_eq!(case.model.method, Method::Handbook);
+    assert_eq!(case.model.method(), Method::Handbook);
     assert!(matches!(case.law, LawSource::Paris(law) if (law.c - 8.95422e-11).abs() < 1e-24 && law.m == 2.874));
     assert!(case.warnings.is_empty(), "{:?}", case.warnings);
     // C and m serve bonds as well.

@@ -83,7 +83,11 @@ fn points_read_the_right_factors() {
         assert_eq!(tips.len(), right.len(), "{name}");
         for (tip, right) in tips.iter().zip(*right) {
             let off = off(tip.factors, *right);
-            assert!(off < *most, "{name}: {off} of {right:?} with {} points", case.specimen.area() / case.model.spacing.powi(2));
+            assert!(
+                off < *most,
+                "{name}: {off} of {right:?} with {} points",
+                case.specimen.area() / case.points().spacing.powi(2)
+            );
         }
     }
 }

@@ -51,7 +51,8 @@ fn contact_is_the_same_by_every_solver() {
     let case = Case::from_file(&path, &["model.spacing_mm=2".to_owned()]).unwrap();
     let factors = |solver: SolverKind, symmetry: Symmetry| {
         let mut case = case.clone();
-        (case.model.solver, case.model.symmetry, case.model.residual) = (solver, symmetry, 1e-9);
+        let points = case.model.points_mut().unwrap();
+        (points.solver, points.symmetry, points.residual) = (solver, symmetry, 1e-9);
         let tips = stress_intensity(&case, &[StressIntensityMethod::Ring]).unwrap();
         tips.iter().map(|tip| [tip.methods[0].intensity.k_i.unwrap(), tip.methods[0].intensity.k_ii.unwrap()]).collect::<Vec<_>>()
     };

@@ -119,7 +119,7 @@ fn a_rigid_turn_of_a_plate_costs_nothing() {
                     let key = rotation.map(|rotation| format!("model.rotation={rotation}"));
                     let set: Vec<&str> = given.iter().copied().chain(key.as_deref()).collect();
                     let Ok(case) = try_case(SLANT, &set) else { continue };
-                    let body = case.model.body(&case.specimen, &case.material).unwrap();
+                    let body = case.points().body(&case.specimen, &case.material).unwrap();
                     let cost = plate::turning_cost(&body).unwrap();
                     let resists = rotation == Some(Rotation::Resisted) && kind.is_two_parameter();
                     let is_told = plate::warning(&body).is_some_and(|w| w.contains("model.rotation = \"resisted\""));

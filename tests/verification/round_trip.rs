@@ -83,7 +83,7 @@ fn the_engine_recovers_its_own_constants() {
 fn truth_lies_inside_the_95_percent_ellipse_of_engine_fits() {
     let (panel, figures, found) = fits(3.0, 0.05, 200);
     let horizon = figures.horizon;
-    let beta = rate_constant(panel.model.bond_law.kernel, P).unwrap();
+    let beta = rate_constant(panel.points().bond_law.kernel, P).unwrap();
     let truth = ParisLaw::of_bonds(&FatigueLaw { a: known(horizon).0, p: P, horizon }, beta, panel.material.plane_modulus());
     let is_inside = |fit: &&Fit| {
         let Constants { a: c, p: m } = fit.record.constants;

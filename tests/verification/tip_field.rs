@@ -60,10 +60,8 @@ fn a_ring_reads_an_exact_field() {
             PULL,
             &[&format!("model.lattice_angle_deg={angle}"), "model.spacing_mm=1"],
         );
-        let model = &case.model;
-        let body =
-            Body::build(&case.specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)
-                .unwrap();
+        let model = case.points();
+        let body = model.body(&case.specimen, &case.material).unwrap();
         let bonds = Bonds::new(&body);
         let elasticity = Elasticity::of(&case.material);
         let (layout, tip) = (Layout::of(&body.lattice, body.stencil.unknowns), [end * 1e-3, 0.001e-3]);
@@ -153,7 +151,7 @@ fn mirror_images_stay_mirror_images() {
             4.0 * sign
         );
         let mut case = case(&specimen, PULL, &["model.spacing_mm=1", "stop.crack_length_mm=34"]);
-        case.model.residual = residual;
+        case.model.points_mut().unwrap().residual = residual;
         run(&case)
     };
     // Near the residual of runs by default, each by its own round-off.

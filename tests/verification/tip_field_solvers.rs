@@ -53,7 +53,7 @@ fn grow(specimen: &str, set: &[&str]) -> Prediction {
     let set: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
     let mut case = Case::from_toml(&format!("[specimen]\n{specimen}\n{REST}"), "plate", Path::new("."), &set).unwrap();
     // Runs by default stop at a residual that shows in K; here solvers are compared.
-    case.model.residual = 1e-9;
+    case.model.points_mut().unwrap().residual = 1e-9;
     predict(&case, &Silent).unwrap()
 }
 

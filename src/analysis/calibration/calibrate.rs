@@ -143,7 +143,7 @@ fn fit_by_method(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
     let Some(_) = calibration.delta_k(from) else { return fit_along_path(calibration, observer) };
     let delta_k = |length: f64| calibration.delta_k(length).unwrap_or(f64::NAN);
     let task = task(calibration, &delta_k);
-    if case.model.method == Method::Handbook {
+    if case.model.method() == Method::Handbook {
         let law = PowerLaw::new(from, to, &delta_k)?;
         return Ok(with_scatter(fit(&task, &law)?.of_power_law(), &task, &law));
     }
@@ -151,7 +151,7 @@ fn fit_by_method(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
     let of_run = |length: f64| case.loading.range_share() * factors.at(length);
     let law = PowerLaw::new(from, to, &of_run)?;
     let fit = with_scatter(fit(&task, &law)?, &task, &law);
-    match case.model.method {
+    match case.model.method() {
         Method::Peridynamics => of_run_on_plate(fit, case, factors),
         _ => of_run_on_plate(fit.of_power_law(), case, factors),
     }
@@ -211,7 +211,7 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
 
 /// A fit to K of a run, in terms of A and p where the plate has bonds.
 fn of_run_on_plate(mut fit: Fit, case: &Case, factors: FactorCurve) -> Result<Fit> {
-    if case.model.method == Method::Peridynamics {
+    if case.model.method() == Method::Peridynamics {
         fit = in_terms_of_bonds(fit, case, &factors.figures)?;
     }
     fit.warnings.extend(factors.warnings);
@@ -220,7 +220,7 @@ fn of_run_on_plate(mut fit: Fit, case: &Case, factors: FactorCurve) -> Result<Fi
 
 /// A fit of C and m on the plate of a run as one of A and p, which are what they stand for ([`ParisLaw::to_bonds`]).
 pub fn in_terms_of_bonds(mut fit: Fit, case: &Case, plate: &RunFigures) -> Result<Fit> {
-    let (kernel, modulus, horizon) = (case.model.bond_law.kernel, case.material.plane_modulus(), plate.horizon);
+    let (kernel, modulus, horizon) = (case.points().bond_law.kernel, case.material.plane_modulus(), plate.horizon);
     let p = fit.record.constants.p;
     let bonds = |Constants { a, p }: Constants| -> Result<Constants> {
         let law = ParisLaw { c: a, m: p }.to_bonds(rate_constant(kernel, p)?, modulus, horizon);

@@ -123,7 +123,7 @@ impl CalibrationCase {
             warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
         }
         let delta_k_ratio = formula.map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
-        let exponent = exponent(&fit, folder, case.model.method, delta_k_ratio)?;
+        let exponent = exponent(&fit, folder, case.model.method(), delta_k_ratio)?;
         warnings.extend(exponent.warning.clone());
         let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
         case.stop.crack_length = longest;

@@ -3,7 +3,8 @@
 use super::understood::{built, points_words};
 use crate::body::lattice::Lattice;
 use crate::case::budget::Budget;
-use crate::case::{Case, Method};
+use crate::case::{Case, Model, PointSettings};
+use crate::element_free::resolution::ElementFreeSettings;
 use crate::error::{Error, InputError, Result};
 use crate::fatigue::ageing::stuck;
 use crate::fatigue::crack_tip::CrackTip;
@@ -39,10 +40,9 @@ pub(super) struct Preview {
 }
 
 /// Places the nodes.
-fn of_nodes(case: &Case) -> Result<Preview> {
+fn of_nodes(case: &Case, ElementFreeSettings { resolution, .. }: &ElementFreeSettings) -> Result<Preview> {
     let plate = initial_plate(case).map_err(as_input)?;
     let finest = plate.nodes.spacing.iter().copied().fold(f64::INFINITY, f64::min);
-    let resolution = &case.model.element_free.resolution;
     let points = format!(
         "{} nodes, {} unknowns; spacing {} mm, {} mm at the finest, radius of influence {} spacings",
         plate.nodes.at.len(),
@@ -56,21 +56,23 @@ fn of_nodes(case: &Case) -> Result<Preview> {
 
 /// Lays the lattice and, where that is quick, builds the body.
 pub(super) fn preview(case: &Case) -> Result<Preview> {
-    if case.model.method == Method::Handbook {
-        return Ok(Preview { points: "none: hand calculation".to_owned(), warnings: Vec::new() });
+    match &case.model {
+        Model::Handbook(_) => Ok(Preview { points: "none: hand calculation".to_owned(), warnings: Vec::new() }),
+        Model::Nodes(nodes) => of_nodes(case, nodes),
+        Model::Points(points) => of_points(case, points),
     }
-    if case.model.method == Method::ElementFreeGalerkin {
-        return of_nodes(case);
-    }
-    let (model, specimen) = (&case.model, &case.specimen);
+}
+
+fn of_points(case: &Case, points: &PointSettings) -> Result<Preview> {
+    let specimen = &case.specimen;
     let budget = Budget::of(case);
     if !is_quick(&budget, specimen) {
-        let padding = model.horizon_ratio.floor() as usize;
-        let lattice = Lattice::over(specimen, model.spacing, model.lattice_angle, padding)?;
-        let count = format!("about {:.0}", budget.points * (model.spacing / lattice.spacing).powi(2));
+        let padding = points.horizon_ratio.floor() as usize;
+        let lattice = Lattice::over(specimen, points.spacing, points.lattice_angle, padding)?;
+        let count = format!("about {:.0}", budget.points * (points.spacing / lattice.spacing).powi(2));
         return Ok(Preview { points: points_line(case, &count, lattice.spacing), warnings: Vec::new() });
     }
-    let body = &model.body(specimen, &case.material).map_err(as_input)?;
+    let body = &points.body(specimen, &case.material).map_err(as_input)?;
     let mut bonds = Bonds::new(body);
     if remove_fragments(body, &mut bonds, &body.pre_cut) == Connectivity::Severed {
         return Err(as_input(Error::Mechanics("the initial cracks cut the plate in two".to_owned())));
@@ -90,7 +92,7 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
 }
 
 fn points_line(case: &Case, count: &str, spacing: f64) -> String {
-    let sizes = [case.model.spacing, spacing * case.model.horizon_ratio];
+    let sizes = [case.points().spacing, spacing * case.points().horizon_ratio];
     points_words(count, [spacing; 2], sizes, &model_words::of_case(case, None))
 }
 

@@ -134,7 +134,7 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     );
     let cycles = format!("{}; {held}", model_words::loading(case));
     lines.push(line("loading", cycles));
-    let by_points = case.model.method == Method::Peridynamics;
+    let by_points = case.model.method() == Method::Peridynamics;
     lines.extend(by_points.then(|| line("bonds", model_words::words(&chosen, &model_words::OF_BONDS))));
     lines.push(line("points", points));
     lines.push(line("fatigue", law_words(case)));
@@ -171,7 +171,7 @@ fn law_words(case: &Case) -> String {
         LawSource::Factor(law) => format!("{}: {}", law.kind, law.in_words()),
         LawSource::Fitted(record) => {
             let law = fit_use::law_line(case).unwrap_or_default();
-            let of_bonds = match case.model.method {
+            let of_bonds = match case.model.method() {
                 Method::Peridynamics => format!("; a = {:e} per cycle at horizon {} mm", record.a, record.horizon_mm),
                 Method::Handbook | Method::ElementFreeGalerkin => String::new(),
             };

@@ -55,7 +55,7 @@ pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
 pub fn law_line(case: &Case) -> Option<String> {
     let record = fitted(case)?;
     let m_error = record.paris_m_error;
-    let exponent = match case.model.method {
+    let exponent = match case.model.method() {
         Method::Peridynamics => format!("p = {:.4} ± {:.4}, m", record.p, record.p_error),
         Method::Handbook | Method::ElementFreeGalerkin => "m".to_owned(),
     };

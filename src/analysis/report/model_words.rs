@@ -3,7 +3,7 @@
 use serde_json::{Map, Value};
 
 use crate::bond_law::BondLawKind;
-use crate::case::{Case, LawSource, Method};
+use crate::case::{Case, LawSource, Model, PointSettings};
 use crate::element_free::resolution::ElementFreeSettings;
 use crate::fracture::scene::{Discretisation, Scene, SceneLaw};
 use crate::predict::RunFigures;
@@ -49,22 +49,23 @@ pub fn words(choices: &[Choice], keys: &[&str]) -> String {
 
 /// The model of a case; sizes, solver and solved part are those of its run where there was one.
 pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
-    let (model, law) = (&case.model, case.model.bond_law);
-    if model.method == Method::Handbook {
-        return hand_calculation(case);
+    match &case.model {
+        Model::Handbook(_) => hand_calculation(case),
+        Model::Nodes(nodes) => of_nodes(case, nodes),
+        Model::Points(points) => of_points(case, points, figures),
     }
-    if model.method == Method::ElementFreeGalerkin {
-        return of_nodes(case);
-    }
-    let (spacing, horizon) =
-        figures.map_or((model.spacing, model.spacing * model.horizon_ratio), |run| (run.spacing, run.horizon));
+}
+
+fn of_points(case: &Case, points: &PointSettings, figures: Option<&RunFigures>) -> Vec<Choice> {
+    let law = points.bond_law;
+    let (spacing, horizon) = figures.map_or((points.spacing, points.horizon()), |run| (run.spacing, run.horizon));
     let used = figures.and_then(|run| run.solver);
-    let moved = if ((model.spacing - spacing) / spacing).abs() > 1e-9 {
-        format!("; moved from {:.6} to {:.6} so that it divides the width", model.spacing / MM, spacing / MM)
+    let moved = if ((points.spacing - spacing) / spacing).abs() > 1e-9 {
+        format!("; moved from {:.6} to {:.6} so that it divides the width", points.spacing / MM, spacing / MM)
     } else {
         String::new()
     };
-    let by_solver = used.map(|used| format!("; asked for was \"{}\", used were {}", model.solver, used.meaning()));
+    let by_solver = used.map(|used| format!("; asked for was \"{}\", used were {}", points.solver, used.meaning()));
     let springs_do = law.kind != BondLawKind::StateBased;
     let chosen = |key, value: Value, default: &str, more: &str| {
         let why = if given(&case.echo, key) {
@@ -78,7 +79,7 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
     };
     let follows = |key, value: Value| Choice { key, value, why: None };
     vec![
-        chosen("method", model.method.name().into(), "default: computes any plate and the path of its cracks", ""),
+        chosen("method", case.model.method().name().into(), "default: computes any plate and the path of its cracks", ""),
         follows("driver", case.fatigue.driver.name().into()),
         chosen("bond_law", law.kind.name().into(), if springs_do { TWO_SPRINGS } else { BEYOND_SPRINGS }, ""),
         chosen("kernel", law.kernel.name().into(), "default: of those tried, its crack growth depends least on the lattice", ""),
@@ -86,16 +87,16 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
         chosen("surface_correction", law.surface_correction.name().into(), "default: the most accurate one built", ""),
         follows("discretisation", Discretisation::Lattice.name().into()),
         chosen("spacing_mm", clean(spacing / MM).into(), SPACING, &moved),
-        chosen("horizon_ratio", model.horizon_ratio.into(), RATIO, ""),
+        chosen("horizon_ratio", points.horizon_ratio.into(), RATIO, ""),
         follows("horizon_mm", clean(horizon / MM).into()),
-        chosen("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into(), ANGLE, ""),
+        chosen("lattice_angle_deg", clean(points.lattice_angle.to_degrees()).into(), ANGLE, ""),
         chosen(
             "solver",
-            used.map_or(model.solver.name(), SolverUsed::name).into(),
+            used.map_or(points.solver.name(), SolverUsed::name).into(),
             "default: the fastest exact one built",
             by_solver.as_deref().unwrap_or(""),
         ),
-        chosen("symmetry", model.symmetry.name().into(), "default: exact", figures.map_or("", solved_part)),
+        chosen("symmetry", points.symmetry.name().into(), "default: exact", figures.map_or("", solved_part)),
     ]
 }
 
@@ -134,7 +135,7 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
     let formula = handbook(&case.specimen);
     let choice = |key, value: Option<&str>, why: Option<&str>| Choice { key, value: value.into(), why: why.map(str::to_owned) };
     vec![
-        choice("method", Some(case.model.method.name()), Some("given in the case")),
+        choice("method", Some(case.model.method().name()), Some("given in the case")),
         choice("formula", formula.map(|formula| formula.name), Some("that of the kind of specimen")),
         choice("source", formula.map(|formula| formula.source), None),
         choice("range", formula.map(|formula| formula.range), None),
@@ -142,12 +143,12 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
 }
 
 /// The nodes of a case.
-fn of_nodes(case: &Case) -> Vec<Choice> {
-    let ElementFreeSettings { resolution, step_share, .. } = case.model.element_free;
+fn of_nodes(case: &Case, nodes: &ElementFreeSettings) -> Vec<Choice> {
+    let ElementFreeSettings { resolution, step_share, .. } = *nodes;
     let why = |key: &str| Some(if given(&case.echo, key) { "given in the case" } else { "chosen by the program" }.to_owned());
     let choice = |key, value: Value, why| Choice { key, value, why };
     vec![
-        choice("method", case.model.method.name().into(), Some("given in the case".to_owned())),
+        choice("method", case.model.method().name().into(), Some("given in the case".to_owned())),
         choice("spacing_mm", (resolution.far / MM).into(), why("spacing_mm")),
         choice("basis", resolution.basis.name().into(), why("basis")),
         choice("enrichment", resolution.enrichment.name().into(), why("enrichment")),

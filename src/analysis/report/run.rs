@@ -182,7 +182,7 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives)
         DamagePicture { grid: &prediction.grid, snapshot, field, cracks, paths: &paths, caption: &caption }
             .write(&folder.join(file))?;
     }
-    if case.model.method == Method::ElementFreeGalerkin {
+    if case.model.method() == Method::ElementFreeGalerkin {
         write_file(&folder.join("nodes.svg"), nodes_svg(case, &paths)?.as_bytes())?;
         if let Some(around_tip) = tip_svg(case, &paths)? {
             write_file(&folder.join("nodes_tip.svg"), around_tip.as_bytes())?;
@@ -325,7 +325,7 @@ fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
 
 fn computed(case: &Case, prediction: &Prediction) -> String {
     let figures = &prediction.figures;
-    match case.model.method {
+    match case.model.method() {
         Method::Peridynamics => format!(
             "{} points, {} cycle blocks, {} solves, {:.1} s",
             figures.points, figures.blocks, figures.solves, figures.wall_s

@@ -9,7 +9,8 @@ use super::damage::{DamagePicture, PointField};
 use super::output::{Room, write_file};
 use super::specimen_picture::nodes_svg;
 use super::{json::RESULT_FILE, provenance, vtk};
-use crate::case::Case;
+use crate::case::{Case, Model};
+use crate::element_free::resolution::ElementFreeSettings;
 use crate::element_free::rim_stress::{Rim, StressAt};
 use crate::error::Result;
 use crate::predict::Snapshot;
@@ -101,7 +102,7 @@ pub fn warnings(stressed: &Stressed) -> Vec<String> {
 /// Bytes that the files will have, roughly.
 pub fn room(case: &Case) -> Room {
     const OF_POINT: f64 = 60.0;
-    let points = 100.0 * case.specimen.area() / case.model.element_free.resolution.far.powi(2);
+    let points = 100.0 * case.specimen.area() / case.nodes().resolution.far.powi(2);
     let of_fields = if case.output.paraview { (OF_POINT * points) as u64 } else { 0 };
     Room { tables: 64_000, all: 500_000 + of_fields }
 }
@@ -133,7 +134,7 @@ pub fn write(folder: &Path, case: &Case, stressed: &Stressed, result: &Value) ->
     }
     .write(&folder.join("von_mises.png"))?;
     let mut of_nodes = case.clone();
-    of_nodes.model.element_free.resolution = stressed.resolution;
+    of_nodes.model = Model::Nodes(ElementFreeSettings { resolution: stressed.resolution, ..case.nodes() });
     write_file(&folder.join("nodes.svg"), nodes_svg(&of_nodes, &[])?.as_bytes())?;
     vtk::write_wanted(folder, case.output, &stressed.grid, &[snapshot])
 }

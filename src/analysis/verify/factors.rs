@@ -7,7 +7,7 @@ use super::collinear::Collinear;
 use super::scene::{Scene, factors};
 use super::standard::STANDARD;
 use super::table::Table;
-use crate::case::Case;
+use crate::case::{Case, Model};
 use crate::element_free::basis::Enrichment;
 use crate::error::Result;
 use crate::predict::tip_factors::{StressIntensityMethod, stress_intensity};
@@ -243,9 +243,11 @@ fn near_holes(table: &mut Table) -> Result<()> {
         let keys = "width_mm = 100\nlength_mm = 200\nholes = [{ x_mm = 10, y_mm = 0, diameter_mm = 12 }]";
         let mut case = case(&pulled_plate(&format!("{keys}\n{}", cracks(&[ends]))), NODES)?;
         let found = factors(&case, tip)?[0];
-        let resolution = &mut case.model.element_free.resolution;
+        let mut nodes = case.nodes();
+        let resolution = &mut nodes.resolution;
         (resolution.far, resolution.hold, resolution.in_radius) = (0.5 * resolution.far, 6.0, 2.0 * resolution.in_radius);
         (resolution.enrichment, resolution.support) = (Enrichment::Intrinsic, 3.0);
+        case.model = Model::Nodes(nodes);
         let finer = factors(&case, tip)?[0];
         table.compare(format!("{name}, nodes: K_I in MPa√m"), found / MPA_SQRT_M, finer / MPA_SQRT_M, 0.5, SOURCE);
     }

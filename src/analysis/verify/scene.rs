@@ -5,8 +5,7 @@ use super::cases::{self, NODES, case_of, overrides, plate_alone, pulled_plate};
 use super::references::{Reference, SHARES, compare, largest};
 use super::standard::Standard;
 use super::uniform_tension::{strip, uniform_tension_with};
-use crate::body::Body;
-use crate::case::{Case, Method};
+use crate::case::{Case, Model, PointSettings};
 use crate::element_free::rim_stress::Rim;
 use crate::error::{Error, Result};
 use crate::growth::cracks::initial_tips;
@@ -81,9 +80,9 @@ impl Found {
 
     /// A figure of one solve.
     fn of(case: &Case, computed: f64, truth: f64) -> Found {
-        let spacing = match case.model.method {
-            Method::ElementFreeGalerkin => case.model.element_free.resolution.far,
-            _ => case.model.spacing,
+        let spacing = match case.model {
+            Model::Nodes(nodes) => nodes.resolution.far,
+            Model::Points(points) | Model::Handbook(points) => points.spacing,
         };
         // By the area, near enough for a table.
         let points = (case.specimen.area() / spacing.powi(2)).round() as usize;
@@ -210,9 +209,9 @@ impl Scene {
 
 /// K and T of the initial tips by the method of a case, as a prediction reads them.
 pub fn tips(case: &Case) -> Result<Vec<TipRecord>> {
-    let tips = match case.model.method {
-        Method::ElementFreeGalerkin => initial_tips::<NodePlate>(case),
-        Method::Peridynamics | Method::Handbook => initial_tips::<PointPlate>(case),
+    let tips = match case.model {
+        Model::Nodes(_) => initial_tips::<NodePlate>(case),
+        Model::Points(_) | Model::Handbook(_) => initial_tips::<PointPlate>(case),
     };
     Ok(tips?.tips)
 }
@@ -250,12 +249,11 @@ fn initial_factors(case: &Case, reference: &Reference) -> Result<Found> {
 
 /// The plate in uniform tension, on points: nodes reproduce linear fields and are not asked.
 fn tension(case: &Case) -> Result<Found> {
-    on_points(case)?;
-    let (specimen, model) = (&case.specimen, &case.model);
+    let (specimen, points) = (&case.specimen, on_points(case)?);
     let plate = strip(specimen.width, specimen.length());
-    let resolution = (model.spacing, model.horizon_ratio, model.lattice_angle);
-    let by = (model.solver, model.symmetry);
-    let errors = uniform_tension_with(by, &plate, &model.bond_law, case.material.poisson_ratio, resolution)?;
+    let resolution = (points.spacing, points.horizon_ratio, points.lattice_angle);
+    let by = (points.solver, points.symmetry);
+    let errors = uniform_tension_with(by, &plate, &points.bond_law, case.material.poisson_ratio, resolution)?;
     Ok(Found::of(case, 1.0 + 0.01 * errors.along, 1.0))
 }
 
@@ -265,18 +263,17 @@ fn tension(case: &Case) -> Result<Found> {
 /// to the place, taken on to the rim.
 fn hole(case: &Case) -> Result<Found> {
     let known = concentration_of(DIAMETER_MM / SIZE_MM[0]);
-    if case.model.method == Method::ElementFreeGalerkin {
+    if matches!(case.model, Model::Nodes(_)) {
         let stressed = stressed(case)?;
         let largest = stressed.rims.iter().find(|rim| rim.rim == Rim::Hole(0)).map(|rim| rim.largest.stress);
         let computed = largest.and_then(|stress| stressed.concentration(stress)).unwrap_or(f64::NAN);
         return Ok(Found { computed, truth: known, path_rms_mm: None, points: stressed.nodes, solves: stressed.solves });
     }
-    on_points(case)?;
-    let (specimen, model) = (&case.specimen, &case.model);
-    let body = Body::build(specimen, &case.material, &model.bond_law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
+    let points = on_points(case)?;
+    let body = points.body(&case.specimen, &case.material)?;
     let bonds = Bonds::new(&body);
     let mut displacement = Vec::new();
-    let mut equilibrium = Equilibrium::new(model.solver, model.symmetry, &body, &bonds, case.loading.maximum);
+    let mut equilibrium = Equilibrium::new(points.solver, points.symmetry, &body, &bonds, case.loading.maximum);
     equilibrium.solve(&body, &bonds, &mut displacement)?;
     let layout = Layout::of(&body.lattice, body.stencil.unknowns);
     let frame = TipFrame { origin: [0.0; 2], ahead: [1.0, 0.0] };
@@ -302,9 +299,9 @@ pub fn concentration_of(x: f64) -> f64 {
     (3.0 - x * (3.14 - x * (3.667 - 1.527 * x))) / (1.0 - x)
 }
 
-fn on_points(case: &Case) -> Result<()> {
-    if case.model.method == Method::Peridynamics {
-        return Ok(());
+fn on_points(case: &Case) -> Result<PointSettings> {
+    match case.model {
+        Model::Points(points) => Ok(points),
+        model => Err(Error::Mechanics(format!("{} is not asked for a plate without a crack", model.method()))),
     }
-    Err(Error::Mechanics(format!("{} is not asked for a plate without a crack", case.model.method)))
 }

@@ -58,7 +58,7 @@ fn law_name(case: &Case) -> Option<&'static str> {
 /// The horizon against crack, ligament, hole and other cracks.
 fn horizon_lines(case: &Case) -> Vec<String> {
     let specimen = &case.specimen;
-    let horizon = case.model.horizon_ratio * case.model.spacing;
+    let horizon = case.points().horizon_ratio * case.points().spacing;
     let sizes = |has_one_tip: bool| {
         let lines = specimen.crack_lines();
         let of_kind = lines.into_iter().filter(|line| (specimen.tips_of(line) == 1) == has_one_tip);
@@ -132,7 +132,7 @@ fn ahead(specimen: &Specimen, at: Point, [x, y]: Point) -> f64 {
 
 /// Horizon over spacing.
 fn ratio_line(case: &Case, method: &str) -> Option<String> {
-    let ratio = case.model.horizon_ratio;
+    let ratio = case.points().horizon_ratio;
     let limit = limits::of("horizon_ratio", method)?;
     let end = limit.passed(ratio)?;
     Some(format!("model.horizon_ratio {ratio}: beyond {end} the life errs by more than {} %; give 3.015", limit.bound_percent))
@@ -147,7 +147,7 @@ fn poisson_line(case: &Case, method: Option<&str>) -> Option<String> {
     };
     let limit = limits::of(sweep, method?)?;
     let end = limit.passed(nu)?;
-    let what = if case.model.method == Method::ElementFreeGalerkin { "K errs" } else { "the life at m = 3 errs" };
+    let what = if case.model.method() == Method::ElementFreeGalerkin { "K errs" } else { "the life at m = 3 errs" };
     Some(format!("nu {nu} in plane {plane}: beyond {end} {what} by more than {} %", limit.bound_percent))
 }
 
@@ -183,7 +183,7 @@ fn exponent_line(case: &Case, sweep: &str, method: &str) -> Option<String> {
 
 /// Radius of influence of nodes.
 fn influence_line(case: &Case) -> Option<String> {
-    let resolution = &case.model.element_free.resolution;
+    let resolution = &case.nodes().resolution;
     let method = match resolution.basis {
         BasisKind::Linear => "element_free_galerkin, linear basis",
         BasisKind::Quadratic => "element_free_galerkin, quadratic basis",

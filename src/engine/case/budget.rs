@@ -16,8 +16,9 @@
 pub mod machine;
 
 use super::model::round_mm;
-use super::{Case, HORIZON_RATIO, Method};
+use super::{Case, HORIZON_RATIO, Model, PointSettings};
 use crate::bond_law::SurfaceCorrection;
+use crate::element_free::resolution::ElementFreeSettings;
 use crate::error::{Result, input};
 use crate::input::Output;
 use crate::levels::{RefinedRegion, Refinement};
@@ -217,12 +218,12 @@ fn along(curve: &Curve, ratio: f64) -> f64 {
 impl Budget {
     /// What a case takes up.
     pub fn of(case: &Case) -> Budget {
-        let model = &case.model;
-        let budget = match model.method {
-            Method::Handbook => Budget { bytes: BASE, disk_bytes: DISK_BASE, ..Budget::none() },
-            Method::ElementFreeGalerkin => of_nodes(case),
-            Method::Peridynamics => {
-                plate_of(case).budget(model.bond_law.surface_correction, 0.0, model.solver == SolverKind::Direct)
+        let budget = match &case.model {
+            Model::Handbook(_) => Budget { bytes: BASE, disk_bytes: DISK_BASE, ..Budget::none() },
+            Model::Nodes(nodes) => of_nodes(&case.specimen, nodes),
+            Model::Points(points) => {
+                let is_direct = points.solver == SolverKind::Direct;
+                plate_of(&case.specimen, points).budget(points.bond_law.surface_correction, 0.0, is_direct)
             }
         };
         budget.with_files(case.output)
@@ -307,21 +308,15 @@ fn gigabytes(bytes: f64) -> String {
 }
 
 /// Points and bonds of a case.
-fn plate_of(case: &Case) -> PointPlate<'_> {
-    let model = &case.model;
-    PointPlate {
-        specimen: &case.specimen,
-        spacing: model.spacing,
-        horizon_ratio: model.horizon_ratio,
-        lattice_angle: model.lattice_angle,
-        refinement: None,
-    }
+fn plate_of<'a>(specimen: &'a Specimen, points: &PointSettings) -> PointPlate<'a> {
+    let PointSettings { spacing, horizon_ratio, lattice_angle, .. } = *points;
+    PointPlate { specimen, spacing, horizon_ratio, lattice_angle, refinement: None }
 }
 
 /// Nodes of a plate far from cracks and rims, which are few beside them where memory matters.
-fn of_nodes(case: &Case) -> Budget {
-    let far = case.model.element_free.resolution.far;
-    let nodes = case.specimen.area() / (far * far);
+fn of_nodes(specimen: &Specimen, settings: &ElementFreeSettings) -> Budget {
+    let far = settings.resolution.far;
+    let nodes = specimen.area() / (far * far);
     let of_area = NODE * nodes;
     Budget { points: nodes, bytes: BASE + of_area, disk_bytes: DISK_BASE, of_area, spacing: far, ..Budget::none() }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use super::{Case, Engine, LawSource, Method};
+use super::{Case, Engine, LawSource, Method, Model};
 use crate::case::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::paris::ParisLaw;
@@ -37,7 +37,7 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
 pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
     check_record(&record)?;
     let by_hand = Method::from_str(&record.method)? == Method::Handbook;
-    if case.model.method != Method::Peridynamics || by_hand && case.is_driven_by_tips() {
+    if case.model.method() != Method::Peridynamics || by_hand && case.is_driven_by_tips() {
         // C and m belong to ΔK, whatever bonds they were fitted with.
         check_stress_ratio(case, &record)?;
         case.law = LawSource::Fitted(Box::new(record));
@@ -49,12 +49,13 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
         return Err(input("fatigue.fitted", &record.material, problem, remedy));
     }
     let choices = case.choices;
-    let law = &mut case.model.bond_law;
+    let Some(points) = case.model.points_mut() else { return Ok(()) };
+    let law = &mut points.bond_law;
     law.kind = agree("model.bond_law", choices.bond_law, &record.bond_law)?;
     law.kernel = agree("model.kernel", choices.kernel, &record.kernel)?;
     law.rotation = agree("model.rotation", choices.rotation, &record.rotation)?;
     law.surface_correction = agree("model.surface_correction", choices.surface_correction, &record.surface_correction)?;
-    case.model.horizon_ratio = choices.horizon_ratio.unwrap_or(record.horizon_ratio);
+    points.horizon_ratio = choices.horizon_ratio.unwrap_or(record.horizon_ratio);
     if case.spends_bond_life() {
         adopt_ageing(case, &record)?;
     }
@@ -123,8 +124,8 @@ fn recorded_modulus(record: &FittedRecord) -> Result<f64> {
 pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<String>> {
     let mut lines = Vec::new();
     let bonds = case.spends_bond_life();
-    if bonds && (case.model.horizon_ratio - record.horizon_ratio).abs() > 1e-9 {
-        let (given, recorded) = (case.model.horizon_ratio, record.horizon_ratio);
+    if bonds && (case.points().horizon_ratio - record.horizon_ratio).abs() > 1e-9 {
+        let (given, recorded) = (case.points().horizon_ratio, record.horizon_ratio);
         lines.push(format!(
             "horizon_ratio {given} is used with a law calibrated at {recorded}: the transfer between ratios is not calibrated"
         ));
@@ -133,7 +134,7 @@ pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<Str
         let (given, recorded, gamma) = (case.loading.ratio, record.stress_ratio, case.fatigue.walker_gamma);
         lines.push(format!("law calibrated at stress ratio {recorded} used at {given} with walker_gamma = {gamma}, an assumption: calibrate at that ratio, or give the walker_gamma that tests at two ratios fit"));
     }
-    if case.model.method == Method::Peridynamics {
+    if case.model.method() == Method::Peridynamics {
         lines.extend(material_line(&case.material, record, bonds)?);
     }
     Ok(lines)
@@ -175,12 +176,12 @@ impl Case {
 
     /// What computes its growth.
     pub fn engine(&self) -> Engine {
-        match (self.model.method, self.fatigue.driver) {
-            (Method::Handbook, _) => Engine::Handbook,
-            (Method::ElementFreeGalerkin, _) => Engine::Nodes,
-            (Method::Peridynamics, Driver::TipField) => Engine::Points,
-            (Method::Peridynamics, Driver::BondStrain) if self.fatigue.hands_over(&self.specimen) => Engine::BondsThenPoints,
-            (Method::Peridynamics, Driver::BondStrain) => Engine::Bonds,
+        match (&self.model, self.fatigue.driver) {
+            (Model::Handbook(_), _) => Engine::Handbook,
+            (Model::Nodes(_), _) => Engine::Nodes,
+            (Model::Points(_), Driver::TipField) => Engine::Points,
+            (Model::Points(_), Driver::BondStrain) if self.fatigue.hands_over(&self.specimen) => Engine::BondsThenPoints,
+            (Model::Points(_), Driver::BondStrain) => Engine::Bonds,
         }
     }
 
@@ -234,7 +235,7 @@ impl Case {
             LawSource::Paris(law) => Ok(*law),
             LawSource::Fitted(record) => {
                 // K of the tip's field and K of the handbook are not quite the same: each law stays with its own.
-                let law = match record.rate_constant.filter(|_| self.model.method == Method::Peridynamics) {
+                let law = match record.rate_constant.filter(|_| self.model.method() == Method::Peridynamics) {
                     Some(beta) => ParisLaw::of_bonds(&bonds_of(record), beta, recorded_modulus(record)?),
                     None => ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m },
                 };

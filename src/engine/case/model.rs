@@ -2,11 +2,11 @@
 
 use toml::Value;
 
-use super::model_keys::{ModelKeys, OF_NODES, OF_POINTS, refuse, too_fine};
-use super::{Case, Choices, HORIZON_RATIO, Method, Model, RESIDUAL};
+use super::model_keys::{ModelKeys, read, refuse_strangers, too_fine};
+use super::{Case, Choices, HORIZON_RATIO, Method, Model, PointSettings, RESIDUAL};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
 use crate::error::{Result, input};
-use crate::input::{LENGTH, number, slice};
+use crate::input::slice;
 use crate::material::Material;
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::handbook::handbook;
@@ -29,63 +29,63 @@ pub(super) fn from_value(
 ) -> Result<Model> {
     let input: ModelKeys = slice(value, "model")?;
     let method = input.method.unwrap_or(Method::Peridynamics);
-    match method {
-        Method::ElementFreeGalerkin => {
-            let problem = "belongs to peridynamics, and model.method is \"element_free_galerkin\"";
-            refuse(value, OF_POINTS, problem, "leave it out, or use model.method = \"peridynamics\"")?;
-        }
-        Method::Peridynamics | Method::Handbook => {
-            let problem = format!("belongs to model.method = \"element_free_galerkin\", and the method is \"{method}\"");
-            refuse(value, OF_NODES, &problem, "leave it out, or choose that method")?;
-        }
+    refuse_strangers(value, method)?;
+    if method == Method::ElementFreeGalerkin {
+        let nodes = input.nodes(specimen)?;
+        warnings.extend(input.spacing_mm.and_then(|spacing| too_fine(spacing, specimen, &nodes)));
+        return Ok(Model::Nodes(nodes));
     }
     choices.bond_law = input.bond_law;
     choices.kernel = input.kernel;
     choices.rotation = input.rotation;
     choices.surface_correction = input.surface_correction;
-    choices.horizon_ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
-    // A spacing is that of points, or of nodes far from cracks.
-    let (of_nodes, of_points) = match method {
-        Method::ElementFreeGalerkin => (input.spacing_mm, None),
-        Method::Peridynamics | Method::Handbook => (None, input.spacing_mm),
-    };
-    let element_free = input.element_free(of_nodes, specimen)?;
-    warnings.extend(of_nodes.and_then(|spacing| too_fine(spacing, specimen, &element_free)));
-    let spacing = match LENGTH.read_optional("model.spacing_mm", of_points)? {
-        Some(spacing) => spacing,
-        None => {
-            let (spacing, warning) = default_spacing(specimen);
-            warnings.extend(warning.filter(|_| method == Method::Peridynamics));
-            spacing
-        }
-    };
-    let angle =
-        number("an angle in degrees", -90.0, 90.0).read("model.lattice_angle_deg", input.lattice_angle_deg.unwrap_or(0.0))?;
-    let model = Model {
-        method,
+    choices.horizon_ratio = read("horizon_ratio", input.horizon_ratio)?;
+    let (usual, warning) = usual_points(specimen, material);
+    let spacing = read("spacing_mm", input.spacing_mm)?;
+    let angle = read("lattice_angle_deg", input.lattice_angle_deg)?;
+    let points = PointSettings {
         bond_law: BondLaw {
-            kind: choices.bond_law.unwrap_or_else(|| BondLawKind::for_material(material)),
-            kernel: choices.kernel.unwrap_or(Kernel::Conical),
-            rotation: choices.rotation.unwrap_or(Rotation::Free),
-            surface_correction: choices.surface_correction.unwrap_or(SurfaceCorrection::VolumeAndSurface),
+            kind: choices.bond_law.unwrap_or(usual.bond_law.kind),
+            kernel: choices.kernel.unwrap_or(usual.bond_law.kernel),
+            rotation: choices.rotation.unwrap_or(usual.bond_law.rotation),
+            surface_correction: choices.surface_correction.unwrap_or(usual.bond_law.surface_correction),
         },
+        spacing: spacing.unwrap_or(usual.spacing),
+        horizon_ratio: choices.horizon_ratio.unwrap_or(usual.horizon_ratio),
+        lattice_angle: angle.map_or(usual.lattice_angle, f64::to_radians),
+        solver: input.solver.unwrap_or(usual.solver),
+        symmetry: input.symmetry.unwrap_or(usual.symmetry),
+        residual: usual.residual,
+    };
+    if method == Method::Handbook {
+        check_formula(specimen)?;
+        return Ok(Model::Handbook(points));
+    }
+    warnings.extend(warning.filter(|_| spacing.is_none()));
+    check_spacing(points.spacing, specimen)?;
+    warnings.extend(tiny_flaw(specimen));
+    Ok(Model::Points(points))
+}
+
+/// Points and bonds where a case says nothing of them, with what is to be said of their spacing.
+pub(super) fn usual_points(specimen: &Specimen, material: &Material) -> (PointSettings, Option<String>) {
+    let (spacing, warning) = default_spacing(specimen);
+    let bond_law = BondLaw {
+        kind: BondLawKind::for_material(material),
+        kernel: Kernel::Conical,
+        rotation: Rotation::Free,
+        surface_correction: SurfaceCorrection::VolumeAndSurface,
+    };
+    let points = PointSettings {
+        bond_law,
         spacing,
-        horizon_ratio: choices.horizon_ratio.unwrap_or(HORIZON_RATIO),
-        lattice_angle: angle.to_radians(),
-        solver: input.solver.unwrap_or(SolverKind::Window),
-        symmetry: input.symmetry.unwrap_or(Symmetry::Auto),
-        element_free,
+        horizon_ratio: HORIZON_RATIO,
+        lattice_angle: 0.0,
+        solver: SolverKind::Window,
+        symmetry: Symmetry::Auto,
         residual: RESIDUAL,
     };
-    match method {
-        Method::Peridynamics => {
-            check_spacing(spacing, specimen)?;
-            warnings.extend(tiny_flaw(specimen));
-        }
-        Method::ElementFreeGalerkin => {}
-        Method::Handbook => check_formula(specimen)?,
-    }
-    Ok(model)
+    (points, warning)
 }
 
 /// What is said of a flaw so small that points are as fine as that everywhere for its sake.
@@ -210,8 +210,8 @@ pub fn round_mm(metres: f64) -> f64 {
 
 /// The bond law can represent the material, and its choices go together.
 pub(super) fn check_law(case: &Case) -> Result<()> {
-    match case.model.method {
-        Method::Peridynamics => stencil::check(&case.model.bond_law, &case.material),
-        Method::ElementFreeGalerkin | Method::Handbook => Ok(()),
+    match &case.model {
+        Model::Points(points) => stencil::check(&points.bond_law, &case.material),
+        Model::Nodes(_) | Model::Handbook(_) => Ok(()),
     }
 }

@@ -3,12 +3,12 @@
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::Method;
+use super::{Case, Method, Model};
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::element_free::resolution::{ElementFreeSettings, IN_RADIUS, Resolution};
 use crate::error::{Result, input, input_missing};
-use crate::input::{LENGTH, number};
+use crate::input::{LENGTH, Quantity, number};
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::Specimen;
 use crate::specimen::geometry::bounding_box;
@@ -19,6 +19,10 @@ use crate::specimen::geometry::bounding_box;
 const RUNGS: [(f64, f64, f64); 3] = [(1.0, 28.0, 0.15), (2.0, 20.0, 0.25), (f64::INFINITY, 14.0, 0.35)];
 /// Error that is asked for where the case does not say.
 const TOLERANCE_PERCENT: f64 = 2.0;
+/// Least error that can be asked for.
+const TOLERANCE_LEAST: f64 = 0.5;
+/// Nodes over those of a run that asks for nearly that error, by which it is judged.
+const FINER: f64 = 1.5;
 /// Share of the error of a life that K may have: its cube or fourth power makes the life.
 const FACTOR_SHARE: f64 = 0.3;
 /// Nodes far from cracks beyond which a spacing was hardly meant for nodes.
@@ -49,11 +53,52 @@ pub(super) struct ModelKeys {
     pub influence_radius: Option<f64>,
 }
 
-/// Keys that belong to the element-free Galerkin method.
-pub(super) const OF_NODES: &[&str] = &["nodes", "tolerance_percent", "basis", "enrichment", "influence_radius"];
-/// Keys that belong to points and bonds.
-pub(super) const OF_POINTS: &[&str] =
-    &["symmetry", "bond_law", "kernel", "rotation", "surface_correction", "horizon_ratio", "lattice_angle_deg", "solver"];
+/// A key of a case: whose it is, and what kind of number.
+struct Key {
+    name: &'static str,
+    owners: &'static [Method],
+    quantity: Option<Quantity>,
+}
+
+const POINTS: &[Method] = &[Method::Peridynamics, Method::Handbook];
+const NODES: &[Method] = &[Method::ElementFreeGalerkin];
+
+const fn key(name: &'static str, owners: &'static [Method], quantity: Option<Quantity>) -> Key {
+    Key { name, owners, quantity }
+}
+
+/// Keys of `[model]` beside `method`.
+const KEYS: [Key; 14] = [
+    // That of points, or of nodes far from cracks.
+    key("spacing_mm", Method::ALL, Some(LENGTH)),
+    key("symmetry", POINTS, None),
+    key("bond_law", POINTS, None),
+    key("kernel", POINTS, None),
+    key("rotation", POINTS, None),
+    key("surface_correction", POINTS, None),
+    key("horizon_ratio", POINTS, Some(number("a horizon ratio", 1.5, 12.0))),
+    key("lattice_angle_deg", POINTS, Some(number("an angle in degrees", -90.0, 90.0))),
+    key("solver", POINTS, None),
+    key("nodes", NODES, Some(number("a number of nodes", 50.0, 1e5))),
+    key("tolerance_percent", NODES, Some(number("an error in percent", TOLERANCE_LEAST, 20.0))),
+    key("basis", NODES, None),
+    key("enrichment", NODES, None),
+    key("influence_radius", NODES, Some(number("a radius of influence in spacings", 1.5, 6.0))),
+];
+
+/// A number of `[model]` in SI units, within its range.
+pub(super) fn read(name: &str, value: Option<f64>) -> Result<Option<f64>> {
+    let quantity = KEYS.iter().find(|key| key.name == name).and_then(|key| key.quantity);
+    quantity.map_or(Ok(value), |quantity| quantity.read_optional(&format!("model.{name}"), value))
+}
+
+/// Refuses a key of `[model]` that does not go with the method.
+pub(super) fn refuse_strangers(model: &Value, method: Method) -> Result<()> {
+    let strange = KEYS.iter().find(|key| !key.owners.contains(&method) && model.get(key.name).is_some());
+    let Some(&Key { name, owners: &[owner, ..], .. }) = strange else { return Ok(()) };
+    let problem = format!("belongs to model.method = \"{owner}\", and the method is \"{method}\"");
+    Err(input_missing(&format!("model.{name}"), &problem, format!("leave it out, or use model.method = \"{owner}\"")))
+}
 
 /// Makes `[model]` one of nodes: what it says of points goes, but for keys that were `asked` for beside the file.
 pub(super) fn on_nodes(table: &mut Table, asked: impl Fn(&str) -> bool) {
@@ -62,16 +107,9 @@ pub(super) fn on_nodes(table: &mut Table, asked: impl Fn(&str) -> bool) {
     if model.get("method").and_then(Value::as_str) == Some(name) {
         return;
     }
-    model.retain(|key, _| key != "spacing_mm" && !OF_POINTS.contains(&key) || asked(&format!("model.{key}")));
+    let is_of_points = |name: &str| KEYS.iter().any(|key| key.name == name && key.owners.contains(&Method::Peridynamics));
+    model.retain(|name, _| !is_of_points(name) || asked(&format!("model.{name}")));
     model.insert("method".to_owned(), Value::String(name.to_owned()));
-}
-
-/// Refuses a key of `[model]` that does not go with the method.
-pub(super) fn refuse(model: &Value, keys: &[&str], problem: &str, remedy: &str) -> Result<()> {
-    match keys.iter().find(|key| model.get(**key).is_some()) {
-        None => Ok(()),
-        Some(key) => Err(input_missing(&format!("model.{key}"), problem, remedy)),
-    }
 }
 
 /// What is to be said of a spacing that was meant for points: nodes are refined by themselves.
@@ -85,51 +123,76 @@ pub(super) fn too_fine(spacing_mm: f64, specimen: &Specimen, settings: &ElementF
     })
 }
 
+/// Nodes where a case says nothing of them.
+pub(super) fn usual_nodes(specimen: &Specimen) -> ElementFreeSettings {
+    let basis = if specimen.tips.is_empty() { BasisKind::Quadratic } else { BasisKind::Linear };
+    nodes_for(specimen, TOLERANCE_PERCENT, basis)
+}
+
+/// Nodes by which K of a case on points or nodes is judged: those for the least error that can be asked for, finer still beside a run that
+/// asks for nearly that.
+pub fn finer_nodes(case: &Case) -> ElementFreeSettings {
+    let mut nodes = nodes_for(&case.specimen, TOLERANCE_LEAST, BasisKind::Linear);
+    let is_as_fine = matches!(case.model, Model::Nodes(own) if own.is_given || own.tolerance < 2.0 * nodes.tolerance);
+    let times = if is_as_fine { FINER } else { 1.0 };
+    let far = if let Model::Nodes(own) = case.model { nodes.resolution.far.min(own.resolution.far) } else { nodes.resolution.far };
+    nodes.resolution.far = far / times;
+    nodes.resolution.hold *= times;
+    nodes
+}
+
+/// Smaller side of the plate, m.
+fn smaller_side(specimen: &Specimen) -> f64 {
+    let [low, high] = bounding_box(&specimen.outline);
+    (high[0] - low[0]).min(high[1] - low[1])
+}
+
+/// Nodes for an error asked for, percent of life.
+fn nodes_for(specimen: &Specimen, percent: f64, basis: BasisKind) -> ElementFreeSettings {
+    let (_, across, step_share) = RUNGS.into_iter().find(|(most, ..)| percent <= *most).unwrap_or(RUNGS[RUNGS.len() - 1]);
+    ElementFreeSettings {
+        resolution: Resolution {
+            far: smaller_side(specimen) / across,
+            hold: HOLD,
+            in_radius: IN_RADIUS,
+            fineness: 1.0,
+            support: INFLUENCE[usize::from(basis == BasisKind::Quadratic)],
+            basis,
+            enrichment: Enrichment::Tip,
+        },
+        step_share,
+        tolerance: percent / 100.0 * FACTOR_SHARE,
+        is_given: false,
+    }
+}
+
 impl ModelKeys {
     /// What the keys of nodes say, and the choice of the program where they say nothing; `spacing_mm` is that far from cracks.
-    pub(super) fn element_free(&self, spacing_mm: Option<f64>, specimen: &Specimen) -> Result<ElementFreeSettings> {
-        let tolerance = number("an error in percent", 0.5, 20.0)
-            .read("model.tolerance_percent", self.tolerance_percent.unwrap_or(TOLERANCE_PERCENT))?;
-        let (_, across, step_share) =
-            RUNGS.into_iter().find(|(percent, ..)| tolerance <= *percent).unwrap_or(RUNGS[RUNGS.len() - 1]);
-        let [low, high] = bounding_box(&specimen.outline);
-        let [width, height] = [0, 1].map(|i| high[i] - low[i]);
-        let far = match (spacing_mm, self.nodes) {
+    pub(super) fn nodes(&self, specimen: &Specimen) -> Result<ElementFreeSettings> {
+        let percent = read("tolerance_percent", self.tolerance_percent)?.unwrap_or(TOLERANCE_PERCENT);
+        let usual = usual_nodes(specimen);
+        let mut settings = nodes_for(specimen, percent, self.basis.unwrap_or(usual.resolution.basis));
+        let resolution = &mut settings.resolution;
+        let (spacing, nodes) = (read("spacing_mm", self.spacing_mm)?, read("nodes", self.nodes)?);
+        match (spacing, self.nodes) {
             (Some(_), Some(nodes)) => {
                 let problem = "stands beside model.spacing_mm, which says the same in other words";
                 return Err(input("model.nodes", nodes, problem, "leave one of them out"));
             }
             (Some(spacing), None) => {
-                let spacing = LENGTH.read("model.spacing_mm", spacing)?;
-                let most = width.min(height) / 4.0;
+                let side = smaller_side(specimen);
+                let most = side / 4.0;
                 if spacing > most {
-                    let problem = format!("leaves fewer than four spacings across the plate ({} mm)", 1e3 * width.min(height));
+                    let problem = format!("leaves fewer than four spacings across the plate ({} mm)", 1e3 * side);
                     return Err(input("model.spacing_mm", 1e3 * spacing, problem, format!("give {:.4} mm or less", 1e3 * most)));
                 }
-                spacing
+                resolution.far = spacing;
             }
-            (None, Some(nodes)) => {
-                let nodes = number("a number of nodes", 50.0, 1e5).read("model.nodes", nodes)?;
-                (specimen.area() / nodes).sqrt()
-            }
-            (None, None) => width.min(height) / across,
-        };
-        let basis = self.basis.unwrap_or(if specimen.tips.is_empty() { BasisKind::Quadratic } else { BasisKind::Linear });
-        let influence = number("a radius of influence in spacings", 1.5, 6.0)
-            .read_optional("model.influence_radius", self.influence_radius)?;
-        Ok(ElementFreeSettings {
-            resolution: Resolution {
-                far,
-                hold: HOLD,
-                in_radius: IN_RADIUS,
-                fineness: 1.0,
-                support: influence.unwrap_or(INFLUENCE[usize::from(basis == BasisKind::Quadratic)]),
-                basis,
-                enrichment: self.enrichment.unwrap_or(Enrichment::Tip),
-            },
-            step_share,
-            tolerance: tolerance / 100.0 * FACTOR_SHARE,
-            is_given: spacing_mm.is_some() || self.nodes.is_some(),
-        })
+            (None, _) => resolution.far = nodes.map_or(resolution.far, |nodes| (specimen.area() / nodes).sqrt()),
+        }
+        resolution.support = read("influence_radius", self.influence_radius)?.unwrap_or(resolution.support);
+        resolution.enrichment = self.enrichment.unwrap_or(resolution.enrichment);
+        settings.is_given = spacing.is_some() || nodes.is_some();
+        Ok(settings)
     }
 }

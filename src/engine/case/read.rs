@@ -60,7 +60,7 @@ impl Case {
         let case = Self::from_table(document.table.clone(), &document.name, &document.folder)?;
         if matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
             // Says what is missing and what to give.
-            return Err(law::missing(case.model.method, Path::new("")));
+            return Err(law::missing(case.model.method(), Path::new("")));
         }
         Ok(case)
     }
@@ -114,7 +114,7 @@ impl Case {
         let (with_law, law_record) = law_source::expanded(sections.optional("fatigue"), folder)?.unzip();
         let fatigue = fatigue::from_value(
             with_law.as_ref().unwrap_or(sections.optional("fatigue")),
-            model.method,
+            model.method(),
             (&specimen, &material, &loading),
             folder,
             &mut choices,
@@ -215,8 +215,8 @@ fn check_load(case: &Case) -> Result<()> {
         let problem = format!("{what} known to peridynamics driven by the field of every tip alone");
         return Err(input(key, value, problem, "use model.method = \"peridynamics\" and fatigue.driver = \"tip_field\""));
     }
-    let correction = case.model.bond_law.surface_correction;
-    let is_on_points = case.model.method == Method::Peridynamics;
+    let correction = case.points().bond_law.surface_correction;
+    let is_on_points = case.model.method() == Method::Peridynamics;
     if is_on_points && case.specimen.moved_section().is_some() && correction != SurfaceCorrection::Balanced {
         // K of a strip with twenty points over its height is off by 1 to 3 %, and the error falls with the spacing only.
         let problem = "does not know where an edge is that loading.grip = \"straight\" moves: loads act half a spacing inside";
@@ -276,7 +276,7 @@ fn compression_line(case: &Case) -> Option<String> {
 fn inline_line(case: &Case) -> Option<String> {
     use crate::bond_law::{BondLawKind, Kernel, Rotation};
     let mut other = Vec::new();
-    let (law, choices) = (case.model.bond_law.kind, &case.choices);
+    let (law, choices) = (case.points().bond_law.kind, &case.choices);
     other.extend((law != BondLawKind::TwoParameter).then(|| format!("bond_law {law}")));
     other.extend(choices.kernel.filter(|kernel| *kernel != Kernel::Conical).map(|kernel| format!("kernel {kernel}")));
     other.extend(choices.rotation.filter(|rotation| *rotation != Rotation::Free).map(|rotation| format!("rotation {rotation}")));
@@ -296,7 +296,7 @@ fn inline_line(case: &Case) -> Option<String> {
 /// W 110 mm, a 20 to 27 mm, spacing 1 mm, p = 2.87, ν 0.2 and 0.33): life over that at 3.015 0.63 to 0.66 at 1.5 (0.60 at
 /// a 14 mm, ν 0.3), 0.85 to 1.11 from 1.9 to 2.5, 0.97 at 2.9.
 fn coarse_line(case: &Case) -> Option<String> {
-    let ratio = case.model.horizon_ratio;
+    let ratio = case.points().horizon_ratio;
     let error = match ratio {
         _ if ratio < 1.9 => "about 40 % too short",
         _ if ratio < 2.9 => "wrong by up to 15 %",

@@ -85,7 +85,7 @@ impl<'a> BondStrain<'a> {
     /// The plate with its cracks as they are cut, before its first equilibrium; the fatigue law is given the body's horizon, m.
     /// Errors: as [`Body::build`]; cracks that cut the plate in two, no fatigue law.
     pub fn start(case: &'a Case, law: impl FnOnce(f64) -> Result<FatigueLaw>) -> Result<Self> {
-        let body = case.model.body(&case.specimen, &case.material)?;
+        let body = case.points().body(&case.specimen, &case.material)?;
         let law = law(body.horizon())?;
         let share = strain_share(&case.loading, &case.fatigue);
         let threshold = share * threshold_strain(&case.fatigue, &case.material, body.horizon()) / case.loading.range_share();
@@ -352,7 +352,7 @@ impl CrackGrowth for BondStrain<'_> {
 
 /// Solver of the bonds as they stand, which knows nothing of what went before.
 fn solver(case: &Case, body: &Body, run: &RunState) -> Equilibrium {
-    Equilibrium::new(case.model.solver, case.model.symmetry, body, &run.bonds, case.loading.maximum)
+    Equilibrium::new(case.points().solver, case.points().symmetry, body, &run.bonds, case.loading.maximum)
 }
 
 /// Where the solver has to expect the next breaks.

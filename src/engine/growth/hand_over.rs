@@ -96,7 +96,7 @@ impl<'a> HandOver<'a> {
 
     /// Whether all tips are active, and those from slots have grown far enough.
     fn is_due(&self) -> bool {
-        let least = HAND_OVER_HORIZONS * self.case.model.horizon_ratio * self.case.model.spacing;
+        let least = HAND_OVER_HORIZONS * self.case.points().horizon_ratio * self.case.points().spacing;
         let is_ready =
             |(tip, seed): (&TipRecord, &TipSeed)| tip.state == TipState::Active && (!seed.from_slot || tip.growth >= least);
         self.bonds.now().tips.iter().zip(&self.case.specimen.tips).all(is_ready)
@@ -149,7 +149,7 @@ fn since_start(tips: &[TipRecord], start: &CurvePoint) -> Vec<TipRecord> {
 fn cracked(case: &Case, tips: &[TipRecord]) -> Specimen {
     let mut specimen = case.specimen.clone();
     let mut lines = specimen.crack_lines();
-    let short = SHORT_HORIZONS * case.model.horizon_ratio * case.model.spacing;
+    let short = SHORT_HORIZONS * case.points().horizon_ratio * case.points().spacing;
     for (index, tip) in tips.iter().enumerate() {
         let seed = case.specimen.tips[index];
         let [x, y] = seed.direction;
@@ -165,10 +165,7 @@ fn cracked(case: &Case, tips: &[TipRecord]) -> Specimen {
         specimen.tips[index] = TipSeed { position, direction: towards, from_slot: false };
     }
     specimen.crack_length = specimen.crack_length_after(&tips.iter().map(|tip| tip.growth).collect::<Vec<_>>());
-    let pieces = |line: &CrackLine| {
-        line.pieces().enumerate().map(|(piece, [from, to])| Crack { from, to, continues: piece > 0 }).collect::<Vec<_>>()
-    };
-    specimen.cracks = lines.iter().flat_map(pieces).collect();
+    specimen.set_crack_lines(&lines);
     specimen
 }
 

@@ -85,7 +85,7 @@ impl CrackedPlate for NodePlate {
 
     fn build(case: &Case, _cracks: &CracksState) -> Result<Self> {
         let state = NodeState { fineness: 1.0, work: 0.0, solves: 0, nodes: 0, warnings: Vec::new() };
-        let settings = case.model.element_free;
+        let settings = case.nodes();
         Ok(NodePlate { settings, elasticity: Elasticity::of(&case.material), solved: None, state })
     }
 
@@ -234,5 +234,5 @@ pub fn initial_cracks(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
 /// Errors: too many cells.
 pub fn initial_plate(case: &Case) -> Result<Discretisation> {
     let (lines, tips) = initial_cracks(&case.specimen);
-    Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &case.model.element_free.resolution)
+    Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &case.nodes().resolution)
 }

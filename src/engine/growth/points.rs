@@ -95,7 +95,7 @@ pub struct PointState {
 impl PointPlate {
     /// Bonds beside the flanks of the cracks that are cut; gives those that changed.
     fn correct_flanks(&mut self, case: &Case, cracks: &CracksState, lines: &[CrackLine], range: FlankRange) -> Vec<Bond> {
-        if case.model.bond_law.surface_correction != SurfaceCorrection::Balanced {
+        if case.points().bond_law.surface_correction != SurfaceCorrection::Balanced {
             return Vec::new();
         }
         let end = |tip: &Tip| lines[tip.end.line].end(tip.end.at_last);
@@ -157,7 +157,7 @@ impl CrackedPlate for PointPlate {
     type Saved = PointState;
 
     fn build(case: &Case, cracks: &CracksState) -> Result<Self> {
-        let body = Arc::new(case.model.body(&case.specimen, &case.material)?);
+        let body = Arc::new(case.points().body(&case.specimen, &case.material)?);
         if remove_fragments(&body, &mut Bonds::new(&body), &body.pre_cut) == Connectivity::Severed {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
@@ -428,8 +428,8 @@ fn across(body: &Body, segment: &Segment, at_last: bool) -> Vec<Bond> {
 
 /// Solver of a run.
 fn solver(case: &Case, body: &Body, bonds: &Bonds) -> Equilibrium {
-    let model = &case.model;
-    Equilibrium::new(model.solver, model.symmetry, body, bonds, case.loading.maximum).to_tolerance(model.residual)
+    let points = case.points();
+    Equilibrium::new(points.solver, points.symmetry, body, bonds, case.loading.maximum).to_tolerance(points.residual)
 }
 
 /// Largest K_eq of the tips at maximum load, Pa√m, of the plate with its initial cracks cleanly cut; `None` where it cannot be read.

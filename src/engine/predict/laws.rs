@@ -51,7 +51,7 @@ pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) ->
 pub fn paris_law(case: &Case) -> Result<ParisLaw> {
     match &case.law {
         LawSource::Inline(law) => {
-            let beta = rate_constant(case.model.bond_law.kernel, law.p)?;
+            let beta = rate_constant(case.points().bond_law.kernel, law.p)?;
             Ok(ParisLaw::of_bonds(law, beta, case.material.plane_modulus()))
         }
         _ => case.paris_law(),
@@ -64,7 +64,7 @@ pub fn paris_law(case: &Case) -> Result<ParisLaw> {
 pub fn bond_law(case: &Case, horizon: f64) -> Result<FatigueLaw> {
     match &case.law {
         LawSource::Paris(law) => {
-            let beta = rate_constant(case.model.bond_law.kernel, law.m)?;
+            let beta = rate_constant(case.points().bond_law.kernel, law.m)?;
             Ok(law.to_bonds(beta, case.material.plane_modulus(), horizon))
         }
         _ => case.fatigue_law(horizon),

@@ -69,7 +69,9 @@ impl<'a> Record<'a> {
     pub fn new(case: &Case, observer: &'a dyn Observer) -> Self {
         let hash = checkpoint::hash(case);
         let mut case = case.clone();
-        case.model.spacing = case.model.fitting_spacing(&case.specimen);
+        if let Some(points) = case.model.points_mut() {
+            points.spacing = points.fitting_spacing(&case.specimen);
+        }
         Record { started: Instant::now(), case, hash, checkpoint: None, observer }
     }
 

@@ -26,6 +26,8 @@ pub struct HandbookFormula {
     /// Smallest and largest relative crack length it holds for: 2a/W with two tips or two cracks, a/W with one.
     pub bounds: [f64; 2],
     of: fn(f64) -> f64,
+    /// Error over that relative crack length, as its source states it.
+    error: fn(f64) -> f64,
     cracks: f64,
     is_of_pins: bool,
     width: f64,
@@ -42,13 +44,14 @@ impl PartialEq for HandbookFormula {
 /// 1.5 widths.
 pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
     let long = specimen.length() >= SHORTEST_LENGTH_OVER_WIDTH * specimen.width;
-    let (name, source, range, bounds, of): (_, _, _, _, fn(f64) -> f64) = match specimen.kind {
+    let (name, source, range, bounds, of, error): (_, _, _, _, fn(f64) -> f64, fn(f64) -> f64) = match specimen.kind {
         SpecimenKind::MiddleTension if long => (
             "Feddersen secant",
             "Feddersen 1966, ASTM STP 410; ASTM E647 annex A2",
             "0.3 % for 2a/W up to 0.7, 2 % low at 0.9; length/width 1.5 or more",
             [0.0, 0.95],
             |x| (1.0 / half(x).cos()).sqrt(),
+            |x| if x <= 0.7 { 0.003 } else { 0.003 + 0.085 * (x - 0.7) },
         ),
         SpecimenKind::SingleEdgeTension if long && !specimen.has_straight_grips() => (
             "Tada single edge",
@@ -56,6 +59,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
             "0.5 % for any a/W; ends free to rotate, length/width 2 or more",
             [0.0, 1.0],
             |x| tangent(x) * (0.752 + 2.02 * x + 0.37 * (1.0 - half(x).sin()).powi(3)) / half(x).cos(),
+            |_| 0.005,
         ),
         SpecimenKind::DoubleEdgeTension if long => (
             "Tada double edge",
@@ -63,18 +67,25 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
             "1 % for any 2a/W; length/width 1.5 or more",
             [0.0, 1.0],
             |x| (1.0 + 0.122 * half(x).cos().powi(4)) * tangent(x),
+            |_| 0.01,
         ),
-        SpecimenKind::CompactTension => {
-            ("ASTM E647 compact", "ASTM E647 annex A1", "0.5 % for a/W 0.2 or more", [0.2, 1.0], |x| {
+        SpecimenKind::CompactTension => (
+            "ASTM E647 compact",
+            "ASTM E647 annex A1",
+            "0.5 % for a/W 0.2 or more",
+            [0.2, 1.0],
+            |x| {
                 let polynomial = 0.886 + x * (4.64 + x * (-13.32 + x * (14.72 - 5.6 * x)));
                 (2.0 + x) / (1.0 - x).powf(1.5) * polynomial
-            })
-        }
+            },
+            |_| 0.005,
+        ),
         _ => return None,
     };
     let is_of_pins = specimen.kind == SpecimenKind::CompactTension;
     let (width, thickness) = (specimen.width, specimen.thickness);
-    Some(HandbookFormula { name, source, range, bounds, of, cracks: specimen.kind.sharing()?.0, is_of_pins, width, thickness })
+    let cracks = specimen.kind.sharing()?.0;
+    Some(HandbookFormula { name, source, range, bounds, of, error, cracks, is_of_pins, width, thickness })
 }
 
 fn half(x: f64) -> f64 {
@@ -94,6 +105,7 @@ pub fn handbook_tada(specimen: &Specimen) -> Option<HandbookFormula> {
         source: "Tada, Paris and Irwin 2000, part II",
         range: "0.1 % for any 2a/W; length/width 1.5 or more",
         bounds: [0.0, 1.0],
+        error: |_| 0.001,
         of: |x| (1.0 - 0.025 * x.powi(2) + 0.06 * x.powi(4)) * (1.0 / half(x).cos()).sqrt(),
         ..first
     })
@@ -111,6 +123,11 @@ impl HandbookFormula {
             return load_max / (self.thickness * self.width.sqrt()) * self.factor(crack_length);
         }
         self.factor(crack_length) * load_max * (PI * crack_length).sqrt()
+    }
+
+    /// Relative error of K at a crack length, m, as the source of the formula states it.
+    pub fn error_at(&self, crack_length: f64) -> f64 {
+        (self.error)(self.relative_length(crack_length))
     }
 
     /// ΔK of a cycle whose largest load is `load_max` and whose counting range is `range_share` times that, Pa√m.

@@ -341,6 +341,14 @@ impl Specimen {
         lines
     }
 
+    /// Takes these lines for its cracks.
+    pub fn set_crack_lines(&mut self, lines: &[CrackLine]) {
+        let pieces = |line: &CrackLine| {
+            line.pieces().enumerate().map(|(piece, [from, to])| Crack { from, to, continues: piece > 0 }).collect::<Vec<_>>()
+        };
+        self.cracks = lines.iter().flat_map(pieces).collect();
+    }
+
     /// Which end of which of the [`Specimen::crack_lines`] a tip is; `None` for the end face of a slot.
     pub fn line_end(&self, tip: usize) -> Option<LineEnd> {
         let seed = self.tips.get(tip).filter(|seed| !seed.from_slot)?;

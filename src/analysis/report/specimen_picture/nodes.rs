@@ -21,7 +21,7 @@ const RADII: usize = 3;
 /// SVG text of the nodes of a case for its initial cracks, and the path of every tip, m.
 pub fn nodes_svg(case: &Case, paths: &[Vec<Point>]) -> Result<String> {
     let plate = initial_plate(case)?;
-    let spacing = case.model.element_free.resolution.far / MM;
+    let spacing = case.nodes().resolution.far / MM;
     let title = format!("{} nodes, {} unknowns; spacing {spacing:.2} mm far from cracks", plate.nodes.at.len(), plate.unknowns());
     let lines = [
         "grey: cells of integration; dots: nodes, red with near-tip fields; blue: radius of influence of three nodes".to_owned(),

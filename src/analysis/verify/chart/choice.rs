@@ -52,7 +52,7 @@ pub fn choices(panel: &Panel) -> Result<Vec<Choice>> {
     };
     let scene = &panel.scene;
     let is_among = |names: &[&str]| names.contains(&panel.name);
-    let spacing = scene.case(&[])?.model.spacing / MM;
+    let spacing = scene.case(&[])?.points().spacing / MM;
     let spaced = |times: f64| format!("model.spacing_mm={}", (1e4 * times * spacing).round() / 1e4);
     add(TipField, String::new(), "", true);
     for (times, is_quick) in [(2.0, true), (1.5, true), (0.75, false), (0.5, false)] {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::Panel;
 use crate::calibration::median::median;
 use crate::case::budget::machine;
-use crate::case::{Case, Method};
+use crate::case::{self, Case, Method};
 use crate::error::Result;
 use crate::fatigue::Driver;
 use crate::predict::Silent;
@@ -37,7 +37,7 @@ pub struct Run {
 }
 
 /// The model of a run, by the names of an input file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Model {
     /// What drives the cracks; empty where none grows.
     pub driver: String,
@@ -82,26 +82,29 @@ pub fn once(panel: &Panel, set: &[String]) -> Result<Run> {
 impl Model {
     /// That of a case.
     fn of(case: &Case, grows: bool) -> Model {
-        let (model, nodes) = (&case.model, &case.model.element_free);
         let mm = |metres: f64| Some((1e6 * metres / MM).round() / 1e6);
-        let (driver, bond_law, solver, discretisation) = match model.method {
-            Method::Peridynamics => (case.fatigue.driver.name(), model.bond_law.kind.name(), model.solver.name(), "lattice"),
-            Method::ElementFreeGalerkin => (Driver::TipField.name(), "", "direct", "nodes"),
-            Method::Handbook => (Method::Handbook.name(), "", "quadrature", ""),
-        };
-        let (spacing_mm, horizon_ratio, step) = match model.method {
-            Method::Peridynamics => (mm(model.spacing), Some(model.horizon_ratio), Some(case.fatigue.step_error_percent)),
-            Method::ElementFreeGalerkin => (mm(nodes.resolution.far), None, Some(nodes.step_share)),
-            Method::Handbook => (None, None, None),
-        };
-        Model {
-            driver: if grows { driver.to_owned() } else { String::new() },
-            bond_law: bond_law.to_owned(),
-            solver: solver.to_owned(),
-            discretisation: discretisation.to_owned(),
-            spacing_mm,
-            horizon_ratio,
-            step: step.filter(|_| grows),
+        let driver = |name: &str| if grows { name.to_owned() } else { String::new() };
+        match case.model {
+            case::Model::Points(points) => Model {
+                driver: driver(case.fatigue.driver.name()),
+                bond_law: points.bond_law.kind.name().to_owned(),
+                solver: points.solver.name().to_owned(),
+                discretisation: "lattice".to_owned(),
+                spacing_mm: mm(points.spacing),
+                horizon_ratio: Some(points.horizon_ratio),
+                step: grows.then_some(case.fatigue.step_error_percent),
+            },
+            case::Model::Nodes(nodes) => Model {
+                driver: driver(Driver::TipField.name()),
+                solver: "direct".to_owned(),
+                discretisation: "nodes".to_owned(),
+                spacing_mm: mm(nodes.resolution.far),
+                step: grows.then_some(nodes.step_share),
+                ..Model::default()
+            },
+            case::Model::Handbook(_) => {
+                Model { driver: driver(Method::Handbook.name()), solver: "quadrature".to_owned(), ..Model::default() }
+            }
         }
     }
 }

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::{Run, SWEEP, Sweep};
-use crate::case::{Case, HORIZON_RATIO};
+use crate::case::{Case, HORIZON_RATIO, Model};
 use crate::error::{Error, Result};
 use crate::growth::cracks::steering::kink_angle;
 use crate::units::MM;
@@ -283,7 +283,11 @@ pub const INFLUENCE_RADIUS: Sweep = Sweep {
 
 fn by_radius(radius: f64, run: &Run, basis: &str) -> Result<f64> {
     // The key begins at 1.5.
-    on_nodes(run, &format!("model.basis={basis}"), |case| case.model.element_free.resolution.support = radius)
+    on_nodes(run, &format!("model.basis={basis}"), |case| {
+        let mut nodes = case.nodes();
+        nodes.resolution.support = radius;
+        case.model = Model::Nodes(nodes);
+    })
 }
 
 /// The panel of [`panel`] on nodes, changed as no key can.
@@ -306,7 +310,7 @@ pub const NODE_OFFSET: Sweep = Sweep {
 };
 
 fn move_crack(case: &mut Case, share: f64) {
-    let by = share * case.model.element_free.resolution.far;
+    let by = share * case.nodes().resolution.far;
     for crack in &mut case.specimen.cracks {
         crack.from[1] += by;
         crack.to[1] += by;

@@ -24,7 +24,7 @@ pub(super) fn before_block(
         return Some(end.reason);
     }
     // Where no handbook knows K, the energy released so far does.
-    let horizon = case.model.horizon_ratio * case.model.spacing;
+    let horizon = case.points().horizon_ratio * case.points().spacing;
     let released = case.toughness_at_end().zip(track.k_max_released(case, horizon));
     let factor = case.stop.required.unwrap_or(1.0);
     if released.is_some_and(|(toughness, k_max)| k_max * factor >= toughness) {
@@ -41,7 +41,7 @@ pub(super) fn before_block(
 /// Reasons that show after a block: a known end is passed. The run goes on for a spacing more, so that the length averaged over
 /// a spacing of growth is known up to the end; the curve stops there.
 pub(super) fn after_block(case: &Case, end: Option<End>, track: &GrowthHistory) -> Option<StopReason> {
-    end.filter(|end| track.last().crack_length >= end.crack_length + case.model.spacing).map(|end| end.reason)
+    end.filter(|end| track.last().crack_length >= end.crack_length + case.points().spacing).map(|end| end.reason)
 }
 
 /// Where on its curve a plate no longer bears its load.

@@ -168,7 +168,7 @@ impl Scales {
 
     /// Scales on nodes: spacing far from everything, m.
     pub fn of_nodes(case: &Case, far: f64) -> Self {
-        let share = case.model.element_free.step_share;
+        let share = case.nodes().step_share;
         Scales {
             step: StepScales {
                 error: 0.01 * case.fatigue.step_error_percent,

@@ -58,7 +58,7 @@ impl PointPlate {
                 "tip {tip} starts {:.3} mm from a rim, {:.2} horizons: K is read up to some percent off there; give model.spacing_mm = {:.4}",
                 gap / MM,
                 gap / horizon,
-                gap / (RIM_HORIZONS * case.model.horizon_ratio) / MM
+                gap / (RIM_HORIZONS * case.points().horizon_ratio) / MM
             )
         });
         narrow.into_iter().chain(near_rim).collect()

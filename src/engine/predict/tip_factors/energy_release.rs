@@ -126,7 +126,7 @@ struct Field {
 
 impl<'a> CrackedPlate<'a> {
     fn new(case: &'a Case) -> Result<Self> {
-        Ok(CrackedPlate { case, body: case.model.body(&case.specimen, &case.material)? })
+        Ok(CrackedPlate { case, body: case.points().body(&case.specimen, &case.material)? })
     }
 
     /// Growths for [`CrackedPlate::solve`]: every crack tip by the same, m.
@@ -151,7 +151,7 @@ impl<'a> CrackedPlate<'a> {
         if remove_fragments(&self.body, &mut bonds, &self.body.pre_cut) == Connectivity::Severed {
             return Err(Error::Mechanics(format!("{}: the cracks cut the plate in two", self.case.name)));
         }
-        if self.case.model.bond_law.surface_correction == SurfaceCorrection::Balanced {
+        if self.case.points().bond_law.surface_correction == SurfaceCorrection::Balanced {
             let lines = specimen.crack_lines();
             let tips: Vec<Point> = (0..specimen.tips.len())
                 .filter_map(|tip| specimen.line_end(tip))
@@ -168,11 +168,11 @@ impl<'a> CrackedPlate<'a> {
         let (specimen, bonds) = self.cut(growth_of_tips)?;
         let mut displacement = Vec::new();
         // A window pays only where bonds break one after the other.
-        let solver = match self.case.model.solver {
+        let solver = match self.case.points().solver {
             SolverKind::Window => SolverKind::Multigrid,
             whole => whole,
         };
-        let (symmetry, load) = (self.case.model.symmetry, self.case.loading.maximum);
+        let (symmetry, load) = (self.case.points().symmetry, self.case.loading.maximum);
         let mut equilibrium = Equilibrium::new(solver, symmetry, &self.body, &bonds, load);
         equilibrium.solve(&self.body, &bonds, &mut displacement)?;
         let work = equilibrium.work();

@@ -1,0 +1,208 @@
+//! How wrong a life may be: rates of a run against those by K on finer nodes at the same cracks.
+//!
+//! A life is `N = ∫ da / r(K)`, so that an error of K at the crack of a row, `δ = ln[r(K of finer nodes) / r(K of the run)]`, makes it wrong
+//! by `δN = -∫ δ dN`. That is asked at some rows, their shares of the cycles as weights. What two rungs of nodes share, K of the finer ones and
+//! the lengths of steps, is added as a bound. The same for the way of a crack: the angles by which directions differ, over its growth.
+
+use super::Prediction;
+use super::laws::growth_law;
+use crate::case::{Case, Engine, Model, finer_nodes};
+use crate::fatigue::crack_tip::TipState;
+use crate::fatigue::growth_law::GrowthLaw;
+use crate::growth::cracks::initial_tips;
+use crate::growth::cracks::steering::{equivalent_factor, kink_angle};
+use crate::growth::nodes::NodePlate;
+use crate::growth::record::{CurvePoint, StopReason, TipRecord};
+use crate::specimen::handbook::handbook;
+use crate::specimen::{Specimen, TipSeed};
+use crate::units::MM;
+
+/// Shares of the cycles at which nodes are asked again, of a run on nodes: as many as take half of its time at the most.
+const SHARES_OF_NODES: [f64; 3] = [0.0, 0.4, 0.8];
+/// Of a run on points, beside which nodes cost little.
+const SHARES_OF_POINTS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 0.95];
+/// Factor on what was found: between the rows asked it may be more.
+const BETWEEN: f64 = 1.5;
+/// Error of K on the finer nodes: 0.4 to 0.5 % of life at m = 3 on eighteen plates against finite elements.
+const FINER: f64 = 1.2e-3;
+/// What a way is off by in any case, over the growth: straight pieces between turns of up to 5°.
+const WAY: f64 = 2e-3;
+/// Error of a life at m = 3 over the part of it in which tips have met rims or other cracks, which no row is asked of.
+const AFTER_MEETING: f64 = 0.015;
+/// Difference of K from the energy released from which nothing is said of the error of a life.
+const CROSS_CHECK_MOST: f64 = 0.02;
+/// Share of a life that must be looked at.
+const LOOKED_AT_LEAST: f64 = 0.3;
+
+/// Upper bounds of what a run is wrong by, as a solution of the problem that its case sets: plane linear elasticity and the law given.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorEstimate {
+    /// Of its cycles, percent.
+    pub life_percent: f64,
+    /// Of the way of its cracks, m.
+    pub path: f64,
+    /// What it rests on.
+    pub basis: String,
+}
+
+/// Bounds of the error of a run; in words why there are none.
+pub fn error_estimate(case: &Case, prediction: &Prediction) -> Result<ErrorEstimate, String> {
+    if prediction.stop == StopReason::NoConvergence {
+        return Err("the solver did not converge".to_owned());
+    }
+    if let Some(check) = prediction.cross_check.filter(|check| check.difference.abs() > CROSS_CHECK_MOST) {
+        return Err(format!("K and the energy released differ by {:.1} %", 100.0 * check.difference));
+    }
+    match case.engine() {
+        Engine::Bonds | Engine::BondsThenPoints => {
+            Err("bonds that fail by their own strain have no limit that a finer lattice would tend to".to_owned())
+        }
+        engine => {
+            let law = growth_law(case).map_err(|error| error.to_string())?;
+            match engine {
+                Engine::Handbook => of_formula(case, prediction, &*law),
+                Engine::Nodes => by_finer_nodes(case, prediction, &*law, &SHARES_OF_NODES),
+                _ => by_finer_nodes(case, prediction, &*law, &SHARES_OF_POINTS),
+            }
+        }
+    }
+}
+
+/// A growth law at one stress ratio.
+struct Rates<'a> {
+    law: &'a dyn GrowthLaw,
+    ratio: f64,
+}
+
+impl Rates<'_> {
+    fn at(&self, factor: f64) -> f64 {
+        self.law.rate(factor, self.ratio)
+    }
+
+    /// d ln r / d ln K.
+    fn exponent(&self, factor: f64) -> f64 {
+        const STEP: f64 = 1e-3;
+        (self.at(factor * (1.0 + STEP)) / self.at(factor * (1.0 - STEP))).ln() / (2.0 * STEP)
+    }
+}
+
+/// The error of the formula, by the exponent of the law.
+fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Result<ErrorEstimate, String> {
+    let Some(formula) = handbook(&case.specimen) else { return Err("no handbook formula".to_owned()) };
+    if !formula.holds_at(prediction.crack_length_final()) {
+        return Err(format!("the crack grew beyond the range of the formula ({})", formula.range));
+    }
+    let rates = Rates { law, ratio: case.loading.ratio };
+    let (life, mut sum) = (prediction.life_cycles(), 0.0);
+    for pair in prediction.curve.windows(2) {
+        let middle = 0.5 * (pair[0].crack_length + pair[1].crack_length);
+        let exponent = rates.exponent(formula.k_i(middle, case.loading.maximum));
+        let error = formula.error_at(middle) * exponent.abs();
+        sum += if error.is_finite() { error } else { 1.0 } * (pair[1].cycles - pair[0].cycles);
+    }
+    if life <= 0.0 {
+        return Err("nothing grew".to_owned());
+    }
+    Ok(ErrorEstimate { life_percent: 100.0 * sum / life, path: 0.0, basis: format!("formula {}: {}", formula.name, formula.range) })
+}
+
+/// The last row before which no tip has met anything.
+fn rows_before_meeting(curve: &[CurvePoint]) -> &[CurvePoint] {
+    let has_met = |tip: &TipRecord| !matches!(tip.state, TipState::Active | TipState::Closed);
+    let is_read = |row: &CurvePoint| row.tips.iter().all(|tip| !has_met(tip) && tip.factors.is_some());
+    &curve[..curve.iter().position(|row| !is_read(row)).unwrap_or(curve.len())]
+}
+
+fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, shares: &[f64]) -> Result<ErrorEstimate, String> {
+    let (life, rows) = (prediction.life_cycles(), rows_before_meeting(&prediction.curve));
+    let end = rows.last().map_or(0.0, |row| row.cycles);
+    if life <= 0.0 || end < LOOKED_AT_LEAST * life {
+        return Err("most of the life is spent after tips have met rims, holes or cracks".to_owned());
+    }
+    let rates = Rates { law, ratio: case.loading.ratio };
+    let nearest = |share: f64| {
+        let gap = |row: &usize| (rows[*row].cycles - share * life).abs();
+        (0..rows.len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap_or(0)
+    };
+    let mut asked: Vec<usize> = shares.iter().map(|share| nearest(*share)).collect();
+    asked.dedup();
+    let mut found = Vec::with_capacity(asked.len());
+    for &row in &asked {
+        found.push((rows[row].cycles, Difference::at(case, rows, row, &rates)?));
+    }
+    // Every row stands for the cycles nearest to it.
+    let mut largest_exponent: f64 = 0.0;
+    let [mut of_life, mut of_angle] = [0.0; 2];
+    for (i, (cycles, difference)) in found.iter().enumerate() {
+        let from = if i == 0 { 0.0 } else { 0.5 * (found[i - 1].0 + cycles) };
+        let to = found.get(i + 1).map_or(end, |next| 0.5 * (next.0 + cycles));
+        let share = (to - from) / life;
+        of_life += share * difference.rate.abs();
+        of_angle += difference.angle.abs() / found.len() as f64;
+        largest_exponent = largest_exponent.max(difference.exponent.abs());
+    }
+    let after = AFTER_MEETING * largest_exponent / 3.0 * (1.0 - end / life);
+    let steps = 0.02 * case.fatigue.step_error_percent;
+    let growth = prediction.curve.last().map_or(0.0, |row| row.tips.iter().map(|tip| tip.growth).fold(0.0, f64::max));
+    Ok(ErrorEstimate {
+        life_percent: 100.0 * (BETWEEN * of_life + FINER * largest_exponent + after + steps),
+        path: growth * (of_angle + WAY),
+        basis: format!("K at {} moments on finer nodes", found.len()),
+    })
+}
+
+/// What finer nodes say at the cracks of a row.
+struct Difference {
+    /// ln of the rate of the leading tip by them over that of the run.
+    rate: f64,
+    /// Direction of growth of that tip by them less that of the run, rad.
+    angle: f64,
+    /// Exponent of the law there.
+    exponent: f64,
+}
+
+impl Difference {
+    fn at(case: &Case, rows: &[CurvePoint], row: usize, rates: &Rates<'_>) -> Result<Difference, String> {
+        let finer = Case { specimen: grown(&case.specimen, &rows[..=row]), model: Model::Nodes(finer_nodes(case)), ..case.clone() };
+        let tips = initial_tips::<NodePlate>(&finer).map_err(|error| format!("finer nodes: {error}"))?.tips;
+        let rate = |tip: &TipRecord| tip.factors.map_or(0.0, |factors| rates.at(equivalent_factor(factors)));
+        let own = &rows[row].tips;
+        let active = |tip: &usize| own[*tip].state == TipState::Active;
+        let leads = (0..own.len()).filter(active).max_by(|a, b| rate(&own[*a]).total_cmp(&rate(&own[*b])));
+        let lead = leads.ok_or("no tip is open")?;
+        let (Some(before), Some(now)) = (own[lead].factors, tips[lead].factors) else {
+            return Err("K of the leading tip is not known on finer nodes".to_owned());
+        };
+        let difference = Difference {
+            rate: (rate(&tips[lead]) / rate(&own[lead])).ln(),
+            angle: kink_angle(now) - kink_angle(before),
+            exponent: rates.exponent(equivalent_factor(before)),
+        };
+        let is_known = [difference.rate, difference.angle, difference.exponent].iter().all(|value| value.is_finite());
+        let at = rows[row].crack_length / MM;
+        is_known.then_some(difference).ok_or_else(|| format!("at {at:.3} mm the leading tip is at the threshold of its law"))
+    }
+}
+
+/// The specimen with its cracks as the rows have left them, the last one's tips as initial ones.
+fn grown(specimen: &Specimen, rows: &[CurvePoint]) -> Specimen {
+    let mut lines = specimen.crack_lines();
+    let mut after = specimen.clone();
+    let Some(last) = rows.last() else { return after };
+    for tip in 0..last.tips.len() {
+        let Some(end) = specimen.line_end(tip) else { continue };
+        let line = &mut lines[end.line];
+        let mut grown = 0.0;
+        for row in rows {
+            let TipRecord { growth, position, .. } = row.tips[tip];
+            if growth > grown {
+                line.grow(end.at_last, position);
+                grown = growth;
+            }
+        }
+        after.tips[tip] = TipSeed { position: line.end(end.at_last), direction: line.direction(end.at_last), from_slot: false };
+    }
+    after.crack_length = last.crack_length;
+    after.set_crack_lines(&lines);
+    after
+}
