@@ -45,6 +45,12 @@ pub struct Args {
     /// Tip of a plate whose crack has that length; the one that ends the life where it is left out
     #[arg(long, value_name = "NUMBER", requires = "inspect_from", help_heading = "Output")]
     pub tip: Option<usize>,
+    /// Also print the life by the other engine, coarse: two methods that share nothing
+    #[arg(long, help_heading = "Output")]
+    pub cross_check: bool,
+    /// Do not look for how wrong the life may be
+    #[arg(long, help_heading = "Output")]
+    pub no_estimate: bool,
     /// Keeping the run for later.
     #[command(flatten)]
     pub keeping: checkpoint::Args,
@@ -62,6 +68,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
     if let Task::Prediction { wanted, .. } = &mut task {
         wanted.strength = args.residual_strength;
+        (wanted.no_estimate, wanted.cross_check) = (args.no_estimate, args.cross_check);
         let names = ["--inspect-from", "--factor", "--tip"];
         wanted.inspection =
             args.inspect_from.map(|crack_length_mm| InspectFrom { crack_length_mm, tip: args.tip, factor: args.factor, names });

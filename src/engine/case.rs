@@ -2,6 +2,7 @@
 
 mod boundaries;
 pub mod budget;
+mod choose;
 mod fatigue;
 mod fatigue_keys;
 mod law;
@@ -14,7 +15,8 @@ pub mod record;
 pub use boundaries::first_load;
 pub use fatigue_keys::{Lot, remove_law};
 pub use law_source::fitted_record;
-pub use model_keys::finer_nodes;
+pub use model::coarse_points;
+pub use model_keys::{finer_nodes, usual_nodes};
 pub use read::{RECORD, SECTIONS};
 
 use crate::body::Body;
@@ -44,6 +46,7 @@ pub const RESIDUAL: f64 = 1e-5;
 crate::kinds! {
     /// Numerical methods.
     pub enum Method for "model.method" {
+        Auto = "auto": "what the scene needs: handbook inside its range, else element_free_galerkin; peridynamics where a key of points or bonds is given",
         Peridynamics = "peridynamics": "points and bonds",
         ElementFreeGalerkin = "element_free_galerkin": "nodes without elements, near-tip fields as unknowns; cracks driven by the K of their tips",
         Handbook = "handbook": "hand calculation: handbook K(a) of a standard specimen, Paris law, quadrature",
@@ -229,6 +232,8 @@ pub struct Case {
     pub loading: Loading,
     /// What computes its mechanics.
     pub model: Model,
+    /// Why the program chose it; `None` where the case names it.
+    pub chosen: Option<String>,
     /// Fatigue settings.
     pub fatigue: FatigueSettings,
     /// Constants of the fatigue law.

@@ -68,7 +68,7 @@ fn known(horizon: f64) -> (f64, f64) {
 #[test]
 fn the_engine_recovers_its_own_constants() {
     let (panel, figures, mut found) = fits(4.0, 0.0, 1);
-    let found = in_terms_of_bonds(found.remove(0), &panel, &figures).unwrap();
+    let found = in_terms_of_bonds(found.remove(0), &panel, [figures.horizon, figures.spacing]).unwrap();
     let (a, p) = known(figures.horizon);
     let constants = found.record.constants;
     let (rms, life) = (found.record.rms_life_error(), found.record.life_fitted() / found.record.life_measured());

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use perilife::body::pre_crack::bonds_across;
-use perilife::body::{Body, Bond};
+use perilife::body::Bond;
 use perilife::case::{Case, RESIDUAL};
 use perilife::fatigue::growth_law::Walker;
 use perilife::growth::CrackGrowth;

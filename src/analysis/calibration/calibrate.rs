@@ -10,7 +10,7 @@ use super::paris;
 use super::power_law::PowerLaw;
 use super::results;
 use super::search::Constants;
-use crate::case::{Case, Method};
+use crate::case::{Case, Model};
 use crate::error::{Result, input_missing};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::rate_constant::{rate_constant, rate_constant_slope};
@@ -143,16 +143,17 @@ fn fit_by_method(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
     let Some(_) = calibration.delta_k(from) else { return fit_along_path(calibration, observer) };
     let delta_k = |length: f64| calibration.delta_k(length).unwrap_or(f64::NAN);
     let task = task(calibration, &delta_k);
-    if case.model.method() == Method::Handbook {
+    if matches!(case.model, Model::Handbook(_)) {
         let law = PowerLaw::new(from, to, &delta_k)?;
-        return Ok(with_scatter(fit(&task, &law)?.of_power_law(), &task, &law));
+        let fit = with_scatter(fit(&task, &law)?.of_power_law(), &task, &law);
+        return if case.chosen.is_some() { in_terms_of_bonds(fit, case, usual_bonds(case)) } else { Ok(fit) };
     }
     let factors = FactorCurve::of(case, observer)?;
     let of_run = |length: f64| case.loading.range_share() * factors.at(length);
     let law = PowerLaw::new(from, to, &of_run)?;
     let fit = with_scatter(fit(&task, &law)?, &task, &law);
-    match case.model.method() {
-        Method::Peridynamics => of_run_on_plate(fit, case, factors),
+    match case.model {
+        Model::Points(_) => of_run_on_plate(fit, case, factors),
         _ => of_run_on_plate(fit.of_power_law(), case, factors),
     }
 }
@@ -211,16 +212,26 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
 
 /// A fit to K of a run, in terms of A and p where the plate has bonds.
 fn of_run_on_plate(mut fit: Fit, case: &Case, factors: FactorCurve) -> Result<Fit> {
-    if case.model.method() == Method::Peridynamics {
-        fit = in_terms_of_bonds(fit, case, &factors.figures)?;
+    let RunFigures { horizon, spacing, .. } = factors.figures;
+    if matches!(case.model, Model::Points(_)) {
+        fit = in_terms_of_bonds(fit, case, [horizon, spacing])?;
+    } else if case.chosen.is_some() {
+        fit = in_terms_of_bonds(fit, case, usual_bonds(case))?;
     }
     fit.warnings.extend(factors.warnings);
     Ok(fit)
 }
 
+/// Horizon and spacing of the bonds that a plate would have, m: those that A stands for where the program fitted to K without bonds.
+fn usual_bonds(case: &Case) -> [f64; 2] {
+    let points = case.points();
+    let spacing = points.fitting_spacing(&case.specimen);
+    [points.horizon_ratio * spacing, spacing]
+}
+
 /// A fit of C and m on the plate of a run as one of A and p, which are what they stand for ([`ParisLaw::to_bonds`]).
-pub fn in_terms_of_bonds(mut fit: Fit, case: &Case, plate: &RunFigures) -> Result<Fit> {
-    let (kernel, modulus, horizon) = (case.points().bond_law.kernel, case.material.plane_modulus(), plate.horizon);
+pub fn in_terms_of_bonds(mut fit: Fit, case: &Case, [horizon, spacing]: [f64; 2]) -> Result<Fit> {
+    let (kernel, modulus) = (case.points().bond_law.kernel, case.material.plane_modulus());
     let p = fit.record.constants.p;
     let bonds = |Constants { a, p }: Constants| -> Result<Constants> {
         let law = ParisLaw { c: a, m: p }.to_bonds(rate_constant(kernel, p)?, modulus, horizon);
@@ -234,6 +245,6 @@ pub fn in_terms_of_bonds(mut fit: Fit, case: &Case, plate: &RunFigures) -> Resul
     for curve in fit.specimens.iter_mut().chain([&mut fit.record]) {
         curve.constants = bonds(curve.constants)?;
     }
-    let bonds = Bonds { rate_constant: rate_constant(kernel, p)?, horizon, spacing: plate.spacing };
+    let bonds = Bonds { rate_constant: rate_constant(kernel, p)?, horizon, spacing };
     Ok(Fit { bonds: Some(bonds), ..fit })
 }

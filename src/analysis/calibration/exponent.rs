@@ -101,10 +101,8 @@ impl Exponent {
     /// Of a record: p, or m for hand calculation.
     pub fn of_record(file: &str, folder: &Folder, method: Method) -> Result<Self> {
         let record = fitted_record(file, folder)?;
-        let (p, error) = match method {
-            Method::Peridynamics => (record.p, record.p_error),
-            Method::Handbook | Method::ElementFreeGalerkin => (record.paris_m, record.paris_m_error),
-        };
+        let is_of_bonds = method == Method::Peridynamics;
+        let (p, error) = if is_of_bonds { (record.p, record.p_error) } else { (record.paris_m, record.paris_m_error) };
         Ok(Exponent { fixed: Some(p), error, source: file.to_owned(), warning: None })
     }
 

@@ -3,7 +3,7 @@
 use toml::Value;
 
 use crate::calibration::laws::case::LawCase;
-use crate::case::{Case, Engine, LawSource, Method};
+use crate::case::{Case, Engine, LawSource, Model};
 use crate::material::Material;
 use crate::measured::MeasuredCurve;
 use crate::report::fit_use;
@@ -134,7 +134,8 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     );
     let cycles = format!("{}; {held}", model_words::loading(case));
     lines.push(line("loading", cycles));
-    let by_points = case.model.method() == Method::Peridynamics;
+    let by_points = matches!(case.model, Model::Points(_));
+    lines.extend(case.chosen.as_ref().map(|why| line("model", format!("{}, chosen: {why}", case.model.method()))));
     lines.extend(by_points.then(|| line("bonds", model_words::words(&chosen, &model_words::OF_BONDS))));
     lines.push(line("points", points));
     lines.push(line("fatigue", law_words(case)));
@@ -171,9 +172,9 @@ fn law_words(case: &Case) -> String {
         LawSource::Factor(law) => format!("{}: {}", law.kind, law.in_words()),
         LawSource::Fitted(record) => {
             let law = fit_use::law_line(case).unwrap_or_default();
-            let of_bonds = match case.model.method() {
-                Method::Peridynamics => format!("; a = {:e} per cycle at horizon {} mm", record.a, record.horizon_mm),
-                Method::Handbook | Method::ElementFreeGalerkin => String::new(),
+            let of_bonds = match case.model {
+                Model::Points(_) => format!("; a = {:e} per cycle at horizon {} mm", record.a, record.horizon_mm),
+                Model::Handbook(_) | Model::Nodes(_) => String::new(),
             };
             format!("{law}{of_bonds}")
         }

@@ -1,7 +1,7 @@
 //! How far a run stays within what its law was fitted to, and how sure that law is.
 
 use crate::case::record::FittedRecord;
-use crate::case::{Case, LawSource, Method};
+use crate::case::{Case, LawSource, Model};
 use crate::predict::Prediction;
 use crate::units::MPA_SQRT_M;
 
@@ -55,9 +55,9 @@ pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
 pub fn law_line(case: &Case) -> Option<String> {
     let record = fitted(case)?;
     let m_error = record.paris_m_error;
-    let exponent = match case.model.method() {
-        Method::Peridynamics => format!("p = {:.4} ± {:.4}, m", record.p, record.p_error),
-        Method::Handbook | Method::ElementFreeGalerkin => "m".to_owned(),
+    let exponent = match case.model {
+        Model::Points(_) => format!("p = {:.4} ± {:.4}, m", record.p, record.p_error),
+        Model::Handbook(_) | Model::Nodes(_) => "m".to_owned(),
     };
     Some(format!(
         "{:.4e} mm/cycle ± {:.1} % at ΔK = {:.2} MPa√m, {exponent} = {:.4} ± {m_error:.4} ({}, R = {})",

@@ -17,6 +17,7 @@ pub mod model_words;
 pub mod output;
 pub mod provenance;
 pub mod resample;
+pub mod quality;
 pub mod run;
 pub mod speed;
 pub mod specimen_picture;

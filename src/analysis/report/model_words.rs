@@ -79,7 +79,7 @@ fn of_points(case: &Case, points: &PointSettings, figures: Option<&RunFigures>) 
     };
     let follows = |key, value: Value| Choice { key, value, why: None };
     vec![
-        chosen("method", case.model.method().name().into(), "default: computes any plate and the path of its cracks", ""),
+        Choice { key: "method", value: case.model.method().name().into(), why: Some(why_method(case)) },
         follows("driver", case.fatigue.driver.name().into()),
         chosen("bond_law", law.kind.name().into(), if springs_do { TWO_SPRINGS } else { BEYOND_SPRINGS }, ""),
         chosen("kernel", law.kernel.name().into(), "default: of those tried, its crack growth depends least on the lattice", ""),
@@ -130,12 +130,17 @@ pub fn of_scene(scene: &Scene, finest: Option<f64>) -> Vec<Choice> {
     choices
 }
 
+/// Why its mechanics are computed by that method.
+fn why_method(case: &Case) -> String {
+    case.chosen.as_ref().map_or_else(|| "given in the case".to_owned(), |why| format!("chosen: {why}"))
+}
+
 /// The formula of method `handbook`. Other keys of `[model]` say nothing there.
 fn hand_calculation(case: &Case) -> Vec<Choice> {
     let formula = handbook(&case.specimen);
     let choice = |key, value: Option<&str>, why: Option<&str>| Choice { key, value: value.into(), why: why.map(str::to_owned) };
     vec![
-        choice("method", Some(case.model.method().name()), Some("given in the case")),
+        Choice { why: Some(why_method(case)), ..choice("method", Some(case.model.method().name()), None) },
         choice("formula", formula.map(|formula| formula.name), Some("that of the kind of specimen")),
         choice("source", formula.map(|formula| formula.source), None),
         choice("range", formula.map(|formula| formula.range), None),
@@ -148,7 +153,7 @@ fn of_nodes(case: &Case, nodes: &ElementFreeSettings) -> Vec<Choice> {
     let why = |key: &str| Some(if given(&case.echo, key) { "given in the case" } else { "chosen by the program" }.to_owned());
     let choice = |key, value: Value, why| Choice { key, value, why };
     vec![
-        choice("method", case.model.method().name().into(), Some("given in the case".to_owned())),
+        choice("method", case.model.method().name().into(), Some(why_method(case))),
         choice("spacing_mm", (resolution.far / MM).into(), why("spacing_mm")),
         choice("basis", resolution.basis.name().into(), why("basis")),
         choice("enrichment", resolution.enrichment.name().into(), why("enrichment")),

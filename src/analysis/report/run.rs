@@ -12,10 +12,11 @@ use super::csv::{self, Row};
 use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
 pub use super::json::result;
 use super::output::{Room, write_file};
+use super::quality::Quality;
 use super::specimen_picture::{nodes_svg, tip_svg};
 use super::{checks, factors, fit_use, json, provenance, vtk};
 use crate::case::budget::Budget;
-use crate::case::{Case, Method, RECORD, first_load};
+use crate::case::{Case, Model, RECORD, first_load};
 use crate::error::{Error, Result, input};
 use crate::predict::plastic_zone::{self, PlasticZone};
 use crate::predict::record::BLOCKS_WITHOUT_GROWTH;
@@ -124,8 +125,12 @@ fn extrapolates(case: &Case, what: &str, more: &str) -> Error {
 }
 
 /// Keys of `result.json` that a listing of runs shows.
-pub const FIGURES: [&str; 21] = [
+pub const FIGURES: [&str; 25] = [
     "life_cycles",
+    "error_estimate_percent",
+    "path_error_estimate_mm",
+    "no_error_estimate",
+    "cross_check",
     "band",
     "no_band",
     "inspection",
@@ -149,9 +154,10 @@ pub const FIGURES: [&str; 21] = [
 ];
 
 /// Writes all files of a run into `folder`; returns the content of `result.json`.
-pub fn write(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives) -> Result<Value> {
+pub fn write(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives, quality: &Quality) -> Result<Value> {
     let mut result = json::result(case, prediction);
     lives.add_to(&mut result);
+    quality.add_to(&mut result);
     let a_n = lives.beside(csv::a_n(prediction, case.loading.displacement()));
     let path = csv::crack_path(prediction, &case.specimen.cracks);
     provenance::add(&mut result, &case.provenance, &[(csv::A_N_FILE, &a_n), (CRACK_PATH_FILE, &path)]);
@@ -182,7 +188,7 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives)
         DamagePicture { grid: &prediction.grid, snapshot, field, cracks, paths: &paths, caption: &caption }
             .write(&folder.join(file))?;
     }
-    if case.model.method() == Method::ElementFreeGalerkin {
+    if matches!(case.model, Model::Nodes(_)) {
         write_file(&folder.join("nodes.svg"), nodes_svg(case, &paths)?.as_bytes())?;
         if let Some(around_tip) = tip_svg(case, &paths)? {
             write_file(&folder.join("nodes_tip.svg"), around_tip.as_bytes())?;
@@ -260,7 +266,7 @@ fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction, lives: &Live
 }
 
 /// What came of a run, in words.
-pub fn words(case: &Case, prediction: &Prediction, lives: &Lives) -> Vec<String> {
+pub fn words(case: &Case, prediction: &Prediction, lives: &Lives, quality: &Quality) -> Vec<String> {
     let checks = checks::of_run(case, prediction);
     let cycles = prediction.life().map(|life| lives.life_words().unwrap_or_else(|| format!("{life:.1} cycles")));
     let mut lines = vec![
@@ -282,6 +288,7 @@ pub fn words(case: &Case, prediction: &Prediction, lives: &Lives) -> Vec<String>
     lines.extend(lives.words());
     lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
     lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
+    lines.extend(quality.words(case));
     lines.push(format!("  computed       {}", computed(case, prediction)));
     lines
 }
@@ -325,16 +332,16 @@ fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
 
 fn computed(case: &Case, prediction: &Prediction) -> String {
     let figures = &prediction.figures;
-    match case.model.method() {
-        Method::Peridynamics => format!(
+    match case.model {
+        Model::Points(_) => format!(
             "{} points, {} cycle blocks, {} solves, {:.1} s",
             figures.points, figures.blocks, figures.solves, figures.wall_s
         ),
-        Method::ElementFreeGalerkin => format!(
+        Model::Nodes(_) => format!(
             "up to {} nodes, {} increments, {} solves, {:.2} s",
             figures.points, figures.blocks, figures.solves, figures.wall_s
         ),
-        Method::Handbook => {
+        Model::Handbook(_) => {
             let formula = handbook(&case.specimen).map_or("", |formula| formula.name);
             format!("by hand calculation: {formula}, {} rows, {:.2} ms", figures.blocks + 1, 1e3 * figures.wall_s)
         }

@@ -25,6 +25,7 @@ use crate::predict::residual_strength::{check_strength, residual_strength};
 use crate::predict::{Observer, Prediction, Silent, predict, resume};
 use crate::report;
 use crate::report::band::Lives;
+use crate::report::quality::Quality;
 use crate::report::output::Share;
 use crate::report::sweep::Plan;
 use crate::units::MM;
@@ -154,13 +155,15 @@ pub fn of_prediction(
     // If that fails, the run itself is written all the same.
     let strengths = wanted.strength.then(|| residual_strength(case, &prediction.curve)).transpose();
     let mut lives = Lives::of(case, prediction)?;
+    let quality = Quality::of(case, prediction, wanted)?;
     let asked = wanted.readings.as_ref().map_or(Ok(()), |curve| lives.narrow(curve));
     let asked = asked.and_then(|()| wanted.inspection.map_or(Ok(()), |from| lives.inspect(from)));
     let result = match folder {
-        Some(folder) => run::write(folder, case, prediction, &lives)?,
+        Some(folder) => run::write(folder, case, prediction, &lives, &quality)?,
         None => {
             let mut result = run::result(case, prediction);
             lives.add_to(&mut result);
+            quality.add_to(&mut result);
             result
         }
     };
@@ -175,7 +178,7 @@ pub fn of_prediction(
     let figures = run::FIGURES.iter().filter_map(|key| Some(((*key).to_owned(), result.get(*key)?.clone())));
     let mut figures: Map<String, Value> = figures.collect();
     figures.insert("warnings".to_owned(), json!(warnings));
-    let lines = run::words(case, prediction, &lives);
+    let lines = run::words(case, prediction, &lives, &quality);
     let refusal = refusal.or(strengths.err()).or(asked.err());
     Ok(Summary { result, figures: figures.into(), lines, refusal, ..Summary::default() })
 }

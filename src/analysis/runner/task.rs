@@ -105,6 +105,10 @@ pub struct Wanted {
     pub readings: Option<MeasuredCurve>,
     /// What is left from a crack length on, and how often to look.
     pub inspection: Option<InspectFrom>,
+    /// No bounds of the error of the life.
+    pub no_estimate: bool,
+    /// The life by the other engine, too.
+    pub cross_check: bool,
 }
 
 /// A document read as what it asks for.

@@ -18,7 +18,6 @@ use serde::Deserialize;
 use super::design::Scatter;
 use super::distribution::normal_quantile;
 use crate::bond_law::Kernel;
-use crate::case::Method;
 use crate::case::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::rate_constant::rate_constant_slope;
@@ -113,7 +112,7 @@ impl LawScatter {
     /// The record with this ln rate at the pivot (mm/cycle) and exponent. It is one law, so it has no errors.
     fn at(&self, ln_rate: f64, p: f64) -> Result<FittedRecord> {
         let record = &self.record;
-        let by_hand = Method::from_str(&record.method)? == Method::Handbook;
+        let by_hand = record.rate_constant.is_none();
         let (change, more) = (ln_rate - record.rate_at_pivot_mm_per_cycle.ln(), p - record.p);
         // m follows p as its error follows that of p; where there are none, as theory says: one to one.
         let has_errors = !by_hand && record.paris_m_error > 0.0 && record.p_error > 0.0;
@@ -165,7 +164,7 @@ fn constant(record: &FittedRecord) -> f64 {
 /// s = ∂ ln R / ∂p at fixed A and the pivot ΔK.
 pub fn slope(record: &FittedRecord) -> Result<f64> {
     let pivot = record.pivot_delta_k_mpa_sqrt_m;
-    if Method::from_str(&record.method)? == Method::Handbook {
+    if record.rate_constant.is_none() {
         return Ok(pivot.ln());
     }
     let modulus = record.youngs_modulus_gpa * GPA;

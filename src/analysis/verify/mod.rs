@@ -14,6 +14,7 @@ pub mod chart;
 pub mod collinear;
 pub mod disc;
 pub mod dual_horizon;
+pub mod estimates;
 mod factors;
 mod golden;
 mod hand_over;
@@ -93,6 +94,7 @@ pub const TOPICS: &[Topic] = &[
         0,
         scene_strength::rows,
     ),
+    topic("estimates", "bounds stated for the error of lives against what they are wrong by", 0, estimates::rows),
     topic("hand_over", "cracks that bonds began at a slot: life left where K of the tip takes over", 0, hand_over::rows),
 ];
 

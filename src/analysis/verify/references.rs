@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::cases::NODES;
+use super::cases::{AUTO, NODES, by_name};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::monotone::Monotone;
@@ -178,10 +178,10 @@ impl Reference {
 
     /// Its case at the spacing that resolves it, other keys set.
     pub fn case(&self, set: &[String]) -> Result<Case> {
-        let has_nodes = set.iter().any(|key| key == NODES);
-        let spacing = (!has_nodes && self.name == FINER.0).then(|| FINER.1.to_owned());
+        let is_of_points = !set.iter().any(|key| key == NODES || key == AUTO);
+        let spacing = (is_of_points && self.name == FINER.0).then(|| FINER.1.to_owned());
         let set: Vec<String> = spacing.into_iter().chain(set.iter().cloned()).collect();
-        Case::from_toml(self.files[0], self.name, Path::new("."), &set)
+        Case::from_toml(self.files[0], self.name, Path::new("."), &by_name(self.files[0], &set))
     }
 
     /// Cycles and places of its tips.

@@ -4,6 +4,7 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::fatigue_keys::{FatigueKeys, Lot};
+use super::model_keys::KEYS_OF_BONDS;
 use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::growth_law::description::{Given, law_keys};
@@ -81,12 +82,8 @@ fn refuse_gone(input: &FatigueKeys) -> Result<()> {
 /// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of
 /// fatigue bonds do not go with tips that are driven by their K.
 fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Result<Driver> {
-    let of_bonds = [
-        ("ageing", input.ageing.is_some()),
-        ("zone_radius_horizons", input.zone_radius_horizons.is_some()),
-        ("critical_stretch", input.critical_stretch.is_some()),
-    ];
-    let of_bonds = of_bonds.iter().find(|(_, given)| *given);
+    let given = [input.ageing.is_some(), input.zone_radius_horizons.is_some(), input.critical_stretch.is_some()];
+    let of_bonds = KEYS_OF_BONDS.iter().zip(given).find(|(_, given)| *given);
     if method == Method::ElementFreeGalerkin {
         let remedy = "leave it out, or use model.method = \"peridynamics\"";
         return match (input.driver, of_bonds) {

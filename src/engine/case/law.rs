@@ -18,7 +18,7 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
     number("an exponent", 0.5, 20.0).read("p", record.p)?;
     number("a rate in mm/cycle", 1e-60, 1e3).read("paris_c_mm_per_cycle", record.paris_c_mm_per_cycle)?;
     number("an exponent", 0.0, 30.0).read("paris_m", record.paris_m)?;
-    if Method::from_str(&record.method)? == Method::Peridynamics {
+    if record.rate_constant.is_some() || Method::from_str(&record.method)? == Method::Peridynamics {
         number("a constant in 1/cycle", 1e-60, 1e100).read("a", record.a)?;
         LENGTH.read("horizon_mm", record.horizon_mm)?;
         let beta = record.rate_constant.ok_or_else(|| input_missing("rate_constant", "is missing", "calibrate again"))?;
@@ -36,7 +36,7 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
 /// Takes the record as the law of the case. Where the case is silent the record decides; where both speak they must agree.
 pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
     check_record(&record)?;
-    let by_hand = Method::from_str(&record.method)? == Method::Handbook;
+    let by_hand = record.rate_constant.is_none();
     if case.model.method() != Method::Peridynamics || by_hand && case.is_driven_by_tips() {
         // C and m belong to ΔK, whatever bonds they were fitted with.
         check_stress_ratio(case, &record)?;
@@ -44,7 +44,7 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
         return Ok(());
     }
     if by_hand {
-        let problem = "was fitted by hand calculation: it holds C and m, but no A of bonds";
+        let problem = "was fitted to K without bonds: it holds C and m, but no A of bonds";
         let remedy = "calibrate with model.method = \"peridynamics\", or use fatigue.driver = \"tip_field\" here";
         return Err(input("fatigue.fitted", &record.material, problem, remedy));
     }
@@ -255,10 +255,7 @@ pub(super) fn missing(method: Method, path: &Path) -> Error {
         let action = "cannot read the fatigue law (write it with `perilife calibrate`)";
         return Error::file(path, action, std::io::ErrorKind::NotFound.into());
     }
-    let constants = match method {
-        Method::Peridynamics => "a, p and horizon_mm",
-        Method::Handbook | Method::ElementFreeGalerkin => "paris_c_mm_per_cycle and paris_m",
-    };
+    let constants = if method == Method::Peridynamics { "a, p and horizon_mm" } else { "paris_c_mm_per_cycle and paris_m" };
     let remedy = format!("give fitted = \"fitted.toml\" from `perilife calibrate`, or {constants}");
     input_missing("fatigue.fitted", "is missing: the case has no fatigue law", remedy)
 }

@@ -1,12 +1,11 @@
 //! `[model]` of an input file: how the plate becomes points and bonds.
 
-use toml::Value;
-
-use super::model_keys::{ModelKeys, read, refuse_strangers, too_fine};
-use super::{Case, Choices, HORIZON_RATIO, Method, Model, PointSettings, RESIDUAL};
+use super::model_keys::{ModelKeys, read, refuse_strangers, tolerance, too_fine};
+use super::{choose, Case, Choices, HORIZON_RATIO, Method, Model, PointSettings, RESIDUAL};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
 use crate::error::{Result, input};
 use crate::input::slice;
+use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::{SolverKind, Symmetry};
 use crate::specimen::handbook::handbook;
@@ -21,15 +20,31 @@ const COLUMNS_MIN: f64 = 8.0;
 /// Reads `[model]`; what is left out gets the program's choice. Explicit choices go into `choices`, what is to be said of the program's
 /// into `warnings`.
 pub(super) fn from_value(
-    value: &Value,
-    specimen: &Specimen,
-    material: &Material,
+    sections: &choose::Sections<'_>,
+    (specimen, material, loading): (&Specimen, &Material, &Loading),
+    choices: &mut Choices,
+    warnings: &mut Vec<String>,
+) -> Result<(Model, Option<String>)> {
+    let input: ModelKeys = slice(sections.model, "model")?;
+    let (method, why) = match input.method.unwrap_or(Method::Auto) {
+        Method::Auto => {
+            let (method, why) = choose::choose(sections, specimen, loading, tolerance(&input)?);
+            (method, Some(why))
+        }
+        method => (method, None),
+    };
+    refuse_strangers(sections.model, method)?;
+    Ok((of_method(method, &input, (specimen, material), choices, warnings)?, why))
+}
+
+/// The model of a method, by the keys of `[model]`.
+fn of_method(
+    method: Method,
+    input: &ModelKeys,
+    (specimen, material): (&Specimen, &Material),
     choices: &mut Choices,
     warnings: &mut Vec<String>,
 ) -> Result<Model> {
-    let input: ModelKeys = slice(value, "model")?;
-    let method = input.method.unwrap_or(Method::Peridynamics);
-    refuse_strangers(value, method)?;
     if method == Method::ElementFreeGalerkin {
         let nodes = input.nodes(specimen)?;
         warnings.extend(input.spacing_mm.and_then(|spacing| too_fine(spacing, specimen, &nodes)));
@@ -86,6 +101,17 @@ pub(super) fn usual_points(specimen: &Specimen, material: &Material) -> (PointSe
         residual: RESIDUAL,
     };
     (points, warning)
+}
+
+/// Spacing of a second opinion over the usual one.
+const COARSE: f64 = 1.5;
+
+/// Points for a coarse look at a case on nodes.
+pub fn coarse_points(case: &Case) -> PointSettings {
+    let (mut points, _) = usual_points(&case.specimen, &case.material);
+    points.bond_law.surface_correction = SurfaceCorrection::Balanced;
+    points.spacing *= COARSE;
+    points
 }
 
 /// What is said of a flaw so small that points are as fine as that everywhere for its sake.

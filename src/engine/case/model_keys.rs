@@ -62,6 +62,8 @@ struct Key {
 
 const POINTS: &[Method] = &[Method::Peridynamics, Method::Handbook];
 const NODES: &[Method] = &[Method::ElementFreeGalerkin];
+/// Of handbook, too, which the program takes where its formula is good enough.
+const CHOSEN: &[Method] = &[Method::ElementFreeGalerkin, Method::Handbook];
 
 const fn key(name: &'static str, owners: &'static [Method], quantity: Option<Quantity>) -> Key {
     Key { name, owners, quantity }
@@ -80,11 +82,24 @@ const KEYS: [Key; 14] = [
     key("lattice_angle_deg", POINTS, Some(number("an angle in degrees", -90.0, 90.0))),
     key("solver", POINTS, None),
     key("nodes", NODES, Some(number("a number of nodes", 50.0, 1e5))),
-    key("tolerance_percent", NODES, Some(number("an error in percent", TOLERANCE_LEAST, 20.0))),
+    key("tolerance_percent", CHOSEN, Some(number("an error in percent", TOLERANCE_LEAST, 20.0))),
     key("basis", NODES, None),
     key("enrichment", NODES, None),
     key("influence_radius", NODES, Some(number("a radius of influence in spacings", 1.5, 6.0))),
 ];
+
+/// Keys of `[fatigue]` that belong to fatigue bonds.
+pub(super) const KEYS_OF_BONDS: &[&str] = &["ageing", "zone_radius_horizons", "critical_stretch"];
+
+/// A key of `[model]` that asks for points and bonds where the method is left open.
+pub(super) fn key_of_points(model: &Value) -> Option<&'static str> {
+    KEYS.iter().filter(|key| key.owners.contains(&Method::Peridynamics)).map(|key| key.name).find(|name| model.get(name).is_some())
+}
+
+/// Error asked for, percent of life.
+pub(super) fn tolerance(keys: &ModelKeys) -> Result<f64> {
+    Ok(read("tolerance_percent", keys.tolerance_percent)?.unwrap_or(TOLERANCE_PERCENT))
+}
 
 /// A number of `[model]` in SI units, within its range.
 pub(super) fn read(name: &str, value: Option<f64>) -> Result<Option<f64>> {
@@ -107,8 +122,8 @@ pub(super) fn on_nodes(table: &mut Table, asked: impl Fn(&str) -> bool) {
     if model.get("method").and_then(Value::as_str) == Some(name) {
         return;
     }
-    let is_of_points = |name: &str| KEYS.iter().any(|key| key.name == name && key.owners.contains(&Method::Peridynamics));
-    model.retain(|name, _| !is_of_points(name) || asked(&format!("model.{name}")));
+    let of_points = |name: &str| KEYS.iter().any(|key| key.name == name && key.owners.contains(&Method::Peridynamics));
+    model.retain(|name, _| !of_points(name) || asked(&format!("model.{name}")));
     model.insert("method".to_owned(), Value::String(name.to_owned()));
 }
 
@@ -124,7 +139,7 @@ pub(super) fn too_fine(spacing_mm: f64, specimen: &Specimen, settings: &ElementF
 }
 
 /// Nodes where a case says nothing of them.
-pub(super) fn usual_nodes(specimen: &Specimen) -> ElementFreeSettings {
+pub fn usual_nodes(specimen: &Specimen) -> ElementFreeSettings {
     let basis = if specimen.tips.is_empty() { BasisKind::Quadratic } else { BasisKind::Linear };
     nodes_for(specimen, TOLERANCE_PERCENT, basis)
 }
@@ -169,7 +184,7 @@ fn nodes_for(specimen: &Specimen, percent: f64, basis: BasisKind) -> ElementFree
 impl ModelKeys {
     /// What the keys of nodes say, and the choice of the program where they say nothing; `spacing_mm` is that far from cracks.
     pub(super) fn nodes(&self, specimen: &Specimen) -> Result<ElementFreeSettings> {
-        let percent = read("tolerance_percent", self.tolerance_percent)?.unwrap_or(TOLERANCE_PERCENT);
+        let percent = tolerance(self)?;
         let usual = usual_nodes(specimen);
         let mut settings = nodes_for(specimen, percent, self.basis.unwrap_or(usual.resolution.basis));
         let resolution = &mut settings.resolution;

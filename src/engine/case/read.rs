@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::model_keys::on_nodes;
-use super::{Case, Choices, Engine, LawSource, Method, boundaries, fatigue, law, law_source, model, remove_law};
+use super::{Case, Choices, Engine, LawSource, Method, boundaries, choose, fatigue, law, law_source, model, remove_law};
 use crate::bond_law::SurfaceCorrection;
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
@@ -110,7 +110,12 @@ impl Case {
         let mut specimen = specimen::from_value(sections.required("specimen")?, &mut warnings)?;
         let material = material::from_value(sections.required("material")?, folder, &mut warnings)?;
         let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
-        let model = model::from_value(sections.optional("model"), &specimen, &material, &mut choices, &mut warnings)?;
+        let asked = choose::Sections {
+            model: sections.optional("model"),
+            fatigue: sections.optional("fatigue"),
+            output: sections.optional("output"),
+        };
+        let (model, chosen) = model::from_value(&asked, (&specimen, &material, &loading), &mut choices, &mut warnings)?;
         let (with_law, law_record) = law_source::expanded(sections.optional("fatigue"), folder)?.unzip();
         let fatigue = fatigue::from_value(
             with_law.as_ref().unwrap_or(sections.optional("fatigue")),
@@ -126,6 +131,7 @@ impl Case {
             material,
             loading,
             model,
+            chosen,
             fatigue: fatigue.settings,
             law: LawSource::Missing(PathBuf::new()),
             stop,

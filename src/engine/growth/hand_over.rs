@@ -22,7 +22,7 @@ use crate::fatigue::FatigueLaw;
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::specimen::geometry::direction;
-use crate::specimen::{Crack, CrackLine, Specimen, TipSeed};
+use crate::specimen::{CrackLine, Specimen, TipSeed};
 use crate::units::MM;
 
 /// Length of a crack from a slot, in horizons, at which K takes over. One horizon and two change the life by 1 to 2.5 %.

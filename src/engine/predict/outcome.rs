@@ -118,6 +118,14 @@ impl Prediction {
         (specimen.kind == SpecimenKind::Plate).then_some((tip, [lengths[0]?, lengths[1]?]))
     }
 
+    /// Cycles at which the crack has a length, m, linear between rows; `None` where it never has.
+    pub fn cycles_at(&self, crack_length: f64) -> Option<f64> {
+        let rows = self.curve.windows(2).find(|rows| (rows[0].crack_length..=rows[1].crack_length).contains(&crack_length))?;
+        let [from, to] = [rows[0].crack_length, rows[1].crack_length];
+        let share = if to > from { (crack_length - from) / (to - from) } else { 0.0 };
+        Some(rows[0].cycles + share * (rows[1].cycles - rows[0].cycles))
+    }
+
     /// Crack length at the end, mm.
     pub fn crack_length_final_mm(&self) -> f64 {
         self.crack_length_final() / MM

@@ -68,7 +68,7 @@ fn head(root: &Area<'_>, chart: &Chart, width: f64) -> Drawn {
         words(root, solver, [x + 15.0, 68.0], 12, (HPos::Left, INK))?;
         x += 30.0 + width_of(solver);
     }
-    let note = "Filled and named: no other point is both faster and nearer to the truth. Star: what runs when nothing is asked for. Bars: least \
+    let note = "Filled and named: no other point is both faster and nearer to the truth. Star: the choice of the program for an error asked for. Bars: least \
                 and largest time.";
     words(root, &note[..note.len().min((width / 5.8) as usize)], [16.0, 88.0], 12, (HPos::Left, GREY))
 }
@@ -76,6 +76,7 @@ fn head(root: &Area<'_>, chart: &Chart, width: f64) -> Drawn {
 fn colour(family: Family) -> RGBColor {
     match family {
         Family::TipField | Family::Solver => COLOURS[0],
+        Family::Auto => COLOURS[2],
         Family::ElementFree => COLOURS[1],
         Family::Handbook => INK,
         Family::BondStrain => COLOURS[3],
@@ -130,7 +131,7 @@ fn draw(root: &Area<'_>, panel: &Panel, points: &[&Point], [left, top]: [u32; 2]
         let (Some(run), Some(range)) = (point.outcome.done(), point.range_s()) else { continue };
         let colour = colour(point.choice.family);
         line(root, &range.map(|time| place(&chart, (time, run.error_percent))), 1.0, &colour)?;
-        if point.choice.is_default() {
+        if point.choice.is_default() || point.choice.family == Family::Auto {
             outlined(root, star(*at), &DEFAULT, &INK)?;
         }
         mark(root, &run.model.solver, *at, 4.6, if point.is_on_front { &colour } else { &WHITE }, &colour)?;
@@ -212,6 +213,7 @@ fn names(root: &Area<'_>, drawn: &[(&Point, [f64; 2])], frame: Box2) -> Drawn {
 /// The name of a point beside its mark.
 fn short_name(point: &Point) -> String {
     let family = match point.choice.family {
+        Family::Auto => "auto",
         Family::TipField => "tips",
         Family::ElementFree => "nodes",
         Family::Handbook => "handbook",

@@ -3,7 +3,7 @@
 use super::Panel;
 use crate::error::Result;
 use crate::units::MM;
-use crate::verify::cases::{NODES, overrides};
+use crate::verify::cases::{AUTO, NODES, POINTS, overrides};
 
 /// A choice of keys.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,8 @@ pub struct Choice {
 crate::kinds! {
     /// Families of methods: a colour of the chart each.
     pub enum Family for "method of the chart" {
-        TipField = "tip_field": "points and bonds, cracks driven by the K of their tips: the default",
+        Auto = "auto": "what the program chooses for the scene: the default",
+        TipField = "tip_field": "points and bonds, cracks driven by the K of their tips",
         ElementFree = "element_free_galerkin": "nodes without elements, cracks driven by the K of their tips",
         Handbook = "handbook": "quadrature of the growth law with K of a handbook",
         BondStrain = "bond_strain": "bonds that fail by their own strain: the published law",
@@ -45,7 +46,7 @@ const LAWS: [(&str, &str); 4] = [
 
 /// The choices of a scene, the default first.
 pub fn choices(panel: &Panel) -> Result<Vec<Choice>> {
-    use Family::{BondLaw, BondStrain, ElementFree, Handbook, Solver, TipField};
+    use Family::{Auto, BondLaw, BondStrain, ElementFree, Handbook, Solver, TipField};
     let mut all = Vec::new();
     let mut add = |family: Family, words: String, keys: &str, is_quick: bool| {
         all.push(Choice { family, words, set: overrides(keys), is_quick });
@@ -54,7 +55,13 @@ pub fn choices(panel: &Panel) -> Result<Vec<Choice>> {
     let is_among = |names: &[&str]| names.contains(&panel.name);
     let spacing = scene.case(&[])?.points().spacing / MM;
     let spaced = |times: f64| format!("model.spacing_mm={}", (1e4 * times * spacing).round() / 1e4);
-    add(TipField, String::new(), "", true);
+    if scene.grows() {
+        add(Auto, String::new(), AUTO, true);
+        for percent in [5.0, 1.0, 0.5] {
+            add(Auto, format!("to {percent} %"), &format!("{AUTO} model.tolerance_percent={percent}"), true);
+        }
+    }
+    add(TipField, String::new(), if scene.grows() { POINTS } else { "" }, true);
     for (times, is_quick) in [(2.0, true), (1.5, true), (0.75, false), (0.5, false)] {
         add(TipField, format!("spacing × {times}"), &spaced(times), is_quick);
     }
@@ -106,6 +113,6 @@ impl Choice {
 
     /// Whether it is what runs when nothing is asked for.
     pub fn is_default(&self) -> bool {
-        self.set.is_empty()
+        self.words.is_empty() && (self.family == Family::Auto || self.set.is_empty())
     }
 }

@@ -1,0 +1,49 @@
+//! `model.method = "auto"`: no more of a model than a scene needs.
+
+use toml::Value;
+
+use super::Method;
+use super::model_keys::{KEYS_OF_BONDS, key_of_points};
+use crate::input::value_at;
+use crate::loading::Loading;
+use crate::specimen::Specimen;
+use crate::specimen::handbook::handbook;
+
+/// Error of a life over that of K where the law is not yet known: the exponent of most metals.
+const EXPONENT_USUAL: f64 = 3.0;
+
+/// Sections of a case that say what it needs.
+pub(super) struct Sections<'a> {
+    pub model: &'a Value,
+    pub fatigue: &'a Value,
+    pub output: &'a Value,
+}
+
+/// The method for a case that leaves it open, and why, for an error of life asked for in percent.
+pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loading, percent: f64) -> (Method, String) {
+    if let Some(key) = key_of_points(asked.model) {
+        return (Method::Peridynamics, format!("model.{key} asks for points and bonds"));
+    }
+    let is_given = |key: &&&str| value_at(asked.fatigue, key).is_some();
+    if let Some(key) = KEYS_OF_BONDS.iter().find(is_given) {
+        return (Method::Peridynamics, format!("fatigue.{key} asks for fatigue bonds"));
+    }
+    if value_at(asked.fatigue, "driver").and_then(Value::as_str) == Some("bond_strain") {
+        return (Method::Peridynamics, "fatigue.driver = \"bond_strain\" asks for fatigue bonds".to_owned());
+    }
+    if !specimen.has_sharp_tips() || !specimen.slots.is_empty() {
+        return (Method::Peridynamics, "cracks start from a slot or notch".to_owned());
+    }
+    let has_fields = value_at(asked.output, "paraview").and_then(Value::as_bool) == Some(true);
+    let is_plain = loading.displacement().is_none() && specimen.crack_pressure == 0.0 && !has_fields;
+    let formula = handbook(specimen).filter(|formula| is_plain && formula.holds_at(specimen.crack_length));
+    match formula {
+        Some(formula) if 100.0 * EXPONENT_USUAL * formula.error_at(specimen.crack_length) <= percent => {
+            (Method::Handbook, format!("standard specimen within the range of its formula ({})", formula.name))
+        }
+        Some(formula) => {
+            (Method::ElementFreeGalerkin, format!("the formula of the specimen ({}) is good to less than {percent} % of life", formula.name))
+        }
+        None => (Method::ElementFreeGalerkin, "no handbook formula covers the plate".to_owned()),
+    }
+}
