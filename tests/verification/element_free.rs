@@ -40,7 +40,7 @@ fn tips(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
 fn nodes(case: &Case, across: f64, (basis, enrichment, support): (BasisKind, Enrichment, f64)) -> (Discretisation, f64) {
     let (lines, tips) = tips(&case.specimen);
     let far = case.specimen.width / across;
-    let resolution = Resolution { far, hold: 3.0, in_radius: IN_RADIUS, fineness: 1.0, support, basis, enrichment };
+    let resolution = Resolution { far, hold: 3.0, reach: 4.0, in_radius: IN_RADIUS, fineness: 1.0, support, basis, enrichment };
     let elasticity = Elasticity::of(&case.material);
     (Discretisation::new(&case.specimen, elasticity, &lines, &tips, &resolution).unwrap(), far)
 }

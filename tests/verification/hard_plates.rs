@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use perilife::case::Case;
+use perilife::monotone::Monotone;
 use perilife::predict::{Silent, predict};
 use perilife::specimen::Point;
 use perilife::specimen::geometry::{distance, distance_to_segment};
@@ -55,9 +56,9 @@ fn reference(path: &Path) -> BTreeMap<usize, Vec<Row>> {
 }
 
 fn cycles_at(rows: &[Row], growth: f64) -> Option<f64> {
-    let pair = rows.windows(2).find(|pair| pair[0].1 <= growth && growth <= pair[1].1 && pair[0].1 < pair[1].1)?;
-    let share = (growth - pair[0].1) / (pair[1].1 - pair[0].1);
-    Some(pair[0].0 + share * (pair[1].0 - pair[0].0))
+    // Between two rows of a kink cycles are a smooth curve over the root of its length: a chord of it would be up to 1 % of life off.
+    let curve = Monotone::new(rows.iter().map(|(cycles, growth, _)| [growth.sqrt(), *cycles]));
+    (growth <= rows.last()?.1).then(|| curve.at(growth.sqrt()))
 }
 
 /// A case with what its plate asks for.
@@ -99,7 +100,8 @@ fn check(plates: &[Plate], overrides: &dyn Fn(&Case) -> Vec<String>) {
 /// The spacing of some files is that of points: nodes are refined by themselves.
 fn on_nodes(case: &Case) -> Vec<String> {
     let far = 1e3 * case.specimen.width / 14.0;
-    vec!["model.method=element_free_galerkin".to_owned(), format!("model.spacing_mm={far}")]
+    let keys = ["model.method=element_free_galerkin", "model.tolerance_percent=0.5"];
+    keys.map(str::to_owned).into_iter().chain([format!("model.spacing_mm={far}")]).collect()
 }
 
 #[test]

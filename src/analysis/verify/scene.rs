@@ -196,7 +196,7 @@ impl Scene {
                 Ok(Found::of(case, factors(case, 0)?[0], known))
             }
             Scene::AgainstNodes(text, tip) => {
-                let nodes = cases::case(text, &format!("{NODES} model.tolerance_percent=1"))?;
+                let nodes = cases::case(text, &format!("{NODES} model.tolerance_percent=0.5"))?;
                 let known = factors(&nodes, *tip)?[0];
                 Ok(Found::of(case, factors(case, *tip)?[0], known))
             }

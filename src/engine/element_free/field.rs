@@ -4,6 +4,8 @@
 //! around it (partition of unity: Melenk and Babuška 1996, CMAME 139:289; Belytschko and Black 1999, IJNME 45:601). Without them K is
 //! 4 % wrong with 900 nodes, with them 0.1 %.
 
+use rayon::prelude::*;
+
 use super::basis::{AnyBasis, Enrichment, Value};
 use super::crack::{Tip, TipAxes, cracks};
 use super::cuts::{Near, Obstacles};
@@ -28,6 +30,13 @@ struct Neighbourhood {
     near: Near,
     /// Of every node whether nothing lies between it and any point of the leaf; none where that is so of all.
     clear: Vec<bool>,
+}
+
+impl Neighbourhood {
+    /// Largest of these radii of influence of its nodes, m; 0 of none.
+    fn reach(&self, supports: &[f64]) -> f64 {
+        self.nodes.iter().map(|&node| supports[node as usize]).fold(0.0, f64::max)
+    }
 }
 
 /// A plate of nodes.
@@ -127,22 +136,24 @@ impl Discretisation {
                 }
             });
         }
-        for leaf in 0..self.leaves.len() {
-            let reach = self.reach(leaf);
-            if reach > 0.0 {
-                let [low, high] = self.grid.bounds(leaf);
-                let near = self.obstacles.near(self.grid.middle(leaf), reach + distance(low, high));
-                let (leaf, at) = (&mut self.leaves[leaf], &self.nodes.at);
-                if !near.is_empty() {
-                    leaf.clear = leaf.nodes.iter().map(|&node| near.is_clear(at[node as usize], [low, high])).collect();
-                    if leaf.clear.iter().all(|clear| *clear) {
-                        leaf.clear.clear();
-                    } else {
-                        leaf.near = near;
-                    }
-                }
+        let (grid, obstacles, at, supports) = (&self.grid, &self.obstacles, &self.nodes.at, &self.supports);
+        self.leaves.par_iter_mut().enumerate().for_each(|(index, leaf)| {
+            let reach = leaf.reach(supports);
+            if reach == 0.0 {
+                return;
             }
-        }
+            let [low, high] = grid.bounds(index);
+            let near = obstacles.near(grid.middle(index), reach + distance(low, high));
+            if near.is_empty() {
+                return;
+            }
+            leaf.clear = leaf.nodes.iter().map(|&node| near.is_clear(at[node as usize], [low, high])).collect();
+            if leaf.clear.iter().all(|clear| *clear) {
+                leaf.clear.clear();
+            } else {
+                leaf.near = near;
+            }
+        });
     }
 
     /// Number of unknowns.
@@ -152,7 +163,7 @@ impl Discretisation {
 
     /// Largest radius of influence of the nodes that reach a leaf, m; 0 where none does.
     pub fn reach(&self, leaf: usize) -> f64 {
-        self.leaves[leaf].nodes.iter().map(|&node| self.supports[node as usize]).fold(0.0, f64::max)
+        self.leaves[leaf].reach(&self.supports)
     }
 
     /// Elastic constants.

@@ -16,8 +16,6 @@ use crate::specimen::geometry::{
 use crate::specimen::{CrackLine, Point, Specimen};
 use crate::units::{MM, place_mm};
 
-/// Reach of a tip, in spacings of the coarser level.
-const TIP_REACH: f64 = 4.0;
 /// Cells at the most.
 const CELLS_MOST: usize = 200_000;
 
@@ -54,6 +52,8 @@ pub struct Resolution {
     pub far: f64,
     /// Spacings in the room of a tip.
     pub hold: f64,
+    /// Reach of a tip, in spacings of the coarser level.
+    pub reach: f64,
     /// Spacings in the radius of a hole or fillet.
     pub in_radius: f64,
     /// Spacings across ligaments, members and at corners over those that are usual.
@@ -86,7 +86,7 @@ impl Resolution {
         for tip in tips {
             let spacing = room(specimen, lines, tip) / self.hold;
             let at = lines[tip.end.line].end(tip.end.at_last);
-            sources.push(Source::point(at, spacing, TIP_REACH));
+            sources.push(Source::point(at, spacing, self.reach));
         }
         sources.extend(self.of_rims(specimen));
         sources.extend(self.of_corners(specimen, lines, tips));

@@ -65,7 +65,9 @@ impl Stiffness<'_> {
             let at = &self.plate.nodes.at;
             Member { at: *at.get(nodes[0] as usize).unwrap_or(&at[0]), nodes }
         };
-        self.cells.iter().map(of_cell).chain(self.held.iter().map(of_support)).collect()
+        let mut members: Vec<Member> = self.cells.par_iter().map(of_cell).collect();
+        members.extend(self.held.iter().map(of_support));
+        members
     }
 
     /// Node, or grip, that an unknown belongs to.
@@ -130,7 +132,7 @@ pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -
 }
 
 /// Points of the raster in a far spacing: a dozen rasters of a run then have fewer places than its solves have points of integration.
-const IN_SPACING: f64 = 6.0;
+const IN_SPACING: f64 = 4.0;
 
 /// The raster of a plate whose nodes have the spacing `far`, m, away from everything.
 pub fn raster(specimen: &Specimen, far: f64) -> PointGrid {

@@ -200,7 +200,8 @@ impl<'a, P: CrackedPlate> Cracks<'a, P> {
 
     /// Unit vector in which a tip grows `step` on, m.
     fn direction(&self, tip: &Tip, step: f64) -> Point {
-        tip.steering.direction(tip.growth, step, self.plate.heading(&self.state.lines, tip.end), &self.scales.steering)
+        let heading = self.plate.heading(&self.state.lines, tip.end);
+        tip.steering.direction([tip.growth, step], heading, &self.scales.steering, tip.smooth_in(self.scales.by_root))
     }
 
     /// da/dN of K_eq at maximum load, m/cycle.

@@ -1,6 +1,7 @@
 //! A plate of nodes with cracks ([`crate::element_free`]): nodes are placed anew for every equilibrium, as fine as the room of every tip
 //! asks for, so that a tip is read where it stands, kinks are resolved whatever their length, and nothing is extrapolated.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::cracks::scales::Scales;
@@ -141,19 +142,18 @@ impl CrackedPlate for NodePlate {
     }
 
     fn read(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<Option<Reading>>> {
-        let mut readings = vec![None; cracks.tips.len()];
-        let Some((plate, solution)) = &self.solved else { return Ok(readings) };
+        let Some((plate, solution)) = &self.solved else { return Ok(vec![None; cracks.tips.len()]) };
         let share = case.loading.share(self.state.work);
         let pressure = case.specimen.crack_pressure * case.loading.maximum;
         let (lines, tips) = NodePlate::cracks(case, cracks);
-        for (index, (tip, _)) in cracks.active().enumerate() {
+        let reading = |index: usize| {
             let axes = &plate.axes[index];
             let room = room(&case.specimen, &lines, &tips[index]);
             let pressure = |at| pressure + solution.pressure_at(at);
             let read = factors::read(plate, &solution.u, index, room, &pressure)?;
             let is_closed = solution.is_closed(axes.at);
             let [k_i, k_ii] = read.factors.map(|factor| share * factor);
-            readings[tip] = Some(Reading {
+            Ok(Reading {
                 factors: [if is_closed { 0.0 } else { k_i }, k_ii],
                 t_stress: share * read.t_stress,
                 // K_II is that of the axes in which it was read: the crack without corners that nodes do not see.
@@ -162,8 +162,11 @@ impl CrackedPlate for NodePlate {
                 length_offset: 0.0,
                 is_closed,
                 of_pressure: share * read.of_faces,
-            });
-        }
+            })
+        };
+        let read = (0..tips.len()).into_par_iter().map(reading).collect::<Result<Vec<Reading>>>()?;
+        let mut readings = vec![None; cracks.tips.len()];
+        cracks.active().zip(read).for_each(|((tip, _), read)| readings[tip] = Some(read));
         Ok(readings)
     }
 

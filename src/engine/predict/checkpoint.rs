@@ -17,7 +17,7 @@ use crate::sealed::{Seal, refused};
 
 /// First bytes of a checkpoint.
 pub const SIGN: &[u8] = b"perilife checkpoint\n";
-const SEAL: Seal = Seal { of: "this program", magic: SIGN, form: 6 };
+const SEAL: Seal = Seal { of: "this program", magic: SIGN, form: 7 };
 
 /// State of a run at one of the places where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -105,7 +105,7 @@ fn until_severed(step_error: f64, run: &Run) -> Result<f64> {
             other => Err(Error::Mechanics(format!("the run ended before the plate was in two: {other}"))),
         }
     };
-    let exact = life(&format!("{NODES} model.tolerance_percent=1"))?;
+    let exact = life(&format!("{NODES} model.tolerance_percent=0.5"))?;
     Ok(percent(life(&format!("model.spacing_mm=1 fatigue.step_error_percent={step_error}"))?, exact))
 }
 

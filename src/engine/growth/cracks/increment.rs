@@ -29,6 +29,8 @@ pub struct Increment {
     /// Whether the lead begins a kink, else its rate at the start of the increment before and its growth in that, where they are known.
     is_kink: bool,
     past: Option<[f64; 2]>,
+    /// Root of the length of crack of the lead at the start, m^½.
+    root: f64,
     /// Of every tip `K_eq²/E'`, J/m², and the length that its crack stands for beyond that of its line, m; work of the loads, J.
     before: (Vec<[f64; 2]>, f64),
     parted: Parted,
@@ -67,6 +69,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             factor: tip.driving_factor(),
             is_kink: tip.begins_kink(),
             past: tip.past(),
+            root: tip.root(tip.growth),
             before: self.energies(),
             parted: Parted::default(),
             readings: Vec::new(),
@@ -81,7 +84,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             if let Some(segment) = segment.filter(|_| *growth > 0.0) {
                 self.state.lines[tip.end.line].grow(tip.end.at_last, segment.to);
             }
-            tip.has_grown(*growth, growths[step.lead], segment.map_or(tip.state, |segment| segment.state));
+            let state = segment.map_or(tip.state, |segment| segment.state);
+            tip.has_grown([*growth, growths[step.lead]], state, self.scales.by_root);
         }
         if step.has_ended_tips() {
             self.join(&step.segments);
@@ -174,6 +178,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let (factor, rate) = if is_smooth { (lead.equivalent(), self.rate(lead.equivalent())) } else { (step.factor, step.rate) };
         let (cycles, curvature_share) = if step.is_kink {
             (kink::cycles(growth, [step.rate, rate], [step.factor, factor]), 0.0)
+        } else if self.scales.by_root && growth > 0.0 && rate.is_finite() {
+            step::cycles_by_root(step.past, [step.rate, rate], step.root, growth)
         } else {
             step::cycles(step.past, step.rate, rate, growth)
         };
@@ -183,7 +189,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         if has_ended || is_kinking {
             self.state.step = self.first_step();
         } else if growth > 0.0 && !is_over {
-            self.state.step = self.next_step(growth, curvature_share);
+            let all = self.last().cycles + cycles;
+            self.state.step = self.next_step(growth, curvature_share, cycles / all);
         }
         let is_closing = |(index, _): (usize, &Tip)| self.is_closing(index);
         if has_ended || is_over || self.state.active().any(is_closing) {

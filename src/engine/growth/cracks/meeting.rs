@@ -10,8 +10,6 @@ use crate::specimen::geometry::{along, direction, distance};
 const ALL: f64 = 0.999;
 /// Distance of a tip that another faces over the way to its crack, at the most.
 const ALIKE: f64 = 1.1;
-/// Share of the cycles so far that the way to a rim or another tip takes at the most where it is gone in one step.
-const SHARE_LEFT: f64 = 5e-4;
 /// Cosine of the angle between a tip and the way to a rim below which it passes that.
 const PASSING: f64 = 0.5;
 
@@ -101,7 +99,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let length = faces.map_or_else(|| gap.min(self.room(index)), |other| gap * of_both(other));
         let cycles = self.curve.last().map_or(0.0, |row| row.cycles);
         let [reach, at_once] = self.scales.step.last;
-        let is_last = length < reach && (length < SHARE_LEFT * cycles * tip.rate || length < at_once);
+        let is_last = length < reach && (length < self.scales.step.share_left * cycles * tip.rate || length < at_once);
         (is_last && tip.growth > 0.0).then_some(LastWay { length, faces })
     }
 

@@ -5,7 +5,8 @@
 //!
 //! The direction is read at the tip off a straight line through the last aims: a mean over them would trail behind a curving crack by half
 //! of their length. On points a single reading of K_II scatters with how the bonds around the tip lie, and the line goes through the aims
-//! of the last two horizons of growth; on nodes it goes through the last two ([`SteeringScales`]).
+//! of the last two horizons of growth; on nodes it goes through the last two, over the root of
+//! the length of crack ([`SteeringScales`]).
 
 use serde::{Deserialize, Serialize};
 
@@ -71,27 +72,35 @@ impl Steering {
         self.aims.drain(..self.aims.len().saturating_sub(scales.aims));
     }
 
-    /// Direction for the next `step` of growth, m: the aim at its middle.
-    pub fn direction(&self, growth: f64, step: f64, ahead: Point, scales: &SteeringScales) -> Point {
+    /// Direction for the next `step` of growth, m: the aim at its middle. Aims lie on a straight line over `smooth_in` of the growth.
+    pub fn direction(
+        &self,
+        [growth, step]: [f64; 2],
+        ahead: Point,
+        scales: &SteeringScales,
+        smooth_in: impl Fn(f64) -> f64,
+    ) -> Point {
         if self.aims.is_empty() {
             return ahead;
         }
-        let ([x, y], slope) = self.line(scales);
-        let at = if self.corner.is_some() { x } else { growth + 0.5 * step };
+        let ([x, y], slope) = self.line(scales, &smooth_in);
+        let at = if self.corner.is_some() { x } else { smooth_in(growth + 0.5 * step) };
         let (sin, cos) = (y + slope * (at - x)).sin_cos();
         [cos, sin]
     }
 
-    /// Curvature of the crack ahead, rad/m, counter-clockwise.
-    pub fn curvature(&self, scales: &SteeringScales) -> f64 {
-        if self.aims.is_empty() { 0.0 } else { self.line(scales).1 }
+    /// Slope of the aims over `smooth_in` of the growth, rad over its unit, counter-clockwise: curvature of the crack ahead where that is
+    /// the growth.
+    pub fn slope(&self, scales: &SteeringScales, smooth_in: impl Fn(f64) -> f64) -> f64 {
+        if self.aims.is_empty() { 0.0 } else { self.line(scales, &smooth_in).1 }
     }
 
     /// Middle and slope of the straight line through the aims.
-    fn line(&self, scales: &SteeringScales) -> ([f64; 2], f64) {
+    fn line(&self, scales: &SteeringScales, smooth_in: &impl Fn(f64) -> f64) -> ([f64; 2], f64) {
         let count = self.aims.len() as f64;
-        let [x, y] = [0, 1].map(|i| self.aims.iter().map(|aim| aim[i]).sum::<f64>() / count);
-        let product = |i: usize| self.aims.iter().map(|aim| (aim[0] - x) * (aim[i] - [x, y][i])).sum::<f64>();
+        let aims = || self.aims.iter().map(|&[growth, aim]| [smooth_in(growth), aim]);
+        let [x, y] = [0, 1].map(|i| aims().map(|aim| aim[i]).sum::<f64>() / count);
+        let product = |i: usize| aims().map(|aim| (aim[0] - x) * (aim[i] - [x, y][i])).sum::<f64>();
         let spread = product(0) + count * scales.slope.powi(2);
         ([x, y], if spread > 0.0 { product(1) / spread } else { 0.0 })
     }

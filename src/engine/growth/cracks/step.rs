@@ -3,11 +3,14 @@
 //! It is as long as the fastest tip takes for a step. With its length as independent variable the other tips follow `da_i/da = r_i/r`, by
 //! the rates of this increment and the last one extrapolated to the middle of the step (Adams and Bashforth 1883), and the cycles are
 //! `∫ da/r` with ln r a parabola through the rates at the ends of this step and at the start of the last one. What the parabola adds to
-//! the straight line tells how long the next step may be. A kink, whose K goes with the root of its length, has cycles of its own
+//! the straight line tells how long the next step may be. K of a kink and of a short crack is smooth in the root x of its length:
+//! on nodes all of these are extrapolated in x, and the cycles are `∫ 2x dx/r`. The first step of a kink has cycles of its own
 //! ([`super::kink::cycles`]).
 
 use super::ahead;
+use super::scales::Scales;
 use super::{CrackedPlate, Cracks, Tip};
+use crate::quadrature::integrate;
 
 /// Share of an increment's cycles that the parabola may add: beyond it the rates lie on none.
 const CURVATURE_SHARE_MOST: f64 = 0.02;
@@ -29,7 +32,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let is_last = limits.iter().any(|(most, is_last)| *is_last && *most <= limit * (1.0 + 1e-9));
         let least = self.scales.step.bounds[0].min(self.scales.step.first);
         let step = if is_last { limit } else { limit.min(self.state.step.max(least)) };
-        let share = |tip: &Tip| if tip.is_growing() { step * tip.share(lead, step).min(SHARE_MOST) } else { 0.0 };
+        let share =
+            |tip: &Tip| if tip.is_growing() { step * tip.share(lead, step, self.scales.by_root).min(SHARE_MOST) } else { 0.0 };
         let mut lengths: Vec<f64> = self.state.tips.iter().map(share).collect();
         let length_after = |lengths: &[f64]| {
             let growth: Vec<f64> = self.state.tips.iter().zip(lengths).map(|(tip, length)| tip.growth + length).collect();
@@ -61,7 +65,14 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         if tip.begins_kink() {
             most = most.min(scales.first_of_kink * tip.spacing);
         }
-        most.min((scales.turn / tip.steering.curvature(steering).abs()).max(scales.turn_unless))
+        most.min(self.growth_in_turn(tip).max(scales.turn_unless))
+    }
+
+    /// Growth of a tip in which its aim turns by as much as it may in an increment, m.
+    fn growth_in_turn(&self, tip: &Tip) -> f64 {
+        let Scales { by_root, ref steering, ref step, .. } = self.scales;
+        let way = step.turn / tip.steering.slope(steering, tip.smooth_in(by_root)).abs();
+        if by_root { way * (way + 2.0 * tip.root(tip.growth)) } else { way }
     }
 
     /// Step of the lead in the first increment after a start, a joint or a kink, m.
@@ -75,17 +86,13 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         growing.map(of_tip).fold(self.scales.step.first, f64::min)
     }
 
-    /// Step of the lead after one of length `grown`, m, in which the parabola added the share `curvature_share` to the cycles.
-    pub(super) fn next_step(&self, grown: f64, curvature_share: f64) -> f64 {
+    /// Step of the lead after one of length `grown`, m, that took the share `of_all` of all cycles so far and in which the parabola added the
+    /// share `curvature_share` to its own.
+    pub(super) fn next_step(&self, grown: f64, curvature_share: f64, of_all: f64) -> f64 {
         let scales = &self.scales.step;
-        let fastest = self.fastest().map_or(0.0, |tip| self.state.tips[tip].rate);
-        let is_kinked = |tip: &Tip| {
-            let corner = tip.steering.last_corner().filter(|_| tip.is_growing() && !tip.is_at_rest(fastest));
-            corner.is_some_and(|corner| tip.growth - corner < scales.kink_spacings * tip.spacing)
-        };
         let [least, most] = scales.change;
-        let most = if self.state.tips.iter().any(is_kinked) { scales.change_after_kink } else { most };
-        let by_error = (scales.error / curvature_share.abs().max(f64::MIN_POSITIVE)).sqrt();
+        let error = scales.error * (scales.error_counts_from / of_all).max(1.0);
+        let by_error = (error / curvature_share.abs().max(f64::MIN_POSITIVE)).sqrt();
         (grown * by_error.min(most).max(least)).clamp(scales.bounds[0], scales.bounds[1])
     }
 }
@@ -96,6 +103,27 @@ pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f
     let curvature_share = past.map_or(0.0, |[before, way]| curvature_share([before, rate, rate_then], [way, grown]));
     let counted = if curvature_share.abs() < CURVATURE_SHARE_MOST { curvature_share } else { 0.0 };
     (grown * mean_inverse(rate, rate_then) * (1.0 + counted), curvature_share)
+}
+
+/// The same with ln r a parabola in the root x of the length of crack, `∫ da/r = ∫ 2x dx/r`, x from that at the start, `root`, m^½, to
+/// √(root² + grown).
+pub(super) fn cycles_by_root(past: Option<[f64; 2]>, [rate, rate_then]: [f64; 2], root: f64, grown: f64) -> (f64, f64) {
+    let then = (root * root + grown).sqrt();
+    let rise = then - root;
+    let slope = (rate_then / rate).ln() / rise;
+    let curvature = past.map_or(0.0, |[before, way]| {
+        let root_before = (root * root - way).max(0.0).sqrt();
+        (slope - (rate / before).ln() / (root - root_before)) / (then - root_before)
+    });
+    let integral = |curvature: f64| {
+        let inverse = |x: f64| 2.0 * (root + x) * (-(slope * x + curvature * x * (x - rise))).exp();
+        integrate(inverse, 0.0, rise, 1e-10).value / rate
+    };
+    let straight = integral(0.0);
+    let share = integral(curvature) / straight - 1.0;
+    let share = if share.is_finite() { share } else { 0.0 };
+    let counted = if share.abs() < CURVATURE_SHARE_MOST { share } else { 0.0 };
+    (straight * (1.0 + counted), share)
 }
 
 /// Mean of 1/r between two rates with ln r linear between them, cycles/m.

@@ -138,10 +138,24 @@ impl Tip {
         }
     }
 
-    /// Takes in an increment in which it grew by `growth` and the fastest tip by `fastest`, m, and what has become of it.
-    pub(super) fn has_grown(&mut self, growth: f64, fastest: f64, state: TipState) {
+    /// Root of the length of crack that its field knows of after a growth, m^½: 0 where a kink begins.
+    pub(super) fn root(&self, growth: f64) -> f64 {
+        let since = self.steering.last_corner().map_or(self.length + growth, |corner| growth - corner);
+        since.max(0.0).sqrt()
+    }
+
+    /// What aim and ln of the rate are smooth in at a growth, m: that, or the root of the length of crack.
+    pub(super) fn smooth_in(&self, by_root: bool) -> impl Fn(f64) -> f64 {
+        move |growth| if by_root { self.root(growth) } else { growth }
+    }
+
+    /// Takes in an increment in which it grew by `growth` and the fastest tip by `fastest`, m, and what has become of it; `by_root` as in
+    /// [`super::scales::Scales`].
+    pub(super) fn has_grown(&mut self, [growth, fastest]: [f64; 2], state: TipState, by_root: bool) {
         self.before = (!self.begins_kink()).then_some([self.rate, fastest]);
-        self.past = (growth > 0.0 && self.steering.corner().is_none()).then_some([self.rate, growth]);
+        // In the root of its length the rate of a kink is smooth from its start on.
+        let is_smooth = by_root || self.steering.corner().is_none();
+        self.past = (growth > 0.0 && is_smooth).then_some([self.rate, growth]);
         self.growth += growth;
         self.state = state;
         if !self.is_active() {
@@ -159,12 +173,24 @@ impl Tip {
         self.rate <= REST * fastest
     }
 
-    /// Rate over that of the tip `lead`, in the middle of a step of that by `step`, m: ln of it is linear in the growth of the lead.
-    pub(super) fn share(&self, lead: &Tip, step: f64) -> f64 {
+    /// Rate over that of the tip `lead`, in the middle of a step of that by `step`, m: ln of it is linear in the growth of the lead; or, `by_root`,
+    /// ln of the rate of either in the root of its own length.
+    pub(super) fn share(&self, lead: &Tip, step: f64, by_root: bool) -> f64 {
         let now = self.rate / lead.rate;
+        if by_root {
+            return now * (self.gain(0.5 * step * now, lead.rate) - lead.gain(0.5 * step, lead.rate)).exp();
+        }
         let Some(([before, since], [lead_before, _])) = self.before.zip(lead.before) else { return now };
         let is_known = before > 0.0 && lead_before > 0.0 && since > 0.0 && !self.is_at_rest(lead.rate);
         if is_known { now * (now * lead_before / before).powf(0.5 * step / since) } else { now }
+    }
+
+    /// By how much ln of its rate rises in its next `growth`, m, linear in the root of its length as in the last one.
+    fn gain(&self, growth: f64, fastest: f64) -> f64 {
+        let Some([before, last]) = self.past.filter(|[before, _]| *before > 0.0 && !self.is_at_rest(fastest)) else { return 0.0 };
+        let [from, now, then] = [-last, 0.0, growth].map(|way| self.root(self.growth + way));
+        let gain = (self.rate / before).ln() * (then - now) / (now - from);
+        if gain.is_finite() { gain } else { 0.0 }
     }
 
     /// Takes in what was read, as far as it says where the tip turns to.
