@@ -9,6 +9,7 @@ mod case;
 mod cells;
 mod chart_parts;
 mod checks;
+mod choose;
 mod circles;
 mod collinear;
 mod commands;

@@ -10,6 +10,7 @@ mod dual_horizon;
 mod dynamics;
 mod elasticity;
 mod element_free;
+mod error_estimate;
 mod fatigue;
 mod fracture_relaxation;
 mod grips;

@@ -172,11 +172,11 @@ impl PointSettings {
 }
 
 impl Case {
-    /// Its points and bonds; of nodes those that the program would take for the plate.
+    /// Its points and bonds; of nodes those that the program would take for K of the plate.
     pub fn points(&self) -> PointSettings {
         match self.model {
             Model::Handbook(points) | Model::Points(points) => points,
-            Model::Nodes(_) => model::usual_points(&self.specimen, &self.material).0,
+            Model::Nodes(_) => model::points_for_factors(self),
         }
     }
 

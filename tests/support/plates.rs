@@ -4,6 +4,7 @@ use std::path::Path;
 
 use perilife::Result;
 use perilife::case::Case;
+use perilife::verify::cases::by_name;
 
 /// Sections that most tests do not care about.
 const REST: &str = r#"
@@ -39,7 +40,8 @@ pub fn try_case(specimen: &str, set: &[&str]) -> Result<Case> {
         pins if pins.contains("compact_tension") => FORCE,
         _ => STRESS,
     };
-    Case::from_toml(&format!("[specimen]\n{specimen}{loading}{REST}"), "plate", Path::new("."), &overrides)
+    let text = format!("[specimen]\n{specimen}{loading}{REST}");
+    Case::from_toml(&text, "plate", Path::new("."), &by_name(&text, &overrides))
 }
 
 /// [`try_case`] where the input is right.

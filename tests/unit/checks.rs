@@ -61,7 +61,10 @@ fn extrapolation_has_two_sides() {
     assert_eq!(of_run(&case, &run)[0].name, "extrapolation_above", "what fails comes first");
     assert_eq!(refusal(&case, &run).unwrap().exit_code(), 2);
     let lives = perilife::report::band::Lives::of(&case, &run).unwrap();
-    assert!(perilife::report::run::words(&case, &run, &lives, &perilife::report::quality::Quality::default())[0].contains(": no life that counts, 100.0 cycles were computed"));
+    assert!(
+        perilife::report::run::words(&case, &run, &lives, &perilife::report::quality::Quality::default())[0]
+            .contains(": no life that counts, 100.0 cycles were computed")
+    );
     // All of it on the safe side counts, with a word.
     case.law = made_up_case::fitted(21.0, 30.0);
     assert_eq!(named(&case, &run, "extrapolation_below").verdict, Verdict::Doubtful);

@@ -161,34 +161,34 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("report", 7437),
+    ("report", 7543),
     ("fracture", 6916),
-    ("calibration", 6001),
+    ("calibration", 6010),
     ("service", 5627),
     ("solver", 5287),
-    ("growth", 4911),
-    ("verify", 4858),
-    ("element_free", 3994),
+    ("growth", 5012),
+    ("verify", 4916),
+    ("element_free", 4015),
     ("measured", 3727),
-    ("commands", 2713),
+    ("commands", 2720),
+    ("case", 2555),
     ("body", 2534),
-    ("specimen", 2455),
-    ("case", 2329),
+    ("specimen", 2483),
+    ("predict", 1774),
     ("levels", 1728),
     ("fatigue", 1681),
-    ("predict", 1550),
-    ("sweep", 1075),
-    ("runner", 912),
+    ("sweep", 1074),
+    ("runner", 920),
     ("loading", 831),
-    ("input", 735),
+    ("input", 734),
     ("stress_intensity", 681),
-    ("check", 560),
+    ("check", 563),
     ("bond_law", 394),
     ("tables", 342),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 70959;
+const LINES_OF_ALL: usize = 71748;
 
 #[test]
 fn rooms_do_not_grow() {

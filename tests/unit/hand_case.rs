@@ -92,7 +92,7 @@ fn a_record_gives_c_and_m_whatever_bonds_it_was_fitted_with() {
     assert!((walker.c * 0.9_f64.powf(1.5) / (1e-11 * 0.9_f64.powi(3)) - 1.0).abs() < 1e-12);
     // A record of hand calculation has no A for bonds.
     let mut by_hand = (*record).clone();
-    (by_hand.method, by_hand.a, by_hand.horizon_mm) = ("handbook".to_owned(), f64::NAN, f64::NAN);
+    (by_hand.method, by_hand.a, by_hand.horizon_mm, by_hand.rate_constant) = ("handbook".to_owned(), f64::NAN, f64::NAN, None);
     hand_case(PANEL, &set).with_law(by_hand.clone()).unwrap();
     let bonds = ["model.method=peridynamics", "fatigue.driver=bond_strain"];
     let error = hand_case(PANEL, &[&bonds[..], &set].concat()).with_law(by_hand).unwrap_err().to_string();

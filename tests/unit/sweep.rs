@@ -169,6 +169,7 @@ fn record_by_hand() -> FittedRecord {
     let nan = f64::NAN;
     FittedRecord {
         method: "handbook".to_owned(),
+        rate_constant: None,
         a: nan,
         p: m,
         horizon_mm: nan,

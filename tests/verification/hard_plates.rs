@@ -118,5 +118,5 @@ fn hard_plates_on_nodes_without_elements() {
 #[test]
 #[ignore = "long: cargo test hard_plates -- --ignored (three minutes)"]
 fn hard_plates_on_points() {
-    check(&POINTS, &|_| Vec::new());
+    check(&POINTS, &|_| vec!["model.method=peridynamics".to_owned()]);
 }

@@ -11,7 +11,8 @@ use perilife::predict::{Prediction, Silent, predict};
 use crate::support::shared::shared;
 
 fn case(path: &Path, set: &[&str]) -> Case {
-    Case::from_file(path, &set.iter().map(|key| (*key).to_owned()).collect::<Vec<_>>()).unwrap()
+    let set = [&["model.method=peridynamics"], set].concat();
+    Case::from_file(path, &set.into_iter().map(str::to_owned).collect::<Vec<_>>()).unwrap()
 }
 
 /// A double cantilever whose crack has a kink. Its first equilibrium takes seconds.

@@ -7,6 +7,7 @@ use perilife::case::Case;
 use perilife::growth::cracks::initial_tips;
 use perilife::growth::points::PointPlate;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
+use perilife::verify::cases::by_name;
 
 use crate::support::shared::shared;
 
@@ -16,7 +17,7 @@ const STEADY: &str = "[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\n
 fn case(specimen: &str, loading: &str, set: &[&str]) -> Case {
     let text = format!("[specimen]\nthickness_mm = 2\n{specimen}\n[loading]\nstress_ratio = 0\n{loading}\n{STEADY}");
     let set: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
-    Case::from_toml(&text, "load", Path::new(""), &set).unwrap()
+    Case::from_toml(&text, "load", Path::new(""), &by_name(&text, &set)).unwrap()
 }
 
 fn plate(cracks: &str, loading: &str, spacing: f64) -> Case {

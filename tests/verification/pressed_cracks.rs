@@ -13,10 +13,12 @@ use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::solver::{SolverKind, Symmetry};
 
+use perilife::verify::cases::POINTS;
+
 use crate::support::shared::shared;
 
 fn pressed(name: &str) -> Option<Case> {
-    shared(&format!("field/mechanics/closed_crack/{name}.toml")).map(|path| Case::from_file(&path, &[]).unwrap())
+    shared(&format!("field/mechanics/closed_crack/{name}.toml")).map(|path| Case::from_file(&path, &[POINTS.to_owned()]).unwrap())
 }
 
 fn last(run: &Prediction) -> &CurvePoint {

@@ -4,8 +4,8 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use perilife::body::pre_crack::bonds_across;
 use perilife::body::Bond;
+use perilife::body::pre_crack::bonds_across;
 use perilife::case::{Case, RESIDUAL};
 use perilife::fatigue::growth_law::Walker;
 use perilife::growth::CrackGrowth;
@@ -18,6 +18,7 @@ use perilife::specimen::{CrackLine, LineEnd, Point};
 use perilife::state::Bonds;
 use perilife::stress_intensity::TipFrame;
 use perilife::stress_intensity::ring::{Balanced, RingGeometry};
+use perilife::verify::cases::by_name;
 use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
 
 const REST: &str = r#"
@@ -35,8 +36,8 @@ cycles_max = 1e14
 /// A case of these sections `[specimen]` and `[loading]`, with other keys set by `section.key=value`.
 fn case(specimen: &str, loading: &str, set: &[&str]) -> Case {
     let overrides: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
-    Case::from_toml(&format!("[specimen]\n{specimen}\n[loading]\n{loading}\n{REST}"), "plate", Path::new("."), &overrides)
-        .unwrap()
+    let text = format!("[specimen]\n{specimen}\n[loading]\n{loading}\n{REST}");
+    Case::from_toml(&text, "plate", Path::new("."), &by_name(&text, &overrides)).unwrap()
 }
 
 fn run(case: &Case) -> Prediction {

@@ -8,6 +8,7 @@ use perilife::case::Case;
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::solver::SolverKind;
 use perilife::specimen::geometry::distance;
+use perilife::verify::cases::by_name;
 
 const REST: &str = "
 [material]
@@ -51,7 +52,8 @@ const PLATES: [(&str, &str, &str, bool); 3] = [
 const EQUAL: f64 = 1e-6;
 fn grow(specimen: &str, set: &[&str]) -> Prediction {
     let set: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
-    let mut case = Case::from_toml(&format!("[specimen]\n{specimen}\n{REST}"), "plate", Path::new("."), &set).unwrap();
+    let text = format!("[specimen]\n{specimen}\n{REST}");
+    let mut case = Case::from_toml(&text, "plate", Path::new("."), &by_name(&text, &set)).unwrap();
     // Runs by default stop at a residual that shows in K; here solvers are compared.
     case.model.points_mut().unwrap().residual = 1e-9;
     predict(&case, &Silent).unwrap()

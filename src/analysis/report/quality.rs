@@ -3,10 +3,8 @@
 use serde_json::{Value, json};
 
 use crate::case::{Case, Model, coarse_points, usual_nodes};
-use crate::error::Result;
 use crate::predict::error_estimate::{ErrorEstimate, error_estimate};
 use crate::predict::{Prediction, Silent, predict};
-use crate::runner::Wanted;
 use crate::units::MM;
 
 /// What is known of the error of a life.
@@ -26,11 +24,11 @@ struct SecondOpinion {
 }
 
 impl Quality {
-    /// What is asked for of a run.
-    pub fn of(case: &Case, prediction: &Prediction, wanted: &Wanted) -> Result<Quality> {
-        let estimate = (!wanted.no_estimate && prediction.life().is_some()).then(|| error_estimate(case, prediction));
-        let second = wanted.cross_check.then(|| second_opinion(case, prediction));
-        Ok(Quality { estimate, second })
+    /// Of a run, whether bounds and a second opinion are asked for.
+    pub fn of(case: &Case, prediction: &Prediction, [estimate, cross_check]: [bool; 2]) -> Quality {
+        let estimate = (estimate && prediction.life().is_some()).then(|| error_estimate(case, prediction));
+        let second = cross_check.then(|| second_opinion(case, prediction));
+        Quality { estimate, second }
     }
 
     /// Adds it to `result.json`.

@@ -25,8 +25,8 @@ use crate::predict::residual_strength::{check_strength, residual_strength};
 use crate::predict::{Observer, Prediction, Silent, predict, resume};
 use crate::report;
 use crate::report::band::Lives;
-use crate::report::quality::Quality;
 use crate::report::output::Share;
+use crate::report::quality::Quality;
 use crate::report::sweep::Plan;
 use crate::units::MM;
 use sweep_folder::SweepFolder;
@@ -155,7 +155,7 @@ pub fn of_prediction(
     // If that fails, the run itself is written all the same.
     let strengths = wanted.strength.then(|| residual_strength(case, &prediction.curve)).transpose();
     let mut lives = Lives::of(case, prediction)?;
-    let quality = Quality::of(case, prediction, wanted)?;
+    let quality = Quality::of(case, prediction, [!wanted.no_estimate, wanted.cross_check]);
     let asked = wanted.readings.as_ref().map_or(Ok(()), |curve| lives.narrow(curve));
     let asked = asked.and_then(|()| wanted.inspection.map_or(Ok(()), |from| lives.inspect(from)));
     let result = match folder {

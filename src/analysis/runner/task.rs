@@ -160,7 +160,8 @@ impl Task {
                 }
                 let is_of_nodes = chosen == [StressIntensityMethod::ElementFreeGalerkin];
                 let case = Box::new(if is_of_nodes { Case::plate_on_nodes(document)? } else { Case::plate_of(document)? });
-                let on_nodes = is_of_nodes || chosen.is_empty() && case.model.method() == Method::ElementFreeGalerkin;
+                let on_nodes = is_of_nodes
+                    || chosen.is_empty() && case.chosen.is_none() && case.model.method() == Method::ElementFreeGalerkin;
                 let methods = if chosen.is_empty() { StressIntensityMethod::ALL.to_vec() } else { chosen };
                 Task::Factors { case, methods, on_nodes }
             }

@@ -21,7 +21,10 @@ pub fn rows(table: &mut Table) -> Result<()> {
             let tips = compare(&run, reference.tips()?, f64::INFINITY);
             let found = largest(tips.iter().flat_map(|tip| tip.cycles));
             let effectivity = (found.abs() - OF_REFERENCE).max(0.0) / stated;
-            let what = format!("{}, {percent} % asked, {stated:.2} % stated: life over the reference, effectivity {effectivity:.2}", reference.name);
+            let what = format!(
+                "{}, {percent} % asked, {stated:.2} % stated: life over the reference, effectivity {effectivity:.2}",
+                reference.name
+            );
             table.compare(what, 1.0 + 0.01 * found, 1.0, stated + OF_REFERENCE, SOURCE);
         }
     }

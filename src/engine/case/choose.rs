@@ -41,9 +41,10 @@ pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loadin
         Some(formula) if 100.0 * EXPONENT_USUAL * formula.error_at(specimen.crack_length) <= percent => {
             (Method::Handbook, format!("standard specimen within the range of its formula ({})", formula.name))
         }
-        Some(formula) => {
-            (Method::ElementFreeGalerkin, format!("the formula of the specimen ({}) is good to less than {percent} % of life", formula.name))
-        }
+        Some(formula) => (
+            Method::ElementFreeGalerkin,
+            format!("the formula of the specimen ({}) is good to less than {percent} % of life", formula.name),
+        ),
         None => (Method::ElementFreeGalerkin, "no handbook formula covers the plate".to_owned()),
     }
 }

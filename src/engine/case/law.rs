@@ -44,7 +44,7 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
         return Ok(());
     }
     if by_hand {
-        let problem = "was fitted to K without bonds: it holds C and m, but no A of bonds";
+        let problem = "was fitted by hand calculation, or on nodes: it holds C and m, but no A of bonds";
         let remedy = "calibrate with model.method = \"peridynamics\", or use fatigue.driver = \"tip_field\" here";
         return Err(input("fatigue.fitted", &record.material, problem, remedy));
     }

@@ -1,7 +1,7 @@
 //! `[model]` of an input file: how the plate becomes points and bonds.
 
 use super::model_keys::{ModelKeys, read, refuse_strangers, tolerance, too_fine};
-use super::{choose, Case, Choices, HORIZON_RATIO, Method, Model, PointSettings, RESIDUAL};
+use super::{Case, Choices, HORIZON_RATIO, Method, Model, PointSettings, RESIDUAL, choose};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
 use crate::error::{Result, input};
 use crate::input::slice;
@@ -106,12 +106,17 @@ pub(super) fn usual_points(specimen: &Specimen, material: &Material) -> (PointSe
 /// Spacing of a second opinion over the usual one.
 const COARSE: f64 = 1.5;
 
-/// Points for a coarse look at a case on nodes.
-pub fn coarse_points(case: &Case) -> PointSettings {
+/// Points for K of the tips of a case on nodes.
+pub(super) fn points_for_factors(case: &Case) -> PointSettings {
     let (mut points, _) = usual_points(&case.specimen, &case.material);
     points.bond_law.surface_correction = SurfaceCorrection::Balanced;
-    points.spacing *= COARSE;
     points
+}
+
+/// The same for a coarse look.
+pub fn coarse_points(case: &Case) -> PointSettings {
+    let points = points_for_factors(case);
+    PointSettings { spacing: COARSE * points.spacing, ..points }
 }
 
 /// What is said of a flaw so small that points are as fine as that everywhere for its sake.

@@ -100,7 +100,10 @@ pub(super) const KEYS_OF_BONDS: &[&str] = &["ageing", "zone_radius_horizons", "c
 
 /// A key of `[model]` that asks for points and bonds where the method is left open.
 pub(super) fn key_of_points(model: &Value) -> Option<&'static str> {
-    KEYS.iter().filter(|key| key.owners.contains(&Method::Peridynamics)).map(|key| key.name).find(|name| model.get(name).is_some())
+    KEYS.iter()
+        .filter(|key| key.owners.contains(&Method::Peridynamics))
+        .map(|key| key.name)
+        .find(|name| model.get(name).is_some())
 }
 
 /// Error asked for, percent of life.
@@ -157,7 +160,8 @@ pub fn finer_nodes(case: &Case) -> ElementFreeSettings {
     let mut nodes = nodes_for(&case.specimen, TOLERANCE_LEAST, BasisKind::Linear);
     let is_as_fine = matches!(case.model, Model::Nodes(own) if own.is_given || own.tolerance < 2.0 * nodes.tolerance);
     let times = if is_as_fine { FINER } else { 1.0 };
-    let far = if let Model::Nodes(own) = case.model { nodes.resolution.far.min(own.resolution.far) } else { nodes.resolution.far };
+    let far =
+        if let Model::Nodes(own) = case.model { nodes.resolution.far.min(own.resolution.far) } else { nodes.resolution.far };
     nodes.resolution.far = far / times;
     nodes.resolution.hold *= times;
     nodes

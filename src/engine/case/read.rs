@@ -144,7 +144,7 @@ impl Case {
             choices,
             law_record,
         };
-        if case.engine() == Engine::Points && case.choices.surface_correction.is_none() {
+        if matches!(case.engine(), Engine::Points | Engine::Handbook) && case.choices.surface_correction.is_none() {
             case.model.take_most_accurate_rim();
         }
         match fatigue.law {

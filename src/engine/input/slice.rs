@@ -8,8 +8,7 @@ use crate::error::{Error, InputError, Result, input, input_missing};
 /// Names fixed for later that no room has built yet: they get "is not built yet" instead of "is not a known kind".
 ///
 /// Looked at only after a room has refused the name, so a name that gets built needs no line changed here.
-pub const PLANNED: &[(&str, &[&str])] =
-    &[("model.method", &["element_free_galerkin", "auto"]), ("fatigue.failure", &["energy", "stress"])];
+pub const PLANNED: &[(&str, &[&str])] = &[("fatigue.failure", &["energy", "stress"])];
 
 /// Names that a fracture scene knows and a fatigue case does not. Looked at as [`PLANNED`] is.
 pub const OF_SCENES: &[(&str, &[&str])] = &[

@@ -103,7 +103,11 @@ fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Resu
     if life <= 0.0 {
         return Err("nothing grew".to_owned());
     }
-    Ok(ErrorEstimate { life_percent: 100.0 * sum / life, path: 0.0, basis: format!("formula {}: {}", formula.name, formula.range) })
+    Ok(ErrorEstimate {
+        life_percent: 100.0 * sum / life,
+        path: 0.0,
+        basis: format!("formula {}: {}", formula.name, formula.range),
+    })
 }
 
 /// The last row before which no tip has met anything.
@@ -163,7 +167,8 @@ struct Difference {
 
 impl Difference {
     fn at(case: &Case, rows: &[CurvePoint], row: usize, rates: &Rates<'_>) -> Result<Difference, String> {
-        let finer = Case { specimen: grown(&case.specimen, &rows[..=row]), model: Model::Nodes(finer_nodes(case)), ..case.clone() };
+        let finer =
+            Case { specimen: grown(&case.specimen, &rows[..=row]), model: Model::Nodes(finer_nodes(case)), ..case.clone() };
         let tips = initial_tips::<NodePlate>(&finer).map_err(|error| format!("finer nodes: {error}"))?.tips;
         let rate = |tip: &TipRecord| tip.factors.map_or(0.0, |factors| rates.at(equivalent_factor(factors)));
         let own = &rows[row].tips;

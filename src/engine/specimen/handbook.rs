@@ -14,6 +14,9 @@ pub const SHORTEST_LENGTH_OVER_WIDTH: f64 = 1.5;
 /// Slack of the range of a formula: 20 mm of 100 mm is 0.2 less a rounding.
 const RANGE_SLACK: f64 = 1e-9;
 
+/// A figure over relative crack length.
+type Curve = fn(f64) -> f64;
+
 /// A formula for K of one specimen.
 #[derive(Debug, Clone, Copy)]
 pub struct HandbookFormula {
@@ -25,9 +28,9 @@ pub struct HandbookFormula {
     pub range: &'static str,
     /// Smallest and largest relative crack length it holds for: 2a/W with two tips or two cracks, a/W with one.
     pub bounds: [f64; 2],
-    of: fn(f64) -> f64,
+    of: Curve,
     /// Error over that relative crack length, as its source states it.
-    error: fn(f64) -> f64,
+    error: Curve,
     cracks: f64,
     is_of_pins: bool,
     width: f64,
@@ -44,7 +47,7 @@ impl PartialEq for HandbookFormula {
 /// 1.5 widths.
 pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
     let long = specimen.length() >= SHORTEST_LENGTH_OVER_WIDTH * specimen.width;
-    let (name, source, range, bounds, of, error): (_, _, _, _, fn(f64) -> f64, fn(f64) -> f64) = match specimen.kind {
+    let (name, source, range, bounds, of, error): (_, _, _, _, Curve, Curve) = match specimen.kind {
         SpecimenKind::MiddleTension if long => (
             "Feddersen secant",
             "Feddersen 1966, ASTM STP 410; ASTM E647 annex A2",

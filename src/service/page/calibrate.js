@@ -27,7 +27,7 @@ export function createCalibrateView() {
   // Toughness ends a prediction; a test that was measured is known to have got where it got.
   const material = createMaterial(form, { toughness: false });
   const loading = createLoading(form);
-  const spacing = form.number("model.spacing_mm", { ...length, label: "Spacing of points", hint: "left empty: a ninth of the crack, at most W/100" });
+  const spacing = form.number("model.spacing_mm", { ...length, label: "Spacing of points", hint: "left empty: the program chooses the model" });
   const parameters = form.choice("fit.parameters", { label: "Fitted", options: PARAMETERS });
   const exponent = form.number("fit.p", { label: "Exponent p", hint: "of the law in use, not the Paris m" });
   const name = form.text("name", { label: "Name of the fit", optional: true });

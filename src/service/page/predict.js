@@ -44,7 +44,7 @@ export function createPredictView() {
   const lawNote = element("div", { class: "law-note" });
   const length = { unit: "mm", optional: true };
   const spacing = form.number("model.spacing_mm", {
-    ...length, label: "Spacing of points", hint: "left empty: a ninth of the smallest flaw, at most W/100",
+    ...length, label: "Spacing of points", hint: "left empty: the program chooses the model",
   });
   const stopLength = form.number("stop.crack_length_mm", { ...length, label: "Stop at crack length" });
   const stopCycles = form.number("stop.cycles_max", { label: "Stop after", unit: "cycles", optional: true });

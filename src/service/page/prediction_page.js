@@ -22,13 +22,13 @@ export async function openPrediction(root, id, signal) {
   const chartPlace = element("div");
   const ratePlace = element("div");
   const picturePlace = element("div");
-  const { node: damage, image } = createPicture("Share of bonds cut or broken over the plate, with the crack path");
+  const { node: damage, image } = createPicture("Damage or stress over the plate, with the crack path");
   const imageNote = element("p", { class: "quiet" }, "No picture yet.");
   const rates = section("rates", "Growth rate", ratePlace);
   rates.hidden = true;
   const pictures = element("div", { class: "columns wide-left" },
     element("div", { class: "stack" }, section("curve", "Crack length against cycles", chartPlace),
-      section("damage", "Damage", damage, imageNote)),
+      section("damage", "Plate", damage, imageNote)),
     element("div", { class: "stack" }, section("path", "Crack path", picturePlace), rates));
   showPage(root, head.node, outcome, pictures, below);
 
@@ -123,10 +123,13 @@ export async function openPrediction(root, id, signal) {
         }
       }
       if (has("crack_path.csv")) plate.setPaths(pathsOf(readCsv(await getText(path("crack_path.csv"), signal))));
-      if (has("damage.png")) {
+      const picture = Object.keys(PICTURES).find(has);
+      if (picture) {
         revision = Infinity;
-        await showBlob(image, await getBlob(path("damage.png"), signal));
-        imageNote.textContent = "Share of bonds cut by initial cracks or broken, at the end of the run.";
+        await showBlob(image, await getBlob(path(picture), signal));
+        imageNote.textContent = PICTURES[picture];
+      } else if (isFinal(whole)) {
+        imageNote.textContent = "A hand calculation has no field.";
       }
     } catch (error) {
       if (error.name !== "AbortError") below.prepend(problemBox(error, () => finish(whole)));
@@ -174,6 +177,21 @@ function pathsOf({ tip, x_mm: xs, y_mm: ys }) {
   return [...byTip.values()];
 }
 
+/** Pictures of the end of a run, by the model that has them. */
+const PICTURES = {
+  "damage.png": "Share of bonds cut by initial cracks or broken, at the end of the run.",
+  "von_mises.png": "Von Mises stress at maximum load, at the end of the run.",
+};
+
+/** How wrong the life may be as a solution of its case; nothing of runs before such bounds were stated. */
+function errorWords(s) {
+  if (typeof s.error_estimate_percent === "number") {
+    const path = s.path_error_estimate_mm > 0 ? `, ${s.path_error_estimate_mm} mm of the path` : "";
+    return `at most ${s.error_estimate_percent} % of life${path}`;
+  }
+  return s.no_error_estimate && `not stated: ${s.no_error_estimate}`;
+}
+
 function result(s) {
   const life = [
     [s.stop_reason === "entered_hole" ? "Cycles to the hole" : "Life", element("strong", { class: "large", "data-value": "life_cycles" }, lifeWords(s))],
@@ -187,6 +205,7 @@ function result(s) {
       ["Crack length", lengthWords(s)],
       s.critical && ["Critical crack length", `${fixed(s.critical.crack_length_mm, 2)} mm: ${words(s.critical.criterion)}`],
       ["Stopped because", sentence(s.stop_meaning ?? words(s.stop_reason))],
+      !s.refused && errorWords(s) && ["Numerical error", errorWords(s)],
       ["Computed", `${whole(s.points)} points in ${duration(s.wall_s)}`],
     ].filter(Boolean), "result"));
 }

@@ -151,8 +151,9 @@ fn the_page_leads_from_readings_to_remaining_life() {
     let exponent = format!("{:.4}", summary["paris_m"].as_f64().unwrap());
     assert!(page.text("[data-table=constants]").contains(&exponent), "{exponent} in {}", page.text("[data-table=constants]"));
 
-    // A plate with this law, drawn with a second crack that goes again.
+    // A plate with this law, drawn with a second crack that goes again; on points, whose damage is shown while it grows.
     page.click("[data-action=use-law]");
+    page.fill("#view-predict [data-key='model.spacing_mm']", "0.8");
     page.see("#predict:not([disabled])");
     let cracks = page.count("[data-rows=cracks] tbody tr");
     page.click("[data-tool=crack]");

@@ -183,6 +183,10 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         } else {
             step::cycles(step.past, step.rate, rate, growth)
         };
+        for (index, tip) in self.state.tips.iter_mut().enumerate().filter(|_| self.scales.by_root) {
+            let growth = if is_smooth && index != step.lead { growths[index] } else { 0.0 };
+            tip.count_arrears(growth, (step.rate, rate), growths[step.lead]);
+        }
         let fastest = self.fastest().map_or(0.0, |tip| self.state.tips[tip].rate);
         let kinks = |tip: &Tip| tip.begins_kink() && !tip.is_at_rest(fastest);
         let is_kinking = self.scales.step.first_of_kink.is_finite() && self.state.tips.iter().any(kinks);

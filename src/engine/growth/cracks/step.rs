@@ -32,8 +32,10 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let is_last = limits.iter().any(|(most, is_last)| *is_last && *most <= limit * (1.0 + 1e-9));
         let least = self.scales.step.bounds[0].min(self.scales.step.first);
         let step = if is_last { limit } else { limit.min(self.state.step.max(least)) };
-        let share =
-            |tip: &Tip| if tip.is_growing() { step * tip.share(lead, step, self.scales.by_root).min(SHARE_MOST) } else { 0.0 };
+        let share = |tip: &Tip| {
+            let share = tip.share(lead, step, self.scales.by_root).min(SHARE_MOST);
+            if tip.is_growing() { (step * share + tip.arrears).max(0.0) } else { 0.0 }
+        };
         let mut lengths: Vec<f64> = self.state.tips.iter().map(share).collect();
         let length_after = |lengths: &[f64]| {
             let growth: Vec<f64> = self.state.tips.iter().zip(lengths).map(|(tip, length)| tip.growth + length).collect();

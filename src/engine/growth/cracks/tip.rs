@@ -73,6 +73,8 @@ pub struct Tip {
     before: Option<[f64; 2]>,
     /// Rate before the last increment and its own growth in it, where no corner lies between.
     past: Option<[f64; 2]>,
+    /// By how much it is short of the growth that the rates at both ends of the last increment ask for, m: made up for in the next one.
+    pub(super) arrears: f64,
 }
 
 impl Tip {
@@ -96,6 +98,7 @@ impl Tip {
             was_closed: false,
             before: None,
             past: None,
+            arrears: 0.0,
         }
     }
 
@@ -183,6 +186,21 @@ impl Tip {
         let Some(([before, since], [lead_before, _])) = self.before.zip(lead.before) else { return now };
         let is_known = before > 0.0 && lead_before > 0.0 && since > 0.0 && !self.is_at_rest(lead.rate);
         if is_known { now * (now * lead_before / before).powf(0.5 * step / since) } else { now }
+    }
+
+    /// Counts what it is short of after an increment in which it grew by `growth` and the tip `lead` by `step`, m: `∫ r/r_lead da`, ln of the
+    /// ratio of rates linear between both ends, less what it grew.
+    pub(super) fn count_arrears(&mut self, growth: f64, (lead_before, lead_rate): (f64, f64), step: f64) {
+        let Some([before, _]) = self.before.filter(|_| !self.begins_kink()) else {
+            self.arrears = 0.0;
+            return;
+        };
+        let [from, to] = [before / lead_before, self.rate / lead_rate];
+        let gain = (to / from).ln();
+        let mean = if gain.abs() < 1e-6 { from } else { (to - from) / gain };
+        let short = step * mean - growth;
+        // Rates that jump, as at a joint, lie on no line.
+        self.arrears = if short.is_finite() { short.clamp(-0.5 * growth, 0.5 * growth) } else { 0.0 };
     }
 
     /// By how much ln of its rate rises in its next `growth`, m, linear in the root of its length as in the last one.

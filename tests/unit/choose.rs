@@ -1,0 +1,48 @@
+//! What `model.method = "auto"` takes, and that it says why.
+
+use std::path::Path;
+
+use perilife::case::{Case, Method};
+
+const REST: &str = "[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\nplane = \"stress\"\n\
+                    [loading]\nkind = \"constant_amplitude\"\nstress_max_mpa = 60\nstress_ratio = 0.1\n\
+                    [fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
+
+fn case(specimen: &str, set: &[&str]) -> Case {
+    let set: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
+    let text = format!("[specimen]\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\n{specimen}\n{REST}");
+    Case::from_toml(&text, "chosen", Path::new("."), &set).unwrap()
+}
+
+#[test]
+fn no_more_of_a_model_than_a_scene_needs() {
+    use Method::{ElementFreeGalerkin, Handbook, Peridynamics};
+    const MIDDLE: &str = "kind = \"middle_tension\"\ncrack_length_mm = 10";
+    const DOUBLE: &str = "kind = \"double_edge_tension\"\ncrack_length_mm = 10";
+    const SLANT: &str = "kind = \"plate\"\ncracks = [{ from_mm = [-5, -3], to_mm = [5, 3] }]";
+    const SLOT: &str = "kind = \"plate\"\nslots = [{ from_mm = [-50, 0], to_mm = [-30, 0], width_mm = 2 }]";
+    let rows: &[(&str, &[&str], Method, &str)] = &[
+        (MIDDLE, &[], Handbook, "Feddersen"),
+        (MIDDLE, &["model.tolerance_percent=0.5"], ElementFreeGalerkin, "0.5 %"),
+        (MIDDLE, &["output.paraview=true"], ElementFreeGalerkin, "no handbook formula"),
+        (MIDDLE, &["specimen.length_mm=110"], ElementFreeGalerkin, "no handbook formula"),
+        (DOUBLE, &[], ElementFreeGalerkin, "Tada double edge"),
+        (DOUBLE, &["model.tolerance_percent=5"], Handbook, "Tada double edge"),
+        (SLANT, &[], ElementFreeGalerkin, "no handbook formula"),
+        (SLANT, &["model.spacing_mm=1"], Peridynamics, "model.spacing_mm"),
+        (SLANT, &["model.bond_law=state_based"], Peridynamics, "model.bond_law"),
+        (SLANT, &["fatigue.driver=bond_strain"], Peridynamics, "bond_strain"),
+        (SLANT, &["fatigue.ageing=everywhere"], Peridynamics, "fatigue.ageing"),
+        (SLANT, &["fatigue.driver=tip_field"], ElementFreeGalerkin, "no handbook formula"),
+        (SLOT, &[], Peridynamics, "slot"),
+    ];
+    for (specimen, set, method, why) in rows {
+        let by_choice = case(specimen, set);
+        assert_eq!(by_choice.model.method(), *method, "{specimen} {set:?}");
+        assert!(by_choice.chosen.as_ref().is_some_and(|words| words.contains(why)), "{set:?}: {:?}", by_choice.chosen);
+        // By its name it is the same model, and nothing was chosen.
+        let by_name = format!("model.method={method}");
+        let named = case(specimen, &[&[by_name.as_str()], *set].concat());
+        assert!(named.chosen.is_none() && named.model == by_choice.model, "{set:?}");
+    }
+}

@@ -1,0 +1,54 @@
+//! The error that is stated with a life is above the one it has; `perilife verify estimates` has more plates and tolerances.
+
+use perilife::predict::error_estimate::error_estimate;
+use perilife::predict::{Silent, predict};
+use perilife::verify::cases::{AUTO, POINTS};
+use perilife::verify::references::{Reference, compare, largest};
+
+#[test]
+fn a_life_is_within_the_error_that_is_stated() {
+    for (name, model) in [("slant_severance", AUTO), ("hole_attracts", AUTO), ("slant_severance", POINTS)] {
+        let reference = Reference::named(name).unwrap();
+        let case = reference.case(&[model.to_owned()]).unwrap();
+        let run = predict(&case, &Silent).unwrap();
+        let stated = error_estimate(&case, &run).unwrap();
+        let tips = compare(&run, reference.tips().unwrap(), f64::INFINITY);
+        let off = largest(tips.iter().flat_map(|tip| tip.cycles)).abs();
+        let path = tips.iter().map(|tip| tip.rms).fold(0.0, f64::max);
+        println!(
+            "{name} by {}: {off:.2} of {:.2} %, path {:.3} of {:.3} mm",
+            case.model.method(),
+            stated.life_percent,
+            1e3 * path,
+            1e3 * stated.path
+        );
+        assert!(off < stated.life_percent && path < stated.path, "{name}");
+        // A bound that is far above says nothing.
+        assert!(stated.life_percent < 3.0, "{name}: {stated:?}");
+    }
+}
+
+/// Nodes far too coarse for a plate say so.
+#[test]
+fn a_coarse_run_states_a_large_error() {
+    let reference = Reference::named("slant_severance").unwrap();
+    let nodes = ["model.method=element_free_galerkin", "model.nodes=60", "model.influence_radius=1.6"].map(str::to_owned);
+    let coarse = reference.case(&nodes).unwrap();
+    let run = predict(&coarse, &Silent).unwrap();
+    let stated = error_estimate(&coarse, &run).map_or(f64::INFINITY, |stated| stated.life_percent);
+    let tips = compare(&run, reference.tips().unwrap(), f64::INFINITY);
+    let off = largest(tips.iter().flat_map(|tip| tip.cycles)).abs();
+    println!("{off:.2} of {stated:.2} %");
+    assert!(off < stated);
+}
+
+/// Bonds that fail by their own strain have no error that a finer lattice would tell.
+#[test]
+fn nothing_is_stated_of_bonds() {
+    let case = Reference::named("slant_severance")
+        .unwrap()
+        .case(&["fatigue.driver=bond_strain".to_owned(), "stop.cycles_max=1".to_owned()]);
+    let case = case.unwrap();
+    let run = predict(&case, &Silent).unwrap();
+    assert!(error_estimate(&case, &run).unwrap_err().contains("own strain"));
+}
