@@ -20,7 +20,7 @@ fn no_more_of_a_model_than_a_scene_needs() {
     const MIDDLE: &str = "kind = \"middle_tension\"\ncrack_length_mm = 10";
     const DOUBLE: &str = "kind = \"double_edge_tension\"\ncrack_length_mm = 10";
     const SLANT: &str = "kind = \"plate\"\ncracks = [{ from_mm = [-5, -3], to_mm = [5, 3] }]";
-    const SLOT: &str = "kind = \"plate\"\nslots = [{ from_mm = [-50, 0], to_mm = [-30, 0], width_mm = 2 }]";
+    const SLOT: &str = "kind = \"plate\"\nnotches = [{ from_mm = [-50, 0], to_mm = [-30, 0], width_mm = 2 }]";
     let rows: &[(&str, &[&str], Method, &str)] = &[
         (MIDDLE, &[], Handbook, "Feddersen"),
         (MIDDLE, &["model.tolerance_percent=0.5"], ElementFreeGalerkin, "0.5 %"),

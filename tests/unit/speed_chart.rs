@@ -101,8 +101,8 @@ fn what_has_no_result_is_a_point_with_its_reason() {
     let picture = svg(&chart, &origin).unwrap();
     let crosses = chart.points.iter().filter(|point| point.place().is_none()).count();
     assert_eq!(picture.matches("stroke=\"#8893A1\" stroke-width=\"6\"").count(), 2 * crosses, "two strokes for each");
-    // Two panels, a star in each for the default.
-    assert_eq!(picture.matches("fill=\"#F2C14E\"").count(), 2);
+    // Two panels, a star in each for the choice of the program at four tolerances.
+    assert_eq!(picture.matches("fill=\"#F2C14E\"").count(), 8);
     let summary = markdown(&chart, &origin);
     assert!(
         summary.contains("refused: not with this material") && summary.contains("stopped: not done after 120 s"),

@@ -84,7 +84,7 @@ pub fn case_of(text: &str, set: &[String]) -> Result<Case> {
 /// The keys with a method among them: that of points where neither they nor the text name one. What is compared is a method, not the choice
 /// of the program.
 pub fn by_name(text: &str, set: &[String]) -> Vec<String> {
-    let is_named = text.contains("\nmethod = ") || set.iter().any(|key| key.starts_with("model.method="));
+    let is_named = text.contains("method = ") || set.iter().any(|key| key.starts_with("model.method="));
     (!is_named).then(|| POINTS.to_owned()).into_iter().chain(set.iter().cloned()).collect()
 }
 
