@@ -119,3 +119,25 @@ fn the_engine_writes_plastic_zone_and_residual_strength_too() {
     // The crack is two horizons long: nobody is to take what that does to its first growth for physics.
     assert!(stderr.contains("the initial crack is only 2.0 horizons long"), "{stderr}");
 }
+
+/// What the program chooses, how wrong the life may be, and what the other engine says of it.
+#[test]
+fn a_life_comes_with_its_error_and_a_second_opinion() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("panel.toml"), PANEL.replace("method = \"handbook\"", "")).unwrap();
+    let output = perilife(dir.path(), &["predict", "panel.toml", "--out", "run", "--cross-check"]);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    for words in ["handbook, chosen: standard specimen", "at most 0.9 % of life", "second opinion element_free_galerkin"] {
+        assert!(stdout.contains(words), "{words}: {stdout}");
+    }
+    let read = || -> Value { serde_json::from_slice(&fs::read(dir.path().join("run/result.json")).unwrap()).unwrap() };
+    let result = read();
+    assert!((0.5..1.5).contains(&result["error_estimate_percent"].as_f64().unwrap()), "{result}");
+    assert!(result["cross_check"]["difference_percent"].as_f64().unwrap().abs() < 0.5, "{result}");
+    assert!(result["model"]["why"]["method"].as_str().unwrap().contains("Feddersen"));
+    // Nothing is said that was not asked for.
+    let output = perilife(dir.path(), &["predict", "panel.toml", "--out", "run", "--no-estimate"]);
+    assert!(!texts(&output).0.contains("  error "), "{:?}", texts(&output));
+    assert!(read()["error_estimate_percent"].is_null() && read().get("cross_check").is_none());
+}
