@@ -45,7 +45,7 @@ fn what_the_program_chooses_gives_the_constants_of_bonds() {
     let text = std::fs::read_to_string(folder.join("case.toml")).unwrap();
     let left_open = text.replace("spacing_mm = 1.0", "");
     assert_ne!(left_open, text);
-    let chosen = CalibrationCase::from_text(&left_open, "median", folder).unwrap();
+    let chosen = CalibrationCase::from_text(&left_open, "median", folder.as_path()).unwrap();
     assert!(chosen.case.chosen.as_ref().is_some_and(|why| why.contains("Feddersen")), "{:?}", chosen.case.chosen);
     let on_points = calibration(&[]);
     let [chosen, on_points] = [&chosen, &on_points].map(|case| fit_to(case, &case.curves));
