@@ -34,6 +34,7 @@ fn no_more_of_a_model_than_a_scene_needs() {
         (SLANT, &["fatigue.driver=bond_strain"], Peridynamics, "bond_strain"),
         (SLANT, &["fatigue.ageing=everywhere"], Peridynamics, "fatigue.ageing"),
         (SLANT, &["fatigue.driver=tip_field"], ElementFreeGalerkin, "no handbook formula"),
+        (MIDDLE, &["model.nodes=600"], ElementFreeGalerkin, "model.nodes"),
         (SLOT, &[], Peridynamics, "slot"),
     ];
     for (specimen, set, method, why) in rows {

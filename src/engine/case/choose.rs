@@ -3,7 +3,7 @@
 use toml::Value;
 
 use super::Method;
-use super::model_keys::{KEYS_OF_BONDS, key_of_points};
+use super::model_keys::{KEYS_OF_BONDS, telling_key};
 use crate::input::value_at;
 use crate::loading::Loading;
 use crate::specimen::Specimen;
@@ -21,8 +21,10 @@ pub(super) struct Sections<'a> {
 
 /// The method for a case that leaves it open, and why, for an error of life asked for in percent.
 pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loading, percent: f64) -> (Method, String) {
-    if let Some(key) = key_of_points(asked.model) {
-        return (Method::Peridynamics, format!("model.{key} asks for points and bonds"));
+    match telling_key(asked.model) {
+        Some((key, Method::Peridynamics)) => return (Method::Peridynamics, format!("model.{key} asks for points and bonds")),
+        Some((key, method)) => return (method, format!("model.{key} asks for nodes")),
+        None => {}
     }
     let is_given = |key: &&&str| value_at(asked.fatigue, key).is_some();
     if let Some(key) = KEYS_OF_BONDS.iter().find(is_given) {

@@ -33,7 +33,7 @@ pub(super) fn from_value(
         }
         method => (method, None),
     };
-    refuse_strangers(sections.model, method)?;
+    refuse_strangers(sections.model, method, why.as_deref())?;
     Ok((of_method(method, &input, (specimen, material), choices, warnings)?, why))
 }
 

@@ -98,12 +98,12 @@ const KEYS: [Key; 14] = [
 /// Keys of `[fatigue]` that belong to fatigue bonds.
 pub(super) const KEYS_OF_BONDS: &[&str] = &["ageing", "zone_radius_horizons", "critical_stretch"];
 
-/// A key of `[model]` that asks for points and bonds where the method is left open.
-pub(super) fn key_of_points(model: &Value) -> Option<&'static str> {
-    KEYS.iter()
-        .filter(|key| key.owners.contains(&Method::Peridynamics))
-        .map(|key| key.name)
-        .find(|name| model.get(name).is_some())
+/// A key of `[model]` that asks for its first owner where the method is left open; `spacing_mm` asks for points.
+pub(super) fn telling_key(model: &Value) -> Option<(&'static str, Method)> {
+    let tells = |key: &&Key| key.owners.contains(&Method::Peridynamics) || key.owners == NODES;
+    let key = KEYS.iter().filter(tells).find(|key| model.get(key.name).is_some())?;
+    let of_points = key.owners.contains(&Method::Peridynamics);
+    Some((key.name, if of_points { Method::Peridynamics } else { Method::ElementFreeGalerkin }))
 }
 
 /// Error asked for, percent of life.
@@ -118,10 +118,13 @@ pub(super) fn read(name: &str, value: Option<f64>) -> Result<Option<f64>> {
 }
 
 /// Refuses a key of `[model]` that does not go with the method.
-pub(super) fn refuse_strangers(model: &Value, method: Method) -> Result<()> {
+pub(super) fn refuse_strangers(model: &Value, method: Method, chosen: Option<&str>) -> Result<()> {
     let strange = KEYS.iter().find(|key| !key.owners.contains(&method) && model.get(key.name).is_some());
     let Some(&Key { name, owners: &[owner, ..], .. }) = strange else { return Ok(()) };
-    let problem = format!("belongs to model.method = \"{owner}\", and the method is \"{method}\"");
+    let problem = format!(
+        "belongs to model.method = \"{owner}\", and the method is \"{method}\"{}",
+        chosen.map_or_else(String::new, |why| format!(" ({why})"))
+    );
     Err(input_missing(&format!("model.{name}"), &problem, format!("leave it out, or use model.method = \"{owner}\"")))
 }
 
