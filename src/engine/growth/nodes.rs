@@ -23,8 +23,10 @@ use crate::williams::Elasticity;
 
 /// Factor by which nodes get finer where K asks for it.
 const FINER: f64 = 1.5;
-/// Times that they do at the most.
-const REFINEMENTS_MOST: usize = 2;
+/// Times that they do at the most: of few nodes, and of many.
+const REFINEMENTS_MOST: [usize; 2] = [4, 2];
+/// Nodes from which they are many.
+const MANY: usize = 2000;
 /// Nodes beyond which they do not.
 const NODES_MOST: f64 = 2e4;
 
@@ -100,12 +102,13 @@ impl CrackedPlate for NodePlate {
         self.state.fineness = 1.0 / FINER;
         // Where they are too coarse to tell anything, the next ones say so.
         let mut before = self.factors(case, cracks).unwrap_or_else(|_| vec![[f64::NAN; 2]; cracks.tips.len()]);
-        for refinement in 0..=REFINEMENTS_MOST {
+        for refinement in 0..=REFINEMENTS_MOST[0] {
             self.state.fineness *= FINER;
             let now = self.factors(case, cracks)?;
             let (tip, change) = largest_difference(&before, &now);
             let nodes = self.state.nodes;
-            let is_last = refinement == REFINEMENTS_MOST || self.settings.is_given || nodes as f64 * FINER * FINER > NODES_MOST;
+            let most = REFINEMENTS_MOST[usize::from(nodes >= MANY)];
+            let is_last = refinement >= most || self.settings.is_given || nodes as f64 * FINER * FINER > NODES_MOST;
             if change <= self.settings.tolerance || is_last && change.is_nan() {
                 break;
             }
