@@ -29,7 +29,8 @@ const ROWS: &[Row] = &[
     ("default_resolution/four_point_shear_10", &[[13.549, -4.127]], [0.02, 0.01]),
     ("default_resolution/disc15", &[[1.382, -3.332], [1.382, -3.332]], [0.02, 0.01]),
     ("default_resolution/fillet_flex", &[[130.88, -27.21]], [0.02, 0.01]),
-    ("guards/lug3", &[[28.755, -1.063]], [0.01, 0.005]),
+    // Nodes: what the 2 % of life leave that are asked for by default.
+    ("guards/lug3", &[[28.755, -1.063]], [0.01, 0.006]),
     ("guards/periodic", &[[23.464, 0.0], [23.464, 0.0]], [0.01, 0.005]),
     ("guards/scb40", &[[3.396, 2.764]], [0.025, 0.005]),
 ];
