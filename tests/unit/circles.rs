@@ -174,7 +174,7 @@ const LINES: &[(&str, usize)] = &[
     ("case", 2560),
     ("body", 2534),
     ("specimen", 2483),
-    ("predict", 1774),
+    ("predict", 1775),
     ("levels", 1728),
     ("fatigue", 1681),
     ("sweep", 1074),
@@ -188,7 +188,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 71764;
+const LINES_OF_ALL: usize = 71765;
 
 #[test]
 fn rooms_do_not_grow() {

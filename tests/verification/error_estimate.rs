@@ -28,18 +28,17 @@ fn a_life_is_within_the_error_that_is_stated() {
     }
 }
 
-/// Nodes far too coarse for a plate say so.
+/// A ligament between holes is what coarse nodes are worst at: the life errs by 1.6 %, and more is stated than of other plates.
 #[test]
 fn a_coarse_run_states_a_large_error() {
-    let reference = Reference::named("slant_severance").unwrap();
-    let nodes = ["model.method=element_free_galerkin", "model.nodes=60", "model.influence_radius=1.6"].map(str::to_owned);
-    let coarse = reference.case(&nodes).unwrap();
+    let reference = Reference::named("double_edge_notched").unwrap();
+    let coarse = reference.case(&[AUTO.to_owned(), "model.tolerance_percent=5".to_owned()]).unwrap();
     let run = predict(&coarse, &Silent).unwrap();
-    let stated = error_estimate(&coarse, &run).map_or(f64::INFINITY, |stated| stated.life_percent);
+    let stated = error_estimate(&coarse, &run).unwrap().life_percent;
     let tips = compare(&run, reference.tips().unwrap(), f64::INFINITY);
     let off = largest(tips.iter().flat_map(|tip| tip.cycles)).abs();
     println!("{off:.2} of {stated:.2} %");
-    assert!(off < stated);
+    assert!(off > 1.0 && off < stated && stated < 4.0, "{off} of {stated}");
 }
 
 /// Bonds that fail by their own strain have no error that a finer lattice would tell.

@@ -29,8 +29,7 @@ const ROWS: &[Row] = &[
     ("default_resolution/four_point_shear_10", &[[13.549, -4.127]], [0.02, 0.01]),
     ("default_resolution/disc15", &[[1.382, -3.332], [1.382, -3.332]], [0.02, 0.01]),
     ("default_resolution/fillet_flex", &[[130.88, -27.21]], [0.02, 0.01]),
-    // Nodes: what the 2 % of life leave that are asked for by default.
-    ("guards/lug3", &[[28.755, -1.063]], [0.01, 0.006]),
+    ("guards/lug3", &[[28.755, -1.063]], [0.01, 0.005]),
     ("guards/periodic", &[[23.464, 0.0], [23.464, 0.0]], [0.01, 0.005]),
     ("guards/scb40", &[[3.396, 2.764]], [0.025, 0.005]),
 ];
@@ -66,7 +65,11 @@ fn off(read: Option<Factors>, [k_i, k_ii]: Factors) -> f64 {
 fn nodes_read_the_right_factors() {
     let one = ON_NODES.iter().map(|(name, right)| (*name, std::slice::from_ref(right), 0.01));
     for (name, right, most) in ROWS.iter().map(|(name, right, most)| (*name, *right, most[1])).chain(one) {
-        let Some(document) = document(name) else { return };
+        let Some(mut document) = document(name) else { return };
+        // Half a percent of K is 1.5 % of life: that is not what the default of 2 % stands for.
+        if most <= 0.005 {
+            document.set_all(&["model.tolerance_percent=1".to_owned()]).unwrap();
+        }
         let tips = initial_tips::<NodePlate>(&Case::plate_on_nodes(&document).unwrap()).unwrap().tips;
         assert!(tips.len() >= right.len(), "{name}");
         for (tip, right) in tips.iter().zip(right) {
