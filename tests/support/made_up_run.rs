@@ -65,6 +65,7 @@ fn curve() -> Vec<CurvePoint> {
             t_stress: None,
         };
         curve.push(CurvePoint {
+            is_solved: true,
             cycles,
             crack_length,
             delta_k,

@@ -16,6 +16,7 @@ impl Steady {
     fn grow(&mut self) {
         let growth = 1e-3 * self.0.len() as f64;
         self.0.push(CurvePoint {
+            is_solved: true,
             cycles: 1e6 * growth,
             crack_length: 0.01 + growth,
             delta_k: 1e7,

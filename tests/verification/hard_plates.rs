@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use perilife::case::Case;
-use perilife::monotone::Monotone;
 use perilife::predict::{Silent, predict};
 use perilife::specimen::Point;
 use perilife::specimen::geometry::{distance, distance_to_segment};
@@ -56,9 +55,9 @@ fn reference(path: &Path) -> BTreeMap<usize, Vec<Row>> {
 }
 
 fn cycles_at(rows: &[Row], growth: f64) -> Option<f64> {
-    // Between two rows of a kink cycles are a smooth curve over the root of its length: a chord of it would be up to 1 % of life off.
-    let curve = Monotone::new(rows.iter().map(|(cycles, growth, _)| [growth.sqrt(), *cycles]));
-    (growth <= rows.last()?.1).then(|| curve.at(growth.sqrt()))
+    let pair = rows.windows(2).find(|pair| (pair[0].1..=pair[1].1).contains(&growth))?;
+    let share = (growth - pair[0].1) / (pair[1].1 - pair[0].1).max(f64::MIN_POSITIVE);
+    Some(pair[0].0 + share * (pair[1].0 - pair[0].0))
 }
 
 /// A case with what its plate asks for.

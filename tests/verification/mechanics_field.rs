@@ -7,7 +7,6 @@ use perilife::growth::nodes::NodePlate;
 use perilife::growth::points::PointPlate;
 use perilife::growth::record::CurvePoint;
 use perilife::input::Document;
-use perilife::monotone::Monotone;
 use perilife::predict::{Silent, predict};
 use perilife::units::{MM, MPA_SQRT_M};
 
@@ -135,10 +134,9 @@ fn lives(plates: &[Life]) {
         // The tips that go out on one side: in the plates there are twins.
         let way = |row: &CurvePoint| row.tips.iter().map(|tip| tip.position[*axis].abs() / MM).fold(0.0, f64::max);
         for (at, right) in places {
-            // Rows lie so far apart that a chord between them is up to 2 % of life off.
-            let start = way(&run.curve[0]);
-            let of_growth = |way: f64| (way - start).max(0.0).sqrt();
-            let cycles = Monotone::new(run.curve.iter().map(|row| [of_growth(way(row)), row.cycles])).at(of_growth(*at));
+            let (from, to) = run.curve.windows(2).map(|pair| (&pair[0], &pair[1])).find(|(_, to)| way(to) >= *at).unwrap();
+            let share = (at - way(from)) / (way(to) - way(from));
+            let cycles = from.cycles + share * (to.cycles - from.cycles);
             println!("{name}: {cycles:.4e} for {right:.4e} at {at} mm");
             assert!((cycles / right - 1.0).abs() < 0.01, "{name}: {cycles} for {right} at {at} mm");
         }

@@ -338,7 +338,7 @@ fn computed(case: &Case, prediction: &Prediction) -> String {
             figures.points, figures.blocks, figures.solves, figures.wall_s
         ),
         Model::Nodes(_) => format!(
-            "up to {} nodes, {} increments, {} solves, {:.2} s",
+            "up to {} nodes, {} cycle blocks, {} solves, {:.2} s",
             figures.points, figures.blocks, figures.solves, figures.wall_s
         ),
         Model::Handbook(_) => {

@@ -75,6 +75,7 @@ impl<'a> HandCalculation<'a> {
         let ahead =
             |seed: &crate::specimen::TipSeed| along(seed.position, [0, 1].map(|i| seed.position[i] + seed.direction[i]), growth);
         CurvePoint {
+            is_solved: true,
             cycles,
             crack_length,
             delta_k,

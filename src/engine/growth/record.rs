@@ -57,6 +57,8 @@ pub struct TipRecord {
 /// One cycle block of a finished run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint {
+    /// Whether an equilibrium (or a formula) was solved here; else the row lies between two that were.
+    pub is_solved: bool,
     /// Cycles since N = 0.
     pub cycles: f64,
     /// Crack length in the specimen's convention, m.
@@ -96,6 +98,7 @@ impl CurvePoint {
         let (k_max, growth_rate) = lead.unwrap_or((f64::NAN, f64::NAN));
         let crack_length = case.specimen.crack_length_after(&growths);
         CurvePoint {
+            is_solved: true,
             cycles,
             crack_length,
             limit_load: case.limit_load(crack_length, cracks),
@@ -126,6 +129,7 @@ impl CurvePoint {
             t_stress: a.t_stress.zip(b.t_stress).map(|(a, b)| mix(a, b)),
         };
         CurvePoint {
+            is_solved: false,
             cycles: mix(before.cycles, self.cycles),
             crack_length: mix(before.crack_length, self.crack_length),
             delta_k: mix(before.delta_k, self.delta_k),

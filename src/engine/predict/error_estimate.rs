@@ -127,7 +127,7 @@ fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, sha
     let rates = Rates { law, ratio: case.loading.ratio };
     let nearest = |share: f64| {
         let gap = |row: &usize| (rows[*row].cycles - share * life).abs();
-        (0..rows.len()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap_or(0)
+        (0..rows.len()).filter(|row| rows[*row].is_solved).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap_or(0)
     };
     let mut asked: Vec<usize> = shares.iter().map(|share| nearest(*share)).collect();
     asked.dedup();
@@ -199,7 +199,7 @@ fn grown(specimen: &Specimen, rows: &[CurvePoint]) -> Specimen {
         let Some(end) = specimen.line_end(tip) else { continue };
         let line = &mut lines[end.line];
         let mut grown = 0.0;
-        for row in rows {
+        for row in rows.iter().filter(|row| row.is_solved) {
             let TipRecord { growth, position, .. } = row.tips[tip];
             if growth > grown {
                 line.grow(end.at_last, position);

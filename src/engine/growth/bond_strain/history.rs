@@ -231,6 +231,7 @@ impl GrowthHistory {
             case.limit_load(crack_length, &cracks)
         };
         let point = |(i, row): (usize, &Row)| CurvePoint {
+            is_solved: true,
             limit_load: limit_load(&row.tips, row.crack_length),
             cycles: row.cycles,
             crack_length: row.crack_length,

@@ -2,17 +2,20 @@
 
 use super::meeting::Segment;
 use super::tip::{Reading, Tip, pair_twins};
+use super::step::Course;
 use super::{CrackedPlate, Cracks, Parted, kink, step};
 use crate::error::Error;
 use crate::fatigue::crack_tip::TipState;
 use crate::growth::cross_check::ReleasedEnergy;
 use crate::growth::end_of_life::{self, gone};
-use crate::growth::record::StopReason;
+use crate::growth::record::{CurvePoint, StopReason};
 use crate::units::MM;
 
 /// Compliance over that at the start from which a plate without equilibrium is as good as severed: what one side of it has let go turns
 /// about what is left of the other.
 const MECHANISM: f64 = 20.0;
+/// The same where an equilibrium was found: what K such a ligament has is round-off.
+const SEVERED: f64 = 1e6;
 /// Spacings on a ligament that resolve it.
 const LIGAMENT_SPACINGS: f64 = 4.0;
 
@@ -102,11 +105,13 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         if step.parted.is_severed {
             return Err(StopReason::Severed);
         }
-        let Err(error) = self.plate.solve(self.case, &self.state) else { return Ok(()) };
+        let Err(error) = self.plate.solve(self.case, &self.state) else {
+            return if self.compliance_rise(self.work()) < SEVERED { Ok(()) } else { Err(StopReason::Severed) };
+        };
         if matches!(error, Error::LossOfStiffness) {
             return Err(StopReason::Severed);
         }
-        let rise = self.compliance_rise();
+        let rise = self.compliance_rise(self.last().work);
         if rise > MECHANISM {
             self.warnings.push(format!(
                 "the run ends here: the plate is {rise:.0} times as compliant as at the start, and what is left of it moves almost freely \
@@ -221,18 +226,67 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             ));
             end = Some(StopReason::LigamentUnresolved);
         }
-        let last = self.last();
-        let next = self.row(last.cycles + cycles, work, last.broken_bonds + step.parted.bonds);
-        let (row, reason) = end_of_life::row_after(self.case, last, next, end);
-        if step.parted.bonds > 0 || cycles > 0.0 {
-            self.curve.push(row);
+        let (all, broken) = (self.last().cycles + cycles, self.last().broken_bonds + step.parted.bonds);
+        let next = self.row(all, work, broken);
+        if step.parted.bonds == 0 && cycles <= 0.0 {
+            return end_of_life::row_after(self.case, self.last(), next, end).1;
         }
+        let between = if is_smooth { self.rows_between(step, &next, [rate, factor], cycles / all) } else { Vec::new() };
+        for row in between {
+            let (row, reason) = end_of_life::row_after(self.case, self.last(), row, None);
+            self.curve.push(row);
+            if reason.is_some() {
+                return reason;
+            }
+        }
+        let (row, reason) = end_of_life::row_after(self.case, self.last(), next, end);
+        self.curve.push(row);
         reason
     }
 
-    /// Compliance of the last equilibrium over that at the start.
-    fn compliance_rise(&self) -> f64 {
-        let rise = self.last().work / self.curve[0].work;
+    /// Rows between the last one and the `next`, so that straight lines between rows are the curve by which cycles were counted; `then` are
+    /// rate, m/cycle, and K, Pa√m, of the lead at the end.
+    fn rows_between(&self, step: &Increment, next: &CurvePoint, then: [f64; 2], of_all: f64) -> Vec<CurvePoint> {
+        let ([rate, factor], growths, last) = (then, step.growths(), self.last());
+        let is_by_root = self.scales.by_root || step.is_kink;
+        let rise = (step.root * step.root + growths[step.lead]).sqrt() - step.root;
+        let course = Course {
+            weight: if is_by_root { [step.root, rise] } else { [1.0, 0.0] },
+            gain: (rate / step.rate).ln(),
+        };
+        let row_at = |t: f64| {
+            let mut row = next.clone().between(last, t);
+            let of_lead = course.growth(t);
+            for (index, tip) in row.tips.iter_mut().enumerate() {
+                let own = &self.state.tips[index];
+                let share = if index == step.lead { of_lead } else { own.share_at(of_lead, (step.rate, rate)) };
+                let [from, to] = [&last.tips[index], &next.tips[index]];
+                if own.has_begun_kink() {
+                    // K at a corner is that of the crack before it.
+                    let of_end = (step.factor / factor).powf(1.0 - t);
+                    tip.factors = to.factors.map(|factors| factors.map(|k| of_end * k));
+                    tip.t_stress = to.t_stress;
+                }
+                let mix = |from: f64, to: f64| from + share * (to - from);
+                (tip.growth, tip.state) = (mix(from.growth, to.growth), from.state);
+                tip.position = [0, 1].map(|i| mix(from.position[i], to.position[i]));
+            }
+            let grown: Vec<f64> = row.tips.iter().map(|tip| tip.growth).collect();
+            CurvePoint {
+                cycles: last.cycles + course.cycles(t) * (next.cycles - last.cycles),
+                crack_length: self.case.specimen.crack_length_after(&grown),
+                delta_k: self.case.loading.range_share() * step.factor * (factor / step.factor).powf(t),
+                growth_rate: step.rate * (course.gain * t).exp(),
+                ..row
+            }
+        };
+        let parts = course.parts(of_all);
+        (1..parts).map(|part| row_at(part as f64 / parts as f64)).collect()
+    }
+
+    /// Compliance of an equilibrium by the work of its loads, J, over that at the start.
+    fn compliance_rise(&self, work: f64) -> f64 {
+        let rise = work / self.curve[0].work;
         // Of a kept displacement the work falls as the compliance rises.
         if self.case.loading.displacement().is_some() { 1.0 / rise } else { rise }
     }

@@ -31,6 +31,11 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         &self.curve[self.curve.len() - 1]
     }
 
+    /// Rows with an equilibrium of their own.
+    fn rows_solved(&self) -> usize {
+        self.curve.iter().filter(|row| row.is_solved).count()
+    }
+
     /// The plate as it stands, as a row; ΔK and da/dN are those of the fastest tip.
     pub(super) fn row(&self, cycles: f64, work: f64, broken_bonds: usize) -> CurvePoint {
         let now = |tip: &Tip| TipRecord {
@@ -103,11 +108,11 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
     }
 
     fn should_rebuild_solver(&self) -> bool {
-        self.curve.len() >= self.rows_at_rebuild + self.scales.rows_per_checkpoint
+        self.rows_solved() >= self.rows_at_rebuild + self.scales.rows_per_checkpoint
     }
 
     fn rebuild_solver(&mut self) -> Result<()> {
-        self.rows_at_rebuild = self.curve.len();
+        self.rows_at_rebuild = self.rows_solved();
         self.plate.rebuild(self.case, &self.state)
     }
 

@@ -128,6 +128,39 @@ pub(super) fn cycles_by_root(past: Option<[f64; 2]>, [rate, rate_then]: [f64; 2]
     (straight * (1.0 + counted), share)
 }
 
+/// How growth and cycles of an increment go along in what its rate is continued in, t from 0 to 1: `da/dt ∝ a + b t` and ln r linear in t.
+pub(super) struct Course {
+    /// a and b: the root of the length of crack and its rise, or 1 and 0 in the growth itself.
+    pub weight: [f64; 2],
+    /// Rise of ln r.
+    pub gain: f64,
+}
+
+/// What a chord of a-N between two rows may be off by over all cycles so far.
+const CHORD: f64 = 1e-3;
+/// Parts of an increment at the most.
+const PARTS_MOST: f64 = 8.0;
+
+impl Course {
+    /// In how many parts an increment that took the share `of_all` of all cycles so far is written: a chord of it is off by `g ΔN/8`.
+    pub(super) fn parts(&self, of_all: f64) -> usize {
+        (self.gain.abs() * of_all / (8.0 * CHORD)).sqrt().ceil().clamp(1.0, PARTS_MOST) as usize
+    }
+
+    /// Share of the growth of the increment at t.
+    pub(super) fn growth(&self, t: f64) -> f64 {
+        let [from, rise] = self.weight;
+        t * (from + 0.5 * rise * t) / (from + 0.5 * rise)
+    }
+
+    /// Share of its cycles at t.
+    pub(super) fn cycles(&self, t: f64) -> f64 {
+        let [from, rise] = self.weight;
+        let until = |end: f64| integrate(|t| (from + rise * t) * (-self.gain * t).exp(), 0.0, end, 1e-10).value;
+        until(t) / until(1.0)
+    }
+}
+
 /// Mean of 1/r between two rates with ln r linear between them, cycles/m.
 fn mean_inverse(from: f64, to: f64) -> f64 {
     if to.is_infinite() {

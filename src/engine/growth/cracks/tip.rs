@@ -152,6 +152,11 @@ impl Tip {
         move |growth| if by_root { self.root(growth) } else { growth }
     }
 
+    /// Whether its last increment began a kink, or was the first after a joint.
+    pub(super) fn has_begun_kink(&self) -> bool {
+        self.before.is_none()
+    }
+
     /// Takes in an increment in which it grew by `growth` and the fastest tip by `fastest`, m, and what has become of it; `by_root` as in
     /// [`super::scales::Scales`].
     pub(super) fn has_grown(&mut self, [growth, fastest]: [f64; 2], state: TipState, by_root: bool) {
@@ -201,6 +206,14 @@ impl Tip {
         let short = step * mean - growth;
         // Rates that jump, as at a joint, lie on no line.
         self.arrears = if short.is_finite() { short.clamp(-0.5 * growth, 0.5 * growth) } else { 0.0 };
+    }
+
+    /// Share of its growth in the last increment when the fastest tip had made the share `of_lead`, as in [`Self::count_arrears`].
+    pub(super) fn share_at(&self, of_lead: f64, (lead_before, lead_rate): (f64, f64)) -> f64 {
+        let Some([before, _]) = self.before.filter(|_| !self.begins_kink()) else { return of_lead };
+        let gain = (self.rate / before * lead_before / lead_rate).ln();
+        let share = (gain * of_lead).exp_m1() / gain.exp_m1();
+        if share.is_finite() { share } else { of_lead }
     }
 
     /// By how much ln of its rate rises in its next `growth`, m, linear in the root of its length as in the last one.
